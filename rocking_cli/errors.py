@@ -55,7 +55,7 @@ class Problem:
 
     def __str__(self) -> str:
         place = ":".join(one_line(str(part)) for part in (self.file, self.line, self.column) if part is not None)
-        # What is quoted of a file must not command the terminal, nor fill it.
+        # Text quoted from a file must neither control the terminal nor fill it.
         joint = " " if self.message.partition(" ")[0] in PREDICATES else ": "
         what = joint.join(printable(part) for part in (self.field, self.message) if part)
         lines = [f"{place}: {what}" if place else what]
@@ -151,9 +151,9 @@ def of_structure(error: MechanismError, name: str) -> MechanismError:
     name : str
         Name of the structure.
     """
-    said, begins = str(error), f"{name}: "
+    message, begins = str(error), f"{name}: "
     kind = type(error) if isinstance(error, StructureError) else MechanismError
-    return kind(said if said.startswith(begins) else begins + said)
+    return kind(message if message.startswith(begins) else begins + message)
 
 
 class PluginError(MechanismError):

@@ -14,7 +14,7 @@ _UNSEEN = re.compile(
 )
 MAX_LISTED = 8  # names in a row before the rest is counted
 MAX_QUOTED_CHARACTERS = 60
-BEFORE, AFTER = 30, 40  # quoted characters of a line on either side of an error
+QUOTED_BEFORE, QUOTED_AFTER = 30, 40  # quoted characters of a line on either side of an error
 
 
 def printable(text: str) -> str:
@@ -30,8 +30,8 @@ def printable(text: str) -> str:
     return _UNSEEN.sub(_spelled, text)
 
 
-def _spelled(found: re.Match[str]) -> str:
-    code = ord(found[0])
+def _spelled(match: re.Match[str]) -> str:
+    code = ord(match[0])
     if 0xDC80 <= code <= 0xDCFF:  # Python's stand-in for a byte that is not UTF-8
         code -= 0xDC00
     return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}"
@@ -86,9 +86,9 @@ def quoted_line(line: str, column: int | None) -> list[str]:
     """Return two lines of output: a line of a file, cut around a column (from 1), and a mark below this column."""
     start = (column or 1) - 1
     before, after = printable(line[:start]), printable(line[start:])
-    if len(before) > BEFORE:
-        before = f"...{before[3 - BEFORE :]}"
-    lines = [before + cut(after, AFTER)]
+    if len(before) > QUOTED_BEFORE:
+        before = f"...{before[3 - QUOTED_BEFORE :]}"
+    lines = [before + cut(after, QUOTED_AFTER)]
     return lines if column is None else [*lines, " " * len(before) + "^"]
 
 
@@ -126,6 +126,6 @@ class _Pattern:
         self._given: Any = text, flags
 
     def __getattr__(self, name: str) -> Any:
-        found = getattr(re.compile(*self._given), name)
-        setattr(self, name, found)  # from now on it is found without this function
-        return found
+        attribute = getattr(re.compile(*self._given), name)
+        setattr(self, name, attribute)  # later accesses bypass this function
+        return attribute

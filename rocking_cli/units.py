@@ -15,11 +15,10 @@ from rocking_cli.text import cut, printable, regex
 
 PI = "3.14159265358979323846264338327950288419716939937510"
 
-# What is measured, and its units in SI units. The first of each is the SI unit itself. Decimal, so that 800 mm is 0.8 m
-# to the last digit.
+# Units of every quantity, in SI units; the first is the SI unit itself. Decimal, so that 800 mm is exactly 0.8 m.
 KINDS: Mapping[str, Mapping[str, str]] = {
     "length": {"m": "1", "mm": "0.001", "cm": "0.01", "dm": "0.1", "km": "1000", "in": "0.0254", "ft": "0.3048"},
-    # Before mass: a field in g is one of accelerations, a mass is in kg.
+    # Accelerations come before masses, as a field in g is an acceleration and masses are in kg.
     "acceleration": {"m/s2": "1", "cm/s2": "0.01", "mm/s2": "0.001", "gal": "0.01", "g": "9.80665", "ft/s2": "0.3048"},
     "mass": {"kg": "1", "g": "0.001", "t": "1000", "Mg": "1000", "lb": "0.45359237"},
     "force": {"N": "1", "kN": "1000", "MN": "1000000", "lbf": "4.4482216152605", "kip": "4448.2216152605"},
@@ -79,8 +78,8 @@ def units_of(unit: str) -> tuple[str, ...]:
 
 def split(text: str) -> tuple[str, str] | None:
     """Split a text such as `800 mm` into number and unit, which may be empty; None if it is not a number."""
-    found = _FORM.fullmatch(text.strip())
-    return (found[1], _plain(found[2] or "")) if found else None
+    match = _FORM.fullmatch(text.strip())
+    return (match[1], _plain(match[2] or "")) if match else None
 
 
 def _plain(unit: str) -> str:
@@ -115,52 +114,52 @@ def read(text: str, unit: str) -> float:
     >>> read("0.5 rad", "deg")
     28.64788975654116
     """
-    shown, parts = cut(printable(text.strip())), split(text)
+    quoted, parts = cut(printable(text.strip())), split(text)
     if parts is None:
         hint = "write a decimal point, and no separator between thousands" if _COMMA.match(text.strip()) else None
-        raise UnitError(f"{shown!r} is not a number with a unit", hint)
-    (number, given), kind, known = parts, kind_of(unit), units_of(unit)
-    if not given:
-        raise UnitError(f"{shown!r} is a text without a unit")
+        raise UnitError(f"{quoted!r} is not a number with a unit", hint)
+    (number, stated), kind, known = parts, kind_of(unit), units_of(unit)
+    if not stated:
+        raise UnitError(f"{quoted!r} is a text without a unit")
     if not known:
-        raise UnitError(f"{shown!r} has a unit", "give a number without one")
-    if given == _plain(unit):
+        raise UnitError(f"{quoted!r} has a unit", "give a number without one")
+    if stated == _plain(unit):
         return float(number)
-    if kind and given in known:
-        ratio = _EXACT.divide(_factor(kind, given), _factor(kind, unit))
+    if kind and stated in known:
+        ratio = _EXACT.divide(_factor(kind, stated), _factor(kind, unit))
         return float(_EXACT.multiply(_EXACT.create_decimal(number), ratio))
-    other = kind_of(given)
+    other = kind_of(stated)
     if other is None:
-        raise UnitError(f"{cut(printable(given))!r} is not a unit of {kind or unit}", _guess(given, known))
+        raise UnitError(f"{cut(printable(stated))!r} is not a unit of {kind or unit}", _guess(stated, known))
     if (other, kind) == ("weight density", "density"):
-        mass = _EXACT.divide(_EXACT.multiply(_EXACT.create_decimal(number), _factor(other, given)), STANDARD_GRAVITY)
+        mass = _EXACT.divide(_EXACT.multiply(_EXACT.create_decimal(number), _factor(other, stated)), STANDARD_GRAVITY)
         hint = f"divided by {STANDARD_GRAVITY} m/s2 it is {float(mass):.6g} kg/m3"
-        raise UnitError(f"{shown} is a unit weight, not a density (mass per volume)", hint)
-    raise UnitError(f"{shown} is {_a(other)}, not {_a(kind) if kind else f'in {unit}'}", f"units: {', '.join(known)}")
+        raise UnitError(f"{quoted} is a unit weight, not a density (mass per volume)", hint)
+    raise UnitError(f"{quoted} is {_a(other)}, not {_a(kind) if kind else f'in {unit}'}", f"units: {', '.join(known)}")
 
 
-def number_of(given: object, unit: str) -> float:
+def number_of(value: object, unit: str) -> float:
     """Return a finite number that is given as such, in `unit`, or as a text with its unit or without.
 
     Fractions are in the unit `%`: 0.05, or 5 %. Raises `UnitError`.
     """
-    if isinstance(given, bool) or not isinstance(given, str | int | float):
-        raise UnitError(f"{given!r} is not a number")
-    shown = repr(cut(printable(given))) if isinstance(given, str) else given
-    parts = split(given) if isinstance(given, str) else (given, "")
+    if isinstance(value, bool) or not isinstance(value, str | int | float):
+        raise UnitError(f"{value!r} is not a number")
+    quoted = repr(cut(printable(value))) if isinstance(value, str) else value
+    parts = split(value) if isinstance(value, str) else (value, "")
     if parts is None:
-        raise UnitError(f"{shown} is not a number{', with or without a unit' if unit else ''}")
+        raise UnitError(f"{quoted} is not a number{', with or without a unit' if unit else ''}")
     if parts[1].lower() not in ("", unit.lower()):
-        return read(str(given), unit)
-    found = float(parts[0]) / (100 if parts[1] == "%" else 1)
-    if not isfinite(found):
-        raise UnitError(f"{shown} is not a finite number")
-    return found
+        return read(str(value), unit)
+    number = float(parts[0]) / (100 if parts[1] == "%" else 1)
+    if not isfinite(number):
+        raise UnitError(f"{quoted} is not a finite number")
+    return number
 
 
-def _guess(given: str, known: tuple[str, ...]) -> str:
+def _guess(spelling: str, known: tuple[str, ...]) -> str:
     alike = {unit.lower(): unit for unit in reversed(known)}
-    close = get_close_matches(given.lower(), list(alike), n=1)
+    close = get_close_matches(spelling.lower(), list(alike), n=1)
     return f"did you mean {alike[close[0]]}?" if close else f"known: {', '.join(known)}"
 
 

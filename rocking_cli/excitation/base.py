@@ -170,7 +170,7 @@ class GroundMotion:
     @property
     def pga_g(self) -> float:
         """Peak ground acceleration, in units of standard gravity."""
-        # To 15 digits: the way through m/s2 and back has changed the last bit of what a record in g says.
+        # Rounded to 15 digits, as the conversion to m/s2 and back changes the last bit of values in g.
         return float(f"{np.abs(self.acceleration).max() / STANDARD_GRAVITY:.15g}")
 
     @property

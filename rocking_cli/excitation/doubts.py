@@ -22,7 +22,7 @@ MIN_JUMP_OVER_PEAK = 0.05
 MIN_JUMP_OVER_STEP = 3  # times the median step; one step of the last digit is not a jump
 MIN_RESIDUAL = 0.001  # share of the peak; smaller residuals around a sample are raised to it
 MAX_GROWTH = 0.1  # p dt: growth of a motion near overturning from one sample to the next
-_SMOOTH_SAMPLES = 18  # on either side of a spike
+_SMOOTH_SAMPLES = 18  # number of samples on either side with which a spike is compared
 
 
 def doubts(motion: GroundMotion, measured: Measures) -> list[Doubt]:
@@ -98,15 +98,15 @@ def _size(motion: GroundMotion, measured: Measures) -> list[Doubt]:
 
 def _baseline(motion: GroundMotion, measured: Measures) -> list[Doubt]:
     start = float(motion.acceleration[0]) / STANDARD_GRAVITY
-    end, left = measured.final_velocity, measured.final_displacement
-    checks = (  # keyword, value, what it is compared with, share of that from which it is doubtful, text
+    end, displacement = measured.final_velocity, measured.final_displacement
+    checks = (  # keyword, value, reference, share of the reference above which the value is doubtful, text
         ("offset", measured.mean, measured.rms, MAX_MEAN_OVER_RMS,
          "the mean acceleration is {:.2g} g, {:.0f} % of its rms: an offset of the baseline?"),
         ("start", start, measured.pga, MAX_START_OVER_PEAK,
          "it starts at {:.2g} g, {:.0f} % of its peak, and not at rest: an offset, or cut off?"),
         ("final_velocity", end, measured.pgv, FINAL_VELOCITY,
          "its velocity drifts: it ends at {:.2g} m/s, {:.0f} % of its peak: an uncorrected baseline, or cut off?"),
-        ("final_displacement", left, measured.pgd, FINAL_DISPLACEMENT,
+        ("final_displacement", displacement, measured.pgd, FINAL_DISPLACEMENT,
          "its displacement ends at {:.2g} m, {:.0f} % of its peak: an uncorrected baseline, or a ground that stays "
          "displaced?"),
     )  # fmt: skip
@@ -118,17 +118,17 @@ def _baseline(motion: GroundMotion, measured: Measures) -> list[Doubt]:
 
 
 def _clipping(motion: GroundMotion) -> list[Doubt]:
-    # Between two points of a film as high as each other there are any number of samples.
+    # In a digitised film, interpolation puts any number of equal samples between two equal points.
     a = motion.acceleration if motion.points is None else motion.acceleration[motion.points]
     peak = float(np.abs(a).max())
     what = "samples" if motion.points is None else "points"
-    found = []
+    doubts = []
     for extreme in dict.fromkeys((float(a.max()), float(a.min()))):
         run = _longest_run(np.flatnonzero(a == extreme))
-        if run >= CLIPPED_SAMPLES and abs(extreme) > peak / 2:  # not the zeros that a one-sided pulse never goes below
+        if run >= CLIPPED_SAMPLES and abs(extreme) > peak / 2:  # a one-sided pulse has many zeros at its other extreme
             text = f"{run} {what} in a row stand at its extreme of {extreme / STANDARD_GRAVITY:.3g} g: clipped?"
-            found.append(Doubt("clipped", float(run), text))
-    return found
+            doubts.append(Doubt("clipped", float(run), text))
+    return doubts
 
 
 def _spikes(motion: GroundMotion) -> list[Doubt]:
@@ -141,22 +141,24 @@ def _spikes(motion: GroundMotion) -> list[Doubt]:
     if a.size < 2 * _SMOOTH_SAMPLES:
         return []
     pattern = np.array([1, -4, 6, -4, 1]) / 6
-    off = np.convolve(a, pattern, "valid")  # of the samples from 2 to the last but 2
-    error = np.convolve(off, pattern[::-1], "valid") / (pattern @ pattern)
+    residuals = np.convolve(a, pattern, "valid")  # without the first and last two samples
+    error = np.convolve(residuals, pattern[::-1], "valid") / (pattern @ pattern)
     least = MIN_RESIDUAL * float(np.abs(a).max())
-    found = []
+    spikes = []
     for k in np.flatnonzero(np.abs(error) > SPIKE_RATIO * least).tolist():
-        part = np.abs(off[k : k + 5] - error[k] * pattern)
+        part = np.abs(residuals[k : k + 5] - error[k] * pattern)
         if abs(error[k]) <= SPIKE_RATIO * float(part.max()):
             continue
-        around = np.concatenate([off[max(k - _SMOOTH_SAMPLES, 0) : k], off[k + 5 : k + 5 + _SMOOTH_SAMPLES]])
+        around = np.concatenate(
+            [residuals[max(k - _SMOOTH_SAMPLES, 0) : k], residuals[k + 5 : k + 5 + _SMOOTH_SAMPLES]]
+        )
         if abs(error[k]) > SPIKE_RATIO * max(float(np.abs(around).max()), least):
-            found.append(k)
-    if not found:
+            spikes.append(k)
+    if not spikes:
         return []
-    worst = max(found, key=lambda k: abs(error[k]))
+    worst = max(spikes, key=lambda k: abs(error[k]))
     sample, time = worst + 4, (worst + 4) * motion.dt
-    more = f", and {len(found) - 1} more like it" if len(found) > 1 else ""
+    more = f", and {len(spikes) - 1} more like it" if len(spikes) > 1 else ""
     text = (
         f"sample {sample + 1}, at {time:.6g} s, stands alone{more}: {a[sample] / STANDARD_GRAVITY:.3g} g, where its "
         f"neighbours make {(a[sample] - error[worst]) / STANDARD_GRAVITY:.3g} g: a damaged number?"
@@ -174,7 +176,7 @@ def _dropouts(motion: GroundMotion) -> list[Doubt]:
         return []
     sizes = np.abs(steps[changes])
     jumps = sizes > max(MIN_JUMP_OVER_PEAK * peak, MIN_JUMP_OVER_STEP * np.median(sizes))
-    level = np.abs(a[changes[1:]]) < peak  # at the peak it is clipped
+    level = np.abs(a[changes[1:]]) < peak  # equal samples at the peak are clipping
     lost = np.flatnonzero((np.diff(changes) >= DROPOUT_SAMPLES) & jumps[:-1] & jumps[1:] & level)
     if not lost.size:
         return []

@@ -14,7 +14,7 @@ from rocking_cli.arrays import Bools, Reals
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion, from_zero
 
-SIGNIFICANT_SHARES = (0.05, 0.95)  # of the Arias intensity at the start and end of the significant duration
+SIGNIFICANT_SHARES = (0.05, 0.95)  # Arias intensity at the start and end of the significant duration
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ def measure(motion: GroundMotion) -> Measures:
         total = float(built[-1])
         squared = total * (2 * STANDARD_GRAVITY) / pi
         times = [_time_of(motion, built, share * total) if total > 0 else None for share in SIGNIFICANT_SHARES]
-        found = Measures(
+        measures = Measures(
             pga=motion.pga_g,
             pgv=_peak_velocity(motion, v),
             pgd=_peak_displacement(motion, v, u),
@@ -106,9 +106,9 @@ def measure(motion: GroundMotion) -> Measures:
             final_displacement=float(u[-1]),
             mean_period=2 * pi * (squared / steepness) ** 0.5 if steepness > 0 else None,
         )
-    if not all(isfinite(value) for value in (found.pgv, found.pgd, found.arias)):
+    if not all(isfinite(value) for value in (measures.pgv, measures.pgd, measures.arias)):
         raise InputError(f"{motion.name}: accelerations of {motion.pga_g:.3g} g are beyond the range of numbers")
-    return found
+    return measures
 
 
 def _peak_velocity(motion: GroundMotion, v: Reals) -> float:
@@ -125,11 +125,11 @@ def _peak_displacement(motion: GroundMotion, v: Reals, u: Reals) -> float:
     # A parabola has a root between two samples only if its sign, or that of its slope, changes there.
     k = np.flatnonzero(_changes_sign(v) | _changes_sign(motion.acceleration))
     a, jump = motion.acceleration[k], motion.acceleration[k + 1] - motion.acceleration[k]
-    c, b, d = v[k], dt * a, dt * jump / 2  # v = c + b s + d s^2, s from 0 to 1
+    c, b, d = v[k], dt * a, dt * jump / 2  # v = c + b s + d s^2 for s from 0 to 1
     with np.errstate(divide="ignore", invalid="ignore"):
-        w = -(b + np.copysign(np.sqrt(b * b - 4 * d * c), b)) / 2  # no two close numbers are subtracted
+        w = -(b + np.copysign(np.sqrt(b * b - 4 * d * c), b)) / 2  # this form avoids cancellation
         roots = np.stack([w / d, c / w])
-    inside = (roots > 0) & (roots < 1)  # false for NaN: no root
+    inside = (roots > 0) & (roots < 1)  # false for NaN, which stands for no root
     s = np.where(inside, roots, 0.0)
     between = u[k] + dt * s * (c + s * (b / 2 + s * d / 3))
     return float(max(np.abs(u).max(), np.abs(between).max(initial=0.0)))
@@ -145,9 +145,9 @@ def _time_of(motion: GroundMotion, built: Reals, level: float) -> float:
     """Return the time at which the Arias intensity reaches a level [s]."""
     k = int(np.searchsorted(built, level)) - 1
     ends = motion.acceleration[k : k + 2]
-    most = float(np.abs(ends).max())
-    a, b = (float(end) / most for end in ends)
-    missing = (level - float(built[k])) * (2 * STANDARD_GRAVITY / pi) / motion.dt / most / most
-    # The integral of (a + (b - a) s)^2 is a cubic in s: it is `missing` where the acceleration is `there`.
+    largest = float(np.abs(ends).max())
+    a, b = (float(end) / largest for end in ends)
+    missing = (level - float(built[k])) * (2 * STANDARD_GRAVITY / pi) / motion.dt / largest / largest
+    # The integral of (a + (b - a) s)^2 is cubic in s. It equals `missing` where the acceleration equals `there`.
     there = float(np.cbrt(a**3 + 3 * (b - a) * missing))
     return (k + min(3 * missing / (a * a + a * there + there * there), 1.0)) * motion.dt

@@ -28,12 +28,13 @@ CRITERIA: tuple[Criterion, ...] = ("acceleration", "velocity")
 FITTED: dict[str, type[Pulse]] = {"sine": Sine, "ricker": Ricker, "mavroeidis": MavroeidisPapageorgiou}
 MIN_SAMPLES_PER_PERIOD = 10  # the longest period is the length of the record
 PERIODS_PER_OCTAVE = 10  # 7 % apart
-TRIED_CYCLES = (1.25, 1.7, 2.3, 3.1, 4.2)  # of a near-fault pulse
+TRIED_CYCLES = (1.25, 1.7, 2.3, 3.1, 4.2)  # starting values for near-fault pulses
 CYCLES_RANGE = (1.01, 6.0)  # the source defines no pulse of one cycle
 MIN_DISTANCE = 0.25  # share of a period; starting points further apart are refined separately
 MAX_REFINED = 4
-ROUGH, FINE = 2e-2, 1e-6  # tolerances of every starting point, and of the best one, over a step of the grid
-SAMPLES_PER_PERIOD = (10, 40, 500)  # on the grid, in the refinement of every starting point, and of the best one
+# Errors of every starting point, and of the best one, over a step of the grid.
+ROUGH_TOLERANCE, FINE_TOLERANCE = 2e-2, 1e-6
+SAMPLES_PER_PERIOD = (10, 40, 500)  # steps of the search: grid, every starting point, best starting point
 
 
 @dataclass(frozen=True)
@@ -129,7 +130,7 @@ def fit_pulses(
             place = search.best(shape)
             captured, weights = search.fit(shape, place)
             pulse, sign = _as_pulse(shape, place, peak * weights)
-            yield PulseFit(pulse, place.start, sign, criterion, min(captured, 1.0))  # rounding apart
+            yield PulseFit(pulse, place.start, sign, criterion, min(captured, 1.0))  # rounding may exceed 1
 
 
 class _Place(NamedTuple):
@@ -178,7 +179,7 @@ class _PulseSearch:
         self.dt, self.as_velocity = dt, as_velocity
         self.energy = float(values @ values)
         self.shortest, self.longest = MIN_SAMPLES_PER_PERIOD * dt, (values.size - 1) * dt
-        self.levels = [values]  # each with every second sample of the one before, smoothed
+        self.levels = [values]  # each level smooths the previous one and keeps every second sample
         while self.levels[-1].size > 2 * MIN_SAMPLES_PER_PERIOD:
             self.levels.append(np.convolve(self.levels[-1], [0.25, 0.5, 0.25])[1:-1:2])
 
@@ -204,8 +205,10 @@ class _PulseSearch:
 
     def best(self, shape: str) -> _Place:
         """Return start, period and cycles at which the pulse captures the most energy."""
-        _, place = max(self._refine(shape, place, 1.0, ROUGH, SAMPLES_PER_PERIOD[1]) for place in self._places(shape))
-        return self._refine(shape, place, ROUGH, FINE, SAMPLES_PER_PERIOD[2])[1]
+        _, place = max(
+            self._refine(shape, place, 1.0, ROUGH_TOLERANCE, SAMPLES_PER_PERIOD[1]) for place in self._places(shape)
+        )
+        return self._refine(shape, place, ROUGH_TOLERANCE, FINE_TOLERANCE, SAMPLES_PER_PERIOD[2])[1]
 
     def _refine(self, shape: str, place: _Place, size: float, within: float, enough: int) -> tuple[float, _Place]:
         """Refine start, period and cycles by the simplex method; return the captured share and the result.
@@ -215,9 +218,8 @@ class _PulseSearch:
         """
         from scipy.optimize import minimize
 
-        steps = np.array([1 / SAMPLES_PER_PERIOD[0] / 2, log(2) / PERIODS_PER_OCTAVE, 0.15])[
-            : 3 if shape == "mavroeidis" else 2
-        ]
+        steps = np.array([1 / SAMPLES_PER_PERIOD[0] / 2, log(2) / PERIODS_PER_OCTAVE, 0.15])
+        steps = steps[: 3 if shape == "mavroeidis" else 2]
         middle = _middle(shape, place)
         level = self.level(place.period, enough)
 
@@ -229,20 +231,17 @@ class _PulseSearch:
 
         def missed(u: Reals) -> float:
             here = there(u)
-            # A pulse of the record, and resolved.
-            near = abs(u[1] * steps[1]) <= 1 and 0 <= _middle(shape, here) <= self.longest
-            if not (
-                near
-                and self.shortest <= here.period <= self.longest
-                and CYCLES_RANGE[0] <= here.cycles <= CYCLES_RANGE[1]
-            ):
+            # The pulse must lie on the record and be resolved by its samples.
+            is_on_record = abs(u[1] * steps[1]) <= 1 and 0 <= _middle(shape, here) <= self.longest
+            is_resolved = self.shortest <= here.period <= self.longest
+            if not (is_on_record and is_resolved and CYCLES_RANGE[0] <= here.cycles <= CYCLES_RANGE[1]):
                 return np.inf
             return -self.fit(shape, here, level)[0]
 
         corners = size * np.eye(steps.size + 1, steps.size, -1)
         options = {"initial_simplex": corners, "xatol": within, "fatol": np.inf}
-        found = minimize(missed, corners[0], method="Nelder-Mead", options=options)
-        return -float(found.fun), there(found.x)
+        optimum = minimize(missed, corners[0], method="Nelder-Mead", options=options)
+        return -float(optimum.fun), there(optimum.x)
 
     def _places(self, shape: str) -> list[_Place]:
         """Return the best points of a grid of start, period and cycles, without points near better ones."""
@@ -263,10 +262,10 @@ class _PulseSearch:
         half = floor(parts[0].duration / 2 / dt)
         x = parts[0].span / 2 + np.arange(-half, half + 1, dtype=np.float64) * (dt / period)
         captured = np.zeros(values.size)
-        for part in parts:  # one even, one odd: orthogonal
+        for part in parts:  # the even and the odd part are orthogonal
             curve = self.curve(part, x)
             captured += np.correlate(values, curve, "full")[half:-half] ** 2 / (curve @ curve)
-        k = int(captured.argmax())  # of the sample in the middle
+        k = int(captured.argmax())  # the middle of the best pulse
         return float(captured[k]) * dt, _Place(k * dt - parts[0].duration / 2, period, cycles)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.text import one_line
 
-HEADER = "t [s],a [m/s2]\n"  # in metres, as any other unit would round the accelerations when read again
+HEADER = "t [s],a [m/s2]\n"  # metres, as any other unit would round the accelerations when read again
 DONE_PREFIX = "# processed: "  # starts the line above the header in files of corrected records
 MAX_DONE_BYTES = 10_000
 LINES_PER_BLOCK = 10_000  # written at a time, so that the text of a long record is never in memory
@@ -53,5 +53,5 @@ def _last_time(dt: float, intervals: int) -> str:
     """Return the last time as text, such that the reader, dividing it by `intervals`, obtains dt if possible."""
     product = dt * intervals
     rounded = float(f"{product:.12g}")
-    near = (rounded, product, float(np.nextafter(product, 0.0)), float(np.nextafter(product, np.inf)))
-    return repr(next((time for time in near if time / intervals == dt), product))
+    candidates = (rounded, product, float(np.nextafter(product, 0.0)), float(np.nextafter(product, np.inf)))
+    return repr(next((time for time in candidates if time / intervals == dt), product))

@@ -21,14 +21,14 @@ BROWSER_NAMES = (
     "msedge",
     "microsoft-edge",
 )
-ELSEWHERE = (  # usual places in macOS and Windows, where browsers are not on the path
+USUAL_PATHS = (  # usual places in macOS and Windows, where browsers are not on the path
     "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
     "/Applications/Microsoft Edge.app/Contents/MacOS/Microsoft Edge",
     "/Applications/Chromium.app/Contents/MacOS/Chromium",
     r"C:\Program Files\Google\Chrome\Application\chrome.exe",
     r"C:\Program Files (x86)\Microsoft\Edge\Application\msedge.exe",
 )
-OPTIONS = ("headless", "disable-gpu", "no-first-run", "no-pdf-header-footer")
+BROWSER_OPTIONS = ("headless", "disable-gpu", "no-first-run", "no-pdf-header-footer")
 PRINT_TIMEOUT = 120  # s
 
 
@@ -46,13 +46,16 @@ def browser() -> str:
                 Problem(f"there is no browser {chosen}", BROWSER_VARIABLE, hint="name one that is there, or unset it")
             )
         return path
-    found = [*filter(None, map(shutil.which, BROWSER_NAMES)), *(path for path in ELSEWHERE if Path(path).is_file())]
-    if not found:
+    installed = [
+        *filter(None, map(shutil.which, BROWSER_NAMES)),
+        *(path for path in USUAL_PATHS if Path(path).is_file()),
+    ]
+    if not installed:
         hint = (
             f"install Chromium, Chrome or Edge, or name one in {BROWSER_VARIABLE}; or write .html and print it yourself"
         )
         raise InputError(Problem("a PDF is printed by a browser, and none is found here", hint=hint))
-    return found[0]
+    return installed[0]
 
 
 def as_pdf(page: bytes) -> bytes:
@@ -79,9 +82,9 @@ def as_pdf(page: bytes) -> bytes:
     with tempfile.TemporaryDirectory(prefix="rocking-", ignore_cleanup_errors=True) as folder:
         source, printed = Path(folder) / "page.html", Path(folder) / "page.pdf"
         source.write_bytes(page)
-        options = [*OPTIONS, f"user-data-dir={Path(folder) / 'profile'}", f"print-to-pdf={printed}"]
+        options = [*BROWSER_OPTIONS, f"user-data-dir={Path(folder) / 'profile'}", f"print-to-pdf={printed}"]
         if sys.platform != "win32" and os.geteuid() == 0:
-            options.append("no-sandbox")  # root can have none; the page is our own, and asks for nothing
+            options.append("no-sandbox")  # root cannot use the sandbox; our own page loads nothing from elsewhere
         command = [program, *(f"--{each}" for each in options), source.as_uri()]
         try:
             subprocess.run(command, capture_output=True, timeout=PRINT_TIMEOUT, check=True)

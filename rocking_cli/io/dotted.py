@@ -19,13 +19,13 @@ HOLE: Any = ...
 
 def words(text: str) -> tuple[str, ...]:
     """Return the words of a path. Raises `InputError` if there are none."""
-    found = tuple(part.strip() for part in text.strip().split("."))
-    if not all(found):
+    parts = tuple(part.strip() for part in text.strip().split("."))
+    if not all(parts):
         hint = "write words with a dot between them, such as loads.0.mass"
         raise InputError(Problem(f"{cut(repr(text))} is not a valid field", hint=hint))
-    if len(found) > MAX_DEPTH:
+    if len(parts) > MAX_DEPTH:
         raise InputError(Problem(f"{cut(repr(text))} has more than {MAX_DEPTH} parts: no field lies so deep"))
-    return found
+    return parts
 
 
 def put(

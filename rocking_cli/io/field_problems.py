@@ -38,7 +38,7 @@ def problems(
     lister : str
         Words that say which command lists the valid fields, for messages.
     """
-    found: dict[Place, Problem] = {}
+    by_place: dict[Place, Problem] = {}
     errors = _of_words(errors)
     for error in errors:
         if not _concerns(document.data, error, errors):
@@ -48,8 +48,8 @@ def problems(
             place = (*place, *error["ctx"]["field"])
         message, hint = say(model, place, error, owner, lister)
         key = error["type"] == "extra_forbidden"
-        found.setdefault(place, document.at(place, message, hint, key=key))
-    return list(found.values())
+        by_place.setdefault(place, document.at(place, message, hint, key=key))
+    return list(by_place.values())
 
 
 def of_arguments(model: type[BaseModel], errors: Iterable[ErrorDetails], owner: str) -> list[Problem]:
@@ -61,7 +61,7 @@ def of_arguments(model: type[BaseModel], errors: Iterable[ErrorDetails], owner: 
         if error["type"] in OF_KIND and isinstance(error["input"], dict | list) and place[-1:] != error["loc"][-1:]:
             others = zip(errors, places, strict=True)
             if any(at[: len(place)] == place and (other["type"] not in OF_KIND or at != place) for other, at in others):
-                continue  # of another branch of a union than the one that was meant
+                continue  # the error is of another branch of the union
         place = place or tuple(error["loc"][:1])
         if error["type"] == "geometry":
             place = (*place, *error["ctx"]["field"])
@@ -101,13 +101,13 @@ def _concerns(data: Any, error: ErrorDetails, errors: Iterable[ErrorDetails]) ->
     if error["type"] not in OF_KIND:
         return True
     place = place_of(data, error)
-    given = data
+    value = data
     for part in place:
-        given = given.get(part) if isinstance(given, dict) else given[part]
-    if isinstance(given, str):
+        value = value.get(part) if isinstance(value, dict) else value[part]
+    if isinstance(value, str):
         others = {other["type"] for other in errors if place_of(data, other) == place}
         return error["type"] not in ("model_type", "dict_type", "list_type") or "literal_error" not in others
-    if not isinstance(given, dict | list) or error["type"] in OF_KIND[type(given)]:
+    if not isinstance(value, dict | list) or error["type"] in OF_KIND[type(value)]:
         return True
     kinds = [(other["type"], place_of(data, other)) for other in errors]
     return not any(at[: len(place)] == place and (kind not in OF_KIND or len(at) > len(place)) for kind, at in kinds)
@@ -120,7 +120,7 @@ def _of_words(errors: Iterable[ErrorDetails]) -> list[ErrorDetails]:
     """
     errors = list(errors)
     wrong = [error["loc"] for error in errors if error["type"] == "literal_error"]
-    # The last part is pydantic's name of a union's branch that accepts words only.
+    # The last part is pydantic's name of the branch of a union that accepts only words.
     words = {place[:-1] for place in wrong if str(place[-1]).startswith("literal[")}
     return [
         error
@@ -137,26 +137,26 @@ BOUNDS = {
 }
 
 
-def _got(given: Any) -> str:
-    if given is None:
+def _got(value: Any) -> str:
+    if value is None:
         return "got nothing"
-    if isinstance(given, bool):
-        return f"got {str(given).lower()}"
-    if isinstance(given, str):
-        return f"got the text {cut(repr(given))}"
-    if isinstance(given, int | float):
-        return f"got {cut(str(given))}"
-    return f"got a {'list' if isinstance(given, list) else 'mapping'}"
+    if isinstance(value, bool):
+        return f"got {str(value).lower()}"
+    if isinstance(value, str):
+        return f"got the text {cut(repr(value))}"
+    if isinstance(value, int | float):
+        return f"got {cut(str(value))}"
+    return f"got a {'list' if isinstance(value, list) else 'mapping'}"
 
 
 def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, lister: str) -> tuple[str, str | None]:
     """Return an error in plain words, and a hint; the arguments are those of `problems`, and its place in the data."""
-    kind, given, ctx = error["type"], error["input"], error.get("ctx", {})
+    kind, value, ctx = error["type"], error["input"], error.get("ctx", {})
     fields = fields_at(model, place[:-1])
     info = next((fields[part] for part in reversed(place) if isinstance(part, str) and part in fields), None)
     extra = info.json_schema_extra if info is not None and isinstance(info.json_schema_extra, dict) else {}
     unit = f" {extra['unit']}" if extra.get("unit") else ""
-    got = _got(given)
+    got = _got(value)
     if kind == "geometry":
         return ctx["reason"], None
     if kind == "unit":
@@ -174,10 +174,10 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
         return f"must be {words} {ctx[key]:g}{unit}, {got}", None
     if kind == "finite_number":
         return f"must be a finite number, {got}", None
-    if kind == "float_type" and isinstance(given, int) and not isinstance(given, bool):
-        return f"is outside the range of floating-point numbers, {got}", None  # whole, but larger than any float
+    if kind == "float_type" and isinstance(value, int) and not isinstance(value, bool):
+        return f"is outside the range of floating-point numbers, {got}", None  # an int may be larger than any float
     if kind in ("float_type", "float_parsing"):
-        comma = isinstance(given, str) and re.fullmatch(r"\s*[-+]?\d+(,\d+)+\s*\D*", given)
+        comma = isinstance(value, str) and re.fullmatch(r"\s*[-+]?\d+(,\d+)+\s*\D*", value)
         return f"must be a number{f' in{unit}' if unit else ''}, {got}", "write a decimal point" if comma else None
     if kind in ("int_type", "int_parsing", "int_from_float"):
         return f"must be a whole number, {got}", None
@@ -190,7 +190,7 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
         least, most = ctx.get("min_length"), ctx.get("max_length")
         wanted, count = ("at least", least) if least is not None else ("at most", most)
         has = ctx["actual_length"]
-        has = len(given) if has is None and isinstance(given, dict) else has  # of too long a mapping it is not counted
+        has = len(value) if has is None and isinstance(value, dict) else has  # pydantic may not count them
         return f"must have {wanted} {count} entr{'y' if count == 1 else 'ies'}, has {has}", None
     if kind == "list_type":
         return f"must be a list, {got}", None

@@ -18,7 +18,7 @@ CREATE_ONLY = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0) | 
 
 
 def read_bytes(
-    path: str | Path, what: str, most: int, *, if_pipe: str = "write what it gives to a file first"
+    path: str | Path, what: str, max_bytes: int, *, if_pipe: str = "write what it gives to a file first"
 ) -> bytes:
     """Return the content of a file, after checking its kind and size.
 
@@ -28,7 +28,7 @@ def read_bytes(
         The file.
     what : str
         Kind of file, for messages: "structure file".
-    most : int
+    max_bytes : int
         Largest size allowed [bytes].
     if_pipe : str, optional
         Hint for the message if the path is a device or a pipe.
@@ -36,9 +36,9 @@ def read_bytes(
     Raises
     ------
     InputError
-        If the file does not exist, is a folder, a device or a pipe, is larger than `most`, or cannot be read.
+        If the file does not exist, is a folder, a device or a pipe, is larger than `max_bytes`, or cannot be read.
     """
-    shown = str(path)
+    shown_path = str(path)
     try:
         # Without O_NONBLOCK opening a pipe that nobody writes to would wait for ever; Windows has no such pipes here.
         handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
@@ -47,32 +47,32 @@ def read_bytes(
             if stat.S_ISDIR(kind):
                 raise IsADirectoryError
             if not stat.S_ISREG(kind):
-                raise InputError(Problem(f"this is a device or a pipe, not a {what}", shown, hint=if_pipe))
-            content = read_at_most(file, most)
+                raise InputError(Problem(f"this is a device or a pipe, not a {what}", shown_path, hint=if_pipe))
+            content = read_at_most(file, max_bytes)
     except FileNotFoundError:
-        raise InputError(Problem("no such file", shown, hint="check the path")) from None
+        raise InputError(Problem("no such file", shown_path, hint="check the path")) from None
     except IsADirectoryError:
-        raise InputError(Problem(f"this is a folder, not a {what}", shown)) from None
+        raise InputError(Problem(f"this is a folder, not a {what}", shown_path)) from None
     except (OSError, ValueError) as error:  # ValueError: a path with a null character
         reason = getattr(error, "strerror", None) or error
-        if Path(shown.replace("\0", "")).is_dir():  # Windows does not open folders at all
+        if Path(shown_path.replace("\0", "")).is_dir():  # Windows does not open folders at all
             reason = "it is a folder"
-        raise InputError(Problem(f"cannot be read: {reason}", shown)) from None
+        raise InputError(Problem(f"cannot be read: {reason}", shown_path)) from None
     if content is None:
-        raise InputError(Problem(f"this cannot be a {what}: it is larger than {most / 1e6:.4g} MB", shown))
+        raise InputError(Problem(f"this cannot be a {what}: it is larger than {max_bytes / 1e6:.4g} MB", shown_path))
     return content
 
 
-def read_at_most(stream: IO[bytes] | io.BufferedIOBase, most: int) -> bytes | None:
-    """Return the content of a stream, or None if it is more than `most` bytes.
+def read_at_most(stream: IO[bytes] | io.BufferedIOBase, max_bytes: int) -> bytes | None:
+    """Return the content of a stream, or None if it is more than `max_bytes` bytes.
 
-    It is read in pieces, as reading `most` bytes at once would reserve memory for all of them.
+    It is read in pieces, as reading `max_bytes` bytes at once would reserve memory for all of them.
     """
     pieces, size = [], 0
     while piece := stream.read(1 << 20):
         pieces.append(piece)
         size += len(piece)
-        if size > most:
+        if size > max_bytes:
             return None
     return b"".join(pieces)
 
@@ -105,14 +105,14 @@ def write_folder(path: Path, files: Mapping[str, bytes]) -> None:
     Refused
         If the system refuses, as with a full disk; nothing is then left behind.
     """
-    shown, there = str(path), path.is_dir()
+    shown_path, there = str(path), path.is_dir()
     hint = "move it away, or name another folder"
     if there and any(path.iterdir()):
-        raise InputError(Problem("this folder already exists and is not empty", shown, hint=hint))
+        raise InputError(Problem("this folder already exists and is not empty", shown_path, hint=hint))
     if not there and os.path.lexists(path):
-        raise InputError(Problem("there is a file of this name already", shown, hint=hint))
+        raise InputError(Problem("there is a file of this name already", shown_path, hint=hint))
     if not path.parent.is_dir():
-        raise InputError(Problem(f"the folder {path.parent} does not exist", shown, hint="create it first"))
+        raise InputError(Problem(f"the folder {path.parent} does not exist", shown_path, hint="create it first"))
     try:
         for name, content in files.items():
             (path / name).parent.mkdir(parents=True, exist_ok=True)
@@ -129,17 +129,17 @@ def write_folder(path: Path, files: Mapping[str, bytes]) -> None:
 
 def check_writable(path: Path) -> None:
     """Raise `InputError`, before any work, if no file can be written at a path."""
-    shown, path = str(path), Path(os.path.realpath(path))  # through a link, the file it stands for
+    shown_path, path = str(path), Path(os.path.realpath(path))  # links are followed to their file
     if path.is_symlink():
-        raise InputError(Problem("this link leads back to itself", shown))
+        raise InputError(Problem("this link leads back to itself", shown_path))
     if path.is_dir():
-        raise InputError(Problem("this is a folder: give a file name", shown))
+        raise InputError(Problem("this is a folder: give a file name", shown_path))
     if not path.parent.is_dir():
-        raise InputError(Problem(f"the folder {path.parent} does not exist", shown, hint="create it first"))
+        raise InputError(Problem(f"the folder {path.parent} does not exist", shown_path, hint="create it first"))
     if path.exists() and not os.access(path, os.W_OK):
-        raise InputError(Problem("the file already exists and is protected from writing", shown))
+        raise InputError(Problem("the file already exists and is protected from writing", shown_path))
     if not _is_special(path) and not os.access(path.parent, os.W_OK):
-        raise InputError(Problem(f"the folder {path.parent} cannot be written to", shown))
+        raise InputError(Problem(f"the folder {path.parent} cannot be written to", shown_path))
 
 
 def _is_special(path: Path) -> bool:
@@ -177,7 +177,7 @@ def keep_apart(outputs: Sequence[tuple[str, Path | None]], inputs: Sequence[str 
         taken[place] = option
 
 
-REFUSED = (errno.ENOSPC, errno.EFBIG, errno.EIO, errno.EPIPE, getattr(errno, "EDQUOT", errno.ENOSPC))
+WRITE_REFUSALS = (errno.ENOSPC, errno.EFBIG, errno.EIO, errno.EPIPE, getattr(errno, "EDQUOT", errno.ENOSPC))
 """What is nobody's mistake: no room, too large for the file system, a broken disk, a reader that has gone."""
 
 
@@ -214,9 +214,9 @@ def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
         If the system refuses, as with a full disk; an older file is then unchanged.
     """
     check_writable(path)
-    shown, path = path, Path(os.path.realpath(path))
+    shown_path, path = path, Path(os.path.realpath(path))
     if _is_special(path):
-        _write_into(path, shown, write)
+        _write_into(path, shown_path, write)
         return
     # Within the length of a name, whatever that of the file; known before it is there, so that a signal in between
     # leaves nothing behind.
@@ -225,24 +225,24 @@ def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
         try:
             handle = os.open(name, CREATE_ONLY, 0o600)
         except OSError as error:
-            raise _cannot(shown, error) from error
-        _fill(handle, shown, write)
+            raise _cannot(shown_path, error) from error
+        _fill(handle, shown_path, write)
         try:
             if path.exists():
                 shutil.copymode(path, name)
-            else:  # it was made private; give this one the usual rights
+            else:  # the temporary file is private; a new file gets the usual rights
                 umask = os.umask(0)
                 os.umask(umask)
                 os.chmod(name, 0o666 & ~umask)  # noqa: PTH101
             os.replace(name, path)  # noqa: PTH105
         except OSError as error:
-            raise _cannot(shown, error) from error
+            raise _cannot(shown_path, error) from error
     except BaseException:
         name.unlink(missing_ok=True)
         raise
 
 
-def _fill(handle: int, shown: Path, write: Callable[[BinaryIO], object]) -> None:
+def _fill(handle: int, shown_path: Path, write: Callable[[BinaryIO], object]) -> None:
     """Write to an open file and close it; an error of the system takes precedence over others."""
     output = _Output(handle, "wb")
     try:
@@ -252,21 +252,21 @@ def _fill(handle: int, shown: Path, write: Callable[[BinaryIO], object]) -> None
         refused = error if isinstance(error, OSError) else output.refused
         if refused is None:
             raise
-        raise _cannot(shown, refused) from error
+        raise _cannot(shown_path, refused) from error
     finally:
         output.close()
 
 
-def _write_into(path: Path, shown: Path, write: Callable[[BinaryIO], object]) -> None:
+def _write_into(path: Path, shown_path: Path, write: Callable[[BinaryIO], object]) -> None:
     """Write the complete content to a device or a pipe."""
     try:
         # Opening a pipe that nobody reads would wait for ever.
         handle = os.open(path, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     except OSError as error:
         if error.errno == errno.ENXIO:
-            problem = Problem("no program is reading from this pipe", str(shown), hint="start its reader first")
+            problem = Problem("no program is reading from this pipe", str(shown_path), hint="start its reader first")
             raise InputError(problem) from None
-        raise _cannot(shown, error) from error
+        raise _cannot(shown_path, error) from error
     with tempfile.TemporaryFile() as whole:
         try:
             _fill(os.dup(whole.fileno()), Path(tempfile.gettempdir()), write)
@@ -276,10 +276,10 @@ def _write_into(path: Path, shown: Path, write: Callable[[BinaryIO], object]) ->
         whole.seek(0)
         if hasattr(os, "set_blocking"):
             os.set_blocking(handle, True)
-        _fill(handle, shown, lambda file: shutil.copyfileobj(whole, file))
+        _fill(handle, shown_path, lambda file: shutil.copyfileobj(whole, file))
 
 
-def _cannot(shown: Path, error: OSError) -> RockingError:
+def _cannot(shown_path: Path, error: OSError) -> RockingError:
     """Return the error of a file that cannot be written."""
-    problem = Problem(f"cannot be written: {error.strerror or error}", str(shown))
-    return Refused(str(problem)) if error.errno in REFUSED else InputError(problem)
+    problem = Problem(f"cannot be written: {error.strerror or error}", str(shown_path))
+    return Refused(str(problem)) if error.errno in WRITE_REFUSALS else InputError(problem)

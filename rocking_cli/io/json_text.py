@@ -38,7 +38,7 @@ def _plain(data: Any) -> Any:
     """Return data with Python's own types, and None for numbers that are not finite."""
     if isinstance(data, float):
         return float(data) if isfinite(data) else None
-    if hasattr(data, "tolist"):  # of numpy, which takes long to import where it is not needed
+    if hasattr(data, "tolist"):  # arrays are recognised without importing numpy, which is slow
         return _plain(data.tolist())
     if isinstance(data, Mapping):
         return {key: _plain(value) for key, value in data.items()}

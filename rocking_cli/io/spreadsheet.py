@@ -72,8 +72,8 @@ def unit_in(heading: str, units: Collection[str]) -> tuple[str, str]:
 
     What follows an underscore is a unit only if it is one of `units`.
     """
-    if found := _BRACKETS.fullmatch(heading):
-        return found[1], (found[2] or found[3] or "").strip()
+    if match := _BRACKETS.fullmatch(heading):
+        return match[1], (match[2] or match[3] or "").strip()
     name, _, unit = heading.rpartition("_")
     return (name, unit) if name and unit in units else (heading, "")
 
@@ -86,11 +86,11 @@ def read_sheet(path: Path) -> Spreadsheet:
 def parse_sheet(raw: bytes, file: str) -> Spreadsheet:
     """Return the table in the content of a file; `file` is its name in messages. Raises as `read_sheet`."""
     text, skipped = _decoded(raw, file), 0
-    if found := re.match(r"(?i)\s*\"?sep=(.)\"?\r?\n", text):  # what some spreadsheets begin with
-        text, skipped = text[found.end() :], found[0].count("\n")
+    if declared := re.match(r"(?i)\s*\"?sep=(.)\"?\r?\n", text):  # some spreadsheets declare their separator
+        text, skipped = text[declared.end() :], declared[0].count("\n")
     first = next((line for line in _LINE_END.split(text[:100_000]) if line.strip(" \t,;")), "")
     bare = re.sub(r'"[^"]*"|\[[^\]]*\]', "", first)
-    separator = found[1] if found else max(SEPARATORS, key=bare.count)
+    separator = declared[1] if declared else max(SEPARATORS, key=bare.count)
     lines = _cells(text, separator, file, skipped)
     try:
         line, headings = next(lines)

@@ -68,7 +68,7 @@ def _lines(table: np.ndarray) -> str:
 
 def _field(value: object, digits: int | None) -> object:
     if isinstance(value, str):
-        return printable(value)  # a name may hold what no text file can
+        return printable(value)  # a name may have characters that cannot be encoded
     if not isinstance(value, float):
         return value
     return "" if value != value else repr(value + 0.0) if digits is None else f"{value + 0.0:.{digits}g}"  # no -0

@@ -19,10 +19,10 @@ from rocking_cli.text import cut, printable, regex
 MAX_BYTES = 10_000_000  # most structures take a few hundred, a wall of ten thousand blocks two million
 MIN_FAST_CHARACTERS = 100_000  # longer texts take seconds without the parser in C
 MAX_DEPTH = 20
-MAX_VALUES = 500_000  # with repeats by aliases, of which a few lines stand for billions
+MAX_VALUES = 500_000  # repeats by aliases count, as a few lines of them stand for billions
 
 
-_LINE_END = regex("\r\n|[\r\n\x85\u2028\u2029]")  # as YAML counts lines
+_LINE_END = regex("\r\n|[\r\n\x85\u2028\u2029]")  # line ends of YAML
 
 
 class _Loader(yaml.SafeLoader):
@@ -47,7 +47,7 @@ def _fast() -> type[_Loader]:
 def _composed(text: str) -> yaml.Node | None:
     """Return the nodes of a YAML text."""
     if len(text) >= MIN_FAST_CHARACTERS and yaml.__with_libyaml__:
-        with suppress(ReaderError):  # for a bad character it has no place
+        with suppress(ReaderError):  # the fast parser gives no position for a bad character
             return yaml.compose(text, Loader=_fast())
     return yaml.compose(text, Loader=_Loader)
 
@@ -132,7 +132,7 @@ class Document:
             return SCALARS[kind](text)
         except KeyError:
             message = f"unknown tag {cut(node.tag)}"
-        except ValueError:  # !!int abc, or thousands of digits
+        except ValueError:  # such as !!int abc, or thousands of digits
             message = f"{cut(text)!r} is not {KINDS[kind]}"
             if text.lstrip("+-").isdecimal():
                 message = f"a number of {len(text.lstrip('+-'))} digits is beyond the range of numbers"
@@ -179,19 +179,24 @@ def read_text(path: Path, what: str) -> str:
     return decoded(read_bytes(path, f"{what} file", MAX_BYTES), str(path), what)
 
 
-def decoded(raw: bytes, shown: str, what: str) -> str:
-    """Return the text of a file from its bytes; `shown` is its name in messages. Raises `InputError` if not text."""
+def decoded(raw: bytes, shown_path: str, what: str) -> str:
+    """Return the text of a file from its bytes; `shown_path` is its name in messages.
+
+    Raises `InputError` if it is not text.
+    """
     if len(raw) > MAX_BYTES:
-        raise InputError(Problem(f"this cannot be a {what} file: it is larger than {MAX_BYTES / 1e6:.4g} MB", shown))
-    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):  # what a redirection writes in older shells of Windows
+        raise InputError(
+            Problem(f"this cannot be a {what} file: it is larger than {MAX_BYTES / 1e6:.4g} MB", shown_path)
+        )
+    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):  # redirection in older shells of Windows writes UTF-16
         raw = raw.decode("utf-16", errors="replace").encode()
     if b"\0" in raw:
-        raise InputError(Problem(f"this is not a {what} file: it is binary", shown))
+        raise InputError(Problem(f"this is not a {what} file: it is binary", shown_path))
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = raw[: error.start].count(b"\n") + 1
-        raise InputError(Problem("not UTF-8 text", shown, line, hint="save the file as UTF-8")) from None
+        raise InputError(Problem("not UTF-8 text", shown_path, line, hint="save the file as UTF-8")) from None
 
 
 def parse(text: str, file: str, what: str, hint: str) -> Document:
@@ -221,18 +226,20 @@ def parse(text: str, file: str, what: str, hint: str) -> Document:
     try:
         node = _composed(text)
     except yaml.MarkedYAMLError as error:
-        if "nesting depth" in (error.problem or ""):  # newer parsers in C count, where Python's runs out of stack
+        if "nesting depth" in (error.problem or ""):  # the parser in Python raises RecursionError
             raise InputError(too_deep) from None
-        said = " ".join(part for part in (error.context, error.problem) if part)
+        reason = " ".join(part for part in (error.context, error.problem) if part)
         began, noticed = error.context_mark, error.problem_mark
         if began is not None and (noticed is None or not text[noticed.index :].strip()):
-            mark: yaml.Mark | None = began  # what is not closed is noticed where the file ends
+            mark: yaml.Mark | None = began  # an unclosed bracket or quote is noticed at the end of the file
         else:
             mark = noticed
-            said += f" (it begins in line {began.line + 1})" if began and noticed and began.line < noticed.line else ""
+            reason += (
+                f" (it begins in line {began.line + 1})" if began and noticed and began.line < noticed.line else ""
+            )
         if mark is not None and not text[mark.index :].strip():
-            raise InputError(Problem(f"not YAML: {said}", file, text.rstrip().count("\n") + 1)) from None
-        raise InputError(document.problem(f"not YAML: {said}", mark)) from None
+            raise InputError(Problem(f"not YAML: {reason}", file, text.rstrip().count("\n") + 1)) from None
+        raise InputError(document.problem(f"not YAML: {reason}", mark)) from None
     except ReaderError as error:
         line = len(_LINE_END.findall(text, 0, error.position)) + 1
         message = f"not valid YAML: it contains the character {printable(chr(error.character))}"
@@ -273,7 +280,8 @@ def with_fields(text: str, fields: Mapping[str, str], file: str) -> str:
         raise InputError(Problem("cannot be changed: it is written in braces", file, hint="write it as `key: value`"))
     places = {key.value: (key.start_mark.index, _end_of(value)) for key, value in node.value}
     newline = "\r\n" if "\r\n" in text else "\n"
-    for key in sorted(fields.keys() & places.keys(), key=lambda each: -places[each][0]):  # from the end of the text
+    # Backwards through the text, so that earlier places stay valid.
+    for key in sorted(fields.keys() & places.keys(), key=lambda each: -places[each][0]):
         start, end = places[key]
         line_end = text.find(newline, end)
         text = f"{text[:start]}{key}: {fields[key]}{text[line_end:] if line_end >= 0 else ''}"

@@ -34,14 +34,14 @@ def blame(what: str, module: str, *, but: type[Exception] = RockingError) -> Ite
         yield
     except (RockingError, MemoryError, but):
         raise
-    except (Exception, SystemExit) as error:  # a plugin may fail in any way, and may not end the program
+    except (Exception, SystemExit) as error:  # a plugin may raise anything, but must not end the program
         raise plugin_error(what, module, error) from error
 
 
 def plugin_error(what: str, module: str, error: BaseException) -> PluginError:
     """Return the error to raise from an error of a plugin. Parameters are those of `blame`."""
-    said = str(error)
-    return PluginError(f"{what}: {type(error).__name__}{f': {said}' if said else ''}{_place(module, error)}")
+    message = str(error)
+    return PluginError(f"{what}: {type(error).__name__}{f': {message}' if message else ''}{_place(module, error)}")
 
 
 def guard(
@@ -75,11 +75,13 @@ def own_traceback(error: BaseException | None) -> str | None:
     """Return the traceback of a plugin's error that caused this one; None if there is none."""
     while error is not None:
         if isinstance(error, PluginError) and error.__cause__ is not None:
-            told = traceback.TracebackException.from_exception(error.__cause__)
+            summary = traceback.TracebackException.from_exception(error.__cause__)
             # Frames that only call or import the plugin are of no use to its author.
-            own = [frame for frame in told.stack if frame.filename != __file__ and "importlib" not in frame.filename]
-            told.stack = traceback.StackSummary.from_list(own or list(told.stack))
-            return "".join(told.format()).rstrip("\n")
+            plugin_frames = [
+                frame for frame in summary.stack if frame.filename != __file__ and "importlib" not in frame.filename
+            ]
+            summary.stack = traceback.StackSummary.from_list(plugin_frames or list(summary.stack))
+            return "".join(summary.format()).rstrip("\n")
         error = error.__cause__
     return None
 

@@ -37,7 +37,7 @@ def _state(path: str) -> tuple[int, ...]:
     return status.st_dev, status.st_ino, status.st_mtime_ns
 
 
-@lru_cache(maxsize=32)  # a search reads a file of every package, as long as most commands compute
+@lru_cache(maxsize=32)  # reading the entry points of all packages takes as long as most commands
 def _installed(group: str, state: tuple[object, ...]) -> EntryPoints:
     return metadata.entry_points(group=group)
 
@@ -53,7 +53,7 @@ def find(group: str) -> dict[str, list[EntryPoint]]:
     return points
 
 
-@cache  # each call reads the metadata of the package, a page of text
+@cache  # each call reads the metadata of the package from disk
 def package_of(point: EntryPoint) -> str:
     """Return the name and version of the package of a plugin."""
     return f"{point.dist.name} {point.dist.version}" if point.dist is not None else "unknown package"

@@ -18,32 +18,32 @@ COMMAND_SUFFIX = "_command"  # module name of a second command of a folder: `res
 @cache
 def commands() -> dict[str, str]:
     """Return the module of each command, in the order in which a newcomer needs them."""
-    found = []
+    listed = []
     for room, place, files, _ in _rooms():
-        own = {room: "command"} | {
+        modules = {room: "command"} | {
             file.removesuffix(COMMAND_SUFFIX): file for file in files if file.endswith(COMMAND_SUFFIX)
         }
-        found += [(place, name, f"{QUESTIONS}.{room}.{file}") for name, file in own.items() if file in files]
-    return {name: module for _, name, module in sorted(found)}
+        listed += [(place, name, f"{QUESTIONS}.{room}.{file}") for name, file in modules.items() if file in files]
+    return {name: module for _, name, module in sorted(listed)}
 
 
 @cache
 def names() -> dict[str, str]:
     """Return the module of each name that the rooms offer in Python."""
-    found: dict[str, str] = {}
+    module_of: dict[str, str] = {}
     for room, _, files, more in _rooms():
-        own = {room: "verb"} if "verb" in files else {}
-        own |= {name: file for file, offered in more.items() for name in offered}
-        found |= {name: f"{QUESTIONS}.{room}.{file}" for name, file in own.items()}
-    return found
+        modules = {room: "verb"} if "verb" in files else {}
+        modules |= {name: file for file, offered in more.items() for name in offered}
+        module_of |= {name: f"{QUESTIONS}.{room}.{file}" for name, file in modules.items()}
+    return module_of
 
 
 @cache
 def _rooms() -> list[tuple[str, int, list[str], dict[str, list[str]]]]:
     """Return of each room its name, the place of its commands, its modules, and the names that these offer further."""
-    found = []
+    rooms = []
     for _, room, _ in iter_modules(import_module(QUESTIONS).__path__):
-        said = import_module(f"{QUESTIONS}.{room}")
-        files = [file for _, file, _ in iter_modules(said.__path__)]
-        found.append((room, said.PLACE, files, getattr(said, "MORE", {})))
-    return found
+        package = import_module(f"{QUESTIONS}.{room}")
+        files = [file for _, file, _ in iter_modules(package.__path__)]
+        rooms.append((room, package.PLACE, files, getattr(package, "MORE", {})))
+    return rooms

@@ -24,11 +24,11 @@ def _parsed(parse: Callable[[Any], Any], *, spelled: bool = False) -> Callable[[
 
     def check(value: Any) -> Any:
         try:
-            found = None if value is None else parse(value)
+            parsed = None if value is None else parse(value)
         except InputError as error:
             (problem, *_) = error.problems
             raise ValueError("; ".join(part for part in (problem.message, problem.hint) if part)) from None
-        return found if spelled else value
+        return parsed if spelled else value
 
     return check
 
@@ -71,15 +71,15 @@ class _Entry(BaseModel):
         InputError
             If an azimuth has no second component, or a second component no azimuth.
         """
-        given = {name: getattr(self, name) for name in ITEMS}
-        if given["other"] is not None:
-            given["other"] = folder / given["other"]
+        items = {name: getattr(self, name) for name in READING_ITEMS}
+        if items["other"] is not None:
+            items["other"] = folder / items["other"]
         factor = () if self.factor is None else (Factor(self.factor),)
-        own = reading_of(given)
-        return Reading(own.options, (*parse_steps(self.processing or []), *factor)).over(common).check()
+        own_reading = reading_of(items)
+        return Reading(own_reading.options, (*parse_steps(self.processing or []), *factor)).over(common).check()
 
 
-ITEMS = tuple(name for name in READING if name not in CORRECTIONS)
+READING_ITEMS = tuple(name for name in READING if name not in CORRECTIONS)
 """Options that are items of an entry; corrections are those of its `processing`."""
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ if TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> Any: ...
 else:
-    Entry = create_model("Entry", __base__=_Entry, __module__=__name__, **{name: _item(name) for name in ITEMS})
+    Entry = create_model("Entry", __base__=_Entry, __module__=__name__, **{name: _item(name) for name in READING_ITEMS})
 
 
 def as_written(entry: Entry) -> Mapping[str, Any]:
@@ -107,14 +107,14 @@ def of_reading(reading: Reading, folder: Path) -> dict[str, Any]:
     folder : Path
         Folder to which the entry's files are to be relative.
     """
-    said = {
+    items = {
         option.key or name: value if isinstance(value, float | str) else str(value)
         for name, option in READING.items()
         if (value := reading.options.get(name)) is not None
     }
     if reading.other is not None:
-        said["with"] = relative(Path(reading.other), folder)
-    return said | ({"processing": [str(step) for step in reading.steps]} if reading.steps else {})
+        items["with"] = relative(Path(reading.other), folder)
+    return items | ({"processing": [str(step) for step in reading.steps]} if reading.steps else {})
 
 
 def relative(file: Path, folder: Path) -> str:

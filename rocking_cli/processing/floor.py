@@ -13,7 +13,7 @@ from rocking_cli.processing.oscillator import DAMPING, check_oscillator, finer, 
 from rocking_cli.text import did_you_mean, exact
 from rocking_cli.units import UnitError, number_of
 
-EXAMPLE = "T1=0.4,xi=0.05,z=0.67,gamma=1.29"
+FLOOR_EXAMPLE = "T1=0.4,xi=0.05,z=0.67,gamma=1.29"
 KEYS = ("T1", "xi", "z", "gamma", "n")
 PERIOD_RANGE = 1e-6, 1e6  # s; no building has periods beyond, and numbers overflow
 MAX_GAMMA = 100.0  # a uniform building has 1.5; a larger value is a typing error
@@ -52,16 +52,16 @@ class Floor:
             raise _refused(f"gamma must be a positive number, {MAX_GAMMA:g} at most, got {self.participation:g}")
 
     def __str__(self) -> str:
-        given = {"T1": self.period, "xi": self.damping, "z": self.height}
+        items = {"T1": self.period, "xi": self.damping, "z": self.height}
         n = round(self.participation / (3 - 2 * self.participation)) if self.participation < 1.5 else 0
         if 1 <= n <= MAX_STOREYS and isclose(_of_storeys(n), self.participation, rel_tol=1e-12):
-            given["n"] = float(n)  # 9/7 has no end
+            items["n"] = float(n)  # n is exact, while gamma such as 9/7 has endless digits
         else:
-            given["gamma"] = self.participation
-        return ",".join(f"{key}={exact(value)}" for key, value in given.items())
+            items["gamma"] = self.participation
+        return ",".join(f"{key}={exact(value)}" for key, value in items.items())
 
     @classmethod
-    def parse(cls, given: str | Mapping[str, object]) -> Self:
+    def parse(cls, spec: str | Mapping[str, object]) -> Self:
         """Read a floor from `T1=0.4,xi=0.05,z=0.67,gamma=1.29`, with `n=3` storeys instead of gamma, or from a mapping.
 
         Raises
@@ -69,7 +69,7 @@ class Floor:
         InputError
             If an item is missing, unknown, not a number or out of range.
         """
-        pairs = dict(given) if isinstance(given, Mapping) else _pairs(given)
+        pairs = dict(spec) if isinstance(spec, Mapping) else _pairs(spec)
         for key in pairs:
             if key not in KEYS:
                 raise _refused(f"{key!r} is not one of {', '.join(KEYS)}", did_you_mean(str(key), list(KEYS)))
@@ -116,23 +116,23 @@ def _of_storeys(n: float) -> float:
 
 
 def _pairs(text: str) -> dict[str, object]:
-    found: dict[str, object] = {}
+    pairs: dict[str, object] = {}
     for part in text.split(","):
         key, equals, value = (each.strip() for each in part.partition("="))
         if not equals or not value:
             raise _refused(f"{part.strip()!r} is not of the form {KEYS[0]}=0.4")
-        if key in found:
+        if key in pairs:
             raise _refused(f"{key} is given twice")
-        found[key] = value
-    return found
+        pairs[key] = value
+    return pairs
 
 
-def _value(key: str, given: object) -> float:
+def _value(key: str, value: object) -> float:
     try:
-        return number_of(given, {"T1": "s", "xi": "%"}.get(key, ""))
+        return number_of(value, {"T1": "s", "xi": "%"}.get(key, ""))
     except UnitError as error:
         raise _refused(f"{key}: {error.message}", error.hint) from None
 
 
 def _refused(message: str, hint: str | None = None) -> InputError:
-    return InputError(Problem(message, field="`floor`", hint=hint or f"such as {EXAMPLE}"))
+    return InputError(Problem(message, field="`floor`", hint=hint or f"such as {FLOOR_EXAMPLE}"))

@@ -11,12 +11,12 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.origins import name
 from rocking_cli.processing.reading import Reading
 
-if TYPE_CHECKING:  # pydantic is for who gives a list
+if TYPE_CHECKING:  # pydantic is slow to import, and only lists need it
     from rocking_cli.excitation.pulses import Pulse
     from rocking_cli.processing.entry import Entry
 
 
-SUFFIXES = (".yaml", ".yml")
+LIST_SUFFIXES = (".yaml", ".yml")
 
 
 class Listed(NamedTuple):
@@ -45,15 +45,18 @@ class Listed(NamedTuple):
         """
         motion, reading = self.reading(common).settled(self.path)
         if self.entry is not None:
-            own = motion.origin
-            event, station = name(self.entry.event) or own.event, name(self.entry.station) or own.station
-            motion = replace(motion, origin=own._replace(event=event, station=station))
+            file_origin = motion.origin
+            event, station = (
+                name(self.entry.event) or file_origin.event,
+                name(self.entry.station) or file_origin.station,
+            )
+            motion = replace(motion, origin=file_origin._replace(event=event, station=station))
         return motion, reading
 
 
 def is_list(path: Path) -> bool:
     """Return whether a file is a list of records, by its name."""
-    return path.suffix.lower() in SUFFIXES
+    return path.suffix.lower() in LIST_SUFFIXES
 
 
 class Scaled(NamedTuple):

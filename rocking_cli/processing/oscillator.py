@@ -20,18 +20,14 @@ from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 
-PER_PERIOD = 24  # samples; cubics between them have an error below 1e-5 of the peak
-MAX_PARTS = 64  # of a sampling interval; an oscillator this much faster than the record follows it
-MAX_SAMPLES = 50_000_000  # of a refined motion; they take some gigabytes
+SAMPLES_PER_PERIOD = 24  # samples; cubics between them have an error below 1e-5 of the peak
+MAX_PARTS = 64  # parts of a sampling interval; an oscillator this much faster than the record follows it
+MAX_SAMPLES = 50_000_000  # a refined motion of this length takes some gigabytes
 SAMPLES_PER_BLOCK = 64
 MAX_SERIES_ARGUMENT = 0.5  # up to this |m|, series give phi_1 and phi_2 without cancellation
 SERIES_TERMS = 18
 DAMPING = 0.05
-SHORTEST, LONGEST, PERIODS = (
-    0.02,
-    10.0,
-    200,
-)  # of a spectrum unless asked otherwise: s, s, and how many
+SHORTEST_PERIOD, LONGEST_PERIOD, PERIOD_COUNT = 0.02, 10.0, 200  # s, s, and number: default of a spectrum
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +79,7 @@ def relative_response(motion: GroundMotion, period: float, damping: float) -> tu
         n, more than 1 if the period is so short that the response must be sampled more finely than the motion.
     """
     check_oscillator(period, damping)
-    parts = max(ceil(min(PER_PERIOD * motion.dt / period, MAX_PARTS) - 1e-9), 1)
+    parts = max(ceil(min(SAMPLES_PER_PERIOD * motion.dt / period, MAX_PARTS) - 1e-9), 1)
     if parts > 1 and parts * motion.npts > MAX_SAMPLES:
         message = (
             f"a period of {period:g} s needs {parts * motion.npts:.3g} samples of it; "
@@ -127,14 +123,16 @@ def response_spectrum(
         If a period is not positive, or the damping ratio is out of range.
     """
     if periods is None:
-        periods = periods_between(SHORTEST, LONGEST)
-    asked = np.atleast_1d(np.asarray(periods, dtype=np.float64))
-    return ResponseSpectrum(asked, damping, np.array([_peak(motion, float(period), damping) for period in asked]))
+        periods = periods_between(SHORTEST_PERIOD, LONGEST_PERIOD)
+    period_array = np.atleast_1d(np.asarray(periods, dtype=np.float64))
+    return ResponseSpectrum(
+        period_array, damping, np.array([_peak(motion, float(period), damping) for period in period_array])
+    )
 
 
 def periods_between(low: float, high: float) -> Reals:
     """Return the periods of a spectrum from `low` to `high` [s], at equal ratios."""
-    return np.geomspace(low, high, PERIODS)
+    return np.geomspace(low, high, PERIOD_COUNT)
 
 
 def check_oscillator(period: float, damping: float) -> None:
@@ -175,7 +173,7 @@ def _advance(growth: complex, forcing: NDArray[np.complex128]) -> NDArray[np.com
     padded = np.zeros(blocks * SAMPLES_PER_BLOCK, dtype=np.complex128)
     padded[: forcing.size] = forcing
     powers = growth ** np.arange(SAMPLES_PER_BLOCK + 1)
-    # All blocks go on side by side: no matrix, whose product many threads share, which a busy machine makes slow.
+    # All blocks advance together, without matrix products, whose threads are slow on a busy machine.
     rows = np.ascontiguousarray(padded.reshape(blocks, SAMPLES_PER_BLOCK).T)
     for k in range(1, SAMPLES_PER_BLOCK):
         rows[k] += growth * rows[k - 1]
@@ -190,14 +188,14 @@ def _peak(motion: GroundMotion, period: float, damping: float) -> float:
     """Return the peak displacement [m], with cubic interpolation between samples from values and slopes."""
     x, v, parts = relative_response(motion, period, damping)
     h = motion.dt / parts
-    seen = PER_PERIOD * h <= period * (1 + 1e-9)  # a motion faster than the parts is no cubic between them
-    k = np.flatnonzero(np.sign(v[:-1]) * np.sign(v[1:]) < 0) if seen else np.zeros(0, dtype=np.intp)
+    is_resolved = SAMPLES_PER_PERIOD * h <= period * (1 + 1e-9)  # cubics do not resolve faster motions
+    k = np.flatnonzero(np.sign(v[:-1]) * np.sign(v[1:]) < 0) if is_resolved else np.zeros(0, dtype=np.intp)
     between = _turning_point(x[k], x[k + 1], h * v[k], h * v[k + 1])
     after = _free_peak(float(x[-1]), float(v[-1]), period, damping)
-    found = max(float(np.abs(x).max()), float(np.abs(between).max(initial=0.0)), after)
-    if not isfinite(found):
+    peak = max(float(np.abs(x).max()), float(np.abs(between).max(initial=0.0)), after)
+    if not isfinite(peak):
         raise InputError(f"{motion.name}: accelerations of {motion.pga_g:.3g} g are beyond the range of numbers")
-    return found
+    return peak
 
 
 def _turning_point(x0: Reals, x1: Reals, v0: Reals, v1: Reals) -> Reals:
@@ -205,7 +203,7 @@ def _turning_point(x0: Reals, x1: Reals, v0: Reals, v1: Reals) -> Reals:
     # The slope is v0 + 2 b s + 3 c s^2.
     b, c = 3 * (x1 - x0) - 2 * v0 - v1, 2 * (x0 - x1) + v0 + v1
     root = np.sqrt(np.maximum(b * b - 3 * c * v0, 0.0))
-    # Of the two roots the one between the ends, without a difference of close numbers.
+    # The root between the ends, in a form without cancellation.
     s = np.clip(-v0 / (b - np.sign(v0) * root), 0.0, 1.0)
     return np.asarray(x0 + s * (v0 + s * (b + s * c)))
 

@@ -86,7 +86,7 @@ class Reading:
         usual = {name: each for name, each in self.usual.items() if name not in self.options}
         if "units" in usual:
             of: Quantity = self.quantity or "acceleration"
-            if self.gain is not None or size_of(usual["units"], of) is None:  # it says nothing of such a record
+            if self.gain is not None or size_of(usual["units"], of) is None:  # the usual unit does not apply
                 del usual["units"]
         alone = Reading(self.options, self.steps)
         if usual:
@@ -106,7 +106,7 @@ class Reading:
             step = max(step, smallest_step(second))
             measured = turned(measured, second, self.azimuth)
         corrected = process(measured, self.steps, accelerations=quantity == "acceleration")
-        for each in self.steps:  # what they make of a step of the last digit
+        for each in self.steps:  # the corrections also scale the smallest step of the values
             step *= 0.0 if isinstance(each, Lowpass) else abs(each.by) if isinstance(each, Factor) else 1.0
         return self.on_floor(as_acceleration(corrected, quantity, step))
 
@@ -135,8 +135,8 @@ class Reading:
 
     def on_floor(self, motion: GroundMotion) -> GroundMotion:
         """Return the motion of the floor for a ground motion; without a floor, the ground motion."""
-        found: GroundMotion = motion if self.floor is None else self.floor.of(motion)
-        return found
+        floor_motion: GroundMotion = motion if self.floor is None else self.floor.of(motion)
+        return floor_motion
 
     def vertical(self, file: str | Path, dt: float | None = None, channel: str | None = None) -> GroundMotion:
         """Return the vertical component from a file of its own, read in the same way and with the same corrections.
@@ -146,10 +146,10 @@ class Reading:
         InputError
             As `read`.
         """
-        own = {name: each for name, each in (("dt", dt), ("channel", channel)) if each is not None}
+        own_options = {name: each for name, each in (("dt", dt), ("channel", channel)) if each is not None}
         bare = self.without("channel", "floor", *OF_PAIRS)
         usual = {name: each for name, each in self.usual.items() if name != "channel"}
-        return Reading({**bare.options, **own}, of_vertical(self.steps), usual).read(file)
+        return Reading({**bare.options, **own_options}, of_vertical(self.steps), usual).read(file)
 
     def _measured(self, file: str | Path, channel: str | None) -> tuple[GroundMotion, Quantity]:
         uneven = any(isinstance(step, Resample) for step in self.steps)
@@ -172,17 +172,17 @@ def reading_of(options: ReadingArguments | Mapping[str, Any], usual: Mapping[str
     InputError
         If a value is not valid.
     """
-    given = {name: READING[name].parse(each) for name, each in options.items() if name in READING and each is not None}
-    steps = tuple(each for each in given.values() if isinstance(each, Step))
-    own = {name: each for name, each in given.items() if not isinstance(each, Step)}
-    return Reading(own, steps, {name: READING[name].parse(each) for name, each in (usual or {}).items()})
+    parsed = {name: READING[name].parse(each) for name, each in options.items() if name in READING and each is not None}
+    steps = tuple(each for each in parsed.values() if isinstance(each, Step))
+    plain_options = {name: each for name, each in parsed.items() if not isinstance(each, Step)}
+    return Reading(plain_options, steps, {name: READING[name].parse(each) for name, each in (usual or {}).items()})
 
 
 def _same(one: str | Path, other: str | Path) -> bool:
     """Return whether two paths are those of one file, however they are written."""
     try:
         return Path(one) == Path(other) or Path(one).samefile(other)
-    except OSError:  # one is not there, which is said where it is read
+    except OSError:  # a missing file is reported when it is read
         return False
 
 
@@ -219,7 +219,7 @@ def turned(one: GroundMotion, other: GroundMotion, azimuth: float) -> GroundMoti
     if one.ground is not None and other.ground is not None:
         ground = turned(one.ground, other.ground, azimuth)
     c, s = (of(radians(azimuth)) for of in (cos, sin))
-    c, s = (round(each) if abs(each - round(each)) < 1e-15 else each for each in (c, s))  # at right angles
+    c, s = (round(each) if abs(each - round(each)) < 1e-15 else each for each in (c, s))  # exact for right angles
     return replace(
         one,
         acceleration=c * one.acceleration + s * other.acceleration,

@@ -53,74 +53,74 @@ def _refused(name: str, message: str, hint: str) -> InputError:
 def _in(unit: str, name: str, example: str, *, positive: bool = True) -> Callable[[Any], float]:
     """Return the parser of a quantity, given as a number in its unit or as text, with its unit or without."""
 
-    def parse(given: Any) -> float:
+    def parse(value: Any) -> float:
         try:
-            number = _acceleration(given) if unit == "g" else number_of(given, unit)
+            number = _acceleration(value) if unit == "g" else number_of(value, unit)
         except UnitError as error:
             before = f"{error.hint}; " if error.hint else ""
             raise _refused(name, error.message, f"{before}give a value such as {example}") from None
         if positive and number <= 0:
-            raise _refused(name, f"{given!r} is not positive", f"give a value such as {example}")
+            raise _refused(name, f"{value!r} is not positive", f"give a value such as {example}")
         return number
 
     return parse
 
 
-def _acceleration(given: Any) -> float:
+def _acceleration(value: Any) -> float:
     from rocking_cli.excitation.records.record_units import in_g
 
-    return in_g(given)
+    return in_g(value)
 
 
-def _unit(given: Any) -> str:
+def _unit(value: Any) -> str:
     """Return the name of a unit of acceleration, velocity or length in any spelling that headers have."""
     from rocking_cli.excitation.records.record_units import canonical, quantity_of
 
-    name = canonical(str(given))
-    if name is None and quantity_of(str(given)) is None:
-        raise _refused("units", f"{given!r} is not a known unit", f"give one of {', '.join(UNITS)}")
-    return name or "".join(str(given).split())
+    name = canonical(str(value))
+    if name is None and quantity_of(str(value)) is None:
+        raise _refused("units", f"{value!r} is not a known unit", f"give one of {', '.join(UNITS)}")
+    return name or "".join(str(value).split())
 
 
-def _quantity(given: Any) -> str:
-    if given not in QUANTITIES:
-        raise _refused("from", f"must be one of {', '.join(QUANTITIES)}, got {given!r}", "by default acceleration")
-    return str(given)
+def _quantity(value: Any) -> str:
+    if value not in QUANTITIES:
+        raise _refused("from", f"must be one of {', '.join(QUANTITIES)}, got {value!r}", "by default acceleration")
+    return str(value)
 
 
-def _gain(given: Any) -> Any:
+def _gain(value: Any) -> Any:
     from rocking_cli.excitation.records.record_units import Gain
 
-    return given if isinstance(given, Gain) else Gain.parse(str(given))
+    return value if isinstance(value, Gain) else Gain.parse(str(value))
 
 
-def _channel(given: Any) -> str:
-    if isinstance(given, bool) or not isinstance(given, str | int):
-        raise _refused("channel", f"must be a number, from 1, or a name, got {given!r}", "messages list the channels")
-    return str(given)
+def _channel(value: Any) -> str:
+    if isinstance(value, bool) or not isinstance(value, str | int):
+        raise _refused("channel", f"must be a number, from 1, or a name, got {value!r}", "messages list the channels")
+    return str(value)
 
 
-def _file(given: Any) -> Any:
-    if isinstance(given, str) or hasattr(given, "__fspath__"):
-        return given
-    raise _refused("with", f"must be the file of the second component, got {given!r}", "give its path")
+def _file(value: Any) -> Any:
+    if isinstance(value, str) or hasattr(value, "__fspath__"):
+        return value
+    raise _refused("with", f"must be the file of the second component, got {value!r}", "give its path")
 
 
-def _azimuth(given: Any) -> float | str:
-    return ALL if given == ALL else _in("deg", "azimuth", "30", positive=False)(given)
+def _azimuth(value: Any) -> float | str:
+    return ALL if value == ALL else _in("deg", "azimuth", "30", positive=False)(value)
 
 
-def _floor(given: Any) -> Any:
+def _floor(value: Any) -> Any:
     from rocking_cli.processing.floor import Floor
 
-    return given if isinstance(given, Floor) else Floor.parse(given)
+    return value if isinstance(value, Floor) else Floor.parse(value)
 
 
 def _step(name: str) -> Callable[[Any], Any]:
-    def parse(given: Any) -> Any:
+    def parse(value: Any) -> Any:
         from rocking_cli.processing.steps import Step, parse_step
 
-        return given if isinstance(given, Step) else parse_step(name, given)
+        return value if isinstance(value, Step) else parse_step(name, value)
 
     return parse
 
@@ -131,7 +131,7 @@ CORRECTIONS = ("baseline", "highpass", "lowpass", "taper", "trim", "resample")
 class ReadingArguments(TypedDict, total=False):
     """Keyword arguments of verbs that read records; the corrections are made in the order in which they are given."""
 
-    # A table: name, types, help, parser, metavar, and its name elsewhere if that is another.
+    # Columns: name, types, help, parser, metavar, and the name in files if it differs.
     # fmt: off
     units: Annotated[str | None, Option(
         "Unit of the record, if the file does not state it.", _unit, f"[{'|'.join(UNITS)}]")]
@@ -187,10 +187,12 @@ class MotionArguments(ReadingArguments, total=False):
 
 def _declared(arguments: type) -> dict[str, Option]:
     """Return the options of a class by the names of its arguments, and list them in its docstring."""
-    found = {name: given.__metadata__[0] for name, given in arguments.__annotations__.items()}
-    lines = "".join(f"    {name} : optional\n        {re.sub('  .*', '', each.help)}\n" for name, each in found.items())
+    declared = {name: annotation.__metadata__[0] for name, annotation in arguments.__annotations__.items()}
+    lines = "".join(
+        f"    {name} : optional\n        {re.sub('  .*', '', each.help)}\n" for name, each in declared.items()
+    )
     arguments.__doc__ = f"{arguments.__doc__}\n\n    Parameters\n    ----------\n{lines}"
-    return found
+    return declared
 
 
 READING: dict[str, Option] = _declared(ReadingArguments)

@@ -260,7 +260,7 @@ class Resample(Step):
         dt = motion.dt * float(taken)
         if abs(dt / self.dt - 1) < 1e-9:
             dt = self.dt
-        inside = floor(motion.duration / dt * (1 + 1e-9)) + 1  # none is beyond the last sample
+        inside = floor(motion.duration / dt * (1 + 1e-9)) + 1  # no sample lies beyond the end of the motion
         return _of_samples(motion, samples[:inside], dt)
 
 
@@ -290,7 +290,7 @@ STEPS: Mapping[str, type[Step]] = {
 }
 
 
-def parse_step(name: str, given: object) -> Step:
+def parse_step(name: str, parameters: object) -> Step:
     """Return a step from its name and parameters, as in a study file: `highpass: 0.1`, `trim: [2, 20]`.
 
     Raises
@@ -302,26 +302,26 @@ def parse_step(name: str, given: object) -> Step:
     if step is None:
         hint = did_you_mean(name, list(STEPS)) or f"the steps are {', '.join(STEPS)}"
         raise InputError(Problem(f"{name!r} is not a processing step", hint=hint))
-    if isinstance(given, list | tuple) and len(given) == 2:
-        given = f"{given[0]}:{given[1]}"
-    if isinstance(given, bool) or not isinstance(given, str | int | float):
-        raise _wrong(step, f"cannot be {given!r}")
-    return step.parse(str(given))
+    if isinstance(parameters, list | tuple) and len(parameters) == 2:
+        parameters = f"{parameters[0]}:{parameters[1]}"
+    if isinstance(parameters, bool) or not isinstance(parameters, str | int | float):
+        raise _wrong(step, f"cannot be {parameters!r}")
+    return step.parse(str(parameters))
 
 
 def parse_steps(entries: Sequence[Mapping[str, Any] | str]) -> tuple[Step, ...]:
     """Return steps in their order, from a list of `{highpass: 0.1}` or of `highpass 0.1`. Raises `InputError`."""
-    found = []
+    steps = []
     for entry in entries:
         if isinstance(entry, str):
-            name, _, given = entry.strip().partition(" ")
-            found.append(parse_step(name, given))
+            name, _, parameters = entry.strip().partition(" ")
+            steps.append(parse_step(name, parameters))
         elif len(entry) == 1:
-            found.append(parse_step(*next(iter(entry.items()))))
+            steps.append(parse_step(*next(iter(entry.items()))))
         else:
             hint = "such as `- highpass: 0.1`"
             raise InputError(Problem("one step an entry: a name and what it is given", hint=hint))
-    return tuple(found)
+    return tuple(steps)
 
 
 def process(motion: GroundMotion, steps: Sequence[Step], *, accelerations: bool = True) -> GroundMotion:
@@ -378,7 +378,7 @@ def of_vertical(steps: Sequence[Step]) -> tuple[Step, ...]:
 
 def _of_samples(motion: GroundMotion, samples: Reals, dt: float | None = None) -> GroundMotion:
     dt = motion.dt if dt is None else dt
-    every = max(round(motion.every * motion.dt / dt), 1)  # what a history shows stays as far apart
+    every = max(round(motion.every * motion.dt / dt), 1)  # the shown samples of a history keep their spacing
     return replace(motion, acceleration=samples, dt=dt, every=every, points=None)
 
 
@@ -390,10 +390,10 @@ def _number(step: type[Step], text: str, unit: str, what: str) -> float:
 
 
 def _positive(step: type[Step], text: str, unit: str, what: str) -> float:
-    found = _number(step, text, unit, what)
-    if found <= 0:
+    number = _number(step, text, unit, what)
+    if number <= 0:
         raise _wrong(step, f"{text!r} is not {what} above zero")
-    return found
+    return number
 
 
 def _wrong(step: type[Step], message: str, hint: str | None = None) -> InputError:

@@ -8,7 +8,7 @@ from enum import StrEnum
 from math import isclose
 from typing import NamedTuple, Self, TypeVar
 
-LEAST_SHARE = 0.1  # of overturning neighbours at which the `ratio` of a margin is defined
+LEAST_SHARE = 0.1  # overturning neighbours at which the `ratio` of a margin is defined
 SAME_RATIO = 1e-6  # relative difference below which two conclusions are equally severe
 K = TypeVar("K")
 V = TypeVar("V")
@@ -180,8 +180,9 @@ def are_alike(one: Conclusion, other: Conclusion) -> bool:
     return all(isclose(a, b, rel_tol=SAME_RATIO) for a, b in zip(severity(one), severity(other), strict=True))
 
 
-def severity(found: Conclusion) -> tuple[int, float, float, float]:
+def severity(conclusion: Conclusion) -> tuple[int, float, float, float]:
     """Return how bad a conclusion is, to compare it with others."""
-    share = found.share.highest if found.share is not None else 0.0
-    ratio = 0.0 if found.ratio is None else -found.ratio  # without one, a motion takes the structure past its capacity
-    return SEVERITY.index(found.concluded), share, ratio, found.peak_ratio or 0.0
+    share = conclusion.share.highest if conclusion.share is not None else 0.0
+    # Without a ratio, a motion takes the structure past its capacity.
+    ratio = 0.0 if conclusion.ratio is None else -conclusion.ratio
+    return SEVERITY.index(conclusion.concluded), share, ratio, conclusion.peak_ratio or 0.0

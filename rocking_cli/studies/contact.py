@@ -24,10 +24,10 @@ from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.base import GroundMotion
 
 Places = NDArray[np.intp]
-MIN_BEARING_SHARE = 0.01  # of N at uplift; a joint with less needs no friction
-IDLE_SHARE = 1e-9  # of the largest force at uplift; a joint with less, as in a massless beam, bears nothing
+MIN_BEARING_SHARE = 0.01  # share of N at uplift below which a joint needs no friction
+IDLE_SHARE = 1e-9  # share of the largest force at uplift below which a joint, as in a massless beam, bears nothing
 NEAR_PEAK = 0.9  # share of the largest demand; the duration of a demand is the time above it
-STATES_PER_BLOCK = 25_000  # so that the matrices of all states are never in memory at once
+STATES_PER_BLOCK = 25_000  # limits memory, as each state has a matrix
 UNDEFINED = float("nan")
 DEMAND, PULL, USED = range(3)
 
@@ -197,21 +197,21 @@ class Contacts:
             The ground motion it is the response to.
         """
         states = _states(self.mechanism, history, motion)
-        # For each state the largest of all joints, and which: friction needed, pull, and force over strength.
-        most = np.full((3, states.time.size), -np.inf)
-        most[DEMAND] = 0.0
-        joint = np.zeros(most.shape, np.int64)
+        # For each state, the largest friction required, pull and use of strength of all joints, and the joint of each.
+        largest = np.full((3, states.time.size), -np.inf)
+        largest[DEMAND] = 0.0
+        joint = np.zeros(largest.shape, np.int64)
         shear = 0.0
         for direction, part in self._parts(states):
-            found = self._forces(direction, states, part)
-            most[:, part], joint[:, part] = self._worst(direction, found)
-            shear = max(shear, float(np.abs(_base(found, self._rest[direction])).max()))
-        asked = replace(self._summed_up(history, states, most, joint, shear), supports=self._supports(states))
+            reactions = self._forces(direction, states, part)
+            largest[:, part], joint[:, part] = self._worst(direction, reactions)
+            shear = max(shear, float(np.abs(_base(reactions, self._rest[direction])).max()))
+        demand = replace(self._summed_up(history, states, largest, joint, shear), supports=self._supports(states))
         if history.check is None:
-            return asked
+            return demand
         opens, where = history.check.parted, history.check.parted_joint
         followed, known_to = history.check.count > 0, history.known_to
-        return replace(asked, opens=opens, opens_joint=where, followed=followed, known_to=known_to)
+        return replace(demand, opens=opens, opens_joint=where, followed=followed, known_to=known_to)
 
     def base_shear(self, history: History, motion: GroundMotion | None) -> Reals:
         """The horizontal force of the ground on the structure at each sample, to the right [N]; NaN at rest.
@@ -233,7 +233,7 @@ class Contacts:
 
     def _supports(self, states: _States) -> list[SupportDemand]:
         """Return the largest force of each guide in either sense; none if statics does not determine them."""
-        found: dict[str, list[tuple[Contact, Reals]]] = {}
+        by_support: dict[str, list[tuple[Contact, Reals]]] = {}
         for direction, part in self._parts(states):
             contacts = self.mechanism.contacts(direction) or ()
             ends = np.cumsum([contact.forces for contact in contacts])
@@ -244,17 +244,19 @@ class Contacts:
                 table = released(self.mechanism, direction, states.phi[part])
             except Undetermined:
                 return []
-            assert table is not None  # it has guides
+            assert table is not None  # mechanisms with guides have such a table
             ground = states.ground[part]
             terms = np.stack([np.ones(part.size), ground.real, states.rate[part] ** 2, ground.imag], axis=-1)
             for row, each in guides:
-                found.setdefault(each.support, []).append((each, np.einsum("nk,nk->n", table.force[:, row], terms)))
+                by_support.setdefault(each.support, []).append(
+                    (each, np.einsum("nk,nk->n", table.force[:, row], terms))
+                )
         demands = []
-        for support, parts_of in found.items():
-            way = parts_of[0][0].normal
-            along = np.concatenate([force * (each.normal * way.conjugate()).real for each, force in parts_of])
-            way, along = (way, along) if way.real + way.imag > 0 else (-way, -along)
-            demands.append(SupportDemand(support, way, float(along.max()), float(along.min())))
+        for support, parts_of in by_support.items():
+            axis = parts_of[0][0].normal
+            along = np.concatenate([force * (each.normal * axis.conjugate()).real for each, force in parts_of])
+            axis, along = (axis, along) if axis.real + axis.imag > 0 else (-axis, -along)
+            demands.append(SupportDemand(support, axis, float(along.max()), float(along.min())))
         return demands
 
     @cached_property
@@ -268,56 +270,58 @@ class Contacts:
     def _forces(self, direction: Direction, states: _States, part: Places) -> Reactions:
         return reactions(self.mechanism, direction, states.phi[part], states.rate[part], states.ground[part])
 
-    def _worst(self, direction: Direction, found: Reactions) -> tuple[Reals, Places]:
+    def _worst(self, direction: Direction, reactions: Reactions) -> tuple[Reals, Places]:
         """Return the largest friction required, pull and use of strength in each state, and the joints of these."""
         rest = self._at_uplift[direction]
         bears = np.maximum(MIN_BEARING_SHARE * rest.normal, 0.0)
-        normal = np.where(np.abs(found.force) > IDLE_SHARE * np.abs(rest.force).max(), found.normal, np.nan)
+        normal = np.where(np.abs(reactions.force) > IDLE_SHARE * np.abs(rest.force).max(), reactions.normal, np.nan)
         with np.errstate(divide="ignore", invalid="ignore"):
-            needed = np.where(normal > bears, np.abs(found.shear) / normal, 0.0)
-            pull = np.broadcast_to(-found.total.imag, normal.shape) if found.shared else -normal
-            each = np.stack([needed, pull, normal / self._capacity(found)])
-        each = np.where(np.isnan(each), -np.inf, each)
-        joint = each.argmax(axis=1)
-        return np.take_along_axis(each, joint[:, None], axis=1)[:, 0], joint
+            needed = np.where(normal > bears, np.abs(reactions.shear) / normal, 0.0)
+            pull = np.broadcast_to(-reactions.total.imag, normal.shape) if reactions.shared else -normal
+            measures = np.stack([needed, pull, normal / self._capacity(reactions)])
+        measures = np.where(np.isnan(measures), -np.inf, measures)
+        joint = measures.argmax(axis=1)
+        return np.take_along_axis(measures, joint[:, None], axis=1)[:, 0], joint
 
-    def _summed_up(self, history: History, states: _States, most: Reals, joint: Places, shear: float) -> ContactDemand:
+    def _summed_up(
+        self, history: History, states: _States, largest: Reals, joint: Places, shear: float
+    ) -> ContactDemand:
         friction, time = self.mechanism.friction, states.time
         if not states.rocks.any():
-            return ContactDemand(times=time, demand=most[DEMAND])
+            return ContactDemand(times=time, demand=largest[DEMAND])
         thrown = [self._impulses[direction] for direction in _ended(history)]
-        hits = [found for found in thrown if found is not None]
-        lost, lost_joint = self._lost(history, states, most[PULL], joint[PULL])
-        most[DEMAND, time > lost] = 0.0  # what is needed beyond that is of no motion that there is
-        peak = int(np.where(states.rocks, most[DEMAND], -1.0).argmax())
-        needed = float(most[DEMAND, peak])
-        starts, ends = _stretches(time, most[DEMAND], NEAR_PEAK * needed if friction is None else friction)
+        hits = [reactions for reactions in thrown if reactions is not None]
+        lost, lost_joint = self._lost(history, states, largest[PULL], joint[PULL])
+        largest[DEMAND, time > lost] = 0.0  # after a loss of contact, the computed motion is not valid
+        peak = int(np.where(states.rocks, largest[DEMAND], -1.0).argmax())
+        needed = float(largest[DEMAND, peak])
+        starts, ends = _stretches(time, largest[DEMAND], NEAR_PEAK * needed if friction is None else friction)
         slides = None
         if friction is None:
             around = (starts <= time[peak]) & (time[peak] <= ends)
             starts, ends = starts[around], ends[around]
         elif starts.size:
-            slides = int((most[DEMAND] > friction).argmax())
-        loaded = int(most[USED].argmax())
+            slides = int((largest[DEMAND] > friction).argmax())
+        loaded = int(largest[USED].argmax())
         crushing = None
-        if np.isfinite(most[USED, loaded]):
+        if np.isfinite(largest[USED, loaded]):
             crushing = CrushingDemand(
-                float(most[USED, loaded]), self._letter(states, joint[USED], loaded), float(time[loaded])
+                float(largest[USED, loaded]), self._letter(states, joint[USED], loaded), float(time[loaded])
             )
         return ContactDemand(
             times=time,
-            demand=most[DEMAND],
+            demand=largest[DEMAND],
             friction_needed=needed,
             joint=self._letter(states, joint[DEMAND], peak),
             time=float(time[peak]),
             duration=float((ends - starts).max(initial=0.0)),
             base_shear=shear,
-            least_normal=-float(most[PULL].max()),
+            least_normal=-float(largest[PULL].max()),
             impact_friction=max(map(_ratio, hits), default=UNDEFINED) if len(hits) == len(thrown) else UNDEFINED,
             lost=lost,
             lost_joint=lost_joint,
-            whole=any(found.is_whole for found in self._at_uplift.values()),
-            shared=any(found.shared for found in self._at_uplift.values()),
+            whole=any(reactions.is_whole for reactions in self._at_uplift.values()),
+            shared=any(reactions.shared for reactions in self._at_uplift.values()),
             friction=friction,
             slides=UNDEFINED if slides is None else float(starts[0]),
             slides_joint="" if slides is None else self._letter(states, joint[DEMAND], slides),
@@ -336,13 +340,13 @@ class Contacts:
             last = int(np.flatnonzero(states.rocks)[-1])
             moments.append((history.known_to, self._letter(states, joint, last)))
         for direction, hit in _ended(history).items():
-            found = self._impulses[direction]
+            impulse = self._impulses[direction]
             if (
-                found is not None
-                and not found.shared
-                and (thrown := found.normal[:, 0] < -IDLE_SHARE * np.abs(found.force).max()).any()
+                impulse is not None
+                and not impulse.shared
+                and (thrown := impulse.normal[:, 0] < -IDLE_SHARE * np.abs(impulse.force).max()).any()
             ):
-                moments.append((hit, found.joints[int(thrown.argmax())].letter))
+                moments.append((hit, impulse.joints[int(thrown.argmax())].letter))
         return min(moments, default=(UNDEFINED, ""))
 
     def _letter(self, states: _States, joint: Places, k: int) -> str:
@@ -358,13 +362,13 @@ class Contacts:
     def _impulses(self) -> Mapping[Direction, Reactions | None]:
         return {direction: impulses(self.mechanism, direction) for direction in self.mechanism.directions}
 
-    def _capacity(self, found: Reactions) -> Reals:
+    def _capacity(self, reactions: Reactions) -> Reals:
         """Return the strength of each joint [N], shape (k, 1); NaN if it is not given."""
         strength, depth = self.mechanism.strength, self.mechanism.depth
-        if not isinstance(strength, Strength) or depth is None or found.is_whole or found.shared:
-            return np.full((len(found.joints), 1), np.nan)
+        if not isinstance(strength, Strength) or depth is None or reactions.is_whole or reactions.shared:
+            return np.full((len(reactions.joints), 1), np.nan)
         alike = self.mechanism.alike()
-        counts = [max(alike.get(name, 1) for name in joint.bodies) for joint in found.joints]
+        counts = [max(alike.get(name, 1) for name in joint.bodies) for joint in reactions.joints]
         return strength.force(depth) * np.array(counts, dtype=np.float64)[:, None]
 
 
@@ -372,8 +376,8 @@ class _States(NamedTuple):
     """Moments of a history in order of time, each field an ndarray of shape (n,)."""
 
     time: Reals
-    sign: Reals  # of the direction
-    phi: Reals  # in it [rad]
+    sign: Reals  # sign of the direction
+    phi: Reals  # rotation in this direction [rad]
     rate: Reals  # [rad/s]
     ground: NDArray[np.complex128]  # u_g'' + i v_g'' [m/s2]
     rocks: Bools
@@ -401,7 +405,7 @@ def _states(mechanism: Mechanism, history: History, motion: GroundMotion | None)
     still = np.zeros(len(impact))
     rows = [
         np.stack([samples.time, samples.sign, samples.phi, samples.rate, samples.rocks]),
-        # Two rows an impact, one after the other: phi = 0 with the rate before, and with that after.
+        # Every impact gives two rows with phi = 0: with the rate before it, then with the rate after it.
         np.stack([impact[:, 0], impact[:, 1], still, -impact[:, 2], still + 1]).repeat(2, axis=1),
     ]
     rows[1][1, 1::2], rows[1][3, 1::2] = after, eta * impact[:, 2]
@@ -416,13 +420,13 @@ def _states(mechanism: Mechanism, history: History, motion: GroundMotion | None)
     return _States(table[0], table[1], table[2], table[3], _ground(table[0], motion), rocks)
 
 
-def _base(found: Reactions, rest: Collection[str] = ()) -> Reals:
+def _base(reactions: Reactions, rest: Collection[str] = ()) -> Reals:
     """Return the horizontal force on the structure of the ground and of bodies at rest, without guides, shape (n,)."""
-    total = np.zeros(found.force.shape[1])
-    for joint, force in zip(found.joints, found.force.real, strict=True):
+    total = np.zeros(reactions.force.shape[1])
+    for joint, force in zip(reactions.joints, reactions.force.real, strict=True):
         moves = [name not in rest for name in joint.bodies]
-        if found.is_whole or (not joint.is_guide and moves == [True]) or moves == [False, True]:
-            total += force  # on the last of its bodies
+        if reactions.is_whole or (not joint.is_guide and moves == [True]) or moves == [False, True]:
+            total += force  # forces act on the last body of the joint
         elif moves == [True, False]:
             total -= force
     return total
@@ -459,7 +463,7 @@ def _ended(history: History) -> dict[Direction, float]:
     return {each: float(history.impacts[signs == each, 0][0]) for each in Direction if (signs == each).any()}
 
 
-def _ratio(found: Reactions) -> float:
+def _ratio(reactions: Reactions) -> float:
     """Return the largest |T|/N of the joints that an impact presses together."""
-    pressed = found.normal > IDLE_SHARE * np.abs(found.force).max()
-    return float((np.abs(found.shear[pressed]) / found.normal[pressed]).max(initial=0.0))
+    pressed = reactions.normal > IDLE_SHARE * np.abs(reactions.force).max()
+    return float((np.abs(reactions.shear[pressed]) / reactions.normal[pressed]).max(initial=0.0))

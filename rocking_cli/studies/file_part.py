@@ -62,13 +62,13 @@ def problems_of(
 
     Arguments are those of `field_problems.problems`; wrong fields among the `known` problems are left out.
     """
-    said = {(problem.field, problem.line) for problem in known}
+    already_listed = {(problem.field, problem.line) for problem in known}
     alone: Any = [each for each in error.errors(include_url=False) if each["type"] != "geometry"]
-    found = problems(document, model, alone, owner=owner, lister=lister)
-    found = [problem for problem in found if (problem.field, problem.line) not in said]
+    listed = problems(document, model, alone, owner=owner, lister=lister)
+    listed = [problem for problem in listed if (problem.field, problem.line) not in already_listed]
     places = {place_of(document.data, each) for each in alone}
     between = between_fields(model, document.data, places)
-    return found + [document.at(place, message) for place, message in between]
+    return listed + [document.at(place, message) for place, message in between]
 
 
 def between_fields(

@@ -15,8 +15,8 @@ from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies.picture import Picture, box_around
 
-BEFORE, AFTER = 1.0, 1.5  # s shown before the first uplift and after the end of the motion
-BOX_ROTATIONS = 25  # at which the box around the motion is determined
+SECONDS_BEFORE, SECONDS_AFTER = 1.0, 1.5  # s shown before the first uplift and after the end of the motion
+BOX_ROTATIONS = 25  # rotations sampled for the box around the motion
 
 
 @dataclass(frozen=True)
@@ -51,13 +51,13 @@ class Film:
         last = float(self.history.time[self._moving - 1])
         if self.history.fell or self.history.unknown or isnan(self.history.uplift_time):
             return last
-        return min(last, self.history.end_time + AFTER)
+        return min(last, self.history.end_time + SECONDS_AFTER)
 
     @property
     def start(self) -> float:
         """Time at which the animation starts, shortly before the first uplift [s]."""
         first = self.history.uplift_time
-        return 0.0 if isnan(first) else max(0.0, first - BEFORE)
+        return 0.0 if isnan(first) else max(0.0, first - SECONDS_BEFORE)
 
     def rotation(self, time: Reals) -> Reals:
         """Return the signed rotation at some times, shape (n,) [rad]; after the end the last rotation simulated."""

@@ -101,20 +101,20 @@ class Brackets:
 
         a, b = coefficients
         lower, upper = self._lower[part], self._upper[part]
-        if b <= 0:  # the bounds would change places
+        if b <= 0:  # the bounds would be swapped
             n = lower.size
             return Slopes(np.full(n, -np.inf), np.zeros((n, 2)), np.broadcast_to(np.eye(2), (n, 2, 2)))
         u, v = (np.where(np.isfinite(end), end, 0.0) for end in (lower, upper))
         low = np.where(np.isfinite(lower), a + b * u, -np.inf)
         high = np.where(np.isfinite(upper), a + b * v, np.inf)
-        flip = low > 0  # the tail in which a difference of small numbers loses nothing
+        flip = low > 0  # the difference of small numbers is accurate in this tail
         top, bottom = log_ndtr(np.where(flip, -low, high)), log_ndtr(np.where(flip, -high, low))
         value = top + np.log(-np.expm1(bottom - top))
         # phi/[Phi(high) - Phi(low)] at either end.
         at_low, at_high = (np.exp(-end * end / 2 - value) / np.sqrt(2 * np.pi) for end in (low, high))
         low, high = (np.where(np.isfinite(end), end, 0.0) for end in (low, high))
         score = np.stack([at_high - at_low, at_high * v - at_low * u], axis=-1)
-        # In this form little cancels where a bracket is narrow.
+        # This form is accurate for narrow brackets.
         information = score[:, :, None] * score[:, None, :]
         for weight, end in ((high * at_high, v), (-low * at_low, u)):
             row = np.stack([np.ones_like(end), end], axis=-1)
@@ -176,15 +176,15 @@ def separable(design: Reals, exceeded: Bools) -> bool:
     from scipy.optimize import linprog
 
     signed = np.where(exceeded, 1.0, -1.0)[:, None] * design
-    found = linprog(-signed.sum(axis=0), A_ub=-signed, b_ub=np.zeros(exceeded.size), bounds=(-1, 1))
-    return bool(-found.fun > MIN_SEPARATION * exceeded.size)
+    solution = linprog(-signed.sum(axis=0), A_ub=-signed, b_ub=np.zeros(exceeded.size), bounds=(-1, 1))
+    return bool(-solution.fun > MIN_SEPARATION * exceeded.size)
 
 
 MAX_NEWTON_STEPS = 100  # six are usual
-MIN_DECREMENT = 1e-12  # of the log-likelihood per run, before the last step
+MIN_DECREMENT = 1e-12  # log-likelihood per run that the last step must gain
 MIN_STEP_SHARE = 1e-10
 MIN_EIGENVALUE_RATIO = 1e-13  # smallest over largest; with less, the information says nothing in one direction
-TERMS_PER_BLOCK = 1 << 16  # they take about ten megabytes
+TERMS_PER_BLOCK = 1 << 16  # ten megabytes
 NO_MAXIMUM = "the likelihood found no maximum: the data hardly tell a slope"
 NO_ERRORS = "the errors of the fit cannot be told: without one record, or at all, the data hardly tell a slope"
 
@@ -266,7 +266,7 @@ class Fit:
         """Return confidence limits of the probability of each row; those of eta, so that they stay within 0 and 1."""
         eta = design @ self.coefficients
         variance = np.einsum("ij,jk,ik->i", design, self.covariance, design)
-        reach = self.quantile * np.sqrt(np.maximum(variance, 0.0))  # what rounding leaves of a variance of zero
+        reach = self.quantile * np.sqrt(np.maximum(variance, 0.0))  # rounding may make a variance of zero negative
         return cumulative(self.link, eta - reach), cumulative(self.link, eta + reach)
 
 
@@ -342,7 +342,7 @@ def fit_outcomes(link: Link, design: Reals, seen: Counts, exceeding: Reals, conf
     Fit or str
         The fit, or a message why there is none.
     """
-    # A place stands for two terms: a run there that exceeds, and one that does not.
+    # Every place stands for two terms: a run that exceeds, and one that does not.
     term = np.concatenate([seen.term, seen.term + len(design)])
     number = np.concatenate([exceeding, seen.number - exceeding])
     record = np.tile(seen.record, 2)
@@ -372,8 +372,8 @@ def fit_brackets(lower: Reals, upper: Reals, seen: Counts, confidence: float) ->
         The fit, or a message why there is none.
     """
     start, degrees = np.array([0.0, 1.0]), seen.records - 1.0
-    found = _fitted("probit", Brackets(lower, upper), seen, start, confidence, degrees)
-    return found if isinstance(found, str) else replace(found, ladders=True)
+    result = _fitted("probit", Brackets(lower, upper), seen, start, confidence, degrees)
+    return result if isinstance(result, str) else replace(result, ladders=True)
 
 
 def _fitted(
@@ -381,11 +381,11 @@ def _fitted(
 ) -> Fit | str:  # fmt: skip
     """Return the maximum-likelihood coefficients with their covariance, or a message why there are none."""
     number = totals(seen.term, seen.number, len(terms))
-    with np.errstate(all="ignore"):  # of a term far out, whose probability is 0 or 1 to the last bit
-        found = _maximum(terms, number, start)
-        if found is None:
+    with np.errstate(all="ignore"):  # probabilities of extreme terms are exactly 0 or 1
+        maximum = _maximum(terms, number, start)
+        if maximum is None:
             return NO_MAXIMUM
-        coefficients, at = found
+        coefficients, at = maximum
         covariance = _covariance(terms, seen, coefficients, at.information)
     if covariance is None:
         return NO_ERRORS
@@ -452,8 +452,8 @@ def _covariance(terms: Terms, seen: Counts, coefficients: Reals, information: Re
     """
     if not seen.repeated:
         return np.asarray(np.linalg.inv(information)) if _tells(information) else None
-    score, own = _by_record(terms, seen, coefficients)
-    rest = information - own
+    score, own_information = _by_record(terms, seen, coefficients)
+    rest = information - own_information
     if not _tells(rest):
         return None
     moved = np.linalg.solve(rest, score[:, :, None])[:, :, 0]

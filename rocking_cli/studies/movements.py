@@ -17,9 +17,9 @@ from rocking_cli.core.hung.element import INTERLOCK_NAME as INTERLOCK
 from rocking_cli.core.hung.element import ConstantForce, Element, Stretched
 from rocking_cli.dynamics.history import History
 
-PATH_ROTATIONS = 257  # from rest to a peak, among which the largest displacement is sought
-ROUNDING_SHARE = 1e-13  # of the distance from the origin; smaller displacements count as zero
-LEVEL_SHARE = 1e-9  # of the height of the structure, by which corners at the same level may differ
+PATH_ROTATIONS = 257  # rotations between rest and a peak, sampled for the largest displacement
+ROUNDING_SHARE = 1e-13  # share of the distance from the origin below which a displacement is zero
+LEVEL_SHARE = 1e-9  # share of the height of the structure by which level corners may differ
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,7 @@ class Watched:
         if interlock is None:
             return False
         moved = next(point.horizontal for point in self.peaks(history).points if point.name == INTERLOCK)
-        return not moved <= interlock.overlap  # of one that overturns it is not a number
+        return not moved <= interlock.overlap  # NaN for a history that overturns
 
     def columns(self, phi: Reals) -> Iterator[tuple[str, Reals]]:
         """Yield displacements of points [m], elongations [m] and forces [N] of ties, at signed rotations (n,).
@@ -151,20 +151,20 @@ class Watched:
 
     def _displacement(self, spot: Spot, phi: Reals, direction: Direction) -> NDArray[np.complex128]:
         moved = np.asarray(self.mechanism.followed(phi, direction)(spot).z - spot.at)
-        least = ROUNDING_SHARE * abs(spot.at)  # what is held by a joint stays to the last digits but a few
+        least = ROUNDING_SHARE * abs(spot.at)  # points held by a joint move only by rounding
         x, y = (np.where(np.abs(each) <= least, 0.0, each) for each in (moved.real, moved.imag))
         return np.asarray(x + 1j * y)
 
     def _signed(self, phi: Reals, of: Callable[[Reals, Direction], NDArray[np.complex128]]) -> NDArray[np.complex128]:
-        found = np.full(phi.shape, complex(np.nan, np.nan))
+        values = np.full(phi.shape, complex(np.nan, np.nan))
         for direction in Direction:
             if direction not in self._limits:
                 continue
             mine = (phi * direction > 0) | ((phi == 0) & (direction is self.mechanism.directions[0]))
             mine &= np.abs(phi) < self._limits[direction]
             if mine.any():
-                found[mine] = of(np.abs(phi[mine]), direction)
-        return found
+                values[mine] = of(np.abs(phi[mine]), direction)
+        return values
 
     def _impact_velocity(self, history: History) -> float:
         if not len(history.impacts):

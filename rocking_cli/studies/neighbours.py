@@ -23,11 +23,11 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.names import peaks_over
 
 FRACTILES = (0.16, 0.50, 0.84)
-AGREEMENT = 0.9  # share of neighbours with the outcome of the history; below it the outcome is sensitive
+MIN_AGREEMENT = 0.9  # share of neighbours with the outcome of the history; below it the outcome is sensitive
 LEAST_ETA = 1e-3  # lower restitutions are raised to it, as an impact leaves some motion
-MAX_NEIGHBOURS = 1_000_000  # they take minutes
+MAX_NEIGHBOURS = 1_000_000  # a million takes minutes
 SEED = 1963
-NORMAL = NormalDist()
+STANDARD_NORMAL = NormalDist()
 MIN_PROBABILITY = 1e-300  # replaces 0, which has no normal quantile
 
 
@@ -46,7 +46,7 @@ class Draws(NamedTuple):
     """
 
     amplitude: Reals  # factor on the motion
-    slender: Reals  # factor on the slenderness as far as it is due to the weight; at zero and below it has overturned
+    slender: Reals  # factor on the part of the slenderness due to weight; at or below zero, overturned
     eta: Reals  # restitution of both directions, shape (n, 2)
 
 
@@ -102,15 +102,16 @@ class Neighbourhood:
 
     def drawn(self, model: Model) -> Draws:
         """Draw the neighbours of a model."""
-        own = self.of(model)
-        assert own.restitution is not None and own.slenderness is not None
+        settled = self.of(model)
+        assert settled.restitution is not None and settled.slenderness is not None
         # A Latin hypercube, with less scatter than random numbers.
         random = np.random.default_rng(SEED)
         amplitude, one, other = (np.arange(self.count) + random.random((3, self.count))) / max(self.count, 1)
         restitution, slenderness = random.permutation(one), random.permutation(other)
-        wide = np.exp(own.slenderness * _normal(slenderness))
+        wide = np.exp(settled.slenderness * _normal(slenderness))
         etas = [
-            _below(restitution, eta, own.restitution, most) for eta, most in zip(model.eta, model.most_eta, strict=True)
+            _below(restitution, eta, settled.restitution, most)
+            for eta, most in zip(model.eta, model.most_eta, strict=True)
         ]
         return Draws(
             np.exp(self.amplitude * _normal(amplitude)),
@@ -121,15 +122,15 @@ class Neighbourhood:
 
 def _normal(uniform: Reals) -> Reals:
     """Convert uniform numbers to standard normal ones."""
-    return np.array([NORMAL.inv_cdf(max(u, MIN_PROBABILITY)) for u in uniform.tolist()])
+    return np.array([STANDARD_NORMAL.inv_cdf(max(u, MIN_PROBABILITY)) for u in uniform.tolist()])
 
 
-def _below(uniform: Reals, mean: float, deviation: float, most: float) -> Reals:
-    """Convert uniform numbers to normal ones that are at most `most` and at least the least restitution."""
+def _below(uniform: Reals, mean: float, deviation: float, upper: float) -> Reals:
+    """Convert uniform numbers to normal ones that are at most `upper` and at least the least restitution."""
     if deviation == 0:
         return np.full(uniform.size, mean)
-    share = NORMAL.cdf((most - mean) / deviation)
-    return np.clip(mean + deviation * _normal(uniform * share), LEAST_ETA, most)
+    share = STANDARD_NORMAL.cdf((upper - mean) / deviation)
+    return np.clip(mean + deviation * _normal(uniform * share), LEAST_ETA, upper)
 
 
 @dataclass(frozen=True)
@@ -170,7 +171,7 @@ class Neighbours:
     @property
     def sensitive(self) -> bool:
         """Whether so many neighbours have another outcome that the outcome of the motion itself is partly chance."""
-        return self.as_itself < AGREEMENT
+        return self.as_itself < MIN_AGREEMENT
 
     @property
     def half_overturn(self) -> bool:
@@ -222,28 +223,28 @@ def neighbours(
     draws = around.drawn(model)
     unchecked = model.joints is None
     able = draws.slender > 0
-    most = float((draws.amplitude[able] / draws.slender[able]).max(initial=1.0))
-    if release is None and motion is not None and able.all() and not can_lift(model, motion, most):
+    largest_factor = float((draws.amplitude[able] / draws.slender[able]).max(initial=1.0))
+    if release is None and motion is not None and able.all() and not can_lift(model, motion, largest_factor):
         unknown = None if unchecked else 0.0
         return Neighbours(around, model.name, 0.0, (0.0, 0.0, 0.0), 1.0, lifted=False, unknown=unknown)
-    itself = Draws(np.ones(1), np.ones(1), np.full((1, 2), np.nan))  # with its own restitution
+    itself = Draws(np.ones(1), np.ones(1), np.full((1, 2), np.nan))  # NaN keeps the restitution of the model
     all_draws = Draws(*(np.concatenate(pair) for pair in zip(itself, draws, strict=True)))
     tilts = None
     if release is not None:
         tilts = release / np.where(all_draws.slender > 0, all_draws.slender, 1.0) if release_is_angle else release
-    found = follow(model, motion, all_draws, release=tilts, rtol=rtol)
-    outcome = np.where(found.unknown, 2, found.fell)
-    peaks = np.where(outcome[1:] > 0, np.inf, found.peak_ratio[1:])
-    # A value that was reached, never one between two: half of infinity is no rotation.
+    outcomes = follow(model, motion, all_draws, release=tilts, rtol=rtol)
+    outcome = np.where(outcomes.unknown, 2, outcomes.fell)
+    peaks = np.where(outcome[1:] > 0, np.inf, outcomes.peak_ratio[1:])
+    # Quantiles are values of the sample, as interpolation with infinity has no meaning.
     low, middle, high = (float(peak) for peak in np.quantile(peaks, FRACTILES, method="inverted_cdf"))
     return Neighbours(
         around,
         model.name,
-        float(found.fell[1:].mean()),
+        float(outcomes.fell[1:].mean()),
         (low, middle, high),
         float((outcome[1:] == outcome[0]).mean()),
         over=peaks_over(model.ends_at_limit),
-        unknown=None if unchecked and not found.unknown.any() else float(found.unknown[1:].mean()),
+        unknown=None if unchecked and not outcomes.unknown.any() else float(outcomes.unknown[1:].mean()),
     )
 
 
@@ -288,17 +289,17 @@ def follow(
         eta=draws.eta,
         slender=np.where(stands, draws.slender, 1.0),
     )
-    found = respond_many([model], [motion], runs, release=release, only_peaks=True, **how)  # type: ignore[arg-type]
-    if found.failed.any():
-        k = int(found.failed.argmax())
+    outcomes = respond_many([model], [motion], runs, release=release, only_peaks=True, **how)  # type: ignore[arg-type]
+    if outcomes.failed.any():
+        k = int(outcomes.failed.argmax())
         raise SolverError(f"{model.structure}: the motion scaled by {runs.scale[k]:.6g} could not be simulated")
     if stands.all():
-        return found
+        return outcomes
     return replace(
-        found,
-        fell_to=np.where(stands | found.fell, found.fell_to, 1),  # which direction is not used of neighbours
-        unknown=found.unknown & stands,
-        peak_ratio=np.where(stands, found.peak_ratio, np.nan),
+        outcomes,
+        fell_to=np.where(stands | outcomes.fell, outcomes.fell_to, 1),  # this direction is not used
+        unknown=outcomes.unknown & stands,
+        peak_ratio=np.where(stands, outcomes.peak_ratio, np.nan),
     )
 
 

@@ -33,17 +33,17 @@ from rocking_cli.errors import RockingError, StructureError
 from rocking_cli.plugins.errors import plugin_error
 from rocking_cli.studies.hung import Carried, End, Strand, carried, strands, walls
 
-NODES_PER_SIDE = 60  # of the table of positions; linear interpolation has an error of 1e-4 of the size
-MAX_LIMIT_SHARE = 0.999  # of the kinematic limit, where a linkage has no derivatives
-SAME_POINT_SHARE = 1e-6  # of the size; points closer than this coincide
+NODES_PER_SIDE = 60  # linear interpolation in the table of positions has an error of 1e-4 of the size
+MAX_LIMIT_SHARE = 0.999  # a linkage has no derivatives at its kinematic limit
+SAME_POINT_SHARE = 1e-6  # share of the size within which points coincide
 MIN_SIZE = 1e-150  # m; scales of smaller drawings overflow
 MIN_TURN = 1e-9  # rate below which a body does not turn
-START_SHARE = 0.05  # of the size: displacement of the fastest part in a drawing of an initial motion
-MAX_SEPARATE_PARTS = 40  # with more, parts that move together are drawn as one
-SHADES = 3  # enough to tell each link from its neighbours
-SHOWN_LIMIT_SHARE = 0.1  # of the kinematic limit, drawn if there is no critical rotation
+START_SHARE = 0.05  # displacement of the fastest part over the size, in a drawing of an initial motion
+MAX_SEPARATE_PARTS = 40  # above this number, parts that move together are drawn as one
+SHADE_COUNT = 3  # enough to tell each link from its neighbours
+SHOWN_LIMIT_SHARE = 0.1  # share of the kinematic limit that is drawn if there is no critical rotation
 
-ASSUMED = (
+ASSUMED_NOTE = (
     "dashed: a body whose shape the mechanism does not give, as a disc of the same mass and inertia, or as a point"
 )
 
@@ -229,8 +229,8 @@ class Picture:
             return centroids
         links = self.links[self.side(rotation)]
         link = np.array([-1 if links[part.name] is None else links[part.name] for part in self.parts])
-        own = [(link == k) & (mass > 0) for k in np.unique(link[link >= 0])]
-        return np.array([np.average(centroids[here], weights=mass[here]) for here in own if here.any()])
+        groups = [(link == k) & (mass > 0) for k in np.unique(link[link >= 0])]
+        return np.array([np.average(centroids[here], weights=mass[here]) for here in groups if here.any()])
 
     def placed(self, rotation: float) -> tuple[list[list[Points]], Points]:
         """Return the outlines of every part, and the pins, shape (pins,), at one signed rotation [m]; see `at`."""
@@ -298,10 +298,10 @@ class Picture:
         """For each direction, the link of each body, counted along the hinges; None for a body at rest."""
         size = abs(self.extent[1] - self.extent[0])
         bodies = [body.name for body in self.mechanism.bodies()]
-        found: dict[Direction, Mapping[str, int | None]] = {}
+        by_direction: dict[Direction, Mapping[str, int | None]] = {}
         for direction in self.directions:
             motions = self.motion(np.array([0.5 * self.reference[direction]]), direction)
-            # A link is what turns as fast, and would move one and the same point as fast.
+            # Bodies are one link if they turn at the same rate and would move one point at the same velocity.
             speeds = [np.array([size * motion.dpsi[0], motion.carry(0j)[1][0]]) for motion in motions]
             of_body = dict(zip(bodies, speeds, strict=True))
             along = [name for hinge in self.sketch.hinges.get(direction, ()) for name in hinge.bodies]
@@ -318,13 +318,13 @@ class Picture:
                 links[name] = next(alike, len(of_link))
                 if links[name] == len(of_link):
                     of_link.append(of_body[name])
-            found[direction] = links
-        return found
+            by_direction[direction] = links
+        return by_direction
 
     @cached_property
     def shades(self) -> Mapping[Direction, tuple[int | None, ...]]:
         """For each direction, a shade of each part, different from its neighbours'; None for a part at rest."""
-        found: dict[Direction, tuple[int | None, ...]] = {}
+        by_direction: dict[Direction, tuple[int | None, ...]] = {}
         for direction, links in self.links.items():
             beside: dict[int, set[int]] = {link: set() for link in links.values() if link is not None}
             for hinge in self.sketch.hinges.get(direction, ()):
@@ -334,10 +334,10 @@ class Picture:
             shades: dict[int | None, int | None] = {None: None}
             for link in sorted(beside):
                 taken = {shades.get(other) for other in beside[link]}
-                able = [shade % SHADES for shade in range(link, link + SHADES)]
+                able = [shade % SHADE_COUNT for shade in range(link, link + SHADE_COUNT)]
                 shades[link] = next((shade for shade in able if shade not in taken), able[0])
-            found[direction] = tuple(shades[links[part.name]] for part in self.parts)
-        return found
+            by_direction[direction] = tuple(shades[links[part.name]] for part in self.parts)
+        return by_direction
 
     @cached_property
     def grouped(self) -> Picture:
@@ -352,11 +352,11 @@ class Picture:
         group_of = {k: n for n, group in enumerate(groups.values()) for k in group}
         parts = []
         for group in groups.values():
-            own = [self.parts[k] for k in group]
-            mass = np.array([masses[part.name] for part in own])
-            at = np.average([part.centroid for part in own], weights=mass if mass.any() else None)
-            outlines = tuple(each for part in own for each in part.outlines)
-            parts.append(replace(own[0], centroid=complex(at), outlines=outlines, mass=float(mass.sum())))
+            members = [self.parts[k] for k in group]
+            mass = np.array([masses[part.name] for part in members])
+            at = np.average([part.centroid for part in members], weights=mass if mass.any() else None)
+            outlines = tuple(each for part in members for each in part.outlines)
+            parts.append(replace(members[0], centroid=complex(at), outlines=outlines, mass=float(mass.sum())))
 
         def moved(end: End) -> End:
             return end if end.part is None else end._replace(part=group_of[end.part])
@@ -377,22 +377,22 @@ class Picture:
 
     def chains(self, pins: Sequence[DrawnHinge]) -> list[list[int]]:
         """Return chains of pins that are joined by links, as indices: pins in their order first, then the others."""
-        held = []  # the moving links that meet in each pin
+        held = []  # moving links of each pin
         for pin in pins:
             hinges, links = self.sketch.hinges.get(pin.direction, ()), self.links[pin.direction]
             here = [hinge.bodies for hinge in hinges if (hinge.letter, hinge.point) == (pin.letter, pin.point)]
             held.append({link for bodies in here for name in bodies if (link := links.get(name)) is not None})
-        found: list[list[int]] = []
+        chains: list[list[int]] = []
         for k in range(1, len(pins)):
             if held[k - 1] & held[k]:
-                if found and found[-1][-1] == k - 1:
-                    found[-1].append(k)
+                if chains and chains[-1][-1] == k - 1:
+                    chains[-1].append(k)
                 else:
-                    found.append([k - 1, k])
+                    chains.append([k - 1, k])
         for link in sorted(set().union(*held)):
             on = [k for k, links in enumerate(held) if link in links]
-            found += [[one, other] for one, other in pairwise(on) if other - one > 1]
-        return found
+            chains += [[one, other] for one, other in pairwise(on) if other - one > 1]
+        return chains
 
     @property
     def furthest(self) -> float:
@@ -505,7 +505,7 @@ class Picture:
         return {"part": end.part, "point": point, "lead": lead}
 
 
-def picture(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism] | None = None) -> Picture:
+def picture(mechanism: Mechanism, collapses: Mapping[Direction, CollapseMechanism] | None = None) -> Picture:
     """Build the drawing of a structure.
 
     Parameters
@@ -513,7 +513,7 @@ def picture(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism] |
     mechanism : Mechanism
         Any mechanism. Whatever its `sketch` leaves out is derived: outlines from mass and inertia, pivots and hinges
         from the motion, the ground from the pivots.
-    found : mapping of Direction to CollapseMechanism, optional
+    collapses : mapping of Direction to CollapseMechanism, optional
         The mechanisms that a search found. If one of them has no rocking model, the drawing shows their initial motion.
 
     Raises
@@ -522,10 +522,10 @@ def picture(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism] |
         If the plugin fails.
     """
     try:
-        return _picture(mechanism, found or {})
+        return _picture(mechanism, collapses or {})
     except RockingError:
         raise
-    except Exception as error:  # what it gives is of no use
+    except Exception as error:  # a plugin may return anything
         what = f"the mechanism {mechanism.mechanism} failed to be drawn"
         raise plugin_error(what, type(mechanism).__module__, error) from error
 
@@ -536,11 +536,11 @@ def box_around(outlines: Sequence[Points]) -> tuple[complex, complex]:
     return complex(z.real.min(), z.imag.min()), complex(z.real.max(), z.imag.max())
 
 
-def _picture(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism]) -> Picture:
+def _picture(mechanism: Mechanism, collapses: Mapping[Direction, CollapseMechanism]) -> Picture:
     bodies, sketch = mechanism.bodies(), mechanism.sketch()
     phi_cr: dict[Direction, float | None] = dict.fromkeys(mechanism.directions)
     limit = dict.fromkeys(mechanism.directions, MAX_LIMIT_SHARE)
-    starts = not all(each.lead or not each.velocities for each in found.values())
+    starts = not all(each.lead or not each.velocities for each in collapses.values())
     if not starts:
         phi_cr = {direction: _critical(mechanism, direction) for direction in mechanism.directions}
         limit = {direction: MAX_LIMIT_SHARE * mechanism.limit(direction) for direction in mechanism.directions}
@@ -565,14 +565,14 @@ def _picture(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism])
         hinges = sketch.hinges.get(direction, ())
         if not (hinges or starts):
             hinges = _found(bodies, mechanism.motion(phi, direction))
-        for hinge in hinges:  # on its first body, or on each copy of this body; only the first has the letter
+        for hinge in hinges:  # drawn on the first body, or each copy of it; only one gets the letter
             carriers = [k for k, part in enumerate(parts) if part.name == hinge.bodies[0]]
             for k in carriers:
                 letter, point = hinge.letter if k == carriers[0] else "", hinge.point + parts[k].shift
                 pins.append(DrawnHinge(letter, point, k, direction, hinge.slide))
     ground = tuple(np.asarray(each, np.complex128) for each in sketch.ground) or _level_ground(parts, pins)
     if any(part.assumed for part in parts):
-        sketch = replace(sketch, notes=[*sketch.notes, ASSUMED])
+        sketch = replace(sketch, notes=[*sketch.notes, ASSUMED_NOTE])
     if mechanism.crushing:
         sketch = replace(sketch, notes=[*sketch.notes, mechanism.crushing.words])
     copies = {body.name: [(k, part.shift) for k, part in enumerate(parts) if part.name == body.name] for body in bodies}
@@ -581,7 +581,7 @@ def _picture(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism])
     start = None
     if starts:
         low, high = box_around([outline for part in parts for outline in part.outlines])
-        start = Start({body.name: body.centroid for body in bodies}, abs(high - low), found)
+        start = Start({body.name: body.centroid for body in bodies}, abs(high - low), collapses)
     return Picture(mechanism, parts, tuple(pins), phi_cr, limit, ground, sketch, loads, ties, start)
 
 
@@ -599,7 +599,7 @@ def _outlines(body: Body, sketch: Sketch) -> Sequence[Outline]:
         return sketch.outlines[body.name]
     if body.outline:
         return [body.outline]
-    radius = np.sqrt(2 * body.inertia / body.mass) if body.mass > 0 else 0.0  # of a disc: I = m r^2 / 2
+    radius = np.sqrt(2 * body.inertia / body.mass) if body.mass > 0 else 0.0  # radius of a disc, I = m r^2 / 2
     return [disc(body.centroid, float(radius))] if radius > 0 else []
 
 
@@ -610,12 +610,12 @@ def _found(bodies: Sequence[Body], motions: Sequence[RigidMotion]) -> list[Hinge
     hinges: list[Hinge] = []
 
     def add(centre: complex, names: tuple[str, ...], gap: Points) -> None:
-        # Against what rests on the ground a body turns about a pivot that is found already.
+        # Relative to a body at rest, a body turns about a pivot that is already known.
         known = len(names) > 1 and any(abs(centre - other.point) <= SAME_POINT_SHARE * size for other in hinges)
         if np.abs(gap).max() <= SAME_POINT_SHARE * size and not known:
             hinges.append(Hinge("", centre, names))
 
-    speeds = []  # of the point of the body at the origin, and its rate of turning, at rest
+    speeds = []  # velocity at the origin, and rate of turning, of each body at rest
     for body, motion in zip(bodies, motions, strict=True):
         _, velocity, _ = motion.carry(body.centroid)
         turning = float(motion.dpsi[0])

@@ -62,25 +62,25 @@ def read_points(
     InputError
         With file and line.
     """
-    shown = str(path)
+    shown_path = str(path)
     try:
         lines = read_bytes(path, what, MAX_BYTES).decode("utf-8-sig").splitlines()
     except UnicodeDecodeError:
-        raise InputError(Problem("this is not UTF-8 text", shown, hint="save it as CSV in UTF-8")) from None
+        raise InputError(Problem("this is not UTF-8 text", shown_path, hint="save it as CSV in UTF-8")) from None
     used = [k for k, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")]
     start = next((place for place, k in enumerate(used) if lines[k].lstrip()[0] in "+-.0123456789"), len(used))
     above, used = used[:start], used[start:]
-    unit = unit_in(shown, above[-1] + 1, lines[above[-1]]) if above else None
-    rows = [_row(shown, k + 1, lines[k], columns) for k in used]
+    unit = unit_in(shown_path, above[-1] + 1, lines[above[-1]]) if above else None
+    rows = [_row(shown_path, k + 1, lines[k], columns) for k in used]
     x, y = np.array(rows, dtype=np.float64).reshape(-1, 2).T
     problems = []
     for point, message in wrong_points(x, y):
         if point == len(used):
             message = f"{len(used)} point{'s' * (len(used) != 1)}: {message}"
-            problems.append(Problem(message, shown, hint=columns))
+            problems.append(Problem(message, shown_path, hint=columns))
         else:
             line = lines[used[point]].strip()[:100]
-            problems.append(Problem(message, shown, used[point] + 1, excerpt=line, hint=remedy(message)))
+            problems.append(Problem(message, shown_path, used[point] + 1, excerpt=line, hint=remedy(message)))
     if problems:
         raise InputError(*problems[:MAX_LISTED_PROBLEMS])
     return CurvePoints(x, y, unit)

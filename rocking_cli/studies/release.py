@@ -33,17 +33,17 @@ class Release:
     is_angle: bool
 
     @classmethod
-    def of(cls, given: float | str) -> Self:
+    def of(cls, tilt: float | str) -> Self:
         """Read a fraction between -1 and 1, or a text such as `0.5`, `0.05rad` or `3 deg`. Raises `InputError`."""
-        text = given.strip() if isinstance(given, str) else f"{given:g}"
-        parts = split(given) if isinstance(given, str) else (repr(float(given)), "")
+        text = tilt.strip() if isinstance(tilt, str) else f"{tilt:g}"
+        parts = split(tilt) if isinstance(tilt, str) else (repr(float(tilt)), "")
         if parts is None:
             raise InputError(Problem(f"{text!r} is not a valid tilt: {TILT_EXAMPLE}", field="release"))
         if not parts[1]:
             fraction = float(parts[0])
             if not 0 < abs(fraction) < 1:
-                said = f"must be a fraction of phi_cr between 0 and 1 (or 0 and -1), got {text}"
-                raise InputError(Problem(said, field="release"))
+                message = f"must be a fraction of phi_cr between 0 and 1 (or 0 and -1), got {text}"
+                raise InputError(Problem(message, field="release"))
             return cls(text, fraction, is_angle=False)
         try:
             angle = read(text, "rad")
@@ -62,11 +62,11 @@ class Release:
             If the structure does not rock in this direction, the tilt exceeds this rotation, or a fraction has no
             reference.
         """
-        way = Direction.NEGATIVE if self.size < 0 else Direction.POSITIVE
-        if way not in structure.mechanism.directions:
+        direction = Direction.NEGATIVE if self.size < 0 else Direction.POSITIVE
+        if direction not in structure.mechanism.directions:
             side = structure.mechanism.one_sided
             raise InputError(Problem(f"it rocks in the {side} direction only, got {self.text}", field="release"))
-        statics = structure.statics[0 if way > 0 else 1]
+        statics = structure.statics[0 if direction > 0 else 1]
         if not self.is_angle:
             if statics.phi_cr is None:
                 why = "a fraction needs a critical rotation, and this direction has none"

@@ -22,28 +22,28 @@ Histories = Mapping[ModelName, History]
 Runs = Mapping[int, Histories]
 """Histories under each requested polarity, 1 or -1."""
 
-# The word for the pulse that fits best.
+# Word that requests the best-fitting pulse.
 BEST_PULSE = "best"
 
 
-def concluded(runs: Runs, near: Mapping[int, Neighbours], motion: str = "") -> Conclusion:
+def concluded(runs: Runs, neighbours: Mapping[int, Neighbours], motion: str = "") -> Conclusion:
     """Return the conclusion on a structure under one motion: that of the worse polarity, by the best model.
 
     Parameters
     ----------
     runs : mapping of int to mapping of str to History
         Histories under each polarity.
-    near : mapping of int to Neighbours
+    neighbours : mapping of int to Neighbours
         Outcomes of the neighbours of the motion, under each polarity; may be empty.
     motion : str
         Name of the motion; empty for a release.
     """
-    return _together(_of_each(runs, near, motion))
+    return _together(_of_each(runs, neighbours, motion))
 
 
-def _of_each(runs: Runs, near: Mapping[int, Neighbours], motion: str) -> dict[int, Conclusion]:
+def _of_each(runs: Runs, neighbours: Mapping[int, Neighbours], motion: str) -> dict[int, Conclusion]:
     best: ModelName = "nonlinear" if "nonlinear" in next(iter(runs.values())) else next(iter(next(iter(runs.values()))))
-    return {sign: _of_run(run[best], near.get(sign), motion, sign) for sign, run in runs.items()}
+    return {sign: _of_run(run[best], neighbours.get(sign), motion, sign) for sign, run in runs.items()}
 
 
 def _together(each: Mapping[int, Conclusion]) -> Conclusion:
@@ -53,7 +53,7 @@ def _together(each: Mapping[int, Conclusion]) -> Conclusion:
     return replace(governs, polarity=None if alike else governs.polarity, polarities=list(each))
 
 
-def _of_run(run: History, near: Neighbours | None, motion: str, sign: int) -> Conclusion:
+def _of_run(run: History, neighbours: Neighbours | None, motion: str, sign: int) -> Conclusion:
     if run.unknown:
         what = Concluded.UNKNOWN
     elif run.fell:
@@ -67,7 +67,9 @@ def _of_run(run: History, near: Neighbours | None, motion: str, sign: int) -> Co
         peak_ratio=None if run.unknown or run.fell else run.peak_ratio,
         known_until=run.known_to if run.unknown else None,
         joint=run.check.joint if run.unknown and run.check is not None else "",
-        share=NeighbourShare(near.overturned, near.at_most, near.around.count) if near is not None else None,
+        share=NeighbourShare(neighbours.overturned, neighbours.at_most, neighbours.around.count)
+        if neighbours is not None
+        else None,
         motions=[motion] if motion else [],
         remedy=NextStep(remedy(run)) if run.unknown else None,
     )
@@ -161,31 +163,35 @@ class Response(Mapping[ModelName, History]):
         return len(next(iter(self.runs.values())))
 
 
-def response_of(structure: Structure, names: Sequence[ModelName], given: Scaled | None, asked: Question) -> Response:
+def response_of(
+    structure: Structure, names: Sequence[ModelName], scaled: Scaled | None, question: Question
+) -> Response:
     """Simulate models of a structure under a motion, or freely from a release, and return all results."""
     contacts = Contacts(structure.mechanism)
-    follow = partial(respond, structure, models=names, release=asked.release, tail=asked.tail, rtol=asked.rtol)
-    under = {sign: given.motion.scaled(sign * given.factor) if given is not None else None for sign in asked.signs}
-    first = under[asked.signs[0]]
+    follow = partial(respond, structure, models=names, release=question.release, tail=question.tail, rtol=question.rtol)
+    under = {
+        sign: scaled.motion.scaled(sign * scaled.factor) if scaled is not None else None for sign in question.signs
+    }
+    first = under[question.signs[0]]
     fit: PulseFit | None = None
-    if first is not None and asked.with_pulse is not None:
+    if first is not None and question.with_pulse is not None:
         fits = fit_pulses(
-            first, tuple(FITTED) if asked.with_pulse == BEST_PULSE else (asked.with_pulse,), ("velocity",)
+            first, tuple(FITTED) if question.with_pulse == BEST_PULSE else (question.with_pulse,), ("velocity",)
         )
         fit = max(fits, key=lambda one: one.captured)
     runs = {sign: follow(motion) for sign, motion in under.items()}
     best: ModelName = "nonlinear" if "nonlinear" in names else names[0]
-    near = {
+    neighbours_of = {
         sign: neighbours(
             structure.model(best),
             motion,
-            asked.around,
-            release=asked.release,
-            release_is_angle=asked.release_is_angle,
-            rtol=asked.rtol,
+            question.around,
+            release=question.release,
+            release_is_angle=question.release_is_angle,
+            rtol=question.rtol,
         )
         for sign, motion in under.items()
-        if asked.around.count
+        if question.around.count
     }
 
     def checked(runs: Runs, under: Mapping[int, GroundMotion | None]) -> dict[int, ContactDemand]:
@@ -197,10 +203,10 @@ def response_of(structure: Structure, names: Sequence[ModelName], given: Scaled 
         alone = {1: follow(pulse)}
         to_pulse = Response(given=None, first=pulse, runs=alone, neighbours={}, contacts=checked(alone, {1: pulse}))
     return Response(
-        given=given,
+        given=scaled,
         first=first,
         runs=runs,
-        neighbours=near,
+        neighbours=neighbours_of,
         contacts=checked(runs, under),
         fit=fit,
         to_pulse=to_pulse,

@@ -16,7 +16,7 @@ from rocking_cli.dynamics.exact_batch import exact_many
 from rocking_cli.dynamics.model import Model, ModelName, linear_model
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError, SolverError
-from rocking_cli.excitation.pulses import COARSE, Pulse, parse_pulse
+from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD, Pulse, parse_pulse
 from rocking_cli.structure import Structure
 
 Progress = Callable[[int], None]
@@ -156,8 +156,8 @@ def pulsed_model(
     if not structure.mechanism.rocks_both_ways:
         direction = structure.mechanism.directions[0]
     one_way = not structure.mechanism.rocks_both_ways
-    given = (structure.mechanism.rebound if one_way else structure.mechanism.restitution) is not None
-    return PulsedModel(structure.name, structure.model(model), structure.equivalence, direction, given)
+    eta_is_known = (structure.mechanism.rebound if one_way else structure.mechanism.restitution) is not None
+    return PulsedModel(structure.name, structure.model(model), structure.equivalence, direction, eta_is_known)
 
 
 def uplift(block: EquivalentBlock, model: ModelName) -> float:
@@ -213,21 +213,21 @@ def outcomes(
     """
     exact = structure.model.is_linear and shape.segments() and structure.model.one_sided is None
     follow = _exactly if exact else _by_histories
-    # The reversed pulse does the same to a symmetric structure.
+    # The reversed pulse has the same effect on a symmetric structure.
     first, *others = polarities[:1] if structure.symmetric else polarities
-    found = follow(structure, shape, periods, amplitudes, first, progress)
+    worst = follow(structure, shape, periods, amplitudes, first, progress)
     for polarity in others:
         other = follow(structure, shape, periods, amplitudes, polarity, progress)
-        bound = np.fmax(_known_peak(found), _known_peak(other))
-        found = other.by_field(partial(np.where, _badness(other) > _badness(found)), found)
-        found = replace(found, lower_bound=np.where(found.unknown, bound, found.lower_bound))
-    return found
+        bound = np.fmax(_known_peak(worst), _known_peak(other))
+        worst = other.by_field(partial(np.where, _badness(other) > _badness(worst)), worst)
+        worst = replace(worst, lower_bound=np.where(worst.unknown, bound, worst.lower_bound))
+    return worst
 
 
 def _exactly(
     structure: PulsedModel, shape: Pulse, periods: Reals, amplitudes: Reals, polarity: int, progress: Progress | None
 ) -> Outcomes:
-    found = exact_many(
+    result = exact_many(
         structure.equivalence,
         shape,
         amplitudes,
@@ -237,19 +237,19 @@ def _exactly(
         polarity=polarity,
         progress=progress,
     )
-    _check(structure, found.failed, periods, amplitudes)
-    return found
+    _check(structure, result.failed, periods, amplitudes)
+    return result
 
 
 def _by_histories(
     structure: PulsedModel, shape: Pulse, periods: Reals, amplitudes: Reals, polarity: int, progress: Progress | None
 ) -> Outcomes:
     different, which = np.unique(periods, return_inverse=True)
-    motions = [replace(shape, period=float(period)).sampled(COARSE) for period in different]
+    motions = [replace(shape, period=float(period)).sampled(COARSE_POINTS_PER_PERIOD) for period in different]
     runs = Runs.of(0, which, scale=amplitudes / shape.amplitude, polarity=polarity)
-    found = respond_many([structure.model], motions, runs, only_peaks=True, progress=progress)
-    _check(structure, found.failed, periods, amplitudes)
-    return found
+    result = respond_many([structure.model], motions, runs, only_peaks=True, progress=progress)
+    _check(structure, result.failed, periods, amplitudes)
+    return result
 
 
 def _check(structure: PulsedModel, failed: Bools, periods: Reals, amplitudes: Reals) -> None:

@@ -52,7 +52,7 @@ def site_in(document: Document) -> SiteFile:
     except ValidationError as error:
         document.problems += problems_of(document, model, error, owner="the site", lister=lister)
     document.check()
-    assert site is not None  # else there is a problem
+    assert site is not None  # a file without a valid site was refused
     return SiteFile(site, document)
 
 
@@ -105,28 +105,30 @@ def verify(
     code = code_of(site)
     taken = {"control": control} if code.takes_control else {}
     try:
-        found = _held(code.verify(structure.mechanism, site.site, **taken), code, "verify")
+        verification = _held(code.verify(structure.mechanism, site.site, **taken), code, "verify")
         mechanism = structure.mechanism
         before = {each.failure.joint: 0 for each in early_failures(mechanism) if each.direction in mechanism.directions}
         starts_first = [LeftOut("mechanism", joint, "starts_first") for joint in before]
-        return replace(found, left_out=[*found.left_out, *starts_first])
+        return replace(verification, left_out=[*verification.left_out, *starts_first])
     except InputError as error:
-        own = type(structure.mechanism).model_fields
+        mechanism_fields = type(structure.mechanism).model_fields
         placed = site.placed(error).problems
         raise InputError(
             *(
-                replace(each, file=structure.file) if each.file is None and each.field in {*own, "mechanism"} else each
+                replace(each, file=structure.file)
+                if each.file is None and each.field in {*mechanism_fields, "mechanism"}
+                else each
                 for each in placed
             )
         ) from None
 
 
-def _held(found: object, code: Code, method: str) -> Verification:
+def _held(answer: object, code: Code, method: str) -> Verification:
     """Return an answer of a code if it is valid; anything else that a plugin returns is an error of the plugin."""
     failed = f"the code {code.key} failed in {method}"
     with blame(failed, type(code).__module__):
-        if isinstance(found, Verification) and found.directions and all(map(_is_whole, found.directions.values())):
-            return found
+        if isinstance(answer, Verification) and answer.directions and all(map(_is_whole, answer.directions.values())):
+            return answer
     raise PluginError(
         f"{failed}: it must return a Verification with at least one direction, each governed by one of its methods"
     )
@@ -137,18 +139,20 @@ def _is_whole(each: Verified) -> bool:
     return each.governs in each.methods and isinstance(each.ratio, Real | None) and each.passed in (None, True, False)
 
 
-def with_histories(found: Verification, structure: Structure, site: SiteFile, asked: Histories) -> Verification:
+def with_histories(
+    verification: Verification, structure: Structure, site: SiteFile, histories: Histories
+) -> Verification:
     """Return a verification with time histories under a set of records.
 
     Parameters
     ----------
-    found : Verification
+    verification : Verification
         The verification by the static methods.
     structure : Structure
         The structure.
     site : SiteFile
         The site.
-    asked : Histories
+    histories : Histories
         The records, with their polarities and limit state.
 
     Raises
@@ -161,4 +165,4 @@ def with_histories(found: Verification, structure: Structure, site: SiteFile, as
     """
     refuse(site, motions=True)
     code = code_of(site)
-    return _held(code.with_histories(found, structure, site.site, asked), code, "with_histories")
+    return _held(code.with_histories(verification, structure, site.site, histories), code, "with_histories")

@@ -21,7 +21,7 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies.file_part import Part
 from rocking_cli.verification.results import Control, Histories, Verification, Verified
 
-ANSWERS = ("verify", "with_histories", "of_each", "showing", "sheet")
+CODE_METHODS = ("verify", "with_histories", "of_each", "showing", "sheet")
 """The methods in which a code answers: whatever fails there is an error of the plugin."""
 
 
@@ -77,7 +77,7 @@ class Code(ABC):
     def __init_subclass__(cls, **named: Any) -> None:
         """Wrap the methods of a subclass, so that errors in them are reported as errors of the plugin."""
         super().__init_subclass__(**named)
-        guard(cls, ANSWERS, failed("code", "key"))
+        guard(cls, CODE_METHODS, failed("code", "key"))
 
     @abstractmethod
     def verify(self, mechanism: Mechanism, site: Any, control: Control | None = None) -> Verification:

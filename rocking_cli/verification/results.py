@@ -28,7 +28,7 @@ MARK = re.compile(r"([_^])\[([^\[\]]*)\]")
 """A subscript or superscript: `d_[0]^[*]` has both."""
 AND_SO_ON = re.compile(r"([^();]+?)( \+ |; )…")
 """A piece that is there once for each of several numbers: `({P} · {x} + …)`."""
-PLAIN = {
+PLAIN_CHARACTERS = {
     "λ": "lambda", "Σ": "sum", "√": "sqrt", "·": "*", "×": "*", "≥": ">=", "≤": "<=", "′": "'", "²": "2", "³": "3",
     "–": "-", MINUS: "-",
 }  # fmt: skip
@@ -187,32 +187,32 @@ class Formula:
         )
 
 
-def put(numbers: str, given: Mapping[str, Any], write: Callable[[float], str]) -> str:
+def put(numbers: str, values: Mapping[str, Any], write: Callable[[float], str]) -> str:
     """Fill the slots of a formula with numbers; negative ones and those with a power of ten in parentheses."""
 
     def held(value: Any) -> str:
         text = value if isinstance(value, str) else write(value)
         return f"({text})" if not isinstance(value, str) and re.search(r"[-−^]", text) else text
 
-    def repeated(found: re.Match[str]) -> str:
-        piece, between = found[1].strip(), found[2]
-        lists = {name: given[name] for name in re.findall(r"{(\w+)}", piece)}
+    def repeated(match: re.Match[str]) -> str:
+        piece, between = match[1].strip(), match[2]
+        lists = {name: values[name] for name in re.findall(r"{(\w+)}", piece)}
         each = [piece.format(**{name: held(value) for name, value in zip(lists, row, strict=True)})
                 for row in zip(*lists.values(), strict=True)]  # fmt: skip
-        return found[1][: len(found[1]) - len(found[1].lstrip())] + between.join(each)
+        return match[1][: len(match[1]) - len(match[1].lstrip())] + between.join(each)
 
-    single = {name: held(value) for name, value in given.items() if not isinstance(value, list | tuple)}
+    single = {name: held(value) for name, value in values.items() if not isinstance(value, list | tuple)}
     return AND_SO_ON.sub(repeated, numbers).format(**single)
 
 
 def in_plain(text: str) -> str:
     """Return a formula, or a text with symbols, in plain characters: `alpha0 g/(e* FC)`, `T_SLV`."""
 
-    def mark(found: re.Match[str]) -> str:
-        below, what = found[1] == "_", found[2]
-        return what if what == "*" or (below and what.isdigit()) else f"{found[1]}{what}"
+    def mark(match: re.Match[str]) -> str:
+        below, what = match[1] == "_", match[2]
+        return what if what == "*" or (below and what.isdigit()) else f"{match[1]}{what}"
 
-    return "".join(PLAIN.get(sign) or _spelled(sign) for sign in MARK.sub(mark, text))
+    return "".join(PLAIN_CHARACTERS.get(sign) or _spelled(sign) for sign in MARK.sub(mark, text))
 
 
 def _spelled(sign: str) -> str:
@@ -433,16 +433,16 @@ class Verification:
     @property
     def conclusion(self) -> Conclusion:
         """The worst check of all directions and limit states: "satisfied" needs all of them."""
-        found = [
+        conclusions = [
             Conclusion(
                 concluded=check.concluded, limit_state=check.state, method=check.method, direction=direction.label,
                 ratio=check.ratio, motions=check.motions, motion=check.motion,
             )
             for direction, each in self.directions.items() for check in each.checks
         ]  # fmt: skip
-        governs = worst(found)
+        governs = worst(conclusions)
         alike = [
-            each for each in found if each.ratio is not None and governs.ratio is not None
+            each for each in conclusions if each.ratio is not None and governs.ratio is not None
             and (each.concluded, each.limit_state, each.method)
             == (governs.concluded, governs.limit_state, governs.method) and _are_close(each.ratio, governs.ratio)
         ]  # fmt: skip
@@ -453,9 +453,9 @@ class Verification:
             if preceded and governs.concluded is Concluded.SATISFIED
             else governs.concluded,
             direction="" if len(alike) == len(self.directions) else governs.direction,
-            limit_states=list(dict.fromkeys(each.limit_state for each in found if each.limit_state)),
+            limit_states=list(dict.fromkeys(each.limit_state for each in conclusions if each.limit_state)),
             directions=[direction.label for direction in self.directions],
-            motions=list(dict.fromkeys(name for each in found for name in each.motions)),
+            motions=list(dict.fromkeys(name for each in conclusions for name in each.motions)),
             left_out=self.left_out,
         )
 
@@ -478,8 +478,8 @@ class Verification:
     @property
     def ratio(self) -> float:
         """Capacity over demand in the direction that governs; NaN if it is not known."""
-        found = self.directions[self.governs].ratio
-        return nan if found is None else found
+        worst = self.directions[self.governs].ratio
+        return nan if worst is None else worst
 
     def compared(self, direction: Direction) -> float | None:
         """Return the ratio of capacity to demand of a direction, by which the directions are compared; None if unknown.
@@ -547,12 +547,12 @@ class Histories:
     progress: Callable[[int], object] = int
 
 
-def where_it_stands(asked: Histories, floor: Floor | None) -> tuple[MotionPlace, Sequence[GroundMotion]]:
+def where_it_stands(histories: Histories, floor: Floor | None) -> tuple[MotionPlace, Sequence[GroundMotion]]:
     """Return the kind of the motions of histories, and the motions, converted to the floor of a site if there is one.
 
     Parameters
     ----------
-    asked : Histories
+    histories : Histories
         The histories.
     floor : Floor or None
         The floor of the site on which the structure stands; None if it stands on the ground.
@@ -562,16 +562,16 @@ def where_it_stands(asked: Histories, floor: Floor | None) -> tuple[MotionPlace,
     InputError
         If the motions cannot be of the floor, or are mixed.
     """
-    motions, carried = asked.motions, [motion.ground is not None for motion in asked.motions]
-    if asked.on_floor and floor is None:
+    motions, carried = histories.motions, [motion.ground is not None for motion in histories.motions]
+    if histories.on_floor and floor is None:
         hint = "give `floor` in the site file, or leave the option out"
         raise InputError(Problem("requires a site with a floor", field="`on_floor`", hint=hint))
-    if any(carried) and asked.on_floor:
+    if any(carried) and histories.on_floor:
         hint = "leave out one of the two: `floor` carries ground motions to a floor"
         raise InputError(Problem("cannot be combined with `floor`", field="`on_floor`", hint=hint))
     if any(carried) and not all(carried):
         raise InputError(Problem("some of the motions are of a floor, others of the ground: give motions of one kind"))
-    if asked.on_floor:
+    if histories.on_floor:
         return MotionPlace("of_floor"), motions
     if carried and all(carried):
         return MotionPlace("carried_by_option", motions[0].processing[-1].removeprefix("floor ")), motions

@@ -112,7 +112,7 @@ def test_one_bad_row_near_the_end_is_placed(made, content, fragment):
 @pytest.mark.rest
 @pytest.mark.parametrize("make", [one_column, two_columns])
 def test_pages_of_comments_and_blank_lines_are_passed_over(made, make):
-    filling = ["# " + 100 * "x", *[""] * module.PAGE, "% x"] * 3  # one page of them is all blank
+    filling = ["# " + 100 * "x", *[""] * module.PAGE_CHARACTERS, "% x"] * 3  # one page of them is all blank
     path = made(make)
     rows = path.read_text().split("\n")
     path.write_text("\n".join([*rows[:200_000], *filling, *rows[200_000:]]))
@@ -146,7 +146,7 @@ def problem(path: Path) -> Problem:
 @given(st.text(alphabet="ab\n", max_size=60), st.integers(1, 9), st.integers(0, 70))
 def test_lines_are_those_of_split(text, page, start):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(module, "PAGE", page)
+        patch.setattr(module, "PAGE_CHARACTERS", page)
         lines, expected = Lines(text), text.split("\n")
         assert len(lines) == len(expected)
         assert list(lines) == [lines[index] for index in range(len(lines))] == expected

@@ -168,7 +168,7 @@ class ExactCurve:
         """The largest a* of the curve [m/s2]."""
         places = np.linspace(0.0, self.end, STEPS_PER_CURVE // 4 + 1).tolist()
         if self.torn is not None and self.torn <= self.end:
-            places.append(self.torn)  # where a curve that rises up to its break is largest
+            places.append(self.torn)  # a curve that rises up to its break has its maximum there
         return max(self.a0, *map(self.acceleration_at, places))
 
     @property

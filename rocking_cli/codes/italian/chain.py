@@ -16,7 +16,7 @@ from rocking_cli.core.reactions import parts
 from rocking_cli.errors import InputError
 from rocking_cli.verification.results import Control
 
-MIN_SIDEWAYS_SHARE = 1e-9  # of the largest virtual displacement; a control point with less does not move sideways
+MIN_SIDEWAYS_SHARE = 1e-9  # share of the largest virtual displacement from which a control point moves sideways
 
 
 @dataclass(frozen=True)
@@ -103,12 +103,12 @@ class Chain:
         """The masses that move; masses at rest are left out."""
         moving = {name for name, number in parts(self.mechanism, self.direction).items() if number}
         g = self.mechanism.gravity
-        own = [
+        of_bodies = [
             Weight(body.name, Spot(body.name, body.centroid), body.mass, 1.0, 1.0, g)
             for body in self.mechanism.weighed()
             if body.name in moving
         ]
-        return own + [
+        return of_bodies + [
             Weight(thing.name, thing.spot, thing.mass, thing.weight, thing.horizontal, g)
             for thing in self.mechanism.attached
             if isinstance(thing, PointMass) and thing.spot.body in moving

@@ -13,7 +13,7 @@ def _held(place: str) -> Clause:
     return Clause(place, transcribed=True)
 
 
-# The chain and its curve
+# Kinematic chain and capacity curve
 ALPHA0, A_STAR, D, E_STAR = (_held(f"[C8.7.1.{k}]") for k in (1, 3, 4, 5))
 ELASTIC = Clause("[C8.7.1.6]")
 OWN_PERIOD, DAMAGE, DAMAGE_VIBRATING = (_held(f"[C8.7.1.{k}]") for k in (7, 8, 9))

@@ -21,9 +21,9 @@ REFERENCE_DAMPING = 0.05  # ratio at which a spectrum needs no correction
 LONG_PERIOD_START = {"A": 4.5, "B": 5.0, "C": 6.0, "D": 6.0, "E": 6.0}
 """T_E [s] by the soil, from which displacements go down to those of the ground."""
 GROUND_PERIOD = 10.0  # T_F [s]: from here on, displacements are those of the ground
-BELOW, ABOVE = 0.8, 1.1  # a and b of the spectrum of a floor, which is level between a T_1 and b T_1
-AMPLIFICATION_COEFFICIENT = 1.1  # of A, the amplification by a floor
-FALL_BELOW, FALL_ABOVE = 1.6, 1.2  # exponents of either side
+LEVEL_FROM, LEVEL_TO = 0.8, 1.1  # a and b of the spectrum of a floor, which is level between a T_1 and b T_1
+AMPLIFICATION_COEFFICIENT = 1.1  # factor in the amplification A by a floor
+EXPONENT_BELOW, EXPONENT_ABOVE = 1.6, 1.2  # exponents of the spectrum of a floor below and above its level part
 
 
 def correction(damping: float) -> float:
@@ -80,7 +80,7 @@ class GroundSpectrum:
             return level * (T / self.TB + (1 - T / self.TB) / (eta * self.F0))
         if T < self.TC:
             return level
-        # a_g beyond what T_D was made for may bring T_C above it: the falling branch is then that of T_D alone.
+        # For very large a_g, T_C may exceed T_D; the spectrum then has only the branch beyond T_D.
         return level * self.TC / T if T < self.TD else level * self.TC * self.TD / T**2
 
     def displacement(self, period: float, damping: float) -> float:
@@ -188,7 +188,7 @@ class TableSpectrum:
         with np.errstate(divide="ignore", invalid="ignore"):
             root = np.sqrt(linear**2 - 4 * square * constant)
             roots = [(-linear + sign * root) / (2 * square) for sign in (1, -1)]
-            roots = [*roots, -constant / linear]  # where it is no square, or nearly none
+            roots = [*roots, -constant / linear]  # root of an equation that is linear, or nearly so
         return np.concatenate([turns[(turns > low) & (turns < high)] for turns in roots])
 
     def _check(self, period: float) -> None:
@@ -259,17 +259,17 @@ class FloorSpectrum:
 
     def alone(self, period: float, damping: float) -> float:
         """Return the floor spectrum S_eZ without the lower bound by the ground spectrum [m/s2]."""
-        A, low, high = self.amplification(damping), BELOW * self.T1, ABOVE * self.T1
+        A, low, high = self.amplification(damping), LEVEL_FROM * self.T1, LEVEL_TO * self.T1
         if period < low:
-            return A * self.peak / (1 + (A - 1) * float((1 - period / low) ** FALL_BELOW))
+            return A * self.peak / (1 + (A - 1) * float((1 - period / low) ** EXPONENT_BELOW))
         if period <= high:
             return A * self.peak
-        return A * self.peak / (1 + (A - 1) * float((period / high - 1) ** FALL_ABOVE))
+        return A * self.peak / (1 + (A - 1) * float((period / high - 1) ** EXPONENT_ABOVE))
 
     def acceleration(self, period: float, damping: float) -> float:
         """Return S_eZ [m/s2]; above T1 at least that of the ground."""
-        own = self.alone(period, damping)
-        return own if period <= self.T1 else max(own, self.ground.acceleration(period, damping))
+        of_floor = self.alone(period, damping)
+        return of_floor if period <= self.T1 else max(of_floor, self.ground.acceleration(period, damping))
 
     def displacement(self, period: float, damping: float) -> float:
         """Return the displacement demand [m; C8.7.1.12].
@@ -280,12 +280,12 @@ class FloorSpectrum:
 
     def bounds(self, period: float, damping: float) -> list[float]:
         """Return the lower bounds of a displacement demand [m]: the floor's own, the ground's, and that at b T1."""
-        found = [self.alone(period, damping) * (period / (2 * pi)) ** 2]
+        bounds = [self.alone(period, damping) * (period / (2 * pi)) ** 2]
         if period > self.T1:
-            found.append(self.ground.displacement(period, damping))
-        if period > ABOVE * self.T1:
-            found.append(self.acceleration(self.T1, damping) * (ABOVE * self.T1 / (2 * pi)) ** 2)
-        return found
+            bounds.append(self.ground.displacement(period, damping))
+        if period > LEVEL_TO * self.T1:
+            bounds.append(self.acceleration(self.T1, damping) * (LEVEL_TO * self.T1 / (2 * pi)) ** 2)
+        return bounds
 
 
 DemandSpectrum = GroundSpectrum | TableSpectrum | FloorSpectrum

@@ -16,8 +16,8 @@ from rocking_cli.core.hung.attached import Follow, Spot
 from rocking_cli.core.hung.element import ConstantForce, Spring
 from rocking_cli.core.hung.ties import Tie
 
-MIN_TURN = 1e-9  # rad per rad; a block that turns less translates
-ROUNDING_SHARE = 1e-9  # of the work of the weights, or of the masses; a remainder below it counts as zero
+MIN_TURN = 1e-9  # rad per rad; a block that turns less moves in a straight line
+ROUNDING_SHARE = 1e-9  # share of the work of the weights, or of the masses, below which a remainder is zero
 
 
 @dataclass(frozen=True)
@@ -94,9 +94,9 @@ class DisplacedChain:
         here, beside = (self._follow(Spot(body, at)) for at in (block.at, block.at + 1))
         velocity = complex(here.dz[0])
         now, spin = complex(here.z[0]), (complex(beside.dz[0]) - velocity) / (complex(beside.z[0]) - complex(here.z[0]))
-        own = [weight for weight in self.chain.weights if weight.spot.body in block.bodies]
-        lifts = [weight.carried * float(self._follow(weight.spot).dz[0].imag) for weight in own]
-        lifted = sum(lifts) / (block.P or 1.0)  # y' of the barycentre of the weights that it carries
+        weights = [weight for weight in self.chain.weights if weight.spot.body in block.bodies]
+        lifts = [weight.carried * float(self._follow(weight.spot).dz[0].imag) for weight in weights]
+        lifted = sum(lifts) / (block.P or 1.0)  # y' of the barycentre of the carried weights
         turns = -s * spin.imag
         centre = None if abs(turns) < MIN_TURN else now - velocity / (1j * spin.imag)
         return Moved(block, s * (now - block.at).real, now, turns, centre, s * velocity.real, lifted)
@@ -120,20 +120,20 @@ class DisplacedChain:
     @cached_property
     def held(self) -> Sequence[ForceWork]:
         """The forces and ties in this position."""
-        s, found = self.chain.direction, list[ForceWork]()
+        s, works = self.chain.direction, list[ForceWork]()
         for thing in self._standing.hung.elements:
             if isinstance(thing, ConstantForce):
                 force, rate = thing.in_direction(s), complex(self._follow(thing.spot).dz[0])
                 parts = [("x", s * force.real, s * rate.real), ("y", force.imag, rate.imag)]
-                found += [ForceWork(f"{thing.name}, {axis}", F, r, -F * r) for axis, F, r in parts if F]
+                works += [ForceWork(f"{thing.name}, {axis}", F, r, -F * r) for axis, F, r in parts if F]
                 continue
             for tie in thing.stretched:
                 e, first, _ = tie.elongation(self._follow)
                 total = Coefficients(np.zeros(1), *(np.zeros(1) for _ in range(7)))
                 tie.act(total, s, self._follow)
                 N = tie.count * float(tie.force(e)[0])
-                found.append(ForceWork(tie.name, N, float(first[0]), float(total.Q[0])))
-        return found
+                works.append(ForceWork(tie.name, N, float(first[0]), float(total.Q[0])))
+        return works
 
     @cached_property
     def _own(self) -> tuple[float, float]:
@@ -202,19 +202,19 @@ def pulls(curve: ExactCurve, d: float) -> Sequence[Pull]:
     follow = chain.mechanism.followed(np.array([phi]), chain.direction)
     lengths = {tie.name: tie.length or tie.span for tie in chain.mechanism.ties or [] if tie.bed is None}
     loads = {load.name for load in chain.mechanism.loads or []}
-    found = []
+    pulled = []
     for thing in chain.mechanism.hung.elements:
         if isinstance(thing, Spring):
             e, length = thing.elongation(follow)[0], lengths[thing.name]
             strain = float(e[0]) / length if length else None
-            found.append(Pull(thing.name, float(thing.force(e)[0]), float(e[0]), strain))
+            pulled.append(Pull(thing.name, float(thing.force(e)[0]), float(e[0]), strain))
         elif isinstance(thing, ConstantForce) and thing.name in loads:
             force = thing.in_direction(chain.direction)
             if chain.direction * force.real < 0:
                 moved = complex(follow(thing.spot).z[0]) - thing.spot.at
                 against = -(moved.conjugate() * force).real / abs(force)
-                found.append(Pull(thing.name, abs(force), against, None))
-    return found
+                pulled.append(Pull(thing.name, abs(force), against, None))
+    return pulled
 
 
 def furthest(curve: ExactCurve, d: float) -> tuple[float, float]:
@@ -223,14 +223,14 @@ def furthest(curve: ExactCurve, d: float) -> tuple[float, float]:
     The block is the one with the largest ratio of both; (0, 1) if no outline is known.
     """
     drawn = curve.chain.mechanism.sketch().outlines
-    own = {body.name: [body.outline] for body in curve.chain.mechanism.bodies() if body.outline}
-    found = [(0.0, 1.0)]
+    outlines = {body.name: [body.outline] for body in curve.chain.mechanism.bodies() if body.outline}
+    moves = [(0.0, 1.0)]
     for moved in DisplacedChain(curve, curve.rotation(d)).blocks:
-        lines = [line for name in moved.block.bodies for line in own.get(name) or drawn.get(name, ())]
+        lines = [line for name in moved.block.bodies for line in outlines.get(name) or drawn.get(name, ())]
         x = [complex(corner).real for line in lines for corner in line]
         if x and max(x) > min(x):
-            found.append((moved.gone, max(x) - min(x)))
-    return max(found, key=lambda pair: pair[0] / pair[1])
+            moves.append((moved.gone, max(x) - min(x)))
+    return max(moves, key=lambda pair: pair[0] / pair[1])
 
 
 def elastic(mechanism: Mechanism) -> Sequence[Tie]:

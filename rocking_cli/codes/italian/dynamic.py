@@ -58,14 +58,15 @@ def peaks(
         If a motion cannot be followed to its end.
     """
     under = [motion.scaled(sign) if sign != 1 else motion for sign in signs]
-    own = [follow(structure, curve) for curve in under]
+    histories = [follow(structure, curve) for curve in under]
     factors = {curve.confidence for curve in curves.values()}
     weaker = {
-        FC: own if FC == 1 else [follow(structure, with_confidence(curve, FC)) for curve in under] for FC in factors
+        FC: histories if FC == 1 else [follow(structure, with_confidence(curve, FC)) for curve in under]
+        for FC in factors
     }
     of_direction = {}
     for direction, curve in curves.items():
-        d, known_to = _largest(curve, direction, own)
+        d, known_to = _largest(curve, direction, histories)
         d_FC, known_to_FC = _largest(curve, direction, weaker[curve.confidence])
         slow = None if known_to_FC is None else sqrt(curve.confidence) * known_to_FC
         of_direction[direction] = RecordPeak(motion.name, d_FC, d, slow, known_to)
@@ -73,18 +74,18 @@ def peaks(
 
 
 def with_histories(
-    found: ItalianVerification, structure: Structure, site: ItalianSite, asked: Histories
+    verification: ItalianVerification, structure: Structure, site: ItalianSite, histories: Histories
 ) -> ItalianVerification:
     """Return a verification with time histories under a set of records; see `check.with_histories`."""
-    taken = structure if found.mechanism is structure.mechanism else structure.of(found.mechanism)
+    taken = structure if verification.mechanism is structure.mechanism else structure.of(verification.mechanism)
     unchecked = taken.mechanism.unchecked if taken.model("nonlinear").joints is None else None
-    curves = {direction: each.exact for direction, each in found.directions.items()}
-    state = _state_of_records(found, asked.state)
-    what, moved = where_it_stands(asked, floor_at(site, state))
+    curves = {direction: each.exact for direction, each in verification.directions.items()}
+    state = _state_of_records(verification, histories.state)
+    what, moved = where_it_stands(histories, floor_at(site, state))
     every = []
     for motion in moved:
-        every.append(peaks(taken, curves, motion, asked.signs))
-        asked.progress(1)
+        every.append(peaks(taken, curves, motion, histories.signs))
+        histories.progress(1)
     directions = {
         direction: replace(
             each,
@@ -97,16 +98,16 @@ def with_histories(
                 motions=what,
             ),
         )
-        for direction, each in found.directions.items()
+        for direction, each in verification.directions.items()
     }
-    return replace(found, directions=directions)
+    return replace(verification, directions=directions)
 
 
-def _state_of_records(found: ItalianVerification, state: str | None) -> str:
+def _state_of_records(verification: ItalianVerification, state: str | None) -> str:
     """Return the limit state of a set of records. Raises `InputError` if the site does not give it."""
     if state is None:
-        return found.first
-    states = next(iter(found.directions.values())).states
+        return verification.first
+    states = next(iter(verification.directions.values())).states
     if state not in states:
         hint = did_you_mean(state, list(states)) or f"give one of {', '.join(states)}"
         raise InputError(Problem(f"{state!r} is not a limit state of displacement", field="`state`", hint=hint))
@@ -130,4 +131,4 @@ def _largest(
         return None, min(unknown)
     phi = max(history.peak_positive if direction > 0 else history.peak_negative for history in histories)
     d = curve.displacement_at(phi)
-    return max(d, curve.d0) if phi >= curve.end else d, None  # beyond, the control point may come back
+    return max(d, curve.d0) if phi >= curve.end else d, None  # the control point may move back

@@ -12,7 +12,7 @@ from rocking_cli.codes.italian import clauses
 from rocking_cli.codes.italian.rules import RULES
 from rocking_cli.verification.results import Formula
 
-# What the site file says
+# Values of the site file
 FC = Formula("FC", "given", clause=clauses.A_STAR, meaning="given_FC")
 Q = Formula("q", "given", clause=clauses.LINEAR, meaning="given_q")
 T1 = Formula("T_[1]", "given", unit="s", clause=clauses.MODE, meaning="given_T1", standing="plain")
@@ -132,7 +132,7 @@ S_DE_FLOOR = Formula(
     "S_[De]({at})", "max({bounds})", "max({d}; …)", "m", clauses.FLOOR_DISPLACEMENT, meaning="S_De_floor"
 )
 
-# The chain
+# Kinematic chain
 P = Formula("P_[{k}]", "Σ", "{P} + …", "{unit}", clauses.ALPHA0, meaning="of_block_P")
 PQ = Formula("PQ_[{k}]", "Σ", "{P} + …", "{unit}", clauses.ALPHA0, meaning="of_block_PQ")
 G = Formula("{axis}_[G{k}]", "Σ (P+Q) {axis}/Σ (P+Q)", "({P} · {x} + …)/({P} + …)", "m", meaning="G", standing="plain")

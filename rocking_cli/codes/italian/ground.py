@@ -53,14 +53,14 @@ class SiteGround:
         TR = self.return_period(state)
         if TR is not None and self.hazard is not None:
             return self.hazard.spectrum(TR)
-        given = self.site.shaking(state)
-        if given is None:
+        shaking = self.site.shaking(state)
+        if shaking is None:
             return None
-        if given.spectrum is not None:
+        if shaking.spectrum is not None:
             field = "spectrum" if state == "SLV" else f"{state}.spectrum"
-            return TableSpectrum(tuple((T, a) for T, a in given.spectrum), 1.0, self.site.own_period or 0.0, field)
-        assert given.ag is not None and given.F0 is not None and given.TC is not None and given.S is not None
-        return GroundSpectrum(given.ag, given.F0, given.TC, given.S, self.site.soil)
+            return TableSpectrum(tuple((T, a) for T, a in shaking.spectrum), 1.0, self.site.own_period or 0.0, field)
+        assert shaking.ag is not None and shaking.F0 is not None and shaking.TC is not None and shaking.S is not None
+        return GroundSpectrum(shaking.ag, shaking.F0, shaking.TC, shaking.S, self.site.soil)
 
     def spectrum(self, state: str) -> DemandSpectrum | None:
         """Return the spectrum at the support of the structure, ground or floor; None if the state is not given."""
@@ -83,7 +83,7 @@ class SiteGround:
         On a floor, the mode of the building is that of SLD.
         """
         ground = self.on_ground(self.state_of_activation)
-        assert ground is not None  # SLV is always given
+        assert ground is not None  # every site file has SLV
         return self._where_it_stands(ground, "SLD")
 
     def at_return_period(self, TR: float, state: str) -> DemandSpectrum:
@@ -103,8 +103,8 @@ class SiteGround:
 
     def capacity(self, spectrum: DemandSpectrum, demand: Callable[[DemandSpectrum], float], capacity: float) -> float:
         """Return the a_g at which a demand reaches a capacity [g], with F0 and T_C fixed; T_D follows from a_g."""
-        own = demand(spectrum)
-        in_ratio = spectrum.ag * capacity / own
+        at_site = demand(spectrum)
+        in_ratio = spectrum.ag * capacity / at_site
         if abs(demand(spectrum.with_ag(in_ratio)) / capacity - 1) < SAME_RATIO:
             return in_ratio
         low, high = 0.0, spectrum.ag
@@ -136,7 +136,7 @@ class SiteGround:
 
 PROBABILITY = {"SLO": 0.81, "SLD": 0.63, **{rule.state: rule.probability for rule in RULES}}
 """Of being exceeded in the reference life, by limit state."""
-SHORTEST, LONGEST = 30.0, 2475.0  # years; return periods beyond these bounds are replaced by them
+SHORTEST_RETURN_PERIOD, LONGEST_RETURN_PERIOD = 30.0, 2475.0  # years; the code replaces others by these
 SOILS = {
     "A": (1.0, 0.0, 1.0, 1.0, 1.0, 0.0),
     "B": (1.40, 0.40, 1.0, 1.2, 1.10, -0.20),
@@ -185,12 +185,12 @@ class Hazard:
     @property
     def first(self) -> float:
         """Shortest return period that is used [years]."""
-        return max(self.table[0][0], SHORTEST)
+        return max(self.table[0][0], SHORTEST_RETURN_PERIOD)
 
     @property
     def last(self) -> float:
         """Longest return period that is used [years]."""
-        return min(self.table[-1][0], LONGEST)
+        return min(self.table[-1][0], LONGEST_RETURN_PERIOD)
 
     def parameters(self, TR: float) -> tuple[float, float, float]:
         """Return ag [g], F0 and TC* [s] at a return period [years], interpolated in logarithms."""
@@ -209,7 +209,7 @@ class Hazard:
 
         Raises `InputError` if it is beyond the table of the hazard.
         """
-        TR = min(max(return_period(life, state), SHORTEST), LONGEST)
+        TR = min(max(return_period(life, state), SHORTEST_RETURN_PERIOD), LONGEST_RETURN_PERIOD)
         if not self.table[0][0] <= TR * (1 + 1e-9) or not self.table[-1][0] * (1 + 1e-9) >= TR:
             raise InputError(
                 Problem(

@@ -17,7 +17,7 @@ from rocking_cli.codes.italian.demand import REFERENCE_DAMPING, DemandSpectrum
 from rocking_cli.codes.italian.displaced import elastic, lasting
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerification, ItalianVerified, LimitState
-from rocking_cli.codes.italian.rules import DAMAGE, FIRST, LINEAR, NONLINEAR, OF_STATE, RULES, Rule
+from rocking_cli.codes.italian.rules import DAMAGE, FIRST_STATE, LINEAR, NONLINEAR, OF_STATE, RULES, Rule
 from rocking_cli.codes.italian.sheet.steps import workings_of_direction, workings_of_site
 from rocking_cli.codes.italian.site import ItalianSite, of_structure
 from rocking_cli.core import Direction, Mechanism
@@ -62,10 +62,10 @@ class _Case:
         """Return the capacity by the linear method: q times the a_g at which rocking starts at SLD [§C8.7.1.2.1.7]."""
         start = self.ground.capacity(self.ground.of_activation, self.forces, self.curve.a0)
         a_g = self.ground.site.q * start
-        asked = self.ground.on_ground("SLV")
-        assert asked is not None  # always given
+        shaking = self.ground.on_ground("SLV")
+        assert shaking is not None  # every site file has SLV
         lasts = self.ground.lasts("SLV", lambda spectrum: spectrum.ag, a_g)
-        return ItalianMethod("linear (q times onset) at SLV", a_g, asked.ag, clauses.LINEAR, *lasts)
+        return ItalianMethod("linear (q times onset) at SLV", a_g, shaking.ag, clauses.LINEAR, *lasts)
 
     @property
     def of_damage(self) -> str:
@@ -80,22 +80,22 @@ class _Case:
     def methods(self, states: Mapping[str, LimitState]) -> dict[str, ItalianMethod]:
         """Return the methods, by key."""
         a0 = self.curve.a0
-        found = {
+        methods = {
             DAMAGE: self.method("onset of rocking at SLV", self.of_damage, "SLV", self.forces, a0),
             LINEAR: self.linear(),
         }
         for rule in RULES:
             at, (damage, nonlinear) = states[rule.state], OF_STATE[rule.state]
             title = f"onset of rocking at {rule.state}"
-            found.setdefault(damage, self.method(title, self.of_damage, rule.state, self.forces, a0))
+            methods.setdefault(damage, self.method(title, self.of_damage, rule.state, self.forces, a0))
 
             def asked(spectrum: DemandSpectrum, T: float = at.T, damping: float = rule.damping) -> float:
                 return spectrum.displacement(T, damping)
 
             title = f"nonlinear at {rule.state}"
-            found[nonlinear] = self.method(title, clauses.NONLINEAR, rule.state, asked, at.d)
-        found["SLD"] = self.method("onset of rocking at SLD", self.of_damage, "SLD", self.forces, a0)
-        return found
+            methods[nonlinear] = self.method(title, clauses.NONLINEAR, rule.state, asked, at.d)
+        methods["SLD"] = self.method("onset of rocking at SLD", self.of_damage, "SLD", self.forces, a0)
+        return methods
 
 
 def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = None) -> ItalianVerification:
@@ -118,13 +118,13 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
         If the structure does not stand.
     """
     ground, taken = SiteGround(of_structure(site, mechanism)), lasting(mechanism)
-    found = {direction: _verified(taken, direction, ground, control) for direction in taken.directions}
+    directions = {direction: _verified(taken, direction, ground, control) for direction in taken.directions}
     otherwise = elastic(mechanism) if taken is not mechanism else []
-    said = [Remark.of("at_rest", names=[tie.name for tie in otherwise])] if otherwise else []
+    notes = [Remark.of("at_rest", names=[tie.name for tie in otherwise])] if otherwise else []
     return ItalianVerification(
-        taken, KEY, NAME, EDITION, found,
+        taken, KEY, NAME, EDITION, directions,
         workings=Later(partial(workings_of_site, ground)),
-        remarks=[*said, *remarks.of_site(ground, list(found.values()))],
+        remarks=[*notes, *remarks.of_site(ground, list(directions.values()))],
         left_out=[LeftOut("tie", tie.name, "elastic") for tie in otherwise],
     )  # fmt: skip
 
@@ -139,15 +139,15 @@ def _verified(
     states = {rule.state: case.state(rule) for rule in RULES}
     on_line = {rule.state: line.state(rule) for rule in RULES}
     methods = case.methods(states)
-    said = remarks.of_direction(exact, states, ground)
+    notes = remarks.of_direction(exact, states, ground)
     if control is not None:
         usual = ExactCurve(chain, chain.barycentre, ground.site.FC)
         by_it = _Case(ground, usual)
         others = by_it.methods({rule.state: by_it.state(rule) for rule in RULES})
-        said.append(remarks.of_control(methods[NONLINEAR], others[NONLINEAR], exact.d0, usual.d0))
-    found = ItalianVerified(
+        notes.append(remarks.of_control(methods[NONLINEAR], others[NONLINEAR], exact.d0, usual.d0))
+    verified = ItalianVerified(
         direction=direction,
-        first=FIRST,
+        first=FIRST_STATE,
         exact=exact,
         lambda_=mechanism.uplift(direction),
         a0=exact.a0,
@@ -159,9 +159,9 @@ def _verified(
         straight_methods=line.methods(on_line),
         governing={state: _governs(methods, *pair) for state, pair in OF_STATE.items()},
         governs=_governs(methods, DAMAGE, NONLINEAR),
-        remarks=said,
+        remarks=notes,
     )
-    return replace(found, workings=Later(partial(workings_of_direction, ground, found)))
+    return replace(verified, workings=Later(partial(workings_of_direction, ground, verified)))
 
 
 def _governs(methods: Mapping[str, ItalianMethod], damage: str, nonlinear: str) -> str:

@@ -9,9 +9,9 @@ from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.demand import FloorSpectrum, GroundSpectrum
 from rocking_cli.codes.italian.displaced import MAX_OVERHANG_SHARE, MAX_STRAIN, carried, elastic, furthest, pulls
-from rocking_cli.codes.italian.ground import LONGEST, SHORTEST, SiteGround, return_period
+from rocking_cli.codes.italian.ground import LONGEST_RETURN_PERIOD, SHORTEST_RETURN_PERIOD, SiteGround, return_period
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified, LimitState
-from rocking_cli.codes.italian.rules import DAMAGE, FURTHER, LINEAR, NONLINEAR, RULES, STATES
+from rocking_cli.codes.italian.rules import DAMAGE, FURTHER_STATES, LINEAR, NONLINEAR, RULES, STATES
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import digits_apart
 from rocking_cli.verification.results import Remark
@@ -20,7 +20,7 @@ LONG_PERIOD = 4.0  # s; above it the code requires a study of the site, or recor
 LARGEST_FC = 1.35  # confidence factor of the lowest knowledge level, LC1
 ROUNDING_RATIO = 1e-9
 SAME_RATIO = 0.005  # relative difference of a_g below which two methods agree
-MAX_LINE_DEVIATION = 0.01  # of a*; a straight line that is further off is reported
+MAX_LINE_DEVIATION = 0.01  # share of a* by which the straight line may be off without a remark
 
 
 def _capacities(states: Iterable[str]) -> list[Remark]:
@@ -28,77 +28,77 @@ def _capacities(states: Iterable[str]) -> list[Remark]:
     return [Remark.of(f"d_[{state}]") for state in states]
 
 
-def of_site(ground: SiteGround, found: Collection[ItalianVerified]) -> list[Remark]:
+def of_site(ground: SiteGround, directions: Collection[ItalianVerified]) -> list[Remark]:
     """Return remarks on the site and on both directions."""
-    said: list[Remark] = [*_of_spectrum(ground), *_of_lives(ground)]
-    periods = [state.T for each in found for state in each.states.values() if state.demand is not None]
+    remarks: list[Remark] = [*_of_spectrum(ground), *_of_lives(ground)]
+    periods = [state.T for each in directions for state in each.states.values() if state.demand is not None]
     long = max(periods, default=0.0)
     if long > LONG_PERIOD:
-        said.append(Remark.of("long", T=long, most=LONG_PERIOD))
-    missing = [state for state in FURTHER if ground.spectrum(state) is None]
+        remarks.append(Remark.of("long", T=long, most=LONG_PERIOD))
+    missing = [state for state in FURTHER_STATES if ground.spectrum(state) is None]
     if missing:
-        said.append(Remark.of("missing", states=missing))
-    crushes = any(each.chain.mechanism.crushing is not None for each in found)
+        remarks.append(Remark.of("missing", states=missing))
+    crushes = any(each.chain.mechanism.crushing is not None for each in directions)
     if ground.site.FC < LARGEST_FC and not crushes:
-        said.append(Remark.of("confidence", FC=ground.site.FC, least=LARGEST_FC))
-    loads = [load for each in found for load in each.chain.mechanism.loads or [] if load.mass is not None]
+        remarks.append(Remark.of("confidence", FC=ground.site.FC, least=LARGEST_FC))
+    loads = [load for each in directions for load in each.chain.mechanism.loads or [] if load.mass is not None]
     if any(load.seat is None for load in loads):
-        said.append(Remark.of("seats", limited=_capacities(rule.state for rule in RULES)))
-    return said
+        remarks.append(Remark.of("seats", limited=_capacities(rule.state for rule in RULES)))
+    return remarks
 
 
 def _of_spectrum(ground: SiteGround) -> list[Remark]:
     spectrum = ground.spectrum("SLV")
-    said: list[Remark] = []
+    remarks: list[Remark] = []
     on_ground = spectrum.ground if isinstance(spectrum, FloorSpectrum) else spectrum
     if isinstance(on_ground, GroundSpectrum) and on_ground.soil is None:
-        said.append(Remark.of("no_soil"))
+        remarks.append(Remark.of("no_soil"))
     if ground.state_of_activation != "SLD":
-        said.append(Remark.of("linear_SLV"))
+        remarks.append(Remark.of("linear_SLV"))
     if isinstance(spectrum, FloorSpectrum):
-        said += [Remark.of("floor"), Remark.of("one_mode"), *_of_modes(ground)]
+        remarks += [Remark.of("floor"), Remark.of("one_mode"), *_of_modes(ground)]
         if spectrum.peak < spectrum.ground.peak:
             floor, under = (peak / STANDARD_GRAVITY for peak in (spectrum.peak, spectrum.ground.peak))
-            said.append(Remark.of("low_floor", floor=floor, ground=under))
-    return said
+            remarks.append(Remark.of("low_floor", floor=floor, ground=under))
+    return remarks
 
 
 def _of_modes(ground: SiteGround) -> list[Remark]:
     """Return a remark on a floor whose T1 and xi1 are the same at several limit states."""
     floor = ground.site.floor
-    same = [state for state in FURTHER if floor is not None and getattr(floor, state) is None]
+    same = [state for state in FURTHER_STATES if floor is not None and getattr(floor, state) is None]
     if floor is None or not same:
         return []
     values = {"T1": floor.T1, "xi1": floor.xi1}
     if "SLD" in same:
         return [Remark.of("same_mode", **values)]
-    given = [state for state in same if ground.spectrum(state) is not None]
-    return [Remark.of("same_mode_further", **values, states=given)] if given else []
+    states = [state for state in same if ground.spectrum(state) is not None]
+    return [Remark.of("same_mode_further", **values, states=states)] if states else []
 
 
 def _of_lives(ground: SiteGround) -> list[Remark]:
     site = ground.site
     if ground.hazard is None or site.VN is None or site.CU is None:
         return []
-    said: list[Remark] = []
+    remarks: list[Remark] = []
     for state in STATES:
         TR = return_period(site.VN * site.CU, state)
-        if not SHORTEST <= TR <= LONGEST:
-            bound = SHORTEST if TR < SHORTEST else LONGEST
-            said.append(Remark.of("bound", state=state, TR=TR, bound=bound))
-    return said
+        if not SHORTEST_RETURN_PERIOD <= TR <= LONGEST_RETURN_PERIOD:
+            bound = SHORTEST_RETURN_PERIOD if TR < SHORTEST_RETURN_PERIOD else LONGEST_RETURN_PERIOD
+            remarks.append(Remark.of("bound", state=state, TR=TR, bound=bound))
+    return remarks
 
 
 def of_direction(curve: ExactCurve, states: Mapping[str, LimitState], ground: SiteGround) -> list[Remark]:
     """Return remarks on one direction."""
-    said = [*_of_line(curve, states), *_of_ties(curve, states), *_of_break(curve, states), *_of_seat(curve, states)]
-    said += [*_of_stretch(curve, states), *_of_letter(curve.chain, curve)]
+    remarks = [*_of_line(curve, states), *_of_ties(curve, states), *_of_break(curve, states), *_of_seat(curve, states)]
+    remarks += [*_of_stretch(curve, states), *_of_letter(curve.chain, curve)]
     T0 = ground.site.own_period
     if T0 is not None:
         on = [rule.state for rule in RULES if states[rule.state].a < curve.acceleration(states[rule.state].d)]
         if on:
-            said.append(Remark.of("elastic", states=_capacities(on), T0=T0))
-    return said
+            remarks.append(Remark.of("elastic", states=_capacities(on), T0=T0))
+    return remarks
 
 
 def _of_line(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark]:
@@ -115,16 +115,16 @@ def _of_line(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark
 def _of_ties(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark]:
     if not elastic(curve.chain.mechanism):
         return []
-    said: list[Remark] = [Remark.of("ties", largest=curve.largest, over=curve.largest / curve.a0)]
+    remarks: list[Remark] = [Remark.of("ties", largest=curve.largest, over=curve.largest / curve.a0)]
     for name, force in carried(curve, states["SLV"].d).items():
-        said.append(Remark.of("carries", name=name, force=force / 1e3))
-    return said
+        remarks.append(Remark.of("carries", name=name, force=force / 1e3))
+    return remarks
 
 
 def _of_stretch(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark]:
     """Return remarks on ties of too large elongation, forces with large displacements, and blocks that move far."""
-    said: dict[str, Remark] = {}
-    for state, at in sorted(states.items(), key=lambda pair: -pair[1].d):  # the largest displacement verified
+    remarks: dict[str, Remark] = {}
+    for state, at in sorted(states.items(), key=lambda pair: -pair[1].d):  # largest displacements first
         if state != "SLV" and at.demand is None:
             continue
         held = pulls(curve, at.d)
@@ -132,24 +132,24 @@ def _of_stretch(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Rem
             e = pull.elongation
             if pull.strain is None and e > 0:
                 far = {"most": 100 * MAX_STRAIN, "length": e / MAX_STRAIN}
-                said.setdefault(pull.name, Remark.of("follows", state=state, name=pull.name, e=e, **far))
+                remarks.setdefault(pull.name, Remark.of("follows", state=state, name=pull.name, e=e, **far))
             elif pull.strain is not None and pull.strain > MAX_STRAIN:
                 strain = {"strain": 100 * pull.strain, "most": 100 * MAX_STRAIN}
-                said.setdefault(pull.name, Remark.of("stretched", state=state, name=pull.name, e=e, **strain))
+                remarks.setdefault(pull.name, Remark.of("stretched", state=state, name=pull.name, e=e, **strain))
         moved, thickness = furthest(curve, at.d)
         if held and moved > MAX_OVERHANG_SHARE * thickness / 2:
-            said.setdefault("", Remark.of("wide", state=state, moved=moved, thickness=thickness))
-    return list(said.values())
+            remarks.setdefault("", Remark.of("wide", state=state, moved=moved, thickness=thickness))
+    return list(remarks.values())
 
 
 def _of_break(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark]:
     if curve.torn is None or not curve.lost_on_the_way:
         return []
     d = curve.displacement_at(curve.torn)
-    said: list[Remark] = [Remark.of("torn", d=d)]
+    remarks: list[Remark] = [Remark.of("torn", d=d)]
     if curve.broken is not None and states["SLV"].d == curve.broken:
-        said.append(Remark.of("ends"))
-    return said
+        remarks.append(Remark.of("ends"))
+    return remarks
 
 
 def _of_seat(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark]:
@@ -161,16 +161,16 @@ def _of_seat(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark
 
 
 def _of_letter(chain: Chain, curve: ExactCurve) -> list[Remark]:
-    said: list[Remark] = []
+    remarks: list[Remark] = []
     alpha0, lambda_ = chain.alpha0, chain.mechanism.uplift(chain.direction)
     if abs(alpha0 / lambda_ - 1) > ROUNDING_RATIO:
-        said.append(Remark.of("own_formula", alpha0=alpha0, lambda_=lambda_))
+        remarks.append(Remark.of("own_formula", alpha0=alpha0, lambda_=lambda_))
     if not chain.is_by_the_letter:
         a_letter = curve.a0 * chain.start_by_the_letter
         same = isclose(chain.by_the_letter, alpha0, rel_tol=ROUNDING_RATIO)
         alpha = Remark("alpha0_same" if same else "alpha0_by_letter", _apart(chain.by_the_letter, alpha0))
-        said.append(Remark.of("letter", alpha0=alpha, **_apart(a_letter, curve.a0)))
-    return said
+        remarks.append(Remark.of("letter", alpha0=alpha, **_apart(a_letter, curve.a0)))
+    return remarks
 
 
 def _apart(letter: float, own: float) -> dict[str, float | int]:
@@ -189,16 +189,16 @@ def of_control(chosen: ItalianMethod, usual: ItalianMethod, d0: float, usual_d0:
     return Remark("control_a_g", {**values, "a_g": chosen.a_g, "usual": usual.a_g})
 
 
-def differences(found: ItalianVerified, first: str) -> Iterator[Remark]:
+def differences(verified: ItalianVerified, first: str) -> Iterator[Remark]:
     """Explain why the linear method and the straight line differ from the method and curve that govern."""
-    linear, counts, at = found.methods[LINEAR].a_g, found.counts.a_g, found.states[first]
+    linear, counts, at = verified.methods[LINEAR].a_g, verified.counts.a_g, verified.states[first]
     if linear is None or counts is None:
         return
-    ratio, begins = linear / counts, found.methods[DAMAGE].a_g or 0.0
+    ratio, begins = linear / counts, verified.methods[DAMAGE].a_g or 0.0
     key = "linear_same" if abs(ratio - 1) <= SAME_RATIO else "linear_less" if ratio < 1 else "linear_more"
     values = {"linear": linear, "ratio": ratio, "share": 100 * ratio, "times": linear / begins, "T": at.T, "d": at.d}
     yield Remark(key, {**values, "state": first})
-    line, exact = found.straight_methods[NONLINEAR].a_g, found.methods[NONLINEAR].a_g
+    line, exact = verified.straight_methods[NONLINEAR].a_g, verified.methods[NONLINEAR].a_g
     if line is not None and exact is not None and abs(line / exact - 1) > SAME_RATIO:
         side = Remark.of("more" if line > exact else "less")
         yield Remark.of("straight", line=line, change=100 * abs(line / exact - 1), side=side)

@@ -145,9 +145,9 @@ class Dynamic:
 
     def mean(self, *, confident: bool) -> float | None:
         """Return the mean of the peak displacements [m]; None if one overturned, exceeded d0* or is unknown."""
-        found = self.peaks(confident=confident)
-        known = [each for each in found if each is not None and each < self.d0]
-        return sum(known) / len(found) if len(known) == len(found) else None
+        peaks = self.peaks(confident=confident)
+        known = [each for each in peaks if each is not None and each < self.d0]
+        return sum(known) / len(peaks) if len(known) == len(peaks) else None
 
     def peaks(self, *, confident: bool) -> list[float | None]:
         """Return the peak displacement under each record [m]."""
@@ -170,7 +170,7 @@ class Dynamic:
 
     def checks(self) -> list[Requirement]:
         """Return what the histories with FC prove; nothing if the code requires more of them."""
-        names, found = [each.name for each in self.records], []
+        names, requirements = [each.name for each in self.records], []
         for state, allowed in () if self.too_few else self.allowed.items():
             mean, past = self.mean(confident=True), self.passed(confident=True)
             if past or (mean is not None and not self.holds(state, confident=True)):
@@ -179,8 +179,8 @@ class Dynamic:
                 concluded = Concluded.UNKNOWN if mean is None else Concluded.SATISFIED
             ratio = None if mean is None else allowed / mean if mean else inf
             motion = next(iter(past + self.unknown(confident=True)), "")
-            found.append(Requirement(state, HISTORIES, ratio, concluded, names, motion))
-        return found
+            requirements.append(Requirement(state, HISTORIES, ratio, concluded, names, motion))
+        return requirements
 
     def holds(self, state: str, *, confident: bool) -> bool:
         """Return whether the mean passes at a limit state; with an unknown outcome it does not."""
@@ -268,20 +268,24 @@ class ItalianVerified(frame.Verified):
 
     @property
     def _static(self) -> list[Requirement]:
-        found = []
+        requirements = []
         for state, at in self.states.items():
             if at.demand is None and state != self.first:
                 continue
             by = self.governing[state]
             zeta = self.methods[by].zeta
             ratio = zeta if by == OF_STATE[state][0] and zeta is not None else at.ratio
-            found.append(Requirement.of(state, by, ratio, self.passes(state)))
+            requirements.append(Requirement.of(state, by, ratio, self.passes(state)))
         damage = self.methods["SLD"]
-        return found if damage.passed is None else [*found, Requirement.of("SLD", "SLD", damage.ratio, damage.passed)]
+        return (
+            requirements
+            if damage.passed is None
+            else [*requirements, Requirement.of("SLD", "SLD", damage.ratio, damage.passed)]
+        )
 
     def is_like(self, other: frame.Verified) -> bool:
         """Return whether another direction has the same curve; False with histories, as motions are not symmetric."""
-        assert isinstance(other, ItalianVerified)  # of one code
+        assert isinstance(other, ItalianVerified)  # all directions are verified by the same code
         pairs = [(self.a0, other.a0), (self.d0, other.d0), (self.chain.e_star, other.chain.e_star)]
         pairs += [(self.states[key].a, other.states[key].a) for key in self.states]
         return (
@@ -307,10 +311,10 @@ class ItalianVerification(frame.Verification):
     @property
     def conclusion(self) -> Conclusion:
         """The worst check of all; records that are too few to count are left out, and which of them it exceeds."""
-        found, why = super().conclusion, dict[str, str]()
+        conclusion, why = super().conclusion, dict[str, str]()
         for each in self.directions.values():
             if each.dynamic is not None and each.dynamic.too_few:
                 past = each.dynamic.passed(confident=True)
                 for record in each.dynamic.records:
                     why[record.name] = "too_few_and_past" if record.name in past else why.get(record.name, "too_few")
-        return replace(found, left_out=[*found.left_out, *(LeftOut("motion", *pair) for pair in why.items())])
+        return replace(conclusion, left_out=[*conclusion.left_out, *(LeftOut("motion", *pair) for pair in why.items())])

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from rocking_cli.codes.italian.rules import FIRST, FURTHER
+from rocking_cli.codes.italian.rules import FIRST_STATE, FURTHER_STATES
 from rocking_cli.core import Mechanism
 from rocking_cli.core.fields import quantity
 from rocking_cli.errors import InputError, Problem
@@ -19,7 +19,7 @@ from rocking_cli.processing.floor import Floor
 from rocking_cli.studies.file_part import Part, Sound
 from rocking_cli.verification.code import Site
 
-SIZES = ("ag", "F0", "TC", "S")
+GROUND_PARAMETERS = ("ag", "F0", "TC", "S")
 MAX_TABLE_ROWS = 10_000
 MIN_PERIOD = 0.001  # s
 Period = Annotated[float, Field(gt=0, le=100)]
@@ -46,11 +46,11 @@ class StateGround(Part):
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
         """Check that the ground is given in one way, completely, and that a spectrum has one ordinate per period."""
-        there = [name for name in SIZES if given.get(name) is not None]
+        there = [name for name in GROUND_PARAMETERS if given.get(name) is not None]
         if given.get("spectrum") is not None and there:
             yield ("spectrum",), f"cannot be combined with {there[0]}: give either the parameters or the ordinates"
         elif given.get("spectrum") is None and cls._needs_sizes(given):
-            for name in SIZES:
+            for name in GROUND_PARAMETERS:
                 if name not in there:
                     yield (name,), f"is missing: {cls.model_fields[name].description}"
         known = all(given.get(name) is not None and sound(name) for name in ("ag", "TC"))
@@ -104,7 +104,7 @@ class SiteFloor(Mode):
 
     def mode(self, state: str) -> Mode:
         """Return the first mode at a limit state: that of SLV if no other is given."""
-        return self if state == FIRST else getattr(self, state) or self
+        return self if state == FIRST_STATE else getattr(self, state) or self
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
@@ -153,12 +153,12 @@ class VibratingElement(Part):
             "L": (self.L, getattr(mechanism, "height", None)),
             "t": (self.t, getattr(mechanism, "thickness", getattr(mechanism, "width", None))),
         }
-        found = {key: own if own is not None else taken for key, (own, taken) in sizes.items()}
-        for key, value in found.items():
+        completed = {key: stated if stated is not None else taken for key, (stated, taken) in sizes.items()}
+        for key, value in completed.items():
             if not isinstance(value, float):
                 what = f"is missing: a {mechanism.mechanism} has no height and thickness from which to take it"
                 raise InputError(Problem(what, field=f"element.{key}"))
-        return self.model_copy(update=found)
+        return self.model_copy(update=completed)
 
 
 class ItalianSite(StateGround, Site):
@@ -189,8 +189,8 @@ class ItalianSite(StateGround, Site):
 
     def shaking(self, state: str) -> StateGround | None:
         """Return the ground at a limit state; the fields of the site itself are those of SLV."""
-        found: StateGround | None = self if state == FIRST else getattr(self, state)
-        return found
+        ground: StateGround | None = self if state == FIRST_STATE else getattr(self, state)
+        return ground
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
@@ -203,7 +203,7 @@ class ItalianSite(StateGround, Site):
                 if given.get(name) is not None:
                     yield (name,), "requires `hazard`, the table of return periods"
             return
-        for name in (*SIZES, "spectrum", *FURTHER):
+        for name in (*GROUND_PARAMETERS, "spectrum", *FURTHER_STATES):
             if given.get(name) is not None:
                 yield (name,), "cannot be combined with hazard, from which it is computed: give one of the two"
         for name in ("VN", "CU", "soil"):

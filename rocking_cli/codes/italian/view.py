@@ -127,7 +127,7 @@ def _capacity(each: ItalianVerified, where: str) -> Table:
 
 def _data(each: ItalianVerified) -> dict[str, Any]:
     control = each.exact.control
-    periods = {  # if the hazard is known
+    periods = {  # return periods exist only with a hazard
         key: {"years": method.return_period, "beyond": method.beyond}
         for key, method in each.methods.items()
         if method.return_period is not None
@@ -158,27 +158,27 @@ def _state(each: ItalianVerified, name: str, at: LimitState) -> dict[str, Any]:
 
 def _ties(each: ItalianVerified) -> dict[str, dict[str, float | None]]:
     """Return force [N], elongation [m] and strain of each tie, and of each force against the motion, by limit state."""
-    found: dict[str, dict[str, float | None]] = {}
+    by_tie: dict[str, dict[str, float | None]] = {}
     for key in ("force", "elongation", "strain"):
         for name, at in each.states.items():
             for pull in pulls(each.exact, at.d):
-                found.setdefault(pull.name, {})[f"{key}_{name}"] = getattr(pull, key)
-    return found
+                by_tie.setdefault(pull.name, {})[f"{key}_{name}"] = getattr(pull, key)
+    return by_tie
 
 
-def _histories(found: Dynamic) -> dict[str, Any]:
+def _histories(dynamic: Dynamic) -> dict[str, Any]:
     def of(confident: bool) -> dict[str, Any]:
         return {
-            "mean": found.mean(confident=confident),
-            "past_d0": found.passed(confident=confident),
-            "unknown": found.unknown(confident=confident) if found.checked else None,
-            "holds": {state: found.holds(state, confident=confident) for state in found.allowed},
+            "mean": dynamic.mean(confident=confident),
+            "past_d0": dynamic.passed(confident=confident),
+            "unknown": dynamic.unknown(confident=confident) if dynamic.checked else None,
+            "holds": {state: dynamic.holds(state, confident=confident) for state in dynamic.allowed},
         }
 
     return {
-        "state": next(iter(found.allowed)),
-        "motions": found.motions.kind,
-        "floor": found.motions.floor,
+        "state": next(iter(dynamic.allowed)),
+        "motions": dynamic.motions.kind,
+        "floor": dynamic.motions.floor,
         "records": [
             {
                 "name": each.name,
@@ -187,9 +187,9 @@ def _histories(found: Dynamic) -> dict[str, Any]:
                 "known_to_with_FC": each.known_to_with_confidence,
                 "known_to_without_FC": each.known_to_without,
             }
-            for each in found.records
+            for each in dynamic.records
         ],
-        "wanted": found.enough,
+        "wanted": dynamic.enough,
         "with_FC": of(True),
         "without_FC": of(False),
     }

@@ -8,12 +8,12 @@ from importlib.metadata import EntryPoint
 
 from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.excitation.pulses.base import COARSE, Pulse, Segment
+from rocking_cli.excitation.pulses.base import COARSE_POINTS_PER_PERIOD, Pulse, Segment
 from rocking_cli.excitation.records.record_units import UNITS
 from rocking_cli.plugins.registry import Plugins, origin
 from rocking_cli.text import regex
 
-__all__ = ["COARSE", "Pulse", "PulseShapes", "Segment", "parse_pulse"]
+__all__ = ["COARSE_POINTS_PER_PERIOD", "Pulse", "PulseShapes", "Segment", "parse_pulse"]
 
 _QUANTITY = regex(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\d\s.+-].*)?", re.ASCII)
 _TIMES = {"": 1.0, "s": 1.0, "ms": 1e-3}
@@ -81,7 +81,7 @@ def _quantity(text: str, word: str, what: str, form: str, units: tuple[str, ...]
         raise InputError(f"pulse '{text}': '{word}' is not a valid {what}: {form}")
     unit = next((each for each in units if each.lower() == (match[2] or "").strip().lower()), None)
     if unit is None:
-        found = f"unknown unit '{match[2].strip()}'" if match[2] else "no unit"
+        stated = f"unknown unit '{match[2].strip()}'" if match[2] else "no unit"
         known = ", ".join(filter(None, units))
-        raise InputError(f"pulse '{text}': {found} of {what}, {f'give {known}' if known else 'it takes none'}: {form}")
+        raise InputError(f"pulse '{text}': {stated} of {what}, {f'give {known}' if known else 'it takes none'}: {form}")
     return float(match[1]), unit

@@ -14,12 +14,14 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.plugins.errors import failed, guard
 
-FINE = 4000  # samples per period of a single history; its peak has an error of 1e-6 from 1.01 times uplift on
-COARSE = 400  # samples per period of batches and of stored histories; error 1e-4 near uplift, 1e-7 elsewhere
+POINTS_PER_PERIOD = 4000
+"""Samples of a single history: its peak has an error of 1e-6 from 1.01 times uplift on."""
+COARSE_POINTS_PER_PERIOD = 400
+"""Samples of batches and of stored histories: their peaks have an error of 1e-4 near uplift, 1e-7 elsewhere."""
 MAX_DIGITS = 17  # enough to tell any two floating-point numbers apart
 SAMPLING = "chords with the impulse of the curve"
 """How samples are made, for whoever keeps what was computed with them: other samples need another text."""
-GAUSS_POINTS = 48  # for the velocity
+GAUSS_POINTS = 48
 
 
 class Segment(NamedTuple):
@@ -129,7 +131,7 @@ class Pulse(ABC):
         x = np.clip(np.asarray(t, dtype=np.float64) / self.period, 0.0, self.span)
         return self.amplitude * self.period * self.velocity_shape(x)
 
-    def sampled(self, per_period: int = FINE) -> GroundMotion:
+    def sampled(self, per_period: int = POINTS_PER_PERIOD) -> GroundMotion:
         """Return the pulse as a ground motion, linear between samples and zero after the last.
 
         Parameters
@@ -144,7 +146,7 @@ class Pulse(ABC):
         the second difference keep the impulse of the curve in every interval, so that the error of motions is of fourth
         order in the interval, not of second order.
         """
-        every = max(per_period // COARSE, 1)
+        every = max(per_period // COARSE_POINTS_PER_PERIOD, 1)
         steps = every * int(np.ceil(self.span * per_period / every - 1e-9))
         curve = self.shape(np.linspace(0.0, self.span, steps + 1))
         samples = self.amplitude * _with_its_impulse(curve)
@@ -192,18 +194,18 @@ def _with_its_impulse(curve: Reals) -> Reals:
     bend[1:-1] = np.diff(curve, 2)
     bend[0], bend[-1] = 2 * bend[1] - bend[2], 2 * bend[-2] - bend[-3]
     smooth = bend.copy()
-    # The middle one of three neighbours: a kink or a jump stands out, and keeps the chords that suit it.
+    # The median of three removes the outliers at kinks and jumps, where plain chords are right.
     smooth[1:-1] = np.median([bend[:-2], bend[1:-1], bend[2:]], axis=0)
     samples = curve - smooth / 12
-    most = max(1.0, float(np.abs(curve).max()))
-    over = samples - np.clip(samples, -most, most)  # else a pulse too weak would lift, and its peak be another
-    over[[0, -1]] = (samples - curve)[[0, -1]]  # it begins and ends where the curve does
+    peak = max(1.0, float(np.abs(curve).max()))
+    over = samples - np.clip(samples, -peak, peak)  # samples above the peak would uplift more structures
+    over[[0, -1]] = (samples - curve)[[0, -1]]  # both ends stay on the curve
     samples -= over
-    over[[0, -1]] /= 2  # an end has half an interval only
+    over[[0, -1]] /= 2  # an end belongs to half an interval
     inner = over[1:-1] / 2
     samples[:-2] += inner
     samples[2:] += inner
     samples[[1, -2]] += over[[0, -1]]
-    samples = np.clip(samples, -most, most)
+    samples = np.clip(samples, -peak, peak)
     samples[[0, -1]] = curve[[0, -1]]
     return samples

@@ -203,9 +203,9 @@ def _peak(phase: float, cycles: float) -> float:
     """Return the largest absolute acceleration over pi A/T: by ever finer grids, and finally by a parabola."""
     grid = np.linspace(-cycles / 2, cycles / 2, ceil(100 * cycles) + 1)
     coarse = np.abs(_raw(grid, phase, cycles))
-    # A point of the grid is within 1/200 period of the peak, and so within 0.2 % of it: any of these may be it.
-    near = grid[coarse > 0.995 * coarse.max(), None]
-    y = np.abs(_raw(near + (grid[1] - grid[0]) * np.linspace(-1.0, 1.0, 41), phase, cycles))
-    row, k = np.unravel_index(int(y[:, 1:-1].argmax()), (len(near), 39))
+    # Some point of the grid lies within 1/200 period of the peak, so within 0.2 % of its value.
+    candidates = grid[coarse > 0.995 * coarse.max(), None]
+    y = np.abs(_raw(candidates + (grid[1] - grid[0]) * np.linspace(-1.0, 1.0, 41), phase, cycles))
+    row, k = np.unravel_index(int(y[:, 1:-1].argmax()), (len(candidates), 39))
     a, b, c = y[row, k : k + 3].tolist()
     return float(b + (a - c) ** 2 / (8 * (2 * b - a - c)))

@@ -88,20 +88,20 @@ def read_measured(
     text = decoded(data, file)
     reader = reader_for(text, file, load_readers(), data)
     content = data if takes_bytes(reader) else text
-    del data, text  # one of them is enough: a long record is large
+    del data, text  # frees memory, as a long record is large
     try:
         more = {"wanted": wanted} if _must_be_asked(reader, wanted, file) else {}
         motion = reader.read(content, file, dt=dt, units=units, channel=channel, **more)
     except InputError as error:
-        if type(error) is not InputError:  # of a plugin that failed: what it says is its own
+        if type(error) is not InputError:  # errors of plugins keep their own message
             raise
         raise InputError(*map(_short, error.problems)) from None
     if gain is not None:
-        said = (*motion.processing, f"gain {gain}")
-        motion = replace(motion, acceleration=gain.size * motion.acceleration, unit=gain.text, processing=said)
+        processing = (*motion.processing, f"gain {gain}")
+        motion = replace(motion, acceleration=gain.size * motion.acceleration, unit=gain.text, processing=processing)
     if Path(file).name == name:
         return motion, wanted.quantity
-    # A file of an archive is named after the archive, and is one of its channels if there are several.
+    # A motion from an archive is named after the archive; its file counts as a channel.
     inside = motion.name.removeprefix(Path(file).name).removeprefix(" channel ")
     chosen = ":".join(part for part in (member, inside) if part)
     return replace(motion, name=f"{name} channel {chosen}" if chosen else name), wanted.quantity

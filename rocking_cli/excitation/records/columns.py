@@ -27,7 +27,7 @@ LABEL_LINES = 40  # number of lines above a table that may hold its labels
 MAX_LABEL_CHARACTERS = 10_000
 
 _TIME = regex(r"[\"']?(?:t|time)(?![a-z])", re.IGNORECASE)
-_BARE_T = regex(r"t", re.IGNORECASE)  # the time, or the transverse component
+_BARE_T = regex(r"t", re.IGNORECASE)  # may be the time or the transverse component
 _WORDS = regex(r"[^\s\[(]+(?: *(?:\[[^\]]*\]|\([^)]*\)))?")  # a word, with the brackets that follow it
 _GAPS = regex(r"\s{2,}|\t")
 _COLUMN = regex(r"col(?:umn)?\.? *(\d{1,4})")
@@ -110,7 +110,7 @@ def choose(
     file: str,
     table: Reals,
     names: Sequence[Label],
-    asked: str | None,
+    requested: str | None,
     increases: Callable[[Reals], bool],
     wanted: Wanted,
 ) -> Choice:
@@ -124,7 +124,7 @@ def choose(
         The numbers.
     names : sequence of Label
         Label of each column.
-    asked : str, optional
+    requested : str, optional
         Number among the columns with such values, from 1, or name; or `column 6`, counting all columns.
     increases : callable
         Function that returns whether a column increases evenly, as times do.
@@ -142,7 +142,9 @@ def choose(
     if not values:
         message = f"none of the columns holds {_values(wanted)}"
         raise InputError(Problem(message, file, hint=f"there are:{_listed(table, names, times, values, wanted)}"))
-    place = 0 if asked is None and len(values) == 1 else _place(file, table, names, times, values, asked, wanted)
+    place = (
+        0 if requested is None and len(values) == 1 else _place(file, table, names, times, values, requested, wanted)
+    )
     column = values[place]
     time = max((k for k in times if k < column), default=min(times, default=None))
     channel = "" if len(values) == 1 else names[column].name or str(place + 1)
@@ -155,8 +157,8 @@ def _may_be(label: str, wanted: Wanted) -> bool:
         return True
     if wanted.quantity == "acceleration":
         return not other_quantity(label)
-    said = {quantity_of(unit) for unit in _BRACKETED.findall(label)} - {None}
-    return wanted.quantity in said if said else not header_units(label)
+    stated = {quantity_of(unit) for unit in _BRACKETED.findall(label)} - {None}
+    return wanted.quantity in stated if stated else not header_units(label)
 
 
 def _cells(line: str, delimiter: str | None, columns: int) -> list[str]:
@@ -164,11 +166,11 @@ def _cells(line: str, delimiter: str | None, columns: int) -> list[str]:
     if len(line) > MAX_LABEL_CHARACTERS:
         return []
     for cells in _ways(line, delimiter):
-        found = [cell.strip().strip("\"'").strip() for cell in cells]
-        if len(found) == columns and any(re.search(r"[^\W\d_]", cell) for cell in found):
-            # "acceleration in g" is no name of three columns.
-            of_cells = any(map(header_units, found)) or all(is_unit(cell.strip("[]() ")) for cell in found)
-            return found if of_cells or not header_units(line) else []
+        stripped = [cell.strip().strip("\"'").strip() for cell in cells]
+        if len(stripped) == columns and any(re.search(r"[^\W\d_]", cell) for cell in stripped):
+            # A phrase such as "acceleration in g" is not the labels of three columns.
+            of_cells = any(map(header_units, stripped)) or all(is_unit(cell.strip("[]() ")) for cell in stripped)
+            return stripped if of_cells or not header_units(line) else []
     return []
 
 
@@ -178,7 +180,7 @@ def _ways(line: str, delimiter: str | None) -> Iterator[list[str]]:
     if delimiter is not None:
         try:
             yield next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
-        except csv.Error:  # a cell is too long for a label
+        except csv.Error:  # the cell is longer than csv allows, so not a label
             return
     yield _GAPS.split(line)
     yield _WORDS.findall(line)
@@ -190,10 +192,10 @@ def _ways(line: str, delimiter: str | None) -> Iterator[list[str]]:
 def _times(table: Reals, names: Sequence[Label], increases: Callable[[Reals], bool]) -> list[int]:
     """Return the columns whose name is a time, or else the first if it increases evenly, and repetitions of it."""
     called = [k for k, label in enumerate(names) if label.is_time]
-    found = [k for k in called if (np.diff(table[k]) > 0).all()]
-    if not found and increases(table[0]):
-        found = [0, *(k for k in range(1, len(table) - 1) if np.array_equal(table[k], table[0]))]
-    return found or [k for k in called if not _BARE_T.fullmatch(str(names[k]))]
+    times = [k for k in called if (np.diff(table[k]) > 0).all()]
+    if not times and increases(table[0]):
+        times = [0, *(k for k in range(1, len(table) - 1) if np.array_equal(table[k], table[0]))]
+    return times or [k for k in called if not _BARE_T.fullmatch(str(names[k]))]
 
 
 def _place(
@@ -202,12 +204,12 @@ def _place(
     names: Sequence[Label],
     times: Sequence[int],
     values: Sequence[int],
-    asked: str | None,
+    requested: str | None,
     wanted: Wanted,
 ) -> int:
     """Return the index in `values` of the requested column."""
     listed = _listed(table, names, times, values, wanted)
-    if asked is None:
+    if requested is None:
         message = (
             f"the table has {len(values)} columns that may be {_values(wanted)}, and only one can shake a structure"
         )
@@ -216,19 +218,19 @@ def _place(
                 "\n  values that run on from line to line do not form a table: give the file as the data centre made it"
             )
         raise InputError(Problem(message, file, hint=f"choose one with `channel`, by place or name:{listed}"))
-    word = _plain(asked)
+    word = _plain(requested)
     if (number := _COLUMN.fullmatch(word)) and int(number[1]) - 1 in values:
         return values.index(int(number[1]) - 1)
     if word.isascii() and word.isdigit() and len(word) < 9 and 1 <= int(word) <= len(values):
         return int(word) - 1
     for spellings in ([_plain(str(names[k])) for k in values], [_without_unit(names[k].name) for k in values]):
-        found = [place for place, name in enumerate(spellings) if name and name == word]
-        if len(found) == 1:
-            return found[0]
-        if found:
-            message = f"{len(found)} columns are called '{asked}'"
+        places = [place for place, name in enumerate(spellings) if name and name == word]
+        if len(places) == 1:
+            return places[0]
+        if places:
+            message = f"{len(places)} columns are called '{requested}'"
             raise InputError(Problem(message, file, field="`channel`", hint=f"give the place of one:{listed}"))
-    message = f"there is no channel '{asked}'"
+    message = f"there is no channel '{requested}'"
     hint = f"the file has:{listed}"
     raise InputError(Problem(message, file, field="`channel`", hint=hint))
 

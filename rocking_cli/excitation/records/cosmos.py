@@ -23,7 +23,7 @@ SIGN = "a first line with (Format v01.20 with 13 text lines)"
 _FIRST = regex(r"(.*?)\(Format v(\S+) with\s+(\d+) text lines\)", re.I)
 _NUMBERS = regex(r"\s*(\d+)\s+(Integer|Real)-header values follow on\s+\d+ lines?[ ,]*Format *=? *(\S+)", re.I)
 _COMMENTS = regex(r"\s*(\d+) Comment line", re.I)
-# Networks differ in its commas and blanks: units=cm/sec2(04),Format=(8F10.5) and units=g.     (02)Format=(8f9.6).
+# Commas and blanks differ by network: units=cm/sec2(04),Format=(8F10.5) and units=g.     (02)Format=(8f9.6).
 _DATA = regex(
     r"\s*(\d+)\s+(\S.*?)\s*pts?\b[ ,]*approx\.?\s+(\S+?)\s*secs?\b[ ,]*"
     r"units? *[=:] *([^(,]*?)[ .]*(?:\( *\d+ *\))?[ ,]*Format *[=:]? *(\(.*?\))",
@@ -36,18 +36,19 @@ _UNIT_CODES = {2: "g", 4: "cm/s2"}
 _END = regex(r"End-of-data for Chan *(\S+)", re.I)
 # Counted from 1, the interval of processed data [ms] and of the raw record [s], the second as long as nothing is done.
 _DT_MS, _DT_RAW = 62, 34
-_PEAK, _PEAK_TIME = 64, 65  # of the values, and when [s]
-_DISTANCE = 17  # place of the epicentral distance [km]
+_PEAK_PLACE, _PEAK_TIME_PLACE = 64, 65  # places of the peak value and its time [s]
+_DISTANCE_PLACE = 17  # epicentral distance [km]
 _UNSET = -999
 _FIELDS = {
     "azimuth": Field(regex(r"^Sta Chan?\.?:? *\S+: *(.*?) *\(", re.I)),
-    "event": Field(regex(r"^\s*(?:Rec(?:or)?d of )?(.*\b(?:19|20)\d\d\b.*)", re.I), line=2),  # if it has a year
-    # The code, and the name behind the agency.
+    # Only a line with a year describes an earthquake.
+    "event": Field(regex(r"^\s*(?:Rec(?:or)?d of )?(.*\b(?:19|20)\d\d\b.*)", re.I), line=2),
+    # The station code, and the name that follows the agency.
     "station": Field(regex(r"^Statn No: *\S+ +Code: *(\S+)(?: +[A-Z]{2,5} +(\S.*))?")),
     "hypocentre": Field(regex(r"^(Hypocenter.*)")),
 }
 _MAX_FIRST_LINE = 10_000
-_TEXT_LINES, _HEADER_VALUES, _COMMENT_LINES = 1000, 10_000, 100_000  # more than any header has
+_TEXT_LINES, _HEADER_VALUES, _COMMENT_LINES = 1000, 10_000, 100_000  # no header has as many
 
 
 @dataclass(frozen=True)
@@ -81,11 +82,11 @@ def read(
         headers = _headers(file, lines, index)
         index = headers.data
         while index == headers.data or (index < len(lines) and _announced(lines[index])):
-            found, index = _history(file, lines, headers, index, units)
-            if isinstance(found, layout.Channel):
-                channels.append(found)
+            content, index = _history(file, lines, headers, index, units)
+            if isinstance(content, layout.Channel):
+                channels.append(content)
             else:
-                others.append(found)
+                others.append(content)
     if not channels:
         message = f"the file holds no acceleration, but {', '.join(dict.fromkeys(others))}"
         raise InputError(Problem(message, file, hint="give the file with the acceleration"))
@@ -117,7 +118,7 @@ def _headers(file: str, lines: Lines, start: int) -> _Headers:
         what = "number of comment lines"
         index += 1 + layout.whole_number(file, index + 1, lines[index], match[1], what, least=0, most=_COMMENT_LINES)
     code, name = head["station"].groups if "station" in head.items else (None, None)
-    distance = reals[_DISTANCE - 1] if reals.size >= _DISTANCE else None
+    distance = reals[_DISTANCE_PLACE - 1] if reals.size >= _DISTANCE_PLACE else None
     where = origin(head.text("event"), name or code, magnitude(head.text("hypocentre") or ""), distance)
     return _Headers(head.text("azimuth") or "", reals, reals_line, index, where)
 
@@ -152,20 +153,20 @@ def _history(
         hint = "one of the two is damaged: download the file again"
         raise InputError(Problem(message, file, line_number, excerpt=line.strip()[:100], hint=hint))
     (length,) = numbers_in(file, line_number, line, [match[3]])
-    own = _interval(file, headers, count, length)
+    interval = _interval(file, headers, count, length)
     mark = _END.match(lines[end]) if end < len(lines) else None
     name = mark[1] if mark and not mark[1].isdecimal() else headers.name
-    remarks += _peak(headers, values, own, unit)
+    remarks += _peak(headers, values, interval, unit)
     return layout.Channel(
-        name, own, layout.in_si(values, unit), unit, headers.reals_line, remarks=remarks, origin=headers.origin
+        name, interval, layout.in_si(values, unit), unit, headers.reals_line, remarks=remarks, origin=headers.origin
     ), end
 
 
 def _peak(headers: _Headers, values: Reals, dt: float, unit: str) -> tuple[Doubt, ...]:
     """Return a doubt if the largest value differs from that in the header."""
-    if headers.reals.size < _PEAK_TIME or headers.reals[_PEAK - 1] == _UNSET:
+    if headers.reals.size < _PEAK_TIME_PLACE or headers.reals[_PEAK_PLACE - 1] == _UNSET:
         return ()
-    peak, time = headers.reals[_PEAK - 1], headers.reals[_PEAK_TIME - 1]
+    peak, time = headers.reals[_PEAK_PLACE - 1], headers.reals[_PEAK_TIME_PLACE - 1]
     stated = "" if time == _UNSET else f"{time:.6f}"
     return peak_doubts(values, dt, unit, headers.reals_line, f"{peak:.6f}", stated)
 
@@ -180,7 +181,7 @@ def _interval(file: str, headers: _Headers, count: int, length: float) -> float:
     places = ((_DT_MS, 0.001), (_DT_RAW, 1.0))
     stated = [headers.reals[place - 1] * size for place, size in places if place <= headers.reals.size]
     for candidate in stated:
-        # The length is rounded to a second, and some count the intervals for it, some the samples.
+        # The length is rounded to a second; some files count intervals for it, others samples.
         if candidate > 0 and abs(candidate * count - length) <= 1 + 2 * candidate:
             return float(candidate)
     intervals = " and ".join(f"{candidate:g} s" for candidate in stated if candidate > 0) or "nothing"

@@ -22,7 +22,7 @@ _FORMAT = regex(r"\b\d+F(\d+)\.\d+", re.I)
 _CHANNEL = regex(r"\bCHAN(?:NEL)? +\d+: *(.*\S)", re.I)
 _PEAK = regex(r"PEAK ACCELERATION *= *(\S+) +CM/SEC/SEC +AT +(\S+) *SEC", re.I)
 _DEFAULT_WIDTH = 10  # characters per number, as in 8F10.3
-_SEARCHED_CHARACTERS = 100_000  # to recognise the format
+_SEARCHED_CHARACTERS = 100_000  # the format is recognised within them
 
 
 def sniff(text: str) -> bool:
@@ -44,7 +44,7 @@ def read(
     while index < len(lines):
         line = lines[index]
         index += 1
-        # The first line of a channel has it too, followed by more; the one that begins with it comes later.
+        # The first line of a channel also has its name, with more text; the line that begins with it comes later.
         if _FIRST.match(line):
             start = index - 1
         if match := _CHANNEL.match(line.strip()):
@@ -55,7 +55,7 @@ def read(
         if data is None:
             continue
         count = layout.whole_number(file, index, line, data[1], "number of points", least=2)
-        own = layout.number(file, index, line, data[3], "sample interval")
+        interval = layout.number(file, index, line, data[3], "sample interval")
         form = _FORMAT.search(data[4])
         width = layout.column_width(file, index, line, form[1]) if form else _DEFAULT_WIDTH
         block = layout.RecordBlock(index, count, width, index)
@@ -64,15 +64,17 @@ def read(
             spelling = _UNIT.search(data[4])
             unit = layout.stated_unit(file, block.header_line, spelling[1] if spelling else "", units)
             if peak is not None:
-                remarks += peak_doubts(100 * layout.in_si(values, unit), own, "cm/s2", *peak)
+                remarks += peak_doubts(100 * layout.in_si(values, unit), interval, "cm/s2", *peak)
             origin = of_csmip(lines[start : min(start + _TEXT_LINES, block.header_line)])
             line_number = block.header_line
             channels.append(
-                layout.Channel(name, own, layout.in_si(values, unit), unit, line_number, remarks=remarks, origin=origin)
+                layout.Channel(
+                    name, interval, layout.in_si(values, unit), unit, line_number, remarks=remarks, origin=origin
+                )
             )
             peak = None
-        elif channels and not math.isclose(own, channels[-1].dt):
-            message = f"the interval is {own:g} s, but that of its accelerations {channels[-1].dt:g} s"
+        elif channels and not math.isclose(interval, channels[-1].dt):
+            message = f"the interval is {interval:g} s, but that of its accelerations {channels[-1].dt:g} s"
             hint = "one of the two is damaged: download the file again"
             raise InputError(Problem(message, file, block.header_line, excerpt=line.strip()[:100], hint=hint))
     if not channels:

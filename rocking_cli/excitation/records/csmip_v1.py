@@ -29,17 +29,17 @@ _OF_FILM = {
         " (UNITS OF UNCOR ACCEL ARE SEC AND ...)",
     ),
 }
-_AT_LEAST, _SHARE = 1.0, 0.02  # s, and of its length: what the length of a record may be rounded or cut by
-# What announces samples at a constant interval: its number of points, kind, interval or rate, unit and format.
-_EVENLY = (
+_LENGTH_TOLERANCE, _LENGTH_TOLERANCE_SHARE = 1.0, 0.02  # seconds, and share of the length of the record
+# Lines before samples at a constant interval: number of points, quantity, interval or rate, unit and format.
+_EVEN_HEADERS = (
     regex(r" *(\d+) +POINTS OF (\w+) +DATA EQUALLY SPACED AT +(?P<dt>\S+) *SEC\b\.?(.*)", re.I),
     regex(r" *(\d+) +(\w+) +POINTS AT +(?P<rate>\S+) +PTS/SEC\b(.*)", re.I),
 )
 _STATED = regex(r"\bunits(?: of|:) *(.*?) *\.? *(?:\)|format|$)", re.I)
 _FORMAT = regex(r"\b\d+F(\d+)\.\d+", re.I)
 _TEXT_LINES = 13
-_INTEGERS, _REALS = (100, 5), (50, 10)  # how many, and characters to each
-_PAIRS, _VALUES = 7, 9  # characters: 10F7.3, five points a line, and 8F9.6 unless the line says otherwise
+_INTEGERS, _REALS = (100, 5), (50, 10)  # count, and characters per number
+_PAIRS_WIDTH, _VALUES_WIDTH = 7, 9  # characters per number: 10F7.3 for five points a line, and by default 8F9.6
 
 
 def sniff(text: str) -> bool:
@@ -60,8 +60,8 @@ def read(
     while start < len(lines):
         if lines[start].strip() and not lines[start].startswith("/&"):
             head = lines[start : start + _TEXT_LINES]
-            found, start = _channel(file, lines, start, units)
-            channels.append(replace(found, origin=of_csmip(head)))
+            part, start = _channel(file, lines, start, units)
+            channels.append(replace(part, origin=of_csmip(head)))
         else:
             start += 1
     return layout.choose(file, TITLE, channels, channel, dt)
@@ -79,15 +79,15 @@ def _channel(file: str, lines: Lines, start: int, units: str | None) -> tuple[la
     for size, width in (_INTEGERS, _REALS):
         _, index, _ = layout.fixed_width(file, lines, layout.RecordBlock(index, size, width, start + 1), last=False)
     line = lines[index] if index < len(lines) else ""
-    for pattern in _EVENLY:
+    for pattern in _EVEN_HEADERS:
         if match := pattern.match(line):
-            found, end = _evenly(file, lines, index, match, name, units)
+            channel, end = _evenly(file, lines, index, match, name, units)
             if length := head.items.get("length"):
-                lasting = found.acceleration.size * found.dt
-                tolerance = max(_AT_LEAST, _SHARE * lasting)
+                lasting = channel.acceleration.size * channel.dt
+                tolerance = max(_LENGTH_TOLERANCE, _LENGTH_TOLERANCE_SHARE * lasting)
                 doubts = length_doubts(lasting, length.line_number, length.groups[0], tolerance)
-                found = replace(found, remarks=found.remarks + doubts)
-            return found, end
+                channel = replace(channel, remarks=channel.remarks + doubts)
+            return channel, end
     return _film(file, lines, start, index, name, units)
 
 
@@ -101,21 +101,21 @@ def _evenly(
         raise InputError(Problem(message, file, line_number, excerpt=line.strip()[:100]))
     count = layout.whole_number(file, line_number, line, match[1], "number of points", least=2)
     if "dt" in match.re.groupindex:
-        own = layout.number(file, line_number, line, match["dt"], "sample interval")
+        interval = layout.number(file, line_number, line, match["dt"], "sample interval")
     else:
-        own = 1 / layout.number(file, line_number, line, match["rate"], "number of points per second")
+        interval = 1 / layout.number(file, line_number, line, match["rate"], "number of points per second")
     stated, form = _STATED.search(match[4]), _FORMAT.search(match[4])
     unit = layout.old_unit(file, line_number, stated[1] if stated else "", units)
-    width = layout.column_width(file, line_number, line, form[1]) if form else _VALUES
+    width = layout.column_width(file, line_number, line, form[1]) if form else _VALUES_WIDTH
     values, end, remarks = layout.fixed_width(file, lines, layout.RecordBlock(line_number, count, width, line_number))
-    return layout.Channel(name, own, layout.in_si(values, unit), unit, line_number, remarks=remarks), end
+    return layout.Channel(name, interval, layout.in_si(values, unit), unit, line_number, remarks=remarks), end
 
 
 def _film(file: str, lines: Lines, start: int, index: int, name: str, units: str | None) -> tuple[layout.Channel, int]:
     """Read pairs of time and acceleration from line index `index` on; return them and the index after them."""
     head = read_head(file, lines, _OF_FILM, _TEXT_LINES, start)
     unit = layout.old_unit(file, head["unit"].line_number, head["unit"].groups[0], units)
-    block = layout.RecordBlock(index, 2 * head.count, _PAIRS, head["count"].line_number)
+    block = layout.RecordBlock(index, 2 * head.count, _PAIRS_WIDTH, head["count"].line_number)
     pairs, end, remarks = layout.fixed_width(file, lines, block)
-    own, values, points = layout.straight_lines(file, pairs, f"lines {index + 1} to {end}")
-    return layout.Channel(name, own, layout.in_si(values, unit), unit, points=points, remarks=remarks), end
+    interval, values, points = layout.straight_lines(file, pairs, f"lines {index + 1} to {end}")
+    return layout.Channel(name, interval, layout.in_si(values, unit), unit, points=points, remarks=remarks), end

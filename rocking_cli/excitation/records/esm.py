@@ -50,31 +50,34 @@ def read(
     unit_line, spelling = header.get("UNITS", (start, ""))
     unit = layout.stated_unit(file, unit_line, spelling, units)
     dt_line, dt_text = header["SAMPLING_INTERVAL_S"]
-    own = layout.number(file, dt_line, lines[dt_line - 1], dt_text, "sampling interval")
+    interval = layout.number(file, dt_line, lines[dt_line - 1], dt_text, "sampling interval")
     count_line, count_text = header["NDATA"]
     count = layout.whole_number(file, count_line, lines[count_line - 1], count_text, "number of points", least=2)
     values, _, remarks = layout.fixed_width(file, lines, layout.RecordBlock(start, count, None, count_line))
     peak_line, peak = header.get("PGA_CM/S^2", (0, ""))
     remarks += peak_doubts(
-        100 * layout.in_si(values, unit), own, "cm/s2", peak_line, peak, header.get("TIME_PGA_S", (0, ""))[1]
+        100 * layout.in_si(values, unit), interval, "cm/s2", peak_line, peak, header.get("TIME_PGA_S", (0, ""))[1]
     )
     length_line, length = header.get("DURATION_S", (0, ""))
-    remarks += length_doubts(count * own, length_line, length, own)
+    remarks += length_doubts(count * interval, length_line, length, interval)
     _, stream = header.get("STREAM", (0, ""))
-    found = layout.Channel(
-        stream, own, layout.in_si(values, unit), unit, dt_line, remarks=remarks, origin=_origin(header)
+    only = layout.Channel(
+        stream, interval, layout.in_si(values, unit), unit, dt_line, remarks=remarks, origin=_origin(header)
     )
-    return layout.choose(file, TITLE, [found], channel, dt)
+    return layout.choose(file, TITLE, [only], channel, dt)
 
 
 def _origin(header: Mapping[str, tuple[int, str]]) -> Origin:
     """Return the origin; other formats share the key of the earthquake's name, but not that of its time."""
-    said = {key: value for key, (_, value) in header.items()}
-    day, time = _DAY.fullmatch(said.get("EVENT_DATE_YYYYMMDD", "")), _TIME.fullmatch(said.get("EVENT_TIME_HHMMSS", ""))
+    values = {key: value for key, (_, value) in header.items()}
+    day, time = (
+        _DAY.fullmatch(values.get("EVENT_DATE_YYYYMMDD", "")),
+        _TIME.fullmatch(values.get("EVENT_TIME_HHMMSS", "")),
+    )
     when = [sign.join(match.groups()) for sign, match in (("-", day), (":", time)) if match is not None]
-    event = " ".join([said.get("EVENT_NAME", ""), *when]) if day is not None else said.get("EVENT_ID", "")
-    station = said.get("STATION_CODE", "")
-    if station and said.get("NETWORK"):
-        station = f"{said['NETWORK']}.{station}"
-    magnitude = said.get("MAGNITUDE_W") or said.get("MAGNITUDE_L")
-    return origin(event, station, magnitude, said.get("EPICENTRAL_DISTANCE_KM"))
+    event = " ".join([values.get("EVENT_NAME", ""), *when]) if day is not None else values.get("EVENT_ID", "")
+    station = values.get("STATION_CODE", "")
+    if station and values.get("NETWORK"):
+        station = f"{values['NETWORK']}.{station}"
+    magnitude = values.get("MAGNITUDE_W") or values.get("MAGNITUDE_L")
+    return origin(event, station, magnitude, values.get("EPICENTRAL_DISTANCE_KM"))

@@ -15,7 +15,7 @@ SIGN = "a first line Corrected accelerogram, and Number of points below it"
 
 _TEXT_LINES = 16
 _NUMBER_LINES = 10
-_WIDTH = 8
+_WIDTH = 8  # characters per number
 _SIZE = regex("[0-9]{1,9}")
 _FIRST = regex(r"Corrected accelerogram\b")
 _COUNT = regex(r"Number of points\s+(\d+)")
@@ -25,7 +25,7 @@ _FIELDS = {
     "component": Field(regex(r"Component\s+(\S+)"), "component"),
     "peak": Field(regex(r"Acceleration:\s+peak\s+(\S+)\s+(\S+)"), "unit of the accelerations"),
     "duration": Field(regex(r"Duration\s+(\S+)\s+sec")),
-    # The earthquake by its time, as the file has no name.
+    # The file names no earthquake, so its time stands for it.
     "event": Field(regex(r"^(\d{4} [A-Z][a-z]+ +\d{1,2} +\d{2}:\d{2}:\d{2}(?: UT)?)")),
     "station": Field(regex(r"^Site +(\S+)")),
     "magnitude": Field(regex(r"^Epicentre .*\bM +(\S+)")),
@@ -47,8 +47,8 @@ def read(
     channels = []
     start = 0
     while start < len(lines) and lines[start].strip():
-        found, start = _component(file, lines, start, units)
-        channels.append(found)
+        component, start = _component(file, lines, start, units)
+        channels.append(component)
     return layout.choose(file, TITLE, channels, channel, dt)
 
 
@@ -61,9 +61,9 @@ def _component(file: str, lines: Lines, start: int, units: str | None) -> tuple[
     head = read_head(file, lines, _FIELDS, _TEXT_LINES, start)
     unit_line, _, (peak, spelling) = head["peak"]
     unit = layout.stated_unit(file, unit_line, spelling, units)
-    own, npts, count_line = head.number("dt"), head.count, head["count"].line_number
+    interval, npts, count_line = head.number("dt"), head.count, head["count"].line_number
 
-    # The fourth line of numbers says how long each of the three histories is; the last two may be left out.
+    # The fourth line of numbers has the lengths of the three histories, of which the last two may be absent.
     sizes_line = start + _TEXT_LINES + 3
     sizes = (
         [int(size) for size in lines[sizes_line].split()[3:6] if _SIZE.fullmatch(size)]
@@ -81,11 +81,11 @@ def _component(file: str, lines: Lines, start: int, units: str | None) -> tuple[
     )
     for size in sizes[1:]:  # velocity and displacement
         _, end, _ = layout.fixed_width(file, lines, layout.RecordBlock(end, size, _WIDTH, sizes_line + 1), last=False)
-    # Not the time of the peak: that does not count the taper which was put in front of the values.
-    remarks += peak_doubts(values, own, unit, unit_line, peak)
+    # The time of the peak is not checked, as it excludes the taper before the values.
+    remarks += peak_doubts(values, interval, unit, unit_line, peak)
     if (duration := head.items.get("duration")) and duration.line_number == count_line:
-        remarks += length_doubts((npts - 1) * own, count_line, duration.groups[0], own)
+        remarks += length_doubts((npts - 1) * interval, count_line, duration.groups[0], interval)
     acceleration, name = layout.in_si(values, unit), head["component"].groups[0]
     return layout.Channel(
-        name, own, acceleration, unit, head["dt"].line_number, remarks=remarks, origin=head.origin
+        name, interval, acceleration, unit, head["dt"].line_number, remarks=remarks, origin=head.origin
     ), end

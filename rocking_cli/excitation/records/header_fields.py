@@ -13,7 +13,7 @@ from rocking_cli.excitation.records.layout import number, whole_number
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.origins import origin
 
-_SEARCHED_CHARACTERS = 1000  # of a line
+_SEARCHED_PER_LINE = 1000
 
 
 class Field(NamedTuple):
@@ -93,7 +93,7 @@ def read_head(file: str, lines: Lines, fields: Mapping[str, Field], count: int, 
 
     Raises `InputError` if the header does not state an item that it must state.
     """
-    head = [line.rstrip()[:_SEARCHED_CHARACTERS] for line in lines[start : start + count]]
+    head = [line.rstrip()[:_SEARCHED_PER_LINE] for line in lines[start : start + count]]
     items: dict[str, Item] = {}
     for name, field in fields.items():
         for place, line in enumerate(head, start=1):

@@ -30,7 +30,7 @@ _FIELDS = {
     "magnitude": Field(regex(r"^Mag\.\s+(\S+)")),
 }
 _HEADER_LINES = 17
-_WIDTH, _AFTER = 9, 1  # characters to a number, the last of them a blank
+_NUMBER_WIDTH, _BLANKS_AFTER = 9, 1  # characters per number, and blanks after it
 
 
 def sniff(text: str) -> bool:
@@ -53,10 +53,10 @@ def read(
     unit = layout.stated_unit(file, scale_line, spelling, units)
     rate, length = head.number("rate"), head.number("duration")
     full, counts = head.number("scale"), head.number("scale", 2)
-    # The format has no number of points: it is the rate times the duration.
+    # The format states no number of points; the rate times the duration gives it.
     count = layout.whole_number(file, length_line, length_text, f"{round(rate * length)}", "number of points", least=2)
     values, _, remarks = layout.fixed_width(
-        file, lines, layout.RecordBlock(_HEADER_LINES, count, _WIDTH, length_line, after=_AFTER)
+        file, lines, layout.RecordBlock(_HEADER_LINES, count, _NUMBER_WIDTH, length_line, after=_BLANKS_AFTER)
     )
     if not sensible(float(np.abs(values).max()) * (full / counts)):
         message = "the scale factor makes accelerations beyond all measure"
@@ -66,5 +66,5 @@ def read(
     if peak := head.items.get("peak"):
         remarks += peak_doubts(scaled, 1 / rate, spelling, peak.line_number, *peak.groups)
     name, rate_line = head.text("direction") or "", head["rate"].line_number
-    found = layout.Channel(name, 1 / rate, acceleration, unit, rate_line, remarks=remarks, origin=head.origin)
-    return layout.choose(file, TITLE, [found], channel, dt)
+    only = layout.Channel(name, 1 / rate, acceleration, unit, rate_line, remarks=remarks, origin=head.origin)
+    return layout.choose(file, TITLE, [only], channel, dt)

@@ -22,7 +22,7 @@ from rocking_cli.excitation.records.text import check_interval, numbers_in, sens
 from rocking_cli.excitation.records.widths import PrintedRows, odd_digits, split_numbers
 from rocking_cli.text import regex
 
-# A row of numbers has no letters but those of exponents; asterisks are an overflow, for `numbers_in` to refuse.
+# The only letters in a row of numbers are exponents. Asterisks are overflows, which `numbers_in` refuses.
 _NO_ROW = regex(r"[^\s\d.+\-*EeDd]")
 _NOT_FINITE = regex(r"[+-]?(?:nan|inf|infinity)\b", re.IGNORECASE)
 TENTH_OF_G = "g/10"
@@ -150,7 +150,7 @@ def fixed_width(file: str, lines: Lines, block: RecordBlock, *, last: bool = Tru
         If a number is not finite, there are too many or too few, or a few rows are not aligned to the columns.
     """
     lines.check_lengths(file)
-    values = array("d")  # a list would hold an object for each
+    values = array("d")  # a list would need an object per value
     index = block.start
     leaving: list[int] = []  # line numbers
     unread: InputError | None = None
@@ -209,16 +209,16 @@ def _cells(row: str, block: RecordBlock) -> list[str] | None:
 def _floats(file: str, line_number: int, row: str, cells: Sequence[str], block: RecordBlock) -> list[float]:
     """Return the values of cells, NaN for missing values."""
     try:
-        found = [float(cell.upper().replace("D", "E")) for cell in cells]
+        values = [float(cell.upper().replace("D", "E")) for cell in cells]
     except ValueError:
-        found = []
-    if found and block.unset is not None:
-        found = [math.nan if value == block.unset else value for value in found]
-        if all(sensible(value) or math.isnan(value) for value in found):
-            return found
-    if not found or not all(map(sensible, found)):
+        values = []
+    if values and block.unset is not None:
+        values = [math.nan if value == block.unset else value for value in values]
+        if all(sensible(value) or math.isnan(value) for value in values):
+            return values
+    if not values or not all(map(sensible, values)):
         return numbers_in(file, line_number, row, cells)
-    return found
+    return values
 
 
 def _out_of_columns(file: str, lines: Lines, leaving: Sequence[int], rows: int, block: RecordBlock) -> Problem:
@@ -316,11 +316,11 @@ def whole_number(
 ) -> int:
     """Return an integer of the header from `least` to `most`; `what` is its name in messages."""
     digits = token.strip()
-    # Python takes no more than some thousand digits for a number, and those of other scripts, too.
+    # `int` refuses thousands of digits, and accepts digits of other scripts.
     if re.fullmatch(r"[+-]?[0-9]{1,30}", digits) and least <= int(digits) <= most:
         return int(digits)
-    shown = digits if len(digits) <= 40 else f"{digits[:20]}... ({len(digits)} characters)"
-    message = f"the {what} must be a whole number from {least} to {most}, this is {shown or 'missing'}"
+    quoted = digits if len(digits) <= 40 else f"{digits[:20]}... ({len(digits)} characters)"
+    message = f"the {what} must be a whole number from {least} to {most}, this is {quoted or 'missing'}"
     raise InputError(Problem(message, file, line_number, excerpt=line.strip()[:100]))
 
 
@@ -339,7 +339,7 @@ def number(file: str, line_number: int, line: str, token: str, what: str) -> flo
 
 
 def choose(
-    file: str, form: str, channels: Sequence[Channel], asked: str | None = None, dt: float | None = None
+    file: str, form: str, channels: Sequence[Channel], requested: str | None = None, dt: float | None = None
 ) -> GroundMotion:
     """Return the ground motion of the requested channel, or of the only one.
 
@@ -351,7 +351,7 @@ def choose(
         Name of the format.
     channels : sequence of Channel
         Channels of the file.
-    asked : str, optional
+    requested : str, optional
         The requested channel, by its number, from 1, or by its name.
     dt : float, optional
         Sampling interval given by the user [s], which must agree with the file.
@@ -361,10 +361,10 @@ def choose(
     GroundMotion
         Accelerations [m/s2], named after the file, and after the channel if there are several.
     """
-    if asked is None and len(channels) > 1:
+    if requested is None and len(channels) > 1:
         message = f"the file has {len(channels)} channels, and only one can shake a structure"
         raise InputError(Problem(message, file=file, hint=f"choose one with `channel`:{_listed(channels)}"))
-    chosen = channels[0] if asked is None else _find(file, channels, asked)
+    chosen = channels[0] if requested is None else _find(file, channels, requested)
     if chosen.flaw is not None:
         raise InputError(chosen.flaw)
     check_interval(file, chosen.dt_line, chosen.dt, dt)
@@ -392,15 +392,15 @@ def _is_row(line: str) -> bool:
     return bool(line.strip()) and not (_NO_ROW.search(line) and _NO_ROW.search(_NOT_FINITE.sub("0", line)))
 
 
-def _find(file: str, channels: Sequence[Channel], asked: str) -> Channel:
+def _find(file: str, channels: Sequence[Channel], requested: str) -> Channel:
     """Return the channel with a number or name; a number such as 90 is tried as the channel's number first."""
-    word = _plain(asked)
+    word = _plain(requested)
     if word.isdecimal() and 1 <= int(word) <= len(channels):
         return channels[int(word) - 1]
     named = [channel for channel in channels if channel.name and _plain(channel.name) == word]
     if len(named) == 1:
         return named[0]
-    message = f"{len(named)} channels are called '{asked}'" if named else f"there is no channel '{asked}'"
+    message = f"{len(named)} channels are called '{requested}'" if named else f"there is no channel '{requested}'"
     hint = f"there {'is' if len(channels) == 1 else 'are'}:{_listed(channels)}"
     raise InputError(Problem(message, file=file, field="`channel`", hint=hint))
 

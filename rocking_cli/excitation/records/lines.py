@@ -10,7 +10,7 @@ from typing import overload
 
 from rocking_cli.errors import InputError, Problem
 
-PAGE = 1 << 16
+PAGE_CHARACTERS = 1 << 16
 """Characters of a page, at least: a page ends where a line does."""
 MAX_LINE_CHARACTERS = 1_000_000
 """Characters of a line of numbers, at most: a thousand columns of a thousand characters."""
@@ -30,14 +30,14 @@ class Lines(Sequence[str]):
     def __init__(self, text: str, *, tabs: bool = False) -> None:
         self._had_tabs = "\t" in text
         self._text = text = text.expandtabs() if tabs and self._had_tabs else text
-        self._starts = [0]  # of each page, in the text
-        self._firsts = [0]  # index of its first line
-        while (end := text.find("\n", self._starts[-1] + PAGE)) >= 0:
+        self._starts = [0]  # offsets of the pages in the text
+        self._firsts = [0]  # index of the first line of each page
+        while (end := text.find("\n", self._starts[-1] + PAGE_CHARACTERS)) >= 0:
             self._firsts.append(self._firsts[-1] + text.count("\n", self._starts[-1], end + 1))
             self._starts.append(end + 1)
         self._length = self._firsts[-1] + text.count("\n", self._starts[-1]) + 1
         self._starts.append(len(text) + 1)
-        self._number, self._page = 0, self._cut(0)  # the page that was looked at last
+        self._number, self._page = 0, self._cut(0)  # the page read last
 
     def __len__(self) -> int:
         return self._length
@@ -49,7 +49,7 @@ class Lines(Sequence[str]):
     def __getitem__(self, index: int | slice) -> str | list[str]:
         if isinstance(index, slice):
             return [self[place] for place in range(*index.indices(self._length))]
-        index = range(self._length)[index]  # counts from the end, and refuses, as a list does
+        index = range(self._length)[index]  # negative and invalid indices behave as in a list
         number = bisect_right(self._firsts, index) - 1
         if number != self._number:
             self._number, self._page = number, self._cut(number)
@@ -78,7 +78,7 @@ class Lines(Sequence[str]):
         """Raise `InputError` if a line is so long that its numbers would fill the memory."""
         ends = [*self._firsts[1:], self._length]
         for (start, end), number in zip(pairwise(self._starts), ends, strict=True):
-            if end - start > PAGE + MAX_LINE_CHARACTERS:  # the last line of a page is the only one that goes beyond it
+            if end - start > PAGE_CHARACTERS + MAX_LINE_CHARACTERS:  # only the last line of a page extends beyond it
                 raise InputError(
                     Problem(f"a line of numbers has at most {MAX_LINE_CHARACTERS} characters", file, number)
                 )

@@ -60,20 +60,20 @@ def read(
     segments: dict[str, list[Any]] = {}
     for trace in traces(data, file, "MSEED"):
         segments.setdefault(trace.id, []).append(trace)
-    # obspy says nothing of a last record that is not whole.
+    # obspy ignores an incomplete last record.
     if len(data) % min(trace.stats.mseed.record_length for parts in segments.values() for trace in parts):
         message = "the file ends in the middle of a record"
         raise InputError(Problem(message, file, hint="it was cut short: download it again"))
     codes = {name: parts[0].stats.channel for name, parts in segments.items()}
-    if len(set(codes.values())) == len(codes):  # station and network are of no use then
+    if len(set(codes.values())) == len(codes):  # unique channel codes need no station and network
         segments = {codes[name]: parts for name, parts in segments.items()}
     channels = []
     for name, parts in segments.items():  # obspy splits a channel at gaps
         parts = sorted(parts, key=lambda segment: segment.stats.starttime)
         flaw = velocity_code(file, parts[0].stats.channel, wanted) or _gap(file, name, parts)
         samples = np.concatenate([segment.data for segment in parts])
-        found = channel_of(file, name, parts[0].stats.delta, samples, unit, flaw)
-        channels.append(replace(found, origin=origin_of(parts[0])))
+        joined = channel_of(file, name, parts[0].stats.delta, samples, unit, flaw)
+        channels.append(replace(joined, origin=origin_of(parts[0])))
     return choose(file, TITLE, channels, channel, dt)
 
 

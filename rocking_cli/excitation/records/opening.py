@@ -20,7 +20,7 @@ from rocking_cli.text import regex
 STANDARD_INPUT = "-"
 MAX_FILE_BYTES = 2_000_000_000  # ten million samples take about 300 MB
 MAX_UNPACKED_BYTES = 500_000_000
-MAX_UNPACKED_RATIO = 200  # applies above `UNCHECKED_BYTES`; records compress by 60 at most
+MAX_UNPACKED_RATIO = 200  # applies above `UNCHECKED_BYTES`; a ratio of 60 is already high
 UNCHECKED_BYTES = 10_000_000  # unpacked size that any packed file may have
 MAX_ARCHIVE_FILES = 10_000
 MAX_LISTED_FILES = 30
@@ -136,7 +136,7 @@ def _from_standard_input() -> bytes:
         raise InputError(Problem(message, file, hint="give one of them as a file"))
     try:
         data = read_at_most(getattr(stream, "buffer", stream), MAX_FILE_BYTES)
-    except (OSError, ValueError) as error:  # ValueError: it is closed
+    except (OSError, ValueError) as error:  # ValueError: standard input is closed
         raise InputError(Problem(f"cannot be read: {getattr(error, 'strerror', None) or error}", file)) from None
     if data is None:
         raise InputError(
@@ -149,24 +149,24 @@ def _from_standard_input() -> bytes:
 def _of_gzip(data: bytes, file: str) -> bytes:
     try:
         with gzip.GzipFile(fileobj=io.BytesIO(data)) as stream:
-            found = read_at_most(stream, _most(len(data)))
-    except Exception as error:  # of many kinds, without a base of their own
+            content = read_at_most(stream, _most(len(data)))
+    except Exception as error:  # the library raises many kinds of errors, without a common base
         raise InputError(_damaged("gzip file", error, file)) from None
-    if found is None:
+    if content is None:
         raise InputError(_too_large(file, len(data)))
-    return found
+    return content
 
 
 def _of_zip(data: bytes, file: str, channel: str | None) -> tuple[bytes, str, bool, str | None]:
     """Return content and name of the requested or only file, whether there are several, and the channel in it."""
-    if data.count(b"PK\x01\x02") > MAX_ARCHIVE_FILES:  # their list is read as a whole
+    if data.count(b"PK\x01\x02") > MAX_ARCHIVE_FILES:  # zipfile reads the whole list of files at once
         raise InputError(
             Problem(f"the archive has more than {MAX_ARCHIVE_FILES} files: too many for a record", file, hint=_UNPACK)
         )
     try:
         archive = zipfile.ZipFile(io.BytesIO(data))
         members = [member for member in archive.infolist() if not _is_no_record(member)]
-    except Exception as error:  # of many kinds, without a base of their own
+    except Exception as error:  # the library raises many kinds of errors, without a common base
         raise InputError(_damaged("zip archive", error, file)) from None
     names = [_printable(member.filename) for member in members]
     if _SPREADSHEET in names:
@@ -184,7 +184,7 @@ def _of_zip(data: bytes, file: str, channel: str | None) -> tuple[bytes, str, bo
     try:
         with archive.open(member) as stream:
             content = read_at_most(stream, _most(packed))
-    except Exception as error:  # of many kinds, without a base of their own
+    except Exception as error:  # the library raises many kinds of errors, without a common base
         raise InputError(_damaged("zip archive", error, inside)) from None
     if content is None:
         raise InputError(_too_large(inside, packed))
@@ -200,8 +200,8 @@ def _is_no_record(member: zipfile.ZipInfo) -> bool:
 def _chosen(file: str, names: Sequence[str], channel: str | None) -> tuple[int, str | None]:
     """Return the index of the requested file of an archive, and the channel in it."""
     if channel is not None:
-        for asked, rest in ((channel, None), channel.rpartition(":")[::2]):
-            if (place := _place(names, asked.strip(), alone=len(names) == 1)) is not None:
+        for requested, rest in ((channel, None), channel.rpartition(":")[::2]):
+            if (place := _place(names, requested.strip(), alone=len(names) == 1)) is not None:
                 return place, rest
     if len(names) == 1:
         return 0, channel
@@ -215,14 +215,20 @@ def _chosen(file: str, names: Sequence[str], channel: str | None) -> tuple[int, 
     raise InputError(Problem(message, file, field=None if channel is None else "`channel`", hint=hint))
 
 
-def _place(names: Sequence[str], asked: str, *, alone: bool) -> int | None:
+def _place(names: Sequence[str], requested: str, *, alone: bool) -> int | None:
     """Return the index of a file by its name, with or without folder, or by its number; None if not found."""
     for wanted in (names, [name.rsplit("/", 1)[-1] for name in names]):
-        found = [place for place, name in enumerate(wanted) if name.lower() == asked.lower()]
-        if len(found) == 1:
-            return found[0]
-    if not alone and asked.isascii() and asked.isdigit() and len(asked) < 9 and 1 <= int(asked) <= len(names):
-        return int(asked) - 1
+        places = [place for place, name in enumerate(wanted) if name.lower() == requested.lower()]
+        if len(places) == 1:
+            return places[0]
+    if (
+        not alone
+        and requested.isascii()
+        and requested.isdigit()
+        and len(requested) < 9
+        and 1 <= int(requested) <= len(names)
+    ):
+        return int(requested) - 1
     return None
 
 
@@ -238,9 +244,9 @@ def _most(packed: int) -> int:
 
 
 def _too_large(file: str, packed: int) -> Problem:
-    most = _most(packed)
-    size = f"{most / 1e6:.4g} MB" + (
-        f", {MAX_UNPACKED_RATIO} times its packed size" if UNCHECKED_BYTES < most < MAX_UNPACKED_BYTES else ""
+    limit = _most(packed)
+    size = f"{limit / 1e6:.4g} MB" + (
+        f", {MAX_UNPACKED_RATIO} times its packed size" if UNCHECKED_BYTES < limit < MAX_UNPACKED_BYTES else ""
     )
     return Problem(f"this cannot be a record file: unpacked it is larger than {size}", file)
 
@@ -250,7 +256,7 @@ def _printable(text: str) -> str:
     return "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in text)
 
 
-# Bytes no text file holds. Ctrl-Z (0x1a) is allowed: DOS programs end text files with it.
+# Bytes that are in no text file. Ctrl-Z (0x1a) is allowed, as DOS programs end text files with it.
 _BINARY = regex(rb"[\x00-\x08\x0e-\x19\x1b-\x1f]")
 _BLANK_WITH_NUL = regex(rb"^[ \t\r]*\0[\0 \t\r]*$", re.MULTILINE)
 _UTF16_BYTES = 2000  # searched for UTF-16 without a byte order mark

@@ -22,7 +22,7 @@ MAX_DISTANCE = 20_040.0  # km; half the circumference of the Earth
 _NOTHING = regex(r"(?:unknown|undefined|not (?:known|available)|none|n/?a|-?12345|-?999)\.?", re.IGNORECASE)
 _NUMBER = regex(r"[+-]?(?:\d{1,6}\.?\d{0,9}|\.\d{1,9})")
 _DATE = regex(r"\d{1,2}/\d{1,2}/\d{2,4}")
-# Of PEER before 2003: the earthquake, date and time, the station, the component, with the station's number in brackets.
+# PEER before 2003: earthquake, date, time, station and component, with the number of the station in brackets.
 _OLD_PEER = regex(r"(\S.*?\s\d{1,2}/\d{1,2}/\d{2}(?:,? +\d{4}| +\d{2}:\d{2})?), *(\S[^,]*?) *,[^,]*")
 _CSMIP_EVENT = regex(r"^\s*(\S.*\bEARTHQUAKE\b.*\b(?:19|20)\d\d\b.*)", re.IGNORECASE)
 _CSMIP_STATION = regex(r"STATION NO\. *(\d+)", re.IGNORECASE)
@@ -49,17 +49,17 @@ def origin(event: str | None, station: str | None, magnitude: object = None, dis
 
 def name(text: str | None) -> str | None:
     """Return a name in one line, fit for display; None if it has no meaning."""
-    found = seen(text or "").strip(" ,;:-*")
-    if not re.search(r"[^\W_]", found) or _NOTHING.fullmatch(found):
+    cleaned = seen(text or "").strip(" ,;:-*")
+    if not re.search(r"[^\W_]", cleaned) or _NOTHING.fullmatch(cleaned):
         return None
-    return found[:MAX_NAME_CHARACTERS].rstrip()
+    return cleaned[:MAX_NAME_CHARACTERS].rstrip()
 
 
 def of_csmip(head: Sequence[str]) -> Origin:
     """Return the origin from the text header of a CSMIP channel, with the earthquake and its date in one line."""
     number = next((k for k, line in enumerate(head) if _CSMIP_STATION.match(line)), None)
     station = None
-    if number is not None:  # its name is in the line below
+    if number is not None:  # the next line has the name
         below = head[number + 1 : number + 2]
         match = _CSMIP_STATION.match(head[number])
         station = name(below[0]) if below and not _CHANNEL.match(below[0]) else match[1] if match else None
@@ -93,15 +93,15 @@ def of_info(text: str) -> Origin:
     return of_peer(f"{match[1]}, component") if match else NOT_SAID
 
 
-def _within(value: object, above: float, most: float) -> float | None:
-    """Return a number of a header if it is above `above` and at most `most`; else None."""
+def _within(value: object, above: float, upper: float) -> float | None:
+    """Return a number of a header if it is above `above` and at most `upper`; else None."""
     if isinstance(value, str):
         value = float(value) if _NUMBER.fullmatch(value := value.strip()) else None
     try:
         number = float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError, OverflowError):
         return None
-    return number if math.isfinite(number) and above < number <= most else None
+    return number if math.isfinite(number) and above < number <= upper else None
 
 
 _DIGITS = regex(r"[+-]?(?:\d+\.?(\d*)|\.(\d+))(?:[EeDd]([+-]?\d{1,3}))?")
@@ -131,21 +131,21 @@ def peak_doubts(
     tuple of Doubt
         The doubts; empty if values and header agree, or the header does not have numbers.
     """
-    stated, found = _value(peak), float(np.abs(values).max())
+    stated, largest = _value(peak), float(np.abs(values).max())
     if stated is None:
         return ()
-    tolerance = stated[1] + _PEAK_TOLERANCE * found
-    if not abs(abs(stated[0]) - found) <= tolerance:
+    tolerance = stated[1] + _PEAK_TOLERANCE * largest
+    if not abs(abs(stated[0]) - largest) <= tolerance:
         text = (
             f"line {line} of its header states a peak of {abs(stated[0]):g} {unit}, the largest of its values is "
-            f"{found:g}: a damaged number, or processed since?"
+            f"{largest:g}: a damaged number, or processed since?"
         )
-        return (Doubt("header_peak", found, text),)
+        return (Doubt("header_peak", largest, text),)
     when = _value(time) if time is not None else None
     if when is None:
         return ()
-    times = dt * np.flatnonzero(np.abs(values) >= found - tolerance)
-    if float(np.abs(times - when[0]).min()) <= when[1] + 1.01 * dt:  # some count from 0, some from dt
+    times = dt * np.flatnonzero(np.abs(values) >= largest - tolerance)
+    if float(np.abs(times - when[0]).min()) <= when[1] + 1.01 * dt:  # some headers count time from 0, others from dt
         return ()
     text = (
         f"line {line} of its header states the peak at {when[0]:g} s, but it is at {times[0]:g} s: "
@@ -154,13 +154,13 @@ def peak_doubts(
     return (Doubt("header_time", float(times[0]), text),)
 
 
-def length_doubts(found: float, line: int, length: str, tolerance: float) -> tuple[Doubt, ...]:
+def length_doubts(duration: float, line: int, length: str, tolerance: float) -> tuple[Doubt, ...]:
     """Return a doubt if the duration differs from that in the header [s] by more than `tolerance` [s] and rounding."""
     stated = _value(length)
-    if stated is None or abs(stated[0] - found) <= stated[1] + tolerance:
+    if stated is None or abs(stated[0] - duration) <= stated[1] + tolerance:
         return ()
-    text = f"line {line} of its header states a length of {stated[0]:g} s, its samples make {found:g} s"
-    return (Doubt("header_length", found, text),)
+    text = f"line {line} of its header states a length of {stated[0]:g} s, its samples make {duration:g} s"
+    return (Doubt("header_length", duration, text),)
 
 
 def _value(printed: str) -> tuple[float, float] | None:

@@ -29,7 +29,7 @@ _DT = regex(rf"\bDT\s*=\s*({_FLOAT})", re.IGNORECASE)
 _OLD_STYLE = regex(rf"^\s*(\d+)[\s,]+({_FLOAT})[\s,]+NPTS\s*,\s*DT\b", re.IGNORECASE)
 _SIGNATURE = regex(r"^\s*PEER\b.*\bDATABASE\b", re.IGNORECASE)
 _BEGINS_WITH_NUMBER = regex(r"\s*[+-]?\.?\d")
-_HEADER_LINES = 30  # where the header must have ended; four lines are usual
+_HEADER_LINES = 30  # longest header; four lines are usual
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class _PeerHeader:
 def sniff(text: str) -> bool:
     """Return whether this is a PEER file: its title, or a line with NPTS that is not a comment, is near the top."""
     head = text[:100_000].split("\n")[:_HEADER_LINES]
-    if text.lstrip().startswith("{"):  # JSON, which may well quote the header of its origin
+    if text.lstrip().startswith("{"):  # JSON may quote the header of a PEER file
         return False
     return any(_SIGNATURE.match(line) or _NPTS.search(line) or _OLD_STYLE.match(line) for line in head if _plain(line))
 
@@ -74,7 +74,7 @@ def read(
         message = f"a record needs at least two samples, this has {header.npts}"
         raise InputError(Problem(message, file=file, line=header.npts_line))
     remarks = tuple(odd_digits(rows))
-    # Only files with the title of the database are known to have the origin in the second line.
+    # Only in files with the title of the database is the second line known to be the origin.
     origin = of_peer(lines[1]) if len(lines) > 1 and _SIGNATURE.match(lines[0]) else NOT_SAID
     name = Path(file).name
     return GroundMotion(name, header.dt, values * UNITS[unit], unit, TITLE, remarks=remarks, origin=origin)
@@ -114,7 +114,7 @@ def _header(file: str, lines: Sequence[str]) -> _PeerHeader:
 def _page_values(file: str, first: int, page: Sequence[str]) -> Reals:
     """Return the values of the lines from index `first` on; line by line only if there is an error."""
     body = "\n".join(filter(_plain, page))
-    if "_" not in body:  # float() would take 1_000
+    if "_" not in body:  # float() would accept 1_000
         try:
             values = np.array([float(token) for token in split_numbers(body.upper().replace("D", "E"))])
         except ValueError:
@@ -122,11 +122,11 @@ def _page_values(file: str, first: int, page: Sequence[str]) -> Reals:
         else:
             if usable(values):
                 return values
-    found: list[float] = []
+    numbers: list[float] = []
     for number, line in enumerate(page, start=first + 1):
         if _plain(line):
-            found.extend(numbers_in(file, number, line, split_numbers(line)))
-    return np.array(found)
+            numbers.extend(numbers_in(file, number, line, split_numbers(line)))
+    return np.array(numbers)
 
 
 def _plain(line: str) -> bool:

@@ -63,10 +63,10 @@ _NAMED = [
         rf"^({_SPELLED})$",
     )
 ]
-# A line about one value, such as the peak, which may well be in another unit than the record.
+# A line about one value, such as the peak, whose unit may differ from that of the record.
 _ABOUT_A_VALUE = regex(r"\b(?:pg[avd]|peak|max\w*|min|minimum|rms|arias|scaled?|factor|gravity)\b")
 _NOT_USABLE = regex(rf"(?:{_UNITS_OF}|{_ACCELERATION}{_GAP})[\[(]?({_SPEED}|{_FOREIGN})|{_UNITS_OF}({_LENGTH})")
-# What stands where a unit should: after the word, or in brackets in the label of a column that is not the time.
+# Text in place of a unit: after the word, or in brackets in the label of a column other than the time.
 _STATED_UNIT = regex(
     r"\bunits? *(?:[:=]|of |are |is |in )[ :=]*[\[(]?(?!(?:acc\w*|the|time)\b)([^\s,;\])]{1,20})", re.IGNORECASE
 )
@@ -86,14 +86,14 @@ def canonical(spelling: str) -> str | None:
     return word[: word.index("s")].rstrip(" ./·*p") + "/s2"
 
 
-def in_g(given: object) -> float:
+def in_g(value: object) -> float:
     """Return an acceleration in standard gravity, from a number or a text with a unit in any spelling of headers.
 
     Raises `UnitError`.
     """
-    parts = split(given) if isinstance(given, str) else None
+    parts = split(value) if isinstance(value, str) else None
     if parts is None or not parts[1]:
-        return number_of(given, "g")
+        return number_of(value, "g")
     unit = canonical(parts[1])
     if unit is None:
         raise UnitError(f"{parts[1]!r} is not a unit of acceleration", f"give one of {CHOICES}")
@@ -110,8 +110,8 @@ def header_units(line: str) -> set[str]:
     line = _normal(line)
     if _ABOUT_A_VALUE.search(line):
         return set()
-    found = _BRACKETED.findall(line) or [match for pattern in _NAMED for match in pattern.findall(line)]
-    return {unit for spelling in found if (unit := canonical(spelling))}
+    spellings = _BRACKETED.findall(line) or [match for pattern in _NAMED for match in pattern.findall(line)]
+    return {unit for spelling in spellings if (unit := canonical(spelling))}
 
 
 def resolve_unit(file: str, header: Sequence[tuple[int, str]], units: str | None) -> str:
@@ -136,17 +136,17 @@ def resolve_unit(file: str, header: Sequence[tuple[int, str]], units: str | None
     InputError
         If neither header nor user gives a unit, the two differ, the header has several, or is not about acceleration.
     """
-    given = None if units is None else canonical(units)
-    if units is not None and given is None:
+    requested = None if units is None else canonical(units)
+    if units is not None and requested is None:
         raise InputError(Problem(f"unknown unit '{units}'", field="`units`", hint=f"choose one of: {CHOICES}"))
     stated = {unit: number for number, line in reversed(header) for unit in sorted(header_units(line))}
     _refuse_other_quantities(file, header)
-    if given and stated and not any(_same(given, unit) for unit in stated):
+    if requested and stated and not any(_same(requested, unit) for unit in stated):
         unit, number = next(iter(stated.items()))
-        message = f"the header says the unit is {unit}, but `units` says {given}"
+        message = f"the header says the unit is {unit}, but `units` says {requested}"
         raise InputError(Problem(message, file=file, line=number, hint="leave `units` out, or correct the header"))
-    if given:
-        return next((unit for unit in stated if _same(given, unit)), given)
+    if requested:
+        return next((unit for unit in stated if _same(requested, unit)), requested)
     if not stated:
         raise InputError(_not_said(file, header))
     if not all(_same(unit, other) for unit in stated for other in stated):
@@ -175,7 +175,7 @@ def _refuse_other_quantities(file: str, header: Sequence[tuple[int, str]]) -> No
     for index, (number, line) in enumerate(header):
         label = index == len(header) - 1
         what = other_quantity(line, label=label)
-        # Only the labels are about the columns for sure: elsewhere "peak velocity" is just information.
+        # Only labels surely describe the columns; elsewhere "peak velocity" may be mere information.
         if what and (label or not about_acceleration):
             hint = f"give the ground acceleration, in one of: {CHOICES}"
             raise InputError(Problem(what, file=file, line=number, excerpt=line.strip()[:100], hint=hint))
@@ -229,12 +229,12 @@ OTHER_UNITS: dict[Quantity, tuple[str, ...]] = {
     "displacement": tuple(KINDS["length"]),
 }
 """The units of what is differentiated; those of accelerations are in `units.UNITS`."""
-EXAMPLE = "0.05 m/V"
+GAIN_EXAMPLE = "0.05 m/V"
 MIN_GAIN, MAX_GAIN = 1e-30, 1e30  # products overflow beyond these bounds
-TIMES = frozenset(
+TIME_UNITS = frozenset(
     ["s", "sec", "second", "seconds", "ms", "min", "minute", "minutes", "h", "hr", "hour", "hours", "d", "day", "days"]
 )
-MAX_STEP_OVER_PEAK = 0.05  # what the smallest printed digit may stand for
+MAX_STEP_OVER_PEAK = 0.05  # acceleration of one step of the last digit over the peak
 
 _IN_HEADER = regex(r"[\[(]\s*([^\])\s]+)\s*[\])]|\bin\s+([^\s,;]+)")
 _STATED = regex(r"[\[(]\s*([^\])\s]+)\s*[\])]")
@@ -278,16 +278,16 @@ class Wanted(NamedTuple):
                     raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=hint))
             return "raw", 1.0
         if self.quantity == "acceleration":
-            found = resolve_unit(file, header, units)
-            return found, UNITS[found]
+            name = resolve_unit(file, header, units)
+            return name, UNITS[name]
         return self._other_unit(file, header, units)
 
     def _refuse_another(self, file: str, header: Sequence[tuple[int, str]]) -> None:
         """Raise `InputError` if the labels have units in brackets, and all of these are of other quantities."""
         for number, line in header[-1:]:
-            said = {each: unit for unit in _STATED.findall(line) if (each := quantity_of(unit)) is not None}
-            if said and self.quantity not in said:
-                other, unit = next(iter(said.items()))
+            stated = {each: unit for unit in _STATED.findall(line) if (each := quantity_of(unit)) is not None}
+            if stated and self.quantity not in stated:
+                other, unit = next(iter(stated.items()))
                 message = f"the header says that the values are in {unit}, a unit of {plural(other)}"
                 hint = f"is it `from` {other}?"
                 raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=hint))
@@ -316,7 +316,7 @@ class Wanted(NamedTuple):
         if stated is not None:
             return stated.unit, stated.size
         message = f"the file does not say what unit its {plural(self.quantity)} are in"
-        hint = f"say which it is with `units`: {known}; or with `gain`, such as {EXAMPLE}"
+        hint = f"say which it is with `units`: {known}; or with `gain`, such as {GAIN_EXAMPLE}"
         raise InputError(Problem(message, file, hint=hint))
 
 
@@ -335,8 +335,8 @@ def size_of(unit: str, quantity: Quantity) -> float | None:
     if quantity == "acceleration":
         name = canonical(unit)
         return None if name is None else UNITS[name]
-    said = KINDS["velocity" if quantity == "velocity" else "length"].get("".join(unit.split()))
-    return None if said is None else float(said)
+    size = KINDS["velocity" if quantity == "velocity" else "length"].get("".join(unit.split()))
+    return None if size is None else float(size)
 
 
 def quantity_of(unit: str) -> Quantity | None:
@@ -381,7 +381,7 @@ class Gain:
         if not unit:
             raise _refused(f"{text!r} is a gain without a unit")
         per = None if quantity_of(unit) else _PER.fullmatch(unit)
-        if per is not None and per[2].lower() in TIMES:
+        if per is not None and per[2].lower() in TIME_UNITS:
             raise _refused(f"{unit!r} is not a known unit, and {per[2]!r} is not an output of an instrument")
         of = unit if per is None else per[1]
         quantity = quantity_of(of)
@@ -395,7 +395,8 @@ class Gain:
 
 def _refused(message: str, guess: str | None = None) -> InputError:
     hint = f"{guess}; " if guess else ""
-    return InputError(Problem(message, field="`gain`", hint=f"{hint}say what one unit stands for, such as {EXAMPLE}"))
+    hint += f"say what one unit stands for, such as {GAIN_EXAMPLE}"
+    return InputError(Problem(message, field="`gain`", hint=hint))
 
 
 def smallest_step(measured: GroundMotion) -> float:
@@ -428,11 +429,17 @@ def as_acceleration(measured: GroundMotion, quantity: Quantity, step: float | No
     dt, values = measured.dt, measured.acceleration
     step = smallest_step(measured) if step is None else step
     inner = np.diff(values, 2) / dt**2 if quantity == "displacement" else (values[2:] - values[:-2]) / (2 * dt)
-    found = np.pad(inner, 1)
-    if not np.isfinite(found).all():
+    acceleration = np.pad(inner, 1)
+    if not np.isfinite(acceleration).all():
         raise InputError(Problem("its differences are beyond the range of numbers", measured.name))
-    remarks = (*measured.remarks, *of_samples(measured, accelerations=False), *_resolution(step, found, dt, quantity))
-    return replace(measured, acceleration=found, remarks=remarks, processing=(*measured.processing, said(quantity)))
+    remarks = (
+        *measured.remarks,
+        *of_samples(measured, accelerations=False),
+        *_resolution(step, acceleration, dt, quantity),
+    )
+    return replace(
+        measured, acceleration=acceleration, remarks=remarks, processing=(*measured.processing, said(quantity))
+    )
 
 
 def said(quantity: Quantity) -> str:
@@ -446,11 +453,11 @@ def in_words(quantity: Quantity, dt: float) -> str:
     return f"differentiated {twice}by central differences, which leave half of what is at {half:.3g} Hz"
 
 
-def _resolution(smallest: float, found: Reals, dt: float, quantity: Quantity) -> tuple[Doubt, ...]:
+def _resolution(smallest: float, acceleration: Reals, dt: float, quantity: Quantity) -> tuple[Doubt, ...]:
     """Return a doubt if one step of the last digit, differentiated, is a large part of the peak acceleration."""
     power, unit = (2, "m") if quantity == "displacement" else (1, "m/s")
     noise = smallest / dt**power
-    peak = float(np.abs(found).max())
+    peak = float(np.abs(acceleration).max())
     if not (isfinite(noise) and noise > MAX_STEP_OVER_PEAK * peak):
         return ()
     text = (

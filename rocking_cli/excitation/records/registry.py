@@ -26,7 +26,7 @@ class Reader(Protocol):
     TITLE: str
     SIGN: str
 
-    # The content is a str, or the bytes of a reader with BINARY = True: Any lets either name its own.
+    # Any, as the content is bytes for a reader with BINARY = True, else str.
     def sniff(self, content: Any, /) -> bool:
         """Return whether a file with this content has this format; fast, and without raising errors."""
         ...
@@ -117,7 +117,7 @@ class _Broken:
     """Substitute for a reader that cannot be used."""
 
     TITLE = "cannot be used"
-    BINARY = True  # it is listed where the file is no text too
+    BINARY = True  # lists the broken reader for binary files too
 
     def __init__(self, error: MechanismError) -> None:
         self.SIGN = str(error)
@@ -144,7 +144,7 @@ class _Guarded:
         try:
             with blame(what, self._module):
                 return bool(self._reader.sniff(content))
-        except RockingError as error:  # it may not raise these either
+        except RockingError as error:  # `sniff` must not raise even these errors
             broken = error if isinstance(error, PluginError) else PluginError(f"{what}: {error}")
             leave_out(broken)
             self.TITLE, self.SIGN = _Broken.TITLE, str(broken)
@@ -210,9 +210,9 @@ def reader_for(text: str | None, file: str, readers: dict[str, Reader], data: by
         why = "; ".join(_described(name, readers[name]) for name in claims)
         hint = "the file holds the marks of both: take out what is not its own, such as another file in its comments"
         raise InputError(Problem(f"more than one format claims this file: {why}", file=file, hint=hint))
-    asked = {name: reader for name, reader in readers.items() if text is not None or takes_bytes(reader)}
-    broken = [_described(name, reader) for name, reader in asked.items() if reader.TITLE == _Broken.TITLE]
-    known = ", ".join(sorted((each.TITLE for each in asked.values() if each.TITLE != _Broken.TITLE), key=str.lower))
+    tried = {name: reader for name, reader in readers.items() if text is not None or takes_bytes(reader)}
+    broken = [_described(name, reader) for name, reader in tried.items() if reader.TITLE == _Broken.TITLE]
+    known = ", ".join(sorted((each.TITLE for each in tried.values() if each.TITLE != _Broken.TITLE), key=str.lower))
     message = "not a record format that can be read: no acceleration values found"
     hint = f"give a file with a number in each line, or of one of these formats: {known}"
     if text is None:

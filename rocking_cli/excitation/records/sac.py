@@ -19,14 +19,14 @@ SIGN = "a binary header with version 6 or 7 in its 77th word"
 BINARY = True
 TAKES_WANTED = True
 
-_HEADER, _FOOTER = 632, 176  # bytes; version 7 ends with some of the header once more, in double precision
+_HEADER, _FOOTER = 632, 176  # bytes; version 7 repeats part of the header at its end, in double precision
 _VERSIONS = (6, 7)
 _TIME_SERIES, _XY = 1, 4  # values of IFTYPE
-_ACCELERATION = 8  # value of IDEP
+_ACCELERATION_KIND = 8  # value of IDEP
 _UNSET = -12345.0
 _EXTREMES_TOLERANCE = 1e-5  # relative; the extremes have 32 bits
-_OTHERS = {6: "displacement", 7: "velocity", 50: "voltage"}
-_A = {"acceleration": "an acceleration", "velocity": "a velocity", "displacement": "a displacement"}
+_OTHER_QUANTITIES = {6: "displacement", 7: "velocity", 50: "voltage"}
+_WITH_ARTICLE = {"acceleration": "an acceleration", "velocity": "a velocity", "displacement": "a displacement"}
 
 
 @dataclass(frozen=True)
@@ -68,9 +68,9 @@ def read(
     if header.kind not in (_TIME_SERIES, _XY):
         message = f"the header says this is not a time series (IFTYPE = {header.kind})"
         raise InputError(Problem(message, file, hint="give the file with the acceleration"))
-    said = _OTHERS.get(header.quantity, wanted.quantity)
-    if said != wanted.quantity and not wanted.raw:
-        message = f"the header says the values are a {said}, not {_A[wanted.quantity]} (IDEP)"
+    quantity = _OTHER_QUANTITIES.get(header.quantity, wanted.quantity)
+    if quantity != wanted.quantity and not wanted.raw:
+        message = f"the header says the values are a {quantity}, not {_WITH_ARTICLE[wanted.quantity]} (IDEP)"
         raise InputError(Problem(message, file, hint="give the file with the acceleration, or say `from` what it is"))
     if header.npts > MOST_SAMPLES:
         message = f"the header says {header.npts} points: a record has at most {MOST_SAMPLES}"
@@ -82,12 +82,12 @@ def read(
     unit = wanted.unit(file, [], units)
     (trace,) = traces(data[:size], file, "SAC")
     name = trace.stats.channel
-    flaw = None if header.quantity == _ACCELERATION else velocity_code(file, name, wanted)
-    # 0.005 is stored as the nearest float of 32 bits, 0.004999999888: the shortest decimal of that was meant.
-    own = float(str(np.float32(header.delta)))
-    found = channel_of(file, name, own, trace.data, unit, flaw)
-    found = replace(found, remarks=_extremes(header, trace.data), origin=origin_of(trace))
-    return choose(file, TITLE, [found], channel, dt)
+    flaw = None if header.quantity == _ACCELERATION_KIND else velocity_code(file, name, wanted)
+    # The interval is a 32-bit float, 0.004999999888 for 0.005; its shortest decimal form restores it.
+    interval = float(str(np.float32(header.delta)))
+    only = channel_of(file, name, interval, trace.data, unit, flaw)
+    only = replace(only, remarks=_extremes(header, trace.data), origin=origin_of(trace))
+    return choose(file, TITLE, [only], channel, dt)
 
 
 def _extremes(header: _SacHeader, samples: NDArray[np.float32]) -> tuple[Doubt, ...]:

@@ -18,7 +18,7 @@ from rocking_cli.excitation.records.record_units import UNITS, Wanted
 from rocking_cli.excitation.records.text import sensible, usable
 from rocking_cli.text import regex
 
-# SEED names a channel by band, instrument and direction; H, L and P are seismometers and geophones: velocity.
+# SEED names a channel by band, instrument and direction; instruments H, L and P measure velocity.
 _VELOCITY_CODE = regex(r"[A-Z][HLP][A-Z0-9]")
 _MAX_ACCELERATION = (
     10 * STANDARD_GRAVITY
@@ -47,8 +47,8 @@ def traces(data: bytes, file: str, form: str) -> list[Any]:
     InputError
         If obspy is not installed, or cannot read the file or a part of it.
     """
-    with warnings.catch_warnings(record=True) as told:
-        warnings.simplefilter("ignore")  # obspy's deprecations are no business of who reads a record
+    with warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("ignore")  # deprecations in obspy do not concern the user
         try:
             import obspy
             from obspy.io.mseed import InternalMSEEDWarning
@@ -56,18 +56,18 @@ def traces(data: bytes, file: str, form: str) -> list[Any]:
             message = f"obspy, which reads such files, cannot be imported: {error}"
             hint = "install it: pip install 'rocking-cli[seismo]'"
             raise InputError(Problem(message, file, hint=hint)) from None
-        warnings.simplefilter("always", InternalMSEEDWarning)  # it passes over what it cannot read
+        warnings.simplefilter("always", InternalMSEEDWarning)  # obspy skips data that it cannot read
         try:
-            found = list(obspy.read(io.BytesIO(data), format=form))
-        except Exception as error:  # of many kinds, without a base of their own
+            read = list(obspy.read(io.BytesIO(data), format=form))
+        except Exception as error:  # obspy raises many kinds of errors, without a common base
             message = f"obspy cannot read this file: {_in_a_line(error)}"
             hint = "the file may have been cut short or damaged: download it again"
             raise InputError(Problem(message, file, hint=hint)) from None
-    if told:
-        message = f"obspy has doubts about this file: {_in_a_line(told[0].message)}"
+    if warned:
+        message = f"obspy has doubts about this file: {_in_a_line(warned[0].message)}"
         hint = "it may be damaged: download it again; if you know it is whole, write it again with obspy"
         raise InputError(Problem(message, file, hint=hint))
-    return found
+    return read
 
 
 def origin_of(trace: Any) -> Origin:

@@ -52,18 +52,20 @@ def read(
         line, column = getattr(error, "lineno", None), getattr(error, "colno", None)
         reason = getattr(error, "msg", "it is nested too deeply")
         raise InputError(Problem(f"not valid JSON: {reason}", file=file, line=line, column=column)) from None
-    # JSON can hold halves of characters, which no terminal and no file takes.
+    # JSON may hold lone surrogates, which cannot be printed or written.
     info = str(data.get("info", "")).encode("utf-8", "backslashreplace").decode().replace("\n", " ")
     unit = resolve_unit(file, [(_line_of(text, "info"), info)], units)
 
-    own: Any = data.get("dT")
-    if not (_is_number(own) and 0 < own < np.inf):
+    interval: Any = data.get("dT")
+    if not (_is_number(interval) and 0 < interval < np.inf):
         message = (
-            "the interval dT is missing" if own is None else f"the interval dT must be positive, this is {_shown(own)}"
+            "the interval dT is missing"
+            if interval is None
+            else f"the interval dT must be positive, this is {_shown(interval)}"
         )
         hint = 'it is the time between samples in seconds, such as "dT": 0.01'
         raise InputError(Problem(message, file=file, line=_line_of(text, "dT"), field="dT", hint=hint))
-    check_interval(file, _line_of(text, "dT"), own, dt)
+    check_interval(file, _line_of(text, "dT"), interval, dt)
 
     values = data.get("accel_data")
     line = _line_of(text, "accel_data")
@@ -83,12 +85,12 @@ def read(
         message = f"a record needs at least two samples, this has {len(values)}"
         raise InputError(Problem(message, file, line, field="accel_data"))
     remarks = _digits(text)
-    if one_too_many:  # SimCenter's own files state one value too many, too
+    if one_too_many:  # files by SimCenter itself state one value too many
         missing = f"it says numPoints = {stated:g} and has one value less, as files of SimCenter do: or was one lost?"
         remarks = (Doubt("count", float(stated), missing), *remarks)
     acceleration = in_si(np.array(values, dtype=np.float64), unit)
     origin = of_info(info)
-    return GroundMotion(Path(file).name, float(own), acceleration, unit, TITLE, remarks=remarks, origin=origin)
+    return GroundMotion(Path(file).name, float(interval), acceleration, unit, TITLE, remarks=remarks, origin=origin)
 
 
 def _whole(digits: str) -> int | float:
@@ -98,7 +100,7 @@ def _whole(digits: str) -> int | float:
 
 def _shown(value: object) -> str:
     """Return a value as JSON text, shortened."""
-    if isinstance(value, (list, dict)):  # of any size and depth
+    if isinstance(value, (list, dict)):  # lists and mappings may be of any size and depth
         return "a list" if isinstance(value, list) else "an object"
     return json.dumps(value)[:40]
 
@@ -114,7 +116,7 @@ def _digits(text: str) -> tuple[Doubt, ...]:
 
 
 def _is_number(value: object) -> bool:
-    # A whole number may be too large for a float; true and false are whole numbers to Python.
+    # An int may be too large for a float, and bool is a kind of int.
     return isinstance(value, float) or (isinstance(value, int) and not isinstance(value, bool) and abs(value) < 1 << 99)
 
 

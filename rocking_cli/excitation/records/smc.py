@@ -24,17 +24,18 @@ _REALS = layout.RecordBlock(_TEXT_LINES + 6, 50, 15, 1, unset=1.7e38)
 _DATA_WIDTH = 10
 _FIELDS = {
     "component": Field(regex(r"component *= *(-?\w+)")),
-    "event": Field(regex(r"^ *(\d{4}) +(\d{1,2}) +(\d{1,2}) +(\d{4}) +(\S.*)$"), line=4),  # its date, time and name
+    # Date, time and name of the earthquake.
+    "event": Field(regex(r"^ *(\d{4}) +(\d{1,2}) +(\d{1,2}) +(\d{4}) +(\S.*)$"), line=4),
     "station": Field(regex(r"^station *= *(.*?),? *\bcomponent *=")),
     "moment": Field(regex(r"Moment Mag= *([\d.]+)")),
     "local": Field(regex(r"\bMl= *([\d.]+)")),
     "surface": Field(regex(r"\bMs= *([\d.]+)")),
     "distance": Field(regex(r"^epicentral dist *= *([\d.]+)")),
 }
-# Of the integers and of the reals, counted from 1.
+# Places among the integers and the reals, counted from 1.
 _COMMENTS, _COUNT = 16, 17
-_RATE = 2  # place of the samples per second
-_EXTREMES = ((29, 30), (31, 32))  # places of time and value of the largest and of the smallest acceleration
+_RATE_PLACE = 2  # samples per second
+_EXTREMES_PLACES = ((29, 30), (31, 32))  # places of time and value of the largest and of the smallest acceleration
 
 
 def sniff(text: str) -> bool:
@@ -52,10 +53,10 @@ def read(
     if kind is None or kind[1] not in _ACCELERATIONS:
         message = f"the header says this is not an acceleration: {lines[0].strip()}"
         raise InputError(Problem(message, file, 1, hint="give the file with the acceleration"))
-    unit = layout.stated_unit(file, 1, "cm/s2", units)  # the definition of the format says so, not the file
+    unit = layout.stated_unit(file, 1, "cm/s2", units)  # the format fixes the unit; the file does not state it
     integers = layout.fixed_width(file, lines, _INTEGERS, last=False).values
     reals, start, _ = layout.fixed_width(file, lines, _REALS, last=False)
-    comments, count, rate = int(integers[_COMMENTS - 1]), int(integers[_COUNT - 1]), float(reals[_RATE - 1])
+    comments, count, rate = int(integers[_COMMENTS - 1]), int(integers[_COUNT - 1]), float(reals[_RATE_PLACE - 1])
     comment_line, count_line, rate_line = _TEXT_LINES + 2, _TEXT_LINES + 3, _REALS.start + 1
     if comments < 0:
         message = f"the header says {comments} comment lines"
@@ -63,7 +64,7 @@ def read(
     if start + comments >= len(lines):
         raise InputError(Problem("the file ends before its values", file, len(lines)))
     layout.whole_number(file, count_line, lines[count_line - 1], str(count), "number of points", least=2)
-    if kind[1] == _UNCORRECTED and not 0 < rate < _MAX_RATE:  # NaN too: what stands for no number
+    if kind[1] == _UNCORRECTED and not 0 < rate < _MAX_RATE:  # also refuses NaN, which stands for a missing rate
         message = "an uncorrected film record, points at uneven times: the header has no number of samples per second"
         raise InputError(Problem(message, file, rate_line, hint="give the corrected record of it (kind 2)"))
     layout.number(file, rate_line, lines[rate_line - 1], f"{rate!r}", "number of samples per second")
@@ -74,14 +75,14 @@ def read(
         raise InputError(Problem(message, file, comment_line, hint="the file may have been edited: download it again"))
     block = layout.RecordBlock(start + comments, count, _DATA_WIDTH, count_line)
     values, _, remarks = layout.fixed_width(file, lines, block)
-    extremes = [(reals[peak - 1], reals[time - 1]) for time, peak in _EXTREMES if not np.isnan(reals[peak - 1])]
+    extremes = [(reals[peak - 1], reals[time - 1]) for time, peak in _EXTREMES_PLACES if not np.isnan(reals[peak - 1])]
     if extremes:
         peak, time = max(extremes, key=lambda extreme: abs(extreme[0]))
         remarks += peak_doubts(values, 1 / rate, unit, _REALS.start + 6, f"{peak:.7E}", f"{time:.7E}")
     head = read_head(file, lines, _FIELDS, _TEXT_LINES)
     name, origin = head.text("component") or "", _origin(head)
-    found = layout.Channel(name, 1 / rate, layout.in_si(values, unit), unit, rate_line, remarks=remarks, origin=origin)
-    return layout.choose(file, TITLE, [found], channel, dt)
+    only = layout.Channel(name, 1 / rate, layout.in_si(values, unit), unit, rate_line, remarks=remarks, origin=origin)
+    return layout.choose(file, TITLE, [only], channel, dt)
 
 
 def _origin(head: RecordHead) -> Origin:

@@ -31,7 +31,7 @@ _NOT_FINITE = regex(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
 _OTHER_TIME = regex(r"(?<![a-z])(?:t|time)[ _]*[\[(]?\s*(ms|msec|milliseconds?|min|minutes?)\b", re.IGNORECASE)
 _FIRST_CELL = regex(r'"([^"]*)"|[^\s,;]*')
 _QUOTED = regex(r'"([^"]*)"')
-_SEARCHED_CHARACTERS = 100_000  # to recognise a format, so that a large file is not searched to its end
+_SEARCHED_CHARACTERS = 100_000  # the format is recognised within them, so that a large file is not searched to its end
 _MAX_VALUE = 1e30  # above any time or acceleration in any unit, and far below overflow
 _INTERVAL_RANGE = (1e-9, 1e6)  # s; sums overflow beyond these bounds, and no record has such intervals
 MAX_NUMBERS = 4 * MOST_SAMPLES
@@ -63,10 +63,10 @@ def read(
     if '"' in lines[start]:
         text = _unquoted(file, start + 1, lines[start], text)
         lines = Lines(text)
-    delimiter = next((mark for mark in (";", "\t", ",") if mark in _clean(lines[start])), None)  # None for blanks
+    delimiter = next((mark for mark in (";", "\t", ",") if mark in _clean(lines[start])), None)  # None splits at blanks
     commas = delimiter in (";", "\t") and any("," in _clean(line) for line in next(lines.pages(start))[1])
     cells = _clean(lines[start]).split(delimiter)
-    # A title such as "6 km south of" is no row of four columns.
+    # A title such as "6 km south of" is not a row of four columns.
     numbers_in(file, start + 1, lines[start], [cell.replace(",", ".") for cell in cells] if commas else cells)
     columns = len(cells)
     if columns > MAX_COLUMNS:
@@ -106,14 +106,14 @@ def read(
         column = _called(names, choice.time) if columns > 2 else ""
         with _uneven_rows(file, lines, start, column):
             try:
-                own = even_interval(table[choice.time])
+                interval = even_interval(table[choice.time])
             except UnevenTimeError:
                 if not wanted.uneven or (gridded := on_grid(table[choice.time], values)) is None:
                     raise
-                own, values, uneven = gridded
-        check_interval(file, None, own, dt)
-        dt = own
-    assert dt is not None  # none at all was refused above
+                interval, values, uneven = gridded
+        check_interval(file, None, interval, dt)
+        dt = interval
+    assert dt is not None  # a missing interval was refused above
     name = Path(file).name + (f" channel {choice.channel}" if choice.channel else "")
     remarks = unlike_the_others(
         PrintedRows(lines, start, lambda line: _clean(line).split(delimiter)[choice.column :][:1])
@@ -162,21 +162,21 @@ def numbers_in(file: str, line_number: int, line: str, tokens: Sequence[str]) ->
     return values
 
 
-def only_channel(file: str, asked: str | None) -> None:
+def only_channel(file: str, requested: str | None) -> None:
     """Raise `InputError` if a channel other than the first is requested of a file with one channel."""
-    if asked is not None and asked.strip() != "1":
-        message = f"there is no channel '{asked}': the file holds one component"
+    if requested is not None and requested.strip() != "1":
+        message = f"there is no channel '{requested}': the file holds one component"
         raise InputError(Problem(message, file=file, field="`channel`", hint="leave `channel` out"))
 
 
-def check_interval(file: str, line_number: int | None, own: float, given: float | None) -> None:
+def check_interval(file: str, line_number: int | None, interval: float, requested: float | None) -> None:
     """Raise `InputError` if the sampling interval of the file [s] is not valid, or differs from the given one."""
-    if not _INTERVAL_RANGE[0] <= own <= _INTERVAL_RANGE[1]:
+    if not _INTERVAL_RANGE[0] <= interval <= _INTERVAL_RANGE[1]:
         raise InputError(
-            Problem(f"the sampling interval is {own:g} s, which is not plausible", file=file, line=line_number)
+            Problem(f"the sampling interval is {interval:g} s, which is not plausible", file=file, line=line_number)
         )
-    if given is not None and not math.isclose(own, given, rel_tol=_DT_TOLERANCE):
-        message = f"the file's sample interval is {own:g} s, but `dt` says {given:g} s"
+    if requested is not None and not math.isclose(interval, requested, rel_tol=_DT_TOLERANCE):
+        message = f"the file's sample interval is {interval:g} s, but `dt` says {requested:g} s"
         raise InputError(Problem(message, file=file, line=line_number, hint="leave `dt` out: the file states its own"))
 
 
@@ -227,14 +227,14 @@ def _header(file: str, lines: Sequence[str], delimiter: str | None, columns: int
     comments, header = [], []
     for number, line in enumerate(lines, start=1):
         line = line.strip()
-        if line.startswith(DONE_PREFIX):  # names of files and gains in it are of what was read before
+        if line.startswith(DONE_PREFIX):  # file names and gains in this line belong to the original file
             continue
         if line.startswith(("#", "%")):
             comments.append((number, line.lstrip("#% \t")))
         elif line:
             header.append((number, line))
     if header and columns > 1:
-        # A spoilt first time, such as O.00 for 0.00, must not pass for a header and lose its sample.
+        # A damaged first time, such as O.00 for 0.00, must not pass for a header, as its sample would be lost.
         number, line = header[-1]
         cells = [cell.strip() for cell in _clean(line).split(delimiter)]
         if len(cells) == columns and all(_value(cell) is not None for cell in cells[1:]):
@@ -243,10 +243,10 @@ def _header(file: str, lines: Sequence[str], delimiter: str | None, columns: int
             raise InputError(
                 Problem("the time is in the second column", file, number, excerpt=line, hint="put the time first")
             )
-    found = comments + header
-    if found and columns == 2:
-        _refuse_other_times(file, [Label(found[-1][1])], [found[-1][0]])
-    return found
+    entries = comments + header
+    if entries and columns == 2:
+        _refuse_other_times(file, [Label(entries[-1][1])], [entries[-1][0]])
+    return entries
 
 
 def _refuse_other_times(file: str, names: Sequence[Label], lines: Sequence[int]) -> None:
@@ -262,17 +262,17 @@ def _table(
 ) -> Reals:
     """Return all columns as rows of an array, by numpy's parser, or the slower one for a page that numpy refuses."""
     columns, rows = len(names), len(lines) - start
-    if rows > MOST_SAMPLES or rows * columns > MAX_NUMBERS:  # before memory is reserved
-        most = MOST_SAMPLES if rows > MOST_SAMPLES else MAX_NUMBERS // columns
-        message = f"a record has at most {most} samples in each column, this file has {rows} lines"
+    if rows > MOST_SAMPLES or rows * columns > MAX_NUMBERS:  # checked before memory is reserved
+        limit = MOST_SAMPLES if rows > MOST_SAMPLES else MAX_NUMBERS // columns
+        message = f"a record has at most {limit} samples in each column, this file has {rows} lines"
         raise InputError(Problem(message, file))
-    table = np.empty((columns, rows))  # rather too wide: blank lines and comments hold nothing
+    table = np.empty((columns, rows))  # may be too wide, as blank lines and comments have no numbers
     filled = 0
     for first, page in lines.pages(start):
         if commas:
             page = _with_points(file, first, page)
         part = _quick_table(page, delimiter, columns)
-        if part is None:  # perhaps only because of comments or empty cells
+        if part is None:  # comments or empty cells may be the only reason
             part = _quick_table([row for line in page if (row := _clean(line))], delimiter, columns)
         if part is None:
             part = _careful_table(file, first, page, delimiter, names)
@@ -285,7 +285,7 @@ def _table(
 
 def _quick_table(lines: Sequence[str], delimiter: str | None, columns: int) -> Reals | None:
     """Parse lines with numpy; None if it cannot parse a line, or a value is not usable."""
-    if not any(line.strip() for line in lines):  # numpy warns of that
+    if not any(line.strip() for line in lines):  # numpy warns of empty input
         return np.empty((0, columns))
     try:
         table = np.loadtxt(lines, dtype=np.float64, delimiter=delimiter, comments=None, ndmin=2)
@@ -304,7 +304,7 @@ def _careful_table(file: str, first: int, lines: Sequence[str], delimiter: str |
             continue
         cells = row.split(delimiter)
         if len(cells) != columns:
-            numbers_in(file, number, line, cells)  # a word or an empty cell is the better thing to point at
+            numbers_in(file, number, line, cells)  # a word or an empty cell makes the better message
             message = f"this row has {len(cells)} column{'s' * (len(cells) > 1)}, the rows before it have {columns}"
             raise InputError(Problem(message, file=file, line=number, excerpt=line.strip()[:100]))
         for place, cell in enumerate(cells):
@@ -330,12 +330,12 @@ def _uneven_rows(file: str, lines: Lines, start: int, column: str) -> Iterator[N
     try:
         yield
     except UnevenTimeError as error:
-        found = Problem(error.message, file=file, field=column or None, hint=error.hint)
+        problem = Problem(error.message, file=file, field=column or None, hint=error.hint)
         if error.row is not None:
             numbers = (number for number, line in enumerate(lines, start=1) if number > start and _clean(line))
             number = next(islice(numbers, error.row, None))
-            found = replace(found, line=number, excerpt=lines[number - 1].strip()[:100])
-        raise InputError(found) from None
+            problem = replace(problem, line=number, excerpt=lines[number - 1].strip()[:100])
+        raise InputError(problem) from None
 
 
 def _not_a_number(file: str, line_number: int, line: str, token: str, *, known: bool) -> Problem:
@@ -357,9 +357,8 @@ def _not_a_number(file: str, line_number: int, line: str, token: str, *, known: 
 MAX_GRID_RATIO = 10  # samples of an even grid over recorded samples
 _MIN_DT = 1e-9  # s
 _MIN_DIGITS, _MAX_DIGITS = 5, 12  # significant digits with which programs print numbers
-_MIN_FINE_SHARE = (
-    0.01  # of times with more decimals than the coarsest one; with fewer, the times share decimals, not digits
-)
+_MIN_FINE_SHARE = 0.01
+"""Share of times that must be finer than the coarsest one, or they have decimals and no digits in common."""
 
 
 class UnevenTimeError(Exception):
@@ -412,8 +411,8 @@ def even_interval(time: Reals) -> float:
     usual = np.median(steps)
 
     def odd(rounding: Reals) -> tuple[Bools, Bools]:
-        # Rounding moves each time by up to half its last digit: a step, or a time against the ends, by a whole one.
-        # The steps find a missing sample where it is; the distances find steps that grow bit by bit.
+        # Rounding moves each time by up to half its last digit, and the difference of two times by a whole one.
+        # The steps reveal a missing sample; the distances from the ends reveal steps that slowly grow.
         of_times = of_steps = np.maximum(0.01 * dt, 1.001 * rounding)
         if of_times.ndim:
             of_steps = np.maximum(of_times[1:], of_times[:-1])
@@ -480,7 +479,7 @@ def on_grid(time: Reals, values: Reals) -> tuple[float, Reals, Doubt] | None:
     steps = np.diff(time)
     if not increasing(time):
         return None
-    dt = float(f"{np.median(steps):.6g}")  # a clock ticks in a number that people write
+    dt = float(f"{np.median(steps):.6g}")  # sampling intervals are round numbers
     longest = int(steps.argmax())
     count = (time[-1] - time[0]) / dt * (1 + 1e-9)
     if not count < MAX_GRID_RATIO * len(time):

@@ -22,7 +22,7 @@ _FIELDS = {
     "event": Field(regex(r"^(.*\bEARTHQUAKE\b.*?)(?:\s+\d+)?\s*$"), line=8),
     "station": Field(regex(r"^STATION (USC# *\d+)")),
 }
-_TEXT_LINES = 30  # the items are among them
+_TEXT_LINES = 30  # lines with the items of the header
 _INTEGERS, _REALS = 100, 50
 
 
@@ -54,5 +54,5 @@ def read(
     if (duration := head.items.get("duration")) and duration.line_number == count_line:
         remarks += length_doubts(float(pairs[-2]), count_line, duration.groups[0], 0.0)
     name = head.text("component") or ""
-    found = layout.Channel(name, step, acceleration, unit, points=points, remarks=remarks, origin=head.origin)
-    return layout.choose(file, TITLE, [found], channel, dt)
+    only = layout.Channel(name, step, acceleration, unit, points=points, remarks=remarks, origin=head.origin)
+    return layout.choose(file, TITLE, [only], channel, dt)

@@ -58,11 +58,11 @@ class PrintedRows:
         sizes: Counter[tuple[int, int, int, int]] = Counter()
         numbers: Counter[str] = Counter()
         for _, page in self.pages():
-            for row, times in Counter(_blank_out("\n".join(page)).split("\n")).items():  # few of them are different
-                if found := self.split(row):
+            for row, times in Counter(_blank_out("\n".join(page)).split("\n")).items():  # few rows differ in their form
+                if values := self.split(row):
                     row = row.rstrip()
-                    sizes[len(row), len(found), len(row) - len(row.lstrip()), len(found[-1])] += times
-                    for number in found:
+                    sizes[len(row), len(values), len(row) - len(row.lstrip()), len(values[-1])] += times
+                    for number in values:
                         numbers[number] += times
         return sizes, numbers
 
@@ -100,7 +100,7 @@ def odd_row(rows: PrintedRows) -> tuple[int, str] | None:
         return None
 
     def leaves(size: int, numbers: int) -> bool:
-        return size * count != length * numbers  # a last row may be short, and two may have become one
+        return size * count != length * numbers  # the last row may be short, and two rows may have been merged
 
     leaving = sum(times for size, times in sizes.items() if leaves(*size))
     if not 0 < leaving <= MAX_LEAVING_ROWS * sizes.total():
@@ -114,11 +114,11 @@ def odd_row(rows: PrintedRows) -> tuple[int, str] | None:
 
 def unlike_the_others(rows: PrintedRows) -> tuple[Doubt, ...]:
     """Return doubts about the form of numbers in free text, at most one for each row."""
-    found = odd_digits(rows)
-    if not found and (odd := odd_row(rows)) is not None:
+    doubts = odd_digits(rows)
+    if not doubts and (odd := odd_row(rows)) is not None:
         text = f"line {odd[0]} does not end where the others do, which keep to columns: was a character lost?"
-        found = [Doubt("columns", float(odd[0]), text)]
-    return tuple(found)
+        doubts = [Doubt("columns", float(odd[0]), text)]
+    return tuple(doubts)
 
 
 def odd_digits(rows: PrintedRows) -> list[Doubt]:
@@ -134,7 +134,7 @@ def odd_digits(rows: PrintedRows) -> list[Doubt]:
     usual, _ = tally.most_common(1)[0]
     if usual is None or tally.total() - tally[usual] > MAX_ODD_NUMBERS * tally.total():
         return []
-    # Zero is zero however it is printed; and as many digits as any other has is a number of another size.
+    # Zeros may be printed in any form. A number with no more digits than the longest is only of another size.
     longest = max(
         len(_mantissa(number.replace("o", "").translate(_ONES))) for number in rows.tally[1] if _form(number) == usual
     )

@@ -85,9 +85,9 @@ def parse_measure(text: str) -> Measure:
     match = _FORM.fullmatch(text.strip())
     name = plain.get(_plain(match[1])) if match is not None else None
     if match is None or name is None:
-        asked = match[1] if match is not None else text
+        name_given = match[1] if match is not None else text
         by_case = {known_name.lower(): known_name for known_name in known}
-        hint = did_you_mean(asked.strip(), list(by_case)) or ""
+        hint = did_you_mean(name_given.strip(), list(by_case)) or ""
         for low, known_name in by_case.items():
             hint = hint.replace(f"did you mean {low}?", f"did you mean {known_name}?")
         if not hint.startswith("did"):
@@ -105,8 +105,8 @@ def parse_measures(text: str) -> list[Measure]:
     Raises `InputError` and `MechanismError` as `parse_measure`, and `InputError` if there is no measure in the text.
     """
     words = [word.strip() for word in re.split(r",(?![^(]*\))", text)]
-    found = [each for word in words for each in (all_measures() if word.lower() == ALL else [parse_measure(word)])]
-    return list(dict.fromkeys(found))
+    measures = [each for word in words for each in (all_measures() if word.lower() == ALL else [parse_measure(word)])]
+    return list(dict.fromkeys(measures))
 
 
 def all_measures() -> list[Measure]:
@@ -115,13 +115,13 @@ def all_measures() -> list[Measure]:
     A measure that cannot be loaded is left out with a warning.
     """
     known = IntensityMeasures()
-    found: list[Measure] = []
+    measures: list[Measure] = []
     for name in known:
         try:
-            found += [parse_measure(spec) for spec in known[name].usually()]
+            measures += [parse_measure(spec) for spec in known[name].usually()]
         except MechanismError as error:
             leave_out(error)
-    return sorted(found, key=lambda each: (each.is_relative, each.power is None))
+    return sorted(measures, key=lambda each: (each.is_relative, each.power is None))
 
 
 def power_of(cls: type[Measure]) -> float | None:

@@ -95,11 +95,11 @@ class Measure(ABC):
 
     def __str__(self) -> str:
         """Return the text from which `parse_measure` makes this measure."""
-        given = [(field, getattr(self, field.name)) for field in fields(self)]
-        while given and given[-1][1] == given[-1][0].default:
-            given.pop()
+        parameters = [(field, getattr(self, field.name)) for field in fields(self)]
+        while parameters and parameters[-1][1] == parameters[-1][0].default:
+            parameters.pop()
         words = ""
-        for field, value in given:
+        for field, value in parameters:
             written = f"{100 * value:g}%" if field.metadata.get("unit") == "%" else repr(float(value))
             words += f"{field.metadata.get('after', ', ') if words else ''}{written}"
         return f"{self.name}({words})" if words else self.name
@@ -113,13 +113,13 @@ class Measure(ABC):
         InputError
             If there are too few or too many parameters, or one cannot be read; the message has the expected form.
         """
-        asked = fields(cls)
-        least = sum(field.default is MISSING for field in asked)
-        if not least <= len(words) <= len(asked):
+        parameters = fields(cls)
+        least = sum(field.default is MISSING for field in parameters)
+        if not least <= len(words) <= len(parameters):
             such = f", such as {cls.usual[0]}" if cls.usual else ""
-            said = f"is given as {cls.form()}{such}" if asked else "takes nothing in brackets"
-            raise InputError(f"{cls.name} {said}")
-        return cls(*(_read(word, field, cls.form()) for word, field in zip(words, asked, strict=False)))
+            expected = f"is given as {cls.form()}{such}" if parameters else "takes nothing in brackets"
+            raise InputError(f"{cls.name} {expected}")
+        return cls(*(_read(word, field, cls.form()) for word, field in zip(words, parameters, strict=False)))
 
     @classmethod
     def form(cls) -> str:
@@ -173,12 +173,12 @@ class RelativeMeasure(Measure):
         """The measure of the motion on which this one is based."""
         from rocking_cli.processing.intensity import parse_measure
 
-        found = parse_measure(self.to)
-        if not isinstance(found, MotionMeasure):
+        measure = parse_measure(self.to)
+        if not isinstance(measure, MotionMeasure):
             raise PluginError(
                 f"the measure {self.name} is relative to {self.to}, which is not a measure of a motion alone"
             )
-        return found
+        return measure
 
     @property
     def power(self) -> float:
@@ -210,12 +210,12 @@ class RunMeasure(Measure):
         return _sound(self, self.of(motion, structure))
 
 
-def _sound(measure: Measure, found: object) -> float:
+def _sound(measure: Measure, answer: object) -> float:
     """Return a value if it is a non-negative number. Raises `PluginError` otherwise."""
-    if found is None:
+    if answer is None:
         return nan
-    with blame(f"the measure {measure} gave {found!r}", type(measure).__module__):
-        value = float(found)  # type: ignore[arg-type]
+    with blame(f"the measure {measure} gave {answer!r}", type(measure).__module__):
+        value = float(answer)  # type: ignore[arg-type]
     if value < 0 or value in (float("inf"),):
         raise PluginError(f"the measure {measure} gave {value:g}: a measure is a number, and not negative")
     return value

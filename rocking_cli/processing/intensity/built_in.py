@@ -62,8 +62,8 @@ class VelocityOverAcceleration(MotionMeasure):
 
     def of(self, motion: GroundMotion) -> float | None:
         """Return the ratio [s]; None for a motion that is zero throughout."""
-        found = measure(motion)
-        return found.pgv / (found.pga * STANDARD_GRAVITY) if found.pga else None
+        measures = measure(motion)
+        return measures.pgv / (measures.pga * STANDARD_GRAVITY) if measures.pga else None
 
 
 class Arias(MotionMeasure):
@@ -87,7 +87,7 @@ class CumulativeVelocity(MotionMeasure):
         """Return the cumulative absolute velocity [m/s]."""
         a, b = motion.acceleration[:-1], motion.acceleration[1:]
         ends = np.abs(a) + np.abs(b)
-        # Where the sign changes two triangles, a^2 and b^2 over twice the difference.
+        # At a change of sign the area is two triangles: (a^2 + b^2) over twice the difference.
         crossing = np.signbit(a) != np.signbit(b)
         with np.errstate(divide="ignore", invalid="ignore"):
             areas = np.where(crossing & (ends > 0), (a * a + b * b) / (2 * ends), ends / 2)
@@ -132,7 +132,7 @@ class MeanPeriod(MotionMeasure):
         largest = float(np.abs(motion.acceleration).max())
         if largest == 0:
             return None
-        # Zeros behind the record, as the spectrum between the frequencies of the record itself counts too.
+        # Zeros after the record refine the frequencies at which the spectrum is computed.
         points = max(2 * motion.npts, int(np.ceil(1 / (MAX_FREQUENCY_STEP * motion.dt))))
         points = 1 << (points - 1).bit_length()
         amplitudes = np.abs(np.fft.rfft(motion.acceleration / largest, points)) ** 2
@@ -208,8 +208,8 @@ class AverageSpectralAcceleration(MotionMeasure):
 
     def of(self, motion: GroundMotion) -> float:
         """Return the mean pseudo-acceleration [standard gravity]."""
-        found = response_spectrum(motion, np.linspace(self.low, self.high, AVERAGED_PERIODS), self.damping).sa
-        return float(np.exp(np.log(found).mean())) if found.all() else 0.0
+        accelerations = response_spectrum(motion, np.linspace(self.low, self.high, AVERAGED_PERIODS), self.damping).sa
+        return float(np.exp(np.log(accelerations).mean())) if accelerations.all() else 0.0
 
 
 class AccelerationOverUplift(RelativeMeasure):

@@ -12,7 +12,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
-from rocking_cli.excitation.pulses import COARSE, parse_pulse
+from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD, parse_pulse
 from rocking_cli.excitation.pulses.base import SAMPLING
 from rocking_cli.processing.reading import Reading
 from rocking_cli.questions.fragility.definition import RecordEntry
@@ -60,14 +60,14 @@ class Source:
         if self.path is None:
             assert self.entry.pulse is not None
             pulse = parse_pulse(self.entry.pulse).specification
-            digest.update(f"{pulse}, {COARSE} a period: {SAMPLING}".encode())
+            digest.update(f"{pulse}, {COARSE_POINTS_PER_PERIOD} a period: {SAMPLING}".encode())
         return digest.hexdigest()
 
     def read(self) -> GroundMotion:
         """Read the motion, unscaled. Raises `InputError` if it cannot be read."""
         if self.path is None:
             assert self.entry.pulse is not None
-            return self.reading.on_floor(parse_pulse(self.entry.pulse).sampled(COARSE))
+            return self.reading.on_floor(parse_pulse(self.entry.pulse).sampled(COARSE_POINTS_PER_PERIOD))
         motion = self.reading.read(self.path)
         if self.vertical is not None:
             motion = replace(motion, vertical=self.reading.vertical(self.vertical))

@@ -326,7 +326,7 @@ def _measured(motion: GroundMotion, names: str | None, structure: Structure | No
 def _spectrum(motion: GroundMotion, period: tuple[float, float] | None, damping: float | None) -> ResponseSpectrum:
     from rocking_cli.processing import oscillator
 
-    periods = oscillator.periods_between(*(period or (oscillator.SHORTEST, oscillator.LONGEST)))
+    periods = oscillator.periods_between(*(period or (oscillator.SHORTEST_PERIOD, oscillator.LONGEST_PERIOD)))
     return oscillator.response_spectrum(motion, periods, oscillator.DAMPING if damping is None else damping)
 
 

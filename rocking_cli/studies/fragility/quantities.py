@@ -71,13 +71,13 @@ def kept(fact: Callable[[str], Any], limits: Sequence[str | float]) -> dict[str,
     dict of str to ndarray, shape (samples, 2)
         Positive and negative rotation of each sample, by limit state; infinite if the top never moves that far.
     """
-    asked = asked_for(limits)
-    stored = fact(ROTATIONS_FACT) if asked else {}
+    requested = asked_for(limits)
+    stored = fact(ROTATIONS_FACT) if requested else {}
 
     def table(pairs: Sequence[Sequence[float | None]]) -> Reals:
         return np.array([[np.inf if phi is None else phi for phi in pair] for pair in pairs], dtype=np.float64)
 
-    return {limit: table(stored[limit]) for limit in asked}
+    return {limit: table(stored[limit]) for limit in requested}
 
 
 PGA, PGV = "PGA", "PGV"

@@ -27,7 +27,7 @@ from rocking_cli.plotting import dimensions, style
 from rocking_cli.plotting.labels import Labels, mathematics
 from rocking_cli.plotting.panels import Panel
 from rocking_cli.plotting.structure import colour, draw_structure
-from rocking_cli.studies.picture import ASSUMED, NODES_PER_SIDE, picture
+from rocking_cli.studies.picture import ASSUMED_NOTE, NODES_PER_SIDE, picture
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 
@@ -153,7 +153,7 @@ class TestPicture:
         # A disc of mass m and radius a has the inertia m a^2/2.
         radius = np.abs(shown.parts[0].outlines[0] - 1j)
         np.testing.assert_allclose(radius, np.sqrt(2 * (0.4**2 + 2.0**2) / 12))
-        assert list(shown.sketch.notes) == [ASSUMED] and shown.as_dict()["notes"] == [ASSUMED]
+        assert list(shown.sketch.notes) == [ASSUMED_NOTE] and shown.as_dict()["notes"] == [ASSUMED_NOTE]
 
     def test_the_instantaneous_centre_of_a_beam_is_no_hinge(self):
         """Of a frame whose hinges are not given: A, B, C and D are found, and no centre that wanders."""

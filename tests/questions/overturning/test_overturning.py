@@ -16,7 +16,7 @@ from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.exact import closed_form, exact_response
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.excitation.pulses import COARSE
+from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD
 from rocking_cli.questions.overturning.picture import draw_comparison, draw_map
 from rocking_cli.questions.overturning.study import SCAN_AMPLITUDES, Region, boundaries, compare, overturning_map
 from rocking_cli.structure import Structure, build_models
@@ -85,7 +85,7 @@ class TestMap:
         found = overturning_map(structure, SINE, np.array(omega), np.array(a))
         for row, ag in enumerate(found.accelerations * STANDARD_GRAVITY):
             for column, period in enumerate(found.periods):
-                motion = replace(SINE, amplitude=float(ag), period=float(period)).sampled(COARSE)
+                motion = replace(SINE, amplitude=float(ag), period=float(period)).sampled(COARSE_POINTS_PER_PERIOD)
                 alone = respond(mechanism, motion, models=("nonlinear",))["nonlinear"]
                 assert found.outcome.fell[row, column] == alone.fell
                 assert found.outcome.unknown[row, column] == alone.unknown

@@ -14,7 +14,7 @@ from mechanisms.block import Block
 from rocking_cli.core.structure_file import load_structure
 from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcome
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.excitation.pulses import COARSE, parse_pulse
+from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD, parse_pulse
 from rocking_cli.excitation.records import read_record
 from rocking_cli.plotting import style
 from rocking_cli.plotting.moving import ratio_chart
@@ -115,7 +115,9 @@ class TestMap:
         for region in (Region.UNKNOWN, Region.ROCKS):
             row, column = np.argwhere(plane.regions == region)[2]
             ag, period = plane.accelerations[row] * STANDARD_GRAVITY, plane.periods[column]
-            alone = nonlinear(PORTAL, replace(SINE, amplitude=float(ag), period=float(period)).sampled(COARSE))
+            alone = nonlinear(
+                PORTAL, replace(SINE, amplitude=float(ag), period=float(period)).sampled(COARSE_POINTS_PER_PERIOD)
+            )
             assert alone.unknown is (region is Region.UNKNOWN)
             assert plane.outcome.known_to[row, column] == pytest.approx(alone.known_to, nan_ok=True)
 

@@ -13,8 +13,8 @@ from mechanisms.block import Block
 from rocking_cli.core import equivalent_block
 from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.dynamics.history import follow
-from rocking_cli.excitation.pulses import COARSE, Pulse, parse_pulse
-from rocking_cli.excitation.pulses.base import FINE
+from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD, Pulse, parse_pulse
+from rocking_cli.excitation.pulses.base import POINTS_PER_PERIOD
 from rocking_cli.questions.pulse.study_on_structure import sampled_history
 from rocking_cli.structure import Structure
 from rocking_cli.studies.under_pulses import parse_shape
@@ -143,12 +143,12 @@ def test_peaks_that_came_out_wrong_near_uplift(structure, pulse, peak):
 @pytest.mark.parametrize("shape", SHAPES)
 def test_even_coarse_samples_have_the_impulse_of_the_pulse(shape):
     pulse = replace(parse_shape(shape), amplitude=3.0, period=0.8)
-    for count in (COARSE, FINE):
+    for count in (COARSE_POINTS_PER_PERIOD, POINTS_PER_PERIOD):
         motion = pulse.sampled(count)
         a = motion.acceleration
         gained = np.append(0.0, np.cumsum((a[1:] + a[:-1]) / 2) * motion.dt)
         wanted = pulse.velocity(motion.dt * np.arange(motion.npts))
-        assert np.abs(gained - wanted).max() < 2e-7 * (COARSE / count) ** 3 * np.abs(wanted).max()
+        assert np.abs(gained - wanted).max() < 2e-7 * (COARSE_POINTS_PER_PERIOD / count) ** 3 * np.abs(wanted).max()
         chords = pulse.acceleration(motion.dt * np.arange(motion.npts))
         lost = np.append(0.0, np.cumsum((chords[1:] + chords[:-1]) / 2) * motion.dt) - wanted
         assert np.abs(lost).max() > 10 * np.abs(gained - wanted).max()
@@ -156,7 +156,7 @@ def test_even_coarse_samples_have_the_impulse_of_the_pulse(shape):
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_a_pulse_that_does_not_reach_uplift_lifts_nothing(shape):
-    for count in (100, COARSE, FINE):
+    for count in (100, COARSE_POINTS_PER_PERIOD, POINTS_PER_PERIOD):
         motion = pulse_of(shape, 1.0, 4.0).sampled(count)
         assert np.abs(motion.acceleration).max() <= 9.81 * tan(ALPHA) * (1 + 1e-15)
         assert not follow(build_model(BLOCK, "nonlinear"), motion.scaled(1 - 1e-12)).lifted
@@ -182,11 +182,14 @@ def test_corners_and_jumps_keep_their_chords():
 def test_a_history_keeps_one_of_so_many_samples():
     model, pulse = build_model(BLOCK, "nonlinear"), pulse_of("ricker", 2.0, 8.0)
     motion = pulse.sampled()
-    assert (motion.every, motion.kept.npts - 1) == (FINE // COARSE, round(2.6 * COARSE))
+    assert (motion.every, motion.kept.npts - 1) == (
+        POINTS_PER_PERIOD // COARSE_POINTS_PER_PERIOD,
+        round(2.6 * COARSE_POINTS_PER_PERIOD),
+    )
     thin, whole = (follow(model, each, tail=3.0) for each in (motion, replace(motion, every=1)))
     assert thin.peak_ratio == whole.peak_ratio and thin.impact_count == whole.impact_count
     both = min(thin.time.size, -(-whole.time.size // motion.every))
-    assert both > 2.6 * COARSE and np.abs(thin.phi).max() > 0.01
+    assert both > 2.6 * COARSE_POINTS_PER_PERIOD and np.abs(thin.phi).max() > 0.01
     for one, other in ((thin.time, whole.time), (thin.phi, whole.phi), (thin.rate, whole.rate)):
         np.testing.assert_allclose(one[:both], other[:: motion.every][:both], rtol=0, atol=1e-10)
     assert (motion.kept.acceleration == motion.acceleration[:: motion.every]).all()

@@ -108,7 +108,9 @@ CASES = {
 
 FIELDS = [site.OF_GROUND, site.OF_SITE, site.OF_FLOOR]
 TABLES = {
-    text for each in (build.WHERE, dynamic.SETS, steps.TITLES, summary.SHORT) for text in each.values()
+    text
+    for each in (build.DIRECTION_TITLES, dynamic.SETS, steps.TITLES, summary.METHOD_NAMES)
+    for text in each.values()
 } | {meaning for each in FIELDS for *_, meaning in each.values()}  # fmt: skip
 
 
@@ -615,7 +617,7 @@ class TestAskingForIt:
 
     def test_without_a_browser_it_is_said_before_any_work(self, tmp_path, monkeypatch):
         monkeypatch.setenv("PATH", str(tmp_path))
-        monkeypatch.setattr("rocking_cli.io.browser.ELSEWHERE", ())
+        monkeypatch.setattr("rocking_cli.io.browser.USUAL_PATHS", ())
         result = self.asked(tmp_path, "--sheet", tmp_path / "o.pdf")
         assert "none is found here" in result.stderr and "ROCKING_BROWSER" in result.stderr
         monkeypatch.setenv("ROCKING_BROWSER", "no-such-browser")

@@ -14,30 +14,30 @@ from rocking_cli.views.sheet.build import SheetOfCode
 from rocking_cli.views.sheet.document import Drawing, SheetPart
 from rocking_cli.views.sheet.language import LANGUAGES, Language, texts_of
 
-WHERE = {
+DIRECTION_TITLES = {
     Direction.POSITIVE: "Positive direction (clockwise)",
     Direction.NEGATIVE: "Negative direction (anticlockwise)",
 }
 
 
-def parts(say: Language, found: ItalianVerification, given: ItalianSite) -> Iterator[SheetPart]:
+def parts(say: Language, verification: ItalianVerification, site_values: ItalianSite) -> Iterator[SheetPart]:
     """Yield summary, drawing, site, and each direction; one direction if both have the same numbers."""
-    shown = {say(WHERE[one.direction]): one for one in found.distinct}
-    if len(found.distinct) < len(found.directions):
-        shown = {say("Both directions"): found.distinct[0]}
-    ground = SiteGround(of_structure(given, found.mechanism))
-    yield summary.part(say, found, shown)
-    name = found.mechanism.name
+    directions = {say(DIRECTION_TITLES[one.direction]): one for one in verification.distinct}
+    if len(verification.distinct) < len(verification.directions):
+        directions = {say("Both directions"): verification.distinct[0]}
+    ground = SiteGround(of_structure(site_values, verification.mechanism))
+    yield summary.part(say, verification, directions)
+    name = verification.mechanism.name
     label = say("{name} at rest with its dimensions, and displaced to its critical rotation", name=name)
     yield SheetPart("drawing", say("Drawing"), [Drawing(label)])
     yield site.part(say, ground)
-    for where, each in shown.items():
+    for where, each in directions.items():
         key = each.direction.label
-        below = list(DirectionSteps(say, ground, each).parts())
+        subparts = list(DirectionSteps(say, ground, each).parts())
         if each.dynamic is not None:
             items = list(dynamic.items(say, each.dynamic, each.exact.confidence))
-            below.append(SheetPart(f"{key}-dynamic", say("Dynamic method"), items))
-        yield SheetPart(key, where, [], below)
+            subparts.append(SheetPart(f"{key}-dynamic", say("Dynamic method"), items))
+        yield SheetPart(key, where, [], subparts)
 
 
 SHEET = SheetOfCode({key: texts_of("rocking_cli.codes.italian", key) for key in LANGUAGES}, parts)

@@ -14,8 +14,8 @@ from rocking_cli.views.sheet.document import Item, SheetPart, Steps
 from rocking_cli.views.sheet.language import Language
 from rocking_cli.views.view import Table
 
-ROUNDING_SHARE = 1e-12  # of the size of the structure; smaller coordinates count as zero
-MIN_SHARE = 1e-9  # of the terms of a sum; a smaller sum counts as zero
+ROUNDING_SHARE = 1e-12  # share of the size of the structure below which a coordinate is zero
+MIN_SHARE = 1e-9  # share of the terms of a sum below which the sum is zero
 
 
 @dataclass(frozen=True)
@@ -80,17 +80,17 @@ def _weights(say: Language, chain: Chain, scale: Scale) -> Table:
 def _of_blocks(say: Language, chain: Chain, scale: Scale) -> Iterator[Working]:
     """Yield steps for the weight of each block and its point of action."""
     for k, block in enumerate(chain.blocks, 1):
-        own = [each for each in chain.weights if each.spot.body in block.bodies]
-        carried, inertial = ([scale.weight(getattr(each, key)) for each in own] for key in ("carried", "inertial"))
+        weights = [each for each in chain.weights if each.spot.body in block.bodies]
+        carried, inertial = ([scale.weight(getattr(each, key)) for each in weights] for key in ("carried", "inertial"))
         names = {"k": k, "block": " + ".join(block.bodies), "unit": scale.unit}
         yield say.step(F.P, scale.weight(block.P), names, P=carried)
         moved = F.PQ if chain.is_by_the_letter else replace(F.PQ, standing="ours")
         yield say.step(moved, scale.weight(block.PQ), names, P=inertial)
         for axis, at in (("x", block.at.real), ("y", block.at.imag)):
-            places = [each.spot.at.real if axis == "x" else each.spot.at.imag for each in own]
+            places = [each.spot.at.real if axis == "x" else each.spot.at.imag for each in weights]
             yield say.step(F.G, scale.near(at), {**names, "axis": axis}, P=inertial if block.PQ else carried, x=places)
         if block.P and block.P != block.PQ:
-            places = [each.spot.at.real for each in own]
+            places = [each.spot.at.real for each in weights]
             yield say.step(F.GP, scale.near(block.x_of_P), names, P=carried, x=places)
 
 
@@ -130,8 +130,8 @@ def held(say: Language, position: DisplacedChain, scale: Scale) -> list[Item]:
 
 def _printed(position: DisplacedChain, scale: Scale, total: float, kind: str) -> float:
     """Return a sum over the weights P or PQ of the blocks in printed units, without rounding errors about zero."""
-    value, most = scale.weight(total), sum(abs(getattr(each.block, kind)) for each in position.blocks)
-    return 0.0 if abs(value) < MIN_SHARE * scale.weight(most) * scale.length else value
+    value, largest = scale.weight(total), sum(abs(getattr(each.block, kind)) for each in position.blocks)
+    return 0.0 if abs(value) < MIN_SHARE * scale.weight(largest) * scale.length else value
 
 
 def multiplier(say: Language, position: DisplacedChain, scale: Scale, symbol: str) -> Iterator[Working]:
@@ -152,8 +152,8 @@ def multiplier(say: Language, position: DisplacedChain, scale: Scale, symbol: st
     if position.more:
         under["B_[m]"] = scale.weight(position.more)
         yield say.step(F.B_M, under["B_[m]"], unit)
-    most = sum(abs(each.block.P) for each in blocks) * scale.length / abs(position.driven)
-    value = 0.0 if abs(position.alpha) < MIN_SHARE * most else position.alpha
+    largest = sum(abs(each.block.P) for each in blocks) * scale.length / abs(position.driven)
+    value = 0.0 if abs(position.alpha) < MIN_SHARE * largest else position.alpha
     names = {"symbol": symbol, "over": " + ".join(over), "under": " + ".join(under)}
     yield say.step(F.ALPHA, value, names, V=[*over.values()], B=[*under.values()])
 

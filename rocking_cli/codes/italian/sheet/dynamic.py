@@ -12,26 +12,26 @@ from rocking_cli.views.view import Table
 SETS = {True: "with FC", False: "without FC"}
 
 
-def items(say: Language, found: Dynamic, FC: float) -> Iterator[Sentence | Table]:
+def items(say: Language, dynamic: Dynamic, FC: float) -> Iterator[Sentence | Table]:
     """Yield what the dynamic method found in a direction."""
-    (state,) = found.allowed
-    yield Sentence(say("dynamic_is", d0=found.d0, state=state))
-    yield Sentence(say(found.motions.kind, floor=found.motions.floor))
+    (state,) = dynamic.allowed
+    yield Sentence(say("dynamic_is", d0=dynamic.d0, state=state))
+    yield Sentence(say(dynamic.motions.kind, floor=dynamic.motions.floor))
     rows = [
-        [record.name, *(_peak(say, record, found.d0, confident=confident) for confident in SETS)]
-        for record in found.records
+        [record.name, *(_peak(say, record, dynamic.d0, confident=confident) for confident in SETS)]
+        for record in dynamic.records
     ]
     heads = [say("record"), *map(say, SETS.values())]
     yield Table(say("Peak displacement d [m]"), heads, rows, (1, 2))
     for confident in SETS if FC != 1 else (True,):
-        yield from map(Sentence, _said(say, found, state, confident=confident))
-    if FC != 1 and found.holds(state, confident=True) != found.holds(state, confident=False):
+        yield from map(Sentence, _said(say, dynamic, state, confident=confident))
+    if FC != 1 and dynamic.holds(state, confident=True) != dynamic.holds(state, confident=False):
         yield Sentence(say("The confidence factor FC changes the verdict at {state}.", state=state))
-    if found.unchecked is not None:
-        yield Sentence(say("not_checked", why=say(found.unchecked)))
-    if found.too_few:
-        count = len(found.records)
-        yield Sentence(say("one" if count == 1 else "few", count=count, enough=found.enough))
+    if dynamic.unchecked is not None:
+        yield Sentence(say("not_checked", why=say(dynamic.unchecked)))
+    if dynamic.too_few:
+        count = len(dynamic.records)
+        yield Sentence(say("one" if count == 1 else "few", count=count, enough=dynamic.enough))
 
 
 def _peak(say: Language, record: RecordPeak, d0: float, *, confident: bool) -> str:
@@ -43,13 +43,18 @@ def _peak(say: Language, record: RecordPeak, d0: float, *, confident: bool) -> s
     return f"{say.number(d)} {say('past d_[0]^[*]')}" if d >= d0 else say.number(d)
 
 
-def _said(say: Language, found: Dynamic, state: str, *, confident: bool) -> Iterator[str]:
-    mean, unknown = found.mean(confident=confident), found.unknown(confident=confident)
+def _said(say: Language, dynamic: Dynamic, state: str, *, confident: bool) -> Iterator[str]:
+    mean, unknown = dynamic.mean(confident=confident), dynamic.unknown(confident=confident)
     which = say(SETS[confident])
-    values = {"which": f"{which[0].upper()}{which[1:]}", "state": state, "mean": mean, "allowed": found.allowed[state]}
-    if passed := found.passed(confident=confident):
+    values = {
+        "which": f"{which[0].upper()}{which[1:]}",
+        "state": state,
+        "mean": mean,
+        "allowed": dynamic.allowed[state],
+    }
+    if passed := dynamic.passed(confident=confident):
         yield say("past_d0", **values, names=", ".join(passed))
     if mean is not None:
-        yield say("holds" if found.holds(state, confident=confident) else "holds_not", **values)
+        yield say("holds" if dynamic.holds(state, confident=confident) else "holds_not", **values)
     elif unknown:
         yield say("unknown_fails", **values, names=", ".join(unknown))

@@ -8,9 +8,9 @@ from math import log
 from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.demand import REFERENCE_DAMPING, FloorSpectrum, GroundSpectrum
 from rocking_cli.codes.italian.ground import (
-    LONGEST,
+    LONGEST_RETURN_PERIOD,
     PROBABILITY,
-    SHORTEST,
+    SHORTEST_RETURN_PERIOD,
     SOILS,
     TOPOGRAPHY,
     Hazard,
@@ -19,7 +19,7 @@ from rocking_cli.codes.italian.ground import (
     return_period,
     soil_factor,
 )
-from rocking_cli.codes.italian.rules import FIRST, FURTHER, RULES, STATES
+from rocking_cli.codes.italian.rules import FIRST_STATE, FURTHER_STATES, RULES, STATES
 from rocking_cli.codes.italian.sheet import spectra
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.verification.results import Working
@@ -71,7 +71,7 @@ def _given(say: Language, ground: SiteGround) -> Table:
     site = ground.site
     FC, q, *modes = ([each.symbol, each.meaning, say.number(each.value), each.unit] for each in given(say, ground))
     rows = [FC, q]
-    for state in (FIRST, *FURTHER):
+    for state in (FIRST_STATE, *FURTHER_STATES):
         at = site.shaking(state)
         if at is not None and at.spectrum is not None:
             meaning = say("ground acceleration, the ordinate of the table at T = 0, {state}", state=state)
@@ -85,9 +85,9 @@ def _given(say: Language, ground: SiteGround) -> Table:
     return Table(say("Data of the site file"), heads, [*rows, *modes], (2,))
 
 
-def _values(say: Language, given: object, fields: Mapping[str, tuple[str, str, str]], **names: str) -> list[list[str]]:
+def _values(say: Language, part: object, fields: Mapping[str, tuple[str, str, str]], **names: str) -> list[list[str]]:
     """Return the rows of fields that are given."""
-    values = {key: getattr(given, key, None) for key in fields}
+    values = {key: getattr(part, key, None) for key in fields}
     return [
         [symbol, say(meaning, **names), value if isinstance(value, str) else say.number(float(value)), say(unit)]
         for key, (symbol, unit, meaning) in fields.items() if (value := values[key]) is not None
@@ -96,7 +96,7 @@ def _values(say: Language, given: object, fields: Mapping[str, tuple[str, str, s
 
 def _of_state(say: Language, ground: SiteGround, state: str) -> SheetPart:
     spectrum = ground.spectrum(state)
-    assert spectrum is not None  # else it is not shown
+    assert spectrum is not None  # only limit states with a spectrum are shown
     rows = [*_of_life(say, ground, state), *spectra.peaks(say, spectrum, state)]
     items: list[Item] = [Steps(rows)]
     T0 = ground.site.own_period
@@ -117,7 +117,7 @@ def _of_life(say: Language, ground: SiteGround, state: str) -> Iterator[Working]
     life, P = site.VN * site.CU, PROBABILITY[state]
     yield say.step(F.REFERENCE_LIFE, life, VN=site.VN, CU=site.CU)
     formula = F.RETURN_PERIOD if is_close(return_period(life, state), TR) else F.RETURN_PERIOD_BOUND
-    first, last = max(SHORTEST, hazard.table[0][0]), min(LONGEST, hazard.table[-1][0])
+    first, last = max(SHORTEST_RETURN_PERIOD, hazard.table[0][0]), min(LONGEST_RETURN_PERIOD, hazard.table[-1][0])
     yield say.step(formula, TR, {"state": state, "percent": 100 * P}, VR=life, P=P, first=first, last=last)
     yield from hazard_at(say, hazard, TR)
 
@@ -134,10 +134,10 @@ def hazard_at(say: Language, hazard: Hazard, TR: float) -> Iterator[Working]:
     low, high = hazard.table[k], hazard.table[k + 1]
     r = log(TR / low[0]) / log(high[0] / low[0])
     yield say.step(F.BETWEEN, r, T=TR, a=low[0], b=high[0])
-    found = hazard.parameters(TR)
-    for j, (formula, value) in enumerate(zip(F.ON_ROCK, found, strict=True), 1):
+    parameters = hazard.parameters(TR)
+    for j, (formula, value) in enumerate(zip(F.ON_ROCK, parameters, strict=True), 1):
         yield say.step(formula, value, a=low[j], b=high[j], r=r)
-    yield from _on_soil(say, hazard, hazard.spectrum(TR), found[2])
+    yield from _on_soil(say, hazard, hazard.spectrum(TR), parameters[2])
 
 
 def _on_soil(say: Language, hazard: Hazard, spectrum: GroundSpectrum, TC_star: float) -> Iterator[Working]:

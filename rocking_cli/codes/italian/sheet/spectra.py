@@ -9,9 +9,9 @@ import numpy as np
 
 from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.demand import (
-    ABOVE,
-    BELOW,
     GROUND_PERIOD,
+    LEVEL_FROM,
+    LEVEL_TO,
     LONG_PERIOD_START,
     DemandSpectrum,
     FloorSpectrum,
@@ -121,8 +121,8 @@ def _undisturbed(say: Language, spectrum: DemandSpectrum, at: At, symbol: str) -
         start = LONG_PERIOD_START[spectrum.soil] if spectrum.soil is not None else None
         if start is not None and start < at.T:
             formula = F.S_DE_GROUND if at.T > GROUND_PERIOD else F.S_DE_LONG
-            given = {**_of_ground_motion(spectrum, at), "T": at.T, "TE": start, "TF": GROUND_PERIOD}
-            yield say.step(formula, value, {"symbol": symbol}, **given)
+            values = {**_of_ground_motion(spectrum, at), "T": at.T, "TE": start, "TF": GROUND_PERIOD}
+            yield say.step(formula, value, {"symbol": symbol}, **values)
             return
     yield from acceleration(say, spectrum, by)
     S_e = spectrum.acceleration(by.T, at.damping)
@@ -136,10 +136,10 @@ def amplified(say: Language, floor: FloorSpectrum, damping: float, state: str = 
 
 def _alone(say: Language, floor: FloorSpectrum, T: float, damping: float, symbol: str) -> Working:
     """Return the step for S_eZ without the lower bound by the ground."""
-    low, high = BELOW * floor.T1, ABOVE * floor.T1
+    low, high = LEVEL_FROM * floor.T1, LEVEL_TO * floor.T1
     formula = F.S_EZ_BELOW if low > T else F.S_EZ_LEVEL if high >= T else F.S_EZ_ABOVE
-    given = {"A": floor.amplification(damping), "S": floor.peak, "T": T, "low": low, "high": high}
-    return say.step(formula, floor.alone(T, damping), {"symbol": symbol}, **given)
+    values = {"A": floor.amplification(damping), "S": floor.peak, "T": T, "low": low, "high": high}
+    return say.step(formula, floor.alone(T, damping), {"symbol": symbol}, **values)
 
 
 def _of_floor(say: Language, floor: FloorSpectrum, at: At) -> Iterator[Working]:
@@ -149,10 +149,10 @@ def _of_floor(say: Language, floor: FloorSpectrum, at: At) -> Iterator[Working]:
     yield say.step(F.D_Z, bounds[0], {"at": at.name}, S=floor.alone(at.T, at.damping), T=at.T)
     if at.T > floor.T1:
         yield from _undisturbed(say, floor.ground, at, "d_[g]")
-    if at.T > ABOVE * floor.T1:
+    if at.T > LEVEL_TO * floor.T1:
         yield say.step(F.D_B, bounds[2], A=floor.amplification(at.damping), S=floor.peak, T=floor.T1)
-    value, shown = floor.displacement(at.T, at.damping), "; ".join(names[: len(bounds)])
-    yield say.step(F.S_DE_FLOOR, value, {"at": at.name, "bounds": shown}, d=bounds)
+    value, listed = floor.displacement(at.T, at.damping), "; ".join(names[: len(bounds)])
+    yield say.step(F.S_DE_FLOOR, value, {"at": at.name, "bounds": listed}, d=bounds)
 
 
 def at_own_period(say: Language, spectrum: DemandSpectrum, T0: float, damping: float) -> Iterator[Working]:
@@ -169,5 +169,5 @@ def at_own_period(say: Language, spectrum: DemandSpectrum, T0: float, damping: f
         return
     yield _alone(say, spectrum, T0, damping, "S_[eZ,1](T_[0])")
     yield from acceleration(say, spectrum.ground, at)
-    own, under = spectrum.alone(T0, damping), spectrum.ground.acceleration(T0, damping)
-    yield say.step(F.S_EZ_BOUND, spectrum.acceleration(T0, damping), {"at": at.name}, own=own, under=under)
+    of_floor, under = spectrum.alone(T0, damping), spectrum.ground.acceleration(T0, damping)
+    yield say.step(F.S_EZ_BOUND, spectrum.acceleration(T0, damping), {"at": at.name}, own=of_floor, under=under)

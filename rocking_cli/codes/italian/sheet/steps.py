@@ -13,7 +13,7 @@ from rocking_cli.codes.italian.demand import REFERENCE_DAMPING, DemandSpectrum, 
 from rocking_cli.codes.italian.displaced import DisplacedChain, pulls
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified, LimitState
-from rocking_cli.codes.italian.rules import DAMAGE, FIRST, LINEAR, NONLINEAR, OF_STATE, RULES, Rule
+from rocking_cli.codes.italian.rules import DAMAGE, FIRST_STATE, LINEAR, NONLINEAR, OF_STATE, RULES, Rule
 from rocking_cli.codes.italian.sheet import chain as chains
 from rocking_cli.codes.italian.sheet import site, spectra
 from rocking_cli.codes.italian.sheet.chain import Scale
@@ -24,11 +24,11 @@ from rocking_cli.views.sheet.document import Item, Sentence, SheetPart, Steps, w
 from rocking_cli.views.sheet.language import Language, texts_of
 from rocking_cli.views.view import Table
 
-LINE = "lin"  # subscript of quantities on the straight line
+LINE_SUBSCRIPT = "lin"  # subscript of quantities on the straight line
 ENGLISH = Language("en", texts_of("rocking_cli.codes.italian", "en"))
 TERMINAL = replace(ENGLISH, is_plain=True)
-STATE = {key: state for state, pair in OF_STATE.items() for key in pair} | {LINEAR: FIRST, "SLD": "SLD"}
-RULE = {OF_STATE[rule.state][1]: rule for rule in RULES}
+STATE_OF_METHOD = {key: state for state, pair in OF_STATE.items() for key in pair} | {LINEAR: FIRST_STATE, "SLD": "SLD"}
+RULE_OF_METHOD = {OF_STATE[rule.state][1]: rule for rule in RULES}
 TITLES = {
     DAMAGE: "Onset of rocking at {state}", "SLD": "Onset of rocking at {state}",
     NONLINEAR: "Nonlinear method at {state}", LINEAR: "Linear method: behaviour factor q",
@@ -37,11 +37,11 @@ TITLES = {
 
 def title(say: Language, key: str) -> str:
     """Return the name of a method."""
-    return say(TITLES[_kind(key)], state=STATE[key])
+    return say(TITLES[_kind(key)], state=STATE_OF_METHOD[key])
 
 
 def _kind(key: str) -> str:
-    return key.removesuffix(f"_{STATE[key]}")
+    return key.removesuffix(f"_{STATE_OF_METHOD[key]}")
 
 
 @dataclass(frozen=True)
@@ -124,10 +124,10 @@ class DirectionSteps:
         if control.body is None:
             return say.step(F.X_C, dx, first=scale.weight(chain.first), PQ=scale.weight(chain.inertial))
         names = {"body": control.body, "x": say.number(control.at.real), "y": say.number(control.at.imag)}
-        own = next(each for each in DisplacedChain(self.curve, 0.0).blocks if control.body in each.block.bodies)
-        if own.centre is None:
-            return say.step(F.X_C_STRAIGHT, dx, names, x=own.dx)
-        return say.step(F.X_C_TURNS, dx, names, turns=own.turns, y=control.at.imag, O=scale.near(own.centre.imag))
+        moved = next(each for each in DisplacedChain(self.curve, 0.0).blocks if control.body in each.block.bodies)
+        if moved.centre is None:
+            return say.step(F.X_C_STRAIGHT, dx, names, x=moved.dx)
+        return say.step(F.X_C_TURNS, dx, names, turns=moved.turns, y=control.at.imag, O=scale.near(moved.centre.imag))
 
     def _moved(self, position: DisplacedChain, names: Mapping[str, str], meaning: str) -> Iterator[Working]:
         """Yield the steps to d_C and d in a position."""
@@ -186,14 +186,14 @@ class DirectionSteps:
         if spectrum is None or at.demand is None or at.ratio is None:
             return
         yield from spectra.displacement(say, spectrum, spectra.At(f"T_[{name}]", at.T, rule.damping))
-        still = self.found.passes(s) and not at.passes and LINE not in name
+        still = self.found.passes(s) and not at.passes and LINE_SUBSCRIPT not in name
         meaning = "passes" if at.passes else "passes_still" if still else "fails"
         yield say.step(replace(F.RHO, meaning=meaning), at.ratio, names, d=at.d, demand=at.demand)
 
     def _on_line(self, rule: Rule) -> Iterator[Working]:
         """Yield the steps of a limit state on the straight line."""
         s, at, curve = rule.state, self.found.straight_states[rule.state], self.curve
-        a, name = StraightCurve(curve.a0, curve.d0).acceleration(at.d), f"{rule.state},{LINE}"
+        a, name = StraightCurve(curve.a0, curve.d0).acceleration(at.d), f"{rule.state},{LINE_SUBSCRIPT}"
         yield self.say.step(F.A_LINE, a, {"state": s, "on": name}, a0=curve.a0, d=at.d, d0=curve.d0)
         yield from self._period_and_demand(rule, at, name, a)
 
@@ -210,19 +210,19 @@ class DirectionSteps:
             yield SheetPart(
                 f"{key}-{name}", heading, list(self._items(name, method, self._asked(name, "", line=False)))
             )
-            if name in RULE:
+            if name in RULE_OF_METHOD:
                 line = self.found.straight_methods[name]
-                asked = self._asked(name, f",{LINE}", line=True)
-                items = list(self._items(name, line, asked, f",{LINE}"))
+                comparison = self._asked(name, f",{LINE_SUBSCRIPT}", line=True)
+                items = list(self._items(name, line, comparison, f",{LINE_SUBSCRIPT}"))
                 yield SheetPart(f"{key}-{name}-line", f"{heading}, {self.say('on the straight line')}", items)
 
     def _asked(self, name: str, more: str, *, line: bool) -> MethodComparison:
-        if name in RULE:
-            rule: Rule = RULE[name]
+        if name in RULE_OF_METHOD:
+            rule: Rule = RULE_OF_METHOD[name]
             s, states = rule.state, self.found.straight_states if line else self.found.states
             at = spectra.At(f"T_[{s}{more}]", states[s].T, rule.damping)
             return MethodComparison(s, f"d_[{s}]", states[s].d, f"S_[De](T_[{s}{more}])", at)
-        return self._activation(STATE[name])
+        return self._activation(STATE_OF_METHOD[name])
 
     def _activation(self, state: str) -> MethodComparison:
         """Return capacity and demand of the onset of rocking, under the ground of a limit state."""
@@ -234,72 +234,72 @@ class DirectionSteps:
             return "S_[eZ](T_[0])" if on_floor else "S_[e](T_[0])"
         return "S_[Z]" if on_floor else "a_[g] S"
 
-    def _demand(self, spectrum: DemandSpectrum, asked: MethodComparison) -> float:
-        if asked.at is not None:
-            return spectrum.displacement(asked.at.T, asked.at.damping)
+    def _demand(self, spectrum: DemandSpectrum, comparison: MethodComparison) -> float:
+        if comparison.at is not None:
+            return spectrum.displacement(comparison.at.T, comparison.at.damping)
         T0 = self.ground.site.own_period
         return spectrum.peak if T0 is None else spectrum.acceleration(T0, REFERENCE_DAMPING)
 
-    def _items(self, name: str, method: ItalianMethod, asked: MethodComparison, more: str = "") -> Iterator[Item]:
+    def _items(self, name: str, method: ItalianMethod, comparison: MethodComparison, more: str = "") -> Iterator[Item]:
         """Yield the capacity a_g, its check, zeta_E, and the return period."""
-        spectrum = self.ground.spectrum(asked.state)
-        assert spectrum is not None and method.a_g is not None  # its state is given
+        spectrum = self.ground.spectrum(comparison.state)
+        assert spectrum is not None and method.a_g is not None  # the site gives its limit state
         symbol = f"a_[g,{_kind(name)}{more}]"
-        names = {"symbol": symbol, "state": asked.state, "asked": "a_[g]", "more": more}
-        yield from self._solved(F.CAPACITY, names, spectrum, asked, method.a_g, method.clause)
+        names = {"symbol": symbol, "state": comparison.state, "asked": "a_[g]", "more": more}
+        yield from self._solved(F.CAPACITY, names, spectrum, comparison, method.a_g, method.clause)
         yield Steps([self._zeta(method, names)])
-        yield from self._lasts(method, asked, more)
+        yield from self._lasts(method, comparison, more)
 
     def _zeta(self, method: ItalianMethod, names: Mapping[str, str]) -> Working:
         return self.say.step(F.ZETA, method.zeta or 0.0, names, a=method.a_g, b=method.demand)
 
     def _solved(
-        self, formula: Formula, names: Mapping[str, str], spectrum: DemandSpectrum, asked: MethodComparison,
+        self, formula: Formula, names: Mapping[str, str], spectrum: DemandSpectrum, comparison: MethodComparison,
         a_g: float, clause: str,
     ) -> Iterator[Item]:  # fmt: skip
         """Yield the a_g at which a demand equals a capacity, and its check if it was found by iteration."""
-        say, own, found = self.say, self._demand(spectrum, asked), {**names, "capacity": asked.name}
-        if is_close(a_g, spectrum.ag * asked.capacity / own):
-            under = f"({asked.demand})" if " " in asked.demand else asked.demand
-            numbers = {"ag": spectrum.ag, "c": asked.capacity, "d": own}
-            yield Steps([say.step(replace(formula, clause=clause), a_g, {**found, "demand": under}, **numbers)])
+        say, demand, symbols = self.say, self._demand(spectrum, comparison), {**names, "capacity": comparison.name}
+        if is_close(a_g, spectrum.ag * comparison.capacity / demand):
+            under = f"({comparison.demand})" if " " in comparison.demand else comparison.demand
+            numbers = {"ag": spectrum.ag, "c": comparison.capacity, "d": demand}
+            yield Steps([say.step(replace(formula, clause=clause), a_g, {**symbols, "demand": under}, **numbers)])
             return
         by_iteration = replace(F.CAPACITY_FOUND, clause=clause, meaning=f"{formula.meaning}_iterated")
-        yield Steps([say.step(by_iteration, a_g, {**found, "demand": asked.demand})])
-        yield Sentence(say("check", state=asked.state))
-        yield Steps(list(self._checked(spectrum.with_ag(a_g), asked)))
+        yield Steps([say.step(by_iteration, a_g, {**symbols, "demand": comparison.demand})])
+        yield Sentence(say("check", state=comparison.state))
+        yield Steps(list(self._checked(spectrum.with_ag(a_g), comparison)))
 
     def _linear(self, method: ItalianMethod) -> Iterator[Item]:
         """Yield q times the a_g at which rocking starts at SLD, and its zeta_E and return period at SLV."""
         say, ground, q = self.say, self.ground, self.ground.site.q
-        assert method.a_g is not None  # SLV is always given
-        asked = self._activation(ground.state_of_activation)
-        if ground.of_activation != ground.spectrum(asked.state):  # the ground of SLV under the mode of SLD
+        assert method.a_g is not None  # every site file has SLV
+        comparison = self._activation(ground.state_of_activation)
+        if ground.of_activation != ground.spectrum(comparison.state):  # the mode of SLD may differ from that of SLV
             yield Sentence(say("T_[1] and ξ_[1] are here those of SLD."))
-            yield Steps(list(self._checked(ground.of_activation, asked)))
+            yield Steps(list(self._checked(ground.of_activation, comparison)))
         start, damage = method.a_g / q, self.found.methods["damage"]
-        names = {"symbol": "a_[g,0]", "state": asked.state}
-        yield from self._solved(F.START, names, ground.of_activation, asked, start, damage.clause)
-        by_code = F.LINEAR if asked.state == "SLD" else replace(F.LINEAR, standing="ours")
+        names = {"symbol": "a_[g,0]", "state": comparison.state}
+        yield from self._solved(F.START, names, ground.of_activation, comparison, start, damage.clause)
+        by_code = F.LINEAR if comparison.state == "SLD" else replace(F.LINEAR, standing="ours")
         linear = say.step(by_code, method.a_g, q=q, a=start)
         names = {"symbol": "a_[g,linear]", "asked": "a_[g,SLV]", "state": "SLV", "more": ""}
         yield Steps([linear, self._zeta(method, names)])
         yield from self._lasts(method, MethodComparison("SLV", "a_[g,linear]", method.a_g, "a_[g]"), "")
 
-    def _checked(self, spectrum: DemandSpectrum, asked: MethodComparison) -> Iterator[Working]:
+    def _checked(self, spectrum: DemandSpectrum, comparison: MethodComparison) -> Iterator[Working]:
         """Yield the steps to the demand for the a_g or TR found by iteration, as a check against the capacity."""
         say = self.say
         ground = spectrum.ground if isinstance(spectrum, FloorSpectrum) else spectrum
-        if asked.at is None or isinstance(spectrum, FloorSpectrum):
-            yield from spectra.peaks(say, spectrum, asked.state)
+        if comparison.at is None or isinstance(spectrum, FloorSpectrum):
+            yield from spectra.peaks(say, spectrum, comparison.state)
         elif isinstance(ground, GroundSpectrum):
-            yield from list(spectra.peaks(say, ground, asked.state))[:2]
-        if asked.at is not None:
-            yield from spectra.displacement(say, spectrum, asked.at)
+            yield from list(spectra.peaks(say, ground, comparison.state))[:2]
+        if comparison.at is not None:
+            yield from spectra.displacement(say, spectrum, comparison.at)
         elif self.ground.site.own_period is not None:
             yield from spectra.at_own_period(say, spectrum, self.ground.site.own_period, REFERENCE_DAMPING)
 
-    def _lasts(self, method: ItalianMethod, asked: MethodComparison, more: str) -> Iterator[Item]:
+    def _lasts(self, method: ItalianMethod, comparison: MethodComparison, more: str) -> Iterator[Item]:
         """Yield the capacity as a return period, and its check."""
         say, TR, hazard = self.say, method.return_period, self.ground.hazard
         if TR is None or hazard is None:
@@ -307,12 +307,12 @@ class DirectionSteps:
         if method.beyond:
             yield Sentence(say("beyond_long" if (method.zeta or 0) >= 1 else "beyond_short", TR=say.number(TR)))
             return
-        yield Steps([say.step(F.LASTS, TR, {"more": more, "demand": asked.demand, "capacity": asked.name})])
+        yield Steps([say.step(F.LASTS, TR, {"more": more, "demand": comparison.demand, "capacity": comparison.name})])
         yield Sentence(say("Check, with the ground of this return period:"))
-        spectrum = self.ground.at_return_period(TR, asked.state)
+        spectrum = self.ground.at_return_period(TR, comparison.state)
         rows = list(hazard_at(say, hazard, TR))
-        by_ground = asked.demand == "a_[g]"  # r and a_g say it all
-        yield Steps(rows[:2] if by_ground else [*rows, *self._checked(spectrum, asked)])
+        by_ground = comparison.demand == "a_[g]"  # the steps for r and a_g suffice
+        yield Steps(rows[:2] if by_ground else [*rows, *self._checked(spectrum, comparison)])
 
 
 def ties(say: Language, curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Table]:
@@ -334,8 +334,8 @@ def workings_of_direction(ground: SiteGround, found: ItalianVerified) -> list[Wo
 def workings_of_site(ground: SiteGround) -> list[Working]:
     """Return the values of the site file and the steps to the ground at each limit state, in plain characters."""
     whole = site.part(ENGLISH, ground)
-    found = [each.in_plain(whole.heading) for each in site.given(ENGLISH, ground)]
+    rows = [each.in_plain(whole.heading) for each in site.given(ENGLISH, ground)]
     for part in whole.parts:
         state = part.key.removeprefix("site-")
-        found += [replace(each, state=state) for each in workings([part])]
-    return found + [each.in_plain(whole.heading) for each in site.amplifications(ENGLISH, ground)]
+        rows += [replace(each, state=state) for each in workings([part])]
+    return rows + [each.in_plain(whole.heading) for each in site.amplifications(ENGLISH, ground)]

@@ -18,36 +18,36 @@ from rocking_cli.views.sheet.document import Item, Sentence, SheetPart
 from rocking_cli.views.sheet.language import Language
 from rocking_cli.views.view import Table
 
-SHORT = {
+METHOD_NAMES = {
     "SLD": "onset of rocking", DAMAGE: "onset of rocking", LINEAR: "linear method", NONLINEAR: "nonlinear method",
     HISTORIES: "time histories",
 }  # fmt: skip
 """Names of the methods within a sentence, by their kind."""
 
 
-def part(say: Language, found: ItalianVerification, shown: Mapping[str, ItalianVerified]) -> SheetPart:
+def part(say: Language, verification: ItalianVerification, directions: Mapping[str, ItalianVerified]) -> SheetPart:
     """Return the part with the summary."""
-    end, mechanism = found.conclusion, found.mechanism
-    answer = " ".join(of_verification(found, say, say(SHORT[end.method.split("_")[0]])))
+    end, mechanism = verification.conclusion, verification.mechanism
+    answer = " ".join(of_verification(verification, say, say(METHOD_NAMES[end.method.split("_")[0]])))
     items: list[Item] = [Sentence(answer, answers=True, fails=end.concluded is not Concluded.SATISFIED)]
-    for where, each in shown.items():
+    for where, each in directions.items():
         items += map(Sentence, verdicts(say, where, each))
-    if len(shown) > 1:  # which direction governs
-        least = found.governs
-        ratio, rest = (found.compared(direction) for direction in (least, least.opposite))
-        if ratio is not None and rest is not None and not found.alike:
+    if len(directions) > 1:
+        least = verification.governs
+        ratio, rest = (verification.compared(direction) for direction in (least, least.opposite))
+        if ratio is not None and rest is not None and not verification.alike:
             items.append(Sentence(say("which", least=say(least.label), ratio=ratio, rest=rest)))
-    for where, each in shown.items():
+    for where, each in directions.items():
         items += [_states(say, where, each), methods(say, where, each)]
-    said = [
-        f"{where}: {say(text)}" if len(shown) > 1 else say(text)
-        for where, each in shown.items() for text in differences(each, found.first)
+    notes = [
+        f"{where}: {say(text)}" if len(directions) > 1 else say(text)
+        for where, each in directions.items() for text in differences(each, verification.first)
     ]  # fmt: skip
-    said += [say(each) for one in shown.values() for each in one.remarks]
-    said += map(say, found.remarks)
+    notes += [say(each) for one in directions.values() for each in one.remarks]
+    notes += map(say, verification.remarks)
     general = say.caution(mechanism.mechanism, mechanism.caution) if mechanism.caution else ""
-    said += [say("Caution: {text}", text=each) for each in (general, mechanism.own_caution()) if each]
-    under = [SheetPart("remarks", say("Remarks"), [*map(Sentence, dict.fromkeys(said))])] if said else []
+    notes += [say("Caution: {text}", text=each) for each in (general, mechanism.own_caution()) if each]
+    under = [SheetPart("remarks", say("Remarks"), [*map(Sentence, dict.fromkeys(notes))])] if notes else []
     return SheetPart("summary", say("Summary"), items, under)
 
 
