@@ -373,7 +373,7 @@ def test_names_stay_text(browser, folder):
 
 def test_without_a_motion_there_is_a_page_too(browser, folder):
     path = folder / "still.html"
-    run("report", "--neighbours", 20, EXAMPLES / "arch.yaml", "-o", path)
+    run("report", EXAMPLES / "arch.yaml", "-o", path)
     with opened(browser, path) as page:
         assert page.locator(".motion, #response").count() == 0
         assert page.locator("#pulses svg").count() == 1
