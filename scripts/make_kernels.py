@@ -245,4 +245,4 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else shipped.LIBRARY_FOLDER)
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else shipped.READY_FOLDER)

@@ -21,7 +21,7 @@ from typing import Any
 from rocking_cli.dynamics.calling import ARRAYS, FUNCTIONS, KernelSet, Layout, symbol
 from rocking_cli.errors import BrokenKernels
 
-LIBRARY_FOLDER = Path(__file__).with_name("ready")
+READY_FOLDER = Path(__file__).with_name("ready")
 MANIFEST_FILE = "manifest.json"
 SOURCE_FILES = ("calling.py", "kernels.py", "pulse_motion.py")
 """Source files of the shipped kernels, in this folder."""
@@ -49,19 +49,17 @@ def source_hash() -> str:
 def manifest() -> dict[str, Any]:
     """Return the manifest of the shipped kernels: hashes of sources and libraries, and versions of the build tools."""
     try:
-        content = json.loads((LIBRARY_FOLDER / MANIFEST_FILE).read_text(encoding="utf-8"))
+        content = json.loads((READY_FOLDER / MANIFEST_FILE).read_text(encoding="utf-8"))
         return {"source": str(content["source"]), "made_by": dict(content["made_by"]), "files": dict(content["files"])}
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise BrokenKernels(
-            f"{LIBRARY_FOLDER / MANIFEST_FILE} cannot be read, reinstall rocking-cli: {error}"
-        ) from error
+        raise BrokenKernels(f"{READY_FOLDER / MANIFEST_FILE} cannot be read, reinstall rocking-cli: {error}") from error
 
 
 def place() -> Path:
     """Return the path of the library for this system, which may not exist."""
     machine = platform.machine().lower()
     ending = LIBRARY_SUFFIXES.get(sys.platform, "so")
-    return LIBRARY_FOLDER / f"{sys.platform}-{PROCESSOR_NAMES.get(machine, machine)}.{ending}"
+    return READY_FOLDER / f"{sys.platform}-{PROCESSOR_NAMES.get(machine, machine)}.{ending}"
 
 
 def load(kernel: KernelSet) -> Any:

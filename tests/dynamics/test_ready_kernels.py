@@ -69,7 +69,7 @@ class TestWhatIsShipped:
 
     @pytest.mark.parametrize("name", shipped.manifest()["files"])
     def test_a_library_is_whole_and_needs_nothing_of_others(self, name):
-        content = (shipped.LIBRARY_FOLDER / name).read_bytes()
+        content = (shipped.READY_FOLDER / name).read_bytes()
         assert hashlib.sha256(content).hexdigest() == shipped.manifest()["files"][name]
         if name.endswith(".so"):  # of the others the linker sees to it
             assert missing(content) == []
@@ -78,7 +78,7 @@ class TestWhatIsShipped:
         assert not any(each in content for each in (b"NRT_", b"/home", b"/tmp", b"/root", str(PROJECT).encode()))
 
     def test_they_are_small_and_all_of_them(self):
-        files = {each.name: each.stat().st_size for each in shipped.LIBRARY_FOLDER.iterdir()}
+        files = {each.name: each.stat().st_size for each in shipped.READY_FOLDER.iterdir()}
         assert files.keys() == {*shipped.manifest()["files"], shipped.MANIFEST_FILE}
         assert sum(files.values()) < 1.5e6
 
@@ -241,8 +241,8 @@ class TestLibrary:
     def folder(self, choose, tmp_path, monkeypatch):
         """A folder with what is shipped, in the place of the one that is installed."""
         folder = tmp_path / "ready"
-        shutil.copytree(shipped.LIBRARY_FOLDER, folder)
-        monkeypatch.setattr(shipped, "LIBRARY_FOLDER", folder)
+        shutil.copytree(shipped.READY_FOLDER, folder)
+        monkeypatch.setattr(shipped, "READY_FOLDER", folder)
         choose()
         return folder
 

@@ -247,8 +247,8 @@ class TestEachCheck:
         self, spoil, passed, why, monkeypatch, tmp_path
     ):
         folder = tmp_path / "ready"
-        shutil.copytree(shipped.LIBRARY_FOLDER, folder)
-        monkeypatch.setattr(shipped, "LIBRARY_FOLDER", folder)
+        shutil.copytree(shipped.READY_FOLDER, folder)
+        monkeypatch.setattr(shipped, "READY_FOLDER", folder)
         spoil()
         if passed is None:
             monkeypatch.setattr(shipped.platform, "machine", lambda: "abacus")
@@ -260,8 +260,8 @@ class TestEachCheck:
 
     def test_python_does_not_compute_instead_of_a_library_that_is_broken(self, monkeypatch, tmp_path):
         folder = tmp_path / "ready"
-        shutil.copytree(shipped.LIBRARY_FOLDER, folder)
-        monkeypatch.setattr(shipped, "LIBRARY_FOLDER", folder)
+        shutil.copytree(shipped.READY_FOLDER, folder)
+        monkeypatch.setattr(shipped, "READY_FOLDER", folder)
         shipped.place().unlink()
         ways.forget()
         done = asked("--quick", "--json")
