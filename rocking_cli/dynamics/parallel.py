@@ -8,9 +8,7 @@ import sys
 import threading
 import warnings
 from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
-from multiprocessing import get_context, parent_process
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from typing import Any
 
 from rocking_cli.errors import Refused
@@ -83,6 +81,11 @@ def in_processes(work: Callable[[int, int], Any], count: int, size: int, process
     Refused
         If the system ended a process.
     """
+    # Every command with a history imports this module, and only surveys use processes.
+    from concurrent.futures import ProcessPoolExecutor
+    from concurrent.futures.process import BrokenProcessPool
+    from multiprocessing import get_context
+
     # A spawned process inherits no threads or locks.
     pool = ProcessPoolExecutor(processes, get_context("spawn"), _begin, (work,))
     try:
@@ -106,6 +109,8 @@ def _begin(work: Callable[[int, int], Any]) -> None:
 
 
 def _end_with_parent() -> None:
+    from multiprocessing import parent_process
+
     if (parent := parent_process()) is not None:
         parent.join()
         os._exit(1)

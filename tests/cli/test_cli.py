@@ -482,7 +482,7 @@ class TestStart:
             (["record", ACCEL], {"numba", "scipy", "matplotlib", "pydantic"}),
             (
                 ["respond", FRAME, "--record", ACCEL],
-                {"numba", "scipy", "matplotlib", "rich.console", "rocking_cli.plotting"},
+                {"numba", "scipy", "matplotlib", "rich.console", "multiprocessing", "rocking_cli.plotting"},
             ),
         ],
     )
