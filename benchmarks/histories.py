@@ -64,17 +64,18 @@ def table(title: str, columns: list[str], rows: list[list[str]]) -> None:
 class Prepared:
     """One history, ready for the kernel: what a batch or a design loop pays for each."""
 
-    def __init__(self, model: Model, motion: GroundMotion, *, samples: bool = True) -> None:
+    def __init__(self, model: Model, motion: GroundMotion) -> None:
         self.deck = lay_out([model], [motion])
         self.model = model
         self.runs, self.marks = np.zeros((1, at.RUN_COLUMNS)), np.empty((1, at.MARKS))
         self.runs[0, [at.FACTOR, at.V_FACTOR, at.SIZE]] = 1.0
         self.runs[0, [at.ETA_POSITIVE, at.ETA_NEGATIVE]] = np.nan
-        self.out = {"phi": np.empty(motion.npts), "rate": np.empty(motion.npts)} if samples else {}
+        phi, rate, impacts = np.empty(motion.npts), np.empty(motion.npts), np.empty((0, 3))
+        self.samples = at.Samples(1, phi, rate, impacts, np.empty(at.MARKS))
 
     def run(self, rtol: float = RTOL) -> float:
         """Peak |phi|/phi_cr; if it overturns, minus the time at which it passes phi_cr."""
-        run_deck(self.deck, self.runs, self.marks, rtol=rtol, **self.out)
+        run_deck(self.deck, self.runs, self.marks, rtol=rtol, samples=self.samples)
         if self.marks[0, at.STATUS] == at.OVERTURNED:
             return -float(self.marks[0, at.CROSSED])
         return float((self.marks[0, at.PEAK : at.PEAK + 2] / self.model.phi_cr).max())

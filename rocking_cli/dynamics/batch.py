@@ -219,7 +219,7 @@ def respond_many(
     most_impacts = DECISIVE_IMPACTS - 1 if only_peaks else MAX_IMPACTS  # a history ends after this number of impacts
     rows[:, kernels.STRUCTURE] = runs.model
     if len(runs):
-        run = partial(run_deck, lay_out(models, motions), rtol=rtol, most_impacts=most_impacts, brief=True)
+        run = partial(run_deck, lay_out(models, motions), rtol=rtol, most_impacts=most_impacts)
         in_parts(partial(run, rows, marks), len(rows), HISTORIES_PER_TASK, threads, progress)
         loose = out_of_step(models, motions, rows, marks, tilts, rtol=rtol, most_impacts=most_impacts, threads=threads)
         again, new_marks = rows[loose], marks[loose]

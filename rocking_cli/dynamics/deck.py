@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 Number = TypeVar("Number", np.float64, np.int64)
 
-NO_VALUES, NO_IMPACTS = np.empty(0), np.empty((0, 3))
+NO_VALUES = np.empty(0)
 RELEASE_DT = 0.005  # s, for a free motion without a record
 MAX_IMPACTS = 20_000  # after the record and its tail; with more a structure still rocks; eta = 0.999 rests in 14 000
 
@@ -36,15 +36,16 @@ def run_deck(
     *,
     rtol: float,
     most_impacts: int = MAX_IMPACTS,
-    brief: bool = False,
-    every: int = 1,
-    phi: Reals = NO_VALUES,
-    rate: Reals = NO_VALUES,
-    impacts: Reals = NO_IMPACTS,
+    samples: kernels.Samples | None = None,
 ) -> None:
-    """Run the kernel; it fills `marks` and, if given, the samples and the impacts of the last history."""
+    """Run the kernel; it fills `marks` and, if given, the samples of the last history.
+
+    Without samples, a history ends as soon as its outcome is unknown.
+    """
     run = ways.kernel(TIED if deck.forces.ndim == 4 else HISTORIES)
-    samples = kernels.Samples(every, phi, rate, impacts, np.empty(kernels.MARKS))
+    brief = samples is None
+    if samples is None:
+        samples = kernels.Samples(1, NO_VALUES, NO_VALUES, np.empty((0, 3)), np.empty(kernels.MARKS))
     joint_count = int(deck.joints.sizes[:, 1].max(initial=0))
     room = kernels.Room(
         np.empty((2, kernels.COLUMNS)),

@@ -142,9 +142,8 @@ def follow(
     runs[0, [kernels.FACTOR, kernels.V_FACTOR, kernels.SIZE, kernels.SLENDER]] = 1.0
     runs[0, [kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE]] = eta
     runs[0, kernels.START] = model.q(release)
-    run = partial(
-        run_deck, lay_out([model], [motion]), runs, marks, rtol=rtol, every=every, phi=phi, rate=rate, impacts=impacts
-    )
+    recorded = kernels.Samples(every, phi, rate, impacts, np.empty(kernels.MARKS))
+    run = partial(run_deck, lay_out([model], [motion]), runs, marks, rtol=rtol, samples=recorded)
     run()
     tilts = np.array([release])
     if out_of_step([model], [motion], runs, marks, tilts, rtol=rtol, most_impacts=MAX_IMPACTS)[0]:
@@ -221,7 +220,7 @@ def out_of_step(
             for place, eta, of in zip((kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE), column.eta, model.eta, strict=True):
                 there[:, place] = np.clip(eta + there[:, place] - of, MIN_COLUMN_ETA, 1.0)  # `clip` keeps NaN
             deck = lay_out([column], motions)
-            run = partial(run_deck, deck, there, column_marks, rtol=rtol, most_impacts=most_impacts, brief=True)
+            run = partial(run_deck, deck, there, column_marks, rtol=rtol, most_impacts=most_impacts)
             in_parts(run, len(there), COLUMNS_PER_TASK, threads, None)
             alone, whole = (
                 read_marks(each, np.array([of.phi_cr]), np.array([of.reach]))

@@ -278,23 +278,19 @@ def joints_of(
     plain = len(labels)
     labels += [mode.joint for mode in still.modes]
     for d, ((direction, table), one) in enumerate(zip(sides, released_sides, strict=True)):
-        force = one.force.copy()
-        force[:, [k for normal, _ in one.rows for k in normal], ONE] += ZERO_TENSION * weight
-        inertia = mechanism.coefficients(_at(table, cells), direction).I
-        force[:, :, RATE] /= inertia[:, None]  # phi.^2 = q.^2/I
-        whole = np.concatenate([force, one.compliance[..., None]], axis=2)
+        whole = _factors(one, mechanism.coefficients(_at(table, cells), direction).I, weight)
         if back:
-            contacts[-len(back) :, d, 0] = contacts[-len(back) :, d, 2] = np.arange(len(back)) + force.shape[1]
+            of_joints = whole.shape[1]
+            contacts[-len(back) :, d, 0] = contacts[-len(back) :, d, 2] = np.arange(len(back)) + of_joints
             constant = np.array([[*mode.force, mode.compliance] for mode in back])
             whole = np.concatenate([whole, np.tile(constant, (len(whole), 1, 1))], axis=1)
             there = Pieces(mechanism, mechanism.directions[0], np.zeros(1))
             # The velocities of the supports are -t before an impact and eta t after it.
-            struck[d, force.shape[1] : whole.shape[1]] = [
+            struck[d, of_joints : whole.shape[1]] = [
                 [float(there.momentum(there.dq)[0] @ mode.velocity)] * 2 for mode in back
             ]
         cubics = _lines(whole) if redundant else _cubics(whole)
-        count = whole.shape[1]
-        rows[:, d, :count] = cubics.reshape(cells, count, 20)
+        rows[:, d, : whole.shape[1]] = cubics.reshape(cells, -1, 20)
         within[:, d] = _within(cubics, contacts[:, d], bearing)
         if (hit := answers[d][1]) is not None:
             struck[d, : len(hit)] = hit
@@ -305,6 +301,17 @@ def joints_of(
         mechanism.asserted(), sliding, redundant, _calm(within, tables, statics),
         len(mechanism.bodies()) == 1, checked_joints(mechanism), still.known,
     )  # fmt: skip
+
+
+def _factors(one: Released, inertia: Reals, weight: float) -> Reals:
+    """Return the factors of the forces of a direction and their compliances, shape (cells, rows, factors + 1).
+
+    A normal force counts as compression up to a tension of `ZERO_TENSION` times the weight.
+    """
+    force = one.force.copy()
+    force[:, [k for normal, _ in one.rows for k in normal], ONE] += ZERO_TENSION * weight
+    force[:, :, RATE] /= inertia[:, None]  # phi.^2 = q.^2/I
+    return np.concatenate([force, one.compliance[..., None]], axis=2)
 
 
 def _at_rest(still: Rest, labels: Sequence[str], bearing: Reals, weight: float) -> tuple[Reals, tuple[float, float]]:

@@ -88,35 +88,11 @@ def draw_structure(picture: Picture, title: str, ratio: float | None = None) -> 
     ):
         figure.text(x / width, y / height, text, va=place, fontsize=size, color=style.INK, parse_math=False)
 
-    axes = rest.axes(figure)
-    axes.set_title("at rest", fontsize=style.LABEL, color=style.INK)
-    draw_ground(axes, picture, rest)
-    labels = _labels(axes, picture, rest, 0.0)
-    _draw_parts(axes, picture, 0.0, weight(picture, rest.scale))
-    _draw_lines(axes, picture, labels)
-    _draw_forces(axes, picture, rest.scale)
-    hung.draw_hung(axes, picture, 0.0, rest, labels)
-    pins = _draw_pins(axes, picture, 0.0, _at_rest(picture), rest, labels)
-    left, right, below_it, above_it = (each / rest.scale for each in hung.beside(picture))
-    edges = low - complex(left, below_it), high + complex(right, above_it)
-    dimensions.draw_outside(axes, rows, rest, *edges, labels)
-    _draw_letters(picture, 0.0, pins, labels)
-    angles = [each for each in picture.sketch.angles if _is_at_rest(picture, each)]
-    dimensions.draw_inside(axes, inside, angles, rest, labels)
-    hung.name_hung(picture, rest, labels)
-    draw_scale(axes, rest)
+    _draw_rest(rest.axes(figure), picture, rest, (low, high), rows, inside)
     for direction, panel in sides.items():
         axes = panel.axes(figure)
         axes.set_title(_head(picture, direction, ratios[direction]), fontsize=style.LABEL, color=style.INK)
-        draw_ground(axes, picture, panel)
-        _draw_outline_at_rest(axes, picture, min(style.THIN, weight(picture, panel.scale)))
-        _draw_parts(axes, picture, turned[direction], weight(picture, panel.scale))
-        labels = _labels(axes, picture, panel, turned[direction])
-        hung.draw_hung(axes, picture, turned[direction], panel, labels)
-        own_pins = [pin for pin in picture.pins if pin.direction is direction]
-        pins = _draw_pins(axes, picture, turned[direction], own_pins, panel, labels)
-        _draw_letters(picture, turned[direction], pins, labels)
-        draw_scale(axes, panel)
+        _draw_displaced(axes, picture, panel, direction, turned[direction])
         half = max((style.size_of(line, style.LABEL).real / 2 for line in words[direction].split("\n")), default=0.0)
         middle = min(
             max(panel.corner.real + panel.inches.real / 2, PANEL_GAP + half), style.PAGE_WIDTH - PANEL_GAP - half
@@ -126,6 +102,45 @@ def draw_structure(picture: Picture, title: str, ratio: float | None = None) -> 
             ha="center", va="top", fontsize=style.LABEL, color=style.MEASURE,
         )  # fmt: skip
     return figure
+
+
+def _draw_rest(
+    axes: Axes,
+    picture: Picture,
+    panel: Panel,
+    box: tuple[complex, complex],
+    rows: dimensions.Rows,
+    inside: Sequence[Length],
+) -> None:
+    """Draw a structure at rest, with its dimensions in rows beside its box [m] and inside it."""
+    axes.set_title("at rest", fontsize=style.LABEL, color=style.INK)
+    draw_ground(axes, picture, panel)
+    labels = _labels(axes, picture, panel, 0.0)
+    _draw_parts(axes, picture, 0.0, weight(picture, panel.scale))
+    _draw_lines(axes, picture, labels)
+    _draw_forces(axes, picture, panel.scale)
+    hung.draw_hung(axes, picture, 0.0, panel, labels)
+    pins = _draw_pins(axes, picture, 0.0, _at_rest(picture), panel, labels)
+    left, right, below, above = (each / panel.scale for each in hung.beside(picture))
+    dimensions.draw_outside(axes, rows, panel, box[0] - complex(left, below), box[1] + complex(right, above), labels)
+    _draw_letters(picture, 0.0, pins, labels)
+    angles = [each for each in picture.sketch.angles if _is_at_rest(picture, each)]
+    dimensions.draw_inside(axes, inside, angles, panel, labels)
+    hung.name_hung(picture, panel, labels)
+    draw_scale(axes, panel)
+
+
+def _draw_displaced(axes: Axes, picture: Picture, panel: Panel, direction: Direction, turn: float) -> None:
+    """Draw a structure at a signed rotation [rad] over its outline at rest."""
+    draw_ground(axes, picture, panel)
+    _draw_outline_at_rest(axes, picture, min(style.THIN, weight(picture, panel.scale)))
+    _draw_parts(axes, picture, turn, weight(picture, panel.scale))
+    labels = _labels(axes, picture, panel, turn)
+    hung.draw_hung(axes, picture, turn, panel, labels)
+    own_pins = [pin for pin in picture.pins if pin.direction is direction]
+    pins = _draw_pins(axes, picture, turn, own_pins, panel, labels)
+    _draw_letters(picture, turn, pins, labels)
+    draw_scale(axes, panel)
 
 
 def draw_at_rest(axes: Axes, picture: Picture, title: str) -> None:

@@ -434,17 +434,7 @@ class Picture:
             "limit": {direction.label: limit for direction, limit in self.limit.items()},
             "one_sided": self.mechanism.one_sided,
             "rotation": _rounded(rotation),
-            "parts": [
-                {
-                    "name": part.name,
-                    "assumed": part.assumed,
-                    "outlines": [_pairs(each - part.centroid) for each in part.outlines],
-                    "x": _rounded(centroids[k].real),
-                    "y": _rounded(centroids[k].imag),
-                    "psi": _rounded(psi[k]),
-                }
-                for k, part in enumerate(self.parts)
-            ],
+            "parts": [_part(*each) for each in zip(self.parts, centroids, psi, strict=True)],
             "pins": [
                 {
                     "letter": pin.letter,
@@ -471,31 +461,31 @@ class Picture:
             ],
             "ground": [_pairs(each) for each in self.ground],
             "walls": [_pairs(each) for each in self.walls],
-            "loads": [
-                {
-                    "name": each.name,
-                    "text": each.text,
-                    "mass": each.mass,
-                    "force": None if each.force is None else _pairs([each.force])[0],
-                    "friction": each.friction,
-                    **self._end(End(each.part, each.point)),
-                }
-                for each in self.loads
-            ],
-            "ties": [
-                {
-                    "name": each.name,
-                    "bed": each.is_bed,
-                    "only": each.only,
-                    "pieces": [
-                        {"kind": piece.kind, "ends": [self._end(end) for end in (piece.start, piece.end)]}
-                        for piece in each.pieces
-                    ],
-                    "slack": slack.tolist(),
-                }
-                for each, slack in zip(self.ties, self._slack(rotation), strict=True)
-            ],
+            "loads": [self._load(each) for each in self.loads],
+            "ties": [self._tie(*each) for each in zip(self.ties, self._slack(rotation), strict=True)],
             "notes": list(self.sketch.notes),
+        }
+
+    def _load(self, load: Carried) -> dict[str, Any]:
+        return {
+            "name": load.name,
+            "text": load.text,
+            "mass": load.mass,
+            "force": None if load.force is None else _pairs([load.force])[0],
+            "friction": load.friction,
+            **self._end(End(load.part, load.point)),
+        }
+
+    def _tie(self, tie: Strand, slack: Bools) -> dict[str, Any]:
+        return {
+            "name": tie.name,
+            "bed": tie.is_bed,
+            "only": tie.only,
+            "pieces": [
+                {"kind": piece.kind, "ends": [self._end(end) for end in (piece.start, piece.end)]}
+                for piece in tie.pieces
+            ],
+            "slack": slack.tolist(),
         }
 
     def _end(self, end: End) -> dict[str, Any]:
@@ -641,6 +631,17 @@ def _level_ground(parts: Sequence[DrawnPart], pins: Sequence[DrawnHinge]) -> tup
     left, right = min(point.real for point in z), max(point.real for point in z)
     margin = 0.25 * max(right - left, max(point.imag for point in z) - level)
     return (np.array([complex(left - margin, level), complex(right + margin, level)]),)
+
+
+def _part(part: DrawnPart, centroid: Points, psi: Reals) -> dict[str, Any]:
+    return {
+        "name": part.name,
+        "assumed": part.assumed,
+        "outlines": [_pairs(each - part.centroid) for each in part.outlines],
+        "x": _rounded(centroid.real),
+        "y": _rounded(centroid.imag),
+        "psi": _rounded(psi),
+    }
 
 
 def _measure(each: Length | Angle, points: list[complex]) -> dict[str, Any]:

@@ -389,37 +389,29 @@ def carries_what_hangs_on_it(structure: Mechanism) -> None:
             ("U", here[1], bare.gravity * moment),
         ):
             what = f"{name} of coefficients with a load and a tie, {direction.label} direction,"
-            _near(
-                what,
-                phi,
-                getattr(laden_ones, name),
-                getattr(bare_ones, name) + added,
-                1e-6 * big,
-                "bodies and load give",
-            )
+            expected = getattr(bare_ones, name) + added
+            _near(what, phi, getattr(laden_ones, name), expected, 1e-6 * big, "bodies and load give")
         beside = [laden.coefficients(phi + shift * step, direction).Q for shift in STENCIL]
-        turned = _quotient(beside, step).real
-        _near(
-            f"dQ, {direction.label} direction,",
-            phi,
-            laden_ones.dQ,
-            turned,
-            1e-6 * bare.gravity * moment,
-            "the difference quotient is",
-        )
-        if not bare.rocks_both_ways:
-            continue
-        old, new = (complex(bare.followed(np.zeros(1), side)(spot).dz[0]) for side in (direction, direction.opposite))
-        before, after = bare.restitution_from_kinematics(direction), laden.restitution_from_kinematics(direction)
-        base = float(bare.coefficients(np.zeros(1), direction.opposite).I[0])
+        what, quotient = f"dQ, {direction.label} direction,", _quotient(beside, step).real
+        _near(what, phi, laden_ones.dQ, quotient, 1e-6 * bare.gravity * moment, "the difference quotient is")
+        if bare.rocks_both_ways:
+            masses = share["horizontal"] * mass, share["vertical"] * mass
+            _restitution_has_the_mass(bare, laden, spot, masses, direction)
 
-        def product(one: complex, other: complex) -> float:
-            return mass * (share["horizontal"] * one.real * other.real + share["vertical"] * one.imag * other.imag)
 
-        expected = (before * base - product(old, new)) / (base + product(new, new))
-        _demand(
-            abs(after - expected) <= 1e-9, f"eta with a load is {after:.9g}, but from bodies and load {expected:.9g}"
-        )
+def _restitution_has_the_mass(
+    bare: Mechanism, laden: Mechanism, spot: Spot, masses: tuple[float, float], direction: Direction
+) -> None:
+    """The restitution with a load is that without it and the momentum of its horizontal and vertical masses [kg]."""
+    old, new = (complex(bare.followed(np.zeros(1), side)(spot).dz[0]) for side in (direction, direction.opposite))
+    before, after = bare.restitution_from_kinematics(direction), laden.restitution_from_kinematics(direction)
+    base = float(bare.coefficients(np.zeros(1), direction.opposite).I[0])
+
+    def product(one: complex, other: complex) -> float:
+        return masses[0] * one.real * other.real + masses[1] * one.imag * other.imag
+
+    expected = (before * base - product(old, new)) / (base + product(new, new))
+    _demand(abs(after - expected) <= 1e-9, f"eta with a load is {after:.9g}, but from bodies and load {expected:.9g}")
 
 
 def may_lean_on_side_walls(structure: Mechanism) -> None:

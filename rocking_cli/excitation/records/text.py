@@ -92,10 +92,7 @@ def read(
     except InputError as error:
         problems.extend(error.problems)
     if choice.time is None and dt is None:
-        kind = "values" if wanted.raw else plural(wanted.quantity)
-        what = f"one column of {kind}" if columns == 1 else "no column is called time or is one"
-        hint = f"give it with `dt`, in seconds, or add a time column before the {kind}"
-        problems.append(Problem(f"{what}, and no sample interval", file=file, hint=hint))
+        problems.append(_no_interval(file, wanted, columns))
     if problems:
         raise InputError(*problems)
 
@@ -105,12 +102,7 @@ def read(
     if choice.time is not None:
         column = _called(names, choice.time) if columns > 2 else ""
         with _uneven_rows(file, lines, start, column):
-            try:
-                interval = even_interval(table[choice.time])
-            except UnevenTimeError:
-                if not wanted.uneven or (gridded := on_grid(table[choice.time], values)) is None:
-                    raise
-                interval, values, uneven = gridded
+            interval, values, uneven = _at_even_times(table[choice.time], values, as_it_comes=wanted.uneven)
         check_interval(file, None, interval, dt)
         dt = interval
     assert dt is not None  # a missing interval was refused above
@@ -121,6 +113,23 @@ def read(
     if uneven is not None:
         remarks = (*remarks, uneven)
     return GroundMotion(name, dt, values * size, unit, "text", remarks=remarks)
+
+
+def _no_interval(file: str, wanted: Wanted, columns: int) -> Problem:
+    kind = "values" if wanted.raw else plural(wanted.quantity)
+    what = f"one column of {kind}" if columns == 1 else "no column is called time or is one"
+    hint = f"give it with `dt`, in seconds, or add a time column before the {kind}"
+    return Problem(f"{what}, and no sample interval", file=file, hint=hint)
+
+
+def _at_even_times(times: Reals, values: Reals, *, as_it_comes: bool) -> tuple[float, Reals, Doubt | None]:
+    """Return the sampling interval [s] and the values, interpolated if uneven times are accepted, with a remark."""
+    try:
+        return even_interval(times), values, None
+    except UnevenTimeError:
+        if not as_it_comes or (gridded := on_grid(times, values)) is None:
+            raise
+        return gridded
 
 
 def usable(values: Reals) -> bool:

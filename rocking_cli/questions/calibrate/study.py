@@ -498,14 +498,10 @@ def _each(problem: _Problem, x: Reals, trace: Trace, structure: Structure, free_
         geometry = np.array(problem.geometry) + GEOMETRY_STEP * np.append(0.0, error)
         moved = solve @ (replace(problem, geometry=tuple(geometry)).model(own, times) - problem.model(own, times))
         variance += (w @ moved[ETA:last] / GEOMETRY_STEP) ** 2
-    total, origin = float(times[-1]), problem.origin
-    drift = Estimated(float(own[DRIFT]) * scale / total, float(deviation[DRIFT]) * scale / total)
-    to_zero, part = np.array([1.0, -origin / total]), slice(OFFSET, DRIFT + 1)
-    offset = Estimated(
-        float(to_zero @ own[part]) * scale, float(np.sqrt(to_zero @ covariance[part, part] @ to_zero)) * scale
-    )
+    origin = problem.origin
+    offset, drift = _baseline(problem, own, covariance)
     after = trace.times - origin
-    fitted = (after >= 0) & (after <= total)
+    fitted = (after >= 0) & (after <= times[-1])
     return TraceFit(
         trace,
         Estimated(pooled.mean, float(np.sqrt(variance))),
@@ -524,6 +520,17 @@ def _each(problem: _Problem, x: Reals, trace: Trace, structure: Structure, free_
         p,
         alpha,
     )
+
+
+def _baseline(problem: _Problem, x: Reals, covariance: Reals) -> tuple[Estimated, Estimated]:
+    """Return the offset at time zero and the drift per second of a fitted trace, in the units of the trace."""
+    total, part = float(problem.times[-1]), slice(OFFSET, DRIFT + 1)
+    at_zero, rate = np.array([1.0, -problem.origin / total]), np.array([0.0, 1.0 / total])
+    offset, drift = (
+        Estimated(*(problem.scale * float(v) for v in (w @ x[part], np.sqrt(w @ covariance[part, part] @ w))))
+        for w in (at_zero, rate)
+    )
+    return offset, drift
 
 
 def _is_other(problem: _Problem, x: Reals, off: float, trace: Trace, structure: Structure) -> str:

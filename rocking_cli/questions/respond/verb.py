@@ -149,25 +149,16 @@ def respond(
     from rocking_cli.studies.response import response_of
     from rocking_cli.views.response import view
 
-    if not FINEST_RTOL <= rtol < 1:
-        what = f"{rtol:g} is not a number from {FINEST_RTOL:g} to below 1: smaller errors are below rounding"
-        raise InputError(Problem(what, field="`rtol`"))
+    _check_rtol(rtol)
     ready = structure_of(structure, watch, opening)
     motions, signs = Motions.of(() if motion is None else motion, options), signs_of(polarity)
-    _check(motions, signs, vertical, (vertical_dt, vertical_channel), with_pulse)
     tilt = release if release is None or isinstance(release, Release) else Release.of(release)
-    several = are_several(motion, motions)
-    if vertical is not None and several:
-        raise InputError("`vertical` applies to a single motion: give one")
-    if not motions and tilt is None:
-        raise InputError("no excitation is given: give a motion or a `release`")
+    several, third = are_several(motion, motions), (vertical, vertical_dt, vertical_channel)
+    _check(motions, signs, third, with_pulse, several=several, released=tilt is not None)
     drawn_around = around_of(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
     if motions.reading.azimuth == ALL:
-        idle = {"polarity": signs != (1,), "with_pulse": with_pulse, "impacts": impacts, "contact": contact,
-                "tail": tail != TAIL_SECONDS, "neighbours": neighbours}  # fmt: skip
-        if sentences := [f"`{name}`" for name, given in idle.items() if given]:
-            raise InputError(f"{', '.join(sentences)} cannot be combined with `azimuth` all: give one angle")
-        third = (vertical, vertical_dt, vertical_channel)
+        _refuse_with_all_azimuths(polarity=signs != (1,), with_pulse=with_pulse, impacts=impacts, contact=contact,
+                                  tail=tail != TAIL_SECONDS, neighbours=neighbours)  # fmt: skip
         around = all_directions(ready, motions, third, models=models, release=tilt, rtol=rtol, watch=watch)
         write_files(around, out, plot, watch)
         return around  # type: ignore[no-any-return]
@@ -191,15 +182,10 @@ def respond(
         response = response_of(ready, names, given, question)
         _note_pulse(response, watch)
         shown = view(response, ready, question, str(polarity), title, doubts, impacts=impacts)
-        answer = ResponseAnswer(
-            "response",
-            response,
-            shown,
-            partial(_columns, response, ready),
-            partial(_figure, response, ready, title, contact=contact or ready.mechanism.friction is not None),
-            partial(_blocks, response, ready),
-            {"impacts": partial(_impact_columns, response)},
-        )
+        figure = partial(_figure, response, ready, title, contact=contact or ready.mechanism.friction is not None)
+        columns, blocks = partial(_columns, response, ready), partial(_blocks, response, ready)
+        more = {"impacts": partial(_impact_columns, response)}
+        answer = ResponseAnswer("response", response, shown, columns, figure, blocks, more)
         write_files(answer, table, picture, watch)
         return answer
 
@@ -230,10 +216,28 @@ def _note_pulse(response: Response, watch: Watcher) -> None:
         )
 
 
+def _check_rtol(rtol: float) -> None:
+    if not FINEST_RTOL <= rtol < 1:
+        what = f"{rtol:g} is not a number from {FINEST_RTOL:g} to below 1: smaller errors are below rounding"
+        raise InputError(Problem(what, field="`rtol`"))
+
+
+def _refuse_with_all_azimuths(**arguments: object) -> None:
+    if names := [f"`{name}`" for name, value in arguments.items() if value]:
+        raise InputError(f"{', '.join(names)} cannot be combined with `azimuth` all: give one angle")
+
+
 def _check(
-    motions: Motions, signs: Sequence[int], vertical: object, of_vertical: Sequence[object], with_pulse: str | None
+    motions: Motions,
+    signs: Sequence[int],
+    third: Sequence[object],
+    with_pulse: str | None,
+    *,
+    several: bool,
+    released: bool,
 ) -> None:
-    """Raise `InputError` if arguments have no effect or cannot be combined."""
+    """Raise `InputError` if arguments have no effect or cannot be combined; `third` has those of the vertical."""
+    vertical, *of_vertical = third
     if not motions and vertical is not None:
         raise InputError("`vertical` requires a horizontal component: give `motion`")
     if vertical is None and any(value is not None for value in of_vertical):
@@ -244,6 +248,10 @@ def _check(
         raise InputError("`with_pulse` requires a record: give the file of one")
     if with_pulse is not None and len(signs) > 1:
         raise InputError("`with_pulse` cannot be combined with `polarity` both: ask for one polarity at a time")
+    if vertical is not None and several:
+        raise InputError("`vertical` applies to a single motion: give one")
+    if not motions and not released:
+        raise InputError("no excitation is given: give a motion or a `release`")
 
 
 def usual_models(structure: Structure, watch: Watcher = SILENT) -> tuple[ModelName, ...]:
