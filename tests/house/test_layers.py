@@ -88,7 +88,7 @@ SHARED = {
 
 
 def test_no_class_name_is_defined_in_two_files(package):
-    """One name for one thing, see `docs/architecture.md#names`."""
+    """One name for one thing, see `docs/names.md`."""
     homes: dict[str, set[str]] = {}
     for place, tree in package.items():
         for node in ast.walk(tree):
