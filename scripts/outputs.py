@@ -61,7 +61,7 @@ ONCE = (
     "record examples/accel.csv --fit-pulse --measures all --json",
     "respond examples/frame.yaml --pulse ricker:0.4g:1.2s --json",
     f"respond examples/frame.yaml {ACCEL} --with examples/accel_transverse.csv --azimuth all --json",
-    f"respond examples/block.yaml {ACCEL} --floor T1=0.4,xi=0.05,z=0.67,gamma=1.29 --json",
+    f"respond examples/block.yaml {ACCEL} --floor T1=0.4,xi=0.05,z/H=0.67,gamma=1.29 --json",
     f"respond examples/block.yaml {ACCEL} --release 0.05 --json",
     "score examples/tests.csv --neighbours 20 --json --out shares.csv",
     "score examples/tests.csv --neighbours 20",

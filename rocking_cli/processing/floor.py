@@ -13,8 +13,9 @@ from rocking_cli.processing.oscillator import DAMPING, check_oscillator, finer, 
 from rocking_cli.text import did_you_mean, exact
 from rocking_cli.units import UnitError, number_of
 
-FLOOR_EXAMPLE = "T1=0.4,xi=0.05,z=0.67,gamma=1.29"
-KEYS = ("T1", "xi", "z", "gamma", "n")
+FLOOR_EXAMPLE = "T1=0.4,xi=0.05,z=6m,H=9m,n=3"
+UNITS = {"T1": "s", "xi": "%", "z": "m", "H": "m", "z/H": "", "gamma": "", "n": ""}
+"""Items of a floor, with the unit of a plain number; those of z, H and n are the items of a site's floor."""
 PERIOD_RANGE = 1e-6, 1e6  # s; no building has periods beyond, and numbers overflow
 MAX_GAMMA = 100.0  # a uniform building has 1.5; a larger value is a typing error
 MAX_STOREYS = 1000
@@ -44,15 +45,15 @@ class Floor:
     def __post_init__(self) -> None:
         check_oscillator(self.period, self.damping)
         if not 0 <= self.height <= 1:
-            hint = "z is the height of the floor over that of the building"
-            raise _refused(f"z must be from 0 to 1, got {self.height:g}", hint)
+            hint = "it is the height of the floor over that of the building"
+            raise _refused(f"z/H must be from 0 to 1, got {self.height:g}", hint)
         if not PERIOD_RANGE[0] <= self.period <= PERIOD_RANGE[1]:
             raise _refused(f"T1 must be from {PERIOD_RANGE[0]:g} to {PERIOD_RANGE[1]:g} s, got {self.period:g} s")
         if not 0 < self.participation <= MAX_GAMMA:
             raise _refused(f"gamma must be a positive number, {MAX_GAMMA:g} at most, got {self.participation:g}")
 
     def __str__(self) -> str:
-        items = {"T1": self.period, "xi": self.damping, "z": self.height}
+        items = {"T1": self.period, "xi": self.damping, "z/H": self.height}
         n = round(self.participation / (3 - 2 * self.participation)) if self.participation < 1.5 else 0
         if 1 <= n <= MAX_STOREYS and isclose(_of_storeys(n), self.participation, rel_tol=1e-12):
             items["n"] = float(n)  # n is exact, while gamma such as 9/7 has endless digits
@@ -62,7 +63,9 @@ class Floor:
 
     @classmethod
     def parse(cls, spec: str | Mapping[str, object]) -> Self:
-        """Read a floor from `T1=0.4,xi=0.05,z=0.67,gamma=1.29`, with `n=3` storeys instead of gamma, or from a mapping.
+        """Read a floor from `T1=0.4,xi=0.05,z=6m,H=9m,n=3`, or from a mapping.
+
+        Instead of z and H [m] their ratio `z/H` may be given, and instead of n equal storeys `gamma`.
 
         Raises
         ------
@@ -71,9 +74,10 @@ class Floor:
         """
         pairs = dict(spec) if isinstance(spec, Mapping) else _pairs(spec)
         for key in pairs:
-            if key not in KEYS:
-                raise _refused(f"{key!r} is not one of {', '.join(KEYS)}", did_you_mean(str(key), list(KEYS)))
-        missing = [key for key in ("T1", "z") if key not in pairs]
+            if key not in UNITS:
+                raise _refused(f"{key!r} is not one of {', '.join(UNITS)}", did_you_mean(str(key), list(UNITS)))
+        _check_height(pairs)
+        missing = [key for key, there in (("T1", "T1" in pairs), ("z with H", {"z", "z/H"} & set(pairs))) if not there]
         if ("gamma" in pairs) == ("n" in pairs):
             missing.append("gamma, or n for as many equal storeys (one of the two)")
         if missing:
@@ -84,7 +88,11 @@ class Floor:
             if not (1 <= n <= MAX_STOREYS and n == round(n)):
                 raise _refused(f"n is the number of storeys, got {n:g}")
             values["gamma"] = _of_storeys(n)
-        return cls(values["T1"], values.get("xi", DAMPING), values["z"], values["gamma"])
+        if "H" in values:
+            if not 0 <= values["z"] <= values["H"] or values["H"] == 0:
+                raise _refused(f"z must be from 0 to H, got {values['z']:g} m of {values['H']:g} m")
+            values["z/H"] = values["z"] / values["H"]
+        return cls(values["T1"], values.get("xi", DAMPING), values["z/H"], values["gamma"])
 
     def of(self, ground: GroundMotion) -> GroundMotion:
         """Return the motion of the floor for a ground motion.
@@ -115,12 +123,22 @@ def _of_storeys(n: float) -> float:
     return 3 * n / (2 * n + 1)
 
 
+def _check_height(pairs: Mapping[str, object]) -> None:
+    """Refuse a height without that of the building, which may be meant as their ratio, and both together."""
+    hint = "give heights in metres, such as z=6m,H=9m, or their ratio, such as z/H=0.67"
+    if "z" in pairs and not {"H", "z/H"} & set(pairs):
+        z = pairs["z"]
+        raise _refused(f"z={z} has two meanings: the height of the floor needs that of the building, H", hint)
+    if "z/H" in pairs and {"z", "H"} & set(pairs):
+        raise _refused("z/H cannot be combined with z or H", hint)
+
+
 def _pairs(text: str) -> dict[str, object]:
     pairs: dict[str, object] = {}
     for part in text.split(","):
         key, equals, value = (each.strip() for each in part.partition("="))
         if not equals or not value:
-            raise _refused(f"{part.strip()!r} is not of the form {KEYS[0]}=0.4")
+            raise _refused(f"{part.strip()!r} is not of the form T1=0.4")
         if key in pairs:
             raise _refused(f"{key} is given twice")
         pairs[key] = value
@@ -129,7 +147,7 @@ def _pairs(text: str) -> dict[str, object]:
 
 def _value(key: str, value: object) -> float:
     try:
-        return number_of(value, {"T1": "s", "xi": "%"}.get(key, ""))
+        return number_of(value, UNITS[key])
     except UnitError as error:
         raise _refused(f"{key}: {error.message}", error.hint) from None
 

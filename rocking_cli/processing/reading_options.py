@@ -167,7 +167,7 @@ class ReadingArguments(TypedDict, total=False):
     resample: Annotated["Step | str | float | None", Option(
         "Resample to this interval, in s; uneven times are put on a regular grid.", _step("resample"), "TIME")]
     floor: Annotated["Floor | str | Mapping[str, Any] | None", Option(
-        "Floor of a building on which the structure stands: T1=0.4,xi=0.05,z=0.67,gamma=1.29 (or n=3 storeys).",
+        "Floor of a building on which the structure stands: T1=0.4,xi=0.05,z=6m,H=9m,n=3 (or z/H=0.67, gamma=1.29).",
         _floor, "T1=...")]
     # fmt: on
 

@@ -29,7 +29,7 @@ OF_THE_TERMINAL = {"as_json", "as_csv", "plot", "out", "page", "curves", "nrml",
 """Options that say where an answer goes, and in which form."""
 NAMED = {"records": "motions", "pulses": "motions"}
 MOST = 40
-FLOOR = "T1=0.4,xi=0.05,z=0.67,gamma=1.29"
+FLOOR = "T1=0.4,xi=0.05,z/H=0.67,gamma=1.29"
 
 
 def asked(name):

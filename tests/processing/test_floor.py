@@ -18,7 +18,7 @@ from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 
 ACCEL = EXAMPLES / "accel.csv"
-FLOOR = "T1=0.4,xi=0.05,z=0.67,gamma=1.29"
+FLOOR = "T1=0.4,xi=0.05,z/H=0.67,gamma=1.29"
 
 
 @pytest.fixture(scope="module")
@@ -72,34 +72,56 @@ class TestFloor:
         assert np.abs(found.acceleration[-400:]).max() == pytest.approx(np.hypot(1, 1 / 0.1), rel=5e-3)
 
     def test_storeys_give_the_participation(self):
-        assert Floor.parse("T1=0.4,z=1,n=3").participation == pytest.approx(9 / 7)
-        assert Floor.parse({"T1": 0.4, "xi": "5%", "z": 0.67, "gamma": 1.29}) == Floor.parse(FLOOR)
-        for text in (FLOOR, "T1=0.4,z=1,n=3"):
+        assert Floor.parse("T1=0.4,z/H=1,n=3").participation == pytest.approx(9 / 7)
+        assert Floor.parse({"T1": 0.4, "xi": "5%", "z/H": 0.67, "gamma": 1.29}) == Floor.parse(FLOOR)
+        for text in (FLOOR, "T1=0.4,z/H=1,n=3"):
             assert Floor.parse(str(Floor.parse(text))) == Floor.parse(text)
 
     @pytest.mark.parametrize(
         ("text", "words"),
         [
-            ("T1=0.4,z=0.5", "gamma, or n"),
-            ("T1=0.4,z=0.5,n=2,gamma=1.2", "one of the two"),
-            ("z=0.5,n=2", "T1 must be given"),
-            ("T1=0.4,z=1.5,n=2", "z must be from 0 to 1"),
-            ("T1=0.4,z=0.5,n=2.5", "number of storeys"),
-            ("T1=0.4,z=0.5,n=inf", "n: 'inf' is not a number"),
-            ("T1=0.4,z=０.５,n=2", "z: "),
-            ("T1=1e-300,z=0.5,n=2", "T1 must be from 1e-06 to"),
-            ("T1=0.4,z=0.5,gamma=1e30", "gamma must be a positive number, 100 at most"),
-            ("T1=-1,z=0.5,n=2", "positive number of seconds"),
-            ("T1=0.4,xi=2,z=0.5,n=2", "damping ratio"),
+            ("T1=0.4,z/H=0.5", "gamma, or n"),
+            ("T1=0.4,z/H=0.5,n=2,gamma=1.2", "one of the two"),
+            ("z/H=0.5,n=2", "T1 must be given"),
+            ("T1=0.4,z/H=1.5,n=2", "z/H must be from 0 to 1"),
+            ("T1=0.4,z/H=0.5,n=2.5", "number of storeys"),
+            ("T1=0.4,z/H=0.5,n=inf", "n: 'inf' is not a number"),
+            ("T1=0.4,z/H=０.５,n=2", "z/H: "),
+            ("T1=1e-300,z/H=0.5,n=2", "T1 must be from 1e-06 to"),
+            ("T1=0.4,z/H=0.5,gamma=1e30", "gamma must be a positive number, 100 at most"),
+            ("T1=-1,z/H=0.5,n=2", "positive number of seconds"),
+            ("T1=0.4,xi=2,z/H=0.5,n=2", "damping ratio"),
             ("T1=0.4,zz=0.5,n=2", "'zz' is not one of"),
-            ("T1=0.4,z=0.5,z=0.6,n=2", "z is given twice"),
+            ("T1=0.4,z/H=0.5,z/H=0.6,n=2", "z/H is given twice"),
             ("0.4", "is not of the form T1=0.4"),
-            ("T1=0.4 kg,z=0.5,n=2", "is a mass"),
+            ("T1=0.4 kg,z/H=0.5,n=2", "is a mass"),
+            ("T1=0.4,z/H=0.67,H=9,n=2", "z/H cannot be combined with z or H"),
+            ("T1=0.4,n=2", "z with H must be given"),
+            ("T1=0.4,H=9,n=2", "z with H must be given"),
+            ("T1=0.4,z=6,H=9,z/H=0.67,n=2", "z/H cannot be combined with z or H"),
+            ("T1=0.4,z=6 kg,H=9,n=2", "z: 6 kg is a mass, not a length"),
+            ("T1=0.4,z=9.5,H=9,n=2", "z must be from 0 to H, got 9.5 m of 9 m"),
+            ("T1=0.4,z=-1,H=9,n=2", "z must be from 0 to H"),
+            ("T1=0.4,z=0,H=0,n=2", "z must be from 0 to H"),
         ],
     )
     def test_what_is_no_floor(self, text, words):
         with pytest.raises(InputError, match=words):
             Floor.parse(text)
+
+    def test_heights_in_metres_are_those_of_a_site(self):
+        by_ratio = Floor(0.4, 0.05, 6 / 9, 9 / 7)
+        for text in ("T1=0.4,z=6m,H=9m,n=3", "T1=0.4,z=6,H=9,n=3", "T1=400ms, z = 600 cm, H = 9 m, n = 3"):
+            assert Floor.parse(text) == by_ratio
+        assert Floor.parse({"T1": 0.4, "z": "6 m", "H": 9.0, "n": 3}) == by_ratio
+        assert Floor.parse(str(by_ratio)) == by_ratio
+
+    @pytest.mark.parametrize("z", ["0.67", "6", "1"])
+    def test_a_height_alone_is_refused_with_both_ways_to_write_it(self, z):
+        shown = run("respond", "--record", ACCEL, "--floor", f"T1=0.4,z={z},n=3", code=2).stderr
+        said = " ".join(shown.split())
+        assert f"z={z} has two meanings: the height of the floor needs that of the building, H" in said
+        assert "give heights in metres, such as z=6m,H=9m, or their ratio, such as z/H=0.67" in said
 
     def test_a_floor_that_no_memory_holds(self):
         long = GroundMotion("long", 0.01, np.zeros(1_000_001))
@@ -134,7 +156,7 @@ class TestFloor:
             "levels: {measure: PGA, values: [0.2, 0.3, 0.5]}\n"
         )
         peaks = {}
-        floors = {"ground": "", "floor": f"floor: {FLOOR}\n", "stiff": "floor: {T1: 1.0e-4, z: 1, n: 2}\n"}
+        floors = {"ground": "", "floor": f"floor: {FLOOR}\n", "stiff": "floor: {T1: 1.0e-4, z/H: 1, n: 2}\n"}
         for name, more in floors.items():
             (tmp_path / f"{name}.yaml").write_text(base + more)
             run("fragility", tmp_path / f"{name}.yaml", "--jobs", 1)

@@ -112,7 +112,7 @@ class TestShape:
     def test_a_floor_is_corrected_with_its_ground(self):
         import rocking_cli as rk
 
-        found = rk.correct(rk.on_floor(ACCEL, "T1=0.4,z=1,n=3"), "trim 1:9", "lowpass 5")
+        found = rk.correct(rk.on_floor(ACCEL, "T1=0.4,z/H=1,n=3"), "trim 1:9", "lowpass 5")
         assert found.of_ground.pga_g == rk.correct(ACCEL, "trim 1:9", "lowpass 5").pga_g
 
     def test_histories_of_a_pulse_stay_as_fine_when_it_is_resampled(self):
@@ -263,7 +263,7 @@ class TestCommands:
             (("--highpass", "1", "--highpass", "2"), "is given twice"),
             (("--lowpass", "80"), "--lowpass: 80 Hz is not below the Nyquist frequency, 50 Hz"),
             (("--gain", "3"), "is a gain without a unit"),
-            (("--floor", "T1=0.4"), "z and gamma, or n"),
+            (("--floor", "T1=0.4"), "z with H and gamma, or n"),
         ],
     )
     def test_wrong_options(self, options, words):
@@ -367,9 +367,9 @@ def test_filters_that_leave_nothing_between_them_are_refused(steps):
 
 
 def test_a_floor_of_equal_storeys_is_named_by_their_number():
-    said = str(Floor.parse("T1=0.4,z=0.67,n=3"))
-    assert said.endswith("z=0.67,n=3") and Floor.parse(said) == Floor.parse("T1=0.4,z=0.67,n=3")
-    assert str(Floor.parse("T1=0.4,z=0.67,gamma=1.29")).endswith("gamma=1.29")
+    said = str(Floor.parse("T1=0.4,z/H=0.67,n=3"))
+    assert said.endswith("z/H=0.67,n=3") and Floor.parse(said) == Floor.parse("T1=0.4,z/H=0.67,n=3")
+    assert str(Floor.parse("T1=0.4,z/H=0.67,gamma=1.29")).endswith("gamma=1.29")
 
 
 @pytest.mark.parametrize(("dt", "every"), [(0.004, 2), (0.0005, 16), (0.02, 1)])

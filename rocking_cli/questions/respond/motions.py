@@ -74,8 +74,9 @@ def on_floor(motion: Motion, floor: Floor | str | Mapping[str, Any]) -> GroundMo
     motion : GroundMotion, Pulse, str or Path
         Ground motion, its file, or a pulse as text.
     floor : Floor, str or mapping
-        Floor such as `"T1=0.4,xi=0.05,z=0.67,gamma=1.29"`: period [s], damping ratio, height over that of the building
-        and participation factor; `n`, a number of equal storeys, may replace the last.
+        Floor such as `"T1=0.4,xi=0.05,z=6m,H=9m,n=3"`: period [s], damping ratio, heights of the floor and of the
+        building [m], and number of equal storeys. `z/H` may replace both heights, and the participation factor `gamma`
+        the storeys.
 
     Returns
     -------

@@ -135,7 +135,7 @@ def test_what_is_not_exact_or_contradicted_is_from_the_runs(answer):
     fitted = list(curves(replace(found, uplift=None), block, asked, None))
     assert (fitted[0].curve.step.low, fitted[0].curve.step.high) == pytest.approx((0.25, 0.325))
     assert set(accelerations(load_study(STUDY), answer.plan)) == {each.structure for each in answer.result}
-    assert accelerations(load_study({**STUDY, "floor": "T1=0.3,z=1,n=3"}), answer.plan) == {}
+    assert accelerations(load_study({**STUDY, "floor": "T1=0.3,z/H=1,n=3"}), answer.plan) == {}
 
 
 def test_a_dispersion_without_sense_is_not_shown():

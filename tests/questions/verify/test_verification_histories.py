@@ -172,7 +172,7 @@ class TestWhereAndWhen:
         below, _ = dynamics(ON_FLOOR, accel, pulse)
         assert all(each.holds("SLV", confident=True) for each in below)
         assert max(each.peaks(confident=True)[0] for each in below) < 0.003
-        place = f"T1=0.4,xi=0.05,z={6 / 9},n=3"
+        place = f"T1=0.4,xi=0.05,z/H={6 / 9},n=3"
         wanted, _ = dynamics(ON_FLOOR, rk.on_floor(accel, place), rk.on_floor(pulse, place))
         above, answer = dynamics({**ON_FLOOR, "floor": FLOOR}, accel, pulse)
         assert [each.peaks(confident=True) for each in above] == [each.peaks(confident=True) for each in wanted]
@@ -180,16 +180,16 @@ class TestWhereAndWhen:
         assert [each.peaks(confident=True)[1] is None for each in above] == [True, False]
         assert not above[0].holds("SLV", confident=True)
         said = " ".join(answer.sentences)
-        assert "carried to the floor by the first mode of the building: T1=0.4,xi=0.05,z=0.66" in said
+        assert "carried to the floor by the first mode of the building: T1=0.4,xi=0.05,z/H=0.66" in said
         found = answer.to_dict()["directions"]["positive"]["dynamic"]
-        assert found["motions"] == "carried_to_floor" and found["floor"].startswith("T1=0.4,xi=0.05,z=0.66")
+        assert found["motions"] == "carried_to_floor" and found["floor"].startswith("T1=0.4,xi=0.05,z/H=0.66")
 
     def test_motions_of_the_floor_are_taken_as_they_are(self, accel):
         below, _ = dynamics(ON_FLOOR, accel)
         stated, answer = dynamics({**ON_FLOOR, "floor": FLOOR}, accel, on_floor=True)
         assert [each.records for each in stated] == [each.records for each in below]
         assert "taken as motions of the floor" in " ".join(answer.sentences)
-        carried = rk.on_floor(accel, "T1=0.3,xi=0.05,z=1,n=3")
+        carried = rk.on_floor(accel, "T1=0.3,xi=0.05,z/H=1,n=3")
         by_option, _ = dynamics({**ON_FLOOR, "floor": FLOOR}, carried)
         assert by_option[0].motions.kind == "carried_by_option" and "T1=0.3" in by_option[0].motions.floor
         wanted, _ = dynamics(ON_FLOOR, carried)
@@ -198,7 +198,7 @@ class TestWhereAndWhen:
     def test_what_cannot_be_of_the_floor_is_refused(self, accel):
         with pytest.raises(rk.InputError, match="`on_floor` requires a site with a floor"):
             dynamics(ON_FLOOR, accel, on_floor=True)
-        carried, site = rk.on_floor(accel, "T1=0.3,xi=0.05,z=1,n=3"), {**ON_FLOOR, "floor": FLOOR}
+        carried, site = rk.on_floor(accel, "T1=0.3,xi=0.05,z/H=1,n=3"), {**ON_FLOOR, "floor": FLOOR}
         with pytest.raises(rk.InputError, match="`on_floor` cannot be combined with `floor`"):
             dynamics(site, carried, on_floor=True)
         with pytest.raises(rk.InputError, match="some of the motions are of a floor"):
