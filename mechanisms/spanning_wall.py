@@ -25,6 +25,7 @@ from rocking_cli.core import (
     RigidMotion,
     Sketch,
     Spot,
+    along_wall,
     box,
     geometry_error,
     length,
@@ -71,7 +72,7 @@ class SpanningWall(Mechanism):
     overburden_inertia: float = quantity(
         "share of the mass P/g that moves up and down with the top", example=1.0, default=1.0, ge=0, le=1
     )
-    depth: float | None = length("size out of plane; an overburden needs it", example=1.0, default=None)
+    depth: float | None = along_wall("length along the wall, `length` too; an overburden needs it")
     density: float | None = quantity(
         "density of the wall; an overburden needs it", unit="kg/m3", example=1800.0, default=None, gt=0, le=1e6
     )

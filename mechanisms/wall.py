@@ -19,6 +19,7 @@ from rocking_cli.core import (
     Reals,
     RigidMotion,
     Sketch,
+    along_wall,
     box,
     length,
     of_joints,
@@ -42,6 +43,7 @@ class Wall(Mechanism):
 
     thickness: float = length("thickness", symbol="2b", example=0.3)
     height: float = length("height between foot and top support", symbol="4h", example=3.0)
+    depth: float | None = along_wall("length along the wall, out of plane; `length` is read too")
 
     def bodies(self) -> Sequence[Body]:
         h = self.height / 4

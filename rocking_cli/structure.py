@@ -20,7 +20,17 @@ from rocking_cli.dynamics.model import MODELS, Model, ModelName, build
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.dotted import put, words
-from rocking_cli.io.field_problems import fields_at, is_plural, lists_models, names_at, of_arguments, types_at, unit_at
+from rocking_cli.io.field_problems import (
+    by_meaning,
+    fields_at,
+    is_plural,
+    lists_models,
+    names_at,
+    of_arguments,
+    spellings,
+    types_at,
+    unit_at,
+)
 from rocking_cli.io.yaml_file import Place
 from rocking_cli.names import OPENING
 from rocking_cli.text import cut, did_you_mean
@@ -211,12 +221,18 @@ class Structure:
     def varied(self, field: str, value: float) -> Structure:
         """Return the structure with another value of a field. Raises `InputError` if it cannot be built."""
         data, cls = deepcopy(self._data), type(self.mechanism)
-        put(data, words(field), value, is_list=partial(lists_models, cls), grow=False)
+        put(data, self._words(field), value, is_list=partial(lists_models, cls), grow=False)
         folder = Path(self.file).parent if self.file is not None else None
         try:
             return self.of(cls.from_fields(data, folder))
         except ValidationError as error:
             raise InputError(*of_arguments(cls, error.errors(include_url=False), cls.mechanism)) from None
+
+    def _words(self, field: str) -> tuple[str, ...]:
+        """Return the path of a field, whose first word is its usual name even if the field is given by another."""
+        first, *rest = words(field)
+        names = [spellings(name, info) for name, info in type(self.mechanism).model_fields.items()]
+        return next((each[0] for each in names if first in each), first), *rest
 
     @cached_property
     def _data(self) -> dict[str, Any]:
@@ -227,7 +243,7 @@ class Structure:
 
         Raises `InputError` if the field does not exist or is not numeric.
         """
-        cls, path = type(self.mechanism), words(field)
+        cls, path = type(self.mechanism), self._words(field)
         place = put(deepcopy(self._data), path, 1.0, is_list=partial(lists_models, cls), grow=False)
         known_path: Place = ()
         for k, part in enumerate(place):
@@ -237,8 +253,8 @@ class Structure:
                 if part not in known:
                     within = ".".join(path[:k]) or cls.mechanism
                     message = f"{within} has no {cut(part)}" if named else f"{cut(part)} is not a field of {within}"
-                    message, hint = message if k else f"is not a field of {within}", did_you_mean(part, known)
-                    raise InputError(Problem(message, field=field, hint=hint))
+                    hint = by_meaning(part, fields_at(cls, known_path)) or did_you_mean(part, known)
+                    raise InputError(Problem(message if k else f"is not a field of {within}", field=field, hint=hint))
             known_path = (*known_path, part)
         if float not in types_at(cls, place) or (isinstance(place[-1], str) and is_plural(cls, place)):
             raise InputError(Problem("is not a numeric field, so it cannot be varied", field=field))

@@ -1,5 +1,7 @@
 """Quantities with units: `800 mm`, `2.1 t/m3`, `10 deg`. One table for files, options and Python.
 
+`read` refuses a weight, such as `19 kN/m3`, as a mass; fields of structures take it by `mass_of_weight`.
+
 The module imports neither numpy nor pydantic, so that the command line can use it before it needs them.
 """
 
@@ -36,12 +38,15 @@ KINDS: Mapping[str, Mapping[str, str]] = {
         "ksi": "4448.2216152605/0.00064516",
     },
     "density": {"kg/m3": "1", "t/m3": "1000", "g/cm3": "1000", "kg/dm3": "1000", "lb/ft3": "0.45359237/0.028316846592"},
+    "mass per length": {"kg/m": "1", "t/m": "1000"},
     "weight density": {"N/m3": "1", "kN/m3": "1000", "lbf/ft3": "4.4482216152605/0.028316846592"},
     "time": {"s": "1", "ms": "0.001", "min": "60"},
     "velocity": {"m/s": "1", "cm/s": "0.01", "mm/s": "0.001", "in/s": "0.0254"},
     "angle": {"rad": "1", "deg": f"{PI}/180", "°": f"{PI}/180", "mrad": "0.001"},
 }
 STANDARD_GRAVITY = Decimal("9.80665")  # m/s2
+WEIGHT_OF = {"mass": "force", "density": "weight density", "mass per length": "stiffness"}
+"""Kinds of mass, and the kind of their weight; the weight of a length has the unit of a stiffness."""
 
 _FORM = regex(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*([^\s\d.,+-].*)?", re.DOTALL)
 _COMMA = regex(r"[-+]?[0-9]+(,[0-9]+)+\s*\D*", re.ASCII)
@@ -131,11 +136,28 @@ def read(text: str, unit: str) -> float:
     other = kind_of(stated)
     if other is None:
         raise UnitError(f"{cut(printable(stated))!r} is not a unit of {kind or unit}", _guess(stated, known))
-    if (other, kind) == ("weight density", "density"):
-        mass = _EXACT.divide(_EXACT.multiply(_EXACT.create_decimal(number), _factor(other, stated)), STANDARD_GRAVITY)
-        hint = f"divided by {STANDARD_GRAVITY} m/s2 it is {float(mass):.6g} kg/m3"
-        raise UnitError(f"{quoted} is a unit weight, not a density (mass per volume)", hint)
+    if (mass := mass_of_weight(text, unit)) is not None:
+        raise UnitError(
+            f"{quoted} is a weight, not a {kind}", f"divided by {STANDARD_GRAVITY} m/s2 it is {mass:.6g} {unit}"
+        )
+    if (other, kind) in (("stiffness", "force"), ("stiffness", "mass")):
+        raise UnitError(f"{quoted} is a load per metre, not a {kind}", "multiply it by the length that carries it")
     raise UnitError(f"{quoted} is {_a(other)}, not {_a(kind) if kind else f'in {unit}'}", f"units: {', '.join(known)}")
+
+
+def mass_of_weight(text: str, unit: str) -> float | None:
+    """Return the mass, in `unit`, whose weight under standard gravity a text is; None if the text is not a weight.
+
+    Examples
+    --------
+    >>> mass_of_weight("19 kN/m3", "kg/m3"), mass_of_weight("1800 kg/m3", "kg/m3")
+    (1937.460804657044, None)
+    """
+    parts, kind = split(text), kind_of(unit)
+    if parts is None or kind not in WEIGHT_OF or kind_of(parts[1]) != WEIGHT_OF[kind]:
+        return None
+    weight = _EXACT.multiply(_EXACT.create_decimal(parts[0]), _factor(WEIGHT_OF[kind], parts[1]))
+    return float(_EXACT.divide(_EXACT.divide(weight, STANDARD_GRAVITY), _factor(kind, unit)))
 
 
 def number_of(value: object, unit: str) -> float:

@@ -75,6 +75,7 @@ def structure_of(given: StructureLike, watch: Watcher = SILENT, opening: float =
         raise InputError(
             Problem(f"must be a mechanism or a YAML file, got {kind_of(given)}", field="structure", hint=hint)
         )
+    note_weights(ready.mechanism, watch)
     warn_of(ready.mechanism, watch)
     return ready
 
@@ -156,6 +157,12 @@ def site_of(given: SiteLike) -> SiteFile:
 def joined(errors: Sequence[RockingError]) -> InputError:
     """Return one error with the problems of several inputs."""
     return InputError(*(problem for error in errors if isinstance(error, InputError) for problem in error.problems))
+
+
+def note_weights(mechanism: Mechanism, watch: Watcher) -> None:
+    """Note the weights of a structure that were read as masses, with their values in kg."""
+    for remark in mechanism.remarks:
+        watch.note(f"{mechanism.name}: {remark}")
 
 
 def warn_of(mechanism: Mechanism, watch: Watcher) -> None:

@@ -7,6 +7,7 @@ from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import (
     AfterValidator,
+    AliasChoices,
     BaseModel,
     ConfigDict,
     Field,
@@ -19,7 +20,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import InitErrorDetails, PydanticCustomError, PydanticKnownError
 
 from rocking_cli.text import cut, is_one_line
-from rocking_cli.units import UnitError, read, split
+from rocking_cli.units import STANDARD_GRAVITY, UnitError, mass_of_weight, read, split
 
 
 def _shown_as_it_is(name: str) -> str:
@@ -36,13 +37,14 @@ Name = Annotated[str, AfterValidator(_shown_as_it_is)]
 
 
 MIN_BY_UNIT = {
-    "m": 1e-6, "m2": 1e-12, "m3": 1e-18, "s": 1e-6, "kg": 1e-6, "kg/m3": 1e-6, "kg m2": 1e-18, "N/m3": 1e-6, "Pa": 1e-3,
-    "m/s2": 1e-6, "g": 1e-6, "deg": 1e-6, "years": 1e-6,
+    "m": 1e-6, "m2": 1e-12, "m3": 1e-18, "s": 1e-6, "kg": 1e-6, "kg/m": 1e-6, "kg/m3": 1e-6, "kg m2": 1e-18,
+    "N/m3": 1e-6, "Pa": 1e-3, "m/s2": 1e-6, "g": 1e-6, "deg": 1e-6, "years": 1e-6,
 }  # fmt: skip
 """Least value of a quantity that must be positive, by its unit: far below any structure, far above underflow."""
 
 
-LENGTH_POWERS = {"m": 1, "m2": 2, "m3": 3, "kg m2": 2}  # power of a scale factor on lengths, by the unit of a field
+LENGTH_POWERS = {"m": 1, "m2": 2, "m3": 3, "kg m2": 2, "kg/m": -1}
+"""Power of a scale factor on lengths, by the unit of a field; a mass per metre falls, so that its mass stays."""
 
 
 def quantity(description: str, *, unit: str = "", symbol: str = "", example: Any = None, **bounds: Any) -> Any:
@@ -75,6 +77,12 @@ def length(description: str, *, symbol: str = "", example: Any = None, **bounds:
     return quantity(description, unit="m", symbol=symbol, example=example, gt=0, le=1e6, **bounds)
 
 
+def along_wall(description: str) -> Any:
+    """Declare the `depth` of a wall, its length out of plane, which is read as `length` too."""
+    names = AliasChoices("depth", "length")
+    return length(description, example=1.0, default=None, validation_alias=names)
+
+
 def geometry_error(field: str | tuple[str | int, ...], message: str) -> PydanticCustomError:
     """Return an error that a validator raises if fields are valid one by one but do not fit together.
 
@@ -91,10 +99,11 @@ def geometry_error(field: str | tuple[str | int, ...], message: str) -> Pydantic
     )
 
 
-def in_unit(value: Any, unit: str) -> Any:
+def in_unit(value: Any, unit: str, weights: list[str]) -> Any:
     """Return a value, or nested lists of values, with each text such as `800 mm` replaced by its number in `unit`.
 
-    Other values stay as they are. Raises `ValidationError` with the places of all texts whose unit is wrong.
+    Other values stay as they are. A weight for a mass is divided by standard gravity, and `weights` receives a remark
+    on it. Raises `ValidationError` with the places of all texts whose unit is wrong.
     """
     wrong: list[InitErrorDetails] = []
 
@@ -106,7 +115,13 @@ def in_unit(value: Any, unit: str) -> Any:
         if parts is None or not parts[1]:
             return each
         try:
-            return read(each, unit)
+            mass = mass_of_weight(each, unit)
+            if mass is None:
+                return read(each, unit)
+            weights.append(
+                f"{each} is a weight, taken as a mass: {mass:.6g} {unit} (divided by {STANDARD_GRAVITY} m/s2)"
+            )
+            return mass
         except UnitError as error:
             problem = PydanticCustomError("unit", "{reason}", {"reason": error.message, "hint": error.hint})
             wrong.append(InitErrorDetails(type=problem, loc=place, input=each))
@@ -191,8 +206,12 @@ class Described(BaseModel):
             value = list(value)
         if not isinstance(value, str | list | tuple):
             return value
-        extra = cls.model_fields[info.field_name or ""].json_schema_extra
-        return in_unit(value, str(extra["unit"])) if isinstance(extra, dict) and extra.get("unit") else value
+        extra, weights = cls.model_fields[info.field_name or ""].json_schema_extra, list[str]()
+        if isinstance(extra, dict) and extra.get("unit"):
+            value = in_unit(value, str(extra["unit"]), weights)
+        if info.context is not None:
+            info.context["weights"] += weights
+        return value
 
     @field_validator("*", mode="after")
     @classmethod

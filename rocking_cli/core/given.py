@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Self, final
 
-from pydantic import Field, SerializeAsAny, ValidationError, model_validator
+from pydantic import Field, PrivateAttr, SerializeAsAny, ValidationError, model_validator
 
 from rocking_cli.core.fields import Described, Name, geometry_error, length, quantity
 from rocking_cli.core.hung.attachments import RefusedFields
@@ -87,6 +87,8 @@ class Given(Described):
     }
     mechanism: ClassVar[str]
     """The name of the mechanism, that of its entry point."""
+
+    _weights: tuple[str, ...] = PrivateAttr(())
 
     name: Name | None = Field(None, description="what to call the structure")
     gravity: float = Field(
@@ -209,12 +211,22 @@ class Given(Described):
             If a validator of the plugin fails in any other way.
         """
         with blame(f"the mechanism {cls.mechanism} failed on these fields", cls.__module__, but=ValidationError):
-            structure = cls.model_validate(dict(fields), context={"folder": folder})
+            context: dict[str, Any] = {"folder": folder, "weights": []}
+            structure = cls.model_validate(dict(fields), context=context)
+            structure._weights = tuple(dict.fromkeys(context["weights"]))
             structure._hold_together()
             return structure
 
     def _hold_together(self) -> None:
         """Raise `ValidationError` with the fields that do not fit together; here, none."""
+
+    @property
+    def remarks(self) -> Sequence[str]:
+        """Sentences, without a full stop, on weights that were read as masses, and on masses per metre."""
+        loads = [(each.name, each.mass_per_metre) for each in self.loads or () if each.mass_per_metre is not None]
+        depth = self.depth or 0.0
+        over = [f"{name}: {mass:.6g} kg/m over a depth of {depth:g} m is {mass * depth:.6g} kg" for name, mass in loads]
+        return [*self._weights, *over]
 
     @property
     def restitution_is_kinematic(self) -> bool:

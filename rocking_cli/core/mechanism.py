@@ -133,7 +133,7 @@ class Mechanism(Jointed):
         outlines: dict[str, Sequence[Outline]] = {body.name: [body.outline] for body in bodies if body.outline}
         if len(outlines) < len(bodies) and (sketch := self.sketch()).uniform:
             outlines = {**sketch.outlines, **outlines}
-        return Carrier({body.name: body for body in bodies}, outlines, self.alike(), self.piece)
+        return Carrier({body.name: body for body in bodies}, outlines, self.alike(), self.piece, self.depth)
 
     @final
     def far_off(self) -> list[str]:
@@ -490,7 +490,15 @@ def doubtful_size(mechanism: Mechanism) -> str | None:
     return f"{', '.join(says for says, _ in odd)}: did you mean {' and '.join(meant for _, meant in odd)}?"
 
 
+MIN_USUAL_DENSITY = 100.0  # kg/m3; a smaller number is usually a unit weight in kN/m3
+
+
 def doubts(mechanism: Mechanism) -> list[str]:
-    """Return what is unusual about the size of a structure or the places of its loads, as sentences."""
-    size = doubtful_size(mechanism)
-    return [*([size] if size is not None else []), *mechanism.far_off()]
+    """Return what is unusual about the size or density of a structure or the places of its loads, as sentences."""
+    size, density = doubtful_size(mechanism), mechanism.density
+    light = density is not None and density < MIN_USUAL_DENSITY
+    return [
+        *([size] if size is not None else []),
+        *([f"density is {density:g} kg/m3: did you mean {density:g} kN/m3?"] if light else []),
+        *mechanism.far_off(),
+    ]

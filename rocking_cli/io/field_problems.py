@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any, get_args, get_origin
 
-from pydantic import BaseModel
+from pydantic import AliasChoices, BaseModel
+from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from rocking_cli.errors import Problem
@@ -167,8 +168,10 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
             what += f": {info.description}" + (f" [{unit.strip()}]" if unit else "")
         return what, lister
     if kind == "extra_forbidden":
-        within = owner if len(place) == 1 else spell(place[:-1])
-        return f"is not a field of {within}", did_you_mean(str(place[-1]), list(fields))
+        within, word = owner if len(place) == 1 else spell(place[:-1]), str(place[-1])
+        if word in fields:  # a second name of a field that is there
+            return f"is the same field as {fields[word].validation_alias.choices[0]}: give one of the two", None
+        return f"is not a field of {within}", by_meaning(word, fields) or did_you_mean(word, list(fields))
     if kind in BOUNDS:
         key, words = BOUNDS[kind]
         return f"must be {words} {ctx[key]:g}{unit}, {got}", None
@@ -199,6 +202,24 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
     if kind == "value_error":
         return str(ctx["error"]), None
     return f"{error['msg'][0].lower()}{error['msg'][1:]}", None
+
+
+MEANINGS = {
+    "thickness": ("width", "column_width", "base_width", "polygon"),
+    "width": ("thickness", "column_width", "base_width", "polygon"),
+    "height": ("column_height", "polygon"),
+    "length": ("depth",),
+    "weight": ("mass",),
+    "unit_weight": ("density",),
+    "specific_weight": ("density",),
+}
+"""Words for a measure of a structure, and the fields that may hold it, of which a mechanism has one at most."""
+
+
+def by_meaning(word: str, fields: Mapping[str, FieldInfo]) -> str | None:
+    """Return a hint on the field that holds what a word means; None if no field does."""
+    name = next((each for each in MEANINGS.get(word, ()) if each in fields), None)
+    return None if name is None else f"its {word.replace('_', ' ')} is given by {name}: {fields[name].description}"
 
 
 def unit_at(model: type[BaseModel], place: Place) -> str:
@@ -271,4 +292,10 @@ def _field(annotation: Any, name: str) -> Any:
 
 def _spelt(model: type[BaseModel]) -> dict[str, Any]:
     """Return the fields of a model by the names that users write."""
-    return {info.alias or name: info for name, info in model.model_fields.items()}
+    return {spelling: info for name, info in model.model_fields.items() for spelling in spellings(name, info)}
+
+
+def spellings(name: str, info: FieldInfo) -> list[str]:
+    """Return the names by which a field is read, that of this package first."""
+    others = info.validation_alias
+    return [str(each) for each in others.choices] if isinstance(others, AliasChoices) else [info.alias or name]

@@ -44,7 +44,7 @@ CASES = [
     # masses
     (load("mass: 5, at: [0, 1]", BARE), 5, "loads", "the structure has no masses: give density and depth, or its mass"),
     (BARE + "density: 5\n", 1, "depth", "is missing: density needs the size out of plane"),
-    (load("at: [0, 1]"), 7, "loads[1].mass", "give either `mass` or `force`"),
+    (load("at: [0, 1]"), 7, "loads[1].mass", "give one of `mass`, `mass_per_metre` and `force`"),
     # what cannot stand
     (load("force: [1e6, 0], at: [0, 1]"), 7, "loads", "in the positive direction with 9.51e.05 N m more"),
     (tie(f"{BAR}, stiffness: 1, prestress: 1e6"), 7, "ties", "cannot stand under them: .* in the negative direction"),

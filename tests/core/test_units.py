@@ -46,8 +46,10 @@ def test_a_length_is_the_number_nearest_to_what_is_written(number, unit):
 WRONG = [
     ("5 kg", "m", "5 kg is a mass, not a length"), ("5 m", "kg/m3", "is a length, not a density"),
     ("5 mmm", "m", "did you mean mm?"), ("5 MM", "m", "did you mean mm?"), ("5 smoot", "m", "known: m, mm"),
-    ("18 kN/m3", "kg/m3", "1835.49 kg/m3"), ("0,8 m", "m", "decimal point"), ("5", "m", "without a unit"),
+    ("18 kN/m3", "kg/m3", "1835.49 kg/m3"), ("96 kN", "kg", "a weight, not a mass (divided by 9.80665"),
+    ("0,8 m", "m", "decimal point"), ("5", "m", "without a unit"),
     ("5 m", "", "give a number without one"), ("m", "m", "is not a number"), ("", "m", "is not a number"),
+    ("12 kN/m", "kg", "is a load per metre, not a mass"), ("12 kN/m", "N", "is a load per metre, not a force"),
     ("5 \x1b[31m", "m", r"\x1b[31m"), ("5 m", "kg m2", "is a length, not in kg m2"),
 ]  # fmt: skip
 

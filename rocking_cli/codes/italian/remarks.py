@@ -41,7 +41,7 @@ def of_site(ground: SiteGround, directions: Collection[ItalianVerified]) -> list
     crushes = any(each.chain.mechanism.crushing is not None for each in directions)
     if ground.site.FC < LARGEST_FC and not crushes:
         remarks.append(Remark.of("confidence", FC=ground.site.FC, least=LARGEST_FC))
-    loads = [load for each in directions for load in each.chain.mechanism.loads or [] if load.mass is not None]
+    loads = [load for each in directions for load in each.chain.mechanism.loads or [] if load.force is None]
     if any(load.seat is None for load in loads):
         remarks.append(Remark.of("seats", limited=_capacities(rule.state for rule in RULES)))
     return remarks

@@ -68,12 +68,15 @@ class Carrier:
         Number of identical bodies that one body represents, for bodies that represent several.
     piece : callable
         Function that returns the piece of a cracked body on which a point lies.
+    depth : float or None
+        Size of the structure out of plane [m], over which a load per metre acts.
     """
 
     bodies: Mapping[str, Body]
     outlines: Mapping[str, Sequence[Outline]]
     alike: Mapping[str, int]
     piece: Callable[[str, complex], str]
+    depth: float | None
 
     def body(self, name: str | None, loc: Loc) -> str:
         """Return the body that a load or tie refers to. Raises `RefusedFields`."""
@@ -142,7 +145,11 @@ def attach(
         loc: Loc = ("loads", k)
         _own_name(load.name, names, reserved, loc)
         body = carrier.carrying(load.body, complex(*load.at), loc)  # a load may lie outside its body
-        yield loc, load.attached(body, carrier.count(body, each=load.each))
+        mass = load.whole_mass(carrier.depth)
+        if load.force is None and mass is None:
+            reason = "is per metre of wall: give the `depth` of the structure over which it acts, or the whole mass"
+            raise RefusedFields(loc, "mass", reason)
+        yield loc, load.attached(body, mass, carrier.count(body, each=load.each))
     for k, tie in enumerate(ties):
         loc = ("ties", k)
         _own_name(tie.name, names, reserved, loc)

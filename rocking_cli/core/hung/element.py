@@ -24,6 +24,7 @@ from rocking_cli.core.fields import Described, Name, Vertex, geometry_error, len
 from rocking_cli.core.hung.attached import Follow, PointMass, Push, Spot
 from rocking_cli.core.kinematics import Direction, Points, Reals
 from rocking_cli.plugins.errors import failed, guard
+from rocking_cli.units import kind_of, split
 
 Sense = Literal["tension", "compression"]
 Question = Literal["linear models", "equivalent block", "sizes", "verification", "trace"]
@@ -481,6 +482,12 @@ class Interlock(Described):
         return ConstantForce(INTERLOCK_NAME, spot, complex(-self.walls * self.force(density, gravity)), friction=True)
 
 
+def _unit_kind(value: Any) -> str | None:
+    """Return the quantity that the unit of a text measures; None for other values."""
+    parts = split(value) if isinstance(value, str) else None
+    return kind_of(parts[1]) if parts is not None else None
+
+
 Share = Annotated[float, Field(ge=0, le=1)]
 Newtons = Annotated[float, Field(ge=-1e12, le=1e12)]
 FLOOR_MATERIALS: dict[str, dict[str, float]] = {
@@ -499,7 +506,11 @@ class Load(Described):
     """
 
     name: Name = Field(description="what to call it")
-    mass: float | None = quantity("its mass", unit="kg", example=1000.0, default=None, gt=0, le=1e12)
+    mass: float | None = quantity("its mass, or weight", unit="kg", example=1000.0, default=None, gt=0, le=1e12)
+    mass_per_metre: float | None = quantity(
+        "instead of mass: that of a metre of wall, over the depth of the structure; `mass: 12 kN/m` is this field",
+        unit="kg/m", example=1200.0, default=None, gt=0, le=1e12,
+    )  # fmt: skip
     force: Annotated[list[Newtons], Field(min_length=2, max_length=2)] | None = quantity(
         "a constant force [Fx, Fy], to the right and up", unit="N", example=[0.0, -1000.0], default=None
     )
@@ -522,10 +533,27 @@ class Load(Described):
     )  # fmt: skip
     each: bool = Field(False, description="whether each of several bodies that move alike has one")
 
+    @model_validator(mode="before")
+    @classmethod
+    def _by_its_unit(cls, data: Any) -> Any:
+        """Take a mass in kg/m or kN/m as one per metre, and refuse a weight where a force or a share is expected."""
+        if not isinstance(data, dict):
+            return data
+        for key in ("force", "weight"):
+            if _unit_kind(data.get(key)) == "force":
+                raise geometry_error(
+                    key,
+                    f"has two meanings in {data[key]}: write `mass: {data[key]}` for a weight that moves with the "
+                    f"structure, or `force: [0, -{data[key]}]` for a force without inertia",
+                )
+        if _unit_kind(data.get("mass")) in ("mass per length", "stiffness") and "mass_per_metre" not in data:
+            return {**{key: value for key, value in data.items() if key != "mass"}, "mass_per_metre": data["mass"]}
+        return data
+
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
-        if (self.mass is None) == (self.force is None):
-            raise geometry_error("mass", "give either `mass` or `force`")
+        if [self.mass, self.mass_per_metre, self.force].count(None) != 2:
+            raise geometry_error("mass", "give one of `mass`, `mass_per_metre` and `force`")
         shares = [key for key in ("horizontal", "vertical", "weight") if getattr(self, key) is not None]
         if self.force is not None and (shares or self.floor is not None):
             raise geometry_error(shares[0] if shares else "floor", "a force has no mass to share")
@@ -537,14 +565,18 @@ class Load(Described):
                     raise geometry_error(key, f"is already set by floor: {self.floor}; give one of the two")
         return self
 
-    def attached(self, body: str, count: float) -> PointMass | ConstantForce:
-        """Return `count` such loads as one term of the equation of motion."""
+    def whole_mass(self, depth: float | None) -> float | None:
+        """Return the mass on a structure of a depth [kg]; None if it depends on a depth that is not given."""
+        if self.mass_per_metre is None:
+            return self.mass
+        return None if depth is None else self.mass_per_metre * depth
+
+    def attached(self, body: str, mass: float | None, count: float) -> PointMass | ConstantForce:
+        """Return `count` such loads, each of a mass [kg] or a force, as one term of the equation of motion."""
         spot = Spot(body, complex(*self.at))
         if self.force is not None:
             return ConstantForce(self.name, spot, count * complex(*self.force))
-        assert self.mass is not None
+        assert mass is not None
         shares = {"horizontal": self.horizontal, "vertical": self.vertical, "weight": self.weight}
         given_shares = {key: value for key, value in shares.items() if value is not None}
-        return PointMass(
-            self.name, spot, count * self.mass, **{**FLOOR_MATERIALS.get(self.floor or "", {}), **given_shares}
-        )
+        return PointMass(self.name, spot, count * mass, **{**FLOOR_MATERIALS.get(self.floor or "", {}), **given_shares})

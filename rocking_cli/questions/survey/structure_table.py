@@ -18,7 +18,7 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_file import TEMPLATE_HINT, of_document
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.io.dotted import closed, put, replace_at, words
-from rocking_cli.io.field_problems import lists_models, types_at
+from rocking_cli.io.field_problems import by_meaning, fields_at, lists_models, types_at
 from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Row, Spreadsheet, read_sheet
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text, spell
 from rocking_cli.text import cut, did_you_mean, one_line
@@ -208,8 +208,10 @@ class StructureTable(Sequence["TableRow"]):
         problems = []
         for column in self.columns:
             if classes and column.path[0] not in known:
+                fields = {name: info for cls in classes for name, info in fields_at(cls, ()).items()}
                 guess = did_you_mean(column.path[0], sorted(known))
                 guess = guess if guess and guess.endswith("?") else ""
+                guess = f"{meant}." if (meant := by_meaning(column.path[0], fields)) else guess
                 what = "any mechanism in this table" if len(classes) > 1 else classes[0].mechanism
                 hint = f"{guess} A column whose heading starts with {COMMENT_SIGN} is ignored".strip()
                 message = f"is not a field of {what}"
@@ -327,7 +329,7 @@ def _none(place: Place) -> bool:
 
 @cache
 def _fields(cls: type[Mechanism]) -> frozenset[str]:
-    return frozenset(info.alias or name for name, info in cls.model_fields.items())
+    return frozenset(fields_at(cls, ()))
 
 
 @cache

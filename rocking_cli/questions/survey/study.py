@@ -118,6 +118,8 @@ class Surveyed:
         The conclusion of the verification by the code of the site.
     unprinted : bool
         Whether a formula of that verification was not checked against the printed code.
+    remarks : sequence of str
+        Sentences on weights of the structure that were read as masses.
     """
 
     row: int
@@ -139,6 +141,7 @@ class Surveyed:
     ratio: float | None = None
     verified: Conclusion | None = None
     unprinted: bool = False
+    remarks: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -353,6 +356,7 @@ def _alone(place: int, entry: SurveyEntry, structure: Structure, site: SiteFile 
         ratio=verification.ratio if verification is not None else None,
         verified=verification.conclusion if verification is not None else None,
         unprinted=verification is not None and verification.unprinted,
+        remarks=mechanism.remarks,
     )
 
 

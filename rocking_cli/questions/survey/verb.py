@@ -108,6 +108,8 @@ def survey(
             entries, shaken, signs, site=where, opening=opening, threads=threads, processes=count, progress=advance
         )
     _warn_of_sizes(result, watch)
+    if hasattr(entries, "sheet"):  # of other structures it was noted when they were opened
+        _note_weights(result, watch)
     if page is not None and result.rows:
         file = getattr(entries, "sheet", None)
         _write_page(Path(page), result, Path(file.file).name if file is not None else "structures", watch)
@@ -151,6 +153,16 @@ def _warn_of_sizes(found: Survey, watch: Watcher) -> None:
         watch.warn(f"{one_line(each.name)}: {each.doubt}")
     if len(doubtful) > MAX_LISTED_DOUBTS:
         watch.warn(f"{len(doubtful) - MAX_LISTED_DOUBTS:,} more structures have doubtful sizes: JSON lists them")
+
+
+def _note_weights(found: Survey, watch: Watcher) -> None:
+    remarks = list(dict.fromkeys(remark for each in found.rows for remark in each.remarks))
+    for remark in remarks[:MAX_LISTED_DOUBTS]:
+        watch.note(remark)
+    if len(remarks) > MAX_LISTED_DOUBTS:
+        watch.note(
+            f"further remarks of this kind, on weights and loads per metre: {len(remarks) - MAX_LISTED_DOUBTS:,}"
+        )
 
 
 def _write_page(place: Path, found: Survey, table: str, watch: Watcher) -> None:
