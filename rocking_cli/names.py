@@ -13,6 +13,9 @@ OVERTURNS = "overturns"
 STILL_ROCKING = "still rocking"
 UNKNOWN = "unknown"
 
+LANGUAGES = ("en", "it")
+"""Languages of calculation sheets and of templates."""
+
 OPENING = 0.005
 """Largest opening of a joint up to which an outcome is known, over D_cr, unless another one is given."""
 

@@ -7,6 +7,7 @@ from typing import cast
 
 from rocking_cli.core import Mechanism
 from rocking_cli.errors import InputError, MechanismError
+from rocking_cli.io.starters import instead_of_mechanism
 from rocking_cli.plugins.registry import Plugins, origin
 
 
@@ -30,6 +31,10 @@ class Registry(Plugins[type[Mechanism]]):
     group = "rocking.mechanisms"
     kind = "mechanism"
     unknown = UnknownMechanismError
+
+    def meant(self, name: str) -> str | None:
+        """Return the starter, or the nearest mechanism, that an unknown name means."""
+        return instead_of_mechanism(name) or super().meant(name)
 
     @staticmethod
     def accept(loaded: object, point: EntryPoint) -> type[Mechanism]:

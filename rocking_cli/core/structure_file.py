@@ -11,7 +11,7 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
 from rocking_cli.io.field_problems import problems
 from rocking_cli.io.yaml_file import Document, parse, read_text
-from rocking_cli.text import cut, did_you_mean, one_line
+from rocking_cli.text import cut, one_line
 
 TEMPLATE_HINT = "`rocking new block` prints a template"
 
@@ -82,7 +82,7 @@ def _mechanism(document: Document, registry: Registry) -> type[Mechanism] | None
         return None
     name, mark = data["mechanism"], document.values[("mechanism",)]
     if not isinstance(name, str) or name not in registry:
-        guess = did_you_mean(str(name), list(registry))
+        guess = registry.meant(str(name))
         document.problems.append(document.problem(f"unknown mechanism {cut(repr(name))}", mark, "mechanism", guess))
         return None
     return registry[name]

@@ -11,6 +11,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from rocking_cli.errors import Problem
+from rocking_cli.io.starters import italian
 from rocking_cli.io.yaml_file import Document, Place, spell
 from rocking_cli.text import cut, did_you_mean
 
@@ -217,7 +218,10 @@ MEANINGS = {
 
 
 def by_meaning(word: str, fields: Mapping[str, FieldInfo]) -> str | None:
-    """Return a hint on the field that holds what a word means; None if no field does."""
+    """Return a hint on the field that holds what a word, also an Italian one, means; None if no field does."""
+    word = italian()["fields"].get(word.lower(), word)
+    if word in fields:
+        return f"did you mean {word}?"
     name = next((each for each in MEANINGS.get(word, ()) if each in fields), None)
     return None if name is None else f"its {word.replace('_', ' ')} is given by {name}: {fields[name].description}"
 

@@ -117,13 +117,17 @@ class Plugins(Mapping[str, T]):
 
     def __getitem__(self, name: str) -> T:
         if name not in self._points:
-            hint = did_you_mean(name, list(self._points))
+            hint = self.meant(name)
             raise self.unknown(f"unknown {self.kind}: {name}" + (f" ({hint})" if hint else ""))
         point, *others = self._points[name]
         if others:
             claims = " and ".join(f"{package_of(each)} ({each.value})" for each in (point, *others))
             raise MechanismError(f"{self.kind} {name} is claimed by two packages, {claims}: uninstall one of them")
         return self.accept(load(point), point)
+
+    def meant(self, name: str) -> str | None:
+        """Return a hint on what an unknown name means."""
+        return did_you_mean(name, list(self))
 
     def package_of(self, name: str) -> str:
         """Return the distribution and version of a plugin."""

@@ -13,7 +13,7 @@ from rocking_cli.verification.code import Code, Site
 from rocking_cli.views.mechanisms import fields
 
 MAX_INLINE_LENGTH = 40  # characters of a field and its value; a longer one has its comment on the line above
-UNITS_NOTE = "A number without a unit is in the unit in brackets; 800 mm or 12 ft is also accepted."
+UNITS_NOTE = "A number without a unit is in the unit in brackets; 800 mm, 12 ft or 19 kN/m3 is also accepted."
 SITE_UNITS_NOTE = "Numbers are in the unit in brackets."
 
 

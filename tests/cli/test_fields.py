@@ -20,8 +20,8 @@ from click.testing import CliRunner
 
 from rocking_cli.cli.main import main
 from rocking_cli.core.registry import Registry
+from rocking_cli.io.starters import STARTERS
 from rocking_cli.io.yaml_file import parse
-from rocking_cli.questions.new.command import STARTERS
 from tests.conftest import EXAMPLES, PROJECT, YAML_FILES
 
 pytestmark = pytest.mark.rest

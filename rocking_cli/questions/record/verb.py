@@ -54,6 +54,11 @@ class RecordAnswer(Answer[Measures]):
     examined: tuple[Examined, ...] = field(kw_only=True)
     motions: tuple[GroundMotion, ...] = field(kw_only=True)
 
+    @property
+    def measures(self) -> dict[str, float]:
+        """Values of the measures that were requested, by their standard names; NaN if one is undefined."""
+        return {str(measure): value for measure, value in self.examined[0].asked.items()}
+
 
 @of_motions
 @takes_numbers
@@ -63,7 +68,7 @@ def record(
     polarity: str | int = "1",
     structure: StructureLike | None = None,
     fit_pulse: bool = False,
-    measures: str | None = None,
+    measures: str | Sequence[str] | None = None,
     spectrum: bool = False,
     period: tuple[float, float] | None = None,
     damping: float | None = None,
@@ -83,8 +88,9 @@ def record(
         Structure, to check the sampling interval and for relative measures.
     fit_pulse : bool
         Whether to fit a sine, a Ricker and a near-fault pulse; the plot shows the best.
-    measures : str, optional
-        Names of intensity measures to compute as well, such as "Sa(1.0), CAV", or "all".
+    measures : str or sequence of str, optional
+        Names of intensity measures to compute as well, such as "Sa(1.0), PGV/v_imp", or "all"; the answer has their
+        values in `measures`.
     spectrum : bool
         Whether to compute the response spectrum, for `frames["spectrum"]` and the plot.
     period : (float, float), optional
@@ -120,6 +126,9 @@ def record(
     >>> import rocking_cli as rk
     >>> round(rk.record("ricker:0.6g:0.5s").pga, 6)
     0.6
+    >>> block = rk.Block(width=0.7, height=2.8)
+    >>> round(rk.record("ricker:0.6g:0.5s", structure=block, measures="PGA/(g lambda)").measures["PGA/(g lambda)"], 6)
+    2.4
     """
     from rocking_cli.questions.record.view import parts
 
@@ -171,7 +180,7 @@ def _examine(
     signs: Sequence[int],
     ready: Structure | None,
     watch: Watcher,
-    measures: str | None,
+    measures: str | Sequence[str] | None,
     *,
     fit_pulse: bool,
 ) -> tuple[list[Examined], list[GroundMotion]]:
@@ -310,10 +319,13 @@ def _fit(motion: GroundMotion, watch: Watcher) -> list[PulseFit]:
     return fits
 
 
-def _measured(motion: GroundMotion, names: str | None, structure: Structure | None) -> dict[Measure, float]:
+def _measured(
+    motion: GroundMotion, names: str | Sequence[str] | None, structure: Structure | None
+) -> dict[Measure, float]:
     """Compute the measures given by name; `all` without a structure means those that need none."""
     if names is None:
         return {}
+    names = names if isinstance(names, str) else ", ".join(names)
     from rocking_cli.processing.intensity import ALL, parse_measures
     from rocking_cli.questions.record.study import intensities, reference_of
 

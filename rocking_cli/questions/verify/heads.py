@@ -8,9 +8,9 @@ from pathlib import Path
 import click
 
 from rocking_cli.cli import complete, defaults, options
+from rocking_cli.names import LANGUAGES
 from rocking_cli.processing.reading_options import CORRECTIONS
 
-LANGUAGES = ("en", "it")
 HEAD_OPTIONS = ("project", "place", "author", "logo")
 """Options of the heading of a document."""
 

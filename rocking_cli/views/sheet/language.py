@@ -15,7 +15,6 @@ from typing import Any
 from rocking_cli.verification.results import MINUS, Formula, Remark, Working, in_plain
 from rocking_cli.views import view
 
-LANGUAGES = ("en", "it")
 WITH_COMMA = frozenset({"it"})
 """The languages that write 1.5 with a comma."""
 SIGNIFICANT_DIGITS = 6  # results recomputed from printed numbers agree to five digits

@@ -13,7 +13,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from rocking_cli.questions.new.command import SITE, STARTERS, STUDY
+from rocking_cli.io.starters import STARTERS
+from rocking_cli.questions.new.command import SITE, STUDY
 from rocking_cli.questions.new.new_plugin import CODE, MAX_NAME_LENGTH, MECHANISM
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES

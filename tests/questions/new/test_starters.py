@@ -10,7 +10,8 @@ from rocking_cli.core import both_statics
 from rocking_cli.core.structure_file import load_structure, parse_structure
 from rocking_cli.dynamics.history import follow
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.questions.new.command import STARTERS, STUDY
+from rocking_cli.io.starters import STARTERS
+from rocking_cli.questions.new.command import STUDY
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
 from tests.following import build_model

@@ -272,6 +272,19 @@ class TestMeasures:
         for name, value in found.items():
             assert re.search(rf"{re.escape(name)} +{value:.4g}", said)
 
+    def test_in_python_one_call_has_the_measures_of_a_structure(self):
+        """0.5 g for 0.2 s; the step that overturns a block by energy and momentum, with I_O = 4/3 m R^2."""
+        step = rk.GroundMotion("step", 0.2, np.array([1.0, 1.0, 0.0, 0.0]) * 0.5 * 9.80665)
+        block = rk.Block(width=0.7, height=2.8)
+        found = rk.record(step, structure=block, measures=["pga/(g lambda)", "PGV/v_imp"]).measures
+        R, cosine = np.hypot(0.35, 1.4), 1.4 / np.hypot(0.35, 1.4)
+        v_imp = np.sqrt(8 / 3 * 9.80665 * R * (1 - cosine)) / cosine
+        pgv = 0.5 * 9.80665 * (0.2 + 0.2 / 2)  # constant, then falling on a straight line
+        assert found == pytest.approx({"PGA/(g lambda)": 0.5 / 0.25, "PGV/v_imp": pgv / v_imp}, rel=1e-9)
+        both = rk.record([step, ACCEL], structure=block, measures="PGV/v_imp")
+        assert [list(each.measures) for each in both.values()] == [["PGV/v_imp"]] * 2
+        assert rk.record(step).measures == {}
+
     def test_all_without_a_structure_are_those_of_the_motion(self):
         found = json.loads(run("record", ACCEL, "--measures", "all", "--json").stdout)["measures"]
         assert {"Tm", "Sa_avg(0.2:2.0)", "D5-75"} <= set(found) and "Du" not in found

@@ -10,9 +10,10 @@ from rocking_cli.codes.italian.sheet import dynamic, site, summary
 from rocking_cli.codes.italian.sheet.steps import DirectionSteps
 from rocking_cli.codes.italian.site import ItalianSite, of_structure
 from rocking_cli.core import Direction
+from rocking_cli.names import LANGUAGES
 from rocking_cli.views.sheet.build import SheetOfCode
 from rocking_cli.views.sheet.document import Drawing, SheetPart
-from rocking_cli.views.sheet.language import LANGUAGES, Language, texts_of
+from rocking_cli.views.sheet.language import Language, texts_of
 
 DIRECTION_TITLES = {
     Direction.POSITIVE: "Positive direction (clockwise)",
