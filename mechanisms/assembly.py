@@ -8,9 +8,10 @@ from math import isclose, isfinite, nan
 from typing import Annotated, Any, ClassVar, Self, TypeVar
 
 import numpy as np
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field, PrivateAttr, model_validator
 
 from mechanisms import _assembly as analysis
+from mechanisms._laid import Bricks, Voussoirs
 from mechanisms._linked_bodies import LinkedBodies
 from mechanisms._polygons import fault_of
 from mechanisms._shapes import Member, Shape
@@ -26,6 +27,7 @@ from rocking_cli.core import (
     Line,
     LinkageMotion,
     NoMotion,
+    Outline,
     Pin,
     Reals,
     Sketch,
@@ -78,6 +80,10 @@ EXAMPLE_BLOCKS = {
     "lintel": {"polygon": [[0.0, 3.0], [4.0, 3.0], [4.0, 3.6], [0.0, 3.6]]},
 }
 EXAMPLE_GROUND = {"floor": {"polygon": [[-1.0, -0.5], [5.0, -0.5], [5.0, 0.0], [-1.0, 0.0]]}}
+
+
+def _pairs(corners: Outline) -> list[list[float]]:
+    return [[z.real, z.imag] for z in corners]
 
 
 class AssemblyGround(Described):
@@ -137,16 +143,27 @@ class Assembly(LinkedBodies):
         "overestimates lambda: by up to 11 % for the walls of Ferris and Tin-Loi (2001)."
     )
 
-    starter: ClassVar[tuple[str, ...]] = ("density", "depth")
+    starter: ClassVar[tuple[str, ...]] = ("density", "depth", "blocks", "ground")
     model_config = ConfigDict(validate_by_name=True, validate_by_alias=True)
 
+    _laid: tuple[str, ...] = PrivateAttr(())
+
     blocks: dict[Name, Shape] = Field(
-        description="what can move, by names: polygons, each with density and depth, or mass, centroid and inertia",
-        examples=[EXAMPLE_BLOCKS], min_length=1, max_length=10_000,
+        {}, description="what can move, by names: polygons, each with density and depth, or mass, centroid and inertia",
+        examples=[EXAMPLE_BLOCKS], max_length=10_000,
     )  # fmt: skip
     ground: dict[Name, AssemblyGround] = Field(
-        description="what cannot, by names: polygons", examples=[EXAMPLE_GROUND], min_length=1, max_length=100
-    )
+        {}, description="what cannot, by names: polygons; if omitted, springings of voussoirs, a floor of bricks",
+        examples=[EXAMPLE_GROUND], max_length=100,
+    )  # fmt: skip
+    voussoirs: Voussoirs | None = Field(
+        None, description="blocks v1, v2, ... from the left: a circular arch, {span, rise, thickness, count}",
+        examples=[{"span": 6.0, "rise": 2.0, "thickness": 0.5, "count": 11}],
+    )  # fmt: skip
+    bricks: Bricks | None = Field(
+        None, description="blocks 1.1, 1.2, ... by courses: a wall in running bond, {wall, length, height, openings}",
+        examples=[{"wall": [6.0, 4.0], "length": 0.5, "height": 0.25, "openings": [[2.0, 0.0, 3.0, 2.0]]}],
+    )  # fmt: skip
     supports: dict[Name, Support] | None = Field(
         None, alias="joints", min_length=1, max_length=100,
         examples=[{"C": {"slide": "lintel", "at": [4.0, 3.6], "along": [0.0, 1.0]}}],
@@ -178,6 +195,7 @@ class Assembly(LinkedBodies):
 
     @model_validator(mode="after")
     def _holds_together(self) -> Self:
+        self._lay()
         for name, shape in self.blocks.items():
             if shape.polygon is None:
                 raise geometry_error(
@@ -195,6 +213,26 @@ class Assembly(LinkedBodies):
                 self._known(lead, ("lead", direction.label))
         self._contacts  # noqa: B018 - what overlaps, or touches nothing, is refused here
         return self
+
+    def _lay(self) -> None:
+        """Put the voussoirs and bricks among the blocks, and what they stand on into the ground if there is none."""
+        self._laid = () if self.bricks is None else tuple(self.bricks.notes())
+        laid = {key: each for key in ("voussoirs", "bricks") if (each := getattr(self, key)) is not None}
+        blocks, ground = dict(self.blocks), dict(self.ground)
+        for key, each in laid.items():
+            for name, corners in each.blocks().items():
+                if name in blocks:
+                    raise geometry_error(("blocks", name), f"is the name of one of the {key}: choose another")
+                blocks[name] = Shape(polygon=_pairs(corners))
+            if not self.ground:
+                ground |= {name: AssemblyGround(polygon=_pairs(corners)) for name, corners in each.ground().items()}
+        for field, value in (("blocks", blocks), ("ground", ground)):
+            if not value:
+                raise geometry_error(field, "is missing: give polygons by names, or `voussoirs` or `bricks`")
+            if laid:
+                object.__setattr__(self, field, value)  # the model is frozen once it is made
+        for key in laid:
+            object.__setattr__(self, key, None)  # a copy of another size would lay them again
 
     def _known(self, block: str, where: tuple[str, ...]) -> None:
         if block not in self.blocks:
@@ -304,6 +342,11 @@ class Assembly(LinkedBodies):
     @property
     def _frictions(self) -> Mapping[str, float]:
         return self.friction_of or {}
+
+    @property
+    def remarks(self) -> Sequence[str]:
+        """Sentences, without a full stop, on how the file was read."""
+        return [*super().remarks, *self._laid]
 
     def _pair(self, words: str) -> tuple[str, str]:
         """Return the two bodies of a joint from words such as `a and b`; their names may contain `and` too."""
