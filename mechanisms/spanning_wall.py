@@ -25,7 +25,6 @@ from rocking_cli.core import (
     RigidMotion,
     Sketch,
     Spot,
-    along_wall,
     box,
     geometry_error,
     length,
@@ -33,6 +32,7 @@ from rocking_cli.core import (
     quantity,
 )
 from rocking_cli.core.contacts import MASONRY_FRICTION
+from rocking_cli.core.fields import along_wall
 
 WEAK_HINGE_DECREASE = 0.01  # relative decrease of lambda by the weakest hinge from which there is a caution
 TOP_DISTANCE = 1e-9  # distance of a hinge that counts as at the top, over the height; zero loads, over the weight

@@ -19,13 +19,13 @@ from rocking_cli.core import (
     Reals,
     RigidMotion,
     Sketch,
-    along_wall,
     box,
     length,
     of_joints,
     rectangle,
     rotation,
 )
+from rocking_cli.core.fields import along_wall
 
 
 class Wall(Mechanism):

@@ -150,8 +150,8 @@ def mass_of_weight(text: str, unit: str) -> float | None:
 
     Examples
     --------
-    >>> mass_of_weight("19 kN/m3", "kg/m3"), mass_of_weight("1800 kg/m3", "kg/m3")
-    (1937.460804657044, None)
+    >>> round(mass_of_weight("19 kN/m3", "kg/m3"), 2), mass_of_weight("1800 kg/m3", "kg/m3")
+    (1937.46, None)
     """
     parts, kind = split(text), kind_of(unit)
     if parts is None or kind not in WEIGHT_OF or kind_of(parts[1]) != WEIGHT_OF[kind]:

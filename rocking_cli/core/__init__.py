@@ -21,7 +21,6 @@ from rocking_cli.core.equivalence import equivalent_block as equivalent_block
 from rocking_cli.core.equivalence import one_block as one_block
 from rocking_cli.core.equivalence import statics as statics
 from rocking_cli.core.fields import Vertex as Vertex
-from rocking_cli.core.fields import along_wall as along_wall
 from rocking_cli.core.fields import geometry_error as geometry_error
 from rocking_cli.core.fields import length as length
 from rocking_cli.core.fields import point as point

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Self, final
 
-from pydantic import Field, PrivateAttr, SerializeAsAny, ValidationError, model_validator
+from pydantic import Field, SerializeAsAny, ValidationError, model_validator
 
 from rocking_cli.core.fields import Described, Name, geometry_error, length, quantity
 from rocking_cli.core.hung.attachments import RefusedFields
@@ -88,7 +88,8 @@ class Given(Described):
     mechanism: ClassVar[str]
     """The name of the mechanism, that of its entry point."""
 
-    _weights: tuple[str, ...] = PrivateAttr(())
+    _weights: ClassVar[Sequence[str]] = ()
+    """Remarks on weights that were read as masses; of a structure made by `from_fields`, its own."""
 
     name: Name | None = Field(None, description="what to call the structure")
     gravity: float = Field(
@@ -213,7 +214,8 @@ class Given(Described):
         with blame(f"the mechanism {cls.mechanism} failed on these fields", cls.__module__, but=ValidationError):
             context: dict[str, Any] = {"folder": folder, "weights": []}
             structure = cls.model_validate(dict(fields), context=context)
-            structure._weights = tuple(dict.fromkeys(context["weights"]))
+            # Kept like a cached property: it is no field, and does not count where structures are compared.
+            vars(structure)["_weights"] = list(dict.fromkeys(context["weights"]))
             structure._hold_together()
             return structure
 

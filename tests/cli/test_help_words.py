@@ -18,6 +18,7 @@ DIFFERENT = {
     "--a": "of `error` it is a constant acceleration, of the others the amplitude of a pulse",
     "--at": "`draw` draws one rotation, `error` evaluates several",
     "--check": "`fragility` shows a plan, `mechanisms` checks a mechanism",
+    "--language": "of `verify` that of the sheet, of `new` that of the comments of a template",
     "--neighbours": "of `calibrate` they are those of each point of a grid",
     "--points": "of `calibrate`, for one of two ways only",
     "--slenderness": "of `spectrum` values, of `calibrate` a range of factors",

@@ -58,9 +58,9 @@ WRONG = {
         "mechanism: symmetric_frame\ncolumn_width: 1\ncolumn_height: 5\nmass_ratio: 1 kg\n", 4, 13, "mass_ratio",
         "must be a number, got the text '1 kg'",
     ),
-    "weight for a density": (
+    "pressure for a density": (
         "mechanism: asymmetric_frame\ncolumn_width: 1\nleft_height: 5\nright_height: 6\nspacing: 4\nbeam_depth: 1\n"
-        "density: 18 kN/m3\ndepth: 1\n", 7, 10, "density", "divided by 9.80665 m/s2 it is 1835.49 kg/m3",
+        "density: 18 kN/m2\ndepth: 1\n", 7, 10, "density", "18 kN/m2 is a pressure, not a density",
     ),
     "mapping for a number": ("mechanism: block\nwidth: {a: 1}\nheight: 4\n", 2, 8, "width", "got a mapping"),
     "whole but beyond all numbers": (

@@ -73,6 +73,11 @@ def test_the_same_in_kilograms_says_nothing_and_is_the_same_block(tmp_path):
     )
 
 
+def test_remarks_do_not_count_where_structures_are_compared():
+    assert made(FACADE) == made(FACADE.replace("19 kN/m3", repr(made(FACADE).density)))
+    assert "weights" not in "".join(made(FACADE).model_dump())
+
+
 def test_a_plain_number_stays_in_kilograms():
     plain = made(FACADE.replace("30 kN", "30").replace("19 kN/m3", "1900").replace("12 kN/m", "12"))
     assert (plain.density, plain.loads[0].mass, plain.loads[1].mass, plain.remarks) == (1900.0, 30.0, 12.0, [])
