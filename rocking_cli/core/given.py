@@ -189,8 +189,11 @@ class Given(Described):
     @final
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Return a copy with some fields changed, validated again, without values derived from the old fields."""
-        kept = {key: getattr(self, key) for key in self.model_fields_set}
-        return type(self).from_fields({**kept, **(update or {})})
+        kept, changed = {key: getattr(self, key) for key in self.model_fields_set}, update or {}
+        copy = type(self).from_fields({**kept, **changed})
+        if set(changed) <= {"name"}:
+            vars(copy)["_weights"] = self._weights
+        return copy
 
     @final
     @classmethod

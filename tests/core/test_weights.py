@@ -78,6 +78,20 @@ def test_remarks_do_not_count_where_structures_are_compared():
     assert "weights" not in "".join(made(FACADE).model_dump())
 
 
+def test_a_study_that_names_a_structure_notes_its_weights_too(tmp_path):
+    (tmp_path / "f.yaml").write_text(FACADE)
+    study = "structures: [{file: f.yaml, name: front, vary: {NAME: {uniform: {low: 0.5, high: 0.7}}}}]\n" + (
+        'records: [{pulse: "sine:1g:0.8s"}]\nmethod: stripes\nlevels: {measure: PGA, values: [0.1, 0.2, 0.3]}\n'
+        "limit_states: [uplift]\nsamples: 2\n"
+    )
+    (tmp_path / "s.yaml").write_text(study.replace("NAME", "width"))
+    shown = run("fragility", "s.yaml", "--check")
+    assert "front: 19 kN/m3 is a weight, taken as a mass: 1937.46 kg/m3" in shown.stderr
+    (tmp_path / "s.yaml").write_text(study.replace("NAME", "length"))
+    assert "its length is given by depth" in run("fragility", "s.yaml", "--check", code=2).stderr
+    assert made(FACADE).model_copy(update={"density": 1000.0})._weights == []
+
+
 def test_a_plain_number_stays_in_kilograms():
     plain = made(FACADE.replace("30 kN", "30").replace("19 kN/m3", "1900").replace("12 kN/m", "12"))
     assert (plain.density, plain.loads[0].mass, plain.loads[1].mass, plain.remarks) == (1900.0, 30.0, 12.0, [])

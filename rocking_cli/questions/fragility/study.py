@@ -18,7 +18,7 @@ from rocking_cli.core.structure_file import load_structure
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.excitation.records.opening import select
-from rocking_cli.io.field_problems import say
+from rocking_cli.io.field_problems import by_meaning, say
 from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text
 from rocking_cli.processing.entry import Entry, as_written
@@ -261,14 +261,16 @@ def _structure(
         return None
     except MechanismError as error:
         raise of_structure(error, entry.file) from error
-    fields = [name for name, info in type(structure).model_fields.items() if info.annotation in (float, float | None)]
+    infos = type(structure).model_fields.items()
+    fields = {name: info for name, info in infos if info.annotation in (float, float | None)}
     known = [*fields, RESTITUTION]
     written = document.data["structures"][place[1]]  # as written, with invalid distributions too
     varied = written.get("vary") if isinstance(written, dict) else None
     for name in varied if isinstance(varied, dict) else []:
         if name not in known:
             what = f"is not a number among the fields of {structure.mechanism}"
-            document.problems.append(document.at((*place, "vary", name), what, did_you_mean(name, known), key=True))
+            hint = by_meaning(name, fields) or did_you_mean(name, known)
+            document.problems.append(document.at((*place, "vary", name), what, hint, key=True))
     return structure.model_copy(update={"name": entry.name}) if entry.name is not None else structure
 
 
