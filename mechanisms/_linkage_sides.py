@@ -52,7 +52,7 @@ class Connection(Described):
 
     @property
     def bodies(self) -> tuple[str, ...]:
-        """Bodies that it joins, in the order of the file."""
+        """Bodies that the joint connects, in the order of the file."""
         for each in (self.pivot, self.slide):
             if isinstance(each, str):
                 return (each,)

@@ -549,7 +549,7 @@ class Assembly(LinkedBodies):
         return " ".join(filter(None, sentences))
 
     def _beside(self, direction: Direction) -> str:
-        """Return what associated flow gives, in brackets, if the mechanism is one without dilation; else nothing."""
+        """Return the lambda by associated flow, in brackets, for a mechanism without dilation; else an empty text."""
         associated = self._collapse(direction).associated
         if associated is None:
             return ""

@@ -161,7 +161,7 @@ class Linkage(LinkedBodies):
                 raise self._refused(direction, *fault)
 
     def _refused(self, direction: Direction, joint: str | None, reason: str) -> PydanticCustomError:
-        """Return the error of a joint at its place in the file; a mirrored joint has no place of its own."""
+        """Return an error at the place of a joint in the file; a mirrored joint has no place of its own."""
         has_joints = joint is not None and isinstance(getattr(self, direction.label), LinkageSide)
         return geometry_error((direction.label, "joints", joint or "") if has_joints else direction.label, reason)
 
@@ -321,7 +321,7 @@ class Linkage(LinkedBodies):
         return [self._joint(each, direction, self._linkages[direction].resting) for each in held]
 
     def _joint(self, each: Pin | Guide, direction: Direction, ground: Collection[str]) -> Joint:
-        """Return a hinge with its face, or a guide of the ground, with the bodies that are the ground here."""
+        """Return a hinge with its face, or a guide of the ground; bodies in `ground` count as the ground."""
         names, letter = each.bodies, self._letter(each.name, direction)
         if isinstance(each, Guide):
             return Joint(letter, each.at, names, slide=each.along / abs(each.along))
@@ -369,7 +369,7 @@ class Linkage(LinkedBodies):
 
     @cached_property
     def _anchored(self) -> Mapping[Direction, Collection[str]]:
-        """Bodies that are as the ground: nothing between them and it may open."""
+        """Bodies that count as the ground, because no joint between them and the ground may open."""
         anchored = {}
         for direction, closed in self._closed.items():
             names = {GROUND}
@@ -474,7 +474,7 @@ class Linkage(LinkedBodies):
 
 
 def _on_ground(contact: Contact, ground: Collection[str]) -> Contact:
-    """Return a joint in which bodies that are as the ground are the ground."""
+    """Return a joint in which the bodies that count as the ground are replaced by the ground."""
     one, other = (None if name in ground else name for name in contact.pieces)
     return replace(contact, pieces=(one, other), face=None if contact.face in ground else contact.face)
 

@@ -130,12 +130,12 @@ class SpanningWall(Mechanism):
         return {direction: self._weakest(side) for direction, side in zip(Direction, self.sides, strict=True)}
 
     def _weakest(self, direction: Direction) -> float:
-        """Return xi where lambda is least, of a wall with nothing but its overburden; 1 if it falls up to the top."""
+        """Return the xi of least lambda of a wall that carries its overburden alone; 1 if that is its top."""
         rho = self._load_ratio
         return 1 / (1 + sqrt(max(rho * self._lever(direction), 0.0) / (1 + rho)))
 
     def own_caution(self) -> str:
-        """Return by how much the weakest hinge lowers lambda, if the height of the hinge is given, and above 1 %."""
+        """Return a caution if lambda with the weakest hinge is lower by more than 1 % than with the given hinge."""
         if self.hinge == "weakest":
             return ""
         if self.is_laden or self.crushing is not None:
@@ -258,7 +258,7 @@ class SpanningWall(Mechanism):
 
 
 def _by_direction(texts_of: Sequence[tuple[str, Direction]]) -> str:
-    """Return texts with their directions; a text that is that of both once."""
+    """Return texts with their directions; a text that both directions share is given once, without direction."""
     texts = {text for text, _ in texts_of}
     if len(texts) < len(texts_of):
         return texts_of[0][0]

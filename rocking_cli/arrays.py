@@ -1,4 +1,4 @@
-"""Types of arrays, by what their entries are."""
+"""Types of arrays, by the type of their entries."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,4 +7,4 @@ Reals = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 Points = NDArray[np.complex128]
-"""Of the plane, as complex numbers x + iy [m]."""
+"""Points of the plane, as complex numbers x + iy [m]."""

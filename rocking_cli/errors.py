@@ -22,7 +22,7 @@ PREDICATES = frozenset({
 """First words of messages that are the predicate of the field before them: "FC is missing"."""
 
 EXIT_INCOMPLETE = 5
-"""Exit code of a command that did its work except for what it reports: one bad record in a hundred."""
+"""Exit code of a command that did its work except for the parts that it reports, such as one bad record."""
 
 
 @dataclass(frozen=True)

@@ -45,7 +45,7 @@ def outcome(*, uplifts: bool, overturned: bool, still_rocking: bool = False, unk
 
 
 FEWEST, FEWEST_OF_MEDIAN = 20, 5
-"""Motions from which on a quantile is told, and the median: of fewer, a single motion decides it."""
+"""Least number of motions for a quantile, and for the median: with fewer, a single motion decides it."""
 HALF_UP = 1e-9  # %: a share that ends in .5 is rounded up despite floating-point error
 
 

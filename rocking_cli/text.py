@@ -7,8 +7,8 @@ from collections.abc import Collection, Sequence
 from itertools import count
 from typing import Any, AnyStr, cast
 
-# Control characters, marks that turn the direction of writing, line ends of other kinds, and what is no character at
-# all. Tabs and line feeds are let through: they do no harm.
+# Control characters, marks that turn the direction of writing, line ends of other kinds, and code points that are no
+# characters. Tabs and line feeds are allowed, as they do no harm.
 _UNSEEN = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff\ufffe\uffff\ud800-\udfff]"
 )

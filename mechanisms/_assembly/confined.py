@@ -91,7 +91,7 @@ def is_confined(problem: AssemblyProblem) -> bool:
     Joints without given friction have the usual one here: what their glue alone confines has a caution of its own.
     """
     rays, mu = problem.bearings.rays(usual=MASONRY_FRICTION), problem.bearings.friction
-    press = rays.one_sided & (np.append(mu, 0.0)[rays.contact] > 0)  # guides have contact -1, the last
+    press = rays.one_sided & (np.append(mu, 0.0)[rays.contact] > 0)  # guides have contact -1, the last entry
     optimum = least(
         -np.append(press, 0.0),
         from_blocks([[rays.rates.T, None], [rays.one_sided[None, :], np.ones((1, 1))]]),

@@ -150,7 +150,7 @@ class _FrictionSearch:
 
     @property
     def guess(self) -> float:
-        """Next value to try."""
+        """Next coefficient of friction to try."""
         middle = (self.low + self.high) / 2
         if self._carried == 1:
             return max(self.below, middle)

@@ -140,7 +140,7 @@ def null_space(rows: Reals) -> Reals:
 def mechanisms_of(rays: Rays, kept: Bools, space: Reals, raw: Reals) -> list[Reals]:
     """Return the mechanism of a space of one dimension, or extreme mechanisms of a larger one.
 
-    All rays that are not kept open, or stay shut, in each of them.
+    In each of these mechanisms, every ray that is not kept either opens or stays shut, and none closes.
     """
     if space.shape[1] == 0:
         return [_clean(raw)]
@@ -374,7 +374,7 @@ def _candidates(share: Reals, blocks: Indices) -> list[int]:
 
 
 def _reaches(opening: Reals, still: Reals, moves: Reals) -> bool:
-    """Return whether some velocity closes no ray, keeps one set of blocks at rest and moves another."""
+    """Return whether one set of blocks can move, without closing any ray, while another set stays at rest."""
     n, d = opening.shape
     equal = from_blocks([[opening, -np.eye(n)], [still[None, :], None]])
     optimum = least(

@@ -38,7 +38,7 @@ StructureLike = Mechanism | Structure | str | Path
 SiteLike = Mapping[str, Any] | str | Path
 """Fields of a site file, or the file."""
 LOCAL_FILE = Path("rocking.yaml")
-"""The structure of a command without one: this very object is the file in the current folder, or the default block."""
+"""Stands for the structure that a command was not given: the file of this name in the current folder, or the block."""
 DEFAULT_STRUCTURE = "mechanism: block\nname: default block, 0.7 m x 2.8 m\nwidth: 0.7\nheight: 2.8\n"
 # Slow structures take about a second; the slowest of which the time was measured have MAX_TIMED_POLYGONS.
 MIN_SLOW_POLYGONS, MIN_VERY_SLOW_POLYGONS, MAX_TIMED_POLYGONS = 100, 500, 1000
@@ -103,7 +103,7 @@ def _read(given: str | Path, watch: Watcher) -> Structure:
 
 
 def _what_blocks_take(count: int) -> str:
-    """Return what the limit analysis of many blocks takes."""
+    """Return how much time and memory the limit analysis of many blocks takes, in words."""
     if count <= MAX_TIMED_POLYGONS:
         return f"{count} polygons: up to about a minute and 250 MB; Ctrl-C stops it"
     minutes = round((count / 1000) ** 2)  # a minute for 1000 polygons
@@ -211,7 +211,7 @@ def doubts_of(mechanism: Mechanism) -> list[str]:
 
 
 def models_of(given: str | Sequence[str] | None) -> tuple[ModelName, ...]:
-    """Return the models of these names; all of them for None. Raises `InputError` for an unknown name."""
+    """Return the models of these names, or all models for None. Raises `InputError` for an unknown name."""
     chosen = MODELS if given is None else (given,) if isinstance(given, str) else tuple(given)
     if unknown := [name for name in chosen if name not in MODELS]:
         raise InputError(f"models must be of {', '.join(MODELS)}, got {', '.join(unknown)}")

@@ -96,7 +96,7 @@ class Motions:
 
     @property
     def count(self) -> int:
-        """Number of motions, those that cannot be found among them."""
+        """Number of motions, including those that cannot be found."""
         return len(self.sources)
 
     @property

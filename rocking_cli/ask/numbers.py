@@ -21,7 +21,7 @@ UNITS = {
 
 
 def takes_numbers(verb: Callable[P, R]) -> Callable[P, R]:
-    """Make a verb refuse unknown arguments, and text where the annotation of one says a number, or several."""
+    """Make a verb refuse unknown arguments, and text for arguments that are annotated as numbers."""
     meant = {
         name: given
         for name, given in verb.__annotations__.items()

@@ -30,14 +30,18 @@ P = ParamSpec("P")
 
 
 class Answers(MappingAnswer[str, A]):
-    """Answers to one question about several motions or structures, by their names; a frame has a row of each in turn.
+    """Answers to one question about several motions or structures, by their names.
 
-    `frames` has that of each, by its name. Each has its own plot.
+    The frame has the rows of all answers, one answer after the other; `frames` has the frame of each answer, by its
+    name. Each answer has its own plot.
     """
 
 
 class OfMotions(Protocol[P, T]):
-    """A verb of motions, to a type checker: one gives one answer, a list `Answers`; so does a pattern, unseen."""
+    """Type of a verb that takes one motion or several: one motion gives an answer, a list gives `Answers`.
+
+    A pattern of files gives `Answers` too, if it matches several files, which a type checker cannot know.
+    """
 
     @overload  # a `Scaled` is a tuple, but a single motion
     def __call__(self, motion: Motion, *args: P.args, **options: P.kwargs) -> T: ...  # type: ignore[overload-overlap]
@@ -48,7 +52,7 @@ class OfMotions(Protocol[P, T]):
 
 
 class UnderMotions(Protocol[P, T]):
-    """A verb of a structure under motions, to a type checker: as `OfMotions`."""
+    """Type of a verb that takes a structure and one motion or several, as `OfMotions`."""
 
     @overload
     def __call__(  # type: ignore[overload-overlap]
@@ -65,12 +69,12 @@ class UnderMotions(Protocol[P, T]):
 
 
 def of_motions(verb: Callable[Concatenate[Any, P], A | Answers[A]]) -> OfMotions[P, A]:
-    """Return a verb, with the types of `OfMotions`."""
+    """Return a verb unchanged; type checkers then see the type `OfMotions`."""
     return cast("OfMotions[P, A]", verb)
 
 
 def under_motions(verb: Callable[Concatenate[Any, Any, P], A | Answers[A]]) -> UnderMotions[P, A]:
-    """Return a verb, with the types of `UnderMotions`."""
+    """Return a verb unchanged; type checkers then see the type `UnderMotions`."""
     return cast("UnderMotions[P, A]", verb)
 
 

@@ -147,14 +147,14 @@ def of_run(context: click.Context) -> dict[str, Default]:
 
 
 def as_declared(given: dict[str, Any], *names: str) -> None:
-    """Take back what a user's defaults say of some options: where they have no effect, only typed ones are errors."""
+    """Undo a user's defaults of some options where these have no effect, as only typed options are then errors."""
     for param in click.get_current_context().command.params:
         if param.name in names and param.name in given and from_default(str(param.name)):
             given[param.name] = param.to_info_dict()["default"]  # `param.default` is a sentinel instead of None
 
 
 def from_default(name: str, context: click.Context | None = None) -> bool:
-    """Return whether the value of a parameter of the running command is such a default, and was not typed."""
+    """Return whether the value of a parameter of the running command is a user's default, and was not typed."""
     context = context or click.get_current_context(silent=True)
     return context is not None and context.get_parameter_source(name) is ParameterSource.DEFAULT_MAP
 

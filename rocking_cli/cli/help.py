@@ -10,7 +10,7 @@ import click
 
 OPTIONS_HEADING, RECORDS_HEADING = "Options", "Reading and processing of records"
 FREE_COLUMNS = 2  # at the right, as in click
-# Columns that help texts take at least, and from which on click can lay them out.
+# Least width of help texts, and least width that click can lay out, in columns of the terminal.
 MIN_WIDTH, MIN_WIDTH_OF_CLICK = 20, 52
 
 

@@ -203,7 +203,7 @@ def _declared(options: Mapping[str, Option]) -> Decorator:
 
 
 def _packed(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Hand the options of records to a command as `options`, in the order in which they are typed, and `usual`."""
+    """Hand the options of records to a command: typed ones as `options`, in their order, users' defaults as `usual`."""
 
     @wraps(command)
     def with_options(*args: Any, **given: Any) -> Any:

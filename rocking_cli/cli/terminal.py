@@ -275,7 +275,7 @@ def table(
         heads, body = lines
         click.echo("\n".join([*(click.style(line, bold=True) for line in heads), *body]), file=_results)
     else:
-        assert room is not None  # otherwise everything fits
+        assert room is not None  # without a width, every grid fits
         click.echo("\n".join(["", *stacked(columns, rows, room), ""]), file=_results)
 
 

@@ -17,7 +17,7 @@ from rocking_cli.core.kinematics import Direction
 
 # The paper finds small errors with either kappa for walls of alpha < 0.2: lambda_lin/lambda = 0.2/tan(0.2) there.
 SLENDER_LAMBDA_RATIO = 0.2 / tan(0.2)
-# Errors up to which a block agrees with its structure, and serves a first estimate.
+# Errors up to which a block agrees with its structure, and up to which it is good for a first estimate.
 SMALL_ERROR, LARGE_ERROR = (0.05, 0.15)
 
 

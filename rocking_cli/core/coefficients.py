@@ -121,7 +121,7 @@ def check_continuous(mechanism: str, direction: Direction, at: Coefficients, in_
     at : Coefficients
         Coefficients at increasing rotations, so close that slopes change evenly between them.
     in_file : str
-        `jumps` of the mechanism.
+        The `jumps` of the mechanism: what in the file of the structure gives its motion, or an empty text.
 
     Raises
     ------

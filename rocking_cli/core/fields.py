@@ -141,7 +141,7 @@ def least(field: FieldInfo) -> float:
 
 
 def _multiplied(value: Any, factor: float, power: int) -> Any:
-    """Return a value of another size: numbers times a power of the factor, by the power of length in their unit."""
+    """Return a value for another size: its numbers times the factor to the power of length in their unit."""
     if isinstance(value, Described):
         return value.enlarged(factor)
     if isinstance(value, list | tuple):
@@ -171,7 +171,7 @@ class Described(BaseModel):
         return ((key, getattr(self, key)) for key in type(self).model_fields if key in self.model_fields_set)
 
     def enlarged(self, factor: float) -> Self:
-        """Return the same for a structure of another size: fields in m, m2, m3 or kg m2 are multiplied, others stay.
+        """Return a copy for a structure of another size: fields in m, m2, m3 or kg m2 are multiplied, others stay.
 
         Parameters
         ----------
@@ -181,8 +181,8 @@ class Described(BaseModel):
         Returns
         -------
         Described
-            That of the new size. Given masses and loads stay the same, so that the behaviour of a structure need not
-            scale; the positions of loads and ties are multiplied.
+            The copy for the new size. Given masses and loads stay the same, so that the behaviour of a structure need
+            not scale; the positions of loads and ties are multiplied.
 
         Raises
         ------

@@ -233,7 +233,7 @@ class Rates:
         matrix = np.zeros((n, rows, self.count + 1, 3))
         for side in (0, 1):
             matrix[:, np.arange(rows), self.pieces[:, side]] += self.factors[:, :, side]
-        return matrix[:, :, :-1].reshape(n, rows, 3 * self.count)  # the last is the ground
+        return matrix[:, :, :-1].reshape(n, rows, 3 * self.count)  # without the ground, which is the last piece
 
     def at(self, velocity: Reals) -> Reals:
         """Return the velocities of all rows, shape (n, rows), from those of the pieces, shape (n, 3 count)."""

@@ -183,7 +183,7 @@ class Loops:
         self._w = np.array(weights, dtype=np.complex128)
         self._turn = np.array(turns, dtype=np.intp)
         self.names: list[str] = names
-        """The joint of each equation."""
+        """Name of the joint of each equation."""
 
     @property
     def unknowns(self) -> int:

@@ -352,7 +352,7 @@ def check_restitution(mechanism: Mechanism) -> None:
 
 
 def check_stretched(mechanism: Mechanism) -> None:
-    """Refuse ties that no motion stretches, or none in the one sense in which they can act."""
+    """Refuse ties that no motion stretches, or whose motion never makes them act in their only sense."""
     for loc, tie in mechanism.hung.placed:
         parts = tie.stretched if isinstance(tie, Element) else ()
         if parts and not any(stretches(mechanism, part, side) for part in parts for side in mechanism.directions):

@@ -25,7 +25,7 @@ EQUAL_MOTION = 1e-9  # largest difference of two motions that count as one, over
 MAX_IMBALANCE = 1e-6  # largest imbalance at a joint, over the largest force
 UNIT_COUPLE = 0j  # stands for a couple among the unit forces of a joint
 WHOLE_JOINT = Joint("", 0j, ())
-"""Stands for all joints together where the forces at each are not known."""
+"""Stands for all joints together if the force at each is not known."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ from rocking_cli.plugins.registry import Plugins, origin
 class UnknownMechanismError(InputError, KeyError):
     """Error: no installed package has a mechanism of this name."""
 
-    __str__ = InputError.__str__  # a KeyError would show its message in quotes
+    __str__ = InputError.__str__  # the method of KeyError would show the message in quotes
 
 
 class Registry(Plugins[type[Mechanism]]):

@@ -24,7 +24,7 @@ Number = TypeVar("Number", np.float64, np.int64)
 
 NO_VALUES = np.empty(0)
 RELEASE_DT = 0.005  # s, for a free motion without a record
-MAX_IMPACTS = 20_000  # after the record and its tail; with more a structure still rocks; eta = 0.999 rests in 14 000
+MAX_IMPACTS = 20_000  # after the record; beyond, a structure is still rocking; with eta = 0.999 it rests after 14,000
 
 
 def run_deck(

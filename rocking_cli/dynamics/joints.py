@@ -315,7 +315,7 @@ def _factors(one: Released, inertia: Reals, weight: float) -> Reals:
 
 
 def _at_rest(still: Rest, labels: Sequence[str], bearing: Reals, weight: float) -> tuple[Reals, tuple[float, float]]:
-    """Return `JointTables.rest` and `steady`, and fill in the friction of joints that are joints at rest alone."""
+    """Return `JointTables.rest` and `steady`, and fill in the friction of joints that exist only at rest."""
     known = still.closed
     if known is None and not still.modes:
         return np.zeros((len(bearing), 3, 4)), WHOLE_RANGE

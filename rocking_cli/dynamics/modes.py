@@ -32,7 +32,7 @@ FIRST_DIRECTIONS = 8  # first search directions; more follow between corners
 MAX_CORNERS = 24  # corners of the admissible set
 MAX_SEARCHED = 30.0  # search bounds, over the uplift acceleration and the square of the fastest rate
 ZERO_VELOCITY = 1e-6  # over the largest velocity at a joint
-RANK_TOLERANCE = 1e-7  # over the largest singular value; a pattern with larger ones has a single mode
+RANK_TOLERANCE = 1e-7  # over the largest singular value: below it, a singular value counts as zero
 MAX_THROWN_MODES = 6  # modes of a single impact
 CLOSING_TOLERANCE = 1e-5  # over the largest velocity at a joint
 ZERO_FACTOR = 1e-14  # over the largest factor
@@ -410,7 +410,7 @@ def _corner(there: _Placed, k: int, along: Reals, unit: Reals) -> tuple[Reals, R
     place = np.asarray(solved.x[count:])
     velocity = -np.asarray(solved.eqlin.marginals) / scale
     constant, *others = velocity @ demand[:, [ONE, PUSH, RATE]] * np.array([1.0, *unit])
-    # The direction has length 1; a smaller value is rounding, and a search bound limits the point.
+    # If these values are zero but for rounding, a bound of the search limits the point, and no mode does.
     bounds_it = np.abs(others).max() > ZERO_VELOCITY
     at_edge = abs(constant + others @ place) <= EQUAL_CORNERS * float(np.abs(velocity) @ np.abs(demand[:, ONE]) or 1.0)
     return place, there.turned(velocity / unit_force, k, -1) if bounds_it and at_edge else None
@@ -517,7 +517,7 @@ def stuck(held: Rates, centres: Points) -> Stuck:
     from scipy.sparse.csgraph import connected_components
 
     count = held.count
-    ends = np.where(held.pieces == GROUND, count, held.pieces)  # the ground is the last
+    ends = np.where(held.pieces == GROUND, count, held.pieces)  # the ground has the last number
     first = np.where(ends[:, 0] == count, 1, 0)  # for each row, a side that is a piece and not the ground
     row = np.arange(len(ends))
     wrench, place = held.factors[:, row, first], centres[:, np.minimum(ends[row, first], count - 1)]

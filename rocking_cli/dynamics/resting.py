@@ -170,7 +170,7 @@ def _as_one(mechanism: Mechanism, there: Pieces, closed: Sequence[Contact]) -> R
 
 
 def _slides_out(whole: Released, there: Pieces, direction: Direction) -> EarlyMechanism:
-    """Return the sliding of a structure as one body away from what it leans on, from the forces under its feet."""
+    """Return the mechanism in which a structure slides as one body away from its side support."""
     (foot,), (normal, shear) = whole.contacts, whole.force[0]
     velocity = np.tile([float(direction), 0.0, 0.0], there.dq.shape[1] // 3)
     force = (foot.friction or 0.0) * normal + int(direction) * shear
@@ -178,7 +178,7 @@ def _slides_out(whole: Released, there: Pieces, direction: Direction) -> EarlyMe
 
 
 def _leaning(mechanism: Mechanism, closed: Sequence[Contact], direction: Direction) -> list[Contact]:
-    """Return smooth contacts of all pieces with what a structure leans on, which is not known: none moves into it."""
+    """Return smooth contacts of every piece with a side support of unknown shape, so that no piece moves into it."""
     at = {piece.body.name: {piece.body.centroid} for piece in mechanism.pieces(direction)}
     for contact in closed:
         for name in contact.pieces:
@@ -232,7 +232,7 @@ def _bears_at_uplift(mechanism: Mechanism, direction: Direction, uplift: float) 
 
 
 def _conditions(joints: Released) -> Iterator[tuple[Reals, str, bool]]:
-    """Yield what must not be negative at the first rotation, its joint, and whether this joint slides otherwise."""
+    """Yield each force that must not be negative at rest, its joint, and whether the joint slides if it is."""
     for contact, (normal, shear) in zip(joints.contacts, joints.rows, strict=True):
         for row in normal:
             yield joints.force[0, row], contact.label, False
@@ -245,7 +245,7 @@ def _conditions(joints: Released) -> Iterator[tuple[Reals, str, bool]]:
 def _weakest(
     there: Pieces, joints: Sequence[Contact], leaning: Sequence[Contact], sense: int, gravity: float
 ) -> EarlyMechanism | None:
-    """Return the mechanism of the largest ground acceleration of one sense that the joints can bear; None if none is.
+    """Return the mechanism of the largest ground acceleration of one sense that the joints can bear, if any.
 
     A linear programme: of forces that are in equilibrium with the loads, joints press and friction is not exceeded. Its
     dual solution is the mechanism, in which a joint that slides opens by friction times slip.
@@ -312,7 +312,7 @@ def _undilated(
     velocity: Reals,
     scale: Reals,
 ) -> Reals:
-    """Return the motion of a mechanism whose sliding joints do not open as they slide; as it is if there is none."""
+    """Return the motion corrected so that joints slide without opening; unchanged if that is not possible."""
     change = np.zeros(len(jacobian))
     for contact, (normal, shear) in zip(closed, rows, strict=True):
         if contact.friction is not None and shear is not None:
@@ -337,7 +337,7 @@ def first_failure(rest: Rest, direction: Direction) -> Failure | None:
 
 
 class EarlyFailure(NamedTuple):
-    """How a structure fails before it rocks in a direction, or where it cannot rock, and lambda there if it can."""
+    """How a structure fails at rest in a direction, and its lambda there; None if it cannot rock in this direction."""
 
     direction: Direction
     failure: Failure
@@ -345,7 +345,7 @@ class EarlyFailure(NamedTuple):
 
 
 def early_failures(mechanism: Mechanism) -> list[EarlyFailure]:
-    """Return what slides or opens at rest before a structure rocks, or pushes back what props it, by direction."""
+    """Return, by direction, which joint slides or opens before a structure rocks or pushes back its prop."""
     still, failures = resting(mechanism), []
     for direction in Direction if mechanism.propped else mechanism.directions:
         failure = first_failure(still, direction)

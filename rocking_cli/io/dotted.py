@@ -14,7 +14,7 @@ from rocking_cli.text import cut, did_you_mean
 
 MAX_LIST_ENTRIES = 10_000
 HOLE: Any = ...
-"""An entry of a list that nothing has been put in yet."""
+"""Placeholder for a list entry that has no value yet."""
 
 
 def words(text: str) -> tuple[str, ...]:

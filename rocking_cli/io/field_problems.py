@@ -19,7 +19,7 @@ OF_KIND: Any = {
     "float_type": (), "int_type": (), "string_type": (), "literal_error": (), "list_type": (), "model_type": (),
     "dict_type": (), list: ("list_type",), dict: ("model_type", "dict_type"),
 }  # fmt: skip
-"""The errors that say of what kind a value must be, and which of them a list or a mapping is not."""
+"""Errors of pydantic on the kind of a value; for a list and for a mapping, those on its own kind."""
 
 
 def problems(

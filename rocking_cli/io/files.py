@@ -178,7 +178,7 @@ def keep_apart(outputs: Sequence[tuple[str, Path | None]], inputs: Sequence[str 
 
 
 WRITE_REFUSALS = (errno.ENOSPC, errno.EFBIG, errno.EIO, errno.EPIPE, getattr(errno, "EDQUOT", errno.ENOSPC))
-"""What is nobody's mistake: no room, too large for the file system, a broken disk, a reader that has gone."""
+"""Errors of the system for which nobody is to blame: no room, too large a file, a broken disk, a closed pipe."""
 
 
 class _Output(io.FileIO):
@@ -218,8 +218,8 @@ def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
     if _is_special(path):
         _write_into(path, shown_path, write)
         return
-    # Within the length of a name, whatever that of the file; known before it is there, so that a signal in between
-    # leaves nothing behind.
+    # The name is short enough for any system. It is chosen before the file is made, so that the file is removed even if
+    # a signal comes in between.
     name = path.with_name(f".{path.name[:40]}.{os.urandom(8).hex()}")
     try:
         try:

@@ -29,7 +29,7 @@ def commands() -> dict[str, str]:
 
 @cache
 def names() -> dict[str, str]:
-    """Return the module of each name that the rooms offer in Python."""
+    """Return the module of each name that the folders of `questions` offer in Python."""
     module_of: dict[str, str] = {}
     for room, _, files, more in _rooms():
         modules = {room: "verb"} if "verb" in files else {}
@@ -40,7 +40,7 @@ def names() -> dict[str, str]:
 
 @cache
 def _rooms() -> list[tuple[str, int, list[str], dict[str, list[str]]]]:
-    """Return of each room its name, the place of its commands, its modules, and the names that these offer further."""
+    """Return for each folder its name, its place in the help, its modules, and the further names that these offer."""
     rooms = []
     for _, room, _ in iter_modules(import_module(QUESTIONS).__path__):
         package = import_module(f"{QUESTIONS}.{room}")

@@ -45,7 +45,7 @@ Steps = Annotated[list[dict[str, Any] | str], AfterValidator(_parsed(parse_steps
 
 
 class _Entry(BaseModel):
-    """How a record is read and processed: the options of `ReadingArguments`, and what a list says of a record."""
+    """Fields of an entry that are no options of reading: its file, corrections, factor, weight, event and station."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
@@ -85,7 +85,7 @@ READING_ITEMS = tuple(name for name in READING if name not in CORRECTIONS)
 if TYPE_CHECKING:
 
     class Entry(_Entry):
-        """How a record is read and processed."""
+        """How a record is read and processed: the fields of `_Entry`, and the options of `ReadingArguments`."""
 
         def __getattr__(self, name: str) -> Any: ...
 else:

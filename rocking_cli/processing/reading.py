@@ -47,7 +47,7 @@ class Reading:
         return self.options.get(name)
 
     def over(self, common: Reading) -> Reading:
-        """Return this reading with what it does not state from that of all records, whose corrections come last."""
+        """Return this reading, completed by the `common` reading of all records, whose corrections come last."""
         return Reading({**common.options, **self.options}, (*self.steps, *common.steps), common.usual)
 
     def without(self, *names: str) -> Reading:

@@ -22,7 +22,7 @@ ALL = "all"
 """The azimuth that stands for every direction."""
 QUANTITIES = ("acceleration", "velocity", "displacement")
 UNITS = ("g", "m/s2", "cm/s2", "mm/s2", "gal", "mg", "%g")
-"""Units of acceleration; they stand here again so that the help needs no numpy, and a test holds them together."""
+"""Units of acceleration, repeated here so that the help needs no numpy; a test compares both lists."""
 
 
 class Option(NamedTuple):
@@ -31,11 +31,11 @@ class Option(NamedTuple):
     Parameters
     ----------
     help : str
-        What it is, for all pages.
+        Description of the option, for all pages.
     parse : callable
         Returns the value of what the user gives, as text or in another form. Raises `InputError`.
     metavar : str
-        What stands for its value in the help.
+        Placeholder of its value in the help.
     key : str
         Its name in files, and with dashes on the command line; empty if it is that of the argument.
     """

@@ -13,7 +13,7 @@ from rocking_cli.io.field_problems import place_of, problems
 from rocking_cli.io.yaml_file import Document, Place, spell
 
 Sound = Callable[..., bool]
-"""Whether what stands at a path of keys, within a part of the file, is right by itself."""
+"""Function that returns whether the value at a path of keys, within a part of the file, is valid by itself."""
 
 
 class Part(BaseModel):

@@ -14,7 +14,7 @@ from rocking_cli.core.hung.attached import PointMass
 from rocking_cli.core.hung.element import COINCIDENT_DISTANCE, ConstantForce, Element, SpringBed, Stretched
 
 Copies = Mapping[str, Sequence[tuple[int, complex]]]
-"""Of each body: its place among the parts, and how far from the body it is [m], of each part that it is drawn as."""
+"""For each body, the parts as which it is drawn: the index of each, and its offset from the body [m]."""
 SPRINGS_PER_BED = 8  # drawn for a bed
 TONNE = 1000.0  # kg; masses from here on are given in t
 
@@ -174,7 +174,7 @@ def _pieces(tie: Stretched, of_body: Mapping[str, int], shift: complex) -> Itera
     for one, other in zip(tie.spots, tie.spots[1:], strict=False):
         parts = [None if spot.body is None else of_body[spot.body] for spot in (one, other)]
         if abs(other.at - one.at) <= COINCIDENT_DISTANCE * (1 + abs(one.at)):
-            # Its ends are together at rest: they are drawn apart, what holds it below what moves.
+            # The ends of this tie coincide at rest: they are drawn apart, the fixed end below the moving one.
             up = -1j if parts[1] is None else 1j
             yield TiePiece(End(parts[0], one.at + shift, -up), End(parts[1], other.at + shift, up), "symbol")
         else:

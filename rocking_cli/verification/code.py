@@ -22,7 +22,7 @@ from rocking_cli.studies.file_part import Part
 from rocking_cli.verification.results import Control, Histories, Verification, Verified
 
 CODE_METHODS = ("verify", "with_histories", "of_each", "showing", "sheet")
-"""The methods in which a code answers: whatever fails there is an error of the plugin."""
+"""Methods that a code may define: any failure in them is reported as an error of the plugin."""
 
 
 @dataclass(frozen=True)

@@ -21,18 +21,21 @@ from rocking_cli.processing.floor import Floor
 from rocking_cli.studies.conclusion import Concluded, Conclusion, LeftOut, worst
 
 Standing = Literal["print", "transcription", "code", "ours", "plain"]
-"""Of a formula: of the code, and checked against its print; checked against a transcription of its text only; or not
-yet checked; ours, where the code leaves it open; or plain mechanics and arithmetic."""
+"""How far a formula of a code was checked: `print`, `transcription` or `code`, or that it is not of the code.
+
+`print`: checked against the printed code; `transcription`: against a transcription of its text; `code`: not yet
+checked; `ours`: an interpretation where the code leaves a choice; `plain`: mechanics or arithmetic.
+"""
 MINUS = "−"
 MARK = re.compile(r"([_^])\[([^\[\]]*)\]")
 """A subscript or superscript: `d_[0]^[*]` has both."""
 AND_SO_ON = re.compile(r"([^();]+?)( \+ |; )…")
-"""A piece that is there once for each of several numbers: `({P} · {x} + …)`."""
+"""Part of a formula that is repeated for each of several numbers: `({P} · {x} + …)`."""
 PLAIN_CHARACTERS = {
     "λ": "lambda", "Σ": "sum", "√": "sqrt", "·": "*", "×": "*", "≥": ">=", "≤": "<=", "′": "'", "²": "2", "³": "3",
     "–": "-", MINUS: "-",
 }  # fmt: skip
-"""What stands for the signs of a formula where there are plain characters only; Greek letters are spelled."""
+"""Replacements of the signs of a formula in plain characters; Greek letters are spelled."""
 
 
 class Clause(str):
@@ -501,8 +504,11 @@ class Verification:
 
 
 Moves = Literal["as_given", "carried_to_floor", "carried_by_option", "of_floor"]
-"""What the motions of histories are: those given, where the site has no floor; ground motions carried to the floor of
-the site, or to that given with the records; or motions of the floor, as the user states."""
+"""Kind of the motions of histories, on a site with a floor or without.
+
+`as_given`: as given, on a site without a floor; `carried_to_floor`: ground motions carried to the floor of the site;
+`carried_by_option`: to the floor given with the records; `of_floor`: motions of the floor, as the user states.
+"""
 
 
 @dataclass(frozen=True)

@@ -34,17 +34,17 @@ class Column(Generic[R]):
     Parameters
     ----------
     key : str or None
-        Key in JSON; None for a column that JSON has not.
+        Key in JSON; None for a column that JSON lacks.
     of : callable
         Returns the value of a row; `of("block.p")` reads attributes.
     unit : str
         Unit of the value.
     head : str, optional
-        Heading on terminals and pages, with its line breaks; None for a column that they have not.
+        Heading on terminals and pages, with its line breaks; None for a column that these lack.
     form : callable
         Formats a value that exists for terminals and pages.
     name : str, optional
-        Heading in files and frames, without the unit; the key by default, None for a column that they have not.
+        Heading in files and frames, without the unit; the key by default, None for a column that these lack.
     words : str
         What the quantity is, for readers.
     text : bool

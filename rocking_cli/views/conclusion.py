@@ -97,11 +97,11 @@ CLAUSES = {
     Concluded.NO_UPLIFT: names.NO_UPLIFT,
 }
 """Clauses on outcomes, the worst first."""
-MAX_NAMED_MOTIONS = 6  # in a sentence
+MAX_NAMED_MOTIONS = 6  # motions that a sentence names
 
 
 def counted(ends: Sequence[Conclusion], over: str) -> str:
-    """Return a sentence on under how many motions a structure does what, the worst first, and which motion governs.
+    """Return a sentence with the number of motions of each outcome, the worst first, and the motion that governs.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def counted(ends: Sequence[Conclusion], over: str) -> str:
 
 
 def governing(ends: Sequence[Conclusion], over: str) -> str:
-    """Return a sentence on which motion governs, or which ones alike; empty if none uplifts the structure.
+    """Return a sentence on which motion governs, or which ones equally; empty if none uplifts the structure.
 
     Parameters
     ----------
@@ -194,7 +194,7 @@ def next_in_words(end: Conclusion) -> str:
 
 
 def headline(end: Conclusion) -> str:
-    """Return what is concluded in a few words, for a heading: with the peak, the limit state, or until when known."""
+    """Return the conclusion in a few words, for a heading: with the peak, the limit state, or the end of validity."""
     if end.known_until is not None:
         return f"{names.UNKNOWN} after {end.known_until:.4g} s"
     if end.concluded is Concluded.ROCKS and end.peak_ratio is not None:

@@ -144,7 +144,7 @@ class ExactCurve:
 
     @cached_property
     def _rotations(self) -> dict[float, float]:
-        """What was found, by displacement: every view asks for the same few."""
+        """Rotations computed so far, by displacement, as all views need the same few."""
         return {}
 
     @cached_property

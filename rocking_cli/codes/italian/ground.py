@@ -135,7 +135,7 @@ class SiteGround:
 
 
 PROBABILITY = {"SLO": 0.81, "SLD": 0.63, **{rule.state: rule.probability for rule in RULES}}
-"""Of being exceeded in the reference life, by limit state."""
+"""Probability of exceedance in the reference life, by limit state."""
 SHORTEST_RETURN_PERIOD, LONGEST_RETURN_PERIOD = 30.0, 2475.0  # years; the code replaces others by these
 SOILS = {
     "A": (1.0, 0.0, 1.0, 1.0, 1.0, 0.0),
@@ -144,9 +144,9 @@ SOILS = {
     "D": (2.40, 1.50, 0.9, 1.8, 1.25, -0.50),
     "E": (2.00, 1.10, 1.0, 1.6, 1.15, -0.40),
 }
-"""Of each soil: S_S = first - second F0 ag/g between third and fourth, C_C = fifth TC*^sixth."""
+"""Numbers by soil: S_S = first - second F0 ag/g, at least the third, at most the fourth; C_C = fifth TC*^sixth."""
 TOPOGRAPHY = {"T1": 1.0, "T2": 1.2, "T3": 1.2, "T4": 1.4}
-"""S_T."""
+"""Factor S_T by topographic class."""
 
 
 def soil_factor(soil: str, F0: float, ag: float) -> float:

@@ -43,15 +43,15 @@ RULES = (
     Rule("SLV", 0.4, True, 1.68, 0.08, clauses.T_SLV, 0.10),
     Rule("SLC", 0.6, False, 1.56, 0.10, clauses.T_SLC, 0.05),
 )
-"""From the most frequent to the rarest; the first one counts."""
+"""Rules of the limit states, from the most frequent to the rarest; the first one decides the verification."""
 FIRST_STATE = RULES[0].state
 FURTHER_STATES = (*(rule.state for rule in RULES[1:]), "SLD")
-"""Those with fields of their own in a site file and its floor. At SLD only the onset of rocking is verified."""
+"""Limit states with fields of their own in a site file and its floor. At SLD only the onset of rocking is verified."""
 STATES = ("SLD", *(rule.state for rule in RULES))
-"""All of them, from the most frequent to the rarest."""
+"""All limit states, from the most frequent to the rarest."""
 DAMAGE, LINEAR, NONLINEAR = "damage", "linear", "nonlinear"
 OF_STATE = {
     FIRST_STATE: (DAMAGE, NONLINEAR),
     **{rule.state: (f"{DAMAGE}_{rule.state}", f"{NONLINEAR}_{rule.state}") for rule in RULES[1:]},
 }
-"""Of each limit state its two methods, by whether rocking starts and by displacement; the larger capacity governs."""
+"""Both methods of each limit state, by onset of rocking and by displacement; the larger capacity governs."""

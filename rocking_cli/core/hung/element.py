@@ -37,7 +37,7 @@ NO_ANSWER: dict[Question, str] = {
 }
 """Analyses other than the nonlinear history, with the message if an element does not allow one."""
 
-COINCIDENT_DISTANCE = 1e-9  # of points [m] that coincide at rest, plus this share of their distance from the origin
+COINCIDENT_DISTANCE = 1e-9  # distance of points that coincide at rest [m], plus this share of that to the origin
 ZERO_ELONGATION = 1e-14  # elongations that count as zero [m], plus this share of that distance
 SMALL_ROTATION = 1e-6  # rad; below it the distance of points that coincide at rest is its derivative times phi
 
@@ -495,7 +495,7 @@ FLOOR_MATERIALS: dict[str, dict[str, float]] = {
     "sliding": {"horizontal": 0.0, "vertical": 1 / 3, "weight": 1 / 2},
     "dragged": {"horizontal": 1.0, "vertical": 1 / 3, "weight": 1 / 2},
 }
-"""Shares of a floor also supported at its far end: it turns about that end, and slides here or is dragged along."""
+"""Shares of a floor that turns about a support at its far end: carried here, sliding here, or dragged along."""
 
 
 class Load(Described):

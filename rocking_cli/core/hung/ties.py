@@ -162,7 +162,7 @@ class Tie(Described):
         return self.bed is not None or self.k > 0
 
     def element(self, spots: Sequence[Spot], count: float) -> Element:
-        """Return the element of `count` such ties over these points; for a bed, the points are the ends of its face."""
+        """Return `count` such ties through points as one element; for a bed, the points are the ends of its face."""
         if self.bed is not None:
             assert self.modulus is not None
             return SpringBed(self.name, spots[0], spots[1], self.modulus, count)

@@ -15,12 +15,12 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.plugins.errors import failed, guard
 
 POINTS_PER_PERIOD = 4000
-"""Samples of a single history: its peak has an error of 1e-6 from 1.01 times uplift on."""
+"""Samples per period for a single history: its peak has an error of 1e-6 from 1.01 times uplift on."""
 COARSE_POINTS_PER_PERIOD = 400
-"""Samples of batches and of stored histories: their peaks have an error of 1e-4 near uplift, 1e-7 elsewhere."""
+"""Samples per period for batches and stored histories: peaks have an error of 1e-4 near uplift, 1e-7 elsewhere."""
 MAX_DIGITS = 17  # enough to tell any two floating-point numbers apart
 SAMPLING = "chords with the impulse of the curve"
-"""How samples are made, for whoever keeps what was computed with them: other samples need another text."""
+"""Name of the sampling, for checksums of stored results: if samples are made in another way, it must change."""
 GAUSS_POINTS = 48
 
 
@@ -72,13 +72,13 @@ class Pulse(ABC):
     period: float
 
     name: ClassVar[str]
-    """What it is called in a specification, such as `sine`."""
+    """Name of the shape in a specification, such as `sine`."""
     title: ClassVar[str]
-    """What it is, in a few words."""
+    """Title of the shape, in a few words."""
     form: ClassVar[str] = "AMPLITUDE:PERIOD"
-    """What follows the name in a specification."""
+    """Form of what follows the name in a specification."""
     source: ClassVar[str] = ""
-    """Where it comes from."""
+    """Publication of the shape."""
 
     def __init_subclass__(cls, **named: Any) -> None:
         """Wrap the methods of a shape, so that any failure in them is reported as an error of the plugin."""

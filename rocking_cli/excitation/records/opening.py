@@ -32,9 +32,9 @@ _SPREADSHEET = "[Content_Types].xml"
 _UNPACK = "unpack it, and give the record in it"
 
 _taken: WeakKeyDictionary[Any, bytes] = WeakKeyDictionary()
-"""What came from standard input, which gives it once."""
+"""Bytes read from standard input, which can be read only once."""
 _again: WeakSet[Any] = WeakSet()
-"""Of these, what may be read once more."""
+"""Standard inputs whose kept bytes may be read once more."""
 
 
 class Opened(NamedTuple):

@@ -228,7 +228,7 @@ OTHER_UNITS: dict[Quantity, tuple[str, ...]] = {
     "velocity": tuple(KINDS["velocity"]),
     "displacement": tuple(KINDS["length"]),
 }
-"""The units of what is differentiated; those of accelerations are in `units.UNITS`."""
+"""Units of velocities and displacements; those of accelerations are in `UNITS`."""
 GAIN_EXAMPLE = "0.05 m/V"
 MIN_GAIN, MAX_GAIN = 1e-30, 1e30  # products overflow beyond these bounds
 TIME_UNITS = frozenset(

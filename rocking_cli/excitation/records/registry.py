@@ -3,7 +3,7 @@
 A reader is a module, or any object, with a `TITLE` (the name of its format), a `SIGN` (by which it recognises a file,
 for messages) and the functions `sniff` and `read` of `Reader`. A reader with `BINARY = True` is given the bytes of a
 file instead of its text. A reader with `TAKES_WANTED = True` can read other values than accelerations: its `read` takes
-`wanted`, a `sensor.Wanted`.
+`wanted`, a `record_units.Wanted`.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from rocking_cli.plugins.errors import blame
 from rocking_cli.plugins.registry import Plugins, leave_out, origin
 
 FALLBACK = "text"
-"""The reader that is asked last: delimited text takes nearly anything with numbers in it."""
+"""Name of the reader that is tried last, as delimited text accepts nearly anything with numbers in it."""
 
 
 class Reader(Protocol):

@@ -367,7 +367,7 @@ MAX_GRID_RATIO = 10  # samples of an even grid over recorded samples
 _MIN_DT = 1e-9  # s
 _MIN_DIGITS, _MAX_DIGITS = 5, 12  # significant digits with which programs print numbers
 _MIN_FINE_SHARE = 0.01
-"""Share of times that must be finer than the coarsest one, or they have decimals and no digits in common."""
+"""Share of times that must be finer than the coarsest one; otherwise times have equal decimals, not equal digits."""
 
 
 class UnevenTimeError(Exception):

@@ -23,7 +23,7 @@ _ONES = str.maketrans("0", "1")
 _PRINTED = regex(r"[+-]?(\d*)(?:(\.)(\d*))?(?:[EeDd]([+-]?)(\d+))?")
 
 Form = tuple[int | None, int | None, int | None]
-"""Digits after the point; and of a number with an exponent, those before the point and those of the exponent."""
+"""Digits of a number: after the point; and if it has an exponent, before the point and in the exponent."""
 
 
 @dataclass(frozen=True)

@@ -52,17 +52,17 @@ class Measure(ABC):
     """
 
     name: ClassVar[str]
-    """What it is called, such as `PGA`."""
+    """Name of the measure, such as `PGA`."""
     title: ClassVar[str]
-    """What it is, in a few words."""
+    """Title of the measure, in a few words."""
     unit: ClassVar[str] = ""
-    """Of its values; a dimensionless one has none."""
+    """Unit of the values; empty if they are dimensionless."""
     usual: ClassVar[tuple[str, ...]] = ()
-    """Names that stand for it if all measures are requested; itself if every parameter has a default."""
+    """Spellings that are used if all measures are requested; by default the name, if every parameter has a default."""
     source: ClassVar[str] = ""
-    """Where it comes from."""
+    """Publication that defines the measure."""
     needs: ClassVar[tuple[str, ...]] = ()
-    """The fields of `Reference` that not every structure has, `p` and `v_imp`, of which it needs these."""
+    """Fields of `Reference` that the measure needs, of those that not every structure has: `p` and `v_imp`."""
 
     def __init_subclass__(cls, **named: Any) -> None:
         """Wrap the methods of a measure, so that any failure in them is reported as an error of the plugin."""
@@ -166,7 +166,7 @@ class RelativeMeasure(Measure):
     """
 
     to: ClassVar[str]
-    """Of a `MotionMeasure`, with its parameters."""
+    """Name of the `MotionMeasure` on which this one is based, with its parameters."""
 
     @property
     def base(self) -> MotionMeasure:

@@ -59,7 +59,7 @@ class MechanismSide:
 
 @dataclass(frozen=True, eq=False)
 class ScaledSide:
-    """A direction whose frequency parameter and slenderness are other multiples of those of a given one.
+    """A direction of rocking with the frequency parameter and the slenderness of a given one, each times a factor.
 
     Parameters
     ----------

@@ -36,9 +36,9 @@ MIN_SAMPLES = 30
 MIN_ALPHA = 0.07  # rad: for smaller slenderness, p and alpha cannot be told apart
 MIN_ANGLE_SHARE = 1e-6  # of the rotation at which the structure overturns: no instrument resolves less
 MAX_TRACE_DURATION = 1e6  # s
-MIN_PEAK_TO_NOISE = 3.0  # of the half-cycles that can be seen in the trace
-MIN_LARGEST_TO_NOISE = 5.0  # of the largest angle of a trace
-MAX_RELEASE_SHARE = 0.98  # of the critical rotation
+MIN_PEAK_TO_NOISE = 3.0  # peak over noise, from which a half-cycle can be seen in the trace
+MIN_LARGEST_TO_NOISE = 5.0  # largest angle of a usable trace over its noise
+MAX_RELEASE_SHARE = 0.98  # release over the critical rotation
 FITTED_QUARTER_SHARE = 0.9  # of the quarter cycle before the first impact: earlier, the structure may be lifted or held
 # Share of the release by which a half-cycle exceeds the last on its side if a new test starts.
 MIN_NEW_TEST_GROWTH = 0.2
@@ -47,7 +47,7 @@ START_ETAS = (0.6, 0.75, 0.85, 0.9, 0.94, 0.97, 0.985)  # tried if the times of 
 MAX_GOOD_RESIDUAL = 0.05  # share of the release; a missed impact gives more, and other starts are tried
 WINDOWS = (3, 6, 12, 24, 48, 1_000_000)  # numbers of impacts up to which the trace is fitted, in turn
 MIN_LEVEL_DISTANCE = 0.03  # share of the largest angle: closer levels of rest lead to the same fit
-MAX_FURTHER_STARTS = 3  # if the residual of the first is large
+MAX_FURTHER_STARTS = 3  # starts that are tried if the residual of the first is large
 MAX_RESIDUAL = 0.2  # share of the release: with more, the trace is not free rocking of this structure
 MAX_RESIDUAL_OF_ETAS = 0.1  # share of the release, with an eta per impact: with more, the structure is another one
 MIN_NOISE = 1e-5  # share of the release: the numerical error of the fit
@@ -56,7 +56,7 @@ GEOMETRY_STEP = 0.02  # share of the errors of the geometry, for finite differen
 RELEASE, START, OFFSET, DRIFT, ETA = range(5)  # indices of the parameters; further etas and the geometry follow
 PRIOR_IMPACTS = 1.0  # number of impacts that the scatter of other bodies counts for
 INTERVAL_DROP = 1.6  # of the log-likelihood, for an interval of 5 to 95 % (1.35 if there are many impacts)
-MAX_RESIDUAL_TO_NOISE = 1.2  # times the noise: a residual that says more than noise
+MAX_RESIDUAL_TO_NOISE = 1.2  # residual over the noise, above which the model does not explain the trace
 SIDES, P, ALPHA = range(3)  # indices: ln of alpha of one side over the other, of p and of alpha over those of the file
 
 
@@ -79,9 +79,9 @@ class Pooled(NamedTuple):
     scatter : float
         Standard deviation of the restitution from impact to impact, drawn towards that of other bodies; never 0.
     seen : float
-        That of these impacts alone, beyond what noise makes of it; 0 if noise suffices.
+        Scatter of these impacts alone, without the part that noise explains; 0 if noise explains all of it.
     interval : tuple of float
-        Values of it that these impacts leave open, 5 to 95 %.
+        Range of the scatter that agrees with these impacts, 5 to 95 %.
     """
 
     mean: float
@@ -103,7 +103,7 @@ class TraceFit:
         Coefficient of restitution: the mean of the impacts. Its deviation is that of noise, of the scatter from impact
         to impact, and of the geometry of the structure.
     etas : sequence of Estimated
-        That of each impact that is seen, each fitted on its own; deviations are those of noise.
+        Restitution of each impact that is seen, each fitted on its own; deviations are those of noise.
     pooled : Pooled
         Mean and scatter of the restitutions, without the error of the geometry.
     release : float
@@ -186,7 +186,7 @@ class _Problem:
     geometry: tuple[float, float, float] = (0.0, 0.0, 0.0)  # fixed part of the geometry
 
     def motion(self, x: Reals) -> FreeRocking:
-        """Return the rotation over the time from the release, for parameters."""
+        """Return the rotation of the structure from the release on, for the parameters `x` of a fit."""
         etas, geometry = x[ETA : x.size - len(self.free)], np.array(self.geometry)
         geometry[list(self.free)] += x[x.size - len(self.free) :]
         one, p, alpha = np.exp(geometry)
@@ -196,12 +196,12 @@ class _Problem:
         return free_rocking(sides, int(self.first) * release, etas, rebounds=len(sides) == 1, until=until)
 
     def model(self, x: Reals, times: Reals) -> Reals:
-        """Return the angle at times for parameters."""
+        """Return the angle of the trace at given times, for the parameters `x` of a fit."""
         rotation = self.sense * self.motion(x).at(times - x[START]) / self.scale
         return np.asarray(rotation + x[OFFSET] + x[DRIFT] * times / self.times[-1])
 
     def distance(self, x: Reals) -> float:
-        """Return the root mean square of the residual with parameters."""
+        """Return the root mean square of the residual, for the parameters `x` of a fit."""
         return _rms(self.model(x, self.times) - self.angles)
 
     def fit(self, x: Reals, until: float = np.inf) -> tuple[Reals, Reals, float]:

@@ -172,7 +172,7 @@ def _write(structure: Structure, source: Path, out: Path, found: TraceFit) -> No
         for name, length in (("width", size * sin(found.alpha.value)), ("height", size * cos(found.alpha.value))):
             fields[name] = f"{length:.5g}  # of a uniform block with p and alpha as {where}"
     text = with_fields(read_text(source, "structure"), fields, str(source))
-    # As a reader of the file gets it.
+    # Read the new file text back, to check what a user of the file will get.
     written = Structure(parse_structure(text, str(out), structure.name)).equivalence.positive
     if found.p is not None and found.alpha is not None:
         for one, other in ((written.p, found.p.value), (written.phi_cr, found.alpha.value)):

@@ -323,7 +323,7 @@ def _check_site(metric: Metric, excitation: Excitation | None) -> None:
 def _taken_otherwise(
     structure: Structure, field: str, span: tuple[float, float], aim: Aim, excitation: Excitation | None
 ) -> Sequence[LeftOut]:
-    """Return, each once, what the code does not count of the structure, at both ends of the range."""
+    """Return what the structure has and the code does not count, at either end of the range, without repetitions."""
     if not aim.metric.sited or excitation is None or excitation.site is None:
         return []
     reasons: dict[LeftOut, None] = {}

@@ -20,7 +20,7 @@ from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import ABSENT, Table, View
 
-MAX_SCAN_ROWS = 11  # in the table
+MAX_SCAN_ROWS = 11  # values of the scan in the table
 
 
 def view(found: Design, excitation: Excitation | None = None) -> View:

@@ -12,7 +12,7 @@ from rocking_cli.plotting import style
 from rocking_cli.questions.equivalent.study import EquivalentResponses
 
 CUT_RATIO = 1.5  # phi/phi_cr at which a curve that overturns is cut off, with a cross
-SHOWN_AFTER_PULSE = 8.0  # p t
+SHOWN_AFTER_PULSE = 8.0  # p times the duration that is shown
 
 
 def draw_equivalent(found: EquivalentResponses, title: str) -> Figure:

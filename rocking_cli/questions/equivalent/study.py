@@ -22,8 +22,8 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies import engines
 from rocking_cli.studies.under_pulses import check_eta, uplift, weakest
 
-SIMULATED_AFTER_PULSE = 12.0  # p t
-MAX_PULSE_PERIODS = 1000  # shown; a pulse may be far shorter than the motion
+SIMULATED_AFTER_PULSE = 12.0  # p times the duration that is simulated
+MAX_PULSE_PERIODS = 1000  # periods simulated after the pulse, which may be far shorter than the motion
 
 
 @dataclass(frozen=True, eq=False)

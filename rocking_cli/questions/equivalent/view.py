@@ -84,7 +84,7 @@ def table(found: EquivalentResponses) -> dict[str, Sequence[object]]:
 
 
 def judge(found: EquivalentResponses) -> list[str]:
-    """Whether the structures are equivalently vulnerable, in a few sentences.
+    """Return sentences on whether the structures are equivalently vulnerable.
 
     Parameters
     ----------

@@ -211,7 +211,7 @@ def curves(
     for measure in definition.fitted_measures:
         cells = tally.over(measure)
         x = cells.intensities(measure)
-        if not (x > 0).any():  # or none is known
+        if not (x > 0).any():  # all intensities are zero, or none is known
             continue
         runs, fragilities = tally.ladders is None, []
         for limit in definition.limit_states:
@@ -223,7 +223,7 @@ def curves(
 
 
 def _twice(fit: Callable[[Cells], Fitted], cells: Cells, unknown: int) -> Fitted:
-    """Return a fit in which undecided runs exceed; if there are any, with the one in which they do not."""
+    """Return a fit with undecided runs counted as exceeding, and as its `lower` the one in which they do not."""
     upper, tally = fit(cells), cells.tally
     if unknown:
         assert tally.lower is not None
@@ -232,7 +232,7 @@ def _twice(fit: Callable[[Cells], Fitted], cells: Cells, unknown: int) -> Fitted
 
 
 def _consistent(found: Sequence[Fragility], onset: Onset | None) -> Iterator[Fragility]:
-    """Yield the curves of one structure over one measure with what is exact, and so that none is above an implied one.
+    """Yield the curves of one structure over one measure, corrected so that none lies above one that it implies.
 
     Parameters
     ----------
@@ -262,7 +262,7 @@ def _consistent(found: Sequence[Fragility], onset: Onset | None) -> Iterator[Fra
 
 
 def _exact(found: Fragility, at: float) -> Fragility:
-    """Return the curve of uplift as the step that it is."""
+    """Return the uplift curve as a step at the exactly known intensity."""
     place = f"{at:.4g} {parse_measure(found.measure).unit}".strip()
     why = f"a motion uplifts the structure exactly if its {found.measure} exceeds {place}, so no curve is fitted"
     return replace(found, curve=exact_step(found.curve, at, why))

@@ -29,7 +29,7 @@ from rocking_cli.studies.fragility.quantities import PGA, PGV, ROTATIONS_FACT, a
 Progress = Callable[[int, int], None]
 """Called with the numbers of runs that have finished and failed since the last call."""
 PARAMETER_TOLERANCE = 1e-9  # relative difference between machines of parameters from the same mechanics
-MAX_NAMED_CHANGES = 10  # of samples
+MAX_NAMED_CHANGES = 10  # changed samples that an error message names
 Examined = Callable[[int], None]
 
 

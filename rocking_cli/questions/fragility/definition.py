@@ -28,7 +28,7 @@ from rocking_cli.studies.fragility.quantities import SCALE as SCALE
 
 UPLIFT, OVERTURNING, SLIDING = "uplift", "overturning", "sliding"
 UPLIFT_MEASURE = "lambda"  # the measure that a motion must exceed to uplift a structure; not a limit state of a study
-MAX_LEVELS = 100_000  # of intensity, or samples: more is a typing error
+MAX_LEVELS = 100_000  # levels of intensity, or samples: more is a typing error
 
 
 def _measure(value: object) -> object:

@@ -190,7 +190,7 @@ def _below(curve: FragilityCurve, hazard: HazardCurve) -> float:
 
 
 def _below_alone(curve: FragilityCurve, hazard: HazardCurve) -> float:
-    """Return this rate of a single curve."""
+    """Return the rate that intensities below the first point add to a single curve [1/year]."""
     if curve.step is not None:
         return _beyond(hazard, curve.step.value)
     from scipy.special import log_ndtr, ndtr

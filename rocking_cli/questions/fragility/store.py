@@ -31,7 +31,7 @@ from rocking_cli.questions.fragility.plan import Measured, Plan, Trial, Value, d
 from rocking_cli.questions.fragility.sources import Record
 from rocking_cli.questions.fragility.workers import CONTINUE_HINT
 
-COMMIT_INTERVAL = 1.0  # s: runs finished in between are repeated after a crash
+COMMIT_INTERVAL = 1.0  # s between two commits; runs that are not committed are repeated after a crash
 RUNS_PER_READ = 100_000
 MAX_RUN_NUMBER = 2**63 - 1  # above the number of any run
 STANDS, FAILED, UNKNOWN = 0, 2, 3  # outcomes; 1 and -1: overturns in the positive or the negative direction

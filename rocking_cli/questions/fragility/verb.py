@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rocking_cli.questions.fragility.study import Study
     from rocking_cli.questions.fragility.workers import Workers
 
-MAX_NAMED_PROBLEMS = 10  # bad records or samples
+MAX_NAMED_PROBLEMS = 10  # bad records or samples that a message names
 
 
 @takes_numbers

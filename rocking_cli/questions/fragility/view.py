@@ -317,7 +317,7 @@ def _senseless(curve: FragilityCurve) -> str:
 
 
 def cut_of(found: Fragility) -> Cut | None:
-    """Return by how much a curve is cut, over the intensities of its runs."""
+    """Return the largest cut of a curve by an implied limit state, at the intensities of its runs; None without one."""
     least, most = float(found.seen.x.min()), float(found.seen.x.max())
     return found.curve.cut(np.geomspace(least, most, CUT_POINTS))
 

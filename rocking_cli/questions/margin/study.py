@@ -66,7 +66,7 @@ class Margin:
         return NeighbourShare(float(self.overturned[one]), float(self.at_most[one]), self.around.count)
 
     def first(self, level: float, *, unknown: bool = False) -> float | None:
-        """Return the least factor at which a share `level` overturns, or is unknown if so asked; None without one."""
+        """Return the least factor at which a share `level` overturns (or is unknown); None without one."""
         reached = self._shares(unknown) >= level
         return float(self.factors[reached.argmax()]) if reached.any() else None
 

@@ -37,7 +37,7 @@ class MarginRow(NamedTuple):
 
 
 class _Line(NamedTuple):
-    """A line of a motion: what governs, with unknown outcomes as overturning, or what is known to overturn."""
+    """A line of the table of margins: a motion with unknown outcomes as overturning, or those known to overturn."""
 
     name: str
     pga: str
@@ -48,7 +48,7 @@ class _Line(NamedTuple):
 
 
 def _lines(rows: Sequence[MarginRow]) -> Iterator[_Line]:
-    """Yield the line of each motion that governs, and below it, if outcomes are unknown, what is known to overturn."""
+    """Yield the line that governs for each motion; if outcomes are unknown, also a line of those known to overturn."""
     for name, _, pga, found, _ in rows:
         doubt = bool(found.unknown.any())
         governing = f"{name}: {GOVERNING_ROW}" if doubt else name

@@ -128,7 +128,7 @@ def view(
 
 
 def _columns(answers: Mapping[str, Answer], *, unknown: bool = False) -> list[Column[Answer]]:
-    """Return the columns of a response; beside an unknown outcome of the structure, tables have none of its blocks."""
+    """Return the columns of a response; tables leave out those of blocks if the structure's outcome is unknown."""
 
     def value(name: str) -> Callable[[Answer], Any]:
         return lambda answer: getattr(outcome(answer), name)

@@ -34,7 +34,7 @@ from rocking_cli.studies.under_pulses import parse_shape, pulsed_model
 # Values of phi/phi_cr, and multiples of the uplift acceleration, at which errors of the block are stated.
 ERROR_AMPLITUDES, ERROR_ACCELERATIONS = (0.25, 0.5, 0.75), (1.5, 2.0, 4.0)
 FITTED_PULSES = ("sine", "ricker")  # those whose only parameters are the two axes of a map, amplitude and period
-MIN_CAUTIONED_FACTOR = 2.0  # on a record
+MIN_CAUTIONED_FACTOR = 2.0  # scale factor on a record, above which a report has a caution
 MAX_CLOSE_FACTOR = 1.25  # on the motion: if neighbours within it have the opposite outcome, the result is a close one
 MAP_POINTS = 80  # along each side
 MAP_OMEGAS, MIN_MAP_TOP = (1.0, 10.0), 10.0  # omega_g/p of a map, and least a_g/(g lambda) at its top
@@ -87,7 +87,7 @@ class MotionResult(Response):
 
     @property
     def scaled_much(self) -> bool:
-        """Whether the scale factor exceeds `LARGE` in size, for which a report has a caution."""
+        """Whether the scale factor exceeds `MIN_CAUTIONED_FACTOR` in size, for which a report has a caution."""
         return abs(self.given.factor) > MIN_CAUTIONED_FACTOR
 
     @property

@@ -146,7 +146,7 @@ class Several:
                 yield f"{name}: {said.removeprefix('Contact: ')}"
 
     def _friction(self, asks: Mapping[str, ContactDemand], order: Sequence[str]) -> str:
-        """Return the friction that motions require, the largest first, and under which it is more than there is."""
+        """Return the friction that motions require, the largest first, and the motions that require too much."""
         friction = asks[order[0]].friction
         there, of = (MASONRY_FRICTION, "usual for masonry") if friction is None else (friction, "available")
         needs = {name: asks[name].friction_needed for name in order}

@@ -11,7 +11,7 @@ from rocking_cli.cli import options, terminal
 from rocking_cli.cli.groups import Output, ReadingOptions, read_table
 from rocking_cli.cli.help import Command
 
-MAX_NAMED_TESTS = 20  # that cannot be simulated
+MAX_NAMED_TESTS = 20  # tests that cannot be simulated, in a message
 
 
 @click.command(cls=Command, short_help="Score stated shares of overturning against tests.")

@@ -294,7 +294,7 @@ def _design(x: Reals) -> Reals:
 
 
 def _apart(clusters: Sequence[str], halves: Sequence[str]) -> Iterator[tuple[Bools, Bools]]:
-    """Yield masks of tests, and of the others that a rule for them may learn from: of other halves, or clusters."""
+    """Yield masks of tests, and of the tests to which a rule for them may be fitted: of other halves or clusters."""
     names, parts = np.array(clusters, dtype=object), np.array(halves, dtype=object)
     for cluster, half in dict.fromkeys(zip(clusters, halves, strict=True)):
         others = (parts != half) & (parts != "") if half else names != cluster

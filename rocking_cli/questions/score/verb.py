@@ -123,7 +123,7 @@ def motions_of(
 
 
 def _structures(table: TableOfTests, watch: Watcher, opening: float) -> dict[str, Structure | RockingError]:
-    """Read each structure once; instead of one that cannot be used, its error."""
+    """Return each structure, read once, or its error if it cannot be used."""
     structures: dict[str, Structure | RockingError] = {}
     for named in dict.fromkeys(test.structure for test in table.tests):
         try:
@@ -143,7 +143,7 @@ def _known(structures: Mapping[str, Structure | RockingError], named: str) -> St
 
 
 def _motion(folder: Path, motions: Motions, named: str) -> GroundMotion:
-    """Read the record of a test as these motions are read, without a word on doubts, or sample its pulse."""
+    """Read the record of a test without warnings of doubts, or sample its pulse."""
     if (pulse := pulse_in(named)) is not None:
         return motions.reading.on_floor(pulse.sampled())
     files = files_of(str(folder / named))

@@ -15,7 +15,7 @@ from rocking_cli.cli.quantities import FRACTION, PERIOD, QuantityKind, range_of
 
 RATIO = QuantityKind("ratio", "", "0.9", "0.9:1.3", 1e-3, 1e3)
 FACTOR = QuantityKind("factor", "", "0.5", "0.5:3", 1e-6, 1e6)
-MAX_RECORDS = 1000  # of a set
+MAX_RECORDS = 1000  # records of a set
 
 
 @click.command(cls=Command, short_help="Select records whose mean spectrum matches a target.")

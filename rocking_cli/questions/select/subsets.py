@@ -18,13 +18,13 @@ from numpy.typing import NDArray
 from rocking_cli.arrays import Reals
 
 Integers = NDArray[np.intp]
-MAX_SETS = 200_000  # that are all tried
-MAX_MEMBERS = 3_000_000  # of all these sets together
-MEMBERS_PER_BLOCK = 30_000  # judged at once
+MAX_SETS = 200_000  # up to this number, all sets are tried
+MAX_MEMBERS = 3_000_000  # curves of all these sets together
+MEMBERS_PER_BLOCK = 30_000  # curves of the sets that are judged at once
 SEARCH_STARTS = 20
 MISFIT_TOLERANCE = 1e-9  # in logarithms: within it sets are equal, and the earlier one is chosen
 LIMIT_MARGIN = 1e-12  # relative: keeps a mean at a limit within it in spite of rounding
-MAX_EXCHANGES = 1000  # in a search
+MAX_EXCHANGES = 1000  # exchanges of a curve in one search
 
 
 @dataclass(frozen=True, eq=False)

@@ -486,7 +486,7 @@ def threads(quick: bool) -> float:
 
 
 def _histories_in(parts: int) -> int:
-    """Compare histories in so many parts, each of which is done by one thread."""
+    """Return how many values of histories differ between one thread and several; `parts` is the number of tasks."""
     models = [wall(0.3, 3.0).structure.model("nonlinear")]  # a wall with a joint that is checked for opening
     models += block(0.7, 2.8).structure.models(("nonlinear", "linear2"))
     scales = np.linspace(0.5, 2.0, parts * batch.HISTORIES_PER_TASK // (len(models) * len(MOTIONS)))
@@ -495,7 +495,7 @@ def _histories_in(parts: int) -> int:
 
 
 def _pulses_in(parts: int) -> int:
-    """Compare pulses in so many parts."""
+    """Return how many values under pulses differ between one thread and several; `parts` is the number of tasks."""
     count, equivalence = parts * exact_batch.PULSES_PER_TASK, block(0.7, 2.8).structure.equivalence
     amplitudes, periods = np.geomspace(2.0, 20.0, count), np.geomspace(3.0, 0.3, count)
     many = partial(exact_many, equivalence, Sine(1.0, 1.0), amplitudes, periods, kappa=2, gravity=GRAVITY)

@@ -30,7 +30,7 @@ from rocking_cli.structure import Structure, with_restitution
 from rocking_cli.studies.under_pulses import Progress, PulsedModel, parse_shape, pulsed_model, uplift
 
 SIZE_TOLERANCE = 1e-9  # relative difference below which a size is that of the structure as given
-MAX_SCALE = 10.0  # shown of a structure; the least is its inverse
+MAX_SCALE = 10.0  # default largest scale of a structure; the least is its inverse
 BLOCK_PERIODS = (1.0, 10.0)  # range of 2 pi/p of blocks [s]: R from 0.19 to 19 m
 SIZES_PER_CALL = 50  # the tables of all of them are in memory at once
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rocking_cli.ask.answer import Answer
     from rocking_cli.io.tables import Columns
 
-MAX_NAMED_ROWS = 20  # that cannot be used
+MAX_NAMED_ROWS = 20  # rows that cannot be used, in a message
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 Table = str | Path | Mapping[str, Sequence[Any]]
 """CSV file, or columns by their headings."""
 MIN_ROWS_FOR_PROCESSES, MIN_ROWS_FOR_PROCESSES_WITH_MOTION = 10_000, 1_000  # from which starting processes pays
-MAX_LISTED_DOUBTS = 3  # about sizes
+MAX_LISTED_DOUBTS = 3  # doubts about sizes that are printed
 
 
 @takes_numbers

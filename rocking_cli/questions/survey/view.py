@@ -19,7 +19,7 @@ from rocking_cli.views.view import Table, View, number
 DEFAULT_ROWS = 20
 MAX_NAME_LENGTH = 30  # characters, in the table
 MAX_CAUTIONED = 3  # structures whose cautions are printed
-ROWS_PER_BLOCK = 10_000  # of a file
+ROWS_PER_BLOCK = 10_000  # rows of a file that are written at once
 FORMULA_SIGNS = ("=", "+", "-", "@")
 """First characters of a text that a spreadsheet would read as a formula."""
 RANKED = {

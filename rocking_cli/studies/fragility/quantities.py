@@ -1,7 +1,7 @@
 """Limit states on the horizontal displacement of the top of a structure, such as `25 mm`.
 
 Whether a run exceeds one follows from two rotations of its sample, one in each direction, at which the top has this
-displacement: `reached` finds them, and a store keeps them, so that its runs can be counted without the structures.
+displacement. A study computes them, and its store keeps them, so that its runs can be counted without the structures.
 The intensity measures of a study are those of `processing.intensity` by name, and the factor on the records.
 """
 
@@ -82,9 +82,9 @@ def kept(fact: Callable[[str], Any], limits: Sequence[str | float]) -> dict[str,
 
 PGA, PGV = "PGA", "PGV"
 SCALE = "scale"
-"""What levels are of that are plain factors on the records."""
+"""Name of the measure of levels that are plain factors on the records."""
 USUAL_MEASURES = (PGA, PGV, "PGA/(g lambda)", "p PGV/(g lambda)")
-"""Measures that every table of runs has, whatever is requested: every store knows what they are of."""
+"""Measures that every table of runs has, because every store has the values that they need."""
 
 
 def spelled(text: str) -> str:

@@ -16,7 +16,7 @@ from rocking_cli.views.column import table_of, text_columns
 from rocking_cli.views.sheet.document import Item, Listing, Sentence, Sheet, SheetPart
 from rocking_cli.views.sheet.language import SIGNIFICANT_DIGITS, Language
 
-MAX_LISTED_LINES = 200  # of a file
+MAX_LISTED_LINES = 200  # lines of a file that a sheet shows
 
 
 @dataclass(frozen=True)
