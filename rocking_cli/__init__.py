@@ -56,8 +56,8 @@ def _own_mechanisms() -> dict[str, str]:
     """
     from rocking_cli.plugins.registry import entry_points
 
-    own = [point for point in entry_points(group="rocking.mechanisms") if point.value.startswith("mechanisms.")]
-    return {point.value.partition(":")[2]: point.name for point in own}
+    points = [point for point in entry_points(group="rocking.mechanisms") if point.value.startswith("mechanisms.")]
+    return {point.value.partition(":")[2]: point.name for point in points}
 
 
 def __getattr__(name: str) -> Any:
@@ -73,8 +73,10 @@ def __getattr__(name: str) -> Any:
         from rocking_cli.core.registry import Registry
 
         return Registry()
-    if name[:1].isupper() and name in (own := _own_mechanisms()):  # other names may be modules that are being imported
-        return __getattr__("mechanisms")[own[name]]
+    if name[:1].isupper() and name in (
+        classes := _own_mechanisms()
+    ):  # other names may be modules that are being imported
+        return __getattr__("mechanisms")[classes[name]]
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 

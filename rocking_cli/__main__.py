@@ -3,13 +3,13 @@
 import gc
 import sys
 
-RARELY = 100_000
+GARBAGE_THRESHOLD = 100_000
 """Objects made between two searches for garbage; with Python's usual 700, searches take a fifth of a short command."""
 
 
 def run() -> None:
     """Run the command line."""
-    gc.set_threshold(RARELY)
+    gc.set_threshold(GARBAGE_THRESHOLD)
     try:
         from rocking_cli.cli.main import main
     except KeyboardInterrupt:

@@ -21,7 +21,7 @@ OPENING = 0.005
 
 
 def outcome(*, uplifts: bool, overturned: bool, still_rocking: bool = False, unknown: bool = False) -> str:
-    """Return the outcome of a motion, in the words above.
+    """Return the outcome of a motion, in the words of this module.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def outcome(*, uplifts: bool, overturned: bool, still_rocking: bool = False, unk
     return ROCKS if uplifts else NO_UPLIFT
 
 
-FEWEST, FEWEST_OF_MEDIAN = 20, 5
+MIN_MOTIONS, MIN_MOTIONS_OF_MEDIAN = 20, 5
 """Least number of motions for a quantile, and for the median: with fewer, a single motion decides it."""
 HALF_UP = 1e-9  # %: a share that ends in .5 is rounded up despite floating-point error
 

@@ -34,7 +34,7 @@ from rocking_cli.dynamics.model import KINEMATIC_SPREAD, SLENDERNESS_SPREAD, Mod
 from rocking_cli.questions.score.study import ClusterDraws, ScoreEstimate, surprise
 from rocking_cli.structure import Structure
 from rocking_cli.studies import neighbours
-from rocking_cli.studies.neighbours import Neighbourhood, follow
+from rocking_cli.studies.neighbours import Neighbourhood, simulate_neighbours
 from rocking_cli.views.neighbours import deviations
 
 Reals = NDArray[np.float64]
@@ -82,7 +82,7 @@ def simulate(folder: Path, test: str) -> tuple[NDArray[np.bool_], Reals, Reals]:
     x, eta, _ = points()
 
     def share(body: Model, sign: int = 1) -> float:
-        return float(follow(body, motion, RULE.drawn(body), polarity=sign, threads=1).fell.mean())
+        return float(simulate_neighbours(body, motion, RULE.drawn(body), polarity=sign, threads=1).fell.mean())
 
     fell, seeds, feet = [], [], []
     for name in NAMES:

@@ -120,8 +120,8 @@ class Answer(Generic[R]):
         return figure
 
     def __repr__(self) -> str:
-        said = " ".join(self.sentences)
-        text = said if len(said) <= MAX_REPR_LENGTH else said[: MAX_REPR_LENGTH - 3].rstrip() + "..."
+        sentence = " ".join(self.sentences)
+        text = sentence if len(sentence) <= MAX_REPR_LENGTH else sentence[: MAX_REPR_LENGTH - 3].rstrip() + "..."
         return f"<{self.question}: {text}>"
 
     def _repr_html_(self) -> str:

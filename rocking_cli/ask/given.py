@@ -9,7 +9,7 @@ from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rocking_cli.ask.ground_motions import kind_of
+from rocking_cli.ask.ground_motions import type_in_words
 from rocking_cli.ask.numbers import refuse_idle
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.core import CollapseMechanism, Direction, Mechanism
@@ -73,7 +73,7 @@ def structure_of(given: StructureLike, watch: Watcher = SILENT, opening: float =
     else:
         hint = "make one, such as rk.Block(width=0.7, height=2.8)"
         raise InputError(
-            Problem(f"must be a mechanism or a YAML file, got {kind_of(given)}", field="structure", hint=hint)
+            Problem(f"must be a mechanism or a YAML file, got {type_in_words(given)}", field="structure", hint=hint)
         )
     note_weights(ready.mechanism, watch)
     warn_of(ready.mechanism, watch)

@@ -16,7 +16,7 @@ from rocking_cli.excitation.doubts import coarse_for, doubts
 from rocking_cli.excitation.measures import Measures, measure
 from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
 from rocking_cli.excitation.records import read_record
-from rocking_cli.excitation.records.opening import allow_again, select
+from rocking_cli.excitation.records.opening import allow_again, matching_files
 from rocking_cli.processing.listed import Listed, Scaled, is_list
 from rocking_cli.processing.reading import Reading, reading_of
 from rocking_cli.processing.reading_options import SCALING
@@ -212,12 +212,12 @@ class Motions:
             If the motion is zero, or the scaled motion is beyond any ground motion.
         """
         by = 1.0 if self.scale is None else self.scale
-        for wanted, own in ((self.target_pga, measured.pga), (self.target_pgv, measured.pgv)):
-            if wanted is not None:
-                if own == 0:
+        for target_peak, unscaled_peak in ((self.target_pga, measured.pga), (self.target_pgv, measured.pgv)):
+            if target_peak is not None:
+                if unscaled_peak == 0:
                     what = "the record is zero throughout and cannot be scaled to a peak"
                     raise InputError(Problem(what, motion.name))
-                by = wanted / own
+                by = target_peak / unscaled_peak
         pga, pgv = abs(by) * measured.pga, abs(by) * measured.pgv
         if not (pga <= MAX_PGA and pgv <= MAX_PGV):
             scaled = f" scaled by {by:.4g}" if by != 1 else ""
@@ -254,7 +254,7 @@ def pulse_in(given: Motion) -> Pulse | None:
         return parse_pulse(given)
     if not isinstance(given, str | Path):
         hint = "make one with rk.GroundMotion(name, dt, acceleration), the acceleration in m/s2"
-        what = f"must be a ground motion, a pulse or a file, got {kind_of(given)}"
+        what = f"must be a ground motion, a pulse or a file, got {type_in_words(given)}"
         raise InputError(Problem(what, field="motion", hint=hint))
     return None
 
@@ -272,7 +272,7 @@ def motion_of(given: Motion) -> GroundMotion:
 def files_of(place: str) -> list[Listed]:
     """Return the records of a file, a pattern or a list of records. Raises `InputError` if there are none."""
     listed = []
-    for path in select(place):
+    for path in matching_files(place):
         if is_list(path):
             from rocking_cli.processing.record_list import read_list
 
@@ -282,7 +282,7 @@ def files_of(place: str) -> list[Listed]:
     return listed
 
 
-def kind_of(given: object) -> str:
+def type_in_words(given: object) -> str:
     """Return the type of a value, for messages: `a dict`."""
     name = type(given).__name__
     return f"{'an' if name[0].lower() in 'aeiou' else 'a'} {name}"
@@ -302,7 +302,7 @@ def signs_of(polarity: str | int) -> tuple[int, ...]:
 
 def done(motion: GroundMotion) -> str:
     """Return what was done to a motion, as the continuation of a sentence."""
-    return f"; {said}" if (said := in_words(motion)) else ""
+    return f"; {steps}" if (steps := in_words(motion)) else ""
 
 
 def introduce(what: str, one: Scaled, watch: Watcher) -> None:
@@ -346,6 +346,6 @@ def warn_about(motions: Sequence[GroundMotion], watch: Watcher, p: float = 0.0, 
                 watch.warn(f"{motion.name}: {doubt.text}")
         return
     kinds = Counter(doubt.kind for _, warnings in doubtful for doubt in warnings)
-    said = ", ".join(f"{kind} ({count})" for kind, count in kinds.most_common())
+    counts = ", ".join(f"{kind} ({count})" for kind, count in kinds.most_common())
     names = shorten(", ".join(motion.name for motion, _ in doubtful), 200, placeholder=" ...")
-    watch.warn(f"{len(doubtful)} records are doubtful: {said}; run `rocking record` to see why: {names}")
+    watch.warn(f"{len(doubtful)} records are doubtful: {counts}; run `rocking record` to see why: {names}")

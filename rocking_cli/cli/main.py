@@ -123,8 +123,8 @@ class LazyGroup(click.Group):
                 ctx.exit(blamed.exit_code)
             more = defaults.whose(error.message, error.ctx) if isinstance(error, click.UsageError) else ""
             # The message quotes what the user typed.
-            said = terminal.beside(printable(error.format_message() + more), "Error: ")
-            error.format_message = lambda: said  # type: ignore[method-assign]
+            message = terminal.beside(printable(error.format_message() + more), "Error: ")
+            error.format_message = lambda: message  # type: ignore[method-assign]
             terminal.debug_traceback(error)
             raise
         except KeyboardInterrupt as stopped:

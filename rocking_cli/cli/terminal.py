@@ -122,8 +122,8 @@ def error(text: str) -> None:
 
 def _say(text: str, prefix: str = "", colour: str | None = None) -> None:
     """Print sentences on standard error, in lines of its terminal's width."""
-    said = beside(printable(as_typed(text)), prefix)
-    click.echo((click.style(prefix, fg=colour, bold=True) if prefix else "") + said, err=True)
+    lines = beside(printable(as_typed(text)), prefix)
+    click.echo((click.style(prefix, fg=colour, bold=True) if prefix else "") + lines, err=True)
 
 
 def beside(text: str, prefix: str) -> str:

@@ -304,11 +304,11 @@ class LinkageMotion:
         if key not in self._memory:
             if len(self._memory) >= CACHED_MOTIONS:
                 self._memory.pop(next(iter(self._memory)))
-            self._memory[key] = self._found(phi)
+            self._memory[key] = self._computed(phi)
         still = rotation(phi, 0j, 0.0)
         return {name: still if link is None else self._memory[key][link] for name, link in self._link_of.items()}
 
-    def _found(self, phi: Reals) -> Sequence[RigidMotion]:
+    def _computed(self, phi: Reals) -> Sequence[RigidMotion]:
         if phi.any():
             inside = np.clip(phi, 0.0, self.limit)
             count = min(inside.size, -(-inside.size * self._loops.size // MAX_ENTRIES)) or 1

@@ -116,9 +116,12 @@ class Mechanism(Jointed):
     @final
     def hung(self) -> Hung:
         """Loads, forces and ties of the structure, with what the mechanism `carries`."""
-        attached: list[tuple[Loc, Attached]] = [((), thing) for thing in self.carries()]
+        attached: list[tuple[Loc, Attached]] = [((), attachment) for attachment in self.carries()]
         if self.is_laden:
-            taken = [*(thing.name for _, thing in attached), *([INTERLOCK] if self.interlock is not None else [])]
+            taken = [
+                *(attachment.name for _, attachment in attached),
+                *([INTERLOCK] if self.interlock is not None else []),
+            ]
             attached += attach(self.carrier, self.loads or [], self.ties or [], taken)
         if self.interlock is not None:
             friction = interlocked(self.interlock, self.carrier, self.density, self.gravity)

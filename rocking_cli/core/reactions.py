@@ -161,11 +161,13 @@ def impulses(mechanism: Mechanism, ended: Direction) -> Reactions | None:
         turned = body.inertia * (eta * new.dpsi + old.dpsi)
         moving.demand(body.name, z, body.mass * (eta * dz + old.carry(body.centroid)[1]), turned)
     came = followed(bodies, before, rest.shape)
-    for thing in mechanism.attached:
-        if isinstance(thing, PointMass):
-            jump = eta * moving.follow(thing.spot).dz + came(thing.spot).dz
-            impulse = _point(thing.mass * thing.horizontal * jump.real, thing.mass * thing.vertical * jump.imag)
-            moving.demand(thing.spot.body, moving.follow(thing.spot).z, impulse)
+    for attachment in mechanism.attached:
+        if isinstance(attachment, PointMass):
+            jump = eta * moving.follow(attachment.spot).dz + came(attachment.spot).dz
+            impulse = _point(
+                attachment.mass * attachment.horizontal * jump.real, attachment.mass * attachment.vertical * jump.imag
+            )
+            moving.demand(attachment.spot.body, moving.follow(attachment.spot).z, impulse)
     if contacts := _instead_of_joints(mechanism, ended.opposite):
         pieces = Pieces(mechanism, ended.opposite, rest)
         before_it = Pieces(mechanism, ended, rest)
@@ -408,13 +410,13 @@ def loading(
             loads[:, k, 1] += force.imag
             loads[:, k, 2] += (np.conj(at - centres[k]) * force).imag
 
-    for thing in attached:
-        if isinstance(thing, PointMass):
-            z, dz, ddz = follow(thing.spot)
+    for attachment in attached:
+        if isinstance(attachment, PointMass):
+            z, dz, ddz = follow(attachment.spot)
             moved = dz * going.turning + ddz * going.rate**2
-            across = thing.mass * thing.horizontal * (moved.real + weight.real)
-            up = thing.mass * (thing.vertical * moved.imag + thing.weight * weight.imag)
-            add(thing.spot.body, z, -(across + 1j * up))
-        for push in thing.forces(direction, follow):
+            across = attachment.mass * attachment.horizontal * (moved.real + weight.real)
+            up = attachment.mass * (attachment.vertical * moved.imag + attachment.weight * weight.imag)
+            add(attachment.spot.body, z, -(across + 1j * up))
+        for push in attachment.forces(direction, follow):
             add(push.spot.body, follow(push.spot).z, push.force)
     return loads

@@ -99,7 +99,7 @@ def released(mechanism: Mechanism, direction: Direction, phi: Reals) -> Released
     return Released(contacts, _with_loads(contacts, rows), force, compliance)
 
 
-def impulses(mechanism: Mechanism, ended: Direction) -> Reals | None:
+def tabulated_impulses(mechanism: Mechanism, ended: Direction) -> Reals | None:
     """Tabulate the impulses at the contacts of the direction that begins with an impact.
 
     Parameters
@@ -217,9 +217,9 @@ class Pieces:
         }
         self.dq, self.ddq = (self._coordinates(k) for k in (1, 2))
         attached = (*(mechanism.loads or ()), *(mechanism.ties or ()))
-        self._each = {thing.name for thing in attached if thing.each}
-        masses = (thing for thing in mechanism.attached if isinstance(thing, PointMass))
-        self._masses = [thing for thing in masses if self._moves(thing.spot)]
+        self._each = {attachment.name for attachment in attached if attachment.each}
+        masses = (load for load in mechanism.attached if isinstance(load, PointMass))
+        self._masses = [mass for mass in masses if self._moves(mass.spot)]
         self.mass = self._mass()
 
     @property
@@ -276,13 +276,13 @@ class Pieces:
         """Return the mass matrix of each piece with its loads, shape (n, pieces, 3, 3)."""
         whole = np.array([np.diag([each.body.mass, each.body.mass, each.body.inertia]) for each in self._parts])
         matrix = np.tile(whole, (self.phi.size, 1, 1, 1))
-        for thing in self._masses:
-            shifts = self._shifts(thing.name, thing.spot)
-            for share, along in ((thing.horizontal, 1 + 0j), (thing.vertical, 1j)):
+        for load in self._masses:
+            shifts = self._shifts(load.name, load.spot)
+            for share, along in ((load.horizontal, 1 + 0j), (load.vertical, 1j)):
                 for shift in shifts:
-                    rate = self._spread(thing.spot, np.full(self.phi.size, along), [shift])
+                    rate = self._spread(load.spot, np.full(self.phi.size, along), [shift])
                     rate = rate.reshape(self.phi.size, -1, 3)
-                    matrix += thing.mass / len(shifts) * share * rate[..., None] * rate[:, :, None, :]
+                    matrix += load.mass / len(shifts) * share * rate[..., None] * rate[:, :, None, :]
         # A piece without mass has no accelerations: it is given a mass too small to change the others.
         least = MASSLESS_SHARE * np.abs(matrix).max()
         light = np.diagonal(matrix, axis1=2, axis2=3) < least
@@ -310,15 +310,15 @@ class Pieces:
         along = self.momentum(self.dq)
         forces += along[..., None] * self._turning[:, None, :]
         forces[..., RATE] += self.momentum(self.ddq)
-        for thing in self._masses:
+        for load in self._masses:
             # The point of a body has an acceleration of its own beside those of the coordinates: -psi.^2 times its arm.
-            shifts = self._shifts(thing.name, thing.spot)
-            across, up = (self._spread(thing.spot, np.full(n, along), shifts) for along in (1 + 0j, 1j))
-            name = self._piece(thing.spot)
-            arm = self._carried(name, thing.spot.at) - self._centres[name][0]
+            shifts = self._shifts(load.name, load.spot)
+            across, up = (self._spread(load.spot, np.full(n, along), shifts) for along in (1 + 0j, 1j))
+            name = self._piece(load.spot)
+            arm = self._carried(name, load.spot.at) - self._centres[name][0]
             inwards = -(self._motions[name].dpsi ** 2) * arm
-            moved = thing.horizontal * inwards.real[:, None] * across + thing.vertical * inwards.imag[:, None] * up
-            forces[..., RATE] += thing.mass * moved
+            moved = load.horizontal * inwards.real[:, None] * across + load.vertical * inwards.imag[:, None] * up
+            forces[..., RATE] += load.mass * moved
         return forces
 
     @cached_property
@@ -345,7 +345,7 @@ class Pieces:
         return float(load.mass * load.vertical * dz.imag[0])
 
     def _load(self, contact: Contact) -> tuple[PointMass, tuple[Points, Points, Points]]:
-        load = next(thing for thing in self._masses if thing.name == contact.pressed_by)
+        load = next(mass for mass in self._masses if mass.name == contact.pressed_by)
         return load, self._motions[self._piece(load.spot)].carry(load.spot.at)
 
     def held_still(self) -> Reals:
@@ -358,12 +358,12 @@ class Pieces:
             forces[:, k, PUSH] += part.body.mass
             forces[:, k + 1, ONE] += part.body.mass * g
             forces[:, k + 1, WEIGHT] += part.body.mass
-        for thing in self._masses:
-            shifts = self._shifts(thing.name, thing.spot)
-            across, up = (self._spread(thing.spot, np.full(n, along), shifts) for along in (1 + 0j, 1j))
-            forces[..., PUSH] += thing.mass * thing.horizontal * across
-            forces[..., ONE] += thing.mass * thing.weight * g * up
-            forces[..., WEIGHT] += thing.mass * thing.weight * up
+        for load in self._masses:
+            shifts = self._shifts(load.name, load.spot)
+            across, up = (self._spread(load.spot, np.full(n, along), shifts) for along in (1 + 0j, 1j))
+            forces[..., PUSH] += load.mass * load.horizontal * across
+            forces[..., ONE] += load.mass * load.weight * g * up
+            forces[..., WEIGHT] += load.mass * load.weight * up
 
         for other in mechanism.attached:
             pushes = other.forces(direction, self._path)

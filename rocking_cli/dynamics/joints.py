@@ -16,7 +16,17 @@ from rocking_cli.arrays import Integers, Reals
 from rocking_cli.core import Mechanism
 from rocking_cli.core.equivalence import Statics
 from rocking_cli.core.given import Strength
-from rocking_cli.core.released import ONE, PUSH, RATE, WEIGHT, Pieces, Released, Undetermined, impulses, released
+from rocking_cli.core.released import (
+    ONE,
+    PUSH,
+    RATE,
+    WEIGHT,
+    Pieces,
+    Released,
+    Undetermined,
+    released,
+    tabulated_impulses,
+)
 from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.modes import modes
 from rocking_cli.dynamics.resting import EarlyMechanism, Rest, resting
@@ -247,7 +257,7 @@ def joints_of(
     redundant = False
     try:
         answers: list[tuple[Released | None, Reals | None]] = [
-            (released(mechanism, direction, _at(table, cells)), impulses(mechanism, direction.opposite))
+            (released(mechanism, direction, _at(table, cells)), tabulated_impulses(mechanism, direction.opposite))
             for direction, table in sides
         ]
     except Undetermined as error:

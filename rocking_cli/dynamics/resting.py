@@ -157,7 +157,7 @@ def _as_one(mechanism: Mechanism, there: Pieces, closed: Sequence[Contact]) -> R
     """Return the forces under level feet of a structure as one body; None if more than its feet holds it sideways."""
     feet = [contact for contact in closed if contact.held is None and None in contact.pieces]
     sideways = any(contact.held == "slide" for contact in closed)
-    hung = all(isinstance(thing, PointMass | ConstantForce) for thing in mechanism.attached)
+    hung = all(isinstance(attachment, PointMass | ConstantForce) for attachment in mechanism.attached)
     friction = {contact.friction for contact in feet}
     level = all(contact.pieces[0] is None and abs(contact.normal - 1j) < RELATIVE_TOLERANCE for contact in feet)
     if sideways or not hung or not level or len(friction) != 1 or None in friction:

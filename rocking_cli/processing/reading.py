@@ -14,7 +14,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import read_measured
 from rocking_cli.excitation.records.opening import allow_again
 from rocking_cli.excitation.records.record_units import Quantity, as_acceleration, size_of, smallest_step
-from rocking_cli.processing.reading_options import ALL, READING, ReadingArguments
+from rocking_cli.processing.reading_options import ALL_AZIMUTHS, READING, ReadingArguments
 from rocking_cli.processing.steps import Factor, Lowpass, Resample, Step, of_vertical, process
 from rocking_cli.text import exact
 
@@ -97,7 +97,7 @@ class Reading:
         return alone._read(file), alone
 
     def _read(self, file: str | Path) -> GroundMotion:
-        if self.azimuth == ALL:
+        if self.azimuth == ALL_AZIMUTHS:
             raise InputError(Problem("can be all for `respond` only", field="`azimuth`", hint="give one angle"))
         measured, quantity = self._measured(file, self.channel)
         step = smallest_step(measured)

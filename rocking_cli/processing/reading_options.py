@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rocking_cli.processing.floor import Floor
     from rocking_cli.processing.steps import Step
 
-ALL = "all"
+ALL_AZIMUTHS = "all"
 """The azimuth that stands for every direction."""
 QUANTITIES = ("acceleration", "velocity", "displacement")
 UNITS = ("g", "m/s2", "cm/s2", "mm/s2", "gal", "mg", "%g")
@@ -107,7 +107,7 @@ def _file(value: Any) -> Any:
 
 
 def _azimuth(value: Any) -> float | str:
-    return ALL if value == ALL else _in("deg", "azimuth", "30", positive=False)(value)
+    return ALL_AZIMUTHS if value == ALL_AZIMUTHS else _in("deg", "azimuth", "30", positive=False)(value)
 
 
 def _floor(value: Any) -> Any:

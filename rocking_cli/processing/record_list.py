@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.records.opening import select
+from rocking_cli.excitation.records.opening import matching_files
 from rocking_cli.io.field_problems import problems
 from rocking_cli.io.yaml_file import parse, read_text
 from rocking_cli.processing.entry import Entry
@@ -54,7 +54,7 @@ def read_list(path: Path) -> list[Listed]:
             document.problems.append(document.at(("records", k), "names no file"))
             continue
         try:
-            files = select(entry.file, path.parent)
+            files = matching_files(entry.file, path.parent)
             if any(is_list(file) for file in files):
                 what = "is a list of records itself: name the records in it"
                 document.problems.append(document.at(("records", k, "file"), what))

@@ -166,8 +166,8 @@ def _each(mechanism: Mechanism) -> Mapping[str, bool]:
 
 
 def _copies(body: str | None, copies: Copies, *, every: bool) -> Sequence[tuple[int, complex]]:
-    found = copies[body or ""]
-    return found if every else found[:1]
+    parts = copies[body or ""]
+    return parts if every else parts[:1]
 
 
 def _pieces(tie: Stretched, of_body: Mapping[str, int], shift: complex) -> Iterator[TiePiece]:

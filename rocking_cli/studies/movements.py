@@ -191,8 +191,8 @@ def largest(every: Sequence[Movements]) -> Movements:
 
 
 def _most(values: Iterable[float]) -> float:
-    found = list(values)
-    return nan if any(np.isnan(found)) else max(found, key=abs)
+    peaks = list(values)
+    return nan if any(np.isnan(peaks)) else max(peaks, key=abs)
 
 
 def _way(phi: float) -> Reals:
@@ -249,10 +249,10 @@ def is_held(mechanism: Mechanism) -> bool:
 
 
 def _hung(mechanism: Mechanism) -> Iterator[tuple[str, Spot]]:
-    for thing in mechanism.attached:
-        if isinstance(thing, PointMass | ConstantForce):
-            yield thing.name, thing.spot
-        elif isinstance(thing, Stretched):
-            ends = [spot for spot in (thing.spots[0], thing.spots[-1]) if spot.body is not None]
+    for attachment in mechanism.attached:
+        if isinstance(attachment, PointMass | ConstantForce):
+            yield attachment.name, attachment.spot
+        elif isinstance(attachment, Stretched):
+            ends = [spot for spot in (attachment.spots[0], attachment.spots[-1]) if spot.body is not None]
             for k, spot in enumerate(ends):
-                yield (thing.name if len(ends) == 1 else f"{thing.name} {('from', 'to')[k]}"), spot
+                yield (attachment.name if len(ends) == 1 else f"{attachment.name} {('from', 'to')[k]}"), spot

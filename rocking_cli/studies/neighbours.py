@@ -232,7 +232,7 @@ def neighbours(
     tilts = None
     if release is not None:
         tilts = release / np.where(all_draws.slender > 0, all_draws.slender, 1.0) if release_is_angle else release
-    outcomes = follow(model, motion, all_draws, release=tilts, rtol=rtol)
+    outcomes = simulate_neighbours(model, motion, all_draws, release=tilts, rtol=rtol)
     outcome = np.where(outcomes.unknown, 2, outcomes.fell)
     peaks = np.where(outcome[1:] > 0, np.inf, outcomes.peak_ratio[1:])
     # Quantiles are values of the sample, as interpolation with infinity has no meaning.
@@ -248,7 +248,7 @@ def neighbours(
     )
 
 
-def follow(
+def simulate_neighbours(
     model: Model,
     motion: GroundMotion | None,
     draws: Draws,

@@ -554,7 +554,7 @@ def _picture(mechanism: Mechanism, collapses: Mapping[Direction, CollapseMechani
         phi = np.linspace(0.0, seen[direction], 5)
         hinges = sketch.hinges.get(direction, ())
         if not (hinges or starts):
-            hinges = _found(bodies, mechanism.motion(phi, direction))
+            hinges = _hinges_of_motion(bodies, mechanism.motion(phi, direction))
         for hinge in hinges:  # drawn on the first body, or each copy of it; only one gets the letter
             carriers = [k for k, part in enumerate(parts) if part.name == hinge.bodies[0]]
             for k in carriers:
@@ -593,7 +593,7 @@ def _outlines(body: Body, sketch: Sketch) -> Sequence[Outline]:
     return [disc(body.centroid, float(radius))] if radius > 0 else []
 
 
-def _found(bodies: Sequence[Body], motions: Sequence[RigidMotion]) -> list[Hinge]:
+def _hinges_of_motion(bodies: Sequence[Body], motions: Sequence[RigidMotion]) -> list[Hinge]:
     """Return the points about which a body always turns, against the ground or against another body, as hinges."""
     centroids = [body.centroid for body in bodies]
     size = max(abs(one - other) for one in centroids for other in [*centroids, 0j]) or 1.0

@@ -152,7 +152,7 @@ def pulsed_model(
         check_eta(eta)
         structure = structure.with_eta(eta)
     structure.ask("sizes")
-    direction = weakest(structure.equivalence, shape, polarities)
+    direction = weakest_direction(structure.equivalence, shape, polarities)
     if not structure.mechanism.rocks_both_ways:
         direction = structure.mechanism.directions[0]
     one_way = not structure.mechanism.rocks_both_ways
@@ -165,7 +165,7 @@ def uplift(block: EquivalentBlock, model: ModelName) -> float:
     return block.lambda_lin if model == "linear1" else block.lambda_
 
 
-def weakest(equivalence: Equivalence, shape: Pulse, polarities: Sequence[int] = (1,)) -> Direction:
+def weakest_direction(equivalence: Equivalence, shape: Pulse, polarities: Sequence[int] = (1,)) -> Direction:
     """Return the direction in which the weakest pulse of a shape uplifts; if both are equal, the one pushed first."""
     ground = shape.sampled().acceleration / shape.amplitude
     pushes = {d: np.max([-d * polarity * ground for polarity in polarities], axis=0) for d in Direction}

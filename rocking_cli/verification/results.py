@@ -499,8 +499,8 @@ class Verification:
 
     @property
     def _ratios(self) -> dict[Direction, float]:
-        found = {direction: self.compared(direction) for direction in self.directions}
-        return {key: ratio if ratio is not None and isfinite(ratio) else inf for key, ratio in found.items()}
+        ratios = {direction: self.compared(direction) for direction in self.directions}
+        return {key: ratio if ratio is not None and isfinite(ratio) else inf for key, ratio in ratios.items()}
 
 
 Moves = Literal["as_given", "carried_to_floor", "carried_by_option", "of_floor"]

@@ -136,7 +136,7 @@ def table_across(
     `after` has what follows in each line, by its heading.
     """
     lines = [
-        [column.head, *(column.cell(row) for row in rows), *(said(column) for said in after.values())]
+        [column.head, *(column.cell(row) for row in rows), *(text_of(column) for text_of in after.values())]
         for column in columns
         if column.head is not None
     ]

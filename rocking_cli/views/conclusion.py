@@ -112,17 +112,17 @@ def counted(ends: Sequence[Conclusion], over: str) -> str:
     """
     if len(ends) == 1:
         return f"under {ends[0].motion}, {does(ends[0], over)}."
-    count, said = len(ends), list[str]()
+    count, outcomes = len(ends), list[str]()
     for what, clause in CLAUSES.items():
         under = [end.motion for end in ends if end.concluded is what]
         if len(under) == count and what is Concluded.NO_UPLIFT:
             return f"the structure uplifts under none of {count} motions."
         if under:
-            of = f"all {count}" if len(under) == count else f"{len(under)}{'' if said else f' of {count}'}"
+            of = f"all {count}" if len(under) == count else f"{len(under)}{'' if outcomes else f' of {count}'}"
             bad = what in (Concluded.OVERTURNS, Concluded.UNKNOWN) and len(under) < count
             named = f" ({in_short(under, most=MAX_NAMED_MOTIONS)})" if bad else ""
-            said.append(f"{clause} under {of}{'' if said else ' motions'}{named}")
-    *before, last = said
+            outcomes.append(f"{clause} under {of}{'' if outcomes else ' motions'}{named}")
+    *before, last = outcomes
     return f"the structure {', '.join(before)}{' and ' if before else ''}{last}. {governing(ends, over)}"
 
 
@@ -189,8 +189,8 @@ def _of_neighbours(share: NeighbourShare) -> str:
 
 def next_in_words(end: Conclusion) -> str:
     """Return what to do next as a sentence; empty if there is nothing to do."""
-    said = "; ".join(NEXT_STEPS[each] for each in end.next)
-    return f"Next: {said}." if said else ""
+    steps = "; ".join(NEXT_STEPS[each] for each in end.next)
+    return f"Next: {steps}." if steps else ""
 
 
 def headline(end: Conclusion) -> str:
@@ -199,8 +199,8 @@ def headline(end: Conclusion) -> str:
         return f"{names.UNKNOWN} after {end.known_until:.4g} s"
     if end.concluded is Concluded.ROCKS and end.peak_ratio is not None:
         return f"{names.ROCKS} to {end.peak_ratio:.3g}"
-    said = end.concluded.value.replace("_", " ")
-    return f"{end.limit_state} {said}" if end.limit_state and end.concluded is not Concluded.SATISFIED else said
+    words = end.concluded.value.replace("_", " ")
+    return f"{end.limit_state} {words}" if end.limit_state and end.concluded is not Concluded.SATISFIED else words
 
 
 def conclusion_data(end: Conclusion) -> dict[str, Any]:

@@ -87,7 +87,7 @@ def neighbour_columns(of: Callable[[R], Neighbours | None], *, doubtful: bool) -
     """
 
     def cell(show: Callable[[Neighbours], str | None]) -> Callable[[R], str | None]:
-        return lambda row: None if (near := of(row)) is None else show(near)
+        return lambda row: None if (neighbours := of(row)) is None else show(neighbours)
 
     return [
         only_shown("neighbours\noverturn", cell(lambda near: percent(near.overturned))),

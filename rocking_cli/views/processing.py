@@ -14,8 +14,8 @@ def in_words(motion: GroundMotion) -> str:
 
     steps = list(motion.processing)
     for quantity in record_units.QUANTITIES:
-        if (said := record_units.said(quantity)) in steps:
-            steps[steps.index(said)] += f" ({record_units.in_words(quantity, motion.of_ground.dt)})"
+        if (step := record_units.differentiation_step(quantity)) in steps:
+            steps[steps.index(step)] += f" ({record_units.in_words(quantity, motion.of_ground.dt)})"
     return f"processed: {', '.join(steps)}" if steps else ""
 
 

@@ -377,8 +377,8 @@ def _tables(
         if sign in found.neighbours:
             following = "" if end.remedy else next_in_words(end)
             parts.append(f"{neighbours_in_words(found.neighbours[sign])} {following}".rstrip())
-        if sign in found.contacts and (said := contact_words(found.contacts[sign], watched.mechanism)):
-            parts.append(said)
+        if sign in found.contacts and (sentences := contact_words(found.contacts[sign], watched.mechanism)):
+            parts.append(sentences)
         if etas is not None:
             for name, run in histories.items():
                 parts += ["", *_impact_table(f"{under}: impacts, {name}", run, etas)]

@@ -126,12 +126,12 @@ class Showing(Generic[F, V]):
 
 def showing(found: Verification) -> Showing[Any, Any]:
     """Return how the results of the code of a verification are shown."""
-    own = codes()[found.code].showing()
-    if own is None:
+    shown_by = codes()[found.code].showing()
+    if shown_by is None:
         return Showing[Any, Any]()
-    if not isinstance(own, Showing):
+    if not isinstance(shown_by, Showing):
         raise PluginError(f"the code {found.code} failed in showing: it must return a Showing or None")
-    return own
+    return shown_by
 
 
 def view(found: Verification, site: str | None = None, *, every_step: bool = False) -> View:
@@ -146,24 +146,24 @@ def view(found: Verification, site: str | None = None, *, every_step: bool = Fal
     every_step : bool
         Whether to show also every line of the calculation: symbol, formula, numbers, result and clause.
     """
-    sides, own = shown(found), showing(found)
+    sides, shown_by = shown(found), showing(found)
     by = f"{heading(found.mechanism)}, by the {found.name} ({found.edition}){f', at {site}' if site else ''}"
     parts: list[Table | str] = [
         " ".join(filter(None, [f"{by}.", *of_verification(found), next_in_words(found.conclusion)]))
     ]
     if found.workings:
-        parts.append(_site(found, own.of_site))
+        parts.append(_site(found, shown_by.of_site))
     for where, each in sides.items():
-        parts += own.of_direction(found, each, where)
+        parts += shown_by.of_direction(found, each, where)
     if len(sides) > 1:
         parts.append(_which_direction(found))
-    parts += map(own.say, found.remarks)
+    parts += map(shown_by.say, found.remarks)
     if every_step:
         parts += steps(found.workings)
         for where, each in sides.items():
             parts += steps(each.workings, where)
     every = [*found.workings, *(line for each in sides.values() for line in each.workings)]
-    parts.append(standing(every, own.notation))
+    parts.append(standing(every, shown_by.notation))
     parts += [f"Caution: {text}" for text in cautions_of(found.mechanism)]
     return View(lambda: data(found), [part for part in parts if part])
 
@@ -235,14 +235,14 @@ def cited(line: Working) -> str:
 
 def data(found: Verification) -> dict[str, Any]:
     """Return a verification as plain data."""
-    own = showing(found)
+    shown_by = showing(found)
     return {
         "code": found.code,
         "edition": found.edition,
         "conclusion": conclusion_data(found.conclusion),
-        "directions": {direction.label: own.data(found, each) for direction, each in found.directions.items()},
+        "directions": {direction.label: shown_by.data(found, each) for direction, each in found.directions.items()},
         "governs": found.governs.label,
-        **own.data_of_all(found),
+        **shown_by.data_of_all(found),
     }
 
 

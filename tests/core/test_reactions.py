@@ -21,8 +21,7 @@ from mechanisms.symmetric_frame import SymmetricFrame
 from mechanisms.wall import Wall
 from rocking_cli.core import Body, Direction, Joint, Mechanism, rotation
 from rocking_cli.core.reactions import acceleration, at_uplift, impulses, parts, reactions
-from rocking_cli.core.released import impulses as released_impulses
-from rocking_cli.core.released import released
+from rocking_cli.core.released import released, tabulated_impulses
 from rocking_cli.core.structure_file import load_structure
 from tests.conftest import EXAMPLES
 from tests.reference_mechanics import deviation
@@ -299,7 +298,7 @@ def test_the_check_of_histories_sees_the_same_impulses(name):
     for ended in BOTH:
         own = impulses(structure, ended)
         contacts = released(structure, ended.opposite, np.zeros(1))
-        constant, factor = released_impulses(structure, ended).T
+        constant, factor = tabulated_impulses(structure, ended).T
         struck = constant + structure.eta(ended) * factor
         size = np.abs(own.force).max()
         for contact, (normals, shear) in zip(contacts.contacts, contacts.rows, strict=True):

@@ -11,7 +11,7 @@ import pytest
 
 from rocking_cli import GroundMotion, Registry, load_structure, read_record
 from rocking_cli.core import Direction
-from rocking_cli.core.released import Undetermined, impulses, released
+from rocking_cli.core.released import Undetermined, released, tabulated_impulses
 from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.joints import _calm
@@ -167,7 +167,7 @@ def test_forces_balance_every_piece_and_uplift_opens_nothing(file):
 def test_impulses_are_those_of_the_kinematic_restitution_of_a_block():
     made = Registry()["block"](width=0.7, height=2.8, friction=0.6)
     alpha, eta = np.arctan2(0.7, 2.8), made.eta(Direction.POSITIVE)
-    constant, factor = impulses(made, Direction.POSITIVE).T
+    constant, factor = tabulated_impulses(made, Direction.POSITIVE).T
     normal, shear = constant + eta * factor
     assert abs(shear) / normal == pytest.approx((1 - eta) / ((1 + eta) * np.tan(alpha)), rel=1e-9)
 
@@ -516,7 +516,7 @@ def test_where_statics_determines_the_forces_the_modes_are_single_joints():
     made, direction = structure("masonry/portal.yaml"), Direction.NEGATIVE
     critical = made.critical_rotation(direction)
     rotations = np.linspace(0.0, 0.8 * critical, 5)
-    rows, struck = released(made, direction, rotations), impulses(made, direction.opposite)
+    rows, struck = released(made, direction, rotations), tabulated_impulses(made, direction.opposite)
     single = {}
     for contact, (normals, shear) in zip(rows.contacts, rows.rows, strict=True):
         ends = list(normals)

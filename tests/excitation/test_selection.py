@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from rocking_cli.errors import InputError
-from rocking_cli.excitation.records.opening import select
+from rocking_cli.excitation.records.opening import matching_files
 
 
 @pytest.fixture
@@ -21,23 +21,23 @@ def names(paths):
 
 
 def test_a_file_is_itself(folder):
-    assert select("a.AT2", folder) == [folder / "a.AT2"]
-    assert select(str(folder / "a.AT2")) == [folder / "a.AT2"]
+    assert matching_files("a.AT2", folder) == [folder / "a.AT2"]
+    assert matching_files(str(folder / "a.AT2")) == [folder / "a.AT2"]
 
 
 def test_without_a_folder_it_is_relative_to_the_process(folder, monkeypatch):
     monkeypatch.chdir(folder)
-    assert select("deep/*.AT2") == [Path("deep/c.AT2")]
+    assert matching_files("deep/*.AT2") == [Path("deep/c.AT2")]
 
 
 def test_a_pattern_gives_files_in_order_without_hidden_ones(folder):
-    assert names(select("*.AT2", folder)) == ["a.AT2", "b.AT2", "odd[1].AT2"]
-    assert names(select(str(folder / "?.AT2"))) == ["a.AT2", "b.AT2"]
-    assert names(select("deep/**/*.AT2", folder)) == ["c.AT2", "d.AT2"]
+    assert names(matching_files("*.AT2", folder)) == ["a.AT2", "b.AT2", "odd[1].AT2"]
+    assert names(matching_files(str(folder / "?.AT2"))) == ["a.AT2", "b.AT2"]
+    assert names(matching_files("deep/**/*.AT2", folder)) == ["c.AT2", "d.AT2"]
 
 
 def test_a_name_that_looks_like_a_pattern_is_a_name_first(folder):
-    assert names(select("odd[1].AT2", folder)) == ["odd[1].AT2"]
+    assert names(matching_files("odd[1].AT2", folder)) == ["odd[1].AT2"]
 
 
 @pytest.mark.parametrize(
@@ -46,4 +46,4 @@ def test_a_name_that_looks_like_a_pattern_is_a_name_first(folder):
 )
 def test_what_is_not_there_is_refused(folder, place, said):
     with pytest.raises(InputError, match=said):
-        select(place, folder)
+        matching_files(place, folder)

@@ -6,7 +6,7 @@ import pytest
 import rocking_cli as rk
 from rocking_cli.core import Direction
 from rocking_cli.core.registry import Registry
-from rocking_cli.core.released import impulses, released
+from rocking_cli.core.released import released, tabulated_impulses
 from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.modes import modes
 from rocking_cli.structure import build_models
@@ -90,7 +90,9 @@ def test_two_columns_have_the_forces_of_a_linkage(ours, theirs):
         phi = np.linspace(0.0, 0.9 * other.critical_rotation(direction), 5)
         same_tables(released(one, direction, phi), released(other, direction, phi), 1e-9)
         # Sorted, as the linkage mirrors the order of its joints.
-        struck, expected = (np.sort(impulses(each, direction) @ [1.0, each.eta(direction)]) for each in (one, other))
+        struck, expected = (
+            np.sort(tabulated_impulses(each, direction) @ [1.0, each.eta(direction)]) for each in (one, other)
+        )
         np.testing.assert_allclose(struck, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
 
 

@@ -20,9 +20,9 @@ from rocking_cli.studies.neighbours import (
     Neighbourhood,
     Neighbours,
     can_lift,
-    follow,
     least_uplift,
     neighbours,
+    simulate_neighbours,
 )
 from rocking_cli.views.neighbours import deviations, neighbours_in_words
 from tests.conftest import EXAMPLES
@@ -249,7 +249,7 @@ class TestWithoutShaking:
         push = GroundMotion("push", 0.01, np.append(-0.11 * STANDARD_GRAVITY * np.ones(60), np.zeros(5)))
         found = neighbours(model, push, around, release=tilt, release_is_angle=True)
         alone = [
-            follow(model, push, Draws(*(each[k : k + 1] for each in drawn)), release=tilt / k_e).fell[0]
+            simulate_neighbours(model, push, Draws(*(each[k : k + 1] for each in drawn)), release=tilt / k_e).fell[0]
             for k, k_e in enumerate(drawn.slender)
         ]
         assert 0.1 < np.mean(alone) < 0.9 and found.overturned == np.mean(alone)
@@ -311,6 +311,6 @@ def test_what_no_slenderness_leaves_standing_overturns_for_certain():
     block = parse_structure("mechanism: block\nwidth: 1\nheight: 5\nfriction: 0.1\n", "block", "block")
     model = build_model(block, "nonlinear")
     draws = Draws(np.ones(2), np.array([-0.1, 1.0]), np.full((2, 2), np.nan))
-    found = follow(model, ACCEL, draws)
+    found = simulate_neighbours(model, ACCEL, draws)
     assert found.fell.tolist() == [True, False] and found.unknown.tolist() == [False, True]
     assert np.isnan(found.peak_ratio[0])

@@ -20,7 +20,7 @@ from rocking_cli.text import regex
 TITLE = "COSMOS"
 SIGN = "a first line with (Format v01.20 with 13 text lines)"
 
-_FIRST = regex(r"(.*?)\(Format v(\S+) with\s+(\d+) text lines\)", re.I)
+_FIRST_LINE = regex(r"(.*?)\(Format v(\S+) with\s+(\d+) text lines\)", re.I)
 _NUMBERS = regex(r"\s*(\d+)\s+(Integer|Real)-header values follow on\s+\d+ lines?[ ,]*Format *=? *(\S+)", re.I)
 _COMMENTS = regex(r"\s*(\d+) Comment line", re.I)
 # Commas and blanks differ by network: units=cm/sec2(04),Format=(8F10.5) and units=g.     (02)Format=(8f9.6).
@@ -64,7 +64,7 @@ class _Headers:
 
 def sniff(text: str) -> bool:
     """Return whether the first line states the version and the number of text lines."""
-    return _FIRST.match(text[:_MAX_FIRST_LINE].split("\n")[0]) is not None
+    return _FIRST_LINE.match(text[:_MAX_FIRST_LINE].split("\n")[0]) is not None
 
 
 def read(
@@ -95,7 +95,7 @@ def read(
 
 def _headers(file: str, lines: Lines, start: int) -> _Headers:
     """Read the headers of a channel, from line index `start` on."""
-    first = _FIRST.match(lines[start])
+    first = _FIRST_LINE.match(lines[start])
     if first is None:
         message = "a channel must begin here, with a line that says (Format v01.20 with 13 text lines)"
         hint = "the file may have been cut or edited: download it again"

@@ -15,7 +15,7 @@ TITLE = "CSMIP V2"
 SIGN = "a line such as 3251 POINTS OF ACCEL DATA EQUALLY SPACED AT .020 SEC"
 
 _DATA = regex(r"\s*(\d+) +POINTS OF (ACCEL|VELOC|DISPL)\w* +DATA EQUALLY SPACED AT +(\S+?) *SEC\b(.*)", re.I)
-_FIRST = regex(r"\s*CORRECTED ACCELEROGRAM\b", re.I)
+_FIRST_LINE = regex(r"\s*CORRECTED ACCELEROGRAM\b", re.I)
 _TEXT_LINES = 25
 _UNIT = regex(r"(?:\bunits:|\bin) *([^,()]*?\w)\.? *(?:[,()]|$|format)", re.I)
 _FORMAT = regex(r"\b\d+F(\d+)\.\d+", re.I)
@@ -45,7 +45,7 @@ def read(
         line = lines[index]
         index += 1
         # The first line of a channel also has its name, with more text; the line that begins with it comes later.
-        if _FIRST.match(line):
+        if _FIRST_LINE.match(line):
             start = index - 1
         if match := _CHANNEL.match(line.strip()):
             name = match[1]

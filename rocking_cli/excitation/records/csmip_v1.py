@@ -16,7 +16,7 @@ from rocking_cli.text import regex
 TITLE = "CSMIP V1"
 SIGN = "a first line that begins with UNCORRECTED ACCELEROGRAM DATA"
 
-FIRST = regex(r"\s*UNCORRECTED ACCELEROGRAM DATA\b", re.I)
+_FIRST_LINE = regex(r"\s*UNCORRECTED ACCELEROGRAM DATA\b", re.I)
 _FIELDS = {
     "channel": Field(regex(r"^\s*CHAN(?:NEL)? +\d+: *(.*?) *(?:\(STA CHN.*)?$", re.I)),
     "length": Field(regex(r"RECORD LENGTH *= *(\S+) *SEC", re.I)),
@@ -44,7 +44,7 @@ _PAIRS_WIDTH, _VALUES_WIDTH = 7, 9  # characters per number: 10F7.3 for five poi
 
 def sniff(text: str) -> bool:
     """Return whether the first line is that of an uncorrected channel."""
-    return FIRST.match(text[:200]) is not None
+    return _FIRST_LINE.match(text[:200]) is not None
 
 
 def read(
@@ -69,7 +69,7 @@ def read(
 
 def _channel(file: str, lines: Lines, start: int, units: str | None) -> tuple[layout.Channel, int]:
     """Read the channel that begins at line index `start`; return it and the index after it."""
-    if not FIRST.match(lines[start]):
+    if not _FIRST_LINE.match(lines[start]):
         message = "a channel must begin with the line UNCORRECTED ACCELEROGRAM DATA here"
         hint = "the file may have been cut or edited, or its number of points is wrong: download it again"
         raise InputError(Problem(message, file, start + 1, excerpt=lines[start].strip()[:100], hint=hint))

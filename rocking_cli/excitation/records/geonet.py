@@ -17,7 +17,7 @@ _TEXT_LINES = 16
 _NUMBER_LINES = 10
 _WIDTH = 8  # characters per number
 _SIZE = regex("[0-9]{1,9}")
-_FIRST = regex(r"Corrected accelerogram\b")
+_FIRST_LINE = regex(r"Corrected accelerogram\b")
 _COUNT = regex(r"Number of points\s+(\d+)")
 _FIELDS = {
     "count": Field(_COUNT, "number of points"),
@@ -36,7 +36,7 @@ _FIELDS = {
 def sniff(text: str) -> bool:
     """Return whether the first two lines of the header are those of a corrected GeoNet record."""
     head = text[:5000].expandtabs().split("\n")[:_TEXT_LINES]
-    return bool(_FIRST.match(head[0])) and any(_COUNT.match(line) for line in head)
+    return bool(_FIRST_LINE.match(head[0])) and any(_COUNT.match(line) for line in head)
 
 
 def read(
@@ -54,7 +54,7 @@ def read(
 
 def _component(file: str, lines: Lines, start: int, units: str | None) -> tuple[layout.Channel, int]:
     """Read one component from line index `start` on; return it and the index after it."""
-    if not _FIRST.match(lines[start]):
+    if not _FIRST_LINE.match(lines[start]):
         message = "a component must begin with the line Corrected accelerogram here"
         hint = "the file may have been cut or edited, or its number of points is wrong: download it again"
         raise InputError(Problem(message, file, start + 1, excerpt=lines[start].strip()[:100], hint=hint))

@@ -323,7 +323,7 @@ def _without_padding(data: bytes) -> bytes:
     return stripped.replace(b"\0", b" ")
 
 
-def select(place: str, folder: Path | None = None) -> list[Path]:
+def matching_files(place: str, folder: Path | None = None) -> list[Path]:
     """Return the files that match a name or a pattern.
 
     Parameters

@@ -69,7 +69,7 @@ def of_csmip(head: Sequence[str]) -> Origin:
 
 def magnitude(line: str) -> str | None:
     """Return the magnitude in a line such as ML=4.9, Mw=4.8(CIT): moment magnitude first; None if there is none."""
-    return next((found for kind in _MAGNITUDES if (found := first_match(kind, [line]))), None)
+    return next((size for kind in _MAGNITUDES if (size := first_match(kind, [line]))), None)
 
 
 def first_match(pattern: re.Pattern[str], lines: Iterable[str]) -> str | None:

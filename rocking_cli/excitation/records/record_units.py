@@ -438,11 +438,14 @@ def as_acceleration(measured: GroundMotion, quantity: Quantity, step: float | No
         *_resolution(step, acceleration, dt, quantity),
     )
     return replace(
-        measured, acceleration=acceleration, remarks=remarks, processing=(*measured.processing, said(quantity))
+        measured,
+        acceleration=acceleration,
+        remarks=remarks,
+        processing=(*measured.processing, differentiation_step(quantity)),
     )
 
 
-def said(quantity: Quantity) -> str:
+def differentiation_step(quantity: Quantity) -> str:
     """Return the name of the differentiation of a quantity in the list of processing steps."""
     return f"from {quantity}"
 

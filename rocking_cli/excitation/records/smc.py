@@ -14,7 +14,7 @@ from rocking_cli.text import regex
 TITLE = "USGS SMC"
 SIGN = "a first line such as 2 CORRECTED ACCELEROGRAM, and * on the second"
 
-_FIRST = regex(r"(\d) +([A-Z].*)")
+_FIRST_LINE = regex(r"(\d) +([A-Z].*)")
 _UNCORRECTED = "1"
 _ACCELERATIONS = (_UNCORRECTED, "2")  # uncorrected and corrected; 3 to 5 are velocity, displacement and spectra
 _MAX_RATE = 1e6  # samples per second; files without a rate state 1.7e38 or zero
@@ -41,7 +41,7 @@ _EXTREMES_PLACES = ((29, 30), (31, 32))  # places of time and value of the large
 def sniff(text: str) -> bool:
     """Return whether the first line is one of the titles of SMC, and the second is a single asterisk."""
     head = text[:1000].split("\n")
-    return bool(_FIRST.match(head[0])) and len(head) > 1 and head[1].strip() == "*"
+    return bool(_FIRST_LINE.match(head[0])) and len(head) > 1 and head[1].strip() == "*"
 
 
 def read(
@@ -49,7 +49,7 @@ def read(
 ) -> GroundMotion:
     """Read a USGS SMC file; arguments, result and errors are those of `registry.Reader.read`."""
     lines = layout.lines_of(text)
-    kind = _FIRST.match(lines[0])
+    kind = _FIRST_LINE.match(lines[0])
     if kind is None or kind[1] not in _ACCELERATIONS:
         message = f"the header says this is not an acceleration: {lines[0].strip()}"
         raise InputError(Problem(message, file, 1, hint="give the file with the acceleration"))

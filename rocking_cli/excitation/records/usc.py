@@ -13,7 +13,7 @@ from rocking_cli.text import regex
 TITLE = "USC V1"
 SIGN = "a first line with UNCORRECTED ACCELEROGRAM DATA OF VOLUME I"
 
-_FIRST = regex(r"FILE\s+\d+ OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I\b")
+_FIRST_LINE = regex(r"FILE\s+\d+ OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I\b")
 _FIELDS = {
     "count": Field(regex(r"NO\. OF POINTS *= *(\d+)"), "number of points", " (NO. OF POINTS)"),
     "unit": Field(regex(r"UNITS ARE SEC AND (.*?)(?:\s+\d+|\s{2,}.*)?$"), "unit", " (UNITS ARE SEC AND ...)"),
@@ -28,7 +28,7 @@ _INTEGERS, _REALS = 100, 50
 
 def sniff(text: str) -> bool:
     """Return whether the first line is that of an uncorrected record of Volume I."""
-    return _FIRST.match(text[:200]) is not None
+    return _FIRST_LINE.match(text[:200]) is not None
 
 
 def read(

@@ -25,7 +25,7 @@ __all__ = [
     "power_of",
 ]
 
-ALL = "all"
+ALL_MEASURES = "all"
 _FORM = re.compile(r"([^()]+)(?:\((.*)\))?", re.DOTALL)
 
 
@@ -105,7 +105,9 @@ def parse_measures(text: str) -> list[Measure]:
     Raises `InputError` and `MechanismError` as `parse_measure`, and `InputError` if there is no measure in the text.
     """
     words = [word.strip() for word in re.split(r",(?![^(]*\))", text)]
-    measures = [each for word in words for each in (all_measures() if word.lower() == ALL else [parse_measure(word)])]
+    measures = [
+        each for word in words for each in (all_measures() if word.lower() == ALL_MEASURES else [parse_measure(word)])
+    ]
     return list(dict.fromkeys(measures))
 
 

@@ -17,7 +17,7 @@ from rocking_cli.excitation.measures import measure, time_of_share
 from rocking_cli.processing.intensity.base import MotionMeasure, Reference, RelativeMeasure, RunMeasure
 from rocking_cli.processing.oscillator import DAMPING, check_oscillator, response_spectrum
 
-SLOWEST, FASTEST = 0.25, 20.0  # Hz; bounds of the frequencies of the mean period
+MIN_FREQUENCY, MAX_FREQUENCY = 0.25, 20.0  # Hz; bounds of the frequencies of the mean period
 MAX_FREQUENCY_STEP = 0.05  # Hz
 HOUSNER_PERIODS = (0.1, 2.5)  # s; bounds of the integral of the Housner intensity
 HOUSNER_POINTS = 241  # one every 0.01 s
@@ -137,7 +137,7 @@ class MeanPeriod(MotionMeasure):
         points = 1 << (points - 1).bit_length()
         amplitudes = np.abs(np.fft.rfft(motion.acceleration / largest, points)) ** 2
         frequencies = np.fft.rfftfreq(points, motion.dt)
-        taken = (frequencies >= SLOWEST) & (frequencies <= FASTEST)
+        taken = (frequencies >= MIN_FREQUENCY) & (frequencies <= MAX_FREQUENCY)
         weights = amplitudes[taken]
         return float((weights / frequencies[taken]).sum() / weights.sum()) if weights.sum() > 0 else None
 

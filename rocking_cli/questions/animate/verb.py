@@ -138,7 +138,7 @@ def animate(
     if path.suffix.lower() == ".html":
         refuse_idle("on a page, which is drawn as fast as it is shown", fps=fps != FRAMES_PER_SECOND)
     ready = structure_of(structure, watch, opening)
-    own = ready.model(name)
+    model_of_structure = ready.model(name)
     motions = Motions.of(motion, options)
     chosen = motions.gather(ready.growth, watch)
     several = are_several(motion, motions)
@@ -155,7 +155,7 @@ def animate(
             pace = speed or max(1.0, (film.end - film.start) / MAX_DEFAULT_DURATION)
             frames = _write_gif(place, film, f"{heading(ready.mechanism)}, under {scaled.name}", pace, fps, watch)
         watch.note(f"wrote {place}")
-        neighbourhood = outcomes(own, scaled, around) if neighbours else None
+        neighbourhood = outcomes(model_of_structure, scaled, around) if neighbours else None
         shown = views.view(ready, film, neighbourhood, {"speed": pace, "frames": frames, "file": str(place)})
         figure = drawn(
             "questions.respond.picture.draw_history",

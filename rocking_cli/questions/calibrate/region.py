@@ -14,7 +14,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.questions.score.study import in_time, surprise
 from rocking_cli.questions.score.table import ObservedTest
 from rocking_cli.structure import Structure
-from rocking_cli.studies.neighbours import Draws, Neighbourhood, follow
+from rocking_cli.studies.neighbours import Draws, Neighbourhood, simulate_neighbours
 
 REGION_PROBABILITY = 0.9  # of the joint region, by the likelihood ratio
 EDGE_DROP = -float(np.log(1 - REGION_PROBABILITY))  # of the log-likelihood: half a chi-square of two degrees of freedom
@@ -117,7 +117,7 @@ def joint_region(
             signs = (1, -1) if test.polarity == "both" else (int(test.polarity),)
             for place, model in enumerate(models):
                 drawn = _scaled(around.drawn(model), slenderness, model.weight_share)
-                histories = [follow(model, motion, drawn, polarity=sign, threads=1) for sign in signs]
+                histories = [simulate_neighbours(model, motion, drawn, polarity=sign, threads=1) for sign in signs]
                 for shares, of in ((overturned, "overturned"), (unknown, "unknown")):
                     runs = np.stack([getattr(each, of) for each in histories]).reshape(
                         -1, slenderness.size, around.count

@@ -476,44 +476,46 @@ def _each(problem: _Problem, x: Reals, trace: Trace, structure: Structure, free_
         p, alpha = (
             Estimated(float(v), float(v * d)) for v, d in zip(values, np.sqrt(np.diag(covariance)), strict=True)
         )
-    own, count, solve, noise, pattern = _own(problem, x, trace)
+    parameters, count, solve, noise, pattern = _own(problem, x, trace)
     if len(problem.sides) > 1 and problem.distance(x) > MAX_RESIDUAL_TO_NOISE * noise:
         apart, other, covariance = _freed(problem, x, [SIDES])
-        least = problem.distance(own) ** 2
+        least = problem.distance(parameters) ** 2
         # Different sides explain the scatter.
         if apart.distance(other) ** 2 - least < 0.1 * (problem.distance(x) ** 2 - least):
             problem, x = apart, other
             ratio = float(np.exp(problem.sense * problem.geometry[SIDES]))
             sides = Estimated(ratio, ratio * float(np.sqrt(covariance[0, 0])))
-            own, count, solve, noise, pattern = _own(problem, x, trace)
-    if not problem.distance(own) < MAX_RESIDUAL_OF_ETAS:
-        raise InputError(_is_other(problem, x, problem.distance(own), trace, structure))
+            parameters, count, solve, noise, pattern = _own(problem, x, trace)
+    if not problem.distance(parameters) < MAX_RESIDUAL_OF_ETAS:
+        raise InputError(_is_other(problem, x, problem.distance(parameters), trace, structure))
     covariance = noise**2 * max(1.0, pattern) * solve @ solve.T
     deviation = np.sqrt(np.diag(covariance))
     last = ETA + count - 1  # left out, as all later impacts share it
-    pooled = pool(own[ETA:last], covariance[ETA:last, ETA:last], MEASURED_SPREAD)
+    pooled = pool(parameters[ETA:last], covariance[ETA:last, ETA:last], MEASURED_SPREAD)
     w = pooled.weights
     variance = w @ covariance[ETA:last, ETA:last] @ w + pooled.scatter**2 * (w @ w)
     for error in errors:
         geometry = np.array(problem.geometry) + GEOMETRY_STEP * np.append(0.0, error)
-        moved = solve @ (replace(problem, geometry=tuple(geometry)).model(own, times) - problem.model(own, times))
+        moved = solve @ (
+            replace(problem, geometry=tuple(geometry)).model(parameters, times) - problem.model(parameters, times)
+        )
         variance += (w @ moved[ETA:last] / GEOMETRY_STEP) ** 2
     origin = problem.origin
-    offset, drift = _baseline(problem, own, covariance)
+    offset, drift = _baseline(problem, parameters, covariance)
     after = trace.times - origin
     fitted = (after >= 0) & (after <= times[-1])
     return TraceFit(
         trace,
         Estimated(pooled.mean, float(np.sqrt(variance))),
-        [Estimated(float(own[k]), float(deviation[k])) for k in range(ETA, last + 1)],
+        [Estimated(float(parameters[k]), float(deviation[k])) for k in range(ETA, last + 1)],
         pooled,
-        problem.sense * int(problem.first) * float(own[RELEASE]) * scale,
-        float(own[START]) + origin,
+        problem.sense * int(problem.first) * float(parameters[RELEASE]) * scale,
+        float(parameters[START]) + origin,
         offset,
         drift,
-        problem.motion(own).impacts[:count] + float(own[START]) + origin,
+        problem.motion(parameters).impacts[:count] + float(parameters[START]) + origin,
         np.where(fitted, problem.model(x, after) * scale, np.nan),
-        np.where(fitted, problem.model(own, after) * scale, np.nan),
+        np.where(fitted, problem.model(parameters, after) * scale, np.nan),
         noise * scale,
         pattern > MAX_PATTERN_RATIO,
         sides,
@@ -557,12 +559,12 @@ def _own(problem: _Problem, x: Reals, trace: Trace) -> tuple[Reals, int, Reals, 
     if count < MIN_IMPACTS:
         raise InputError(_too_few(trace, count))
     count = min(count, MAX_FITTED_ETAS)
-    own, jacobian, _ = problem.fit(np.concatenate([x[:ETA], np.full(count, x[ETA])]))
+    parameters, jacobian, _ = problem.fit(np.concatenate([x[:ETA], np.full(count, x[ETA])]))
     # At rest, a coarse resolution may hide the noise.
-    rocking = problem.times < problem.motion(own).impacts[count - 1] + own[START]
-    misfit = (problem.model(own, problem.times) - problem.angles)[rocking]
+    rocking = problem.times < problem.motion(parameters).impacts[count - 1] + parameters[START]
+    misfit = (problem.model(parameters, problem.times) - problem.angles)[rocking]
     noise = max(_noise_of(misfit), MIN_NOISE)
-    return own, count, np.asarray(np.linalg.pinv(jacobian)), noise, _pattern(misfit, noise, 6 * count)
+    return parameters, count, np.asarray(np.linalg.pinv(jacobian)), noise, _pattern(misfit, noise, 6 * count)
 
 
 def _noise_of(misfit: Reals) -> float:

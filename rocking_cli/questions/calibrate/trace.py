@@ -60,12 +60,12 @@ def parse_trace(sheet: Spreadsheet) -> Trace:
         if row.cells[angle].lower() in ("", "nan"):
             continue  # a gap in the trace
         values = []
-        for place, own, kind in ((time, seconds, "s"), (angle, unit, "rad")):
+        for place, unit_of_column, kind in ((time, seconds, "s"), (angle, unit, "rad")):
             cell = row.cells[place]
             if sheet.decimal_comma and DECIMAL_COMMA.fullmatch(cell):
                 cell = cell.replace(",", ".", 1)
             try:
-                values.append(read(f"{cell} {own}", kind))
+                values.append(read(f"{cell} {unit_of_column}", kind))
             except UnitError:
                 what = f"{cut(one_line(cell))!r} is not a number"
                 problems.append(Problem(what, sheet.file, row.line, field=one_line(sheet.headings[place])))

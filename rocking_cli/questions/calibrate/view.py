@@ -93,18 +93,18 @@ def _pair(found: Estimated) -> str:
 
 def _residuals(found: TraceFit) -> str:
     """Return a sentence on how far the fits are from the trace."""
-    one, own = found.residual / found.noise, found.own_residual / found.noise
+    one, each = found.residual / found.noise, found.own_residual / found.noise
     if found.patterned:
         return (
             f"Caution: the residual leaves a pattern: it is {degrees(found.residual):.2g} deg, {one:.2g} times the "
-            f"noise, and {own:.2g} times with a restitution for each impact. So much do an error of 3 % of p, a drift "
+            f"noise, and {each:.2g} times with a restitution for each impact. So much do an error of 3 % of p, a drift "
             "that is not steady, sliding or bouncing leave. The deviations include it as if it were noise; check the "
             "size of the structure."
         )
     sentence = f"The residual is {degrees(found.residual):.2g} deg, {one:.2g} times the noise"
     if one <= MAX_RESIDUAL_TO_NOISE:
         return f"{sentence}: free rocking with one restitution explains the trace."
-    return f"{sentence}, and {own:.2g} times with a restitution for each impact: it differs from impact to impact."
+    return f"{sentence}, and {each:.2g} times with a restitution for each impact: it differs from impact to impact."
 
 
 def _trace_data(found: TraceFit, structure: Structure) -> dict[str, Any]:

@@ -26,7 +26,7 @@ def view(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism]) -> 
     for direction, each in found.items():
         parts += [_hinges(direction, each), *_sentences(mechanism, each)]
         parts += _thrust(direction, each, *force_unit(mechanism))
-    parts += [f"Caution: {own}"] if (own := mechanism.own_caution()) else []
+    parts += [f"Caution: {caution}"] if (caution := mechanism.own_caution()) else []
     theorems = (
         " lambda is both the greatest acceleration that can be carried without tension (static theorem) and the "
         "acceleration at which this mechanism starts (kinematic theorem)."

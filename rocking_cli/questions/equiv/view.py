@@ -109,12 +109,12 @@ def view(structure: Structure) -> View:
         "restitution": restitution_source(mechanism),
         "caution": " ".join(cautions_of(mechanism)) or None,
         "misleading": structure.misleading,
-        "directions": {side.direction.label: _data(side) | _found(mechanism, side.direction) for side in sides},
+        "directions": {side.direction.label: _data(side) | _extras(mechanism, side.direction) for side in sides},
     }
     shown = sides[:1] if is_symmetric(structure) else sides
     columns = _columns(mechanism, [side.direction for side in shown])
     heads = ["value"] if len(shown) == 1 else [side.direction.label for side in shown]
-    rows = [side.parameters | _found(mechanism, side.direction) for side in shown]
+    rows = [side.parameters | _extras(mechanism, side.direction) for side in shown]
     table = table_across(heading(mechanism), columns, heads, rows, {**UNIT, "meaning": of("words")})
     where = [""] if len(shown) == 1 else [f"{side.direction.label}: " for side in shown]
     sentences = [f"Caution: {text}" for text in early]
@@ -150,7 +150,7 @@ def _columns(mechanism: Mechanism, directions: Sequence[Direction]) -> Iterator[
         yield only_shown(key, methodcaller("get", key), number, unit, words=words)
 
 
-def _found(mechanism: Mechanism, direction: Direction) -> dict[str, float]:
+def _extras(mechanism: Mechanism, direction: Direction) -> dict[str, float]:
     return {each.key: each.value for each in mechanism.found(direction)}
 
 
@@ -262,10 +262,14 @@ def hung_data(mechanism: Mechanism) -> list[dict[str, Any]]:
     """Return each load, force and tie as plain data, with its position at rest and its numbers, in SI units."""
     return [
         {
-            "name": thing.name,
-            **(thing.as_dict() if isinstance(thing, PointMass | Element) else {"kind": type(thing).__name__}),
+            "name": attachment.name,
+            **(
+                attachment.as_dict()
+                if isinstance(attachment, PointMass | Element)
+                else {"kind": type(attachment).__name__}
+            ),
         }
-        for thing in mechanism.attached
+        for attachment in mechanism.attached
     ]
 
 
@@ -273,8 +277,8 @@ def hung_in_words(mechanism: Mechanism) -> Iterator[str]:
     """Yield a sentence that lists the loads and ties of a structure, if it has any."""
     other = "its contribution to the equation of motion"
     listed = [
-        f"{thing.name}: {thing.words if isinstance(thing, PointMass | Element) else other}"
-        for thing in mechanism.attached
+        f"{attachment.name}: {attachment.words if isinstance(attachment, PointMass | Element) else other}"
+        for attachment in mechanism.attached
     ]
     if listed:
         yield f"With {'; '.join(listed)}."

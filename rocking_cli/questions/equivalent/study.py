@@ -20,7 +20,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.structure import Structure
 from rocking_cli.studies import engines
-from rocking_cli.studies.under_pulses import check_eta, uplift, weakest
+from rocking_cli.studies.under_pulses import check_eta, uplift, weakest_direction
 
 SIMULATED_AFTER_PULSE = 12.0  # p times the duration that is simulated
 MAX_PULSE_PERIODS = 1000  # periods simulated after the pulse, which may be far shorter than the motion
@@ -164,7 +164,9 @@ def equivalent(
     # The direction in which the pulse uplifts first; without uplift, that of a stronger pulse.
     lifts = {d: -d * ground.acceleration > first[d].lambda_ * mechanisms[0].gravity for d in Direction}
     lifted = [d for d in Direction if lifts[d].any()]
-    direction = min(lifted, key=lambda d: int(lifts[d].argmax())) if lifted else weakest(first, pulse, (polarity,))
+    direction = (
+        min(lifted, key=lambda d: int(lifts[d].argmax())) if lifted else weakest_direction(first, pulse, (polarity,))
+    )
     block = first[direction]
     scaling: ModelName = "linear1" if kappa == 1 else "linear2"
     a = pulse.amplitude / (mechanisms[0].gravity * uplift(block, scaling))  # Eq. 40

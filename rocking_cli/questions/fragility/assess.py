@@ -194,7 +194,7 @@ def fitted(
     return lines, planes
 
 
-def outcomes(found: Mapping[str, Tally]) -> list[UnknownRuns]:
+def unknown_runs(found: Mapping[str, Tally]) -> list[UnknownRuns]:
     """Return the number of runs of unknown outcome of each structure that has runs."""
     return [
         UnknownRuns(name, int(tally.runs.sum()), tally.unknown_if_checked, tally.checked)
@@ -231,19 +231,19 @@ def _twice(fit: Callable[[Cells], Fitted], cells: Cells, unknown: int) -> Fitted
     return upper if tally.unknown_if_checked is not None else replace(upper, unknown=None)
 
 
-def _consistent(found: Sequence[Fragility], onset: Onset | None) -> Iterator[Fragility]:
+def _consistent(fits: Sequence[Fragility], onset: Onset | None) -> Iterator[Fragility]:
     """Yield the curves of one structure over one measure, corrected so that none lies above one that it implies.
 
     Parameters
     ----------
-    found : sequence of Fragility
+    fits : sequence of Fragility
         The curves as fitted, one for each limit state.
     onset : Onset, optional
         The intensity at which the structure uplifts, if it is known.
     """
     floor: dict[Limit, FragilityCurve] = {}
-    if onset is not None and onset.exact and any(each.limit == UPLIFT for each in found):
-        found = [_exact(each, onset.at) if each.limit == UPLIFT else each for each in found]
+    if onset is not None and onset.exact and any(each.limit == UPLIFT for each in fits):
+        fits = [_exact(each, onset.at) if each.limit == UPLIFT else each for each in fits]
     elif onset is not None:
         floor = {UPLIFT_MEASURE: exact_step(FragilityCurve("none", "", 1.0, 0, 0), onset.at, "")}
 
@@ -251,8 +251,8 @@ def _consistent(found: Sequence[Fragility], onset: Onset | None) -> Iterator[Fra
         known = floor | {limit: each for limit, each in weaker.items() if each.kind != "none"}
         return curve if curve.kind == "none" else replace(curve, implied=known)
 
-    for each in found:
-        weaker = [other for other in found if implies(each.limit, other.limit)]
+    for each in fits:
+        weaker = [other for other in fits if implies(each.limit, other.limit)]
         lower = each.lower
         if lower is not None:
             under = {other.limit: (other.lower or other).curve for other in weaker}

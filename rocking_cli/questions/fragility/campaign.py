@@ -24,7 +24,7 @@ from rocking_cli.questions.fragility.study import Sample, Study, digest
 from rocking_cli.questions.fragility.tally import UPLIFT_FACT, accelerations, rotations
 from rocking_cli.questions.fragility.work_units import carry_out, unit_size, units
 from rocking_cli.questions.fragility.workers import Workers
-from rocking_cli.studies.fragility.quantities import PGA, PGV, ROTATIONS_FACT, asked_for
+from rocking_cli.studies.fragility.quantities import PGA, PGV, ROTATIONS_FACT, displacement_limits
 
 Progress = Callable[[int, int], None]
 """Called with the numbers of runs that have finished and failed since the last call."""
@@ -83,7 +83,7 @@ def prepare(
         no structure or no record can be used.
     """
     known = store.plan() if not store.empty else None
-    plan, motions = survey(study, examined, known)
+    plan, motions = examine_study(study, examined, known)
     definition, records = study.definition, plan.records
     bad = {each.name for each in known.records if each.reason is not None} if known is not None else set()
     mended = [k for k, record in enumerate(records) if record.reason is None and record.name in bad]
@@ -117,7 +117,7 @@ def prepare(
     return Prepared(study, plan, motions, finished, failed, tuple(records[k].name for k in mended))
 
 
-def steps(study: Study, *, rank_measures: bool = False) -> int:
+def count_steps(study: Study, *, rank_measures: bool = False) -> int:
     """Return the number of steps of which `prepare` reports the progress: structures, records and measured records."""
     return len(study.samples) + len(study.sources) * (1 + _measures(study, rank_measures=rank_measures))
 
@@ -128,7 +128,9 @@ def _measures(study: Study, *, rank_measures: bool) -> bool:
     return rank_measures or any(base is None or str(base) not in (PGA, PGV) for base in bases)
 
 
-def survey(study: Study, examined: Examined | None = None, known: Plan | None = None) -> tuple[Plan, KeptMotions]:
+def examine_study(
+    study: Study, examined: Examined | None = None, known: Plan | None = None
+) -> tuple[Plan, KeptMotions]:
     """Examine the records and structures of a study.
 
     Parameters
@@ -282,7 +284,7 @@ def _mechanics(mechanism: Mechanism, asked: Definition) -> tuple[float, float, t
 
 def _displacements(study: Study, plan: Plan, known: dict[str, Any]) -> dict[str, Any]:
     """Return the rotations at which the top reaches the displacements among the limit states; empty without any."""
-    limits = asked_for(study.definition.limit_states)
+    limits = displacement_limits(study.definition.limit_states)
     return {ROTATIONS_FACT: rotations(study.samples, plan.trials, limits, known)} if limits else {}
 
 

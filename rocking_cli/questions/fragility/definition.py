@@ -23,7 +23,14 @@ from rocking_cli.questions.fragility.distributions import Distribution, Positive
 from rocking_cli.questions.fragility.hazard_curve import wrong_points
 from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE
 from rocking_cli.studies.file_part import Part, Sound, problems_of
-from rocking_cli.studies.fragility.quantities import PGA, is_quantity, metres, no_levels, spelled, spelt
+from rocking_cli.studies.fragility.quantities import (
+    PGA,
+    displacement_in_mm,
+    is_quantity,
+    metres,
+    no_levels,
+    standard_measure,
+)
 from rocking_cli.studies.fragility.quantities import SCALE as SCALE
 
 UPLIFT, OVERTURNING, SLIDING = "uplift", "overturning", "sliding"
@@ -36,7 +43,7 @@ def _measure(value: object) -> object:
     if not isinstance(value, str):
         return value
     try:
-        return spelled(value)
+        return standard_measure(value)
     except InputError as error:
         (problem,) = error.problems
         values = {"reason": problem.message, "hint": problem.hint}
@@ -72,7 +79,7 @@ def _limit(value: object) -> object:
     if value in (UPLIFT, OVERTURNING, SLIDING):
         return value
     if isinstance(value, str) and is_quantity(value):
-        return spelt(value)
+        return displacement_in_mm(value)
     known = "uplift, overturning, sliding, a positive number or a displacement such as 25 mm"
     raise ValueError(f"must be {known}, got {value!r}")
 
@@ -366,7 +373,7 @@ def definition_of(document: Document, load: Callable[[str], Mechanism]) -> Defin
 
 def usable_entries(document: Document, field: str, model: type[Piece]) -> list[tuple[int, Piece]]:
     """Return the entries of a list with their places; of an invalid entry one part that is valid by itself, if any."""
-    found = []
+    entries_with_places = []
     entries = document.data.get(field)
     for k, entry in enumerate(entries if isinstance(entries, list) else []):
         given = _file(entry)
@@ -374,8 +381,8 @@ def usable_entries(document: Document, field: str, model: type[Piece]) -> list[t
             continue
         parts = [given, *({name: given.get(name) for name in names} for names in ENTRY_PARTS)]
         usable = [each for each in (usable_part(model, part) for part in parts) if each is not None]
-        found += [(k, each) for each in usable[:1]]
-    return found
+        entries_with_places += [(k, each) for each in usable[:1]]
+    return entries_with_places
 
 
 def usable_part(model: type[Piece], data: Any) -> Piece | None:

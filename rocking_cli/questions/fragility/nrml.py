@@ -149,7 +149,7 @@ def chosen(curves: Sequence[Fragility]) -> OpenQuakeModel:
         if not reason:
             fit.setdefault((each.structure, each.measure), {})[each.limit] = each
     limits = _most_curves([frozenset(each) for each in fit.values()])
-    held = {key: own for key, own in fit.items() if limits and limits <= own.keys()}
+    held = {key: by_limit for key, by_limit in fit.items() if limits and limits <= by_limit.keys()}
     left_out = list(dict.fromkeys(filter(None, (
         reason or _why_not_together(each, limits, held, fit) for each, reason in zip(curves, reasons, strict=True)
     ))))  # fmt: skip
@@ -196,7 +196,7 @@ def _why_not_together(
         missing = [str(limit) for limit in limits if limit not in fit[key]]
         return f"{_name(found)}: {same}, and no lognormal curve exists for {', '.join(sorted(missing))}"
     if found.limit not in limits:
-        other = next(each for each, own in held.items() if found.limit not in own)
+        other = next(each for each, by_limit in held.items() if found.limit not in by_limit)
         return f"{_name(found)}: {same}, and {other[0]} over {other[1]} has no lognormal curve for this one"
     return ""
 
@@ -208,7 +208,7 @@ def _most_curves(sets: Sequence[frozenset[Limit]]) -> frozenset[Limit]:
         candidates |= new
 
     def score(limits: frozenset[Limit]) -> tuple[int, int, list[str]]:
-        return len(limits) * sum(limits <= own for own in sets), len(limits), sorted(map(str, limits))
+        return len(limits) * sum(limits <= of_function for of_function in sets), len(limits), sorted(map(str, limits))
 
     return max(candidates, key=score, default=frozenset())
 
@@ -236,12 +236,12 @@ def _functions(held: Mapping[tuple[str, str], Mapping[Limit, Fragility]], order:
     measures = list(dict.fromkeys(measure for _, measure in held))
     functions: list[Function] = []
     taken: set[str] = set()
-    for (structure, measure), own in held.items():
+    for (structure, measure), by_limit in held.items():
         there = intensity_type(measure)
         assert there is not None
         name = identifier(structure if len(measures) == 1 else f"{structure}-{there[0]}", taken)
         taken.add(name)
-        functions.append(Function(name, [own[limit] for limit in order], *there))
+        functions.append(Function(name, [by_limit[limit] for limit in order], *there))
     return functions
 
 

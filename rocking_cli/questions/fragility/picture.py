@@ -243,19 +243,19 @@ def _named(each: LabelledCurve, look: dict[str, Any]) -> list[tuple[LabelledCurv
 def _key(each: LabelledCurve, look: dict[str, Any]) -> Line2D:
     """Return the legend entry of a curve, with its numbers."""
     curve = each.curve
-    said: str = curve.kind
+    entry: str = curve.kind
     if curve.kind == "none":
         look = look | {"linestyle": "none"}
-        said = f"no curve: {curve.why}"
+        entry = f"no curve: {curve.why}"
     elif curve.step is not None:
         low, high = curve.step.low, curve.step.high
-        said += f", between {low:.3g} and {high:.3g}" if low < high else f" at {low:.4g}, exact"
+        entry += f", between {low:.3g} and {high:.3g}" if low < high else f" at {low:.4g}, exact"
     elif curve.median is not None:
-        said += f", median {curve.median.value:.3g} ({curve.median.low:.3g} to {curve.median.high:.3g})"
+        entry += f", median {curve.median.value:.3g} ({curve.median.low:.3g} to {curve.median.high:.3g})"
         for name, spread in (("dispersion", curve.dispersion), ("scale", curve.scale)):
             if spread is not None:
-                said += f", {name} {spread.value:.2g} ({spread.low:.2g} to {spread.high:.2g})"
-    return Line2D([], [], label=_lines(f"{each.name}: {said}"), markerfacecolor="white", **look)
+                entry += f", {name} {spread.value:.2g} ({spread.low:.2g} to {spread.high:.2g})"
+    return Line2D([], [], label=_lines(f"{each.name}: {entry}"), markerfacecolor="white", **look)
 
 
 def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str, records: int | None = None) -> Figure:

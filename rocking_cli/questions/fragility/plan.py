@@ -21,7 +21,7 @@ from rocking_cli.questions.fragility.sources import KeptMotions, Record
 from rocking_cli.studies.fragility.quantities import PGA, PGV, SCALE
 from rocking_cli.studies.under_pulses import uplift
 
-EVERY = -1
+EVERY_LEVEL = -1
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +57,7 @@ class Sets:
     ) -> Sets:
         """Build sets from the level (if any), the weight and the file of each record."""
         values = np.array(levels)
-        places = [EVERY if each is None else int(np.argmin(np.abs(values - each))) for each in at]
+        places = [EVERY_LEVEL if each is None else int(np.argmin(np.abs(values - each))) for each in at]
         first = {file: len(files) - 1 - k for k, file in enumerate(reversed(files))}
         return cls(
             np.array(places, dtype=np.int64),
@@ -78,7 +78,11 @@ class Sets:
 
     def there(self, record: int, levels: int) -> Bools:
         """Return a mask of the levels at which a record is run."""
-        return np.ones(levels, dtype=bool) if self.level[record] == EVERY else np.arange(levels) == self.level[record]
+        return (
+            np.ones(levels, dtype=bool)
+            if self.level[record] == EVERY_LEVEL
+            else np.arange(levels) == self.level[record]
+        )
 
 
 def described(description: dict[str, Any], weights: Sequence[float]) -> Sets:

@@ -22,7 +22,7 @@ from rocking_cli.questions.fragility.store import Store
 from rocking_cli.questions.fragility.tally import UNKNOWN_PEAK, Tally, endings_of, samples_of
 
 QUANTILES = (0.16, 0.5, 0.84)
-MIN_RECORDS = (names.FEWEST, names.FEWEST_OF_MEDIAN, names.FEWEST)
+MIN_RECORDS = (names.MIN_MOTIONS, names.MIN_MOTIONS_OF_MEDIAN, names.MIN_MOTIONS)
 """Smallest number of records with which each quantile is given."""
 COUNT_TOLERANCE = 1e-9  # of a number of runs, for rounding
 
@@ -43,7 +43,7 @@ class Group:
         Number of runs that do not uplift, and of runs that overturn.
     rocking : tuple of float
         Peak phi/phi_cr not exceeded by 16, 50 and 84 % of the runs that rock without overturning; NaN without any, or
-        if too few records rock (`FEWEST`).
+        if too few records rock (`MIN_RECORDS`).
     every : tuple of float
         Peak phi/phi_cr not exceeded by these shares of all runs: 0 without uplift, infinite if a run overturns or its
         outcome is unknown, NaN if there are too few records.

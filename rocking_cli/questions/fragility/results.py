@@ -204,7 +204,7 @@ def _fitted(
         counted = assess.counted(store, plan, definition, advance)
     fits = len(definition.limit_states) * (len(definition.fitted_measures) + len(definition.bivariate))
     with watch.progress(fits * len(counted), "fits") as advance:
-        return *assess.fitted(counted, definition, hazard, advance), assess.outcomes(counted)
+        return *assess.fitted(counted, definition, hazard, advance), assess.unknown_runs(counted)
 
 
 def _blocks(place: Path) -> Iterator[Columns]:

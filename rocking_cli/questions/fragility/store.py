@@ -230,7 +230,7 @@ class Store:
             If the system refuses, for example because the disk is full.
         """
         path = Path(os.path.realpath(path))
-        with in_words(path):
+        with naming_store(path):
             store = cls(path, sqlite3.connect(":memory:", isolation_level=None))
             store._say = say
             try:
@@ -256,7 +256,7 @@ class Store:
             raise InputError(Problem("this is a folder, not the store of a study", str(path)))
         if not path.exists():
             raise InputError(Problem("no such store", str(path), hint="`rocking fragility STUDY.yaml` makes one"))
-        with in_words(path):
+        with naming_store(path):
             store = cls(path, open_store(path))
             try:
                 if store.empty:
@@ -640,7 +640,7 @@ def code_of(error: sqlite3.Error) -> int:
 
 
 @contextmanager
-def in_words(path: Path) -> Iterator[None]:
+def naming_store(path: Path) -> Iterator[None]:
     """Turn errors of SQLite and of the system into errors that name the store."""
     try:
         yield

@@ -17,7 +17,7 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.structure_file import load_structure
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.excitation.pulses import parse_pulse
-from rocking_cli.excitation.records.opening import select
+from rocking_cli.excitation.records.opening import matching_files
 from rocking_cli.io.field_problems import by_meaning, say
 from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text
@@ -380,7 +380,7 @@ def _apart(sources: Sequence[Source]) -> list[Source]:
 
 def _select(document: Document, place: Place, pattern: str, folder: Path) -> list[Path]:
     try:
-        return select(pattern, folder)
+        return matching_files(pattern, folder)
     except InputError as error:
         document.problems += [document.at(place, f"{each.file}: {each.message}", each.hint) for each in error.problems]
         return []

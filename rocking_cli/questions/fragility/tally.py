@@ -24,7 +24,7 @@ from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE
 from rocking_cli.questions.fragility.plan import Plan, Trial
 from rocking_cli.questions.fragility.store import FAILED, STANDS, Endings, Store
 from rocking_cli.questions.fragility.study import RESTITUTION, Sample, Study
-from rocking_cli.studies.fragility.quantities import PGA, asked_for, kept, metres, of_the_motion, proportional
+from rocking_cli.studies.fragility.quantities import PGA, displacement_limits, kept, metres, of_the_motion, proportional
 from rocking_cli.studies.movements import is_held, top
 from rocking_cli.studies.under_pulses import uplift
 
@@ -428,7 +428,7 @@ def rotations(
 
 def held(study: Study) -> list[str]:
     """Return a sentence on each structure whose top is held sideways although limit states are on its displacement."""
-    limits = asked_for(study.definition.limit_states)
+    limits = displacement_limits(study.definition.limit_states)
     return [
         f"{structure.name or structure.mechanism}: its top is held to the side and a hinge moves more, but limits "
         f"such as {limits[0]} are of the top: use a ratio of rotations instead"

@@ -118,11 +118,11 @@ def workers_of(jobs: int | None, scheduler: str | None) -> AbstractContextManage
 
 def _planned(study: Study, watch: Watcher) -> Answer[Plan]:
     """Return what a study would run."""
-    from rocking_cli.questions.fragility.campaign import survey
+    from rocking_cli.questions.fragility.campaign import examine_study
     from rocking_cli.questions.fragility.view import planned
 
     with watch.progress(len(study.sources) + len(study.samples), "records and structures") as advance:
-        plan, _ = survey(study, advance)
+        plan, _ = examine_study(study, advance)
     _leave_out(plan, watch)
 
     columns = {"record": [record.name for record in plan.records]}
@@ -140,14 +140,14 @@ def _bring_up_to_date(
     rank_measures: bool,
 ) -> None:
     """Simulate the runs that the store lacks; on a restart simulate all, and keep the old store."""
-    from rocking_cli.questions.fragility.campaign import prepare, run, steps
+    from rocking_cli.questions.fragility.campaign import count_steps, prepare, run
     from rocking_cli.questions.fragility.store import Store
 
     with ExitStack() as stack:
         # The old store is replaced only when workers are available to run the study again.
         hands = stack.enter_context(workers) if restart else None
         store = stack.enter_context(Store.writing(place, anew=restart, say=watch.note))
-        with watch.progress(steps(study, rank_measures=rank_measures), "records and structures") as advance:
+        with watch.progress(count_steps(study, rank_measures=rank_measures), "records and structures") as advance:
             prepared = prepare(study, store, advance, rank_measures=rank_measures)
         plan = prepared.plan
         _leave_out(plan, watch)

@@ -165,21 +165,21 @@ def view(
 
 def sets_in_words(plan: Plan) -> list[str]:
     """Return sentences on sets of records for levels and on weights, if there are any."""
-    sets, said = plan.of_sets, []
+    sets, sentences = plan.of_sets, []
     usable = np.array([each.reason is None for each in plan.records])
     if (sets.level >= 0).any():
         counts = [int((usable & ((sets.level == k) | (sets.level < 0))).sum()) for k in range(len(plan.levels))]
         few, many = min(counts), max(counts)
         each = f"{few}" if few == many else f"{few} to {many}"
         used = "scaled to the level" if sets.scaled else "not scaled to the level"
-        said.append(f"Each level has its own set of records: {each} per level, {used}.")
+        sentences.append(f"Each level has its own set of records: {each} per level, {used}.")
     if sets.weighted:
         low, high = float(sets.weight.min()), float(sets.weight.max())
-        said.append(
+        sentences.append(
             f"Records have weights from {low:.3g} to {high:.3g}. Intervals, bands and tests treat each record as one "
             "cluster."
         )
-    return said
+    return sentences
 
 
 def _records(plan: Plan) -> list[dict[str, Any]]:
@@ -376,8 +376,8 @@ def fit_columns(interval: str = "", width: str = "", *, rated: bool = False) -> 
         only_shown(f"{width}\n{interval}", lambda row: _estimate(row[1].curve.dispersion or row[1].curve.scale),
                    _with_interval),
         Column("confidence", of_fit("curve.confidence")),
-        Column("goodness", lambda row: None if (found := row[1].curve.goodness) is None else asdict(found),
-               head="fit p", form=lambda found: number(found["p_value"], 2)),
+        Column("goodness", lambda row: None if (goodness := row[1].curve.goodness) is None else asdict(goodness),
+               head="fit p", form=lambda goodness: number(goodness["p_value"], 2)),
         Column("aic", of_fit("curve.aic")),
         Column("runs", of_fit("curve.runs")),
         Column("exceedances", of_fit("curve.exceedances")),

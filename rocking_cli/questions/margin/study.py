@@ -19,7 +19,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import LEAST_SHARE, Conclusion, NeighbourShare
 from rocking_cli.studies.engines import respond
-from rocking_cli.studies.neighbours import Draws, Neighbourhood, follow, least_uplift
+from rocking_cli.studies.neighbours import Draws, Neighbourhood, least_uplift, simulate_neighbours
 from rocking_cli.studies.response import concluded
 
 SHARE_LEVELS = (LEAST_SHARE, 0.5, 0.9)
@@ -144,7 +144,7 @@ def margin(
             progress(int((~undecided).sum()) * around.count)
         some = factors[undecided]
         repeated = Draws(*(np.concatenate([values] * some.size) if some.size else values[:0] for values in draws))
-        outcomes = follow(
+        outcomes = simulate_neighbours(
             model, motion, repeated, scale=some.repeat(around.count), polarity=sign, threads=threads, progress=progress
         )
         fell, doubtful = (of.reshape(some.size, around.count).mean(axis=1) for of in (outcomes.fell, outcomes.unknown))

@@ -49,12 +49,12 @@ class _Line(NamedTuple):
 
 def _lines(rows: Sequence[MarginRow]) -> Iterator[_Line]:
     """Yield the line that governs for each motion; if outcomes are unknown, also a line of those known to overturn."""
-    for name, _, pga, found, _ in rows:
-        doubt = bool(found.unknown.any())
+    for name, _, pga, margin, _ in rows:
+        doubt = bool(margin.unknown.any())
         governing = f"{name}: {GOVERNING_ROW}" if doubt else name
-        yield _Line(governing, number(pga, 3), number(found.uplift, 3), found.share.highest, found, unknown=True)
+        yield _Line(governing, number(pga, 3), number(margin.uplift, 3), margin.share.highest, margin, unknown=True)
         if doubt:
-            yield _Line("  known to overturn", "", "", found.share.lowest, found, unknown=False)
+            yield _Line("  known to overturn", "", "", margin.share.lowest, margin, unknown=False)
 
 
 def _at_level(find: Callable[..., float | None], level: float) -> Callable[[_Line], float | None]:
@@ -159,11 +159,11 @@ def in_words(found: Margin, pga: float) -> str:
     doubt = bool(found.unknown.any())
     at = partial(_at, pga)
     does = "overturn the structure, or have an unknown outcome," if doubt else "overturn the structure"
-    said = _reached(found, found.at_most, does, pga)
+    sentence = _reached(found, found.at_most, does, pga)
     if not doubt:
-        return said
+        return sentence
     first = float(found.factors[(found.unknown > 0).argmax()])
-    said += (
+    sentence += (
         f" From a factor of {at(first)} on, some outcomes are unknown, as the model no longer holds (see `rocking "
         "respond`): there, the structure may overturn."
     )
@@ -171,9 +171,9 @@ def in_words(found: Margin, pga: float) -> str:
         f"{percent(level)} from {at(least)}" for level in SHARE_LEVELS if (least := found.first(level)) is not None
     ]
     if known:
-        return f"{said} Shares known to overturn it: {', '.join(known)}."
+        return f"{sentence} Shares known to overturn it: {', '.join(known)}."
     few = f"At no factor tried are {percent(SHARE_LEVELS[0])} or more known to overturn it"
-    return f"{said} {few}; this does not prove that it stands."
+    return f"{sentence} {few}; this does not prove that it stands."
 
 
 def _reached(found: Margin, shares: NDArray[np.float64], does: str, pga: float) -> str:

@@ -93,10 +93,11 @@ def view(
     each = {
         str(sign): {
             "responses": {
-                name: data_of(_columns(found), answer) | known_data(outcome(answer)) for name, answer in found.items()
+                name: data_of(_columns(by_model), answer) | known_data(outcome(answer))
+                for name, answer in by_model.items()
             }
         }
-        for sign, found in answers.items()
+        for sign, by_model in answers.items()
     }
     data = {
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
@@ -110,9 +111,9 @@ def view(
     sides = {"both": seen["positive"]} if equivalence.symmetric else seen
     rows = [{"direction": label, **values} for label, values in sides.items()]
     parts: list[Table | str] = [table_of(f"{heading(mechanism)}, {pulse}", DIRECTIONS, rows)]
-    for sign, found in answers.items():
+    for sign, by_model in answers.items():
         title = f"Polarity {sign}: {'as given' if sign > 0 else 'reversed'}"
-        parts += ["", _answer_table(title, found), _verdict(found, mechanism)]
+        parts += ["", _answer_table(title, by_model), _verdict(by_model, mechanism)]
     unfit = uplift_error(equivalence)
     if grade(unfit) is Grade.DISREGARD:
         parts.append(f"Disregard linear1: its uplift acceleration is {uplift_in_words(unfit)}.")
@@ -123,7 +124,7 @@ def view(
         parts += _closed_parts(closed, exact)
     else:
         parts.append(f"No closed form: by the equivalent blocks, the structure {names.NO_UPLIFT} (a <= 1).")
-    runs = [found for each in answers.values() for found in map(outcome, each.values()) if isinstance(found, History)]
+    runs = [run for each in answers.values() for run in map(outcome, each.values()) if isinstance(run, History)]
     return View(data, [*parts, restitution_used(structure), *not_checked(mechanism, runs)])
 
 
@@ -140,9 +141,9 @@ def _columns(answers: Mapping[str, Answer], *, unknown: bool = False) -> list[Co
         result = outcome(answer)
         if unknown and not result.unknown:
             return None
-        said = names.outcome(uplifts=result.lifted, overturned=result.fell, unknown=result.unknown)
+        words = names.outcome(uplifts=result.lifted, overturned=result.fell, unknown=result.unknown)
         # Impacts are stated only if the structure overturns; one that is still rocking counts as rocking.
-        return f"{said}\n{after_impacts(result)}" if result.fell else said
+        return f"{words}\n{after_impacts(result)}" if result.fell else words
 
     def bound(answer: Answer) -> float | None:
         return outcome(answer).lower_bound if outcome(answer).unknown else None
@@ -224,8 +225,8 @@ def _trust(closed: ClosedForm, exact: ExactResponse) -> str:
     if not closed.conditions["uplift"]:
         return f"it {names.NO_UPLIFT} (a <= 1)."
     use = "all conditions are met, so the closed form can be used"
-    said = use if closed.valid else f"do not use the closed form here, because {why_not_valid(closed)}"
-    return f"{said}{how_far_off(closed, exact)}."
+    sentence = use if closed.valid else f"do not use the closed form here, because {why_not_valid(closed)}"
+    return f"{sentence}{how_far_off(closed, exact)}."
 
 
 def _why_no_closed_form(mechanism: Mechanism, pulse: Pulse) -> str:

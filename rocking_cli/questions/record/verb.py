@@ -149,7 +149,8 @@ def record(
         seen, scaled = _examine(read, signs, ready, watch, measures, fit_pulse=fit_pulse)
         if spectrum:
             seen = [
-                each._replace(spectrum=_spectrum(own, period, damping)) for each, own in zip(seen, scaled, strict=True)
+                each._replace(spectrum=_spectrum(signed, period, damping))
+                for each, signed in zip(seen, scaled, strict=True)
             ]
         return _answer(seen, scaled, read)
 
@@ -162,9 +163,9 @@ def record(
                 raise
             watch.leave_out(error)
             continue
-        for sign, own in zip(signs, answer.motions, strict=True):
+        for sign, signed in zip(signs, answer.motions, strict=True):
             if (k, sign) in places:
-                _write_clean(places[k, sign], own, watch)
+                _write_clean(places[k, sign], signed, watch)
         watch.take(answer)
         by_name[_unique(answer.examined[0], by_name)] = answer
     if not are_several(motion, motions):
@@ -326,11 +327,11 @@ def _measured(
     if names is None:
         return {}
     names = names if isinstance(names, str) else ", ".join(names)
-    from rocking_cli.processing.intensity import ALL, parse_measures
+    from rocking_cli.processing.intensity import ALL_MEASURES, parse_measures
     from rocking_cli.questions.record.study import intensities, reference_of
 
     parsed = parse_measures(names)
-    if structure is None and names.strip().lower() == ALL:
+    if structure is None and names.strip().lower() == ALL_MEASURES:
         parsed = [each for each in parsed if not each.is_relative]
     return intensities(motion, parsed, reference_of(structure) if structure is not None else None)
 

@@ -87,8 +87,8 @@ BAD_CONCLUSIONS = frozenset({Concluded.OVERTURNS, Concluded.UNKNOWN, Concluded.N
 def cautioned(found: Verification) -> list[str]:
     """Return the remarks of a verification that are cautions, such as on a tie that elongates too far."""
     remarks = [*(remark for each in found.distinct for remark in each.remarks), *found.remarks]
-    said = dict.fromkeys(map(showing(found).say, remarks))
-    return [each for each in said if each.startswith("Caution")]
+    sentences = dict.fromkeys(map(showing(found).say, remarks))
+    return [each for each in sentences if each.startswith("Caution")]
 
 
 def _is_bad(end: Conclusion | None) -> bool:

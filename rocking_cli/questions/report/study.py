@@ -217,7 +217,7 @@ def gather(
     around : Neighbourhood, optional
         How to draw the neighbours of each motion; at least one neighbour.
     progress : callable, optional
-        Called with the number of steps done since the last call; `steps(given)` is their total.
+        Called with the number of steps done since the last call; `count_steps(given)` is their total.
 
     Raises
     ------
@@ -258,7 +258,7 @@ def _error_of_block(structure: Structure) -> tuple[Sequence[Linearisation], Sequ
         return [], [], str(error)
 
 
-def steps(given: Sequence[Scaled]) -> int:
+def count_steps(given: Sequence[Scaled]) -> int:
     """Return the number of steps of which `gather` reports the progress."""
     return len(given) + 2
 

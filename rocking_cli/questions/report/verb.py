@@ -114,7 +114,7 @@ def report(
     """
     from rocking_cli.io.files import check_writable, write_whole
     from rocking_cli.questions.report.page import render
-    from rocking_cli.questions.report.study import gather, steps
+    from rocking_cli.questions.report.study import count_steps, gather
     from rocking_cli.questions.report.view import view
     from rocking_cli.questions.verify.sheets import Head, SheetOrigin
     from rocking_cli.verification.check import refuse
@@ -151,7 +151,7 @@ def report(
     if verify is not None and site is not None:
         histories = Histories([each.motion.scaled(each.factor) for each in chosen], signs, state, on_floor)
         verified = _verified(ready, site, verify, chosen, histories, title, source)
-    with watch.progress(steps(chosen), "parts of the report") as advance:
+    with watch.progress(count_steps(chosen), "parts of the report") as advance:
         content = gather(ready, source.structure, chosen, signs, around=around, title=title, progress=advance)
     if file is not None:
         page = render(content, verified).encode()

@@ -96,16 +96,16 @@ def view(content: Assessment, verified: Verification | None = None) -> View:
                 "factor": each.given.factor,
                 "pga": each.pga_of_ground,
                 **processing.data(each.motion),
-                "headline": said.headline,
+                "headline": verdict.headline,
                 "unknown": each.unknown,
-                "answers": dict(said.answers),
-                "doubts": list(said.doubts),
+                "answers": dict(verdict.answers),
+                "doubts": list(verdict.doubts),
                 **runs_data(each, watched),
                 "polarity": each.polarity,
                 "margin": margin_data(each.margin),
                 "pulses": [fit_data(fit) for fit in each.fits],
             }
-            for each, said in zip(content.results, verdicts(content), strict=True)
+            for each, verdict in zip(content.results, verdicts(content), strict=True)
         ],
         "linearisation": trust_of_block(content),
         **({"verification": verification.data(verified)} if verified is not None else {}),
@@ -273,7 +273,7 @@ def _overturning(result: MotionResult) -> str:
 
 
 def _closeness(content: Assessment, result: MotionResult) -> str:
-    best, said = result.histories["nonlinear"], []
+    best, sentences = result.histories["nonlinear"], []
     if best.peak_ratio > 0:
         side = Direction.POSITIVE if best.furthest == best.peak_positive else Direction.NEGATIVE
         statics = content.structure.statics[0 if side > 0 else 1]
@@ -282,16 +282,16 @@ def _closeness(content: Assessment, result: MotionResult) -> str:
         beyond = "beyond which it is pushed over instead of back"
         if statics.phi_cr is None:
             beyond = "at which the motion would end, and up to which it is pulled back: it has no critical rotation"
-        said.append(
+        sentences.append(
             f"Its largest rotation{until} is {degrees(best.furthest):.3g}° {SENSE[side]}. That is {ratio} the "
             f"{best.reference}, {degrees(statics.reference):.3g}°, {beyond}."
         )
         if best.unknown:
-            said.append("It may rotate further afterwards.")
+            sentences.append("It may rotate further afterwards.")
         if best.peak_ratio > 1:
-            said.append("It exceeds this rotation and is brought back only by the subsequent ground motion.")
+            sentences.append("It exceeds this rotation and is brought back only by the subsequent ground motion.")
     neighbours = neighbours_in_words(result.neighbours[result.polarity])
-    return " ".join([*said, neighbours, in_words(result.margin, result.pga_of_ground)])
+    return " ".join([*sentences, neighbours, in_words(result.margin, result.pga_of_ground)])
 
 
 def _trusted(content: Assessment, result: MotionResult) -> str:

@@ -13,7 +13,7 @@ from rocking_cli.cli.defaults import as_declared
 from rocking_cli.cli.groups import NEIGHBOUR_OPTIONS, GroundMotions, Output
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import INTERVAL, POSITIVE, TAIL, TILT, Parsed, quantity_of
-from rocking_cli.processing.reading_options import ALL
+from rocking_cli.processing.reading_options import ALL_AZIMUTHS
 
 # The names of fitted pulses are repeated here so that `--help` does not import numpy.
 FITTED_PULSES = ("sine", "ricker", "mavroeidis")
@@ -119,7 +119,7 @@ def command(files: tuple[str, ...], asked: GroundMotions, output: Output, **ques
     from rocking_cli.questions.respond.verb import respond
 
     motions = asked.motions
-    around = motions.reading.azimuth == ALL
+    around = motions.reading.azimuth == ALL_AZIMUTHS
     several = motions.count > 1 and not around
     if around or not motions:
         as_declared(question, *NEIGHBOUR_OPTIONS)

@@ -134,16 +134,16 @@ class Several:
             yield f"{name}: {until}"
         if self._until:
             yield "Next: `rocking margin` shows up to which scale factor the outcomes are known."
-        asks = {name: found for name, found in self._contacts.items() if found.friction_needed >= 0}
+        asks = {name: demand for name, demand in self._contacts.items() if demand.friction_needed >= 0}
         order = sorted(asks, key=lambda name: -asks[name].friction_needed)
         if len(order) > 1:
             yield f"Friction that the joints require: {self._friction(asks, order)}."
-        fail = {name: found for name, found in self._contacts.items() if not found.stands}
+        fail = {name: demand for name, demand in self._contacts.items() if not demand.stands}
         if not fail and asks:
             fail = {f"The joints hold under all motions, of which {order[0]} demands most of them": asks[order[0]]}
-        for name, found in fail.items():
-            if said := contact_words(found, self._mechanism):  # empty if the structure does not rock
-                yield f"{name}: {said.removeprefix('Contact: ')}"
+        for name, demand in fail.items():
+            if sentence := contact_words(demand, self._mechanism):  # empty if the structure does not rock
+                yield f"{name}: {sentence.removeprefix('Contact: ')}"
 
     def _friction(self, asks: Mapping[str, ContactDemand], order: Sequence[str]) -> str:
         """Return the friction that motions require, the largest first, and the motions that require too much."""

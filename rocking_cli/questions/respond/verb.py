@@ -23,8 +23,8 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.names import OPENING
 from rocking_cli.processing.listed import Scaled
-from rocking_cli.processing.reading_options import ALL
-from rocking_cli.questions.respond.motions import all_directions
+from rocking_cli.processing.reading_options import ALL_AZIMUTHS
+from rocking_cli.questions.respond.motion_verbs import all_directions
 from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.studies.release import Release
@@ -156,7 +156,7 @@ def respond(
     several, third = are_several(motion, motions), (vertical, vertical_dt, vertical_channel)
     _check(motions, signs, third, with_pulse, several=several, released=tilt is not None)
     drawn_around = around_of(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
-    if motions.reading.azimuth == ALL:
+    if motions.reading.azimuth == ALL_AZIMUTHS:
         _refuse_with_all_azimuths(polarity=signs != (1,), with_pulse=with_pulse, impacts=impacts, contact=contact,
                                   tail=tail != TAIL_SECONDS, neighbours=neighbours)  # fmt: skip
         around = all_directions(ready, motions, third, models=models, release=tilt, rtol=rtol, watch=watch)

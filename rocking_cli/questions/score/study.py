@@ -24,7 +24,7 @@ from rocking_cli.processing.steps import parse_step, process
 from rocking_cli.questions.score.table import OWN_PREDICTORS, ObservedTest
 from rocking_cli.structure import Structure
 from rocking_cli.studies.fit import Counts, fit_outcomes
-from rocking_cli.studies.neighbours import Neighbourhood, follow
+from rocking_cli.studies.neighbours import Neighbourhood, simulate_neighbours
 
 SEED = 1963
 DRAWS = 2000
@@ -168,7 +168,7 @@ def surprise(stated: Reals, seen: Reals, count: int) -> Reals:
     return np.asarray(-(seen * np.log(held) + (1 - seen) * np.log(1 - held)))
 
 
-def score(stated: Reals, seen: Reals, draws: ClusterDraws, count: int) -> RuleScore:
+def score_rule(stated: Reals, seen: Reals, draws: ClusterDraws, count: int) -> RuleScore:
     """Score the shares of one rule.
 
     Parameters
@@ -203,7 +203,7 @@ def calibration(stated: Reals, places: Integers, seen: Reals, draws: ClusterDraw
     Parameters
     ----------
     stated, seen
-        As for `score`, without NaN.
+        As for `score_rule`, without NaN.
     places : ndarray of int, shape (n,)
         The bin of each test, from 0.
     draws : ClusterDraws
@@ -248,9 +248,9 @@ def base_rates(seen: Reals, clusters: Sequence[str], halves: Sequence[str]) -> R
         NaN for tests without any other.
     """
     rates = np.full(seen.size, np.nan)
-    for own, others in _apart(clusters, halves):
+    for tests, others in _apart(clusters, halves):
         if others.any():
-            rates[own] = seen[others].mean()
+            rates[tests] = seen[others].mean()
     return rates
 
 
@@ -271,9 +271,9 @@ def fitted_shares(measure: Reals, seen: Reals, clusters: Sequence[str], halves: 
     """
     x = np.log(np.where(measure > 0, measure, np.nan))
     shares = np.full(seen.size, np.nan)
-    for own, others in _apart(clusters, halves):
+    for tests, others in _apart(clusters, halves):
         told = others & np.isfinite(x)
-        shares[own] = _logistic(x[told], seen[told], x[own])
+        shares[tests] = _logistic(x[told], seen[told], x[tests])
     return shares
 
 
@@ -507,7 +507,7 @@ def state(test: ObservedTest, structure: Structure, motion: GroundMotion, around
     if model.symmetric:  # a reversed motion has the same effect
         signs = signs[:1]
     drawn = around.drawn(model)
-    histories = [follow(model, shaking, drawn, polarity=sign, threads=1) for sign in signs]
+    histories = [simulate_neighbours(model, shaking, drawn, polarity=sign, threads=1) for sign in signs]
     peaks = np.concatenate([_peaks(each) for each in histories])
     rank = nan
     if test.peak is not None:
@@ -583,7 +583,7 @@ def scored(stated: Sequence[Stated], around: Neighbourhood) -> Scored:
     return Scored(
         around,
         stated,
-        {name: score(shares, seen, draws, around.count) for name, shares in rules.items()},
+        {name: score_rule(shares, seen, draws, around.count) for name, shares in rules.items()},
         {name: difference(tool, shares, seen, draws) for name, shares in rules.items() if name != TOOL},
         bins,
         mean_gap(bins),

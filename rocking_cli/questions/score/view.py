@@ -82,14 +82,14 @@ def _parts(found: Scored, file: str) -> Iterator[Table | str]:
     kept, tests = found.observed, found.tests
     structures, records = ({getattr(each.test, name) for each in tests} for name in ("structure", "record"))
     drawn = found.drawn or {found.around: []}
-    said = " and ".join(
+    sentence = " and ".join(
         f"{deviations(around)} ({', '.join(each)})" if len(drawn) > 1 else deviations(around)
         for around, each in drawn.items()
     )
     yield (
         f"{file}: {_count(len(tests), 'test')} of {_count(len(structures), 'structure')} under "
         f"{_count(len(records), 'motion')}. {found.around.count} neighbouring motions are simulated for each, "
-        f"{said}; the stated share is that of the neighbours that overturn."
+        f"{sentence}; the stated share is that of the neighbours that overturn."
     )
     if commanded := sum(each.test.commanded for each in tests):
         yield (

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from rocking_cli import names
 from rocking_cli.arrays import Reals
-from rocking_cli.names import FEWEST
+from rocking_cli.names import MIN_MOTIONS
 from rocking_cli.plotting import style
 from rocking_cli.questions.spectrum.study import Spectrum
 
@@ -57,7 +57,7 @@ def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title:
         many
         and low < high
         and len(spectra) <= MAX_SHADED_CURVES
-        and any((each.followed >= FEWEST).any() for each in spectra)
+        and any((each.followed >= MIN_MOTIONS).any() for each in spectra)
     )
     top = _top(spectra, high if shaded else 0.5)
     for k, (each, median) in enumerate(zip(spectra, medians, strict=True)):
@@ -190,15 +190,15 @@ def _log_ticks(axis: Axis, ratio: float) -> None:
 
 def _second_axis(axes: Axes, spectra: Sequence[Spectrum]) -> None:
     """Add an upper axis: the scale of the structure if there is only one, or R of the blocks if all are blocks."""
-    own = [each for each in spectra if each.shape.slenderness is None]
-    if len(own) > 1:
+    of_structures = [each for each in spectra if each.shape.slenderness is None]
+    if len(of_structures) > 1:
         return
-    of = own[0] if own else spectra[0]
+    of = of_structures[0] if of_structures else spectra[0]
     both: tuple[Callable[[Reals], Reals], ...] = (of.shape.scales, of.shape.periods)
     if of.shape.own is not None:  # only sizes that were built are known
         both = _between(of.periods, of.scales, 2.0), _between(of.scales, of.periods, 0.5)
     above = axes.secondary_xaxis("top", functions=both)  # type: ignore[arg-type]
-    above.set_xlabel("scale (1: as given)" if own else "size R of the blocks [m]", fontsize=style.LABEL)
+    above.set_xlabel("scale (1: as given)" if of_structures else "size R of the blocks [m]", fontsize=style.LABEL)
     _log_ticks(above.xaxis, spectra[0].scales[-1] / spectra[0].scales[0])
     above.tick_params(labelsize=8, colors=style.INK)
 

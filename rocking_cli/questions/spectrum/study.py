@@ -25,7 +25,7 @@ from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.io.field_problems import of_arguments
-from rocking_cli.names import FEWEST, OPENING
+from rocking_cli.names import MIN_MOTIONS, OPENING
 from rocking_cli.structure import Structure, with_restitution
 from rocking_cli.studies.under_pulses import Progress, PulsedModel, parse_shape, pulsed_model, uplift
 
@@ -191,10 +191,10 @@ class Spectrum:
     @property
     def uplifts(self) -> Reals:
         """Uplift acceleration over g at each size, shape (n,), in the direction with the smaller one at scale 1."""
-        own, model = self.shape.own, self.shape.structure.model.name
-        if own is None:
+        sizes, model = self.shape.own, self.shape.structure.model.name
+        if sizes is None:
             return np.full(self.scales.size, self.shape.structure.lambda_)
-        return np.array([uplift(own.block(scale), model) for scale in self.scales.tolist()])
+        return np.array([uplift(sizes.block(scale), model) for scale in self.scales.tolist()])
 
     @property
     def given(self) -> int | None:
@@ -238,7 +238,7 @@ class Spectrum:
         It is NaN at sizes with too few motions, except for the median.
         """
         peaks = fractile(self.peak_ratio, q)
-        return peaks if q == 0.5 else np.where(self.followed < FEWEST, np.nan, peaks)
+        return peaks if q == 0.5 else np.where(self.followed < MIN_MOTIONS, np.nan, peaks)
 
     def fractile_overturns(self, q: float) -> Bools:
         """Return whether the q-fractile overturns even if no unknown outcome does, shape (n,)."""
@@ -362,8 +362,8 @@ def _each_its_own(
         runs = Runs.every(len(models), len(motions), polarities=signs)
         parts.append((len(models), _outcomes(models, motions, runs, threads, progress)))
     placed = [
-        found.by_field(lambda values, many=many: np.moveaxis(values.reshape(many, -1, len(signs)), 0, -1))
-        for many, found in parts
+        outcomes.by_field(lambda values, many=many: np.moveaxis(values.reshape(many, -1, len(signs)), 0, -1))
+        for many, outcomes in parts
     ]
     return placed[0].by_field(lambda *values: np.concatenate(values, axis=-1), *placed[1:])
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from rocking_cli.arrays import Integers, Reals
-from rocking_cli.names import FEWEST, NO_UPLIFT, OVERTURNS, ROCKS, UNKNOWN
+from rocking_cli.names import MIN_MOTIONS, NO_UPLIFT, OVERTURNS, ROCKS, UNKNOWN
 from rocking_cli.processing.listed import Scaled
 from rocking_cli.questions.overturning.view import FROM_KINEMATICS, NO_JOINTS, numbers, spaced
 from rocking_cli.questions.spectrum.study import Spectrum
@@ -211,8 +211,9 @@ def _curve(results: ShownSpectra, each: Spectrum) -> Iterator[Table | str]:
             f"built and simulated separately. Uplift is {' and '.join(ends)}."
         )
     if not results.one:
-        few = "" if (each.followed >= FEWEST).all() else (
-            f" Except for the median they are '{ABSENT}' under fewer than {FEWEST} motions, of which one decides them."
+        few = "" if (each.followed >= MIN_MOTIONS).all() else (
+            f" Except for the median they are '{ABSENT}' under fewer than {MIN_MOTIONS} motions, of which one decides "
+            "them."
         )  # fmt: skip
         yield f"Median and fractiles of the peak phi/phi_cr; an overturning motion ranks above every finite peak.{few}"
     yield table_of("", _columns(results, each), shown)
@@ -243,9 +244,9 @@ def _verdict(results: ShownSpectra, each: Spectrum) -> str:
     if place is None:
         return f"{each.shape.structure.name}: {_blocks(results, each)}"
     sides = [
-        said
+        sentence
         for what, part in (("smaller", slice(None, place)), ("larger", slice(place + 1, None)))
-        if (said := _side(results, each, what, part))
+        if (sentence := _side(results, each, what, part))
     ]
     return " ".join(
         [

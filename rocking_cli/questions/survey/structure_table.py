@@ -71,9 +71,9 @@ class _RowDocument(Document):
 
     def at(self, place: Place, message: str, hint: str | None = None, *, key: bool = False) -> Problem:
         """Return a problem with the content of a column, or with a field that has no column."""
-        own = next((self.columns[place[:k]] for k in range(len(place), 0, -1) if place[:k] in self.columns), None)
+        heading = next((self.columns[place[:k]] for k in range(len(place), 0, -1) if place[:k] in self.columns), None)
         of_file = ": ".join(each for each in (cut(one_line(self.base)), spell(place)) if each)
-        return self.problem(message, None, own or of_file, hint)
+        return self.problem(message, None, heading or of_file, hint)
 
 
 class _Kept(Registry):

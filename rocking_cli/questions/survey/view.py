@@ -293,9 +293,9 @@ def _named(rows: Sequence[Surveyed], most: int = 3) -> str:
 def bad_lines(found: Sequence[Bad], file: str, most: int) -> Iterator[str]:
     """Yield the errors of structures that could not be used: of the first ones in full, then the number of others."""
     for each in found[:most]:
-        said = str(each.error)
-        place = "" if said.startswith(f"{one_line(file)}:") else f"{one_line(file)}:{each.line}: "
-        place = place.removesuffix(f"{each.line}: ") if said.startswith(f"{each.line}: ") else place
-        yield f"{place}{said}"
+        message = str(each.error)
+        place = "" if message.startswith(f"{one_line(file)}:") else f"{one_line(file)}:{each.line}: "
+        place = place.removesuffix(f"{each.line}: ") if message.startswith(f"{each.line}: ") else place
+        yield f"{place}{message}"
     if len(found) > most:
         yield f"{len(found) - most:,} more structures cannot be used: `as_json` lists them all"

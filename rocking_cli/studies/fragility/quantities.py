@@ -21,7 +21,7 @@ LIMIT_UNIT = "mm"
 LIMIT_DIGITS = 10
 
 
-def spelt(text: str) -> str:
+def displacement_in_mm(text: str) -> str:
     """Return a displacement in mm, as limit states are spelt: `25 mm` for `2.5 cm`.
 
     Raises
@@ -51,7 +51,7 @@ def metres(limit: str | float) -> float | None:
     return read(limit, "m")
 
 
-def asked_for(limits: Sequence[str | float]) -> list[str]:
+def displacement_limits(limits: Sequence[str | float]) -> list[str]:
     """Return those limit states that are displacements."""
     return [limit for limit in limits if isinstance(limit, str) and metres(limit) is not None]
 
@@ -71,7 +71,7 @@ def kept(fact: Callable[[str], Any], limits: Sequence[str | float]) -> dict[str,
     dict of str to ndarray, shape (samples, 2)
         Positive and negative rotation of each sample, by limit state; infinite if the top never moves that far.
     """
-    requested = asked_for(limits)
+    requested = displacement_limits(limits)
     stored = fact(ROTATIONS_FACT) if requested else {}
 
     def table(pairs: Sequence[Sequence[float | None]]) -> Reals:
@@ -87,7 +87,7 @@ USUAL_MEASURES = (PGA, PGV, "PGA/(g lambda)", "p PGV/(g lambda)")
 """Measures that every table of runs has, because every store has the values that they need."""
 
 
-def spelled(text: str) -> str:
+def standard_measure(text: str) -> str:
     """Return the standard spelling of a measure given in any case and spacing. Raises `InputError` if unknown."""
     return str(parse_measure(text))
 

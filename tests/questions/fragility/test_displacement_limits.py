@@ -14,7 +14,7 @@ from rocking_cli.questions.fragility.campaign import prepare
 from rocking_cli.questions.fragility.store import Store
 from rocking_cli.questions.fragility.study import load_study
 from rocking_cli.questions.fragility.tally import count, exceeds, first_reached, of_a_structure
-from rocking_cli.studies.fragility.quantities import ROTATIONS_FACT, is_quantity, kept, metres, spelt
+from rocking_cli.studies.fragility.quantities import ROTATIONS_FACT, displacement_in_mm, is_quantity, kept, metres
 from rocking_cli.studies.movements import Watched
 from tests.conftest import EXAMPLES
 from tests.questions.fragility.test_study_runs import carry_out
@@ -56,7 +56,7 @@ def whole(tmp_path_factory):
     [("25 mm", "25 mm"), ("2.5cm", "25 mm"), ("0.025 m", "25 mm"), ("1 in", "25.4 mm"), ("0.03 m", "30 mm")],
 )
 def test_a_displacement_is_written_in_mm(text, limit):
-    assert spelt(text) == limit and is_quantity(limit)
+    assert displacement_in_mm(text) == limit and is_quantity(limit)
     assert metres(limit) == pytest.approx(float(limit.split()[0]) / 1000)
     assert metres("uplift") is None and metres(0.5) is None and metres("25 kg") is None
 

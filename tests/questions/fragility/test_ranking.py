@@ -9,7 +9,7 @@ import statsmodels.api as sm
 
 from rocking_cli.excitation.base import Origin
 from rocking_cli.questions.fragility import ranking, sources
-from rocking_cli.questions.fragility.campaign import prepare, steps
+from rocking_cli.questions.fragility.campaign import count_steps, prepare
 from rocking_cli.questions.fragility.ranking import Ranked, Ranking, line, serves
 from rocking_cli.questions.fragility.ranking_view import judge
 from rocking_cli.questions.fragility.store import Store
@@ -181,7 +181,7 @@ class TestStudy:
         for k, rank_measures in enumerate((False, True)):
             with Store.writing(tmp_path / f"{k}.db") as kept:
                 prepare(asked, kept, told.append, rank_measures=rank_measures)
-            assert sum(told) == steps(asked, rank_measures=rank_measures) == 3 + 6 * (1 + k)
+            assert sum(told) == count_steps(asked, rank_measures=rank_measures) == 3 + 6 * (1 + k)
             told.clear()
 
     def test_a_store_that_was_not_measured_ranks_less_and_tests_nothing(self, study, tmp_path):

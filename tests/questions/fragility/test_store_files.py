@@ -10,7 +10,7 @@ import pytest
 
 from rocking_cli.errors import InputError
 from rocking_cli.questions.fragility import store
-from rocking_cli.questions.fragility.store import Store, in_words, open_locked, put_aside, this_process
+from rocking_cli.questions.fragility.store import Store, naming_store, open_locked, put_aside, this_process
 from tests.stores import Sound, command, shown
 
 
@@ -254,7 +254,10 @@ def test_a_store_that_a_restart_has_moved_is_no_matter_of_rights(tmp_path):
     connection = sqlite3.connect(path, isolation_level=None)
     connection.execute("CREATE TABLE runs (number)")
     path.rename(tmp_path / "study.before.db")
-    with pytest.raises(InputError, match=r"study\.db: another process has moved this store") as caught, in_words(path):
+    with (
+        pytest.raises(InputError, match=r"study\.db: another process has moved this store") as caught,
+        naming_store(path),
+    ):
         connection.execute("INSERT INTO runs VALUES (1)")
     connection.close()
     assert "run the same command again" in str(caught.value)

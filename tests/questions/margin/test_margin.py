@@ -101,8 +101,12 @@ def test_of_joints_that_the_mechanism_does_not_name_nothing_is_said_to_be_unknow
 @pytest.mark.every(2)
 def test_a_reversed_motion_is_followed_only_where_it_can_add_something(monkeypatch):
     followed, done = [], []
-    follow = margins.follow
-    monkeypatch.setattr(margins, "follow", lambda *a, **k: followed.append(len(a[2].amplitude)) or follow(*a, **k))
+    simulate = margins.simulate_neighbours
+    monkeypatch.setattr(
+        margins,
+        "simulate_neighbours",
+        lambda *a, **k: followed.append(len(a[2].amplitude)) or simulate(*a, **k),
+    )
     motion = parse_pulse("sine:0.8g:0.5s").sampled()
     around = Neighbourhood(20, 0.02, 0.02, 0.0)
     every = 61 * around.count

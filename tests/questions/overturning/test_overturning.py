@@ -20,7 +20,7 @@ from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD
 from rocking_cli.questions.overturning.picture import draw_comparison, draw_map
 from rocking_cli.questions.overturning.study import SCAN_AMPLITUDES, Region, boundaries, compare, overturning_map
 from rocking_cli.structure import Structure, build_models
-from rocking_cli.studies.under_pulses import linear_block, outcomes, parse_shape, pulsed_model, weakest
+from rocking_cli.studies.under_pulses import linear_block, outcomes, parse_shape, pulsed_model, weakest_direction
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES, rows_of
 from tests.following import respond
@@ -288,13 +288,13 @@ class TestShape:
     def test_the_weakest_pulse_lifts_the_weaker_direction(self):
         frame = equivalent_block(load_structure(FRAME))
         weaker = min(Direction, key=lambda d: frame[d].lambda_)
-        assert weakest(frame, SINE) == weakest(frame, SINE, (-1,)) == weaker
+        assert weakest_direction(frame, SINE) == weakest_direction(frame, SINE, (-1,)) == weaker
         # To one side alone it is that side.
-        assert weakest(frame, parse_shape("half_sine")) is Direction.NEGATIVE
-        assert weakest(frame, parse_shape("half_sine"), (-1,)) is Direction.POSITIVE
+        assert weakest_direction(frame, parse_shape("half_sine")) is Direction.NEGATIVE
+        assert weakest_direction(frame, parse_shape("half_sine"), (-1,)) is Direction.POSITIVE
         # Where both are alike, the one that is pushed first.
-        assert weakest(equivalent_block(BLOCK), SINE) is Direction.NEGATIVE
-        assert weakest(equivalent_block(BLOCK), SINE, (-1,)) is Direction.POSITIVE
+        assert weakest_direction(equivalent_block(BLOCK), SINE) is Direction.NEGATIVE
+        assert weakest_direction(equivalent_block(BLOCK), SINE, (-1,)) is Direction.POSITIVE
 
 
 class TestCommand:

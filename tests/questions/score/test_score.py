@@ -15,7 +15,7 @@ from rocking_cli.questions.score.picture import draw_reliability
 from rocking_cli.questions.score.study import Stated, distance_from_uniform, fitted_shares, scored
 from rocking_cli.questions.score.table import ObservedTest, parse_columns, read_tests
 from rocking_cli.questions.score.view import view
-from rocking_cli.studies.neighbours import Neighbourhood, follow
+from rocking_cli.studies.neighbours import Neighbourhood, simulate_neighbours
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES, SHARED, rows_of
 from tests.elsewhere import PROJECT
@@ -252,7 +252,11 @@ def test_a_polarity_that_is_not_known_is_both():
 
 def test_a_symmetric_structure_is_simulated_once(monkeypatch):
     followed = []
-    monkeypatch.setattr(score_study, "follow", lambda *a, **k: followed.append(k["polarity"]) or follow(*a, **k))
+    monkeypatch.setattr(
+        score_study,
+        "simulate_neighbours",
+        lambda *a, **k: followed.append(k["polarity"]) or simulate_neighbours(*a, **k),
+    )
     given = {"record": ["sine:0.41g:0.8s"] * 3, "peak": ["0.1 rad"] * 3, "polarity": [1, -1, ""]}
     one, other, both = rk.score({"structure": [BLOCK] * 3, **given}, neighbours=COUNT, threads=1).tests
     assert len(followed) == 3 and 0 < one.share == other.share == both.share < 1
@@ -302,7 +306,7 @@ def test_peaks_are_ranked_among_the_neighbours():
     assert found.distance == pytest.approx(distance_from_uniform(np.array([found.ranks[k].rank for k in (0, 1, 3)])))
     assert found.distance != pytest.approx(distance_from_uniform(np.array([each.rank for each in found.ranks])))
     model = rk.build_models(rk.load_structure(BLOCK), ("nonlinear",))[0]
-    runs = follow(model, rk.parse_pulse("sine:0.3g:0.8s").sampled(), Neighbourhood(50).drawn(model))
+    runs = simulate_neighbours(model, rk.parse_pulse("sine:0.3g:0.8s").sampled(), Neighbourhood(50).drawn(model))
     peaks = np.maximum(runs.peak_positive, runs.peak_negative)
     assert 0 < (peaks == 0).mean() == pytest.approx(2 * found.ranks[0].rank)
     assert found.ranks[3].rank == pytest.approx((peaks < 0.02).mean())
