@@ -34,11 +34,11 @@ class KernelSet:
     Parameters
     ----------
     name : str
-        Of its entry in the shipped libraries.
+        Name of its entry in the shipped libraries.
     module, function : str
-        Where it is.
+        Module and name of the function in Python.
     arguments : tuple of Layout
-        What it takes.
+        Layout of its arguments.
     """
 
     name: str

@@ -53,31 +53,30 @@ KEPT = 20
 MOVING, FRESH, SO_FAR, SINCE, SEEN = 0, 1, 2, 4, 5
 NOTES = 6
 OF_ROW = 20  # of `rows`: powers 0 to 3 of the factors of 1, u_g'', q.^2 and v_g'' in a force, and of its compliance
-# How a motion ends; it is left where its joints have opened so far that nothing is known any longer.
+# How a motion ends; LEFT: its joints have opened so far that nothing is known any longer.
 AT_REST, OVERTURNED, STILL_ROCKING, STALLED, LEFT = range(5)
 # How a flight over part of a sample interval ends.
 REACHED, IMPACT, LIMIT, STUCK = range(4)
-# What is looked for inside a step: q at a level, w = 0, or q.. = 0.
+# What a search inside a step is for: q at a level, w = 0, or q.. = 0.
 HEIGHT, TURN, BALANCE = range(3)
 
-MARGIN = 1e-12  # of the uplift acceleration: by how much it must be passed, so that rounding never lifts a structure
-# A motion slower than REST after an impact is over; while the ground pushes beyond uplift one goes on until it is
-# slower by this factor.
+MARGIN = 1e-12  # share by which u_g'' must exceed the uplift acceleration, so that rounding never lifts a structure
+# A motion ends if its rate after an impact is below REST; while the ground pushes beyond uplift, below REST FAINT.
 FAINT = 1e-9
 CHATTER = 1000  # impacts in one sample interval that count as rest, however elastic: with dt < 1 s below 1e-6 phi_cr
-IDLE = 10_000  # of these intervals without impact: swinging in a hollow beyond phi_cr, for ever
-LOOPS = 10_000  # events in one sample interval, or a piece of it, before giving up
-STRIDE = 100.0  # of 1/p: the longest step of the closed form, whose cosh would overflow at 700
-SLOW = 0.5  # of 1/p: the interval to go on with after the record
-LOOK = 1.25e-3  # s: the longest step in which openings of joints are advanced, eight in 0.01 s
-BEHIND = 1e-11  # of a cell: how far behind a corner of the force a motion goes on
-COINCIDE = 1e-9  # of an interval: what is closer than this is at one moment
-LONG = 1e3  # s after the record: what slides at rest has stopped by then
+IDLE = 10_000  # sample intervals without impact after which a motion in a hollow beyond phi_cr never ends
+LOOPS = 10_000  # events in one sample interval, or a piece of it, with which a motion stalls
+STRIDE = 100.0  # longest step of the closed form, in 1/p; its cosh would overflow at 700
+SLOW = 0.5  # length of an interval after the record, in 1/p
+LOOK = 1.25e-3  # s: longest step in which openings of joints are advanced, eight in 0.01 s
+BEHIND = 1e-11  # distance behind a corner of the force at which a motion goes on, over a cell
+COINCIDE = 1e-9  # distance of moments that coincide, over a sample interval
+LONG = 1e3  # s after the record by which sliding at rest has stopped
 
 SOURCE: list[Callable[..., object]] = []
-"""What is to be compiled, each after those it calls."""
+"""The functions to compile, each after those it calls."""
 INLINE: list[Callable[..., object]] = []
-"""What of it is to be set into each place that calls it: a call would cost more than the few sums inside."""
+"""Those of them that are compiled into their callers: a call would cost more than the few sums inside."""
 Function = TypeVar("Function", bound=Callable[..., object])
 
 
@@ -88,13 +87,13 @@ def called(function: Function) -> Function:
 
 
 def inlined(function: Function) -> Function:
-    """Mark one that is to be set into its callers."""
+    """Mark a function of the kernel that is compiled into its callers."""
     INLINE.append(function)
     return called(function)
 
 
 class Joints(NamedTuple):
-    """The joints of structures, which histories are checked against; see `rocking_cli.dynamics.joints`."""
+    """Joints of all structures, against which histories are checked; see `rocking_cli.dynamics.joints`."""
 
     # int (m, 8): first joint, numbers of joints, rows and cells; places of the first of `rows`, `struck` and `within`,
     # and the number of cells of the last
@@ -131,16 +130,16 @@ class Watch(NamedTuple):
     gravity: float
     limit: float
     step: float
-    scales: bool  # whether all forces scale with g, as those of no tie do
-    slender: float  # factor on its slenderness, by which u_g'' is divided, but not for its joints
-    slow: float  # q.^2 up to which no joint opens before phi_cr, in the whole motion
+    scales: bool  # whether all forces scale with g, which those of ties do not
+    slender: float  # factor on the slenderness: u_g'' is divided by it, except for the joints
+    slow: float  # q.^2 up to which no joint opens before phi_cr under any u_g'' of the motion
     kept: np.ndarray  # (joints, KEPT)
     notes: np.ndarray  # (NOTES,)
     active: np.ndarray  # int (4 joints,): rows that move in a step
 
 
 class Deck(NamedTuple):
-    """Structures and ground motions, one after the other, that any number of histories are of."""
+    """Structures and ground motions of a batch of histories, each kind in arrays one after the other."""
 
     structures: np.ndarray  # int (m, 3): first row and number of rows of the tables of each, and whether it is linear
     numbers: np.ndarray  # (m, 2, COLUMNS): see the columns above
@@ -158,8 +157,8 @@ class Deck(NamedTuple):
     u: np.ndarray  # horizontal ground acceleration of all records [m/s2], straight between samples, zero after the last
     v: np.ndarray  # vertical ground acceleration
     ahead: np.ndarray  # at each sample of the horizontal component, the largest |u| from there on [m/s2]
-    v_ahead: np.ndarray  # and the largest -v
-    v_above: np.ndarray  # and the largest v
+    v_ahead: np.ndarray  # the largest -v from each sample of the vertical component on [m/s2]
+    v_above: np.ndarray  # the largest v from there on [m/s2]
     joints: Joints
 
 
@@ -209,16 +208,16 @@ class Motion(NamedTuple):
 
 
 class Demand(NamedTuple):
-    """What is missing at the joints at a moment; joints by their numbers, -1: none."""
+    """Forces that are missing at the joints at one moment; joints by their numbers, -1 for none."""
 
-    missing: float  # the largest force that is missing at any joint [N]
-    where: int
-    crushes: int
-    parted: int  # the joint that stays closed at which most is missing
+    missing: float  # largest force missing at any joint [N]
+    where: int  # joint of that force
+    crushes: int  # joint that crushes
+    parted: int  # closed joint at which the largest force is missing
 
 
 class Law(NamedTuple):
-    """What a motion in one direction obeys, besides its force table."""
+    """Numbers of the equation of motion in one direction, beside its force table."""
 
     exact: bool  # the closed form holds
     d: int
@@ -538,7 +537,7 @@ def up_to_corner(forces, corners, law, ground, tau, state, size, ended):
 
 @inlined
 def quiet(watch, law, ground, tau, q, w):
-    """Whether no joint moves, and all bear for certain: u_g'' between two straight lines over q.^2, up to some q.^2.
+    """Whether no joint moves and all certainly bear: u_g'' is between two straight lines over q.^2, up to some q.^2.
 
     Forces are affine in g, u_g'' and q.^2: with g times a factor they bear under u_g'' and q.^2 times that. That of a
     tie does not grow with g, and nothing is certain under vertical motion.
@@ -560,7 +559,7 @@ def quiet(watch, law, ground, tau, q, w):
 
 @called
 def weigh(watch, d, per_end, q, w, u, weight, lift):
-    """Fill in how fast each joint would open and slip where the motion is, and return what is missing there."""
+    """Fill in how fast each joint would open and slip at this moment, and return the `Demand`."""
     rows, kept = watch.rows, watch.kept
     place = q * per_end * watch.cells
     k = min(max(int(place), 0), watch.cells - 1)
@@ -638,7 +637,7 @@ def through(kept, j, end, x):
 
 @called
 def note(watch, d, q_cr, t, q, demand, moving, marks):
-    """Note what a moment shows of the joints."""
+    """Note in `marks` which joints open, slide or crush at this moment."""
     notes, kept = watch.notes, watch.kept
     missing, where, crushes, parted = demand
     if parted >= 0 and not isfinite(marks[PARTED]):
@@ -674,7 +673,7 @@ def note(watch, d, q_cr, t, q, demand, moving, marks):
 
 @called
 def passed(watch, d, t, q, reason, where, marks):
-    """Note that nothing is known any longer."""
+    """Note in `marks` that the outcome is unknown from here on, with the reason and the joint."""
     marks[PASSED], marks[REASON], marks[WHERE], marks[PASSED_IMPACTS] = t, reason, where, marks[IMPACTS]
     for side in range(2):
         marks[PASSED_PEAK + side] = watch.notes[SO_FAR + side]
@@ -683,7 +682,7 @@ def passed(watch, d, t, q, reason, where, marks):
 
 @inlined
 def copy_accelerations(watch, column):
-    """Keep the accelerations of now as those of another moment; slices of one array would be copied through memory."""
+    """Keep the present accelerations in another column; slices of one array would be copied through memory."""
     for j in range(watch.size):
         for end in range(4):
             watch.kept[j, column + end] = watch.kept[j, GAP_ACC + end]
@@ -691,7 +690,7 @@ def copy_accelerations(watch, column):
 
 @called
 def look(watch, law, ground, t, tau, state, size, ended, peak, marks):
-    """Hold the joints against what a step asks of them: how far any opens or slips, released alone.
+    """Check the joints over a step: how far any opens or slips if it alone could.
 
     `peak` is the largest q of its direction before the step.
     """
@@ -770,7 +769,7 @@ def between(state, ended, size, x):
 
 @called
 def strike(watch, d, t, rate, eta, marks):
-    """Let joints fly open, or slide, that an impact does not press together; d is the direction that begins."""
+    """Open the joints, or let them slide, that an impact does not press together; d is the direction that begins."""
     kept, rows = watch.kept, watch.rows
     moving, missing, where, row = False, 0.0, -1, d * watch.lines
     for j in range(watch.size):
@@ -806,7 +805,7 @@ def strike(watch, d, t, rate, eta, marks):
 
 @called
 def settle(watch, t, marks):
-    """Close all joints of a structure at rest; what slid stays where it is."""
+    """Close all joints of a structure at rest; slips remain."""
     watch.kept[:, GAP : GAP + 4] = 0.0
     watch.kept[:, SLIP_RATE : SLIP_RATE + 2] = 0.0
     note(watch, 0, 1.0, t, 0.0, Demand(0.0, -1, -1, -1), False, marks)
@@ -824,7 +823,7 @@ def steady(watch, u):
 
 @called
 def stand(watch, t, size, steps, u0, u1, weight, lift0, lift1, marks):
-    """Hold the joints at rest against what a step asks of them, as `look` does those of a motion.
+    """Check the joints at rest over a step, as `look` does those of a motion.
 
     u is u_g'' and lift v_g'' at the start and the end of the step, which begins at t. Openings follow the slenderness
     of the history, as uplift does, and friction does not.
@@ -862,7 +861,7 @@ def stand(watch, t, size, steps, u0, u1, weight, lift0, lift1, marks):
 
 @inlined
 def misses(law, rtol, state, ended, e_q, e_w):
-    """The error of a step over what is allowed: rtol of q and w, and of a hundredth of phi_cr where they are small."""
+    """Error of a step over the tolerance: rtol times q and w, at least rtol times a hundredth of phi_cr."""
     if law.exact:
         return 0.0
     least = 1e-2 * law.q_cr
@@ -959,7 +958,7 @@ def fly(forces, corners, law, ground, t, tau, end, state, h, rtol, watched, watc
 
 @called
 def is_certain(structure, d, q, strongest, weight, most_weight):
-    """Whether an outward motion from q beyond phi_cr overturns whatever comes: nothing later can turn it back.
+    """Whether an outward motion from q beyond phi_cr overturns for certain: no later ground motion can turn it back.
 
     `weight` and `most_weight` are the least and the largest (g + v_g'')/g to come: less weight pulls less, while what
     ties it back stays, and more holds it against what pushes it over.

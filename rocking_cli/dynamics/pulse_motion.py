@@ -23,14 +23,14 @@ from typing import NamedTuple
 DECIDED, OVERTURNED, SPENT = range(3)
 # How a flight ends: at the end of its segment, at an impact, or where nothing can bring it back.
 REACHED, IMPACT, FALLEN = range(3)
-# What is looked for inside a flight: x at a level, x' = 0, or x'' = x'.
+# What a search inside a flight is for: x at a level, x' = 0, or x'' = x'.
 HEIGHT, TURN, BALANCE = range(3)
 
 FAINT = 1e-10  # x' after an impact within the pulse below which it is at rest: it would rock to 5e-21 of phi_cr
-STILL = 1e-6  # the same after the pulse, when nothing follows
+STILL = 1e-6  # x' after an impact below which it is at rest after the pulse
 EXCURSIONS = 20_000  # within the pulse; to come to rest a restitution of 0.99 needs 2300
-SLIVER = 1e-12  # of a segment, or of a radian: too little of it left to lift anything
-RESULTS = 6  # of one of many pulses, see `many`
+SLIVER = 1e-12  # rest of a segment, or of a radian, that is too short to lift a structure
+RESULTS = 6  # numbers of one of many pulses, see `many`
 COLUMNS = 4  # of the log, an impact: time [s], sign of the direction that ends, phi. before [rad/s], peak of x before
 
 Rows = Sequence[Sequence[float]]
@@ -57,7 +57,7 @@ class Flight(NamedTuple):
 
 
 class Fate(NamedTuple):
-    """What became of a structure, in the terms of the equation; `Outcome` has it for everybody else."""
+    """Outcome of a structure under one pulse, in the dimensionless terms of the equation; `Outcome` has it in units."""
 
     status: int
     side: int  # index of the direction it ended in
