@@ -172,7 +172,8 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
         within, word = owner if len(place) == 1 else spell(place[:-1]), str(place[-1])
         if word in fields:  # a second name of a field that is there
             return f"is the same field as {fields[word].validation_alias.choices[0]}: give one of the two", None
-        return f"is not a field of {within}", by_meaning(word, fields) or did_you_mean(word, list(fields))
+        similar = word.replace("*", "_star")  # T_C* is not T_C, of which it would be a misspelling
+        return f"is not a field of {within}", by_meaning(word, fields) or did_you_mean(similar, list(fields))
     if kind in BOUNDS:
         key, words = BOUNDS[kind]
         return f"must be {words} {ctx[key]:g}{unit}, {got}", None
@@ -189,7 +190,9 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
         return f"must be text, {got}", "put it in quotes"
     if kind == "literal_error":
         number = f"a number{f' in{unit}' if unit else ''}, or " if info and float in get_args(info.annotation) else ""
-        return f"must be {number}{ctx['expected']}, {got}".replace("'", ""), None
+        close = did_you_mean(value, re.findall("'(.*?)'", ctx["expected"])) if isinstance(value, str) else None
+        hint = close if close and close.startswith("did") else None  # the message lists the others
+        return f"must be {number}{ctx['expected']}, {got}".replace("'", ""), hint
     if kind in ("too_short", "too_long"):
         least, most = ctx.get("min_length"), ctx.get("max_length")
         wanted, count = ("at least", least) if least is not None else ("at most", most)

@@ -44,7 +44,7 @@ class Part(BaseModel):
 
     @model_validator(mode="after")
     def _fits_together(self) -> Self:
-        for place, message in self.between(self.model_dump(exclude_unset=True), lambda *path: True):
+        for place, message in self.between(self.model_dump(exclude_unset=True, by_alias=True), lambda *path: True):
             raise geometry_error(spell(place) or "", message)
         return self
 

@@ -4,6 +4,10 @@ from rocking_cli.studies.file_part import Part as Part
 from rocking_cli.verification.code import Code as Code
 from rocking_cli.verification.code import Number as Number
 from rocking_cli.verification.code import Site as Site
+from rocking_cli.verification.demand import DemandParameter as DemandParameter
+from rocking_cli.verification.demand import DemandTable as DemandTable
+from rocking_cli.verification.demand import SiteDemand as SiteDemand
+from rocking_cli.verification.demand import StateDemand as StateDemand
 from rocking_cli.verification.results import Clause as Clause
 from rocking_cli.verification.results import Control as Control
 from rocking_cli.verification.results import Formula as Formula

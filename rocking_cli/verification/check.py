@@ -17,6 +17,7 @@ from rocking_cli.studies.conclusion import LeftOut
 from rocking_cli.studies.file_part import problems_of
 from rocking_cli.text import did_you_mean
 from rocking_cli.verification.code import DEFAULT_CODE, SITE_HINT, Code, SiteFile, codes
+from rocking_cli.verification.demand import SiteDemand
 from rocking_cli.verification.results import Control, Histories, Verification, Verified
 
 
@@ -53,7 +54,11 @@ def site_in(document: Document) -> SiteFile:
         document.problems += problems_of(document, model, error, owner="the site", lister=lister)
     document.check()
     assert site is not None  # a file without a valid site was refused
-    return SiteFile(site, document)
+    file = SiteFile(site, document)
+    try:
+        return replace(file, site=codes()[code].located(site, Path(document.file).parent))
+    except InputError as error:
+        raise file.placed(error) from None
 
 
 def code_of(site: SiteFile) -> Code:
@@ -64,6 +69,27 @@ def code_of(site: SiteFile) -> Code:
 def of_each(site: SiteFile) -> SiteFile:
     """Return the site for a survey, without data of the structure itself, which are left to each row."""
     return replace(site, site=code_of(site).of_each(site.site))
+
+
+def demand(site: SiteFile) -> SiteDemand:
+    """Return the response spectra of a site by its code.
+
+    Raises
+    ------
+    InputError
+        If the code has none, or the site lacks values for them.
+    """
+    code = code_of(site)
+    if not code.has_demand:
+        hint = "give the file of a spectrum, or a site of a code that has them"
+        raise InputError(Problem(f"{code.key} has no response spectra of a site", site.document.file, hint=hint))
+    try:
+        answer = code.demand(site.site)
+    except InputError as error:
+        raise site.placed(error) from None
+    if not isinstance(answer, SiteDemand) or answer.first not in answer.states:
+        raise PluginError(f"the code {code.key} failed in demand: it must return a SiteDemand with its first state")
+    return answer
 
 
 def refuse(site: SiteFile, *, control: bool = False, motions: bool = False) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import EntryPoint
+from pathlib import Path
 from typing import Any, ClassVar
 
 from pydantic import Field
@@ -19,9 +20,10 @@ from rocking_cli.plugins.errors import blame, failed, guard
 from rocking_cli.plugins.registry import Plugins, origin
 from rocking_cli.structure import Structure
 from rocking_cli.studies.file_part import Part
+from rocking_cli.verification.demand import SiteDemand
 from rocking_cli.verification.results import Control, Histories, Verification, Verified
 
-CODE_METHODS = ("verify", "with_histories", "of_each", "showing", "sheet")
+CODE_METHODS = ("verify", "with_histories", "of_each", "located", "demand", "showing", "sheet")
 """Methods that a code may define: any failure in them is reported as an error of the plugin."""
 
 
@@ -114,6 +116,26 @@ class Code(ABC):
         Parameters are those of `rocking_cli.verification.check.with_histories`.
         """
         raise NotImplementedError
+
+    @property
+    def has_demand(self) -> bool:
+        """Whether the code gives the response spectra of a site."""
+        return type(self).demand is not Code.demand
+
+    def demand(self, site: Any) -> SiteDemand:
+        """Return the response spectra of a site by limit state; only a code that overrides this method has them."""
+        raise NotImplementedError
+
+    def located(self, site: Any, folder: Path) -> Any:
+        """Return the site with the content of the files that it names, whose relative paths are of a folder.
+
+        Raises
+        ------
+        InputError
+            If a file cannot be used; a `Problem` with a `field` of the site is reported with its line.
+        """
+        del folder
+        return site
 
     def of_each(self, site: Any) -> Any:
         """Return the site for a survey, without data of the structure itself, which are left to each row."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from importlib.resources import files
+from pathlib import Path
 from typing import Any, ClassVar
 
 from rocking_cli.codes.italian import method
@@ -12,9 +13,11 @@ from rocking_cli.codes.italian.method import EDITION, KEY, NAME
 from rocking_cli.codes.italian.results import ItalianVerification
 from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, NONLINEAR
 from rocking_cli.codes.italian.site import ItalianSite, of_each
+from rocking_cli.codes.italian.site_demand import site_demand
 from rocking_cli.core import Mechanism
 from rocking_cli.structure import Structure
 from rocking_cli.verification.code import Code, Number
+from rocking_cli.verification.demand import SiteDemand
 from rocking_cli.verification.results import Control, Histories
 
 
@@ -48,6 +51,14 @@ class Italian(Code):
         from rocking_cli.codes.italian import dynamic
 
         return dynamic.with_histories(found, structure, site, asked)
+
+    def located(self, site: ItalianSite, folder: Path) -> ItalianSite:
+        """Return the site with the hazard at its coordinates."""
+        return site.located(folder)
+
+    def demand(self, site: ItalianSite) -> SiteDemand:
+        """Return the elastic spectra of the ground and of the floor at each limit state of a site."""
+        return site_demand(site)
 
     def of_each(self, site: ItalianSite) -> ItalianSite:
         """Return the site of many structures, each of which has an element of its own size."""

@@ -24,8 +24,12 @@ OWN_PERIOD = Formula(
 
 # Hazard and ground
 REFERENCE_LIFE = Formula("V_[R]", "V_[N] C_[U]", "{VN} · {CU}", "years", clauses.REFERENCE_LIFE, meaning="VR")
+REFERENCE_LIFE_BOUND = replace(
+    REFERENCE_LIFE, text="max(V_[N] C_[U]; 35)", numbers="max({VN} · {CU}; 35)", clause=clauses.MIN_REFERENCE_LIFE
+)
 RETURN_PERIOD = Formula("T_[R]", "−V_[R]/ln(1 − P)", "−{VR}/ln(1 − {P})", "years", clauses.RETURN_PERIOD, meaning="TR")
 RETURN_PERIOD_BOUND = replace(RETURN_PERIOD, numbers="max({first}; min({last}; −{VR}/ln(1 − {P})))")
+RETURN_PERIOD_OF_ROW = Formula("T_[R]", unit="years", clause=clauses.HAZARD, meaning="TR_of_row", standing="ours")
 BETWEEN = Formula(
     "r", "ln(T_[R]/T_[R,a])/ln(T_[R,b]/T_[R,a])", "ln({T}/{a})/ln({b}/{a})", clause=clauses.HAZARD, meaning="r"
 )

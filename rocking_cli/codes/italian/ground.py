@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import exp, log
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,12 +17,14 @@ from rocking_cli.codes.italian.demand import (
     GroundSpectrum,
     TableSpectrum,
 )
-from rocking_cli.codes.italian.rules import RULES
+from rocking_cli.codes.italian.rules import RULES, STATES
 from rocking_cli.codes.italian.site import ItalianSite
 from rocking_cli.errors import InputError, Problem
 
 LARGEST_AG = 1e6  # g; no ground motion is as strong, and a larger capacity is not reported
 SAME_RATIO = 1e-13  # relative difference up to which a demand is proportional to a_g
+HALF_YEAR = 0.5
+MAX_ROUNDING = 0.01  # relative difference between the return period of a limit state and that of its row
 
 
 @dataclass(frozen=True)
@@ -43,21 +46,33 @@ class SiteGround:
         return Hazard(site.hazard, site.soil or "A", site.topography) if site.hazard is not None else None
 
     def return_period(self, state: str) -> float | None:
-        """Return the return period of a limit state [years]; None if the hazard is not known."""
-        if self.hazard is None:
+        """Return the return period of a limit state [years]; None if the reference life is not known."""
+        life = self.site.life
+        if life is None:
             return None
-        return self.hazard.counted((self.site.VN or 0.0) * (self.site.CU or 0.0), state)
+        return bounded(return_period(life, state)) if self.hazard is None else self.hazard.counted(life, state)
+
+    def on_rock(self, state: str) -> RockMotion | None:
+        """Return the ground on rock at a limit state; None if the site file does not give it on rock."""
+        TR = self.return_period(state)
+        if TR is not None and self.hazard is not None:
+            return self.hazard.parameters(TR)
+        shaking = self.site.shaking(state)
+        if shaking is None or shaking.TC_star is None:
+            return None
+        assert shaking.ag is not None and shaking.F0 is not None
+        return RockMotion(shaking.ag, shaking.F0, shaking.TC_star)
 
     def on_ground(self, state: str) -> GroundSpectrum | TableSpectrum | None:
         """Return the spectrum of the ground at a limit state; None if the site file does not give it."""
-        TR = self.return_period(state)
-        if TR is not None and self.hazard is not None:
-            return self.hazard.spectrum(TR)
+        rock = self.on_rock(state)
+        if rock is not None:
+            return rock.on_soil(self.site.soil or "A", self.site.topography)
         shaking = self.site.shaking(state)
         if shaking is None:
             return None
         if shaking.spectrum is not None:
-            field = "spectrum" if state == "SLV" else f"{state}.spectrum"
+            field = "spectrum" if shaking is self.site else f"{state}.spectrum"
             return TableSpectrum(tuple((T, a) for T, a in shaking.spectrum), 1.0, self.site.own_period or 0.0, field)
         assert shaking.ag is not None and shaking.F0 is not None and shaking.TC is not None and shaking.S is not None
         return GroundSpectrum(shaking.ag, shaking.F0, shaking.TC, shaking.S, self.site.soil)
@@ -166,6 +181,24 @@ def return_period(life: float, state: str) -> float:
     return -life / log(1 - PROBABILITY[state])
 
 
+def bounded(TR: float) -> float:
+    """Return a return period, limited to the range that the code allows [years]."""
+    return min(max(TR, SHORTEST_RETURN_PERIOD), LONGEST_RETURN_PERIOD)
+
+
+class RockMotion(NamedTuple):
+    """The ground on rock: acceleration a_g [g], amplification F0, and period T_C* [s]."""
+
+    ag: float
+    F0: float
+    TC_star: float
+
+    def on_soil(self, soil: str, topography: str) -> GroundSpectrum:
+        """Return the spectrum of the ground on a soil class, with a topographic class."""
+        S = soil_factor(soil, self.F0, self.ag) * TOPOGRAPHY[topography]
+        return GroundSpectrum(self.ag, self.F0, corner_factor(soil, self.TC_star) * self.TC_star, S, soil)
+
+
 @dataclass(frozen=True)
 class Hazard:
     """Seismic hazard of a site.
@@ -192,30 +225,50 @@ class Hazard:
         """Longest return period that is used [years]."""
         return min(self.table[-1][0], LONGEST_RETURN_PERIOD)
 
-    def parameters(self, TR: float) -> tuple[float, float, float]:
-        """Return ag [g], F0 and TC* [s] at a return period [years], interpolated in logarithms."""
+    def parameters(self, TR: float) -> RockMotion:
+        """Return the ground on rock at a return period [years], interpolated in logarithms."""
         known = np.log(np.array(self.table, dtype=np.float64))
-        ag, F0, TC = (exp(np.interp(log(TR), known[:, 0], known[:, k])) for k in (1, 2, 3))
-        return ag, F0, TC
+        return RockMotion(*(exp(np.interp(log(TR), known[:, 0], known[:, k])) for k in (1, 2, 3)))
 
     def spectrum(self, TR: float) -> GroundSpectrum:
         """Return the spectrum of the ground at a return period [years]."""
-        ag, F0, TC_star = self.parameters(TR)
-        S = soil_factor(self.soil, F0, ag) * TOPOGRAPHY[self.topography]
-        return GroundSpectrum(ag, F0, corner_factor(self.soil, TC_star) * TC_star, S, self.soil)
+        return self.parameters(TR).on_soil(self.soil, self.topography)
+
+    def covers(self, TR: float) -> bool:
+        """Return whether a return period [years] is within the table, up to rounding."""
+        return self.table[0][0] <= TR * (1 + 1e-9) and self.table[-1][0] * (1 + 1e-9) >= TR
+
+    def rounded(self, life: float) -> dict[str, float]:
+        """Return the row of each limit state [years] if the rows are those of limit states, with rounded periods.
+
+        So programs print them: 45, 75, 712 and 1462 years. Each row must be within 1 % of the return period of a limit
+        state, and rounded to whole years, unless the table does not reach the periods of the limit states. Any other
+        table is one between whose rows the code interpolates.
+        """
+        exact = {state: bounded(return_period(life, state)) for state in PROBABILITY}
+        rows = {
+            state: row[0] for state, TR in exact.items() for row in self.table if abs(row[0] / TR - 1) <= MAX_ROUNDING
+        }
+        whole = all(abs(row - exact[state]) <= HALF_YEAR for state, row in rows.items())
+        is_of_states = {row[0] for row in self.table} == {*rows.values()}
+        return rows if is_of_states and (whole or not all(self.covers(exact[state]) for state in STATES)) else {}
 
     def counted(self, life: float, state: str) -> float:
-        """Return the return period of a limit state, limited to the range that the code allows [years].
+        """Return the return period of a limit state as it is used, that of its own row or bounded by the code [years].
 
         Raises `InputError` if it is beyond the table of the hazard.
         """
-        TR = min(max(return_period(life, state), SHORTEST_RETURN_PERIOD), LONGEST_RETURN_PERIOD)
-        if not self.table[0][0] <= TR * (1 + 1e-9) or not self.table[-1][0] * (1 + 1e-9) >= TR:
+        rows = self.rounded(life)
+        if state in rows:
+            return rows[state]
+        TR = bounded(return_period(life, state))
+        if not self.covers(TR):
             raise InputError(
                 Problem(
                     f"has return periods from {self.table[0][0]:g} to {self.table[-1][0]:g} years: that of {state}, "
                     f"{TR:.4g} years, is not between",
                     field="hazard",
+                    hint="add a row beyond it; rows of the limit states themselves must be within 1 % of their periods",
                 )
             )
         return min(max(TR, self.table[0][0]), self.table[-1][0])

@@ -9,9 +9,10 @@ from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.demand import FloorSpectrum, GroundSpectrum
 from rocking_cli.codes.italian.displaced import MAX_OVERHANG_SHARE, MAX_STRAIN, carried, elastic, furthest, pulls
-from rocking_cli.codes.italian.ground import LONGEST_RETURN_PERIOD, SHORTEST_RETURN_PERIOD, SiteGround, return_period
+from rocking_cli.codes.italian.grid import EARTH_RADIUS
+from rocking_cli.codes.italian.ground import SiteGround, bounded, return_period
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified, LimitState
-from rocking_cli.codes.italian.rules import DAMAGE, FURTHER_STATES, LINEAR, NONLINEAR, RULES, STATES
+from rocking_cli.codes.italian.rules import DAMAGE, FIRST_STATE, FURTHER_STATES, LINEAR, NONLINEAR, RULES, STATES
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import digits_apart
 from rocking_cli.verification.results import Remark
@@ -30,7 +31,7 @@ def _capacities(states: Iterable[str]) -> list[Remark]:
 
 def of_site(ground: SiteGround, directions: Collection[ItalianVerified]) -> list[Remark]:
     """Return remarks on the site and on both directions."""
-    remarks: list[Remark] = [*_of_spectrum(ground), *_of_lives(ground)]
+    remarks: list[Remark] = [*of_ground(ground), *_of_spectrum(ground), *_of_lives(ground)]
     periods = [state.T for each in directions for state in each.states.values() if state.demand is not None]
     long = max(periods, default=0.0)
     if long > LONG_PERIOD:
@@ -77,15 +78,29 @@ def _of_modes(ground: SiteGround) -> list[Remark]:
 
 
 def _of_lives(ground: SiteGround) -> list[Remark]:
-    site = ground.site
-    if ground.hazard is None or site.VN is None or site.CU is None:
+    life = ground.site.life
+    if ground.hazard is None or life is None:
         return []
-    remarks: list[Remark] = []
-    for state in STATES:
-        TR = return_period(site.VN * site.CU, state)
-        if not SHORTEST_RETURN_PERIOD <= TR <= LONGEST_RETURN_PERIOD:
-            bound = SHORTEST_RETURN_PERIOD if TR < SHORTEST_RETURN_PERIOD else LONGEST_RETURN_PERIOD
-            remarks.append(Remark.of("bound", state=state, TR=TR, bound=bound))
+    exact = {state: return_period(life, state) for state in STATES}
+    return [
+        Remark.of("bound", state=state, TR=TR, bound=bounded(TR)) for state, TR in exact.items() if bounded(TR) != TR
+    ]
+
+
+def of_ground(ground: SiteGround) -> list[Remark]:
+    """Return remarks on how the ground follows from what the site file gives."""
+    site, remarks = ground.site, list[Remark]()
+    if site.TC_star is not None:
+        remarks.append(Remark.of("without_state", state=FIRST_STATE))
+    if (cell := site.cell) is not None:
+        way = Remark.of("on_node") if len(cell.corners) == 1 else Remark.of("between_nodes", radius=EARTH_RADIUS)
+        remarks.append(Remark.of("by_grid", way=way, unit=Remark.of(cell.unit)))
+    if site.VN is not None and site.use is not None and site.life != site.VN * site.use:
+        remarks.append(Remark.of("short_life", VR=site.VN * site.use, least=site.life))
+    if ground.hazard is not None and site.life is not None and (rows := ground.hazard.rounded(site.life)):
+        exact = {state: bounded(return_period(site.life, state)) for state in rows}
+        each = [Remark.of("row", state=state, row=row, TR=exact[state]) for state, row in rows.items()]
+        remarks.append(Remark.of("rows", rows=each))
     return remarks
 
 

@@ -48,7 +48,9 @@ FIRST_STATE = RULES[0].state
 FURTHER_STATES = (*(rule.state for rule in RULES[1:]), "SLD")
 """Limit states with fields of their own in a site file and its floor. At SLD only the onset of rocking is verified."""
 STATES = ("SLD", *(rule.state for rule in RULES))
-"""All limit states, from the most frequent to the rarest."""
+"""All limit states that are verified, from the most frequent to the rarest."""
+STATES_OF_SITE = ("SLO", *STATES)
+"""Limit states that a site may have: SLO is shown, and not verified."""
 DAMAGE, LINEAR, NONLINEAR = "damage", "linear", "nonlinear"
 OF_STATE = {
     FIRST_STATE: (DAMAGE, NONLINEAR),

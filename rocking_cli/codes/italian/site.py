@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 from math import sqrt
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field, PrivateAttr
 
-from rocking_cli.codes.italian.rules import FIRST_STATE, FURTHER_STATES
+from rocking_cli.codes.italian.grid import Cell, read_grid
+from rocking_cli.codes.italian.rules import FIRST_STATE, STATES_OF_SITE
 from rocking_cli.core import Mechanism
 from rocking_cli.core.fields import quantity
 from rocking_cli.errors import InputError, Problem
@@ -17,14 +19,27 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.yaml_file import Place
 from rocking_cli.processing.floor import Floor
 from rocking_cli.studies.file_part import Part, Sound
+from rocking_cli.text import cut
 from rocking_cli.verification.code import Site
 
 GROUND_PARAMETERS = ("ag", "F0", "TC", "S")
+ROCK_PARAMETERS = ("ag", "F0", "TC_star")
+COORDINATES = ("longitude", "latitude", "grid")
 MAX_TABLE_ROWS = 10_000
 MIN_PERIOD = 0.001  # s
+MIN_REFERENCE_LIFE = 35.0  # years
+COEFFICIENTS_OF_USE = {"I": 0.7, "II": 1.0, "III": 1.5, "IV": 2.0}
+CONFIDENCE_FACTORS = {"LC1": 1.35, "LC2": 1.20, "LC3": 1.00}
 Period = Annotated[float, Field(gt=0, le=100)]
 Ordinate = Annotated[list[Annotated[float, Field(ge=0, le=1000)]], Field(min_length=2, max_length=2)]
 Row = Annotated[list[Annotated[float, Field(gt=0, le=1e6)]], Field(min_length=4, max_length=4)]
+
+
+def _confidence_factor(given: Any) -> Any:
+    """Return the confidence factor of a knowledge level that is given by its name; any other value unchanged."""
+    if isinstance(given, str) and given not in CONFIDENCE_FACTORS:
+        raise ValueError(f"must be a number, or a knowledge level, LC1, LC2 or LC3: got {cut(repr(given))}")
+    return CONFIDENCE_FACTORS.get(given, given) if isinstance(given, str) else given
 
 
 def _ordinates(**more: Any) -> Any:
@@ -35,24 +50,32 @@ def _ordinates(**more: Any) -> Any:
 
 
 class StateGround(Part):
-    """The ground of one limit state: by its parameters, or as ordinates of a spectrum."""
+    """The ground of one limit state: by its parameters, by those on rock, or as ordinates of a spectrum."""
 
     ag: float | None = quantity("ground acceleration on rock", unit="g", symbol="a_g", default=None, gt=0, le=10)
     F0: float | None = quantity("maximum spectral amplification", default=None, ge=1, le=10)
     TC: float | None = quantity("end of its level part", unit="s", symbol="T_C", default=None, ge=MIN_PERIOD, le=10)
     S: float | None = quantity("factor of soil and topography", default=None, ge=0.5, le=5)
+    TC_star: float | None = quantity(
+        "end of its level part on rock, instead of TC and S, which follow with soil and topography",
+        unit="s", symbol="T_C*", default=None, ge=MIN_PERIOD, le=10,
+    )  # fmt: skip
     spectrum: list[Ordinate] | None = _ordinates()
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
         """Check that the ground is given in one way, completely, and that a spectrum has one ordinate per period."""
-        there = [name for name in GROUND_PARAMETERS if given.get(name) is not None]
+        there = [name for name in (*GROUND_PARAMETERS, "TC_star") if given.get(name) is not None]
         if given.get("spectrum") is not None and there:
             yield ("spectrum",), f"cannot be combined with {there[0]}: give either the parameters or the ordinates"
         elif given.get("spectrum") is None and cls._needs_sizes(given):
-            for name in GROUND_PARAMETERS:
+            for name in ROCK_PARAMETERS if "TC_star" in there else GROUND_PARAMETERS:
                 if name not in there:
-                    yield (name,), f"is missing: {cls.model_fields[name].description}"
+                    otherwise = "; or give TC_star and soil" if name == "TC" and "S" not in there else ""
+                    yield (name,), f"is missing: {cls.model_fields[name].description}{otherwise}"
+        for name in ("TC", "S"):
+            if "TC_star" in there and name in there:
+                yield (name,), "cannot be combined with TC_star, from which it follows with the soil: give one of them"
         known = all(given.get(name) is not None and sound(name) for name in ("ag", "TC"))
         if known and given["TC"] > (TD := 4.0 * given["ag"] + 1.6):
             yield ("TC",), f"is above T_D = 4 a_g/g + 1.6 = {TD:.4g} s: got {given['TC']:g} s"
@@ -103,7 +126,8 @@ class SiteFloor(Mode):
     SLC: Mode | None = Field(None, description="first period and damping ratio of the building at collapse")
 
     def mode(self, state: str) -> Mode:
-        """Return the first mode at a limit state: that of SLV if no other is given."""
+        """Return the first mode at a limit state: at SLO that of SLD; that of SLV if no other is given."""
+        state = "SLD" if state == "SLO" else state
         return self if state == FIRST_STATE else getattr(self, state) or self
 
     @classmethod
@@ -162,64 +186,150 @@ class VibratingElement(Part):
 
 
 class ItalianSite(StateGround, Site):
-    """What a site file holds: the ground of one limit state (SLV), and of others; or the hazard of all of them."""
+    """What a site file holds: the ground of limit states, of SLV if none is named; or the hazard of all of them."""
 
-    FC: float = quantity("confidence factor, by which accelerations are divided", ge=1, le=2)
+    FC: Annotated[float, BeforeValidator(_confidence_factor)] = quantity(
+        "confidence factor, by which accelerations are divided, or the knowledge level LC1, LC2 or LC3", ge=1, le=2
+    )
     q: float = quantity("behaviour factor of the linear method", default=2.0, ge=1, le=10)
     SLC: StateGround | None = Field(None, description="the ground at collapse")
+    SLV: StateGround | None = Field(None, description="the ground of SLV, if it is not given without a limit state")
     SLD: StateGround | None = Field(None, description="the ground at damage")
+    SLO: StateGround | None = Field(None, description="the ground of SLO, which is shown and not verified")
     soil: Literal["A", "B", "C", "D", "E"] | None = Field(None, description="category of the soil")
     topography: Literal["T1", "T2", "T3", "T4"] = Field("T1", description="category of the topography")
     hazard: Annotated[list[Row], Field(min_length=2, max_length=MAX_TABLE_ROWS)] | None = Field(
-        None, description="rows of [return period in years, ag in g, F0, TC* in s], with VN, CU and soil"
+        None, description="rows of [return period in years, ag in g, F0, TC* in s], with VN, CU or class, and soil"
+    )
+    longitude: float | None = quantity("longitude of the site", unit="deg", default=None, ge=-180, le=180)
+    latitude: float | None = quantity("latitude of the site", unit="deg", default=None, ge=-90, le=90)
+    grid: str | None = Field(
+        None, description="file of the reference grid, relative to the site file, from which the hazard follows"
     )
     VN: float | None = quantity("nominal life", unit="years", default=None, gt=0, le=1000)
     CU: float | None = quantity("coefficient of use", default=None, gt=0, le=10)
+    class_: Literal["I", "II", "III", "IV"] | None = Field(None, alias="class", description="class of use, for CU")
     floor: SiteFloor | None = Field(None, description="the floor on which the structure stands; if omitted, the ground")
     T0: Period | None = quantity(
         "period of an element that vibrates freely before it rocks, such as a parapet", unit="s", default=None
     )
 
     element: VibratingElement | None = Field(None, description="instead of T0: the element, from which T0 follows")
+    _cell: Cell | None = PrivateAttr(None)
+
+    @property
+    def cell(self) -> Cell | None:
+        """Nodes of the reference grid from which the hazard follows; None if it is given otherwise."""
+        return self._cell
+
+    def located(self, folder: Path) -> ItalianSite:
+        """Return the site with the hazard at its coordinates; a relative grid file is in `folder`.
+
+        Raises `InputError` if the grid cannot be used, or does not cover the site.
+        """
+        if self.grid is None or self.longitude is None or self.latitude is None:
+            return self
+        path = folder / self.grid
+        if not path.is_file():
+            hint = "a relative path is one from the folder of the site file"
+            raise InputError(Problem(f"names no file: {path}", field="grid", hint=hint))
+        cell = read_grid(path).cell(self.longitude, self.latitude)
+        located = self.model_copy(update={"hazard": cell.rows})
+        located._cell = cell
+        return located
 
     @property
     def own_period(self) -> float | None:
         """T0 [s], as given or from the element; None without both."""
         return self.T0 if self.element is None else self.element.period
 
+    @property
+    def use(self) -> float | None:
+        """Coefficient of use, as given or of the class of use; None without both."""
+        return self.CU if self.class_ is None else COEFFICIENTS_OF_USE[self.class_]
+
+    @property
+    def life(self) -> float | None:
+        """Reference life V_R [years]; None if the site file does not give it."""
+        return None if self.VN is None or self.use is None else max(self.VN * self.use, MIN_REFERENCE_LIFE)
+
     def shaking(self, state: str) -> StateGround | None:
         """Return the ground at a limit state; the fields of the site itself are those of SLV."""
-        ground: StateGround | None = self if state == FIRST_STATE else getattr(self, state)
-        return ground
+        ground: StateGround | None = getattr(self, state)
+        return self if ground is None and state == FIRST_STATE else ground
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
-        """Check that the ground is given in one way, and that a hazard has the fields it needs."""
+        """Check that the ground is given in one way, and that this way has the fields it needs."""
         yield from super().between(given, sound)
-        if given.get("element") is not None and given.get("T0") is not None:
+
+        def there(*names: str) -> list[str]:
+            return [name for name in names if given.get(name) is not None]
+
+        if there("element") and there("T0"):
             yield ("element",), "cannot be combined with T0, which is computed from it: give one of the two"
-        if given.get("hazard") is None:
-            for name in ("VN", "CU"):
-                if given.get(name) is not None:
-                    yield (name,), "requires `hazard`, the table of return periods"
-            return
-        for name in (*GROUND_PARAMETERS, "spectrum", *FURTHER_STATES):
-            if given.get(name) is not None:
-                yield (name,), "cannot be combined with hazard, from which it is computed: give one of the two"
-        for name in ("VN", "CU", "soil"):
-            if given.get(name) is None:
-                yield (name,), f"is missing: a hazard needs the {cls.model_fields[name].description}"
-        if sound("hazard"):
-            for k, row in enumerate(given["hazard"]):
-                if row[-1] < MIN_PERIOD:
-                    yield ("hazard", k), f"has T_C* = {row[-1]:g} s: a period must be at least {MIN_PERIOD:g} s"
-            for k, (before, after) in enumerate(pairwise(given["hazard"]), 1):
-                if after[0] <= before[0]:
-                    yield ("hazard", k), f"return periods must increase, got {after[0]:g} after {before[0]:g} years"
+        if there("CU") and there("class"):
+            yield ("CU",), "cannot be combined with class, from which it follows: give one of the two"
+        if there("SLV") and (alone := there(*GROUND_PARAMETERS, "TC_star", "spectrum")):
+            yield ("SLV",), f"cannot be combined with {alone[0]}, which without a limit state is that of SLV: give one"
+        on_rock = cls._on_rock(given)
+        source = "hazard" if there("hazard") else "grid" if there(*COORDINATES) else "TC_star" if on_rock else ""
+        if source in ("hazard", "grid"):
+            yield from cls._tabled(there, source)
+        for name in there("VN", "CU", "class") if not source else ():
+            yield (name,), "requires `hazard`, the table of return periods, or TC_star"
+        if there("topography") and not source:
+            yield ("topography",), "requires `hazard` or TC_star: S, as given, includes it"
+        what = "S and T_C need" if source == "TC_star" else "a hazard needs"
+        if source and not there("soil"):
+            yield ("soil",), f"is missing: {what} the category of the soil, A to E"
+        if source in ("hazard", "grid") or (source and there("VN", "CU", "class")):
+            for name, needed in (("VN", "nominal life"), ("CU", "coefficient of use, or `class`, the class of use")):
+                if not there(name) and not (name == "CU" and there("class")):
+                    yield (name,), f"is missing: return periods need the {needed}"
+        yield from _rows_that_do_not_grow(given, on_rock, sound)
+
+    @classmethod
+    def _tabled(cls, there: Callable[..., list[str]], source: str) -> Iterator[tuple[Place, str]]:
+        """Yield what is combined with a table of return periods, and what a site by coordinates lacks."""
+        others = [*GROUND_PARAMETERS, "TC_star", "spectrum", *STATES_OF_SITE, *COORDINATES * (source == "hazard")]
+        for name in there(*others):
+            yield (name,), f"cannot be combined with {source}, from which the ground is computed: give one of the two"
+        for name in COORDINATES if source == "grid" else ():
+            if not there(name):
+                yield (name,), f"is missing: a site by coordinates has {', '.join(COORDINATES)}"
+
+    @classmethod
+    def _on_rock(cls, given: dict[str, Any]) -> dict[str, dict[str, Any]]:
+        """Return the grounds that are given on rock, by limit state; that of SLV may be that of the site itself."""
+        grounds = {FIRST_STATE: given, **{state: given[state] for state in STATES_OF_SITE if given.get(state)}}
+        parts = {state: ground for state, ground in grounds.items() if isinstance(ground, dict)}
+        return {state: parts[state] for state in STATES_OF_SITE if parts.get(state, {}).get("TC_star") is not None}
 
     @classmethod
     def _needs_sizes(cls, given: dict[str, Any]) -> bool:
-        return given.get("hazard") is None
+        return all(given.get(name) is None for name in ("hazard", *COORDINATES, FIRST_STATE))
+
+
+def _rows_that_do_not_grow(
+    given: dict[str, Any], on_rock: dict[str, dict[str, Any]], sound: Sound
+) -> Iterator[tuple[Place, str]]:
+    """Yield the rows of a hazard, and the limit states on rock, whose values do not grow with the return period."""
+    if given.get("hazard") is not None and sound("hazard"):
+        for k, row in enumerate(given["hazard"]):
+            if row[-1] < MIN_PERIOD:
+                yield ("hazard", k), f"has T_C* = {row[-1]:g} s: a period must be at least {MIN_PERIOD:g} s"
+        for k, (before, after) in enumerate(pairwise(given["hazard"]), 1):
+            if after[0] <= before[0]:
+                yield ("hazard", k), f"return periods must increase, got {after[0]:g} after {before[0]:g} years"
+            elif after[1] <= before[1]:
+                yield ("hazard", k), f"ag must increase with the return period, got {after[1]:g} after {before[1]:g} g"
+    known = {state: ground["ag"] for state, ground in on_rock.items() if ground.get("ag") is not None}
+    known = {state: ag for state, ag in known.items() if sound(state, "ag") and sound("ag")}
+    for (before, less), (after, ag) in pairwise(known.items()):
+        if ag <= less:
+            place = (after, "ag") if given.get(after) is not None else ("ag",)
+            yield place, f"must be more than that of {before}, {less:g} g: got {ag:g} g at {after}"
 
 
 def floor_at(site: ItalianSite, state: str) -> Floor | None:

@@ -47,6 +47,9 @@ TABLE_OF_HAZARD = [
     [975, 0.225, 2.48, 0.34], [2475, 0.300, 2.55, 0.36],
 ]  # fmt: skip
 HAZARD = f"FC: 1.35\nVN: 50\nCU: 1.0\nsoil: B\nhazard: {TABLE_OF_HAZARD}\n"
+ON_ROCK = "SLO: {ag: 0.05, F0: 2.4, TC_star: 0.27}\nSLD: {ag: 0.07, F0: 2.42, TC_star: 0.28}\n"
+ON_ROCK += "SLV: {ag: 0.175, F0: 2.45, TC_star: 0.32}\nSLC: {ag: 0.225, F0: 2.48, TC_star: 0.34}\n"
+OF_STATES = [[45, 0.066, 2.36, 0.28], [75, 0.084, 2.35, 0.285], [712, 0.21, 2.42, 0.31], [1462, 0.265, 2.46, 0.32]]
 ROWS = {"a_[g]": 1, "F_[0]": 2, "T_[C]^[*]": 3}
 ORDINATES = [[0, 0.2], [0.1, 0.4], [0.5, 0.5], [1, 0.3], [2, 0.1], [3, 0.02], [6, 0.012], [20, 0.01]]
 TABLE = f"FC: 1.2\nspectrum: {ORDINATES}\n"
@@ -103,6 +106,10 @@ CASES = {
     "table and floor": (WALL, TABLE + FLOOR),
     "arch": (ARCH, SITE),
     "frame": (FRAME, HAZARD),
+    "on rock, by state": (FACADE, f"FC: LC2\nsoil: B\ntopography: T2\nVN: 50\nclass: II\n{ON_ROCK}"),
+    "on rock, of SLV": (FACADE, "FC: LC1\nsoil: B\nag: 0.2\nF0: 2.5\nTC_star: 0.32\n"),
+    "rows of limit states": (FACADE, f"FC: LC3\nVN: 50\nclass: III\nsoil: B\nhazard: {OF_STATES}\n"),
+    "a short life": (FACADE, HAZARD.replace("VN: 50", "VN: 10")),
 }
 
 
@@ -246,8 +253,8 @@ def rounding_of(turns, one, other, moved):
     return 1.01 * (abs(turns) * (half[one] + half[other]) + half[turns] * abs(one - other) + half[moved]) + 1e-9
 
 
-OF_STATE = ["a_[g]", "F_[0]", "T_[C]", "S", "T_[B]", "T_[D]", "a_[g] S", "S_[Z]", "S_[e](T_[0])", "S_[eZ](T_[0])",
-            "T_[1]", "ξ_[1]"]  # fmt: skip
+OF_STATE = ["a_[g]", "F_[0]", "T_[C]^[*]", "T_[C]", "S", "T_[B]", "T_[D]", "a_[g] S", "S_[Z]", "S_[e](T_[0])",
+            "S_[eZ](T_[0])", "T_[1]", "ξ_[1]"]  # fmt: skip
 OWN = {
     "L": lambda v: sum(v["works"]),
     "e^[*]": lambda v: v["first"] ** 2 / v["Σ(P+Q)"] / v["Σ(P+Q)x′^[2]"],
@@ -257,11 +264,11 @@ OWN = {
     "T_[0]": lambda v: 6.2 * (1.2 / 0.25) * 1.2 * sqrt(18000 / (1.2e9 * G)),  # of the one site that gives an element
     "T_[B]": lambda v: v["T_[C]"] / 3,
     "T_[D]": lambda v: 4 * v["a_[g]"] + 1.6,
-    "V_[R]": lambda v: v["V_[N]"] * v["C_[U]"],
+    "V_[R]": lambda v: max(v["V_[N]"] * v["C_[U]"], 35),
     "S_[S]": lambda v: min(max(1.4 - 0.4 * v["F_[0]"] * v["a_[g]"], 1), 1.2),
     "C_[C]": lambda v: 1.1 * v["T_[C]^[*]"] ** -0.2,
     "T_[C]": lambda v: v["C_[C]"] * v["T_[C]^[*]"],
-    "S": lambda v: v["S_[S]"],
+    "S": lambda v: v["S_[S]"] * v["S_T"],
     "ψ": lambda v: v["z"] / v["H"],
     "γ": lambda v: 3 * v["n"] / (2 * v["n"] + 1),
     "S_[Z]": lambda v: v["S_[e](T_[1])"] * v["γ"] * v["ψ"] * sqrt(1 + 4 * v["ξ_[1]"] ** 2),
@@ -308,6 +315,8 @@ class Recomputed:
                     where[symbol] = number(value)
                 if "soil" in meaning:
                     self.known["soil"] = value
+                if meaning == "topographic class":
+                    self.known["S_T"] = {"T1": 1.0, "T2": 1.2}[value]
         elif heads[0] == "weight":
             self.weights = [[number(each) for each in row[1:]] for row in rows]
             for _, _, _, M, w, h, P, PQ in self.weights:
@@ -414,9 +423,12 @@ class Recomputed:
         T = v[period[1]] if period else None
         if name == "a_[g] S":
             return v["a_[g]"] * G * (1 if "S_[e](0)" in each.formula else v["S"])
+        if name in ROWS and not each.numbers:
+            v["table"] = OF_STATES
+            return next(row[ROWS[name]] for row in OF_STATES if row[0] == v["T_R"])
         if name in ROWS:
             x = log(v["T_R"])
-            return float(np.exp(np.interp(x, *np.log(np.array(TABLE_OF_HAZARD).T[[0, ROWS[name]]]))))
+            return float(np.exp(np.interp(x, *np.log(np.array(v.get("table", TABLE_OF_HAZARD)).T[[0, ROWS[name]]]))))
         if name == "T_[R]" and each.numbers:
             return -v["V_[R]"] / log(1 - {"SLD": 0.63, "SLV": 0.1, "SLC": 0.05}[self.state])
         if name == "S_[eZ](T_[0])" and "max" in each.formula:

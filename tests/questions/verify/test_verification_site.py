@@ -86,15 +86,19 @@ class TestTheStarter:
         (tmp_path / "s.yaml").write_text(run("new", "site").stdout, encoding="utf-8")
         assert run_json("verify", "--site", "s.yaml")["code"] == "NTC2018"
 
-    @pytest.mark.parametrize("way", ["hazard", "spectrum", "floor", "T0", "SLC"])
+    @pytest.mark.parametrize("way", ["hazard", "spectrum", "floor", "T0", "SLC", "TC_star"])
     def test_so_do_the_lines_that_are_commented_out(self, way, site):
         lines = codes()["NTC2018"].starter.splitlines()
-        more = {"hazard": ("VN", "CU", "topography", "hazard")}.get(way, (way,))
+        more = {"hazard": ("VN", "class", "topography", "hazard"), "TC_star": ("TC_star", "topography")}.get(
+            way, (way,)
+        )
         kept = [
             line.removeprefix("# ") if line.startswith(tuple(f"# {key}:" for key in more)) else line for line in lines
         ]
         if way in ("hazard", "spectrum"):
             kept = [line for line in kept if not line.startswith(("ag:", "F0:", "TC:", "S:"))]
+        if way == "TC_star":
+            kept = [line for line in kept if not line.startswith(("TC:", "S:"))]
         found = read_site(site("\n".join(kept))).site
         assert getattr(found, way) is not None
 

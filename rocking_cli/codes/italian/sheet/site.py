@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from math import log
 
 from rocking_cli.codes.italian import formulas as F
-from rocking_cli.codes.italian.demand import REFERENCE_DAMPING, FloorSpectrum, GroundSpectrum
+from rocking_cli.codes.italian.demand import REFERENCE_DAMPING, FloorSpectrum
 from rocking_cli.codes.italian.ground import (
     LONGEST_RETURN_PERIOD,
     PROBABILITY,
@@ -14,7 +15,9 @@ from rocking_cli.codes.italian.ground import (
     SOILS,
     TOPOGRAPHY,
     Hazard,
+    RockMotion,
     SiteGround,
+    bounded,
     corner_factor,
     return_period,
     soil_factor,
@@ -32,10 +35,15 @@ OF_GROUND = {
     "F0": ("F_[0]", "", "amplification of the spectrum, {state}"),
     "TC": ("T_[C]", "s", "end of the constant-acceleration branch, {state}"),
     "S": ("S", "", "soil and topography factor, {state}"),
+    "TC_star": ("T_[C]^[*]", "s", "end of the constant-acceleration branch on rock, {state}"),
 }
 OF_SITE = {
     "VN": ("V_[N]", "years", "nominal life"),
-    "CU": ("C_[U]", "", "coefficient of use"),
+    "use": ("C_[U]", "", "coefficient of use"),
+    "class_": ("", "", "class of use"),
+    "longitude": ("", "deg", "longitude"),
+    "latitude": ("", "deg", "latitude"),
+    "grid": ("", "", "reference grid"),
     "T0": ("T_[0]", "s", "given_T0"),
     "soil": ("", "", "soil class"),
 }
@@ -50,7 +58,8 @@ OF_FLOOR = {
 def part(say: Language, ground: SiteGround) -> SheetPart:
     """Return the part on the site, with a part for each limit state that it gives."""
     states = [each for each in STATES if ground.spectrum(each) is not None]
-    return SheetPart("site", say("Site"), [_given(say, ground)], [_of_state(say, ground, each) for each in states])
+    items = [_given(say, ground), *of_cell(say, ground)]
+    return SheetPart("site", say("Site"), items, [_of_state(say, ground, each) for each in states])
 
 
 def given(say: Language, ground: SiteGround) -> Iterator[Working]:
@@ -78,11 +87,26 @@ def _given(say: Language, ground: SiteGround) -> Table:
             rows.append(["a_[g]", meaning, say.number(at.spectrum[0][1]), "g"])
         rows += _values(say, at, OF_GROUND, state=state)
     rows += _values(say, site, OF_SITE)
-    if ground.hazard is not None:
+    if ground.on_rock(FIRST_STATE) is not None:
         rows.append(["", say("topographic class"), site.topography, ""])
     rows += _values(say, site.floor, OF_FLOOR)
     heads = [say(key) for key in ("symbol", "quantity", "value", "unit")]
     return Table(say("Data of the site file"), heads, [*rows, *modes], (2,))
+
+
+def of_cell(say: Language, ground: SiteGround) -> list[Table]:
+    """Return the nodes of the reference grid about the site, and the hazard between them; empty without a grid."""
+    cell = ground.site.cell
+    if cell is None:
+        return []
+    nodes = [list(map(say.number, corner)) for corner in cell.corners]
+    heads = ["longitude [deg]", "latitude [deg]", "distance [km]", "weight in the mean"]
+    rows = [list(map(say.number, row)) for row in cell.rows]
+    of_rows = ["T_[R] [years]", "a_[g] [g]", "F_[0]", "T_[C]^[*] [s]"]
+    return [
+        Table(say("Nodes of the reference grid"), list(map(say, heads)), nodes, range(4)),
+        Table(say("Hazard at the site, the weighted mean of the nodes"), list(map(say, of_rows)), rows, range(4)),
+    ]
 
 
 def _values(say: Language, part: object, fields: Mapping[str, tuple[str, str, str]], **names: str) -> list[list[str]]:
@@ -110,16 +134,30 @@ def _of_state(say: Language, ground: SiteGround, state: str) -> SheetPart:
 
 
 def _of_life(say: Language, ground: SiteGround, state: str) -> Iterator[Working]:
-    """Yield the steps to the return period of a limit state, and to the ground at this period."""
-    site, TR, hazard = ground.site, ground.return_period(state), ground.hazard
-    if hazard is None or TR is None or site.VN is None or site.CU is None:
+    """Yield the steps to the return period of a limit state, and to the ground on the soil."""
+    site, TR, hazard, rock = ground.site, ground.return_period(state), ground.hazard, ground.on_rock(state)
+    if site.life is not None and TR is not None and site.VN is not None:
+        bound = F.REFERENCE_LIFE if is_close(site.VN * (site.use or 0.0), site.life) else F.REFERENCE_LIFE_BOUND
+        yield say.step(bound, site.life, VN=site.VN, CU=site.use)
+        yield from _to_return_period(say, ground, state, site.life, TR)
+    if rock is None:
         return
-    life, P = site.VN * site.CU, PROBABILITY[state]
-    yield say.step(F.REFERENCE_LIFE, life, VN=site.VN, CU=site.CU)
-    formula = F.RETURN_PERIOD if is_close(return_period(life, state), TR) else F.RETURN_PERIOD_BOUND
-    first, last = max(SHORTEST_RETURN_PERIOD, hazard.table[0][0]), min(LONGEST_RETURN_PERIOD, hazard.table[-1][0])
-    yield say.step(formula, TR, {"state": state, "percent": 100 * P}, VR=life, P=P, first=first, last=last)
-    yield from hazard_at(say, hazard, TR)
+    if hazard is not None and TR is not None:
+        yield from _on_rock(say, hazard, TR, is_row=state in hazard.rounded(site.life or 0.0))
+    yield from _on_soil(say, site.soil or "A", site.topography, rock)
+
+
+def _to_return_period(say: Language, ground: SiteGround, state: str, life: float, TR: float) -> Iterator[Working]:
+    """Yield the steps to the return period of a limit state from the reference life [years]."""
+    P, exact, hazard = PROBABILITY[state], return_period(life, state), ground.hazard
+    is_row = hazard is not None and state in hazard.rounded(life)
+    period = bounded(exact) if is_row else TR
+    ends = [row[0] for row in hazard.table] if hazard is not None and not is_row else [0.0, LONGEST_RETURN_PERIOD]
+    first, last = max(SHORTEST_RETURN_PERIOD, ends[0]), min(LONGEST_RETURN_PERIOD, ends[-1])
+    formula = F.RETURN_PERIOD if is_close(exact, period) else F.RETURN_PERIOD_BOUND
+    yield say.step(formula, period, {"state": state, "percent": 100 * P}, VR=life, P=P, first=first, last=last)
+    if is_row:
+        yield say.step(F.RETURN_PERIOD_OF_ROW, TR, {"state": state})
 
 
 def is_close(one: float, other: float) -> bool:
@@ -129,29 +167,36 @@ def is_close(one: float, other: float) -> bool:
 
 def hazard_at(say: Language, hazard: Hazard, TR: float) -> Iterator[Working]:
     """Yield the steps to the ground at a return period, from the adjacent rows of the table."""
+    yield from _on_rock(say, hazard, TR)
+    yield from _on_soil(say, hazard.soil, hazard.topography, hazard.parameters(TR))
+
+
+def _on_rock(say: Language, hazard: Hazard, TR: float, *, is_row: bool = False) -> Iterator[Working]:
+    parameters = hazard.parameters(TR)
+    if is_row:
+        for formula, value in zip(F.ON_ROCK, parameters, strict=True):
+            yield say.step(replace(formula, text="", numbers=""), value)
+        return
     last = len(hazard.table) - 2
     k = min(next((k for k, row in enumerate(hazard.table[1:]) if row[0] >= TR), last), last)
     low, high = hazard.table[k], hazard.table[k + 1]
     r = log(TR / low[0]) / log(high[0] / low[0])
     yield say.step(F.BETWEEN, r, T=TR, a=low[0], b=high[0])
-    parameters = hazard.parameters(TR)
     for j, (formula, value) in enumerate(zip(F.ON_ROCK, parameters, strict=True), 1):
         yield say.step(formula, value, a=low[j], b=high[j], r=r)
-    yield from _on_soil(say, hazard, hazard.spectrum(TR), parameters[2])
 
 
-def _on_soil(say: Language, hazard: Hazard, spectrum: GroundSpectrum, TC_star: float) -> Iterator[Working]:
-    first, second, least, most, factor, power = SOILS[hazard.soil]
-    S_S, S_T = soil_factor(hazard.soil, spectrum.F0, spectrum.ag), TOPOGRAPHY[hazard.topography]
-    C_C = corner_factor(hazard.soil, TC_star)
+def _on_soil(say: Language, soil: str, topography: str, rock: RockMotion) -> Iterator[Working]:
+    first, second, least, most, factor, power = SOILS[soil]
+    S_S, S_T, C_C = soil_factor(soil, rock.F0, rock.ag), TOPOGRAPHY[topography], corner_factor(soil, rock.TC_star)
     sizes = {"least": least, "most": most, "first": first, "second": second}
     names = {key: f"{value:.2f}" if key in ("first", "second") else f"{value:.3g}" for key, value in sizes.items()}
-    names |= {"soil": hazard.soil, "factor": f"{factor:.2f}", "power": f"{power:.2f}".replace("-", "−")}
-    yield say.step(F.SOIL if second else F.SOIL_A, S_S, names, F0=spectrum.F0, ag=spectrum.ag, **sizes)
+    names |= {"soil": soil, "factor": f"{factor:.2f}", "power": f"{power:.2f}".replace("-", "−")}
+    yield say.step(F.SOIL if second else F.SOIL_A, S_S, names, F0=rock.F0, ag=rock.ag, **sizes)
     yield say.step(F.S, S_S * S_T, S_S=S_S, S_T=S_T)
     corner = F.CORNER if power else F.CORNER_A
-    yield say.step(corner, C_C, names, factor=factor, T=TC_star, power=say.formula(names["power"]))
-    yield say.step(F.TC, spectrum.TC, C=C_C, T=TC_star)
+    yield say.step(corner, C_C, names, factor=factor, T=rock.TC_star, power=say.formula(names["power"]))
+    yield say.step(F.TC, rock.on_soil(soil, topography).TC, C=C_C, T=rock.TC_star)
 
 
 def amplifications(say: Language, ground: SiteGround) -> Iterator[Working]:
