@@ -56,6 +56,8 @@ ONCE = (
     f"survey examples/survey/parapets.csv {SITE} --json",
     'design examples/block.yaml --vary width=0.3m:1m --until "lambda >= 0.3" --json',
     f'design examples/block.yaml --vary width=0.3m:1m {ACCEL} --until "peak_ratio < 0.3" --json',
+    "demand examples/verify/site.yaml",
+    "demand examples/verify/site.yaml --json --out demand.csv",
     "record examples/accel.csv --json",
     "record examples/accel.csv --trim 1:11 --highpass 0.3 --lowpass 15 --json --out corrected.csv",
     "record examples/accel.csv --fit-pulse --measures all --json",

@@ -126,11 +126,16 @@ class Showing(Generic[F, V]):
 
 def showing(found: Verification) -> Showing[Any, Any]:
     """Return how the results of the code of a verification are shown."""
-    shown_by = codes()[found.code].showing()
+    return showing_by(found.code)
+
+
+def showing_by(code: str) -> Showing[Any, Any]:
+    """Return how the results of a code are shown."""
+    shown_by = codes()[code].showing()
     if shown_by is None:
         return Showing[Any, Any]()
     if not isinstance(shown_by, Showing):
-        raise PluginError(f"the code {found.code} failed in showing: it must return a Showing or None")
+        raise PluginError(f"the code {code} failed in showing: it must return a Showing or None")
     return shown_by
 
 

@@ -209,7 +209,7 @@ AS_TEXT = ("record R --fit-pulse --plot p.svg", "equiv A N --csv")
 # These follow no history; `selfcheck` follows those of its blocks. `calibrate` judges no structure: the outcomes of its
 # tests were observed.
 WITHOUT = {
-    "calibrate", "draw", "equiv", "collapse", "error", "record", "select", "mechanisms", "measures", "new",
+    "calibrate", "draw", "equiv", "collapse", "error", "record", "select", "demand", "mechanisms", "measures", "new",
     "info", "selfcheck", "completion",
 }  # fmt: skip
 BARE = re.compile(r"\bkN\b|\[N\]|\bN m\b|\d N[ ,.;<]")

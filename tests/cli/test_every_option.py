@@ -156,7 +156,7 @@ CALLS = {
         {"records": CANDIDATES, "target": CODE, "band": (0.2, 1.0), "count": 2, "within": (0.01, 9.0),
          "one_per": "none"},
         {"records": CANDIDATES[1:], "target": 0.5 * CODE, "band": (0.3, 2.0), "count": 3, "within": (0.9, 1.1),
-         "damping": 0.1, "factors": (0.5, 1.0), "one_per": "event", "same_factor": True, "seed": 4},
+         "state": "SLC", "damping": 0.1, "factors": (0.5, 1.0), "one_per": "event", "same_factor": True, "seed": 4},
     ),
     "score": (
         {"tests": TESTS, "neighbours": 4},
@@ -173,6 +173,7 @@ CALLS = {
          "on_floor": True, "opening": 0.0001, "sheet": None, "language": "it", "project": "odd", "place": "odd",
          "author": "odd", "logo": "in.svg", "every_step": True, "origin": "odd"},
     ),
+    "demand": ({"site": SITE}, {"site": NTC | {"soil": "D"}, "damping": 0.1}),
     "fragility": (
         {"study": STUDY, "store": "in.db", "jobs": 1},
         {"study": "gone.yaml", "store": "b.db", "check": True, "scheduler": "odd", "restart": True,
@@ -345,6 +346,7 @@ COMMAND_LINES = {
     "respond": UNDER,
     "margin": UNDER,
     "verify": f"{UNDER} --site {SITE}",
+    "demand": f"{SITE}",
     "survey": f"{EXAMPLES / 'survey' / 'parapets.csv'} --record {ACCEL}",
     "design": f"{UNDER} --vary width=0.5:0.9 --until 'lambda>=0.2'",
     "score": f"{EXAMPLES / 'tests.csv'}",

@@ -25,6 +25,7 @@ DIFFERENT = {
     "--out": "the text names what is written",
     "--period": "of `record` it is that of a spectrum, of the others that of a pulse",
     "--plot": "the text names what is plotted",
+    "--state": "of `select` it is that of the target, of the others that of the records",
 }
 """Options whose meaning differs between commands, and why one text would be false."""
 ONCE = {f"--{name}" for name in CORRECTIONS}

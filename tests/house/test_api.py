@@ -232,6 +232,10 @@ FRAMES = {
             method.a_g for side in answer.directions.values() for method in side.methods.values()
         ]},
     ),
+    "demand": (
+        "period [s]; SLO Sa [g]; SLO Sd [m]; SLD Sa [g]; SLD Sd [m]; SLV Sa [g]; SLV Sd [m]; SLC Sa [g]; SLC Sd [m]",
+        {"SLV Sa [g]": lambda _, data: data["states"]["SLV"]["acceleration"]},
+    ),
     "select": (
         "period [s]; target Sa [g]; mean Sa [g]; Sa of r0 [g]; Sa of r5 [g]",
         {"mean Sa [g]": lambda _, data: data["spectrum"]["mean"]},

@@ -26,7 +26,11 @@ MAX_RECORDS = 1000  # records of a set
     type=click.Path(path_type=Path),
     metavar="SPECTRUM.csv",
     shell_complete=complete.files,
-    help="Target spectrum: one column of periods in s, and one of ordinates in g or in the unit of its heading.",
+    help="Target spectrum: one column of periods in s, and one of ordinates in g or in the unit of its heading; or a "
+    "site file (.yaml), of which the code gives the spectrum of the ground.",
+)
+@click.option(
+    "--state", metavar="STATE", help="Limit state of the site file whose spectrum is the target.  [default: SLV]"
 )
 @click.option(
     "--band",
@@ -104,6 +108,7 @@ def command(records: tuple[str, ...], target: Path, reading: ReadingOptions, out
     Example:
       rocking select "records/*.AT2" --target ec8.csv --band 0.2:4 --count 7
       rocking select "records/*.AT2" --target ec8.csv --band 0.2:2 --count 7 --factors 0.5:3 -o set --plot set.png
+      rocking select "records/*.AT2" --target site.yaml --state SLC --band 0.2:2 --count 7
       rocking respond block.yaml --record "set/*.csv"
     """
     from rocking_cli.cli.watching import OnTerminal

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,6 +15,9 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.records.record_units import CHOICES, UNITS, canonical, header_units
 from rocking_cli.studies.points_file import read_points, separator_in
+from rocking_cli.text import did_you_mean
+from rocking_cli.verification.check import demand
+from rocking_cli.verification.code import SiteFile
 
 COLUMNS = "a line has two columns with a comma between: period [s], Sa [g]"
 MAX_ORDINATE = 10.0  # g; no code requires more
@@ -38,6 +41,8 @@ class TargetSpectrum:
         Ordinates, not negative [standard gravity].
     unit : str or None
         Unit in which the ordinates were given; None if the file does not state it.
+    formula : callable, optional
+        Returns the ordinate at a period [s; standard gravity], where it is known between the points too.
 
     Raises
     ------
@@ -49,6 +54,7 @@ class TargetSpectrum:
     periods: Reals
     sa: Reals
     unit: str | None = "g"
+    formula: Callable[[float], float] | None = None
 
     def __post_init__(self) -> None:
         if problems := wrong_points(self.periods, self.sa):
@@ -56,6 +62,8 @@ class TargetSpectrum:
 
     def at(self, periods: Reals) -> Reals:
         """Return the ordinates at periods [s] within the range of the spectrum [standard gravity]."""
+        if self.formula is not None:
+            return np.array([self.formula(T) for T in periods.tolist()])
         return np.interp(periods, self.periods, self.sa)
 
     @property
@@ -121,6 +129,38 @@ def read_target(path: Path) -> TargetSpectrum:
     """
     periods, sa, unit = read_points(path, "target spectrum", COLUMNS, wrong_points, _remedy, _unit)
     return TargetSpectrum(str(path), periods, sa * UNITS[unit or "g"] / STANDARD_GRAVITY, unit)
+
+
+def target_of_site(site: SiteFile, state: str | None, damping: float) -> TargetSpectrum:
+    """Return the elastic spectrum of the ground of a site by its code, at a limit state.
+
+    Parameters
+    ----------
+    site : SiteFile
+        The site.
+    state : str or None
+        The limit state; None for that which decides.
+    damping : float
+        Damping ratio of the spectrum.
+
+    Raises
+    ------
+    InputError
+        If the code has no spectra, or the site does not give the limit state.
+    """
+    found = demand(site)
+    state = found.first if state is None else state
+    if state not in found.states:
+        message, hint = f"the site gives no limit state {state!r}", did_you_mean(state, [*found.states])
+        raise InputError(Problem(message, site.document.file, field="`state`", hint=hint))
+    ground, corners = found.states[state].ground, found.states[state].corners
+
+    def ordinate(period: float) -> float:
+        return ground.acceleration(period, damping) / STANDARD_GRAVITY
+
+    periods = np.unique([*corners, found.states[state].last])
+    sa = np.array([ordinate(T) for T in periods.tolist()])
+    return TargetSpectrum(f"{state} of {site.site.name or site.document.file}", periods, sa, formula=ordinate)
 
 
 def _remedy(message: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking_cli.ask.answer import Answer, drawn
+from rocking_cli.ask.given import SiteLike, site_of
 from rocking_cli.ask.ground_motions import Motion, Motions, ReadingArguments, Source
-from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.records.opening import STANDARD_INPUT
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
     from rocking_cli.processing.reading import Reading
     from rocking_cli.questions.select.target_spectrum import TargetSpectrum
     from rocking_cli.questions.select.view import ShownSet
+
+
+SITE_SUFFIXES = (".yaml", ".yml")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -45,10 +49,11 @@ class SetAnswer(Answer[RecordSet]):
 @takes_numbers
 def select(
     records: Motions | Motion | Sequence[Motion],
-    target: TargetSpectrum | str | Path | tuple[ArrayLike, ArrayLike],
+    target: TargetSpectrum | SiteLike | tuple[ArrayLike, ArrayLike],
     *,
     band: tuple[float, float],
     count: int,
+    state: str | None = None,
     within: tuple[float, float] = (0.9, 1.3),
     damping: float = 0.05,
     factors: tuple[float, float] = (0.2, 5.0),
@@ -64,12 +69,15 @@ def select(
     ----------
     records : GroundMotion, Pulse, str or Path, or a sequence of these
         Records to select from; a text may be a pattern of files, such as `records/*.AT2`.
-    target : str or Path, or (array_like, array_like)
-        The file of the spectrum, or its periods [s] and pseudo-accelerations [standard gravity].
+    target : str or Path, mapping, or (array_like, array_like)
+        The file of the spectrum, or its periods [s] and pseudo-accelerations [standard gravity]; or a site file (.yaml)
+        or its fields, of which the code gives the elastic spectrum of the ground.
     band : (float, float)
         Period range over which the mean must match [s].
     count : int
         Number of records to select.
+    state : str, optional
+        Limit state of the site whose spectrum is the target, such as `"SLC"`; by default that which decides, SLV.
     within : (float, float)
         Lower and upper limit on the ratio of mean to target.
     damping : float
@@ -107,7 +115,7 @@ def select(
     from rocking_cli.questions.select.view import ShownSet, table, title, view
 
     wanted = record_set.SetRequirements(count, band, within, damping, factors, one_per, same_factor, seed)
-    spectrum = _target(target, watch)
+    spectrum = _target(target, state, damping, watch)
     spectrum.check(wanted.band)
     motions = _without(target, Motions.of(records, options), watch)
     chosen = motions.gather(0.0, watch)
@@ -153,9 +161,12 @@ def _is_of(source: Source, file: Path) -> bool:
     return isinstance(source, Listed) and source.path.exists() and source.path.samefile(file)
 
 
-def _target(given: Any, watch: Watcher) -> TargetSpectrum:
-    from rocking_cli.questions.select.target_spectrum import TargetSpectrum, read_target
+def _target(given: Any, state: str | None, damping: float, watch: Watcher) -> TargetSpectrum:
+    from rocking_cli.questions.select.target_spectrum import TargetSpectrum, read_target, target_of_site
 
+    if isinstance(given, Mapping) or (isinstance(given, str | Path) and Path(given).suffix.lower() in SITE_SUFFIXES):
+        return target_of_site(site_of(given), state, damping)
+    refuse_idle("for a target without limit states: give a site file as `target`", state=state)
     if isinstance(given, TargetSpectrum):
         return given
     if isinstance(given, str | Path):

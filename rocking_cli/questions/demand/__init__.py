@@ -1,0 +1,3 @@
+"""`demand`: the response spectra of a site by a code of practice."""
+
+PLACE = 85

@@ -1,0 +1,48 @@
+"""`rk.demand`: the response spectra of a site by a code."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from rocking_cli.ask.answer import Answer, drawn
+from rocking_cli.ask.given import SiteLike, site_of
+from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.questions.demand.study import SpectraOfSite
+
+
+@takes_numbers
+def demand(site: SiteLike, *, damping: float = 0.05) -> Answer[SpectraOfSite]:
+    """Compute the elastic response spectra of a site by its code, at each limit state that the site gives.
+
+    Parameters
+    ----------
+    site : mapping, str or Path
+        Fields of a site file, or the file.
+    damping : float
+        Damping ratio of the spectra.
+
+    Returns
+    -------
+    Answer of SpectraOfSite
+        `states` holds, by limit state, `values` of the parameters and the arrays `acceleration` [standard gravity] and
+        `displacement` [m] of the ground, and of the floor if there is one, over `periods` [s].
+
+    Raises
+    ------
+    InputError
+        If the site cannot be used, or its code has no spectra.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> site = {"FC": "LC1", "ag": 0.2, "F0": 2.5, "TC_star": 0.32, "soil": "C"}
+    >>> slv = rk.demand(site).states["SLV"]
+    >>> round(slv.values["S"], 3), round(slv.values["pga"], 4), slv.acceleration.round(3).max().item()
+    (1.4, 0.28, 0.7)
+    """
+    from rocking_cli.questions.demand.study import spectra_of
+    from rocking_cli.questions.demand.view import table, title, view
+
+    found = spectra_of(site_of(site), damping)
+    figure = drawn("questions.demand.picture.draw_spectra_of_site", found, title(found))
+    return Answer("demand", found, view(found), partial(table, found), figure)

@@ -1,0 +1,105 @@
+"""View of the response spectra of a site, as text and as data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from rocking_cli.arrays import Reals
+from rocking_cli.questions.demand.study import SpectraOfSite
+from rocking_cli.views.column import Column, only_shown, rounded, table_across, table_of
+from rocking_cli.views.verification import showing_by
+from rocking_cli.views.view import Table, View
+
+SHOWN_PERIODS = (0.0, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0)  # s, in the table
+CURVES = (
+    ("acceleration", "Sa", "g"),
+    ("displacement", "Sd", "m"),
+    ("floor_acceleration", "floor Sa", "g"),
+    ("floor_displacement", "floor Sd", "m"),
+)
+"""Of each limit state: key, name in tables, and unit."""
+
+
+def view(found: SpectraOfSite) -> View:
+    """Show what decides, the parameters of the spectra, ordinates, and what the parameters follow from."""
+    say = showing_by(found.code).say
+    states = list(found.states)
+    values = [each.values for each in found.states.values()]
+    columns = [_parameter(*each) for each in found.parameters]
+    after = {"unit": lambda column: column.unit, "": lambda column: column.words}
+    parts: list[Table | str] = [say(found.headline), table_across(title(found), columns, states, values, after)]
+    parts += [
+        table_of(each.title, [_column(k, key, unit) for k, (key, unit) in enumerate(each.columns.items())], each.rows)
+        for each in found.origins
+    ]
+    parts += [*_ordinates(found), *map(say, found.remarks)]
+    return View(lambda: data(found), parts)
+
+
+def title(found: SpectraOfSite) -> str:
+    """Return the site, the code and the damping, as a heading."""
+    where = f"{found.site}: e" if found.site else "E"
+    return f"{where}lastic spectra at {100 * found.damping:g} % damping, {found.name} ({found.edition})"
+
+
+def data(found: SpectraOfSite) -> dict[str, Any]:
+    """Return the spectra as plain data, in s, standard gravity and m."""
+    say = showing_by(found.code).say
+    return {
+        "site": found.site,
+        "code": found.code,
+        "edition": found.edition,
+        "damping": found.damping,
+        "first": found.first,
+        "periods": found.periods.tolist(),
+        "states": {
+            state: {each.key: spectra.values[each.key] for each in found.parameters}
+            | {key: _known(getattr(spectra, key)) for key, *_ in CURVES}
+            for state, spectra in found.states.items()
+        },
+        **{each.key: [dict(zip(each.columns, row, strict=True)) for row in each.rows] for each in found.origins},
+        "verdict": say(found.headline),
+        "remarks": list(map(say, found.remarks)),
+    }
+
+
+def table(found: SpectraOfSite) -> dict[str, Sequence[object]]:
+    """Return the columns of the spectra, with a row for each period."""
+    return {
+        "period [s]": found.periods.tolist(),
+        **{
+            f"{state} {name} [{unit}]": values.tolist()
+            for state, spectra in found.states.items()
+            for key, name, unit in CURVES
+            if (values := getattr(spectra, key)) is not None
+        },
+    }
+
+
+def _known(curve: Reals | None) -> list[float | None] | None:
+    """Return the ordinates of a curve, None beyond its end; None without the curve."""
+    return None if curve is None else [None if value != value else value for value in curve.tolist()]
+
+
+def _parameter(key: str, symbol: str, unit: str, meaning: str) -> Column[Any]:
+    return Column(key, lambda values: values[key], unit, symbol, rounded(4), words=meaning)
+
+
+def _column(place: int, key: str, unit: str) -> Column[Any]:
+    heading = f"{key}\n[{unit}]" if unit else key
+    return only_shown(heading, lambda row: row[place], rounded(6))
+
+
+def _ordinates(found: SpectraOfSite) -> Iterator[Table]:
+    """Yield a table of ordinates for each quantity, with a column for each limit state."""
+    shown = [int(np.abs(found.periods - T).argmin()) for T in SHOWN_PERIODS if found.periods[-1] >= T]
+    for key, name, unit in CURVES:
+        curves = {state: getattr(spectra, key) for state, spectra in found.states.items()}
+        if any(each is None for each in curves.values()):
+            continue
+        columns = [only_shown("T\n[s]", found.periods.item, rounded(3))]
+        columns += [only_shown(state, curve.item, rounded(4)) for state, curve in curves.items()]
+        yield table_of(f"{name} [{unit}]", columns, shown)
