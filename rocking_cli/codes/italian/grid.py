@@ -27,6 +27,7 @@ from rocking_cli.text import cut, one_line
 
 EARTH_RADIUS = 6371.0  # km
 MAX_BYTES = 100_000_000  # the table of the decree has three million
+MAX_HEADING_ROWS = 50  # of a sheet
 GZIP, SPREADSHEETS = b"\x1f\x8b", (b"PK", b"\xd0\xcf\x11\xe0")
 NEIGHBOURS = 25  # nodes about a site, among which the steps of the grid are measured
 MAX_ALONG = 0.35  # cosine of the angle between the two directions of the grid, which is 70 to 110 degrees
@@ -176,9 +177,9 @@ def read_grid(path: Path) -> Grid:
     Parameters
     ----------
     path : Path
-        The table as CSV, plain or gzip: a row for each node, with its longitude and latitude [deg], and a_g, F0 and
-        T_C* [s] of each return period. Columns are known by their headings; a row above them may have the return
-        periods.
+        The table as CSV, plain or gzip, or as a spreadsheet (.xls, .xlsx, .ods), which needs python-calamine: a row for
+        each node, with its longitude and latitude [deg], and a_g, F0 and T_C* [s] of each return period. Columns are
+        known by their headings; a row above them may have the return periods.
 
     Raises
     ------
@@ -196,7 +197,7 @@ def read_grid(path: Path) -> Grid:
 def _read(path: Path, changed: int | None, size: int | None) -> Grid:
     del changed, size  # they only distinguish what the path holds at different times
     file = str(path)
-    lines = list(_cells(_text(path)))
+    lines = list(_lines(path))
     first = next((k for k, (_, cells) in enumerate(lines) if _is_of_numbers(cells)), len(lines))
     above, lines = [cells for _, cells in lines[:first]], lines[first:]
     lon, lat, by_period, units = _columns(file, above)
@@ -216,12 +217,35 @@ def _read(path: Path, changed: int | None, size: int | None) -> Grid:
     return Grid(table[:, 0] + 1j * table[:, 1], periods, values, unit)
 
 
-def _text(path: Path) -> str:
-    """Return the text of the table in a file, decompressed."""
+def _lines(path: Path) -> Iterator[tuple[int, list[str]]]:
+    """Yield the number of each line of a file that is not blank, and its cells, with decimal points."""
     raw: bytes | None = read_bytes(path, "grid file", MAX_BYTES)
-    if raw and raw.startswith(SPREADSHEETS):
-        hint = "open it in a spreadsheet program, save the sheet with the table as CSV, and name that file in `grid`"
-        raise InputError(Problem("is a spreadsheet or an archive, which is not read", str(path), hint=hint))
+    return _of_spreadsheet(path, raw) if raw and raw.startswith(SPREADSHEETS) else _cells(_text(path, raw))
+
+
+def _of_spreadsheet(path: Path, raw: bytes) -> Iterator[tuple[int, list[str]]]:
+    """Yield the lines of the first sheet that has a longitude among its headings."""
+    try:
+        from python_calamine import CalamineError, CalamineWorkbook
+    except ImportError:
+        hint = "pip install 'rocking-cli[spreadsheet]', or save the sheet with the table as CSV for `grid`"
+        raise InputError(Problem("is a spreadsheet, which needs another package", str(path), hint=hint)) from None
+    try:
+        book = CalamineWorkbook.from_filelike(io.BytesIO(raw))
+        sheets = [book.get_sheet_by_name(name).to_python(skip_empty_area=False) for name in book.sheet_names]
+    except CalamineError as error:
+        raise InputError(Problem(f"the spreadsheet cannot be read: {error}", str(path))) from None
+    for rows in sheets:
+        if any(str(cell).lower().startswith("lon") for row in rows[:MAX_HEADING_ROWS] for cell in row):
+            for number, row in enumerate(rows, 1):
+                if any(cell != "" for cell in row):
+                    yield number, [f"{cell:.15g}" if isinstance(cell, float) else str(cell) for cell in row]
+            return
+    raise InputError(Problem("no sheet has a heading that names the longitude", str(path), hint=COLUMNS_HINT))
+
+
+def _text(path: Path, raw: bytes | None) -> str:
+    """Return the text of the table in a file, decompressed."""
     if raw and raw.startswith(GZIP):
         try:
             with gzip.GzipFile(fileobj=io.BytesIO(raw)) as stream:

@@ -2,7 +2,9 @@
 
 import gzip
 import os
+import sys
 import time
+import zipfile
 from functools import cache
 from math import asin, cos, radians, sin, sqrt
 
@@ -46,6 +48,36 @@ def written(folder, nodes=NODES, headings=HEADINGS, separator=";", above=(), nam
     )
     (folder / name).write_text(text, encoding="utf-8")
     return folder / name
+
+
+def workbook(path, sheets):
+    """Write a spreadsheet of the kind .xlsx: its least parts, by the standard ECMA-376."""
+    office = "http://schemas.openxmlformats.org"
+    main, linked = f"{office}/spreadsheetml/2006/main", f"{office}/officeDocument/2006/relationships"
+    parts = {"xl/workbook.xml": f'<workbook xmlns="{main}" xmlns:r="{linked}"><sheets>'}
+    links = {"_rels/.rels": [("officeDocument", "xl/workbook.xml")], "xl/_rels/workbook.xml.rels": []}
+    for k, (name, rows) in enumerate(sheets.items(), 1):
+        parts["xl/workbook.xml"] += f'<sheet name="{name}" sheetId="{k}" r:id="rId{k}"/>'
+        links["xl/_rels/workbook.xml.rels"].append(("worksheet", f"worksheets/sheet{k}.xml"))
+        cells = [
+            "".join(
+                f'<c t="inlineStr"><is><t>{each}</t></is></c>' if isinstance(each, str) else f"<c><v>{each!r}</v></c>"
+                for each in row
+            )
+            for row in rows
+        ]
+        body = "".join(f"<row>{each}</row>" for each in cells)
+        parts[f"xl/worksheets/sheet{k}.xml"] = f'<worksheet xmlns="{main}"><sheetData>{body}</sheetData></worksheet>'
+    parts["xl/workbook.xml"] += "</sheets></workbook>"
+    for part, targets in links.items():
+        lines = [f'<Relationship Id="rId{k}" Type="{linked}/{kind}" Target="{target}"/>'
+                 for k, (kind, target) in enumerate(targets, 1)]  # fmt: skip
+        space = f"{office}/package/2006/relationships"
+        parts[part] = f'<Relationships xmlns="{space}">{"".join(lines)}</Relationships>'
+    with zipfile.ZipFile(path, "w") as archive:
+        for part, text in parts.items():
+            archive.writestr(part, f'<?xml version="1.0"?>{text}')
+    return path
 
 
 def haversine(lon, lat, other_lon, other_lat):
@@ -238,17 +270,33 @@ class TestTables:
     @pytest.mark.parametrize(
         ("content", "said"),
         [
-            (b"PK\x03\x04 of a sheet", "is a spreadsheet or an archive, which is not read"),
-            (b"\xd0\xcf\x11\xe0 of an old sheet", "is a spreadsheet or an archive, which is not read"),
+            (b"PK\x03\x04 of a sheet", "the spreadsheet cannot be read"),
+            (b"\xd0\xcf\x11\xe0 of an old sheet", "the spreadsheet cannot be read"),
             (b"\x1f\x8b\x08 cut", "the gzip file cannot be unpacked"),
         ],
     )
-    def test_other_kinds_of_files_say_how_to_save_them(self, content, said, tmp_path):
+    def test_a_damaged_file_is_refused(self, content, said, tmp_path):
         (tmp_path / "grid.xls").write_bytes(content)
         with pytest.raises(InputError) as caught:
             read_grid(tmp_path / "grid.xls")
         assert said in caught.value.problems[0].message
-        assert "gzip" in said or "save the sheet with the table as CSV" in caught.value.problems[0].hint
+
+    def test_a_spreadsheet_is_read_as_its_table_in_csv(self, tmp_path):
+        rows = [["Tabella 1"], HEADINGS, *([k, *each] for k, each in enumerate(NODES.values()))]
+        from_sheet = read_grid(workbook(tmp_path / "grid.xlsx", {"note": [["see the next sheet"]], "griglia": rows}))
+        from_text = read_grid(written(tmp_path))
+        assert from_sheet.periods.tolist() == from_text.periods.tolist() and from_sheet.unit == from_text.unit
+        assert from_sheet.values == pytest.approx(from_text.values, rel=1e-6)
+        assert from_sheet.places == pytest.approx(from_text.places, rel=1e-6)
+
+    def test_without_its_package_or_its_table_a_spreadsheet_says_what_to_do(self, tmp_path, monkeypatch):
+        file = workbook(tmp_path / "grid.xlsx", {"note": [["no table"]]})
+        with pytest.raises(InputError, match="no sheet has a heading that names the longitude"):
+            read_grid(file)
+        monkeypatch.setitem(sys.modules, "python_calamine", None)
+        grid._read.cache_clear()
+        with pytest.raises(InputError, match="save the sheet with the table as CSV"):
+            read_grid(file)
 
 
 class TestInASiteFile:
@@ -282,8 +330,8 @@ class TestInASiteFile:
 
     def test_it_is_read_once_as_long_as_it_does_not_change(self, tmp_path, monkeypatch):
         file, texts = written(tmp_path), []
-        text_of = grid._text
-        monkeypatch.setattr(grid, "_text", lambda path: texts.append(path) or text_of(path))
+        lines_of = grid._lines
+        monkeypatch.setattr(grid, "_lines", lambda path: texts.append(path) or lines_of(path))
         site = {"FC": 1.0, "soil": "A", "VN": 50, "CU": 1, "latitude": 42.07, "grid": str(file)}
         first = [rk.demand(site | {"longitude": 13.1 + 0.01 * k}).states["SLV"].values["ag"] for k in range(3)]
         assert len(texts) == 1
