@@ -66,13 +66,17 @@ class LeftOut(NamedTuple):
     name : str
         Its name; of a mechanism the joint that opens or slides.
     why : {"elastic", "too_few", "too_few_and_past", "starts_first"}
-        The reason: an elastic tie counts with its force at rest alone; the code requires more records, one of which may
-        take the structure past its capacity; another mechanism starts before the one that was verified.
+        The reason: an elastic tie, which has no strength, counts with its force at rest alone; the code requires more
+        records, one of which may take the structure past its capacity; another mechanism starts before the one that was
+        verified.
+    give : str
+        Path of the field of the structure that makes it count; empty if none does.
     """
 
     what: str
     name: str
     why: str
+    give: str = ""
 
 
 class NeighbourShare(NamedTuple):

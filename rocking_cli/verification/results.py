@@ -416,6 +416,8 @@ class Verification:
         Remarks on the verification: sentences, or keys of the texts of the code.
     left_out : sequence of LeftOut
         What was given and does not count.
+    relies_on : sequence of Remark
+        What a satisfied verification relies on and may not be there, such as the force of a tie that stretches far.
     """
 
     mechanism: Mechanism
@@ -426,6 +428,7 @@ class Verification:
     workings: Sequence[Working] = field(default=(), kw_only=True)
     remarks: Sequence[str | Remark] = field(default=(), kw_only=True)
     left_out: Sequence[LeftOut] = field(default=(), kw_only=True)
+    relies_on: Sequence[Remark] = field(default=(), kw_only=True)
 
     @property
     def unprinted(self) -> bool:

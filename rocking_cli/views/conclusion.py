@@ -29,7 +29,7 @@ POLARITIES = {1: "as given", -1: "reversed"}
 NEXT_STEPS: Mapping[str, str] = {
     **REMEDIES,
     NextStep.MARGIN: "`rocking margin` shows from which scale factor on neighbours overturn, or are unknown",
-    NextStep.YIELD_FORCE: "give the force at which the tie yields as a constant force in `loads`, so that it counts",
+    NextStep.YIELD_FORCE: "give the tie `steel` (or `yield`) in place of its stiffness or modulus, so that it counts",
     NextStep.MORE_MOTIONS: "give at least as many records as the code requires",
     NextStep.FIRST_MECHANISM: "describe the mechanism that starts first as a structure, and verify that structure",
     NextStep.SITE_VALUES: "give the values that the code requires in the site file (`rocking new site` prints one)",
@@ -39,7 +39,7 @@ NEXT_STEPS: Mapping[str, str] = {
 
 
 def of_verification(found: Verification, say: Language = ENGLISH, title: str | None = None) -> list[str]:
-    """Return the conclusion of a verification as sentences.
+    """Return the conclusion of a verification as sentences; ties that do not count come first.
 
     Parameters
     ----------
@@ -58,7 +58,15 @@ def of_verification(found: Verification, say: Language = ENGLISH, title: str | N
     sentences = [say(f"end_{first}", states=", ".join(end.limit_states))]
     if end.concluded is not Concluded.NOT_CHECKED:
         sentences.append(_governs(end, say, title or _method(found, end)))
-    return sentences + not_counted(end.left_out, say)
+    if end.concluded is Concluded.SATISFIED:
+        sentences += dict.fromkeys(map(say, found.relies_on))
+    others = [each for each in end.left_out if each.what != "tie"]
+    return uncounted_ties(end, say) + sentences + not_counted(others, say)
+
+
+def uncounted_ties(end: Conclusion, say: Language = ENGLISH) -> list[str]:
+    """Return a sentence on the ties that do not count, and what makes them count; empty if all do."""
+    return not_counted([each for each in end.left_out if each.what == "tie"], say)
 
 
 def not_counted(left_out: Sequence[LeftOut], say: Language = ENGLISH) -> list[str]:
@@ -200,6 +208,8 @@ def headline(end: Conclusion) -> str:
     if end.concluded is Concluded.ROCKS and end.peak_ratio is not None:
         return f"{names.ROCKS} to {end.peak_ratio:.3g}"
     words = end.concluded.value.replace("_", " ")
+    if ties := [each.name for each in end.left_out if each.what == "tie"]:
+        words = f"{words} without {in_short(ties)}"
     return f"{end.limit_state} {words}" if end.limit_state and end.concluded is not Concluded.SATISFIED else words
 
 

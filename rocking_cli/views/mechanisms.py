@@ -13,6 +13,7 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.contract import Verdict
 from rocking_cli.core.given import Crushing, Strength, Uncertainty
 from rocking_cli.core.hung.element import Interlock, Load
+from rocking_cli.core.hung.steel import BearingWall, Plate
 from rocking_cli.core.hung.ties import Face, Place, Tie
 from rocking_cli.units import units_of
 from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
@@ -104,7 +105,10 @@ def view(cls: type[Mechanism], package: str) -> View:
 
 PARTS: dict[str, tuple[str, dict[str, type[BaseModel]]]] = {
     "loads": ("a load, one of the list `loads` of any mechanism", {"": Load}),
-    "ties": ("a tie, one of the list `ties` of any mechanism", {"": Tie, "from, to, path": Place, "bed": Face}),
+    "ties": (
+        "a tie, one of the list `ties` of any mechanism",
+        {"": Tie, "from, to, path": Place, "bed": Face, "plate": Plate, "wall": BearingWall},
+    ),
     "crushing": ("the strength of pivots, `crushing` of single bodies and walls", {"": Crushing}),
     "interlock": ("the friction of crossing walls, `interlock` of any mechanism", {"": Interlock}),
     "strength": ("the strength of contacts, `strength` of any mechanism", {"": Strength}),

@@ -13,7 +13,7 @@ from rocking_cli.verification.code import codes
 from rocking_cli.verification.results import Verification, Verified, Working
 from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, table_of
-from rocking_cli.views.conclusion import conclusion_data, next_in_words, of_verification
+from rocking_cli.views.conclusion import conclusion_data, next_in_words, of_verification, uncounted_ties
 from rocking_cli.views.sheet.language import ENGLISH, Language
 from rocking_cli.views.view import Table, View, heading, number
 
@@ -153,9 +153,10 @@ def view(found: Verification, site: str | None = None, *, every_step: bool = Fal
     """
     sides, shown_by = shown(found), showing(found)
     by = f"{heading(found.mechanism)}, by the {found.name} ({found.edition}){f', at {site}' if site else ''}"
-    parts: list[Table | str] = [
-        " ".join(filter(None, [f"{by}.", *of_verification(found), next_in_words(found.conclusion)]))
-    ]
+    end = found.conclusion
+    first, concluded = uncounted_ties(end), of_verification(found)
+    parts: list[Table | str] = [*first]
+    parts.append(" ".join(filter(None, [f"{by}.", *concluded[len(first) :], next_in_words(end)])))
     if found.workings:
         parts.append(_site(found, shown_by.of_site))
     for where, each in sides.items():

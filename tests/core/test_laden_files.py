@@ -59,7 +59,6 @@ CASES = [
     (UNEQUAL + "restitution: {positive_to_negative: 1.2, negative_to_positive: 0.5}\n", 1 + UNEQUAL.count("\n"),
      "restitution.positive_to_negative", "would add energy at an impact"),
     # what is to come
-    (tie(f"{BAR}, stiffness: 1, yield: 5"), 7, "ties[1].yield", "a yield force .* is not supported in this version"),
     (tie(f"{BAR}, stiffness: 1, break: 5"), 7, "ties[1].break", "an elongation at which it breaks"),
     (tie(f"{BAR}, stiffness: 1, damper: 5"), 7, "ties[1].damper", "a damper .* is not supported in this version"),
     (HEAVY + "dampers:\n  - {name: t}\n", 7, "dampers", "a damper is not in this version"),

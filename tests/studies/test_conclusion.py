@@ -6,6 +6,7 @@ import json
 import re
 from dataclasses import replace
 from html import unescape
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -123,9 +124,19 @@ def test_an_elastic_tie_is_named_in_the_conclusion(pillar, tmp_path):
     tied = {**PILLAR, "ties": [bar]}
     (tmp_path / "pillar.yaml").write_text(yaml.safe_dump(tied), encoding="utf-8")
     data = run_json("verify", *asked)
-    assert data["conclusion"]["left_out"] == [{"what": "tie", "name": "bar", "why": "elastic"}]
-    assert "Not counted: the stiffness of bar" in " ".join(run("verify", *asked).stdout.split())
+    assert data["conclusion"]["left_out"] == [
+        {"what": "tie", "name": "bar", "why": "elastic", "give": "ties.bar.steel"}
+    ]
+    said = "Not counted: bar, because an elastic tie has no strength: give its `steel` or `yield`, so that it counts."
+    assert " ".join(run("verify", *asked).stdout.split()).startswith(said)
     (tmp_path / "rows.csv").write_text("file,name\npillar.yaml,tied\npillar.yaml,again\n", encoding="utf-8")
+    assert run("survey", "rows.csv", "--site", "s.site.yaml").stdout.startswith(
+        "Not counted: elastic ties of tied, again"
+    )
+    run("verify", *asked, "--sheet", "en.html")
+    run("report", "pillar.yaml", "--verify", "s.site.yaml", "-o", "r.html")
+    for page in ("en.html", "r.html"):
+        assert re.search(r"Summary (?!.*Summary)Not counted: bar", text_of(Path(page).read_text(encoding="utf-8")))
     rows = run_json("survey", "rows.csv", "--site", "s.site.yaml")["rows"]
     assert [row["not_counted"] for row in rows] == ["bar", "bar"]
     (table,) = (part for part in rk.survey("rows.csv", site="s.site.yaml").view.parts if isinstance(part, Table))
@@ -192,7 +203,7 @@ def surfaces(folder, structure, states, pulses):
         (folder / sheet).unlink(missing_ok=True)
         said = outcome_of("verify", *asked, "--sheet", sheet, "--language", name[:2].lower())
         page = text_of((folder / sheet).read_text(encoding="utf-8")) if (folder / sheet).exists() else said
-        start = re.search("The verification|La verifica|The site does", page)
+        start = re.search("Not counted: bar|Non è messo|The verification|La verifica|The site does", page)
         found[name] = page[start.start() : start.start() + 330] if start else page
     found["text"] = " ".join(said.split("Site")[0].split())
     data = outcome_of("verify", *asked, "--json")

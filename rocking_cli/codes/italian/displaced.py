@@ -14,6 +14,7 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.hung.attached import Follow, Spot
 from rocking_cli.core.hung.element import ConstantForce, Spring
+from rocking_cli.core.hung.steel import TieStrength
 from rocking_cli.core.hung.ties import Tie
 
 MIN_TURN = 1e-9  # rad per rad; a block that turns less moves in a straight line
@@ -215,6 +216,11 @@ def pulls(curve: ExactCurve, d: float) -> Sequence[Pull]:
                 against = -(moved.conjugate() * force).real / abs(force)
                 pulled.append(Pull(thing.name, abs(force), against, None))
     return pulled
+
+
+def strengths(mechanism: Mechanism) -> dict[str, TieStrength]:
+    """Return the strength of each tie of steel, by name."""
+    return {tie.name: tie.strength(tie.number_of_bars(mechanism.depth)) for tie in mechanism.ties or [] if tie.is_steel}
 
 
 def furthest(curve: ExactCurve, d: float) -> tuple[float, float]:

@@ -136,6 +136,19 @@ S_DE_FLOOR = Formula(
     "S_[De]({at})", "max({bounds})", "max({d}; …)", "m", clauses.FLOOR_DISPLACEMENT, meaning="S_De_floor"
 )
 
+# Strength of ties of steel: formulas in common use, not checked against a printed source
+TIE_NUMBER = Formula("n", "D/i", "{depth}/{spacing}", meaning="tie_number", standing="plain")
+TIE_YIELD = Formula(
+    "N_[y]", "n π d^[2]/4 f_[y]", "{n} · π · {d}^[2]/4 · {f}", "kN", clauses.ANCHORED, meaning="tie_yield"
+)
+TIE_YIELD_OF_AREA = replace(TIE_YIELD, text="A f_[y]", numbers="{A} · {f}")
+TIE_PUNCHING = Formula(
+    "N_[p]", "n 2 t (b + h + 2 t) f_[v]", "{n} · 2 · {t} · ({b} + {h} + 2 · {t}) · {f}", "kN", clauses.ANCHORED,
+    meaning="tie_punching",
+)  # fmt: skip
+TIE_BEARING = Formula("N_[b]", "n b h f_[c]", "{n} · {b} · {h} · {f}", "kN", clauses.ANCHORED, meaning="tie_bearing")
+TIE = Formula("N", "min(N_[y]; N_[p]; N_[b])", "min({N}; …)", "kN", meaning="tie_strength", standing="plain")
+
 # Kinematic chain
 P = Formula("P_[{k}]", "Σ", "{P} + …", "{unit}", clauses.ALPHA0, meaning="of_block_P")
 PQ = Formula("PQ_[{k}]", "Σ", "{P} + …", "{unit}", clauses.ALPHA0, meaning="of_block_PQ")

@@ -124,8 +124,12 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
     return ItalianVerification(
         taken, KEY, NAME, EDITION, directions,
         workings=Later(partial(workings_of_site, ground)),
+        relies_on=remarks.relied_on(directions.values()),
         remarks=[*notes, *remarks.of_site(ground, list(directions.values()))],
-        left_out=[LeftOut("tie", tie.name, "elastic") for tie in otherwise],
+        left_out=[
+            LeftOut("tie", tie.name, "elastic", f"ties.{tie.name}.steel" if tie.bed is None else "")
+            for tie in otherwise
+        ],
     )  # fmt: skip
 
 

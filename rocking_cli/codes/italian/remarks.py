@@ -8,11 +8,20 @@ from math import isclose
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.demand import FloorSpectrum, GroundSpectrum
-from rocking_cli.codes.italian.displaced import MAX_OVERHANG_SHARE, MAX_STRAIN, carried, elastic, furthest, pulls
+from rocking_cli.codes.italian.displaced import (
+    MAX_OVERHANG_SHARE,
+    MAX_STRAIN,
+    carried,
+    elastic,
+    furthest,
+    pulls,
+    strengths,
+)
 from rocking_cli.codes.italian.grid import EARTH_RADIUS
 from rocking_cli.codes.italian.ground import SiteGround, bounded, return_period
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified, LimitState
 from rocking_cli.codes.italian.rules import DAMAGE, FIRST_STATE, FURTHER_STATES, LINEAR, NONLINEAR, RULES, STATES
+from rocking_cli.core import Mechanism
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import digits_apart
 from rocking_cli.verification.results import Remark
@@ -128,12 +137,21 @@ def _of_line(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark
 
 
 def _of_ties(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark]:
+    remarks: list[Remark] = [*_of_strength(curve.chain.mechanism)]
     if not elastic(curve.chain.mechanism):
-        return []
-    remarks: list[Remark] = [Remark.of("ties", largest=curve.largest, over=curve.largest / curve.a0)]
+        return remarks
+    remarks += [Remark.of("ties", largest=curve.largest, over=curve.largest / curve.a0)]
     for name, force in carried(curve, states["SLV"].d).items():
         remarks.append(Remark.of("carries", name=name, force=force / 1e3))
     return remarks
+
+
+def _of_strength(mechanism: Mechanism) -> Iterator[Remark]:
+    """Yield remarks on the strength of each tie of steel, and on what its formulas rest on."""
+    for name, strength in strengths(mechanism).items():
+        force = {key: value / 1e3 for key, value in strength.limits.items()}
+        key = "strength" if "bearing" in force else "strength_alone"
+        yield Remark(key, {"name": name, "N": strength.force / 1e3, "governs": Remark.of(strength.governs), **force})
 
 
 def _of_stretch(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark]:
@@ -155,6 +173,16 @@ def _of_stretch(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Rem
         if held and moved > MAX_OVERHANG_SHARE * thickness / 2:
             remarks.setdefault("", Remark.of("wide", state=state, moved=moved, thickness=thickness))
     return list(remarks.values())
+
+
+def relied_on(directions: Iterable[ItalianVerified]) -> list[Remark]:
+    """Return the remarks on ties that stretch and on blocks that move too far as they are said with the conclusion."""
+    key_of = {"stretched": "end_stretched", "wide": "end_wide"}
+    return [
+        Remark(key_of[each.key], each.values)
+        for verified in directions for each in verified.remarks
+        if isinstance(each, Remark) and each.key in key_of
+    ]  # fmt: skip
 
 
 def _of_break(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark]:

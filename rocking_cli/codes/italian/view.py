@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.codes.italian import formulas as F
-from rocking_cli.codes.italian.displaced import pulls
+from rocking_cli.codes.italian.displaced import pulls, strengths
 from rocking_cli.codes.italian.remarks import differences
 from rocking_cli.codes.italian.results import Dynamic, ItalianVerification, ItalianVerified, LimitState
 from rocking_cli.codes.italian.sheet import dynamic
@@ -156,13 +156,18 @@ def _state(each: ItalianVerified, name: str, at: LimitState) -> dict[str, Any]:
     return {"d": at.d, "a": at.a, "T": at.T, "demand": at.demand, "ratio": at.ratio, **by}
 
 
-def _ties(each: ItalianVerified) -> dict[str, dict[str, float | None]]:
-    """Return force [N], elongation [m] and strain of each tie, and of each force against the motion, by limit state."""
-    by_tie: dict[str, dict[str, float | None]] = {}
+def _ties(each: ItalianVerified) -> dict[str, dict[str, Any]]:
+    """Return force [N], elongation [m] and strain of each tie, and of each force against the motion, by limit state.
+
+    A tie of steel has its strength [N] by each limit, and which of them governs.
+    """
+    by_tie: dict[str, dict[str, Any]] = {}
     for key in ("force", "elongation", "strain"):
         for name, at in each.states.items():
             for pull in pulls(each.exact, at.d):
                 by_tie.setdefault(pull.name, {})[f"{key}_{name}"] = getattr(pull, key)
+    for name, strength in strengths(each.chain.mechanism).items():
+        by_tie[name] |= {"strength": strength.limits, "strength_governs": strength.governs}
     return by_tie
 
 

@@ -68,15 +68,15 @@ class Carrier:
         Number of identical bodies that one body represents, for bodies that represent several.
     piece : callable
         Function that returns the piece of a cracked body on which a point lies.
-    depth : float or None
-        Size of the structure out of plane [m], over which a load per metre acts.
+    depth : float, optional
+        Size of the structure out of plane [m].
     """
 
     bodies: Mapping[str, Body]
     outlines: Mapping[str, Sequence[Outline]]
     alike: Mapping[str, int]
     piece: Callable[[str, complex], str]
-    depth: float | None
+    depth: float | None = None
 
     def body(self, name: str | None, loc: Loc) -> str:
         """Return the body that a load or tie refers to. Raises `RefusedFields`."""
@@ -157,7 +157,31 @@ def attach(
         bodies = [spot.body for spot in spots if spot.body is not None]
         if not bodies:
             raise RefusedFields(loc, "from", "both ends are on the ground, so no motion stretches it")
-        yield loc, tie.element(spots, max(carrier.count(body, each=tie.each) for body in bodies))
+        if tie.diameter is None:
+            yield loc, tie.element(spots, max(carrier.count(body, each=tie.each) for body in bodies))
+            continue
+        if tie.spacing is not None and carrier.depth is None:
+            raise RefusedFields(loc, "spacing", "requires the `depth` of the structure: give it, or give `bars`")
+        for body in bodies:
+            _check_plate(carrier, tie, body, loc)
+        yield loc, tie.element(spots, tie.number_of_bars(carrier.depth))
+
+
+def _check_plate(carrier: Carrier, tie: Tie, body: str, loc: Loc) -> None:
+    """Refuse an anchor plate that is larger than the body, and a wall that is thicker, as far as sizes are known."""
+    if tie.plate is None or tie.wall is None:
+        return
+    corners = np.concatenate([np.asarray(shape) for shape in carrier.outlines.get(body, ())] or [np.zeros(0, complex)])
+    sizes = (float(np.ptp(corners.real)), float(np.ptp(corners.imag))) if corners.size else (None, None)
+    for place, field, size, most, what in (
+        ("plate", "width", tie.plate.width, carrier.depth, "the structure is deep"),
+        ("plate", "width", tie.plate.width, tie.spacing, "bars are apart"),
+        ("plate", "height", tie.plate.height, sizes[1], f"{body} is high"),
+        ("wall", "thickness", tie.wall.thickness, sizes[0], f"{body} is wide"),
+    ):
+        if most is not None and size > most * (1 + OUTSIDE_DISTANCE):
+            reason = f"{size:g} m is more than the {most:.4g} m that {what}: reduce it"
+            raise RefusedFields((*loc, place), field, reason)
 
 
 def interlocked(interlock: Interlock, carrier: Carrier, density: float | None, gravity: float) -> Attached:

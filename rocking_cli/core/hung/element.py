@@ -304,9 +304,11 @@ class Spring(Stretched):
     @property
     def words(self) -> str:
         """Description of the stiffness, of the force at rest and of the sense in which the tie acts."""
-        sense = f", {self.only} only" if self.only else ""
-        force = f", {self.prestress / 1000:.4g} kN at rest" if self.prestress else ""
         many = f"{self.count:g} ties, each" if self.count != 1 else "a tie of"
+        sense = f", {self.only} only" if self.only else ""
+        if self.stiffness == 0:
+            return f"{many} a constant {self.prestress / 1000:.4g} kN{sense}"
+        force = f", {self.prestress / 1000:.4g} kN at rest" if self.prestress else ""
         return f"{many} {self.stiffness / 1000:.4g} kN/m{force}{sense}"
 
     @property

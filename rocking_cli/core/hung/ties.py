@@ -13,14 +13,29 @@ from pydantic import ConfigDict, Field, ModelWrapValidatorHandler, model_validat
 from rocking_cli.core.fields import Described, Name, Vertex, geometry_error, point, quantity
 from rocking_cli.core.hung.attached import Spot
 from rocking_cli.core.hung.element import Element, Spring, SpringBed
+from rocking_cli.core.hung.steel import (
+    MAX_NAMED_DIAMETER,
+    STEELS,
+    BearingWall,
+    Plate,
+    SteelName,
+    TieStrength,
+    circle,
+    tie_strength,
+)
 from rocking_cli.errors import MechanismError
 from rocking_cli.plugins.registry import Plugins, origin
 from rocking_cli.text import did_you_mean
 
 LATER_FIELDS = {
-    "yield": "a yield force", "break": "an elongation at which it breaks", "damper": "a damper", "damping": "a damper",
+    "break": "an elongation at which it breaks", "damper": "a damper", "damping": "a damper",
     "inerter": "an inerter", "inertance": "an inerter", "exponent": "the exponent of a damper",
 }  # fmt: skip
+STEEL_FIELDS = {
+    key: "yield" if key == "yield_stress" else key
+    for key in ("bars", "spacing", "diameter", "steel", "yield_stress", "plate", "wall")
+}
+"""Fields of a tie of steel, and how files write them."""
 
 
 class Place(Described):
@@ -55,7 +70,7 @@ class Face(Described):
 
 
 class Tie(Described):
-    """An elastic tie along a path of two or more points, or a bed of springs along a face.
+    """A tie along a path of two or more points, elastic or of steel, or a bed of springs along a face.
 
     A tie of another law derives from this class: it adds its fields and returns its own `element`, see `Laws`.
     """
@@ -82,6 +97,25 @@ class Tie(Described):
         "length over which it stretches; if omitted, that of its path", unit="m", default=None, gt=0, le=1e6
     )
     prestress: float = quantity("its force at rest, tension positive", unit="N", default=0.0, ge=-1e12, le=1e12)
+    bars: Annotated[int, Field(ge=1, le=10_000)] | None = Field(
+        None, description="number of bars of steel in the whole structure"
+    )
+    spacing: float | None = quantity(
+        "instead of `bars`: distance between bars along the wall; the depth of the structure over it is their number",
+        unit="m", default=None, gt=0, le=1e6,
+    )  # fmt: skip
+    diameter: float | None = quantity(
+        "diameter of a bar", unit="m", symbol="d", example=0.024, default=None, gt=0, le=1
+    )
+    steel: SteelName | None = Field(
+        None, description="steel of the tie, which then acts with its strength, as a constant force"
+    )
+    yield_stress: float | None = quantity(
+        "instead of `steel`: its yield stress", unit="Pa", symbol="f_y", example=2.35e8, default=None, ge=1e7, le=1e12,
+        alias="yield",
+    )  # fmt: skip
+    plate: Plate | None = Field(None, description="anchor plate of each bar; its strength and that of the wall count")
+    wall: BearingWall | None = Field(None, description="masonry that the anchor plates bear on")
     only: Literal["tension", "compression"] | None = Field(None, description="the one sense in which it can act")
     each: bool = Field(False, description="whether each of several bodies that move alike has one")
 
@@ -115,25 +149,77 @@ class Tie(Described):
         return self
 
     def _check_bed(self) -> None:
-        for key in ("stiffness", "area", "length", "only", "prestress"):
+        for key in ("stiffness", "area", "length", "only", "prestress", *STEEL_FIELDS):
             if getattr(self, key):
-                raise geometry_error(key, "a bed has a modulus and nothing else")
+                raise geometry_error(STEEL_FIELDS.get(key, key), "a bed has a modulus and nothing else")
         if self.bed is not None and self.bed.start == self.bed.end:
             raise geometry_error("bed", "its face has no length")
         if self.modulus is None:
             raise geometry_error("modulus", "a bed needs its modulus, N/m per metre of the face")
 
     def _check_bar(self) -> None:
+        if any(getattr(self, key) is not None for key in STEEL_FIELDS):
+            self._check_steel()
+        else:
+            self._check_elastic()
+        if (self.only == "tension" and self.prestress < 0) or (self.only == "compression" and self.prestress > 0):
+            raise geometry_error("prestress", f"it acts in {self.only} only: its force at rest must have that sign")
+
+    def _check_elastic(self) -> None:
         bar = [self.area, self.modulus]
         if (self.stiffness is None) == (None in bar) or (self.stiffness is not None and bar != [None, None]):
-            message = "give stiffness, or area and modulus: one of them (`stiffness: 0` for a constant force)"
-            raise geometry_error("stiffness", message)
+            raise geometry_error(
+                "stiffness",
+                "give stiffness, or area and modulus: one of them (`stiffness: 0` with `prestress` for a constant "
+                "force), or steel bars by `bars`, `diameter` and `steel`",
+            )
         if self.stiffness is not None and self.length is not None:
             raise geometry_error("length", "cannot be combined with `stiffness`: use it with `area` and `modulus`")
         if self.stiffness is None and self.length is None and self.span == 0:
             raise geometry_error("length", "its ends are together at rest: give the length over which it stretches")
-        if (self.only == "tension" and self.prestress < 0) or (self.only == "compression" and self.prestress > 0):
-            raise geometry_error("prestress", f"it acts in {self.only} only: its force at rest must have that sign")
+
+    def _check_steel(self) -> None:
+        """Refuse fields of a tie of steel that do not fit together."""
+        if type(self) is not Tie:
+            key = next(key for key in STEEL_FIELDS if getattr(self, key) is not None)
+            raise geometry_error(STEEL_FIELDS[key], "cannot be combined with `law`, which gives the force")
+        if self.steel is None and self.yield_stress is None:
+            named = ", ".join(STEELS)
+            raise geometry_error("steel", f"is missing: name one of {named}, or give the yield stress as `yield`")
+        if self.steel is not None and self.yield_stress is not None:
+            raise geometry_error("yield", "cannot be combined with `steel`: give one of the two")
+        for key in ("stiffness", "modulus", "prestress"):
+            if getattr(self, key):
+                reason = "a tie of steel acts with its strength, a constant force: leave it out, or leave out the steel"
+                raise geometry_error(key, reason)
+        if self.only == "compression":
+            raise geometry_error("only", "a tie of steel acts in tension")
+        self._check_bars()
+        if (self.plate is None) != (self.wall is None):
+            missing, there = ("plate", "wall") if self.plate is None else ("wall", "plate")
+            raise geometry_error(missing, f"is missing, which `{there}` requires: give both, or leave out `{there}`")
+
+    def _check_bars(self) -> None:
+        """Refuse the number and the size of the bars of a tie of steel if they do not fit together."""
+        if self.area is None and self.diameter is None:
+            reason = "is missing: give `diameter` with `bars` or `spacing`, or the `area` of the whole tie"
+            raise geometry_error("diameter", reason)
+        if self.area is not None and self.diameter is not None:
+            raise geometry_error("area", "cannot be combined with `diameter`: give one of the two")
+        for key in ("bars", "spacing", "plate") if self.area is not None else ():
+            if getattr(self, key) is not None:
+                raise geometry_error(key, "requires `diameter` instead of `area`, which is that of the whole tie")
+        if self.area is not None:
+            return
+        if self.bars is not None and self.spacing is not None:
+            raise geometry_error("spacing", "cannot be combined with `bars`: give the number of bars or their spacing")
+        if self.bars is None and self.spacing is None:
+            raise geometry_error("bars", "is missing: give the number in the whole structure, or their `spacing`")
+        if self.each:
+            raise geometry_error("each", "cannot be combined with `bars` and `spacing`, which count all: leave it out")
+        if self.steel is not None and self.diameter is not None and self.diameter > MAX_NAMED_DIAMETER:
+            most = f"{1000 * MAX_NAMED_DIAMETER:g} mm"
+            raise geometry_error("steel", f"thicker bars than {most} yield at less than this steel: give `yield`")
 
     @property
     def places(self) -> list[Place]:
@@ -149,10 +235,34 @@ class Tie(Described):
         return sum(abs(b - a) for a, b in pairwise(points))
 
     @property
+    def is_steel(self) -> bool:
+        """Whether the tie is of steel, and acts with its strength as a constant force."""
+        return self.steel is not None or self.yield_stress is not None
+
+    @property
+    def yield_of_steel(self) -> float:
+        """Yield stress of a tie of steel [Pa]."""
+        stress = self.yield_stress if self.steel is None else STEELS[self.steel]
+        assert stress is not None
+        return stress
+
+    def number_of_bars(self, depth: float | None) -> float:
+        """Return the number of bars in a structure of this depth [m], a real one of a spacing; 1 without either."""
+        if self.spacing is not None and depth is not None:
+            return depth / self.spacing
+        return float(self.bars or 1)
+
+    def strength(self, count: float) -> TieStrength:
+        """Return the strength of a tie of steel with this number of bars."""
+        section = self.area if self.diameter is None else circle(self.diameter)
+        assert section is not None
+        return tie_strength(section, self.yield_of_steel, count, self.plate, self.wall)
+
+    @property
     def k(self) -> float:
         """Stiffness of the tie [N/m]."""
-        if self.stiffness is not None:
-            return self.stiffness
+        if self.stiffness is not None or self.is_steel:
+            return self.stiffness or 0.0
         assert self.area is not None and self.modulus is not None
         return self.area * self.modulus / (self.length or self.span)
 
@@ -162,15 +272,27 @@ class Tie(Described):
         return self.bed is not None or self.k > 0
 
     def element(self, spots: Sequence[Spot], count: float) -> Element:
-        """Return `count` such ties through points as one element; for a bed, the points are the ends of its face."""
+        """Return `count` such ties, or bars, through points as one element; for a bed, the points are the ends of its face.
+
+        All bars of steel together are one element.
+        """
         if self.bed is not None:
             assert self.modulus is not None
             return SpringBed(self.name, spots[0], spots[1], self.modulus, count)
+        if self.is_steel:
+            number, count = (count, 1.0) if self.diameter is not None else (1.0, count)
+            return Spring(self.name, tuple(spots), 0.0, self.strength(number).force, only=self.only, count=count)
         return Spring(self.name, tuple(spots), self.k, self.prestress, only=self.only, count=count)
 
     def enlarged(self, factor: float) -> Self:
         """Return the tie on a structure of another size: its lengths are multiplied, its stiffness and force stay."""
-        kept = {} if self.bed is not None else {"stiffness": self.k, "area": None, "modulus": None, "length": None}
+        kept: dict[str, Any] = {"stiffness": self.k, "area": None, "modulus": None, "length": None}
+        if self.bed is not None:
+            kept = {}
+        elif self.is_steel:  # the spacing is enlarged as the depth is, so that the number of bars stays
+            section = self.area or circle(self.diameter or 0.0)
+            kept = {"area": self.area, "diameter": self.diameter, "yield_stress": self.strength(1).force / section}
+            kept |= {"steel": None, "plate": None, "wall": None}
         return super().enlarged(factor).model_copy(update=kept)
 
 

@@ -14,6 +14,7 @@ from rocking_cli.questions.survey.study import Bad, Survey, Surveyed
 from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.text import cut, one_line
 from rocking_cli.views.column import Column, data_of, frame_of, of, table_of
+from rocking_cli.views.conclusion import uncounted_ties
 from rocking_cli.views.view import Table, View, number
 
 DEFAULT_ROWS = 20
@@ -178,6 +179,11 @@ def counts(found: Survey) -> list[str]:
     """Return the first sentences: how many structures fail or overturn, what governs, and which is the worst."""
     rows = found.rows
     lines = []
+    if loose := [each for each in rows if each.verified is not None and uncounted_ties(each.verified)]:
+        lines.append(
+            f"Not counted: elastic ties of {_named(loose)}, because they have no strength: give each its `steel` or "
+            "`yield`, so that it counts."
+        )
     if found.by == "ratio":
         lines.append(" ".join(_of_site(rows)))
     if found.motions:

@@ -27,7 +27,7 @@ from rocking_cli.views.verification import shown, view
 from rocking_cli.views.view import Table
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
-from tests.questions.verify.test_sheet import CASES, FACADE, FLOOR, HAZARD, PARAPET, SITE, SLC
+from tests.questions.verify.test_sheet import CASES, FACADE, FLOOR, HAZARD, HEAVY, PARAPET, SITE, SLC
 from tests.questions.verify.test_sheet import verified as verified_of
 
 NUMBER = re.compile(r"\d+\.?\d*(?:e-?\d+)?")
@@ -59,7 +59,12 @@ class Springy(Block):
 
 
 LARGE = "mechanism: block\nname: large\nwidth: 20\nheight: 160\n"
+STEEL = """  - {name: bars, from: {ground: [-6, 7]}, to: {at: [-0.3, 7]}, spacing: 3, diameter: 0.012, steel: S235,
+     plate: {width: 0.2, height: 0.15}, wall: {thickness: 0.6, compression: 1e6, shear: 5e4}}
+  - {name: rod, from: {ground: [-6, 6]}, to: {at: [-0.3, 6]}, area: 1e-4, yield: 2e8}
+"""
 MORE = {
+    "ties of steel": (HEAVY + "ties:\n" + STEEL, SITE, None),
     "soil A, a long life": (FACADE, HAZARD.replace("soil: B", "soil: A").replace("VN: 50", "VN: 300"), None),
     "beyond 10 s": (LARGE, SITE + "soil: A\n", None),
     "a point of a body": (FACADE, SITE, (0.1, 8.0, None)),

@@ -9,12 +9,14 @@ from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.displaced import DisplacedChain, Moved
+from rocking_cli.core.hung.ties import Tie
 from rocking_cli.verification.results import Working
 from rocking_cli.views.sheet.document import Item, SheetPart, Steps
 from rocking_cli.views.sheet.language import Language
 from rocking_cli.views.view import Table
 
 ROUNDING_SHARE = 1e-12  # share of the size of the structure below which a coordinate is zero
+KILO = 1e3  # forces of ties are printed in kN, stresses in kN/m2
 MIN_SHARE = 1e-9  # share of the terms of a sum below which the sum is zero
 
 
@@ -58,6 +60,11 @@ def part(say: Language, curve: ExactCurve, key: str) -> SheetPart:
         _weights(say, chain, scale),
         Steps(list(_of_blocks(say, chain, scale))),
         at_work(say, rest, scale),
+        *(
+            Steps(list(_of_steel(say, tie, chain.mechanism.depth)))
+            for tie in chain.mechanism.ties or []
+            if tie.is_steel
+        ),
         *held(say, rest, scale),
         Steps(list(_sums(say, chain, rest, scale))),
     ]
@@ -114,6 +121,25 @@ def _x_of_P(position: DisplacedChain, each: Moved) -> float:
     if each.centre is None or not each.block.P:
         return each.at.real
     return each.centre.real - position.chain.direction * each.dy / each.turns
+
+
+def _of_steel(say: Language, tie: Tie, depth: float | None) -> Iterator[Working]:
+    """Yield the steps to the strength of a tie of steel."""
+    n, names = tie.number_of_bars(depth), {"tie": tie.name}
+    strength, stress = tie.strength(n), {"f": tie.yield_of_steel / KILO}
+    limits = {key: force / KILO for key, force in strength.limits.items()}
+    if tie.spacing is not None:
+        yield say.step(F.TIE_NUMBER, n, names, depth=depth, spacing=tie.spacing)
+    if tie.diameter is None:
+        yield say.step(F.TIE_YIELD_OF_AREA, limits["yield"], names, A=tie.area, **stress)
+    else:
+        yield say.step(F.TIE_YIELD, limits["yield"], names, n=n, d=tie.diameter, **stress)
+    if tie.plate is None or tie.wall is None:
+        return
+    plate = {"n": n, "b": tie.plate.width, "h": tie.plate.height}
+    yield say.step(F.TIE_PUNCHING, limits["punching"], names, t=tie.wall.thickness, f=tie.wall.shear / KILO, **plate)
+    yield say.step(F.TIE_BEARING, limits["bearing"], names, f=tie.wall.compression / KILO, **plate)
+    yield say.step(F.TIE, strength.force / KILO, names, N=[*limits.values()])
 
 
 def held(say: Language, position: DisplacedChain, scale: Scale) -> list[Item]:

@@ -1,0 +1,99 @@
+"""Ties as masons build them: bars of steel with anchor plates on a masonry wall, and the strength that follows.
+
+The least of three governs: the bars yield, a plate punches through the wall, or the wall crushes under a plate. The
+formulas of the plates are in common use; they have not been checked against a printed source.
+"""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Literal, NamedTuple
+
+from rocking_cli.core.fields import Described, length, quantity
+
+SteelName = Literal["S235", "S275", "S355", "B450C", "FeB22k", "FeB32k", "FeB38k", "FeB44k"]
+STEELS: dict[SteelName, float] = {
+    "S235": 235e6, "S275": 275e6, "S355": 355e6, "B450C": 450e6,
+    "FeB22k": 215e6, "FeB32k": 315e6, "FeB38k": 375e6, "FeB44k": 430e6,
+}  # fmt: skip
+"""Characteristic yield stress [Pa]: EN 10025-2 as in NTC 2018, table 4.2.I; B450C of NTC 2018, 11.3.2.1; FeB of the
+Italian decree of 9 January 1996."""
+MAX_NAMED_DIAMETER = 0.04  # m; the standards give thicker steel a lower yield stress than its name says
+BAR_DIAMETERS = tuple(d / 1000 for d in (12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 32))
+"""Diameters of bars that are proposed [m]."""
+
+
+class Plate(Described):
+    """The anchor plate of one bar."""
+
+    width: float = length("width of the plate, along the wall", symbol="b", example=0.3)
+    height: float = length("height of the plate", symbol="h", example=0.3)
+
+
+class BearingWall(Described):
+    """The masonry that an anchor plate bears on; its strengths are used as given, without a factor."""
+
+    thickness: float = length("thickness of the wall", symbol="t", example=0.6)
+    compression: float = quantity(
+        "compressive strength of the masonry", unit="Pa", symbol="f_c", example=1e6, ge=1e4, le=1e12
+    )
+    shear: float = quantity("shear strength of the masonry", unit="Pa", symbol="f_v", example=5e4, ge=1e3, le=1e12)
+
+
+class TieStrength(NamedTuple):
+    """Strength of a tie by each of its limits.
+
+    Parameters
+    ----------
+    limits : dict of str to float
+        Force [N] at which the bars yield (`yield`), and, if there are plates, at which these punch through the wall
+        (`punching`) or crush it (`bearing`).
+    """
+
+    limits: dict[str, float]
+
+    @property
+    def governs(self) -> str:
+        """Key of the limit that governs, the least."""
+        return min(self.limits, key=self.limits.__getitem__)
+
+    @property
+    def force(self) -> float:
+        """The strength, the least of all limits [N]."""
+        return self.limits[self.governs]
+
+
+def tie_strength(
+    section: float, stress: float, count: float, plate: Plate | None = None, wall: BearingWall | None = None
+) -> TieStrength:
+    """Return the strength of a tie of several bars.
+
+    Parameters
+    ----------
+    section : float
+        Area of the section of one bar [m2].
+    stress : float
+        Yield stress [Pa].
+    count : float
+        Number of bars, each with one plate.
+    plate, wall : Plate, BearingWall, optional
+        An anchor plate and the wall under it, both or neither. The plate punches out a cone at 45 degrees.
+
+    Examples
+    --------
+    >>> wall = BearingWall(thickness=0.6, compression=1e6, shear=5e4)
+    >>> strength = tie_strength(circle(0.024), STEELS["S235"], 2, Plate(width=0.3, height=0.3), wall)
+    >>> strength.governs, round(strength.force)
+    ('bearing', 180000)
+    """
+    limits = {"yield": count * section * stress}
+    if plate is not None and wall is not None:
+        b, h, t = plate.width, plate.height, wall.thickness
+        limits["punching"] = count * 2 * t * (b + h + 2 * t) * wall.shear
+        limits["bearing"] = count * b * h * wall.compression
+    return TieStrength(limits)
+
+
+def circle(diameter: float) -> float:
+    """Return the area of a circle [m2]."""
+    return pi * diameter**2 / 4
