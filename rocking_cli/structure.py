@@ -256,8 +256,10 @@ class Structure:
                     hint = by_meaning(part, fields_at(cls, known_path)) or did_you_mean(part, known)
                     raise InputError(Problem(message if k else f"is not a field of {within}", field=field, hint=hint))
             known_path = (*known_path, part)
-        if float not in types_at(cls, place) or (isinstance(place[-1], str) and is_plural(cls, place)):
-            raise InputError(Problem("is not a numeric field, so it cannot be varied", field=field))
+        kinds = types_at(cls, place)
+        if float not in kinds or (isinstance(place[-1], str) and is_plural(cls, place)):
+            what = "is a whole number" if int in kinds and not is_plural(cls, place) else "is not a numeric field"
+            raise InputError(Problem(f"{what}, so it cannot be varied", field=field))
         return place
 
     def _entries(self, place: Place) -> list[str]:

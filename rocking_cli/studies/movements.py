@@ -15,6 +15,7 @@ from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.hung.attached import PointMass, Spot
 from rocking_cli.core.hung.element import INTERLOCK_NAME as INTERLOCK
 from rocking_cli.core.hung.element import ConstantForce, Element, Stretched
+from rocking_cli.core.reactions import parts
 from rocking_cli.dynamics.history import History
 
 PATH_ROTATIONS = 257  # rotations between rest and a peak, sampled for the largest displacement
@@ -193,6 +194,60 @@ def largest(every: Sequence[Movements]) -> Movements:
 def _most(values: Iterable[float]) -> float:
     peaks = list(values)
     return nan if any(np.isnan(peaks)) else max(peaks, key=abs)
+
+
+def largest_on_the_way(of: Callable[[Reals, Direction], Reals], reached: Reals, direction: Direction) -> Reals:
+    """Return the largest absolute value of a function of rotation between rest and each rotation, shape (n,).
+
+    Parameters
+    ----------
+    of : callable
+        The function, of rotations in a direction.
+    reached : ndarray, shape (n,)
+        Rotations [rad]; the value at an infinite one is infinite.
+    direction : Direction
+        The direction of the rotations.
+    """
+    there = np.isfinite(reached)
+    phi = np.union1d(_way(float(reached[there].max(initial=0.0))), reached[there])
+    so_far = np.maximum.accumulate(np.abs(of(phi, direction)))
+    values = np.full(reached.shape, np.inf)
+    values[there] = so_far[np.searchsorted(phi, reached[there])]
+    return values
+
+
+def centroid_moved(mechanism: Mechanism, phi: Reals, direction: Direction) -> Reals:
+    """Return the horizontal displacement of the centroid of all mass that moves sideways [m], shape (n,).
+
+    It is the control point that `verify` has by default.
+    """
+    follow, moving = mechanism.followed(phi, direction), parts(mechanism, direction)
+    masses = [(body.mass, Spot(body.name, body.centroid)) for body in mechanism.weighed()]
+    masses += [(load.mass * load.horizontal, load.spot) for load in mechanism.hung.masses]
+    masses = [(mass, spot) for mass, spot in masses if moving[spot.body or ""]]
+    moved = sum(mass * (follow(spot).z - spot.at).real for mass, spot in masses)
+    return np.where(phi == 0, 0.0, moved / sum(mass for mass, _ in masses))  # no rounding at rest
+
+
+def drifts(mechanism: Mechanism, phi: Reals, direction: Direction) -> Reals:
+    """Return the largest horizontal displacement of a point over its height above the lowest corner, shape (n,).
+
+    The points are the top, and the hinges of a structure whose top is held.
+    """
+    follow = mechanism.followed(phi, direction)
+    spots = [spot for _, spot in (top(mechanism), *_where_it_bends(mechanism))]
+    corners = [np.asarray(shape).imag.min() for shapes in mechanism.carrier.outlines.values() for shape in shapes]
+    base = float(min(corners, default=0.0))
+    heights = [(spot, spot.at.imag - base) for spot in spots]
+    over = [np.abs((follow(spot).z - spot.at).real) / h for spot, h in heights if h > 0]
+    return np.where(phi == 0, 0.0, np.max(over, axis=0))  # no rounding at rest
+
+
+def largest_tie_force(mechanism: Mechanism, phi: Reals, direction: Direction) -> Reals:
+    """Return the largest absolute force of a tie at rotations [N], shape (n,)."""
+    follow = mechanism.followed(phi, direction)
+    forces = [np.abs(tie.force(tie.elongation(follow)[0])) for tie in mechanism.hung.ties]
+    return np.asarray(np.max(forces, axis=0))
 
 
 def _way(phi: float) -> Reals:

@@ -6,7 +6,7 @@ together with its neighbours: the same motion a little stronger or weaker, with 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from statistics import NormalDist
 from typing import NamedTuple
 
@@ -86,10 +86,10 @@ class Neighbourhood:
     def __post_init__(self) -> None:
         if not 0 <= self.count <= MAX_NEIGHBOURS:
             raise InputError(Problem(f"must be from 0 to {MAX_NEIGHBOURS}, got {self.count}", field="neighbours"))
-        for field in ("amplitude", "restitution", "slenderness"):
-            value = getattr(self, field)
+        for key in ("amplitude", "restitution", "slenderness"):
+            value = getattr(self, key)
             if value is not None and not 0 <= value < 1:
-                raise InputError(Problem(f"must be from 0 to below 1, got {value:g}", field=f"{field}_deviation"))
+                raise InputError(Problem(f"must be from 0 to below 1, got {value:g}", field=f"{key}_deviation"))
 
     def of(self, model: Model) -> Neighbourhood:
         """Return these neighbours with the standard deviations of a structure where none are given."""
@@ -157,6 +157,9 @@ class Neighbours:
     unknown : float or None
         The share of unknown outcome, because joints open or slide that the model keeps closed; None if the joints are
         not known, so that nothing was checked.
+    rotations : ndarray, shape (n, 2)
+        Peak rotation of each of them in the positive and in the negative direction [rad]; infinite if it overturns or
+        has an unknown outcome.
     """
 
     around: Neighbourhood
@@ -167,6 +170,7 @@ class Neighbours:
     lifted: bool = True
     over: str = "phi_cr"
     unknown: float | None = None
+    rotations: Reals = field(default_factory=lambda: np.zeros((0, 2)), compare=False, repr=False)
 
     @property
     def sensitive(self) -> bool:
@@ -226,7 +230,8 @@ def neighbours(
     largest_factor = float((draws.amplitude[able] / draws.slender[able]).max(initial=1.0))
     if release is None and motion is not None and able.all() and not can_lift(model, motion, largest_factor):
         unknown = None if unchecked else 0.0
-        return Neighbours(around, model.name, 0.0, (0.0, 0.0, 0.0), 1.0, lifted=False, unknown=unknown)
+        still = np.zeros((around.count, 2))
+        return Neighbours(around, model.name, 0.0, (0.0, 0.0, 0.0), 1.0, lifted=False, unknown=unknown, rotations=still)
     itself = Draws(np.ones(1), np.ones(1), np.full((1, 2), np.nan))  # NaN keeps the restitution of the model
     all_draws = Draws(*(np.concatenate(pair) for pair in zip(itself, draws, strict=True)))
     tilts = None
@@ -237,6 +242,8 @@ def neighbours(
     peaks = np.where(outcome[1:] > 0, np.inf, outcomes.peak_ratio[1:])
     # Quantiles are values of the sample, as interpolation with infinity has no meaning.
     low, middle, high = (float(peak) for peak in np.quantile(peaks, FRACTILES, method="inverted_cdf"))
+    rotations = np.stack([outcomes.peak_positive[1:], outcomes.peak_negative[1:]], axis=-1)
+    rotations[outcome[1:] > 0] = np.inf
     return Neighbours(
         around,
         model.name,
@@ -245,6 +252,7 @@ def neighbours(
         float((outcome[1:] == outcome[0]).mean()),
         over=peaks_over(model.ends_at_limit),
         unknown=None if unchecked and not outcomes.unknown.any() else float(outcomes.unknown[1:].mean()),
+        rotations=rotations,
     )
 
 

@@ -13,7 +13,7 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.contract import Verdict
 from rocking_cli.core.given import Crushing, Strength, Uncertainty
 from rocking_cli.core.hung.element import Interlock, Load
-from rocking_cli.core.hung.steel import BearingWall, Plate
+from rocking_cli.core.hung.steel import AnchorPlate, BearingWall
 from rocking_cli.core.hung.ties import Face, Place, Tie
 from rocking_cli.units import units_of
 from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
@@ -107,7 +107,7 @@ PARTS: dict[str, tuple[str, dict[str, type[BaseModel]]]] = {
     "loads": ("a load, one of the list `loads` of any mechanism", {"": Load}),
     "ties": (
         "a tie, one of the list `ties` of any mechanism",
-        {"": Tie, "from, to, path": Place, "bed": Face, "plate": Plate, "wall": BearingWall},
+        {"": Tie, "from, to, path": Place, "bed": Face, "plate": AnchorPlate, "wall": BearingWall},
     ),
     "crushing": ("the strength of pivots, `crushing` of single bodies and walls", {"": Crushing}),
     "interlock": ("the friction of crossing walls, `interlock` of any mechanism", {"": Interlock}),

@@ -130,6 +130,12 @@ def test_on_a_structure_of_another_size_the_force_stays(number):
         assert added * 4.0 / 7.5 == pytest.approx(force_of(structure), rel=1e-9)
 
 
+def test_a_report_does_not_call_it_elastic(tmp_path):
+    rk.report(facade(**BARS), file=tmp_path / "r.html")
+    page = (tmp_path / "r.html").read_text(encoding="utf-8")
+    assert "a constant force" in page and "212.6" in page and "assumed elastic" not in page
+
+
 def test_a_tie_of_zero_length_at_rest_needs_no_length():
     tendon = {"name": "bar", "path": [{"ground": [0.0, 0.0]}, {"at": [0.0, 0.0]}], **BARS}
     block = rk.Block(width=1.0, height=5.0, mass=12_000.0, ties=[tendon])
@@ -158,7 +164,8 @@ CASES = [
     ("bars: 2, diameter: 0.02, steel: S235, prestress: 1", "prestress", "acts with its strength, .*: leave it out"),
     ("bars: 2, diameter: 0.02, steel: S235, each: true", "each", "which count all: leave it out"),
     ("bars: 2, diameter: 0.02, steel: S235, only: compression", "only", "acts in tension"),
-    ("bars: 2, diameter: 0.02, steel: S235, plate: {width: 0.3, height: 0.3}", "wall", "is missing, which `plate` requires"),
+    ("bars: 2, diameter: 0.02, steel: S235, plate: {width: 0.3, height: 0.3}", "wall",
+     "is missing, which `plate` requires"),
     ("bars: 2, diameter: 0.02, steel: S235, wall: {thickness: 0.6, compression: 1e6, shear: 5e4}", "plate",
      "is missing, which `wall` requires: give both, or leave out `wall`"),
     (f"bars: 2, diameter: 0.02, steel: S235, {BOTH.replace(', shear: 5e4', '')}", "wall.shear", "is missing: shear"),

@@ -11,7 +11,7 @@ from rocking_cli.codes.italian import method
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.method import EDITION, KEY, NAME
 from rocking_cli.codes.italian.results import ItalianVerification
-from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, NONLINEAR
+from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, NONLINEAR, STATES
 from rocking_cli.codes.italian.site import ItalianSite, of_each
 from rocking_cli.codes.italian.site_demand import site_demand
 from rocking_cli.core import Mechanism
@@ -23,6 +23,14 @@ from rocking_cli.verification.results import Control, Histories
 
 def _zeta(key: str) -> Number:
     return Number(f"capacity over demand, by the {key} method of `verify`", of=lambda found: found.methods[key].zeta)
+
+
+def _zeta_at(state: str) -> Number:
+    """Return zeta_E at a limit state, by the method that governs there; at SLD the onset of rocking."""
+    return Number(
+        f"capacity over demand at {state}, by the method that governs there",
+        of=lambda found: found.methods[found.governing.get(state, state)].zeta,
+    )
 
 
 class Italian(Code):
@@ -37,6 +45,7 @@ class Italian(Code):
             of_structure=lambda mechanism, direction: Chain(mechanism, direction).alpha0,
         ),
         **{f"zeta_{method}": _zeta(method) for method in (DAMAGE, LINEAR, NONLINEAR)},
+        **{f"zeta_{state}": _zeta_at(state) for state in STATES},
     }
     takes_control = True
 

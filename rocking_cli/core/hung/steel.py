@@ -23,7 +23,7 @@ BAR_DIAMETERS = tuple(d / 1000 for d in (12, 14, 16, 18, 20, 22, 24, 26, 28, 30,
 """Diameters of bars that are proposed [m]."""
 
 
-class Plate(Described):
+class AnchorPlate(Described):
     """The anchor plate of one bar."""
 
     width: float = length("width of the plate, along the wall", symbol="b", example=0.3)
@@ -64,7 +64,7 @@ class TieStrength(NamedTuple):
 
 
 def tie_strength(
-    section: float, stress: float, count: float, plate: Plate | None = None, wall: BearingWall | None = None
+    section: float, stress: float, count: float, plate: AnchorPlate | None = None, wall: BearingWall | None = None
 ) -> TieStrength:
     """Return the strength of a tie of several bars.
 
@@ -76,13 +76,13 @@ def tie_strength(
         Yield stress [Pa].
     count : float
         Number of bars, each with one plate.
-    plate, wall : Plate, BearingWall, optional
+    plate, wall : AnchorPlate, BearingWall, optional
         An anchor plate and the wall under it, both or neither. The plate punches out a cone at 45 degrees.
 
     Examples
     --------
     >>> wall = BearingWall(thickness=0.6, compression=1e6, shear=5e4)
-    >>> strength = tie_strength(circle(0.024), STEELS["S235"], 2, Plate(width=0.3, height=0.3), wall)
+    >>> strength = tie_strength(circle(0.024), STEELS["S235"], 2, AnchorPlate(width=0.3, height=0.3), wall)
     >>> strength.governs, round(strength.force)
     ('bearing', 180000)
     """

@@ -16,8 +16,8 @@ from rocking_cli.core.hung.element import Element, Spring, SpringBed
 from rocking_cli.core.hung.steel import (
     MAX_NAMED_DIAMETER,
     STEELS,
+    AnchorPlate,
     BearingWall,
-    Plate,
     SteelName,
     TieStrength,
     circle,
@@ -114,7 +114,9 @@ class Tie(Described):
         "instead of `steel`: its yield stress", unit="Pa", symbol="f_y", example=2.35e8, default=None, ge=1e7, le=1e12,
         alias="yield",
     )  # fmt: skip
-    plate: Plate | None = Field(None, description="anchor plate of each bar; its strength and that of the wall count")
+    plate: AnchorPlate | None = Field(
+        None, description="anchor plate of each bar; its strength and that of the wall count"
+    )
     wall: BearingWall | None = Field(None, description="masonry that the anchor plates bear on")
     only: Literal["tension", "compression"] | None = Field(None, description="the one sense in which it can act")
     each: bool = Field(False, description="whether each of several bodies that move alike has one")

@@ -34,8 +34,9 @@ def _aim(text: str) -> Any:
 )  # fmt: skip
 @click.option(
     "--until", required=True, type=Parsed("requirement", _aim), metavar="'METRIC OP NUMBER'",
-    help="Requirement: one of lambda, phi_cr, p, peak_ratio, overturned, ratio, or a number of a code (alpha0, "
-    "zeta_damage, zeta_linear or zeta_nonlinear); one of <, <=, > or >=; and a number.",
+    help="Requirement: one of lambda, phi_cr, p, peak_ratio, peak_displacement, drift, tie_force, overturned, ratio, "
+    "or a number of a code (alpha0, zeta_SLD, zeta_SLV, zeta_SLC, zeta_damage, zeta_linear or zeta_nonlinear); one of "
+    "<, <=, > or >=; and a number.",
 )  # fmt: skip
 @click.option(
     "--points", type=click.IntRange(2, 10_000), default=41, show_default=True, metavar="N",
@@ -56,11 +57,14 @@ def command(file: str | Path, asked: GroundMotions, output: Output, **question: 
 
     The metrics are lambda, phi_cr and p of `rocking equiv`: of the two directions, the smaller phi_cr and lambda and
     the larger p. With a ground motion, the metric may also be the share of its neighbours that overturn (overturned),
-    or the median of their peak rotation over the critical rotation (peak_ratio); an unknown outcome, because a joint
-    opens or slides that the model keeps closed, counts as overturning. With several motions, or with
-    --polarity both, the worst case governs. With --site, ratio is the ratio of capacity to demand by the code of the
-    site. alpha0 and, with --site, the zeta_E of a method are those of `rocking verify` by the Italian code. Of each,
-    the smaller of both directions governs.
+    or the median over them of the peak rotation over the critical rotation (peak_ratio), of the peak displacement of
+    the control point (peak_displacement), of that of the top over its height (drift), or of the largest force of a tie
+    (tie_force); an unknown outcome, because a joint opens or slides that the model keeps closed, counts as overturning.
+    With several motions, or with --polarity both, the worst case governs. With --site, ratio is the ratio of capacity
+    to demand by the code of the site. alpha0 and, with --site, the zeta_E of a limit state or of a method are those of
+    `rocking verify` by the Italian code. Of each, the smaller of both directions governs.
+
+    If the field varies the force of a tie, the answer names bars of steel that give it.
 
     First, the range is scanned at --points values. If the metric is monotonic over it, the single threshold value is
     computed accurately; otherwise every interval in which the requirement is met is listed. "Met nowhere" and "met

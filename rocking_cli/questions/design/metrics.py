@@ -5,18 +5,25 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
+from functools import partial
 from math import nan
 
+import numpy as np
+
+from rocking_cli.arrays import Reals
+from rocking_cli.core import Direction, Mechanism
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.plugins.errors import blame
 from rocking_cli.plugins.registry import leave_out
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import LeftOut
+from rocking_cli.studies.movements import centroid_moved, drifts, largest_on_the_way, largest_tie_force
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
 from rocking_cli.text import cut, did_you_mean
 from rocking_cli.verification.check import verify
 from rocking_cli.verification.code import Number, SiteFile, codes
+from rocking_cli.verification.results import Remark
 
 
 @dataclass(frozen=True)
@@ -63,8 +70,10 @@ class Metric:
         Function of a structure and an `Excitation` that returns the metric: NaN if it does not exist, infinity if it
         is unlimited. Raises `InputError` or `MechanismError` if the structure has none.
     of_neighbours : callable, optional
-        Returns the metric of the neighbours of a motion instead: a share of histories, or a fractile, which are step
-        functions. An unknown outcome counts as overturning.
+        Returns the metric of the neighbours of a motion, and of the structure, instead: a share of histories, or a
+        fractile, which are step functions. An unknown outcome counts as overturning.
+    lacks : callable, optional
+        Returns why a structure cannot have the metric, and what to use instead; None if it can.
     sited : bool
         Whether the metric needs a site.
     codes : sequence of str
@@ -75,7 +84,8 @@ class Metric:
     unit: str
     meaning: str
     of_structure: Callable[[Structure, Excitation | None], float] | None = None
-    of_neighbours: Callable[[Neighbours], float] | None = None
+    of_neighbours: Callable[[Neighbours, Structure], float] | None = None
+    lacks: Callable[[Structure], str | None] | None = None
     sited: bool = False
     codes: Sequence[str] = ()
 
@@ -91,12 +101,14 @@ class Metric:
     def at(self, structure: Structure, excitation: Excitation | None) -> tuple[float, Neighbours | None]:
         """Return the metric of a structure, and the neighbours of the motion that governs if it needs motions."""
         of = self.of_neighbours
+        if self.lacks is not None and (why := self.lacks(structure)) is not None:
+            raise InputError(f"{self.name} {why}")
         if of is None:
             assert self.of_structure is not None
             return self.of_structure(structure, excitation), None
         assert excitation is not None
-        worst = max(excitation.each(structure), key=lambda near: (of(near), near.at_most, near.overturned))
-        return of(worst), worst
+        numbers = [(of(near, structure), near) for near in excitation.each(structure)]
+        return max(numbers, key=lambda each: (each[0], each[1].at_most, each[1].overturned))
 
 
 def _lambda(structure: Structure, excitation: Excitation | None) -> float:
@@ -120,9 +132,40 @@ def _ratio(structure: Structure, excitation: Excitation | None) -> float:
     return nan if end.ratio is None else end.ratio
 
 
+def _median_of(measure: Callable[[Mechanism, Reals, Direction], Reals]) -> Callable[[Neighbours, Structure], float]:
+    """Return a metric: what half of the neighbours do not exceed of a function of the rotation, up to their peaks."""
+
+    def median(near: Neighbours, structure: Structure) -> float:
+        mechanism = structure.mechanism
+        sides = []
+        for side in mechanism.directions:
+            reached, most = near.rotations[:, 0 if side > 0 else 1], np.nextafter(mechanism.limit(side), 0.0)
+            reached = np.where(np.isfinite(reached), np.minimum(reached, most), reached)
+            sides.append(largest_on_the_way(partial(measure, mechanism), reached, side))
+        # A value of the sample, as interpolation with infinity has no meaning.
+        return float(np.quantile(np.max(sides, axis=0), 0.5, method="inverted_cdf"))
+
+    return median
+
+
+def _lacks_critical_rotation(structure: Structure) -> str | None:
+    if all(side.phi_cr is not None for side in structure.statics):
+        return None
+    return "requires a critical rotation, which this structure has not: use peak_displacement, drift or tie_force"
+
+
+def _lacks_ties(structure: Structure) -> str | None:
+    return None if structure.mechanism.hung.ties else "requires a tie, and the structure has none: add it to `ties`"
+
+
 def taken_otherwise(structure: Structure, site: SiteFile) -> Sequence[LeftOut]:
     """Return what a structure has and a code does not count, such as the stiffness of ties."""
     return [each for each in verify(structure, site).left_out if each.what == "tie"]
+
+
+def relied_on(structure: Structure, site: SiteFile) -> Sequence[Remark]:
+    """Return what the verification of a structure relies on and may not be there, such as ties that stretch far."""
+    return verify(structure, site).relies_on
 
 
 METRICS: Mapping[str, Metric] = {
@@ -132,9 +175,15 @@ METRICS: Mapping[str, Metric] = {
         Metric("phi_cr", "rad", "critical rotation, the smaller of both directions", _phi_cr),
         Metric("p", "rad/s", "frequency parameter of the equivalent block, the larger of both directions", _p),
         Metric("peak_ratio", "", "peak rotation over the critical one that half of the neighbours do not exceed",
-               of_neighbours=lambda near: near.peak_ratio[1]),
+               of_neighbours=lambda near, _: near.peak_ratio[1], lacks=_lacks_critical_rotation),
+        Metric("peak_displacement", "m", "peak displacement of the control point, the centroid of all that moves, that "
+               "half of the neighbours do not exceed", of_neighbours=_median_of(centroid_moved)),
+        Metric("drift", "", "peak displacement of the top over its height that half of the neighbours do not exceed",
+               of_neighbours=_median_of(drifts)),
+        Metric("tie_force", "N", "largest force of a tie that half of the neighbours do not exceed",
+               of_neighbours=_median_of(largest_tie_force), lacks=_lacks_ties),
         Metric("overturned", "", "share of the neighbours that overturn, or are of unknown outcome",
-               of_neighbours=lambda near: near.at_most),
+               of_neighbours=lambda near, _: near.at_most),
         Metric("ratio", "", "capacity over demand by the code of the site, by what governs in `verify`", _ratio,
                sited=True),
     )

@@ -13,12 +13,14 @@ import numpy as np
 from rocking_cli.arrays import Bools, Reals
 from rocking_cli.errors import InputError, MechanismError, Problem, SolverError
 from rocking_cli.names import percent
-from rocking_cli.questions.design.metrics import Excitation, Metric, metric, taken_otherwise
+from rocking_cli.questions.design.bars import SteelAnswer, steel_answer
+from rocking_cli.questions.design.metrics import Excitation, Metric, metric, relied_on, taken_otherwise
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Concluded, Conclusion, LeftOut
 from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.text import cut
 from rocking_cli.units import UnitError, read, split
+from rocking_cli.verification.results import Remark
 
 OPERATORS: dict[str, Callable[[float, float], bool]] = {
     "<=": operator.le, ">=": operator.ge, "<": operator.lt, ">": operator.gt,
@@ -59,7 +61,8 @@ class Aim:
         return cls(chosen, match[2], _number(number, chosen.unit))
 
     def __str__(self) -> str:
-        return f"{self.metric.name} {self.op} {self.level:.6g}{f' {self.metric.unit}' if self.metric.unit else ''}"
+        level, unit = (self.level / 1e3, "kN") if self.metric.unit == "N" else (self.level, self.metric.unit)
+        return f"{self.metric.name} {self.op} {level:.6g} {unit}".rstrip()
 
     @property
     def wants_more(self) -> bool:
@@ -171,6 +174,10 @@ class Design:
         What the code does not count of the structure, at either end of the scan.
     motions : sequence of str
         Names of the motions, of which the worst governs at each value.
+    steel : SteelAnswer or None
+        Bars of steel, if the field varies the force of a tie and the answer is the least that meets the requirement.
+    relies_on : sequence of Remark
+        What the verification at the answer relies on and may not be there, see `Verification`.
     """
 
     structure: str
@@ -188,6 +195,8 @@ class Design:
     caution: str = ""
     taken_otherwise: Sequence[LeftOut] = ()
     motions: Sequence[str] = ()
+    steel: SteelAnswer | None = None
+    relies_on: Sequence[Remark] = ()
 
     @property
     def has_effect(self) -> bool:
@@ -271,6 +280,7 @@ def design(
     if aim.metric.shaken and (excitation is None or not excitation.motions or not excitation.around.count):
         message = f"{aim.metric.name} needs a ground motion with neighbouring motions"
         raise InputError(Problem(message, hint="give `motions`"))
+    _check_has_metric(structure, field, span, aim.metric)
     if points < 2:
         raise InputError(Problem(f"must be at least 2, got {points}", field="points"))
 
@@ -306,7 +316,24 @@ def design(
         monotone, value, _not_built(values, reasons), behind, structure.mechanism.own_caution(),
         _taken_otherwise(structure, field, span, aim, excitation),
         [each.name for each in excitation.motions] if excitation is not None else [],
+        None if value is None else steel_answer(structure, field, value, float(values[-1] if met[-1] else values[0])),
+        relied_on(structure.varied(field, value), excitation.site)
+        if value is not None and aim.metric.sited and excitation is not None and excitation.site is not None else (),
     )  # fmt: skip
+
+
+def _check_has_metric(structure: Structure, field: str, span: tuple[float, float], metric: Metric) -> None:
+    """Raise `InputError` if the structure lacks what a metric requires at both ends of the range."""
+    if metric.lacks is None:
+        return
+    reasons = []
+    for value in span:
+        try:
+            reasons.append(metric.lacks(structure.varied(field, value)))
+        except (InputError, MechanismError):  # the scan lists the values that cannot be built
+            return
+    if all(reasons):
+        raise InputError(f"{metric.name} {reasons[0]}")
 
 
 def _check_site(metric: Metric, excitation: Excitation | None) -> None:
@@ -340,13 +367,16 @@ def _at(
 ) -> tuple[float, Neighbours | None, str | None]:
     """Return the metric at a value, and the neighbours behind it; or NaN, and why it does not exist."""
     try:
-        number, near = aim.metric.at(structure.varied(field, value), excitation)
+        varied = structure.varied(field, value)
+        number, near = aim.metric.at(varied, excitation)
     except InputError as error:
         return nan, None, "; ".join(str(Problem(problem.message, field=problem.field)) for problem in error.problems)
     except (MechanismError, SolverError) as error:
         return nan, None, str(error)
     if isnan(number):
-        return nan, None, structure.why_no_block or f"{aim.metric.name} does not exist"
+        if aim.metric.sited:
+            return nan, None, f"the site does not give what {aim.metric.name} requires"
+        return nan, None, varied.why_no_block or f"{aim.metric.name} does not exist"
     if near is not None and near.unknown and aim.wants_more:
         return nan, near, f"{percent(near.unknown)} of the neighbouring motions have an unknown outcome"
     return number, near, None

@@ -49,9 +49,10 @@ def design(
         field. An entry of a list is given by its number, from 0, or its name.
     until : str
         The requirement, such as `"lambda >= 0.2"`: a metric, `<`, `<=`, `>` or `>=`, and a number. The metrics are
-        `lambda`, `phi_cr`, `p`, `alpha0`, with motions `peak_ratio` and `overturned`, of their neighbours, and with a
-        site `ratio`, and `zeta_damage`, `zeta_linear` and `zeta_nonlinear` or the numbers of another code. A neighbour
-        of unknown outcome counts as overturning.
+        `lambda`, `phi_cr`, `p`, `alpha0`, with motions `peak_ratio`, `peak_displacement`, `drift`, `tie_force` and
+        `overturned`, of their neighbours, and with a site `ratio`, and `zeta_SLD`, `zeta_SLV`, `zeta_SLC`,
+        `zeta_damage`, `zeta_linear` and `zeta_nonlinear` or the numbers of another code. A neighbour of unknown outcome
+        counts as overturning.
     motions : GroundMotion, Pulse, str or Path, or a sequence of these
         Ground motions; the worst one governs.
     polarity : {"1", "-1", "both"}
@@ -76,7 +77,7 @@ def design(
     -------
     Answer of Design
         `value` is the least value from which the requirement holds, or the largest up to which it holds; `holds` are
-        the ranges in which it holds.
+        the ranges in which it holds, and `steel` the bars of a tie whose force varies.
 
     Raises
     ------

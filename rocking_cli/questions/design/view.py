@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 
 from rocking_cli import names
+from rocking_cli.core.hung.steel import BAR_DIAMETERS
 from rocking_cli.names import percent
+from rocking_cli.questions.design.bars import Bars, SteelAnswer
 from rocking_cli.questions.design.metrics import Excitation
 from rocking_cli.questions.design.study import Design
 from rocking_cli.studies.conclusion import Concluded, NextStep
@@ -17,6 +19,7 @@ from rocking_cli.text import one_line
 from rocking_cli.views.column import Column, frame_of, only_shown, table_of
 from rocking_cli.views.conclusion import NEXT_STEPS, conclusion_data, not_counted
 from rocking_cli.views.neighbours import deviations
+from rocking_cli.views.sheet.language import ENGLISH
 from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import ABSENT, Table, View
 
@@ -26,7 +29,8 @@ MAX_SCAN_ROWS = 11  # values of the scan in the table
 def view(found: Design, excitation: Excitation | None = None) -> View:
     """Show the answer in a sentence, the scan, and remarks."""
     title = f"{found.structure}: {found.field} for {found.aim}"
-    return View(lambda: data(found), [f"{title}. {answer(found)}", scan(found), *doubts(found, excitation)])
+    first = " ".join(filter(None, [f"{title}. {answer(found)}", *in_steel(found)]))
+    return View(lambda: data(found), [first, scan(found), *doubts(found, excitation)])
 
 
 def data(found: Design) -> dict[str, Any]:
@@ -42,6 +46,7 @@ def data(found: Design) -> dict[str, Any]:
         "metric": found.aim.metric.name,
         "until": str(found.aim),
         "holds": [list(each) for each in found.holds],
+        "steel": _steel_data(found.steel) if found.steel is not None else None,
         "everywhere": found.everywhere,
         "conclusion": conclusion_data(found.conclusion),
         "monotone": found.monotone,
@@ -116,9 +121,53 @@ def answer(found: Design) -> str:
     )
 
 
+COUNTS = {1: "one bar", 2: "two bars", 3: "three bars", 4: "four bars"}
+
+
+def in_steel(found: Design) -> Iterator[str]:
+    """Yield sentences on the force that a tie needs, and on bars that give it."""
+    steel = found.steel
+    if steel is None:
+        return
+    of = steel.steel or f"a yield stress of {steel.stress / 1e6:.4g} MPa"
+    needs = f"The tie {steel.tie} needs {_kilonewtons(steel.force)}"
+    if not steel.proposals:
+        what = "the plates, or bars" if steel.anchored else "bars"
+        yield f"{needs}, more than {what} of up to {1000 * BAR_DIAMETERS[-1]:g} mm of {of}, give."
+        return
+    bars = " or ".join(_bars(each, steel.spacing) for each in steel.proposals)
+    yield f"{needs}: {bars}, of {of}."
+    if not steel.anchored:
+        yield "Anchor plates and the wall under them are not counted: give `plate` and `wall` of the tie."
+
+
+def _bars(bars: Bars, spacing: float | None) -> str:
+    """Return the number, the diameter and the strength of bars."""
+    many = COUNTS.get(round(bars.number), f"{bars.number:g} bars") if spacing is None else "bars"
+    every = "" if spacing is None else f" every {spacing:g} m"
+    return f"{many} of {1000 * bars.diameter:g} mm{every} ({_kilonewtons(bars.strength.force)})"
+
+
+def _kilonewtons(force: float) -> str:
+    return f"{force / 1e3:.4g} kN"
+
+
+def _steel_data(steel: SteelAnswer) -> dict[str, Any]:
+    """Return the bars of a tie as plain data."""
+    return {
+        "tie": steel.tie, "force": steel.force, "steel": steel.steel, "yield": steel.stress, "spacing": steel.spacing,
+        "bars": [
+            {"number": each.number, "diameter": each.diameter, "strength": each.strength.limits,
+             "governs": each.strength.governs}
+            for each in steel.proposals
+        ],
+    }  # fmt: skip
+
+
 def doubts(found: Design, excitation: Excitation | None) -> list[str]:
     """Return remarks on the answer."""
     sentences = [f"{each} Next: {NEXT_STEPS[NextStep.YIELD_FORCE]}." for each in not_counted(found.taken_otherwise)]
+    sentences += map(ENGLISH, found.relies_on)
     count = len(found.values)
     if not found.has_effect and not found.aim.metric.shaken:
         sentences.append(
@@ -181,6 +230,8 @@ def _value(value: float) -> str:
 
 
 def _with_unit(found: Design, value: float) -> str:
+    if found.unit == "N":
+        return f"{_value(float(value) / 1e3)} kN"
     return f"{_value(float(value))}{f' {found.unit}' if found.unit else ''}"
 
 

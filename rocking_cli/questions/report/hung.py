@@ -96,6 +96,7 @@ def _tie(tie: Element) -> list[str]:
     assert isinstance(tie, Stretched)  # the only other kind of element
     prestress, stiffness = tie.at_rest
     sense = {"tension": "tension only", "compression": "compression only", None: "tension and compression"}[tie.only]
+    sense = sense if stiffness else "a constant force"
     number = f", {tie.count:g} ties" if tie.count != 1 else ""
     where = ", ".join(_spot(spot) for spot in tie.spots) + number
     return [tie.name, where, sense, _kilo(stiffness), _kilo(prestress)]

@@ -1,0 +1,212 @@
+"""Designs of ties: bars that give a force, and goals on displacements, drift and tie forces, by hand."""
+
+import json
+from math import atan, cos, pi, sin
+
+import numpy as np
+import pytest
+
+import rocking_cli as rk
+from rocking_cli.errors import InputError
+from rocking_cli.structure import Structure
+from rocking_cli.studies.neighbours import Neighbourhood, neighbours
+from tests.cli.test_cli import run
+from tests.core.test_ties_of_steel import MASS, PLATE, SITE, G, facade
+
+FURTHER = {"SLD": {"ag": 0.08, "F0": 2.5, "TC": 0.4, "S": 1.2}, "SLC": {"ag": 0.25, "F0": 2.5, "TC": 0.4, "S": 1.2}}
+CONSTANT = {"stiffness": 0, "prestress": 1e4}
+PULSE = "sine:0.35g:0.6s"
+AROUND = {"neighbours": 20, "slenderness_deviation": 0.0, "points": 2}
+
+
+def lambda_of(force):
+    """A block of 0.6 x 8 m with a force 7.5 m above its foot."""
+    return 0.6 / 8 + force * 7.5 / (MASS * G * 4.0)
+
+
+def by_yield(count, diameter, stress=235e6):
+    return count * pi * diameter**2 / 4 * stress
+
+
+@pytest.mark.parametrize(
+    ("tie", "vary", "force", "bars"),
+    [
+        (CONSTANT, "prestress=1kN:300kN", 137e3, [(1, 0.028), (2, 0.020)]),
+        (CONSTANT, "prestress=1kN:900kN", 750e3, [(4, 0.032)]),  # 189 kN each
+        (CONSTANT, "prestress=1kN:300kN", 26e3, [(1, 0.012)]),  # two would not be thinner
+        (CONSTANT, "prestress=1kN:900kN", 800e3, []),
+        ({"area": 1e-4, "yield": 2e8}, "area=10mm2:2000mm2", 100e3, [(1, 0.026), (2, 0.018)]),  # 200 MPa
+        ({"bars": 3, "diameter": 0.01, "steel": "S275"}, "diameter=6mm:40mm", 100e3, [(3, 0.014)]),
+        ({"spacing": 2.0, "diameter": 0.01, "steel": "S235"}, "diameter=6mm:40mm", 100e3, [(2.5, 0.016)]),
+        ({"spacing": 2.0, "diameter": 0.01, "steel": "S235"}, "spacing=0.5m:9m", 30e3, [(1, 0.014), (2, 0.012)]),
+    ],
+)  # fmt: skip
+def test_the_answer_in_steel(tie, vary, force, bars):
+    found = rk.design(facade(**tie), f"ties.bar.{vary}", f"lambda >= {lambda_of(force)!r}", points=7)
+    assert found.steel.force == pytest.approx(force, rel=1e-9)
+    assert [(each.number, each.diameter) for each in found.steel.proposals] == bars
+    stress = found.steel.stress
+    for count, diameter in bars:
+        assert (
+            by_yield(count, diameter, stress) >= force > by_yield(count, diameter - 0.002, stress) * (diameter > 0.012)
+        )
+    said = found.sentences[0]
+    if not bars:
+        assert "The tie bar needs 800 kN, more than bars of up to 32 mm of S235, give." in said
+        return
+    shown = [f"{1000 * d:g} mm" for _, d in bars]
+    assert f"The tie bar needs {force / 1e3:.4g} kN: " in said and all(each in said for each in shown)
+    assert f"{bars[0][1] * 1000:g} mm" in said and f"({by_yield(*bars[0], stress) / 1e3:.4g} kN)" in said
+    assert found.to_dict()["steel"]["bars"][0]["strength"] == {"yield": pytest.approx(by_yield(*bars[0], stress))}
+
+
+def test_the_words_of_bars():
+    found = rk.design(facade(**CONSTANT), "ties.bar.prestress=1kN:300kN", f"lambda >= {lambda_of(137e3)!r}", points=7)
+    assert "is 137 kN; from there it holds to the end of the range tried, 300 kN. " in found.sentences[0]
+    bars = "The tie bar needs 137 kN: one bar of 28 mm (144.7 kN) or two bars of 20 mm (147.7 kN), of S235."
+    assert f"{bars} Anchor plates and the wall under them are not counted" in found.sentences[0]
+    apart = rk.design(facade(spacing=2.0, diameter=0.01, **{"yield": 2e8}), "ties.0.diameter=6mm:40mm",
+                      f"lambda >= {lambda_of(1e5)!r}", points=7)  # fmt: skip
+    assert "bars of 16 mm every 2 m (100.5 kN), of a yield stress of 200 MPa." in apart.sentences[0]
+
+
+def test_plates_of_the_tie_count():
+    """Of each bar the plate bears 0.3 * 0.25 * 1.5 MPa = 112.5 kN and punches at 105 kN: 137 kN take two bars."""
+    wall = {"thickness": 0.6, "compression": 1.5e6, "shear": 5e4}
+    tied = facade(area=None, **{"steel": "S235", "bars": 2, "diameter": 0.01, "plate": PLATE, "wall": wall})
+    found = rk.design(tied, "ties.bar.diameter=6mm:32mm", f"lambda >= {lambda_of(137e3)!r}", points=7)
+    ((count, diameter, strength),) = found.steel.proposals
+    assert (count, diameter) == (2, 0.020) and strength.limits["punching"] == pytest.approx(210e3)
+    assert "not counted" not in found.sentences[0]
+    assert rk.design(tied, "ties.bar.plate.width=0.1:0.5", f"lambda >= {lambda_of(20e3)!r}", points=7).steel is None
+
+
+@pytest.mark.parametrize(
+    ("tie", "vary", "until"),
+    [
+        (CONSTANT, "width=0.6:1.2", "lambda >= 0.2"),  # not of a tie
+        (CONSTANT, "ties.bar.prestress=1kN:300kN", "lambda <= 0.2"),  # the largest force
+        ({"stiffness": 1e6}, "ties.bar.prestress=1kN:300kN", "lambda >= 0.2"),  # not constant
+        (CONSTANT, "ties.bar.prestress=1kN:300kN", "lambda >= 9"),  # nowhere
+        (CONSTANT, "ties.bar.prestress=1kN:300kN", "lambda >= 0.01"),  # everywhere
+        (CONSTANT, "ties.bar.to.at.1=2m:7.5m", "lambda >= 0.09"),  # the place of the tie
+    ],
+)
+def test_no_answer_in_steel_where_no_least_force_is_found(tie, vary, until):
+    found = rk.design(facade(**tie), vary, until, points=5)
+    assert found.steel is None and found.to_dict()["steel"] is None and "needs" not in found.sentences[0]
+
+
+def test_whole_numbers_are_not_varied():
+    with pytest.raises(InputError, match="is a whole number, so it cannot be varied"):
+        rk.design(facade(bars=2, diameter=0.01, steel="S235"), "ties.bar.bars=1:4", "lambda > 0.1")
+
+
+@pytest.mark.parametrize("state", ["SLD", "SLV", "SLC"])
+def test_zeta_of_each_limit_state_is_that_of_verify(state):
+    site = {**SITE, **FURTHER}
+    level = {"SLD": 1.6, "SLV": 2.0, "SLC": 2.0}[state]
+    found = rk.design(
+        facade(**CONSTANT), "ties.bar.prestress=1kN:200kN", f"zeta_{state} >= {level}", site=site, points=5
+    )
+    just = rk.verify(facade(stiffness=0, prestress=float(found.value)), site).directions[rk.Direction.POSITIVE]
+    key = "SLD" if state == "SLD" else just.governing[state]
+    assert just.methods[key].zeta == pytest.approx(level, rel=1e-6) and found.steel is not None
+    missing = rk.design(facade(**CONSTANT), "width=0.6:0.7", f"zeta_{state} > 0", site=SITE, points=2)
+    why = f"the site does not give what zeta_{state} requires"
+    assert (why in " ".join(missing.sentences)) == (state != "SLV")
+
+
+def test_an_answer_that_relies_on_a_long_tie_says_so():
+    found = rk.design(facade(**CONSTANT), "ties.bar.prestress=1kN:200kN", "zeta_SLV >= 2", site=SITE, points=5)
+    at = rk.verify(facade(stiffness=0, prestress=float(found.value)), SITE)
+    strain = at.to_dict()["directions"]["positive"]["ties"]["bar"]["strain_SLV"]
+    assert f"Caution: at SLV this relies on the tie bar when it is {100 * strain:.2g} % longer" in " ".join(
+        found.sentences
+    )
+    assert not rk.design(facade(**CONSTANT), "ties.bar.prestress=1kN:200kN", "lambda > 0.2", points=5).relies_on
+
+
+BLOCK = {"name": "b", "width": 0.6, "height": 2.4, "mass": 2000.0, "restitution": 0.9}
+ALPHA = atan(0.6 / 2.4)
+
+
+def median(structure, ratio_of=lambda near: near.peak_ratio[1]):
+    motion = rk.parse_pulse(PULSE).sampled()
+    return ratio_of(neighbours(Structure(structure).model("nonlinear"), motion, Neighbourhood(20, slenderness=0.0)))
+
+
+@pytest.mark.parametrize(
+    ("metric", "of"),
+    [
+        # the centroid (-0.3, 1.2) and the middle of the top (-0.3, 2.4) about the foot at (0, 0)
+        ("peak_displacement", lambda phi: 0.3 * (1 - cos(phi)) + 1.2 * sin(phi)),
+        ("drift", lambda phi: (0.3 * (1 - cos(phi)) + 2.4 * sin(phi)) / 2.4),
+    ],
+)
+def test_displacements_of_a_block(metric, of):
+    found = rk.design(rk.Block(**BLOCK), "gravity=9.80665:9.9", f"{metric} < 1", PULSE, **AROUND)
+    phi = median(rk.Block(**BLOCK)) * ALPHA
+    assert 0.01 < phi < ALPHA and found.metric[0] == pytest.approx(of(phi), rel=1e-9)
+    assert found.aim.metric.unit == ("m" if metric == "peak_displacement" else "")
+
+
+def test_loads_move_the_control_point():
+    """2000 kg at 1.2 m and 500 kg at the top, of which half moves sideways."""
+    load = {"name": "a", "mass": 500.0, "at": [0.0, 2.4], "horizontal": 0.5}
+    block = rk.Block(**BLOCK, loads=[load])
+    found = rk.design(block, "gravity=9.80665:9.9", "peak_displacement < 1", PULSE, **AROUND)
+    phi = median(block) * rk.equivalent_block(block).positive.phi_cr
+    height = (2000 * 1.2 + 250 * 2.4) / 2250
+    assert found.metric[0] == pytest.approx(0.3 * (1 - cos(phi)) + height * sin(phi), rel=1e-6)
+
+
+def test_the_force_of_a_tie():
+    """One of 1 MN/m that is 2 m long, from the ground to the left edge 2 m above the foot."""
+    tie = {"name": "t", "from": {"ground": [-2.3, 2.0]}, "to": {"at": [-0.3, 2.0]}, "stiffness": 1e6, "only": "tension"}
+    block = rk.Block(**{**BLOCK, "restitution": None}, one_sided="positive", rebound=0.5, ties=[tie])
+    found = rk.design(block, "gravity=9.80665:9.9", "tie_force <= 90 kN", PULSE, **AROUND)
+    motion = rk.parse_pulse(PULSE).sampled()
+    near = neighbours(Structure(block).model("nonlinear"), motion, Neighbourhood(20, slenderness=0.0))
+    phi = np.sort(near.rotations[:, 0])[9]  # the tenth of twenty
+    end = 0.3 + (-0.6 + 2j) * np.exp(-1j * phi)
+    force = 1e6 * (abs(end - (-2.3 + 2j)) - 2)
+    assert force > 1e3 and found.metric[0] == pytest.approx(force, rel=1e-9)
+    assert found.aim.level == 90e3 and "tie_force <= 90 kN" in found.sentences[0]
+
+
+def test_an_overturning_block_has_no_displacement():
+    found = rk.design(rk.Block(**BLOCK), "gravity=9.80665:9.9", "drift < 1", "sine:3g:2s", **AROUND)
+    assert np.isinf(found.metric).all() and found.holds == []
+
+
+def test_what_a_structure_lacks_is_refused():
+    stiff = facade(stiffness=1e6)
+    for until, said in (
+        ("peak_ratio < 0.1", "requires a critical rotation, .*: use peak_displacement, drift or tie_force"),
+        ("tie_force < 1", "requires a tie, and the structure has none: add it to `ties`"),
+    ):
+        with pytest.raises(InputError, match=said):
+            rk.design(stiff if "ratio" in until else rk.Block(**BLOCK), "height=7.9:8.1", until, PULSE, points=2)
+    part = rk.design(
+        stiff, "ties.bar.stiffness=0.001:1e6", "peak_ratio < 0.9", "sine:0.2g:0.5s", points=2, neighbours=5
+    )
+    assert np.isfinite(part.metric[0]) and np.isnan(part.metric[1]) and "critical rotation" in part.not_built[0].reason
+
+
+def test_on_the_command_line(tmp_path):
+    (tmp_path / "f.yaml").write_text(
+        "mechanism: block\nwidth: 0.6\nheight: 8\ndensity: 1800\ndepth: 5\none_sided: positive\nrebound: 0.4\nties:\n"
+        "  - {name: bar, from: {ground: [-6, 7.5]}, to: {at: [-0.3, 7.5]}, stiffness: 0, prestress: 1}\n",
+        encoding="utf-8",
+    )
+    asked = (
+        "design",
+        tmp_path / "f.yaml",
+        "--vary",
+        "ties.bar.prestress=1kN:300kN",
+        "--until",
+        f"lambda >= {lambda_of(137e3)}",
+    )
+    assert "two bars of 20 mm (147.7 kN)" in " ".join(run(*asked).stdout.split())
+    assert json.loads(run(*asked, "--json").stdout)["steel"]["bars"][1]["number"] == 2
