@@ -235,3 +235,18 @@ def test_a_verdict_that_relies_on_a_long_tie_says_so_at_once():
     assert f"Caution: at SLV this relies on the tie bar when it is {100 * strain:.2g} % longer" in first
     short = rk.verify(facade(bars=2, diameter=0.012, steel="S235"), {**SITE, "ag": 5.0})
     assert "not satisfied" in short.sentences[0] and "Caution" not in short.sentences[0]
+
+
+def test_a_force_that_stands_for_a_tie_says_how_far_its_block_moves():
+    """The centroid of a facade 0.6 m thick that turns about its foot; at 0.3 m a free one falls."""
+    load = {"name": "tie", "force": [-5e4, 0.0], "at": [-0.3, 7.5]}
+    held = rk.Block(
+        name="facade", width=0.6, height=8.0, depth=5.0, density=1800.0, one_sided="positive", rebound=0.4, loads=[load]
+    )
+    found = rk.verify(held, SITE)
+    side = found.directions[Direction.POSITIVE]
+    phi = side.exact.rotation(side.states["SLV"].d)
+    moved = 0.3 * (1 - np.cos(phi)) + 4.0 * np.sin(phi)
+    assert moved > 0.3
+    said = "Caution: at SLV this relies on ties or forces that still hold a block 0.6 m thick when it has moved by "
+    assert f"{said}{moved:.3g} m." in found.sentences[0]

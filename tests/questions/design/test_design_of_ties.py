@@ -151,6 +151,16 @@ def test_displacements_of_a_block(metric, of):
     assert found.aim.metric.unit == ("m" if metric == "peak_displacement" else "")
 
 
+def test_the_drift_of_a_wall_that_is_held_at_its_top_is_that_of_its_hinge():
+    """The hinge at mid-height of a wall of 0.3 x 3 m, whose lower half turns about the opposite edge of its foot."""
+    wall = rk.Wall(thickness=0.3, height=3.0, restitution=0.9)
+    found = rk.design(wall, "gravity=9.80665:9.9", "drift < 1", "sine:0.5g:0.3s", **AROUND)
+    motion = rk.parse_pulse("sine:0.5g:0.3s").sampled()
+    near = neighbours(Structure(wall).model("nonlinear"), motion, Neighbourhood(20, slenderness=0.0))
+    phi = np.sort(near.rotations.max(axis=1))[9]
+    assert phi > 1e-3 and found.metric[0] == pytest.approx((0.3 * (1 - cos(phi)) + 1.5 * sin(phi)) / 1.5, rel=1e-9)
+
+
 def test_loads_move_the_control_point():
     """2000 kg at 1.2 m and 500 kg at the top, of which half moves sideways."""
     load = {"name": "a", "mass": 500.0, "at": [0.0, 2.4], "horizontal": 0.5}
