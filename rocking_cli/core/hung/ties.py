@@ -288,13 +288,13 @@ class Tie(Described):
 
     def enlarged(self, factor: float) -> Self:
         """Return the tie on a structure of another size: its lengths are multiplied, its stiffness and force stay."""
-        kept: dict[str, Any] = {"stiffness": self.k, "area": None, "modulus": None, "length": None}
-        if self.bed is not None:
-            kept = {}
-        elif self.is_steel:  # the spacing is enlarged as the depth is, so that the number of bars stays
+        kept: dict[str, Any] = {}
+        if self.is_steel:  # the spacing is enlarged as the depth is, so that the number of bars stays
             section = self.area or circle(self.diameter or 0.0)
             kept = {"area": self.area, "diameter": self.diameter, "yield_stress": self.strength(1).force / section}
             kept |= {"steel": None, "plate": None, "wall": None}
+        elif self.bed is None:
+            kept = {"stiffness": self.k, "area": None, "modulus": None, "length": None}
         return super().enlarged(factor).model_copy(update=kept)
 
 
