@@ -274,9 +274,9 @@ class Tie(Described):
         return self.bed is not None or self.k > 0
 
     def element(self, spots: Sequence[Spot], count: float) -> Element:
-        """Return `count` such ties, or bars, through points as one element; for a bed, the points are the ends of its face.
+        """Return `count` such ties, with all their bars, through points as one element.
 
-        All bars of steel together are one element.
+        The points of a bed are the ends of its face.
         """
         if self.bed is not None:
             assert self.modulus is not None
