@@ -85,6 +85,12 @@ class Watched:
         return dict([top(self.mechanism), *_where_it_bends(self.mechanism), *_hung(self.mechanism)])
 
     @cached_property
+    def control(self) -> str:
+        """Name of the point whose displacement stands for the structure: the top, or a hinge if the top is held."""
+        bending = [name for name, _ in _where_it_bends(self.mechanism)]
+        return bending[0] if bending else next(iter(self.points))
+
+    @cached_property
     def ties(self) -> Sequence[Element]:
         """The ties, in the order of the file."""
         return self.mechanism.hung.ties

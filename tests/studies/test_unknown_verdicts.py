@@ -82,7 +82,7 @@ class TestSeveral:
         assert f"By the nonlinear model, the structure {counted} sine:2g:0.4s governs: " in said
         assert "sine:2g:0.4s: the outcome is unknown after 0.0617 s: then the joint between voussoir" in said
         (row,) = (line.split() for line in said.splitlines() if line.startswith(" sine:2g"))
-        assert row == ["sine:2g:0.4s", "2", "unknown", "0", "%", "100", "%", "unknown"]
+        assert row == ["sine:2g:0.4s", "2", "unknown", "-", "0", "%", "100", "%", "unknown"]
 
     def test_a_motion_that_only_slides_has_no_empty_line(self, tmp_path):
         text = "mechanism: block\nwidth: 0.8\nheight: 1.6\ndensity: 2000\ndepth: 1\nfriction: 0.3\n"

@@ -11,16 +11,17 @@ from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.io.tables import Columns
 from rocking_cli.names import digits_apart, peaks_over
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Conclusion
 from rocking_cli.studies.contact import ContactDemand
-from rocking_cli.studies.movements import Watched
+from rocking_cli.studies.movements import Movements, Watched
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours
 from rocking_cli.studies.response import Histories, Response
 from rocking_cli.text import in_short
 from rocking_cli.views.cautions import cautions_of
-from rocking_cli.views.column import Column, of, only_shown, table_of
+from rocking_cli.views.column import Column, frame_of, of, only_shown, table_of
 from rocking_cli.views.conclusion import MAX_NAMED_MOTIONS, counted
 from rocking_cli.views.contact import contact_words
 from rocking_cli.views.neighbours import deviations, neighbour_columns
@@ -31,12 +32,16 @@ from rocking_cli.views.view import Table, heading, number
 
 
 class MotionRow(NamedTuple):
-    """A row of the table: name, PGA [g], what becomes of each model, and the neighbours."""
+    """A row of the table: name, PGA [g], what becomes of each model, the neighbours, and the peaks of the best model.
+
+    Peaks of an unknown outcome are None.
+    """
 
     name: str
     pga: float
     fates: Mapping[ModelName, str]
     near: Neighbours | None
+    moved: Movements | None
 
 
 class Several:
@@ -96,15 +101,32 @@ class Several:
             self._torn.setdefault(text, []).append(found.given.motion.name)
 
     def _row(self, name: str, pga: float, histories: Histories, near: Neighbours | None) -> None:
-        self._rows.append(MotionRow(name, pga, {model: _fate(histories[model]) for model in self._models}, near))
+        fates, run = {model: _fate(histories[model]) for model in self._models}, histories[self._best]
+        moved = None if run.unknown else self._watched.peaks(run)
+        self._rows.append(MotionRow(name, pga, fates, near, moved))
 
     def _columns(self) -> Iterator[Column[MotionRow]]:
         yield only_shown(f"peak phi/{'limit' if any(self._free) else 'phi_cr'}\nunder", of("name"), text=True)
         yield only_shown("PGA\n[g]", of("pga"))
         for model, head in zip(self._models, model_heads(self._models, unknown=bool(self._until)), strict=True):
             yield only_shown(head, partial(_fate_of, model))
+        yield from self._peaks()
         if self._around is not None:
             yield from neighbour_columns(of("near"), doubtful=self._doubtful)
+
+    def _peaks(self) -> Iterator[Column[MotionRow]]:
+        """Yield the columns of the peak displacement of the control point, and of the largest force of each tie."""
+        at = [*self._watched.points].index(self._watched.control)
+        how = partial(_in, 1e3), f"{self._watched.control}, horizontal displacement"
+        yield Column(None, partial(_peak, "points", at, "horizontal"), "m", f"{self._watched.control}\n[mm]", *how)
+        for k, tie in enumerate(self._watched.ties):
+            how = partial(_in, 1e-3), f"{tie.name}, force"
+            yield Column(None, partial(_peak, "ties", k, "force"), "N", f"{tie.name}\n[kN]", *how)
+
+    def columns(self) -> Columns:
+        """Return the peaks under each motion as columns: of the control point [m] and of ties [N]."""
+        first = Column(None, of("name"), name="motion", text=True), Column(None, of("pga"), "g", name="PGA")
+        return frame_of([*first, *self._peaks()], self._rows)
 
     def parts(self, left_out: Sequence[str] = ()) -> Iterator[Table | str]:
         """Yield how many motions overturn the structure, which governs and which are left out, and the table."""
@@ -161,6 +183,15 @@ class Several:
 
 def _fate_of(model: ModelName, row: MotionRow) -> str:
     return row.fates[model]
+
+
+def _peak(kind: str, place: int, of: str, row: MotionRow) -> float | None:
+    """Return a peak of a row; None if its outcome is unknown."""
+    return None if row.moved is None else getattr(getattr(row.moved, kind)[place], of)
+
+
+def _in(factor: float, value: float) -> str:
+    return number(factor * value, 4)
 
 
 def _fate(history: History) -> str:

@@ -121,8 +121,9 @@ def respond(
     ResponseAnswer
         Time histories, by model. `runs` has those of each polarity, `neighbours` the outcomes of the neighbours,
         `contacts` the contact demands, `fit` and `to_pulse` the pulse and the response to it. Its frame has the time
-        histories, `frames["impacts"]` the impacts. For several motions, `Answers` with one for each, by its name; for
-        all azimuths, the answer of `respond_around`.
+        histories, `frames["impacts"]` the impacts. For several motions, `Answers` with one for each, by its name,
+        and `frames["peaks"]` with the peak displacement and tie forces under each; for all azimuths, the answer of
+        `respond_around`.
 
     Raises
     ------
@@ -204,7 +205,8 @@ def respond(
 
     responses, left_out = ask_each(scaled, row, watch)
     unread = [each.path.name for each in motions.records if all(each is not one.record for one in scaled)]
-    return answers("responses", "motion", responses, [*table.parts([*unread, *left_out]), *details])
+    parts = [*table.parts([*unread, *left_out]), *details]
+    return answers("responses", "motion", responses, parts, tables={"peaks": table.columns})
 
 
 def _note_pulse(response: Response, watch: Watcher) -> None:

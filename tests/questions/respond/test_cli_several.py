@@ -1,5 +1,6 @@
 """Several ground motions in one call of `respond`, `animate` and `report`."""
 
+import cmath
 import json
 import re
 from pathlib import Path
@@ -9,6 +10,7 @@ import pytest
 import rocking_cli as rk
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.records import read_record
+from rocking_cli.views.view import Table
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES, rows_of
 
@@ -59,7 +61,9 @@ class TestRespond:
         assert list(rows) == list(objects) == ["east.csv", "north.csv", "west.csv"]
         for name, (pga, *cells) in rows.items():
             assert pga == f"{objects[name]['record']['pga']:.4g}"
-            *cells, share, sign, median = " ".join(cells).replace("no uplift", "-").split()
+            *cells, moved, share, sign, median = " ".join(cells).replace("no uplift", "none").split()
+            top = objects[name]["responses"]["nonlinear"]["points"]["top"]["horizontal"]
+            assert moved == ("-" if top is None else f"{1000 * top:.4g}")
             near = objects[name]["neighbours"]
             assert sign == "%" and float(share) == pytest.approx(100 * near["overturned"], abs=0.5)
             middle = near["peak_ratio"]["50"]
@@ -69,7 +73,7 @@ class TestRespond:
                 if found["overturned"]:
                     assert cell == "overturns"
                 else:
-                    assert cell == ("-" if found["uplift_time"] is None else f"{found['peak_ratio']:.4g}")
+                    assert cell == ("none" if found["uplift_time"] is None else f"{found['peak_ratio']:.4g}")
         assert {cell for row in rows.values() for cell in row[1:]} >= {"overturns", "uplift"}
         found = {name: each["responses"]["nonlinear"] for name, each in objects.items()}
         assert [name for name, each in found.items() if each["overturned"]] == ["west.csv"]
@@ -83,6 +87,46 @@ class TestRespond:
         assert f"By the nonlinear model, the structure {said}. west.csv governs: " in " ".join(text.split())
         weak = run("respond", FRAME, "--pulse", "sine:0.1g:1s", "--pulse", "ricker:0.1g:1s").stdout
         assert "By the nonlinear model, the structure uplifts under none of 2 motions.\n" in weak
+
+    def test_a_row_has_millimetres_of_the_top_and_the_force_of_each_tie(self):
+        """A spring from (-3, 2) of the ground to (-0.35, 2) of a block that turns clockwise about (0.35, 0).
+
+        At phi, the top (0, 2.8) is at 0.35 + |r| cos(atan2(2.8, -0.35) - phi), and the spring is as much longer than
+        2.65 m as its end has gone.
+        """
+        tie = {"name": "bar", "stiffness": 2e4, "from": {"ground": [-3.0, 2.0]}, "to": {"at": [-0.35, 2.0]}}
+        block = rk.Block(name="b", width=0.7, height=2.8, mass=3000.0, one_sided="positive", ties=[tie])
+        answer = rk.respond(block, ["sine:0.4g:0.5s", "sine:0.5g:0.6s", "sine:0.05g:0.5s"], models="nonlinear")
+        frame = answer.frames["peaks"]
+        assert list(frame) == ["motion", "PGA [g]", "top, horizontal displacement [m]", "bar, force [N]"]
+        (table,) = (part for part in answer.view.parts if isinstance(part, Table))
+        assert table.columns[3:5] == ["top\n[mm]", "bar\n[kN]"]
+        for k, (name, each) in enumerate(answer.items()):
+            phi = each["nonlinear"].peak_positive
+            turned = [complex(0.35) + complex(x - 0.35, y) * cmath.exp(-1j * phi) for x, y in ((0, 2.8), (-0.35, 2))]
+            moved, force = turned[0].real, 2e4 * (abs(turned[1] - complex(-3, 2)) - 2.65)
+            row = frame.iloc[k].tolist()
+            assert row == [name, pytest.approx(each.given.motion.pga_g), pytest.approx(moved), pytest.approx(force)]
+            assert table.rows[k][3:5] == [f"{1000 * moved:.4g}", f"{force / 1000:.4g}"]
+            data = each.to_dict()["responses"]["nonlinear"]
+            assert (data["points"]["top"]["horizontal"], data["ties"]["bar"]["peak_force"]) == tuple(row[2:])
+        assert frame.iloc[2, 2] == frame.iloc[2, 3] == 0.0 < frame.iloc[0, 2] < frame.iloc[1, 2]
+
+    def test_a_wall_held_at_its_top_has_millimetres_of_its_hinge(self):
+        wall = rk.Wall(thickness=0.3, height=3.0)
+        answer = rk.respond(wall, ["sine:0.7g:0.3s", "sine:0.65g:0.3s"], models="nonlinear")
+        columns = answer.frames["peaks"]
+        assert "joint B, horizontal displacement [m]" in columns
+        for name, each in answer.items():
+            # The lower half turns about one foot or the other, and takes its upper corner along.
+            corner, run = wall.joints(rk.Direction.POSITIVE)[1].point, each["nonlinear"]
+            assert abs(corner.real) == 0.15 and corner.imag == 1.5 and run.peak_positive > 0 < run.peak_negative
+            turned = [
+                foot + ((corner - foot) * cmath.exp(-1j * phi)).real
+                for foot, phi in ((0.15, run.peak_positive), (-0.15, -run.peak_negative))
+            ]
+            moved = columns.set_index("motion").loc[name, "joint B, horizontal displacement [m]"]
+            assert moved == pytest.approx(max(abs(each - corner.real) for each in turned), rel=1e-6)
 
     def test_both_polarities_and_the_pulses_in_them_have_rows_of_their_own(self, records):
         both = run("respond", FRAME, "--record", records, "--polarity", "both").stdout
