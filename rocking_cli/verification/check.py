@@ -92,6 +92,15 @@ def demand(site: SiteFile) -> SiteDemand:
     return answer
 
 
+def row_numbers(verification: Verification, code: Code) -> dict[str, float | None]:
+    """Return the numbers of a verification that a survey shows, by name; None if the site lacks values for one."""
+    numbers, verified = dict[str, float | None](), verification.deciding
+    for name, number in code.row_numbers.items():
+        with blame(f"the code {code.key} failed in its number {name}", type(code).__module__):
+            numbers[name] = number.of(verified) if number.of is not None else None
+    return numbers
+
+
 def refuse(site: SiteFile, *, control: bool = False, motions: bool = False) -> None:
     """Raise `InputError` if the code of a site takes no control point, or no ground motions, but there are some."""
     code = code_of(site)

@@ -64,6 +64,8 @@ class Code(ABC):
         A commented site file that works as it is; if it is empty, it is made from the fields and their examples.
     numbers : mapping of str to Number
         Numbers of this code for which a structure can be designed, in addition to the `ratio` of every code.
+    row_numbers : mapping of str to Number
+        Numbers of the direction that governs, which a survey has for each structure in addition to the `ratio`.
     takes_control : bool
         Whether `verify` takes a control point.
     """
@@ -74,6 +76,7 @@ class Code(ABC):
     site: ClassVar[type[Site]]
     starter: ClassVar[str] = ""
     numbers: ClassVar[Mapping[str, Number]] = {}
+    row_numbers: ClassVar[Mapping[str, Number]] = {}
     takes_control: ClassVar[bool] = False
 
     def __init_subclass__(cls, **named: Any) -> None:

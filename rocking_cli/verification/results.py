@@ -386,6 +386,17 @@ class Verified:
         """All that the code requires; by default what `passed` says of the method that governs."""
         return (Requirement.of("", self.governs, self.ratio, self.passed),)
 
+    @property
+    def conclusions(self) -> list[Conclusion]:
+        """What is concluded of each of `checks`."""
+        return [
+            Conclusion(
+                concluded=check.concluded, limit_state=check.state, method=check.method,
+                direction=self.direction.label, ratio=check.ratio, motions=check.motions, motion=check.motion,
+            )
+            for check in self.checks
+        ]  # fmt: skip
+
     def is_like(self, other: Verified) -> bool:
         """Return whether another direction has the same numbers, so that only one needs to be shown."""
         if self.methods.keys() != other.methods.keys() or self.governs != other.governs:
@@ -439,13 +450,7 @@ class Verification:
     @property
     def conclusion(self) -> Conclusion:
         """The worst check of all directions and limit states: "satisfied" needs all of them."""
-        conclusions = [
-            Conclusion(
-                concluded=check.concluded, limit_state=check.state, method=check.method, direction=direction.label,
-                ratio=check.ratio, motions=check.motions, motion=check.motion,
-            )
-            for direction, each in self.directions.items() for check in each.checks
-        ]  # fmt: skip
+        conclusions = [conclusion for each in self.directions.values() for conclusion in each.conclusions]
         governs = worst(conclusions)
         alike = [
             each for each in conclusions if each.ratio is not None and governs.ratio is not None
@@ -464,6 +469,12 @@ class Verification:
             motions=list(dict.fromkeys(name for each in conclusions for name in each.motions)),
             left_out=self.left_out,
         )
+
+    @property
+    def deciding(self) -> Any:
+        """Result of the direction that governs the conclusion; of the first if both do."""
+        label = self.conclusion.direction
+        return next(each for direction, each in self.directions.items() if label in ("", direction.label))
 
     @property
     def governs(self) -> Direction:

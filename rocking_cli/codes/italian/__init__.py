@@ -47,6 +47,10 @@ class Italian(Code):
         **{f"zeta_{method}": _zeta(method) for method in (DAMAGE, LINEAR, NONLINEAR)},
         **{f"zeta_{state}": _zeta_at(state) for state in STATES},
     }
+    row_numbers: ClassVar[Mapping[str, Number]] = {
+        "zeta_E": Number("capacity over demand by the method that governs", of=lambda found: found.zeta_E),
+        "T0": Number("period of the element before it rocks", of=lambda found: found.T0, unit="s"),
+    }
     takes_control = True
 
     def verify(self, mechanism: Mechanism, site: ItalianSite, control: Control | None = None) -> ItalianVerification:

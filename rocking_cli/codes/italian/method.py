@@ -163,6 +163,7 @@ def _verified(
         straight_methods=line.methods(on_line),
         governing={state: _governs(methods, *pair) for state, pair in OF_STATE.items()},
         governs=_governs(methods, DAMAGE, NONLINEAR),
+        T0=ground.site.own_period,
         remarks=notes,
     )
     return replace(verified, workings=Later(partial(workings_of_direction, ground, verified)))

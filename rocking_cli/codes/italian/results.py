@@ -10,7 +10,7 @@ from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.rules import OF_STATE
 from rocking_cli.core import Direction
-from rocking_cli.studies.conclusion import SEVERITY, Concluded, Conclusion, LeftOut
+from rocking_cli.studies.conclusion import SEVERITY, Concluded, Conclusion, LeftOut, worst
 from rocking_cli.verification import results as frame
 from rocking_cli.verification.results import CAPACITY_TOLERANCE, MotionPlace, Requirement
 
@@ -206,6 +206,8 @@ class ItalianVerified(frame.Verified):
         Result of each method on either curve.
     governing : mapping of str to str
         The method that governs at each limit state; `governs` is that at the first one.
+    T0 : float, optional
+        Period of an element that vibrates before it rocks [s].
     dynamic : Dynamic, optional
         Results of time histories.
     """
@@ -221,7 +223,14 @@ class ItalianVerified(frame.Verified):
     straight_states: Mapping[str, LimitState]
     straight_methods: Mapping[str, ItalianMethod]
     governing: Mapping[str, str]
+    T0: float | None = None
     dynamic: Dynamic | None = None
+
+    @property
+    def zeta_E(self) -> float | None:
+        """Capacity over demand as ground acceleration, by the static method that governs of all limit states."""
+        static = [each for each in self.conclusions if each.method in self.methods]
+        return self.methods[worst(static).method].zeta
 
     @property
     def chain(self) -> Chain:
@@ -252,8 +261,8 @@ class ItalianVerified(frame.Verified):
     @property
     def passed(self) -> bool | None:
         """Whether the direction passes at all limit states that the site gives, by the static methods."""
-        worst = max((check.concluded for check in self._static), key=SEVERITY.index)
-        return None if worst is Concluded.NOT_CHECKED else worst is Concluded.SATISFIED
+        concluded = max((check.concluded for check in self._static), key=SEVERITY.index)
+        return None if concluded is Concluded.NOT_CHECKED else concluded is Concluded.SATISFIED
 
     @property
     def ratio(self) -> float | None:

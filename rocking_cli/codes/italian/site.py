@@ -177,12 +177,25 @@ class VibratingElement(Part):
             "L": (self.L, getattr(mechanism, "height", None)),
             "t": (self.t, getattr(mechanism, "thickness", getattr(mechanism, "width", None))),
         }
-        completed = {key: stated if stated is not None else taken for key, (stated, taken) in sizes.items()}
+        completed = {key: self._first(stated, taken) for key, (stated, taken) in sizes.items()}
         for key, value in completed.items():
             if not isinstance(value, float):
                 what = f"is missing: a {mechanism.mechanism} has no height and thickness from which to take it"
                 raise InputError(Problem(what, field=f"element.{key}"))
         return self.model_copy(update=completed)
+
+    @staticmethod
+    def _first(stated: float | None, taken: float | None) -> float | None:
+        """Return a dimension: as stated, or else that of the structure."""
+        return stated if stated is not None else taken
+
+
+class ElementOfEach(VibratingElement):
+    """The element of many structures: each has its own dimensions, and those stated hold where it has none."""
+
+    @staticmethod
+    def _first(stated: float | None, taken: float | None) -> float | None:
+        return taken if isinstance(taken, float) else stated
 
 
 class ItalianSite(StateGround, Site):
@@ -350,4 +363,4 @@ def of_each(site: ItalianSite) -> ItalianSite:
     """Return the site of many structures, in which the element takes its dimensions from each structure."""
     if site.element is None:
         return site
-    return site.model_copy(update={"element": site.element.model_copy(update={"L": None, "t": None})})
+    return site.model_copy(update={"element": ElementOfEach.model_construct(**dict(site.element))})
