@@ -99,7 +99,7 @@ FOR_KEYS = (
 )
 """Commands of which only the keys are held: their values depend on the machine, or others have the like."""
 
-NAMES = ("answers", "levels", "libraries", "measures", "points", "polarities", "ties", "versions")
+NAMES = ("answers", "cells", "levels", "libraries", "measures", "points", "polarities", "ties", "versions")
 """Keys of objects whose own keys are names."""
 GIVEN = ("default", "environment", "example")
 """Keys of values that have the form of what is described, or of the machine."""

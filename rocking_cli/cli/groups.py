@@ -93,11 +93,27 @@ NEIGHBOUR_OPTIONS = ("neighbours", "amplitude_deviation", "slenderness_deviation
 
 @dataclass(frozen=True)
 class Output:
-    """The files to write, and whether the result is one JSON object."""
+    """The files to write, the signs of a table in text, and whether the result is one JSON object."""
 
     as_json: bool
     out: Path | None = None
     plot: Path | None = None
+    separator: str | None = None
+    decimal: str | None = None
+
+    def check_signs(self) -> None:
+        """Raise if the signs of a table in text have no effect, or are the same."""
+        typed = {"--separator": self.separator, "--decimal": self.decimal}
+        names = " and ".join(name for name, sign in typed.items() if sign is not None)
+        if not names:
+            return
+        writes = f"{names} {'write' if ' and ' in names else 'writes'} a CSV table"
+        if self.out is None:
+            raise click.UsageError(f"{writes}, and none is requested: add --out FILE.csv.")
+        if self.out.suffix.lower() != ".csv" and str(self.out) != STANDARD_OUTPUT:
+            raise click.UsageError(f"{writes}, and {self.out.name} is not one: give a name that ends in .csv.")
+        if (self.separator or ",") == self.decimal:
+            raise click.UsageError("--decimal , cannot be the separator too: add --separator ';'.")
 
     @cached_property
     def watch(self) -> OnTerminal:
@@ -120,7 +136,7 @@ class Output:
     def show(self, answer: Answer[Any]) -> None:
         """Write the requested files of an answer, each made only if needed, show it, and end the command."""
         if self.out is not None:
-            write_table(self.out, self.blocks(answer))
+            write_table(self.out, self.blocks(answer), separator=self.separator or ",", decimal=self.decimal or ".")
         if self.plot is not None:
             write_picture(self.plot, answer.figure())
         terminal.show(answer.view, as_json=self.as_json)
@@ -141,15 +157,15 @@ def write_picture(path: Path, figure: Figure) -> None:
     terminal.note(f"wrote {path}")
 
 
-def write_table(out: Path, blocks: Iterable[Columns]) -> None:
+def write_table(out: Path, blocks: Iterable[Columns], *, separator: str = ",", decimal: str = ".") -> None:
     """Write a table to a file and report it, or write CSV to standard output and keep everything else off it."""
     from rocking_cli.io import tables
 
     if str(out) == STANDARD_OUTPUT:
         with terminal.results_as_bytes() as stream:
-            tables.write_csv(stream, blocks)
+            tables.write_csv(stream, blocks, separator=separator, decimal=decimal)
         return
-    tables.write_table(out, blocks)
+    tables.write_table(out, blocks, separator=separator, decimal=decimal)
     terminal.note(f"wrote {out}")
 
 

@@ -150,6 +150,22 @@ def in_order(*decorators: Decorator) -> Decorator:
     return decorate
 
 
+def _sign(ctx: click.Context, param: click.Parameter, value: str | None) -> str | None:
+    return "\t" if value == "tab" else value
+
+
+table_signs: Decorator = in_order(
+    click.option(
+        "--separator", type=click.Choice((",", ";", "tab")), callback=_sign,
+        help="Separator of the CSV table.  [default: ,]",
+    ),
+    click.option(
+        "--decimal", type=click.Choice((".", ",")), help="Decimal sign of the CSV table.  [default: .]"
+    ),
+)  # fmt: skip
+"""The signs of a table in text: `separator` and `decimal`, as spreadsheets of another locale expect them."""
+
+
 def record_option(*names: str, **more: Any) -> Decorator:
     """Declare an option that reads or processes records, for their heading in the help."""
     return click.option(*names, cls=RecordOption, **more)

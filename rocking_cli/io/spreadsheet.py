@@ -16,6 +16,8 @@ from rocking_cli.text import cut, one_line
 MAX_BYTES = 100_000_000  # a million rows of ten columns take half of it
 SEPARATORS = ",;\t"
 DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?\s*(?:[^\d\s,.;][^,;]*)?", re.ASCII)
+NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
+THOUSANDS = re.compile(r"[-+]?\d{1,3}(\.\d{3})+", re.ASCII)
 _BRACKETS = re.compile(r"(.*?)\s*(?:\[([^\]]*)\]|\(([^)]*)\))\s*", re.DOTALL)
 _LINE_END = re.compile("\r\n|\r|\n")
 
@@ -65,6 +67,20 @@ class Spreadsheet:
     headings: tuple[str, ...]
     rows: tuple[Row, ...]
     decimal_comma: bool
+
+    @property
+    def columns(self) -> dict[int, str]:
+        """Headings of the columns by their places; one without a heading but with cells has its number instead."""
+        whole = enumerate(self.headings)
+        named = {k: heading or f"column {k + 1}" for k, heading in whole}
+        return {k: name for k, name in named.items() if self.headings[k] or any(row.cells[k] for row in self.rows)}
+
+    def number(self, cell: str) -> str | None:
+        """Return a cell that is a number alone, with a decimal point; None for other cells, and ambiguous ones."""
+        if self.decimal_comma and THOUSANDS.fullmatch(cell):
+            return None
+        plain = cell.replace(",", ".") if self.decimal_comma else cell
+        return plain if NUMBER.fullmatch(plain) else None
 
 
 def unit_in(heading: str, units: Collection[str]) -> tuple[str, str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import BinaryIO
@@ -27,36 +28,43 @@ def check_table(path: Path | None) -> None:
         raise InputError(Problem("Parquet needs the package pyarrow, which is not installed", str(path), hint=hint))
 
 
-def write_table(path: Path, blocks: Iterable[Columns]) -> None:
+def write_table(path: Path, blocks: Iterable[Columns], *, separator: str = ",", decimal: str = ".") -> None:
     """Write a table.
 
     Parameters
     ----------
     path : Path
         Path of the file. If it ends in .parquet, a Parquet file at full precision is written, with a row group for each
-        block and null for NaN; otherwise comma-separated text with nine digits and an empty field for NaN.
+        block and null for NaN; otherwise text with nine digits and an empty field for NaN.
     blocks : iterable of mapping of str to sequence
         Blocks of rows, all with the same columns; a column has words, integers or reals.
+    separator, decimal : str
+        What separates the cells of a text, and the decimal sign of its numbers.
     """
-    write = _write_parquet if path.suffix.lower() == PARQUET else write_csv
+    text = partial(write_csv, separator=separator, decimal=decimal)
+    write = _write_parquet if path.suffix.lower() == PARQUET else text
     write_whole(path, lambda stream: write(stream, blocks))
 
 
-def write_csv(stream: BinaryIO, blocks: Iterable[Columns], *, digits: int | None = 9) -> None:
-    """Write a table as comma-separated text; see `write_table`. With `digits` None, numbers have all their digits."""
+def write_csv(
+    stream: BinaryIO, blocks: Iterable[Columns], *, digits: int | None = 9, separator: str = ",", decimal: str = "."
+) -> None:
+    """Write a table as text; see `write_table`. With `digits` None, numbers have all their digits."""
     text = io.TextIOWrapper(stream, encoding="utf-8", newline="", write_through=True)
-    writer = csv.writer(text, lineterminator="\n")
+    writer = csv.writer(text, delimiter=separator, lineterminator="\n")
     for k, columns in enumerate(blocks):
         if k == 0:
             writer.writerow([printable(name) for name in columns])
         values = list(columns.values())
-        if digits == 9 and all(isinstance(each, np.ndarray) and each.dtype == np.float64 for each in values):
+        numbers = all(isinstance(each, np.ndarray) and each.dtype == np.float64 for each in values)
+        if numbers and (digits, separator, decimal) == (9, ",", "."):
             for start in range(0, len(values[0]), ROWS_PER_BLOCK):
                 text.write(
                     _lines(np.column_stack([np.asarray(each[start : start + ROWS_PER_BLOCK]) for each in values]))
                 )
         else:
-            writer.writerows(zip(*([_field(value, digits) for value in column] for column in values), strict=True))
+            cells = ([_field(value, digits, decimal) for value in column] for column in values)
+            writer.writerows(zip(*cells, strict=True))
     text.detach()
 
 
@@ -66,12 +74,14 @@ def _lines(table: np.ndarray) -> str:
     return (line * len(table) % tuple((table + 0.0).ravel().tolist())).replace("nan", "")  # no -0
 
 
-def _field(value: object, digits: int | None) -> object:
+def _field(value: object, digits: int | None, decimal: str) -> object:
     if isinstance(value, str):
         return printable(value)  # a name may have characters that cannot be encoded
     if not isinstance(value, float):
         return value
-    return "" if value != value else repr(value + 0.0) if digits is None else f"{value + 0.0:.{digits}g}"  # no -0
+    if value != value:
+        return ""
+    return (repr(value + 0.0) if digits is None else f"{value + 0.0:.{digits}g}").replace(".", decimal)  # no -0
 
 
 def _write_parquet(stream: BinaryIO, blocks: Iterable[Columns]) -> None:

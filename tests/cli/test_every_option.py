@@ -130,7 +130,8 @@ CALLS = {
     "survey": (
         {"structures": [FRAME, WEAK], "motions": RECORD},
         {"structures": [OTHER], "motions": PULSE, "polarity": "-1", "site": SITE, "opening": 1.0, "top": 1,
-         "page": "p.html"},
+         "page": "p.html", "map": "m.png", "sheets": "odd", "sheet_format": "docx", "language": "it", "project": "odd",
+         "place": "odd", "author": "odd", "logo": "in.svg", "origin": "odd"},
     ),
     "design": (
         {"structure": LEANING, "vary": "width=0.5m:0.9m", "until": "peak_ratio < 0.2", "motions": RECORD, "points": 3,
@@ -204,7 +205,9 @@ WITHOUT_EFFECT = {"watch", "threads", "jobs", "processes", "usual"}
 IDLE = [
     ("design", {"structure": BLOCK, "vary": "width=0.5m:0.9m", "until": "lambda >= 0.2", "points": 3},
      {"polarity": "-1", "opening": 0.1} | AROUND),
-    ("survey", {"structures": [BLOCK, OTHER]}, {"polarity": "-1", "opening": 0.1}),
+    ("survey", {"structures": [BLOCK, OTHER]},
+     {"polarity": "-1", "opening": 0.1, "map": "m.png", "sheets": "odd", "sheet_format": "docx", "language": "it",
+      "project": "odd", "place": "odd", "author": "odd", "logo": "in.svg", "origin": "odd"}),
     ("verify", {"structure": BLOCK, "site": SITE},
      {"polarity": "-1", "opening": 0.1, "language": "it", "project": "odd", "place": "odd", "author": "odd",
       "logo": "in.svg"}),
@@ -378,6 +381,7 @@ ODD = {
     "--plot": "p.svg", "--points": "7", "--project": "odd", "--pulse": PULSE, "--record": f"{ACROSS}",
     "--release": "0.3", "--resample": "0.02", "--restitution": "0.8:0.9", "--restitution-deviation": "0.3",
     "--rtol": "1e-6", "--scale": "2", "--scheduler": "tcp://odd:1", "--seed": "3", "--shape": "cosine",
+    "--map": "m.png", "--sheets": "odd",
     "--sheet": "s.html", "--site": f"{SITE}2", "--sizes": "1:2", "--slenderness": "0.2:0.3",
     "--slenderness-deviation": "30%", "--spectrum": "s.csv", "--speed": "3", "--state": "SLC", "--store": "odd.db",
     "--structure": f"{BLOCK_FILE}", "--tail": "3", "--taper": "5%", "--target": "odd.csv", "--target-pga": "0.4g",
@@ -403,13 +407,17 @@ OTHERWISE = {
     ("results", "--plot"): "odd",
 }
 """An odd value of an option that means something else in a command."""
+HEAD = "--language", "--project", "--place", "--author", "--logo"
 BESIDE = {
     ("record", "--period"): "--spectrum s.csv",
     ("record", "--damping"): "--spectrum s.csv",
     ("respond", "--contact"): "--plot p.svg",
     **dict.fromkeys(("--with", "--with-channel", "--azimuth"), f"--with {ACCEL} --azimuth 10"),
     **dict.fromkeys(("--vertical-dt", "--vertical-channel"), f"--vertical {ACROSS}"),
-    **{("verify", each): "--sheet s.html" for each in ("--language", "--project", "--place", "--author", "--logo")},
+    **dict.fromkeys([("verify", each) for each in HEAD], "--sheet s.html"),
+    **dict.fromkeys([("survey", each) for each in (*HEAD, "--sheet-format")], f"--sheets s --site {SITE}"),
+    ("survey", "--separator"): "--out o.csv",
+    ("survey", "--decimal"): "--out o.csv --separator ;",
 }
 """What an option requires, which stands beside it before and after."""
 
@@ -450,7 +458,7 @@ def listen(monkeypatch, command):
         answer = Answer(*parts, tables={"spectrum": lambda: {"a": [1.0]}})
     monkeypatch.setattr("rocking_cli.questions.select.set_folder.write_set", hear)
     monkeypatch.setattr("rocking_cli.questions.record.view.parts", lambda *given: ["words"])
-    monkeypatch.setattr("rocking_cli.questions.survey.view.blocks", lambda *given, **named: [{"a": [1.0]}])
+    monkeypatch.setattr("rocking_cli.questions.survey.view.blocks", lambda *given: [{"a": [1.5], "b": [2.0]}])
     verb = getattr(rk, command, None)
     if callable(verb):
         monkeypatch.setattr(f"{verb.__module__}.{command}", hear)

@@ -25,7 +25,9 @@ WITHOUT = {
     "completion": "prints a script for a shell",
 }
 """Commands that ask nothing about a structure or a motion."""
-OF_THE_TERMINAL = {"as_json", "as_csv", "plot", "out", "page", "curves", "nrml", "sheet", "help", "version"}
+OF_THE_TERMINAL = {
+    "as_json", "as_csv", "plot", "out", "page", "curves", "nrml", "sheet", "separator", "decimal", "help", "version"
+}  # fmt: skip
 """Options that say where an answer goes, and in which form."""
 NAMED = {"records": "motions", "pulses": "motions"}
 MOST = 40

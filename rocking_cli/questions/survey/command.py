@@ -10,30 +10,34 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rocking_cli.cli import complete, options, terminal
+from rocking_cli.cli.defaults import as_declared
 from rocking_cli.cli.groups import GroundMotions, Output, read_table
 from rocking_cli.cli.help import Command
 from rocking_cli.errors import InputError, MechanismError
+from rocking_cli.questions.verify import heads
 
 if TYPE_CHECKING:
     from rocking_cli.ask.answer import Answer
     from rocking_cli.io.tables import Columns
 
 MAX_NAMED_ROWS = 20  # rows that cannot be used, in a message
+SHEET_FORMATS = ("html", "docx", "pdf")
 
 
 @dataclass(frozen=True)
 class SurveyOutput(Output):
-    """The files to write, among them a page, and whether the result is one JSON object."""
+    """The files to write, among them a page and a map, and whether the result is one JSON object."""
 
     page: Path | None = None
+    map: Path | None = None
 
     def blocks(self, answer: Answer[Any]) -> Iterable[Columns]:
-        """Return all rows: in a CSV file, which spreadsheets open, texts that look like formulas are marked."""
+        """Return all rows; in a CSV file, which spreadsheets open, with their decimal sign."""
         from rocking_cli.io.tables import PARQUET
         from rocking_cli.questions.survey.view import blocks
 
         assert self.out is not None
-        return blocks(answer.result, for_spreadsheets=self.out.suffix.lower() != PARQUET)
+        return blocks(answer.result, None if self.out.suffix.lower() == PARQUET else self.decimal or ".")
 
 
 @click.command(cls=Command, short_help="Rank the structures of a table, the most vulnerable first.")
@@ -47,10 +51,24 @@ class SurveyOutput(Output):
     "--top", type=click.IntRange(1), default=20, show_default=True, metavar="N", help="Number of structures to show."
 )  # fmt: skip
 @options.out(".csv", ".parquet", what="Write all rows in ranked order (.csv or .parquet).")
+@options.table_signs
 @click.option(
     "--page", callback=options.output_path(".html"), metavar="FILE.html", shell_complete=complete.files,
-    help="Write an HTML page with a plot and all rows in a sortable table.",
+    help="Write an HTML page with a plot, a map and all rows in a sortable table.",
 )  # fmt: skip
+@click.option(
+    "--map", callback=options.output_path(".png", ".svg", ".pdf"), metavar="FILE.png", shell_complete=complete.files,
+    help="Draw a map of the structures, by the columns longitude and latitude (.png, .svg or .pdf).",
+)  # fmt: skip
+@click.option(
+    "--sheets", metavar="FOLDER", help="Write the calculation sheet of each structure into this folder; needs --site."
+)
+@click.option(
+    "--sheet-format", type=click.Choice(SHEET_FORMATS), default="html", show_default=True,
+    help="Format of the sheets (pdf needs a browser, docx an extra package).",
+)  # fmt: skip
+@heads.language
+@heads.head
 @options.plot("Plot the uplift acceleration against the frequency parameter")
 @options.as_json
 @click.pass_context
@@ -87,11 +105,17 @@ def command(
     from rocking_cli.questions.survey.view import bad_lines
 
     check_table(results.out)
+    results.check_signs()
     motions, watch = asked.motions, results.watch
-    written = [("--out", results.out), ("--page", results.page), ("--plot", results.plot)]
-    keep_apart(written, [file, *(str(each.path) for each in motions.records)])
+    files = {"--out": results.out, "--page": results.page, "--plot": results.plot, "--map": results.map}
+    keep_apart([*files.items()], [file, question["site"], *(str(each.path) for each in motions.records)])
+    if question["sheets"] is None:
+        as_declared(question, *heads.HEAD_OPTIONS)
     table = read_table(file, lambda sheet: StructureTable(sheet, Path()))
-    answer = survey(table, motions, polarity=asked.polarity, processes=True, page=results.page, watch=watch, **question)
+    answer = survey(
+        table, motions, polarity=asked.polarity, processes=True, page=results.page, map=results.map,
+        origin=None if question["sheets"] is None else heads.command_line(ctx), watch=watch, **question,
+    )  # fmt: skip
     for line in bad_lines(answer.bad, name_of(file), MAX_NAMED_ROWS):
         terminal.error(line)
     if not answer.rows:

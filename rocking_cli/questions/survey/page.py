@@ -7,15 +7,18 @@ from collections.abc import Sequence
 from markupsafe import Markup
 
 from rocking_cli.documents.figures import inline_svg, template
+from rocking_cli.errors import InputError
 from rocking_cli.plotting.moving import asset
 from rocking_cli.questions.report.page import symbols
+from rocking_cli.questions.survey.coordinates import coordinates
+from rocking_cli.questions.survey.map_picture import draw_map
 from rocking_cli.questions.survey.picture import draw_survey
 from rocking_cli.questions.survey.study import Survey
 from rocking_cli.questions.survey.view import counts, sentences, table, title
 from rocking_cli.text import printable
 
 MAX_PAGE_ROWS = 10_000  # browsers need many seconds to lay out more
-SYMBOLS = {"lambda": "λ", "phi_cr": "φ_cr", "kappa2": "κ₂", "eta": "η"}
+SYMBOLS = {"zeta": "ζ", "lambda": "λ", "phi_cr": "φ_cr", "kappa2": "κ₂", "eta": "η"}
 
 
 def render(found: Survey, source: str, about: Sequence[str]) -> str:
@@ -38,6 +41,7 @@ def render(found: Survey, source: str, about: Sequence[str]) -> str:
         title=title(found),
         said=[each.replace("`", "") for each in (*counts(found), *sentences(found))],
         picture=inline_svg(draw_survey(found, ""), "survey") if found.rows else None,
+        map=_map(found),
         columns=[_symbolic(each) for each in rows.columns],
         words=[k for k in range(len(rows.columns)) if k not in rows.numbers],
         rows=rows.rows,
@@ -49,6 +53,15 @@ def render(found: Survey, source: str, about: Sequence[str]) -> str:
         style=Markup(asset("motion.css")),
     )
     return printable(page)  # a table may have characters that a page cannot hold
+
+
+def _map(found: Survey) -> Markup | None:
+    """Return the map of a survey; None if no structure has coordinates."""
+    try:
+        where = coordinates(found)
+    except InputError:
+        return None
+    return inline_svg(draw_map(found, where, ""), "map")
 
 
 def _symbolic(heading: str) -> str:

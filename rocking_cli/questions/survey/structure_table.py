@@ -19,17 +19,16 @@ from rocking_cli.core.structure_file import TEMPLATE_HINT, of_document
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.io.dotted import closed, put, replace_at, words
 from rocking_cli.io.field_problems import by_meaning, fields_at, lists_models, types_at
-from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Row, Spreadsheet, read_sheet
+from rocking_cli.io.spreadsheet import DECIMAL_COMMA, NUMBER, THOUSANDS, Row, Spreadsheet, read_sheet
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text, spell
+from rocking_cli.questions.survey.coordinates import coordinate
 from rocking_cli.text import cut, did_you_mean, one_line
 
 FILE_COLUMN, MECHANISM_COLUMN = "file", "mechanism"
 YAML_SUFFIXES = (".yaml", ".yml")
 COMMENT_SIGN = "#"
 """First character of the headings of columns that are not read."""
-THOUSANDS = re.compile(r"[-+]?\d{1,3}(\.\d{3})+", re.ASCII)
 MAX_DIGITS = 308  # of the largest whole number that is a float
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 _UNIT = re.compile(r"(.*?)\s*\[([^\]]*)\]\s*", re.DOTALL)
 
 
@@ -160,7 +159,7 @@ class StructureTable(Sequence["TableRow"]):
         columns, problems, used = [], [], dict[tuple[str, ...], str]()
         sheet = self.sheet
         for place, heading in enumerate(sheet.headings):
-            if not heading or heading.startswith(COMMENT_SIGN):
+            if not heading or heading.startswith(COMMENT_SIGN) or coordinate(heading) is not None:
                 continue
             name, unit = (match[1], match[2].strip()) if (match := _UNIT.fullmatch(heading)) else (heading, "")
             shown = cut(one_line(heading))
@@ -368,7 +367,7 @@ def _one(text: str, column: FieldColumn, *, decimal_comma: bool) -> Any:
         text = text.replace(",", ".")
     if len(text.lstrip("+-")) > MAX_DIGITS and text.lstrip("+-").isdecimal():
         raise InputError(Problem(f"a number of {len(text.lstrip('+-'))} digits is beyond the range of numbers"))
-    if _NUMBER.fullmatch(text):
+    if NUMBER.fullmatch(text):
         return _with_unit(float(text) if re.search(r"[.eE]", text) else int(text), column.unit)
     return {"true": True, "false": False}.get(text.lower(), text)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from math import inf, isnan, nan
 from typing import Protocol
@@ -18,10 +18,11 @@ from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.dynamics.parallel import in_parts, in_processes
 from rocking_cli.errors import InputError, Problem, RockingError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.io.spreadsheet import Spreadsheet
 from rocking_cli.names import OPENING
 from rocking_cli.structure import Structure, check_opening
 from rocking_cli.studies.conclusion import Concluded, Conclusion
-from rocking_cli.verification.check import of_each, verify
+from rocking_cli.verification.check import code_of, of_each, row_numbers, verify
 from rocking_cli.verification.code import SiteFile
 
 STRUCTURES_PER_CHUNK = 8  # in the memory of a thread at a time: the tables of each are one megabyte, at most ten
@@ -120,6 +121,8 @@ class Surveyed:
         Whether a formula of that verification was not checked against the printed code.
     remarks : sequence of str
         Sentences on weights of the structure that were read as masses.
+    numbers : mapping of str to float or None
+        Further numbers of that verification, those of `Survey.units`.
     """
 
     row: int
@@ -142,6 +145,7 @@ class Surveyed:
     verified: Conclusion | None = None
     unprinted: bool = False
     remarks: Sequence[str] = ()
+    numbers: Mapping[str, float | None] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -214,12 +218,22 @@ class Survey:
         The names of the ground motions.
     by : str
         The quantity by which they are ranked, a key of `ORDERS`.
+    units : mapping of str to str
+        The unit of each number that the code of the site has for a row, by its name.
+    sheet : Spreadsheet, optional
+        The table from which the structures were read.
     """
 
     rows: Sequence[Surveyed]
     bad: Sequence[Bad] = ()
     motions: Sequence[str] = ()
     by: str = "lambda"
+    units: Mapping[str, str] = field(default_factory=dict)
+    sheet: Spreadsheet | None = None
+
+    def cells(self, found: Surveyed) -> Sequence[str]:
+        """Return the cells of a structure in its table; none without a table."""
+        return self.sheet.rows[found.row - 1].cells if self.sheet is not None else ()
 
 
 def survey(
@@ -279,7 +293,10 @@ def survey(
                 progress(len(part))
     by = "ratio" if site is not None else "response" if motions else "lambda"
     good = sorted((result for result in results if isinstance(result, Surveyed)), key=ORDERS[by])
-    return Survey(good, [each for each in results if isinstance(each, Bad)], [each.name for each in motions], by)
+    bad, names = [each for each in results if isinstance(each, Bad)], [each.name for each in motions]
+    numbers = code_of(site).row_numbers if site is not None else {}
+    units = {name: number.unit for name, number in numbers.items()}
+    return Survey(good, bad, names, by, units, getattr(entries, "sheet", None))
 
 
 def _part(
@@ -357,6 +374,7 @@ def _alone(place: int, entry: SurveyEntry, structure: Structure, site: SiteFile 
         verified=verification.conclusion if verification is not None else None,
         unprinted=verification is not None and verification.unprinted,
         remarks=mechanism.remarks,
+        numbers=row_numbers(verification, code_of(site)) if verification is not None and site is not None else {},
     )
 
 

@@ -41,6 +41,15 @@ def survey(
     threads: int | None = None,
     processes: bool = False,
     page: str | Path | None = None,
+    map: str | Path | None = None,
+    sheets: str | Path | None = None,
+    sheet_format: str = "html",
+    language: str = "en",
+    project: str | None = None,
+    place: str | None = None,
+    author: str | None = None,
+    logo: str | Path | None = None,
+    origin: str | None = None,
     watch: Watcher = SILENT,
     **options: Unpack[MotionArguments],
 ) -> Answer[Survey]:
@@ -67,7 +76,19 @@ def survey(
     processes : bool
         Whether processes share the work of thousands of structures; a script then needs `if __name__ == "__main__"`.
     page : str or Path, optional
-        File for an HTML page with a plot and all rows in a sortable table.
+        File for an HTML page with a plot, a map if rows have coordinates, and all rows in a sortable table.
+    map : str or Path, optional
+        File for a map of the structures by the columns longitude and latitude: .png, .svg or .pdf.
+    sheets : str or Path, optional
+        Folder for the calculation sheets of the verifications, one for each structure.
+    sheet_format : {"html", "docx", "pdf"}
+        Format of the sheets; "docx" needs an extra package, "pdf" a browser.
+    language : {"en", "it"}
+        Language of the sheets.
+    project, place, author, logo : str, str, str, path, optional
+        Entries for the heading of the sheets, and a picture in .png, .jpg or .svg.
+    origin : str, optional
+        What the sheets say of how they were made; by default this function.
     watch : Watcher
         Told what was read, how far the work is, what is doubtful, and which of several motions cannot be used.
     **options
@@ -81,7 +102,7 @@ def survey(
     Raises
     ------
     InputError
-        If the table or a motion cannot be used.
+        If the table or a motion cannot be used, or a file cannot be written.
 
     Notes
     -----
@@ -97,11 +118,31 @@ def survey(
     from rocking_cli.questions.survey.study import survey as study
     from rocking_cli.questions.survey.view import blocks, columns, title, view
 
+    if sheets is None:
+        head = {"project": project, "place": place, "author": author, "logo": logo}
+        without = "without calculation sheets: give `sheets`"
+        idle = {"language": language != "en", "sheet_format": sheet_format != "html", "origin": origin}
+        refuse_idle(without, **idle, **head)
+    elif site is None:
+        raise InputError("`sheets` requires a site to verify at: give `site`")
     signs, where = signs_of(polarity), site_of(site) if site is not None else None
     entries, requested = _entries(structures, watch), Motions.of(motions, options)
     if not requested:
         refuse_idle("without ground motions", polarity=signs != (1,), opening=opening != OPENING)
     shaken = [each.motion.scaled(each.factor) for each in requested.gather(0.0, watch)] if requested else []
+    writer = None
+    if sheets is not None and site is not None and where is not None:
+        from rocking_cli.questions.survey.sheets import SheetFolder
+        from rocking_cli.questions.verify.sheets import Head
+
+        titled = Head(project, place, author, logo)
+        call = origin or "rocking_cli.survey(...)"
+        writer = SheetFolder(Path(sheets), where, site, f".{sheet_format}", language, titled, call)
+        writer.check()
+    if map is not None:
+        from rocking_cli.questions.survey.coordinates import columns_of
+
+        columns_of(getattr(entries, "sheet", None))
     count = _processes(len(entries), bool(shaken) or where is not None) if processes else None
     with watch.progress(len(entries), "structures") as advance:
         result = study(
@@ -113,9 +154,13 @@ def survey(
     if page is not None and result.rows:
         file = getattr(entries, "sheet", None)
         _write_page(Path(page), result, Path(file.file).name if file is not None else "structures", watch)
+    if map is not None and result.rows:
+        _write_map(Path(map), result, title(result), watch)
+    if writer is not None and result.rows:
+        writer.write(result, entries, watch)
     figure, files = (
         drawn("questions.survey.picture.draw_survey", result, title(result)),
-        partial(blocks, result, for_spreadsheets=True),
+        partial(blocks, result, "."),
     )
     return Answer("survey", result, view(result, top), partial(columns, result), figure, files)
 
@@ -163,6 +208,22 @@ def _note_weights(found: Survey, watch: Watcher) -> None:
         watch.note(
             f"further remarks of this kind, on weights and loads per metre: {len(remarks) - MAX_LISTED_DOUBTS:,}"
         )
+
+
+def _write_map(place: Path, found: Survey, title: str, watch: Watcher) -> None:
+    from rocking_cli.io.files import write_whole
+    from rocking_cli.plotting.style import save
+    from rocking_cli.questions.survey.coordinates import coordinates
+    from rocking_cli.questions.survey.map_picture import draw_map
+
+    where = coordinates(found)
+    for wrong in where.wrong[:MAX_LISTED_DOUBTS]:
+        watch.warn(f"not on the map: {wrong}")
+    if len(where.wrong) > MAX_LISTED_DOUBTS:
+        watch.warn(f"not on the map: {len(where.wrong) - MAX_LISTED_DOUBTS:,} more structures, for the same reason")
+    figure = draw_map(found, where, title)
+    write_whole(place, lambda stream: save(figure, stream, format=place.suffix[1:].lower()))
+    watch.note(f"wrote {place}")
 
 
 def _write_page(place: Path, found: Survey, table: str, watch: Watcher) -> None:

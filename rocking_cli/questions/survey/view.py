@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from math import isnan
 from typing import Any, NamedTuple
 
+from rocking_cli.io.spreadsheet import Spreadsheet
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import digits_apart, percent
 from rocking_cli.questions.survey.study import Bad, Survey, Surveyed
@@ -34,10 +36,11 @@ RANKED = {
 
 
 class RankedStructure(NamedTuple):
-    """A row of a survey: the rank of a structure, from 1, and its results."""
+    """A row of a survey: the rank of a structure, from 1, its results, and its cells in the table."""
 
     rank: int
     found: Surveyed
+    cells: Sequence[str] = ()
 
 
 def spaced(key: str) -> str:
@@ -94,6 +97,10 @@ PARAMETERS: tuple[Column[RankedStructure], ...] = (
 )
 
 
+LEFT_TO_PAGES = {"phi_cr", "kappa2", "eta"}
+"""Keys of the columns that terminals do not show beside those of a site, so that a row fits into a line."""
+
+
 def view(found: Survey, top: int = DEFAULT_ROWS) -> View:
     """Show the most vulnerable structures, and how many of all overturn."""
     parts: list[Table | str] = []
@@ -104,11 +111,16 @@ def view(found: Survey, top: int = DEFAULT_ROWS) -> View:
 
 def data(found: Survey) -> dict[str, Any]:
     """Return a survey as plain data."""
-    applying = _columns(found)
+    applying, headings = _columns(found), found.sheet.columns if found.sheet is not None else {}
+
+    def one(row: RankedStructure) -> dict[str, Any]:
+        cells = {"cells": {heading: row.cells[k] for k, heading in headings.items()}}
+        return data_of(applying, row) | (cells if headings else {})
+
     return {
         "ranked_by": found.by,
         "motions": list(found.motions),
-        "rows": [data_of(applying, row) for row in _ranked(found)],
+        "rows": [one(row) for row in _ranked(found)],
         "bad": [
             {"row": each.row, "line": each.line, "name": one_line(each.name), "reason": each.reason}
             for each in found.bad
@@ -121,35 +133,69 @@ def _columns(found: Survey) -> list[Column[RankedStructure]]:
     return [
         *STRUCTURE,
         *(OF_SITE if found.by == "ratio" else ()),
+        *(_number(name, unit) for name, unit in found.units.items()),
         *(UNDER_MOTIONS if found.motions else ()),
         *PARAMETERS,
     ]
 
 
+def _number(name: str, unit: str) -> Column[RankedStructure]:
+    """Return the column of a number that the code of the site has for a row."""
+    return Column(name, lambda row: row.found.numbers[name], unit, f"{name}\n[{unit}]" if unit else name)
+
+
+def _kept(sheet: Spreadsheet | None, taken: Collection[str]) -> Iterator[Column[RankedStructure]]:
+    """Yield the columns of the table that came in, without those that the survey has by the same name."""
+    for place, heading in sheet.columns.items() if sheet is not None else ():
+        if heading not in ("name", "mechanism"):
+            name = f"given {heading}" if heading in taken else heading
+            yield Column(None, partial(_cell, place), name=name, text=True)
+
+
+def _cell(place: int, row: RankedStructure) -> str:
+    return row.cells[place]
+
+
 def _ranked(found: Survey, start: int = 0, stop: int | None = None) -> list[RankedStructure]:
-    return [RankedStructure(rank, each) for rank, each in enumerate(found.rows[start:stop], start + 1)]
+    ranked = enumerate(found.rows[start:stop], start + 1)
+    return [RankedStructure(rank, each, found.cells(each)) for rank, each in ranked]
 
 
-def blocks(found: Survey, *, for_spreadsheets: bool) -> Iterator[Columns]:
-    """Yield all rows in blocks; texts that a spreadsheet would compute get an apostrophe in front."""
+def blocks(found: Survey, decimal: str | None) -> Iterator[Columns]:
+    """Yield all rows in blocks; see `columns`."""
     for start in range(0, max(len(found.rows), 1), ROWS_PER_BLOCK):
-        yield columns(found, start, start + ROWS_PER_BLOCK, for_spreadsheets=for_spreadsheets)
+        yield columns(found, start, start + ROWS_PER_BLOCK, decimal)
 
 
-def columns(found: Survey, start: int = 0, stop: int | None = None, *, for_spreadsheets: bool = False) -> Columns:
-    """Return some of the rows as columns of a table."""
+def columns(found: Survey, start: int = 0, stop: int | None = None, decimal: str | None = None) -> Columns:
+    """Return some of the rows as columns of a table, followed by the columns that came in, as they stood.
+
+    With the decimal sign of a spreadsheet, numbers in cells that came in have this sign, and texts that a spreadsheet
+    would compute an apostrophe in front.
+    """
     rows = _ranked(found, start, stop)
     if not rows:
         return {"rank": [], "name": [], "lambda": []}
     applying = _columns(found)
     frame = frame_of(applying, rows)
+    kept = frame_of(_kept(found.sheet, frame), rows)
     for column in applying:
         if column.text:
             texts = map(one_line, frame[column.heading])
-            frame[column.heading] = [
-                f"'{each}" if for_spreadsheets and each.startswith(FORMULA_SIGNS) else each for each in texts
+            frame[column.heading] = [_safe(each) if decimal is not None else each for each in texts]
+    if found.sheet is not None and decimal is not None:
+        for cells in kept.values():
+            numbers = [found.sheet.number(cell) for cell in cells]
+            cells[:] = [
+                _safe(cell) if number is None else number.replace(".", decimal)
+                for cell, number in zip(cells, numbers, strict=True)
             ]
-    return frame
+    return frame | kept
+
+
+def _safe(text: str) -> str:
+    """Return a text that no spreadsheet computes."""
+    return f"'{text}" if text.startswith(FORMULA_SIGNS) else text
 
 
 def has_unknown(found: Survey) -> bool:
@@ -162,6 +208,9 @@ def table(found: Survey, top: int, longest: int | None = MAX_NAME_LENGTH) -> Tab
     empty = {"unknown"} if not has_unknown(found) else set[str]()
     if all(_not_counted(row) is None for row in _ranked(found)):
         empty.add("not_counted")
+    if found.by == "ratio" and longest is not None:
+        empty |= LEFT_TO_PAGES
+    empty |= {name for name in found.units if all(each.numbers[name] is None for each in found.rows)}
     shown = [column for column in _columns(found) if column.key not in empty]
     whole = table_of(title(found), shown, _ranked(found, stop=top))
     if longest is None:

@@ -28,15 +28,18 @@ head: options.Decorator = options.in_order(
 """The options of a head: `project`, `place`, `author` and `logo`."""
 
 
+language: options.Decorator = click.option(
+    "--language", type=click.Choice(LANGUAGES), default="en", show_default=True, help="Language of the sheet."
+)
+
+
 sheet: options.Decorator = options.in_order(
     click.option(
         "--sheet", callback=options.output_path(".html", ".docx", ".pdf"), metavar="FILE.html",
         shell_complete=complete.files,
         help="Write the calculation sheet (.html; .pdf needs a browser, .docx an extra package).",
     ),
-    click.option(
-        "--language", type=click.Choice(LANGUAGES), default="en", show_default=True, help="Language of the sheet."
-    ),
+    language,
     head,
 )  # fmt: skip
 """The options of a calculation sheet: `sheet`, `language` and those of its head."""

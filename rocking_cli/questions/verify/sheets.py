@@ -86,17 +86,20 @@ def sheet_for(
     return sheet(found, site, Language(language), title, sources)
 
 
-def write(file: Path, content: Sheet, found: Verification, watch: Watcher) -> None:
-    """Write a sheet, and tell that it was written."""
-    if file.suffix.lower() == ".docx":
+def rendered(content: Sheet, found: Verification, suffix: str) -> bytes:
+    """Return a sheet as the content of a file with a suffix."""
+    if suffix == ".docx":
         from rocking_cli.documents.sheet_docx import render as render_docx
 
-        data = render_docx(content, found.mechanism)
-    else:
-        from rocking_cli.documents.sheet_page import render
+        return render_docx(content, found.mechanism)
+    from rocking_cli.documents.sheet_page import render
 
-        data = render(content, found.mechanism).encode()
-        if file.suffix.lower() == ".pdf":
-            data = as_pdf(data)
+    page = render(content, found.mechanism).encode()
+    return as_pdf(page) if suffix == ".pdf" else page
+
+
+def write(file: Path, content: Sheet, found: Verification, watch: Watcher) -> None:
+    """Write a sheet, and tell that it was written."""
+    data = rendered(content, found, file.suffix.lower())
     write_whole(file, lambda stream: stream.write(data))
     watch.note(f"wrote {file} ({len(data) / 1e6:.2g} MB)")

@@ -1,0 +1,138 @@
+"""Map of the structures of a survey, by their longitude and latitude, coloured by rank."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import cos, floor, log10, radians
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LinearSegmentedColormap, Normalize
+from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
+from matplotlib.ticker import MaxNLocator
+
+from rocking_cli.arrays import Reals
+from rocking_cli.plotting import style
+from rocking_cli.questions.survey.coordinates import Coordinates
+from rocking_cli.questions.survey.picture import MAX_RANKED_LABELS, MAX_VECTOR_MARKS
+from rocking_cli.questions.survey.study import Survey
+
+METRES_PER_DEGREE = 6_371_008.8 * np.pi / 180  # of latitude, on a sphere of the mean radius of the earth
+LEAST_EXTENT = 100.0  # m, of a map of one place
+BORDER_SHARE = 0.08  # of the extent, around the marks
+SLIMMEST = 0.6  # least side of a map over the other
+SCALE_SHARE = 0.3  # of the width, which the scale bar does not exceed
+SAME_PLACE_SHARE = 0.02  # of the width, within which structures share a label
+RANKS = LinearSegmentedColormap.from_list("ranks", ["#4a1306", "#b3450f", "#e99a3c", "#f8dfa4"])
+"""From dark, for the first rank, to pale, so that the order is visible in grey."""
+
+
+def draw_map(found: Survey, where: Coordinates, title: str) -> Figure:
+    """Draw the structures that have coordinates, the most vulnerable on top, with the ranks of the first.
+
+    Parameters
+    ----------
+    found : Survey
+        The survey.
+    where : Coordinates
+        Where its structures are.
+    title : str
+        Heading.
+    """
+    there = where.there
+    x, y, ranks = where.longitude[there], where.latitude[there], there + 1
+    (west, east), (south, north), narrower = _extent(x, y)
+    shape = (north - south) / ((east - west) * narrower)
+    figure, axes = style.one_panel(min(8.0, 1.2 + 5.4 * shape), title)
+    axes.set_xlim(west, east)
+    axes.set_ylim(south, north)
+    axes.set_aspect(1 / narrower)
+    norm = Normalize(1, max(len(found.rows), 2))
+    sizes = np.where(np.arange(len(x)) < MAX_RANKED_LABELS, 40.0, 22.0 if len(x) <= MAX_VECTOR_MARKS else 9.0)
+    axes.scatter(
+        x[::-1], y[::-1], c=ranks[::-1], cmap=RANKS, norm=norm, s=sizes[::-1],
+        edgecolors=style.INK, linewidths=style.HAIR, rasterized=len(x) > MAX_VECTOR_MARKS, zorder=3,
+    )  # fmt: skip
+    _label(axes, x[:MAX_RANKED_LABELS], y[:MAX_RANKED_LABELS], ranks[:MAX_RANKED_LABELS].tolist(), narrower)
+    style.tidy(axes, "longitude [deg]", "latitude [deg]")
+    axes.ticklabel_format(useOffset=False, style="plain")
+    for axis, most in ((axes.xaxis, 4), (axes.yaxis, 6)):
+        axis.set_major_locator(MaxNLocator(most))
+    _scale_bar(axes, narrower)
+    if len(found.rows) > 1:
+        _bar_of_ranks(figure, axes, norm, len(found.rows))
+    if missing := len(found.rows) - len(there):
+        axes.plot([], [], linestyle="none", label=f"not on the map: {missing:,} without coordinates")
+        style.legend_below(figure)
+    return figure
+
+
+def _extent(x: Reals, y: Reals) -> tuple[tuple[float, float], tuple[float, float], float]:
+    """Return the limits of longitude and latitude, and the length of a degree of longitude over one of latitude."""
+    middle = (float(x.min() + x.max()) / 2, float(y.min() + y.max()) / 2)
+    narrower = max(cos(radians(middle[1])), 0.01)  # at a pole longitudes have no length
+    least, bordered = LEAST_EXTENT / METRES_PER_DEGREE, 1 + 2 * BORDER_SHARE
+    sizes = [max(size, least) * bordered for size in (float(np.ptp(x)) * narrower, float(np.ptp(y)))]
+    wide, high = (max(size, SLIMMEST * max(sizes)) for size in sizes)
+    wide /= narrower
+    return (
+        (middle[0] - wide / 2, middle[0] + wide / 2),
+        (middle[1] - high / 2, middle[1] + high / 2),
+        narrower,
+    )
+
+
+def _label(axes: Axes, x: Reals, y: Reals, ranks: Sequence[int], narrower: float) -> None:
+    """Write ranks beside their marks; those of structures in almost the same place in one label."""
+    near = SAME_PLACE_SHARE * float(np.ptp(axes.get_xlim())) * narrower
+    labels: dict[complex, list[str]] = {}
+    for longitude, latitude, rank in zip(x, y, ranks, strict=True):
+        point = complex(longitude * narrower, latitude)
+        place = next((each for each in labels if abs(each - point) < near), point)
+        labels.setdefault(place, []).append(str(rank))
+    for place, names in labels.items():
+        axes.annotate(
+            ", ".join(names), (place.real / narrower, place.imag), xytext=(5, 3), textcoords="offset points",
+            fontsize=style.TICK, color=style.INK, zorder=4, path_effects=[withStroke(linewidth=2, foreground="white")],
+        )  # fmt: skip
+
+
+def scale_length(width: float) -> float:
+    """Return the length of a scale bar for a map of a width [m]: 1, 2 or 5 times a power of ten.
+
+    Examples
+    --------
+    >>> scale_length(2300.0), scale_length(160.0)
+    (500.0, 20.0)
+    """
+    most = SCALE_SHARE * width
+    power = 10.0 ** floor(log10(most))
+    return max(step * power for step in (1, 2, 5) if step * power <= most)
+
+
+def _scale_bar(axes: Axes, narrower: float) -> None:
+    """Draw the scale bar in the lower left corner, of the length at the middle latitude."""
+    west, east = axes.get_xlim()
+    metres = (east - west) * narrower * METRES_PER_DEGREE
+    length = scale_length(metres)
+    left, low = 0.03, 0.035
+    axes.plot(
+        [left, left + length / metres], [low, low], transform=axes.transAxes, color=style.INK, linewidth=2.5,
+        solid_capstyle="butt", zorder=5,
+    )  # fmt: skip
+    axes.text(
+        left, low + 0.012, f"{length:g} m" if length < 1000 else f"{length / 1000:g} km", transform=axes.transAxes,
+        fontsize=style.TICK, color=style.INK, va="bottom", zorder=5,
+        path_effects=[withStroke(linewidth=2, foreground="white")],
+    )  # fmt: skip
+
+
+def _bar_of_ranks(figure: Figure, axes: Axes, norm: Normalize, last: int) -> None:
+    bar = figure.colorbar(ScalarMappable(norm, RANKS), ax=axes, shrink=0.7, aspect=25, pad=0.02)
+    bar.ax.invert_yaxis()
+    bar.ax.yaxis.set_major_locator(MaxNLocator(6, integer=True))
+    bar.set_ticks([1, *(each for each in bar.get_ticks() if 1 < each < 0.95 * last), last])
+    bar.ax.tick_params(labelsize=style.TICK)
+    bar.set_label("rank; 1 is the most vulnerable", fontsize=style.LABEL)

@@ -1,0 +1,148 @@
+"""Folder of the calculation sheets of a survey: one for each structure, and a list of them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+from unicodedata import normalize
+
+from rocking_cli.ask.given import SiteLike, yaml_of
+from rocking_cli.ask.watcher import Watcher
+from rocking_cli.errors import InputError, Problem, RockingError
+from rocking_cli.io.files import check_writable, folder, write_whole
+from rocking_cli.questions.survey.study import Bad, Survey, Surveyed, SurveyEntry
+from rocking_cli.questions.verify import sheets
+from rocking_cli.structure import Structure
+from rocking_cli.studies.provenance import File
+from rocking_cli.text import numbered
+from rocking_cli.verification.check import of_each, verify
+from rocking_cli.verification.code import SiteFile
+
+LIST_FILE = "sheets.txt"
+LIST_HEADER = "# Calculation sheets, written by rocking survey: the SHA-256 of each, and its name."
+MAX_STEM_LENGTH = 60  # characters of a file name, each of which may take four of the 255 bytes that systems allow
+RESERVED = re.compile(r"(?i)(con|prn|aux|nul|com\d|lpt\d)(\..*)?")
+"""Names of devices, which Windows does not give to files, whatever follows a dot in them."""
+
+
+def file_names(names: Sequence[str], suffix: str) -> list[str]:
+    r"""Return a file name for each name, of letters, digits, dots and hyphens, each once where case does not count.
+
+    Examples
+    --------
+    >>> file_names(["../x", "a/b", "A b", "NUL.1", "..."], ".html")
+    ['x.html', 'a-b.html', 'A-b-2.html', 'NUL.1_.html', 'structure.html']
+    """
+    taken: list[str] = []
+    for name in names:
+        stem = re.sub(r"[^\w.+-]+", "-", normalize("NFKC", name)).strip("-.")[:MAX_STEM_LENGTH].rstrip("-.")
+        stem = f"{stem}_" if RESERVED.fullmatch(stem) else stem or "structure"
+        taken.append(numbered(stem, suffix, taken))
+    return taken
+
+
+@dataclass(frozen=True)
+class SheetFolder:
+    """A folder for the calculation sheets of a survey.
+
+    Parameters
+    ----------
+    path : Path
+        The folder, created if missing.
+    site : SiteFile
+        The site, read from `given`.
+    given : mapping, str or Path
+        The site as it was given.
+    suffix : str
+        Suffix of the sheets, such as ".html".
+    language : str
+        Language of the sheets.
+    head : Head
+        Heading of the sheets.
+    call : str
+        The command that writes them.
+    """
+
+    path: Path
+    site: SiteFile
+    given: SiteLike
+    suffix: str
+    language: str
+    head: sheets.Head
+    call: str
+
+    def check(self) -> None:
+        """Raise `InputError`, before any work, if sheets cannot be written, or the folder has files of others."""
+        place = folder(str(self.path))
+        sheets.check(place / f"structure{self.suffix}", self.site, self.language)
+        check_writable(place / LIST_FILE)
+        known = self._listed()
+        for each in sorted(place.iterdir()):
+            if each.name.startswith(".") or (each.name == LIST_FILE and _is_list(each)):
+                continue
+            if not (each.is_file() and known.get(each.name) == sha256(each.read_bytes()).hexdigest()):
+                what = "this file is in the folder of the sheets, and rocking did not write it, or not as it is now"
+                raise InputError(Problem(what, str(each), hint="move it, or name another folder"))
+
+    def write(self, found: Survey, entries: Sequence[SurveyEntry], watch: Watcher) -> None:
+        """Write the sheet of each structure; sheets of an earlier survey that this one does not have are removed.
+
+        A structure whose sheet cannot be made is reported, and the others are written.
+
+        Raises
+        ------
+        InputError, Refused
+            If a file cannot be written; the list then has those that were.
+        """
+        every: list[Surveyed | Bad] = sorted([*found.rows, *found.bad], key=lambda each: each.row)
+        names = {
+            each.row: name for each, name in zip(every, file_names([e.name for e in every], self.suffix), strict=True)
+        }
+        known, new = self._listed(), dict[str, str]()
+        try:
+            with watch.progress(len(found.rows), "calculation sheets") as advance:
+                for each in sorted(found.rows, key=lambda each: each.row):
+                    try:
+                        data = self._sheet(found, entries[each.row - 1])
+                    except RockingError as error:
+                        watch.incomplete(f"{each.name}: no calculation sheet: {error}")
+                    else:
+                        name = names[each.row]
+                        write_whole(self.path / name, lambda stream, data=data: stream.write(data))  # type: ignore[misc]
+                        new[name] = sha256(data).hexdigest()
+                    advance(1)
+            for name in known.keys() - new.keys():
+                (self.path / name).unlink(missing_ok=True)
+            known = {}
+        finally:
+            lines = [LIST_HEADER, *(f"{checksum}  {name}" for name, checksum in sorted((known | new).items()))]
+            text = "".join(f"{line}\n" for line in lines).encode()
+            write_whole(self.path / LIST_FILE, lambda stream: stream.write(text))
+        watch.note(
+            f"wrote {len(new):,} calculation sheet{'s' * (len(new) != 1)} and {LIST_FILE} to {self.path.resolve()}"
+        )
+
+    def _sheet(self, found: Survey, entry: SurveyEntry) -> bytes:
+        site, structure = of_each(self.site), Structure(entry.make())
+        verification = verify(structure, site)
+        source = f"{Path(found.sheet.file).name}, line {entry.line}" if found.sheet is not None else structure.name
+        origin = sheets.SheetOrigin(self.call, File(source, yaml_of(structure.mechanism).encode()))
+        title = self.head.block(origin, self.language)
+        content = sheets.sheet_for(verification, site, self.given, [], self.language, title, origin)
+        return sheets.rendered(content, verification, self.suffix)
+
+    def _listed(self) -> dict[str, str]:
+        """Return the checksums of the sheets of an earlier survey, by their names."""
+        path = self.path / LIST_FILE
+        lines = path.read_text(encoding="utf-8", errors="replace").splitlines() if _is_list(path) else []
+        return {name: checksum for checksum, _, name in (line.partition("  ") for line in lines[1:])}
+
+
+def _is_list(path: Path) -> bool:
+    if not path.is_file():
+        return False
+    with path.open(encoding="utf-8", errors="replace") as stream:
+        return stream.readline().rstrip("\n") == LIST_HEADER

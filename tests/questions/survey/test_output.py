@@ -1,0 +1,411 @@
+"""What a survey writes: tables for spreadsheets of any locale with the columns that came in, maps, and sheets."""
+
+import csv
+import hashlib
+import json
+import re
+from dataclasses import replace
+from math import cos, radians
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rocking_cli as rk
+from rocking_cli.errors import InputError, Refused
+from rocking_cli.questions.survey import sheets as survey_sheets
+from rocking_cli.questions.survey.coordinates import coordinates
+from rocking_cli.questions.survey.map_picture import METRES_PER_DEGREE, draw_map, scale_length
+from rocking_cli.questions.survey.sheets import LIST_FILE, MAX_STEM_LENGTH, file_names
+from rocking_cli.questions.survey.view import columns as written
+from rocking_cli.verification import Code
+from rocking_cli.verification.code import codes
+from tests.cli.test_cli import run, some
+
+SITE = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
+ITALIAN = """mechanism;name;width [mm];height;# proprietario;# quota
+block;Chiesa;250;1,10;Comune, ufficio;-12,5
+block;=Torre;300;1,45;"=2+3";1.200
+block;Casa;300;2 m;;
+"""
+COMMAS = "mechanism,name,width,height,#note\nblock,a,0.5,2,1.50\nblock,b,0.3,2,\n"
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("site.yaml").write_text("".join(f"{key}: {value}\n" for key, value in SITE.items()), encoding="utf-8")
+    Path("t.csv").write_text(ITALIAN, encoding="utf-8")
+    Path("c.csv").write_text(COMMAS, encoding="utf-8")
+
+
+def cells(file, separator=","):
+    with Path(file).open(encoding="utf-8", newline="") as stream:
+        return list(csv.DictReader(stream, delimiter=separator))
+
+
+class TestTables:
+    def test_a_table_of_another_locale_comes_back_as_it_went(self):
+        run("survey", "t.csv", "--out", "o.csv", "--separator", ";", "--decimal", ",")
+        first, second, third = cells("o.csv", ";")
+        assert [row["name"] for row in (first, second, third)] == ["Casa", "'=Torre", "Chiesa"]
+        assert first["lambda"] == "0,15" and first["height"] == "2 m"  # 0.3/2
+        assert third["lambda"] == "0,227272727" and third["height"] == "1,10"  # 0.25/1.1
+        assert third["# proprietario"] == "Comune, ufficio" and third["# quota"] == "-12,5"
+        assert second["# proprietario"] == "'=2+3" and second["# quota"] == "1.200"  # perhaps 1200: as it stood
+        assert (second["row"], second["line"], second["width [mm]"]) == ("2", "3", "300")
+
+    def test_numbers_of_a_file_have_one_decimal_sign_whatever_that_of_the_input(self):
+        run("survey", "t.csv", "--out", "o.csv")
+        assert [(row["height"], row["# quota"]) for row in cells("o.csv")] == [
+            ("2 m", ""), ("1.45", "1.200"), ("1.10", "-12.5")
+        ]  # fmt: skip
+        run("survey", "c.csv", "--out", "o.csv", "--separator", "tab", "--decimal", ",")
+        assert [(row["width"], row["#note"]) for row in cells("o.csv", "\t")] == [("0,3", ""), ("0,5", "1,50")]
+        assert (
+            "0,15\t0,15\tpositive"
+            in run("survey", "c.csv", "--out", "-", "--separator", "tab", "--decimal", ",").stdout
+        )
+
+    def test_what_was_written_is_read_again(self):
+        run("survey", "t.csv", "--out", "o.csv", "--separator", ";", "--decimal", ",")
+        rows = cells("o.csv", ";")
+        heads = "mechanism", "name", "width [mm]", "height"
+        lines = [";".join(heads), *(";".join(row[head] for head in heads) for row in rows)]
+        Path("again.csv").write_text("\n".join(lines), encoding="utf-8")
+        again = [json.loads(run("survey", file, "--json").stdout)["rows"] for file in ("t.csv", "again.csv")]
+        assert [row["lambda"] for row in again[0]] == [row["lambda"] for row in again[1]]
+
+    @pytest.mark.parametrize(
+        ("options", "said"),
+        [
+            (("--separator", ";"), "--separator writes a CSV table, and none is requested: add --out FILE.csv"),
+            (("--separator", ";", "--decimal", ","), "--separator and --decimal write a CSV table, and none"),
+            (("--decimal", ",", "--out", "o.csv"), "--decimal , cannot be the separator too: add --separator ';'"),
+            (("--decimal", ",", "--separator", ",", "--out", "o.csv"), "cannot be the separator too"),
+            (("--separator", ";", "--out", "o.parquet"), "o.parquet is not one: give a name that ends in .csv"),
+            (("--separator", "|", "--out", "o.csv"), "'|' is not one of ',', ';', 'tab'"),
+        ],
+    )  # fmt: skip
+    def test_signs_without_a_table_to_write_are_refused(self, options, said):
+        assert said in " ".join(run("survey", "t.csv", *options, code=2).stderr.split())
+        assert not Path("o.csv").exists()
+
+    def test_every_column_is_kept_once_in_its_order_in_all_formats(self):
+        parquet = pytest.importorskip("pyarrow.parquet")
+        heads = ["width [mm]", "height", "# proprietario", "# quota"]
+        run("survey", "t.csv", "--out", "o.csv")
+        run("survey", "t.csv", "--out", "o.parquet")
+        written = list(cells("o.csv")[0])
+        assert written[-4:] == heads and written.count("name") == written.count("mechanism") == 1
+        stored = parquet.read_table("o.parquet").to_pydict()
+        assert list(stored) == written == list(rk.survey("t.csv").to_frame())
+        assert stored["height"] == ["2 m", "1,45", "1,10"] and stored["name"][1] == "=Torre"  # as they stood
+        data = json.loads(run("survey", "t.csv", "--json").stdout)["rows"]
+        assert data[2]["cells"] == {
+            "mechanism": "block", "name": "Chiesa", "width [mm]": "250", "height": "1,10",
+            "# proprietario": "Comune, ufficio", "# quota": "-12,5",
+        }  # fmt: skip
+        assert "cells" not in rk.survey([rk.Block(width=0.5, height=2.0)]).to_dict()["rows"][0]
+
+    def test_a_column_by_the_name_of_a_result_is_told_from_it(self):
+        columns = {"mechanism": ["block"], "width": ["0.5"], "height": ["2"], "eta": ["?"], "": ["x"]}
+        answer = rk.survey({name if name != "eta" else "#eta": cell for name, cell in columns.items()})
+        assert list(answer.columns())[-4:] == ["width", "height", "#eta", "column 5"]
+        sheet = replace(answer.sheet, headings=("mechanism", "eta"))
+        frame = written(replace(answer.result, sheet=sheet))
+        assert isinstance(frame["eta"][0], float) and frame["given eta"] == ["0.5"]
+
+    def test_rows_keep_their_own_cells_among_rows_that_cannot_be_used(self):
+        Path("b.csv").write_text("mechanism,name,width,height,#id\nblock,x,-1,2,1\nblock,y,1,2,2\nblock,z,0.5,2,3\n")
+        some("survey", "b.csv", "--out", "o.csv")
+        assert [(row["name"], row["#id"]) for row in cells("o.csv")] == [("z", "3"), ("y", "2")]
+
+
+class TestNumbersOfTheCode:
+    def test_zeta_of_the_onset_by_hand(self):
+        """zeta_E = a0*/(a_g S g), with a0* = (b/h) g/FC of a block, whose participating mass is all of its mass."""
+        sizes = {"a": (0.05, 0.3), "b": (0.2, 0.5)}
+        blocks = [rk.Block(name=name, width=b, height=h) for name, (b, h) in sizes.items()]
+        answer = rk.survey(blocks, site=SITE)
+        for row, data in zip(answer.rows, answer.to_dict()["rows"], strict=True):
+            b, h = sizes[row.name]
+            assert row.verified.method == "damage"
+            assert data["zeta_E"] == pytest.approx(b / h / (1.35 * 1.2 * 0.2), rel=1e-9) == data["ratio"]
+            assert data["T0"] is None
+        assert list(answer.columns()["zeta_E"]) == [data["zeta_E"] for data in answer.to_dict()["rows"]]
+
+    def test_zeta_of_displacement_is_that_of_accelerations_and_not_the_ratio(self):
+        """For 0.6 m x 8 m at this site, a_g = 0.193382 by the nonlinear method, against a demand of 0.2."""
+        tall = rk.Block(name="tall", width=0.6, height=8.0)
+        (row,) = rk.survey([tall], site=SITE).rows
+        side = rk.verify(tall, SITE).directions[rk.Direction.POSITIVE]
+        assert row.verified.method == "nonlinear"
+        assert row.numbers["zeta_E"] == pytest.approx(0.193382 / 0.2, rel=1e-5)
+        assert row.ratio == pytest.approx(side.states["SLV"].ratio) != pytest.approx(row.numbers["zeta_E"], rel=1e-3)
+
+    def test_zeta_is_of_the_limit_state_and_the_direction_that_govern(self):
+        low = {"ag": 0.19, "F0": 2.5, "TC": 0.36, "S": 1.6}  # SLD demands more than SLV
+        (row,) = rk.survey([rk.Block(name="b", width=0.3, height=2.0)], site={**SITE, "SLD": low}).rows
+        assert row.verified.limit_state == "SLD"
+        assert row.numbers["zeta_E"] == pytest.approx(0.15 / (1.35 * 1.6 * 0.19), rel=1e-9)
+        leaning = rk.Block(width=0.6, height=2.0, mass=900.0, loads=[{"name": "x", "mass": 300.0, "at": [0.2, 2.0]}])
+        (row,) = rk.survey([leaning], site=SITE).rows
+        assert row.verified.direction == "positive"
+        weaker, other = (rk.verify(leaning, SITE).directions[each] for each in rk.Direction)
+        assert row.numbers["zeta_E"] == weaker.methods[row.verified.method].zeta
+        assert row.numbers["zeta_E"] < other.methods[row.verified.method].zeta
+
+    def test_a_row_has_the_period_of_its_own_element_and_that_of_the_site_where_it_has_none(self):
+        """T0 = 6.2 (L/t) L sqrt(w/(E g)): sqrt(18000/(1.2e9 9.80665)) = 1.236759e-3."""
+        element = {"kind": "cantilever", "w": 18e3, "E": 1.2e9, "L": 1.0, "t": 0.4}
+        structures = [
+            rk.Block(name="thin", width=0.3, height=3.0),
+            rk.Wall(name="wall", thickness=0.6, height=3.0),
+            rk.PointMass(name="mass", base_width=2.4, height=9.0),
+            rk.load_structure(Path(__file__).parents[3] / "examples" / "frame.yaml"),
+        ]
+        rows = {row.name: row for row in rk.survey(structures, site={**SITE, "element": element}).rows}
+        periods = [rows[each.name].numbers["T0"] for each in structures]
+        by_hand = [0.230037, 0.115019, 6.2 * 9.0**2 / 0.4 * 1.236759e-3, 6.2 / 0.4 * 1.236759e-3]
+        assert periods == pytest.approx(by_hand, rel=1e-5)
+        told = rk.survey(structures, site={**SITE, "element": element}, top=2)
+        assert "T0\n[s]" in next(part for part in told.view.parts if hasattr(part, "columns")).columns
+        assert "T0 [s]" in told.columns()
+        for row in rk.survey(structures[:2], site={**SITE, "T0": 0.4}).rows:
+            assert row.numbers["T0"] == 0.4
+        element = {key: element[key] for key in ("kind", "w", "E")}
+        (bad,) = rk.survey([*structures[:2], structures[2]], site={**SITE, "element": element}).bad
+        assert "element.t is missing: a point_mass has no height and thickness" in bad.reason
+
+    def test_a_code_without_numbers_gives_none(self, monkeypatch):
+        monkeypatch.setattr(type(codes()["NTC2018"]), "row_numbers", Code.row_numbers)
+        answer = rk.survey([rk.Block(width=0.5, height=2.0)], site=SITE)
+        assert not {"zeta_E", "T0", "T0 [s]"} & (set(answer.columns()) | set(answer.to_dict()["rows"][0]))
+        assert "zeta_E" not in str(answer.view.parts)
+
+
+def places(longitude, latitude, **more):
+    count = len(longitude)
+    columns = {"mechanism": ["block"] * count, "name": [f"b{k}" for k in range(count)], "height": [2.0] * count}
+    return columns | {"width": [0.3 + 0.01 * k for k in range(count)], "lon": longitude, "#lat": latitude} | more
+
+
+def drawn(columns):
+    found = rk.survey(columns).result
+    return draw_map(found, coordinates(found), "title")
+
+
+def labels(axes):
+    return [text.get_text() for text in axes.texts]
+
+
+class TestMaps:
+    def test_marks_stand_at_their_coordinates_in_the_order_of_ranks_the_first_on_top(self):
+        axes = drawn(places([13.1, 13.2, 13.15], [42.1, 42.2, 42.3])).axes[0]
+        marks = axes.collections[0]
+        assert marks.get_offsets().tolist() == [
+            pytest.approx(each) for each in ([13.15, 42.3], [13.2, 42.2], [13.1, 42.1])  # drawn last: rank 1
+        ]  # fmt: skip
+        assert marks.get_array().tolist() == [3, 2, 1]
+        assert labels(axes)[:3] == ["1", "2", "3"]
+        figure = drawn(places([13.1, 13.2, 13.15], [42.1, 42.2, 42.3]))
+        grey = [
+            0.3 * r + 0.59 * g + 0.11 * b for r, g, b, _ in figure.axes[0].collections[0].cmap(np.linspace(0, 1, 9))
+        ]
+        assert grey == sorted(grey) and grey[0] < 0.2 < 0.8 < grey[-1], "the order is visible in grey"
+
+    @pytest.mark.parametrize("latitude", [0.0, 42.0, -60.0])
+    def test_a_metre_is_as_long_in_both_directions(self, latitude):
+        figure = drawn(places([10.0, 10.1], [latitude, latitude + 0.02]))
+        figure.draw_without_rendering()
+        axes = figure.axes[0]
+        (x0, y0), (x1, y1) = axes.transData.transform([(10.0, latitude), (10.1, latitude + 0.02)])
+        east, north = 6_371_008.8 * radians(0.1) * cos(radians(latitude + 0.01)), 6_371_008.8 * radians(0.02)
+        assert (x1 - x0) / (y1 - y0) == pytest.approx(east / north, rel=1e-3)
+
+    def test_the_scale_bar_is_as_long_as_it_says(self):
+        """At 60 degrees north a degree of longitude is half as long as one of latitude, 111.195 km."""
+        axes = drawn(places([10.0, 10.1], [59.99, 60.01])).axes[0]
+        bar = next(line for line in axes.lines if line.get_linewidth() == 2.5)
+        share = float(np.ptp(bar.get_xdata()))
+        west, east = axes.get_xlim()
+        (text,) = (each for each in labels(axes) if each.endswith("m"))
+        assert text == "1 km"
+        assert share * (east - west) * 0.5 * 111_195.0 == pytest.approx(1000.0, rel=1e-3)
+        assert pytest.approx(111_195.08, rel=1e-6) == METRES_PER_DEGREE
+        assert [scale_length(width) for width in (100, 1e3, 7e3, 20e3)] == [20, 200, 2000, 5000]
+
+    def test_rows_without_coordinates_are_counted_and_wrong_ones_named(self):
+        said = []
+        columns = places(["13.1", "", "13.2", "13.3"], ["42.1", "42.2", "142", "north"])
+
+        class Listening(rk.ask.watcher.Watcher):
+            def warn(self, text):
+                said.append(text)
+
+        rk.survey(columns, map="m.svg", watch=Listening())
+        assert "not on the map: 3 without coordinates" in [line.get_label() for line in drawn(columns).axes[0].lines]
+        assert len(said) == 2 and "lat must be a number of degrees from -90 to 90, got '142'" in said[0]
+        assert "got 'north'" in said[1] and Path("m.svg").stat().st_size > 1000
+        assert not any("not on the map" in line.get_label() for line in drawn(places([1, 2], [3, 4])).axes[0].lines)
+
+    def test_places_on_both_sides_of_the_date_line_are_beside_each_other(self):
+        axes = drawn(places([179.9, -179.9], [-16.0, -16.1])).axes[0]
+        west, east = axes.get_xlim()
+        assert east - west < 1.0
+
+    def test_one_place_and_ranks_in_the_same_place(self):
+        axes = drawn(places([13.1, 13.1, 13.1], [42.0, 42.0, 42.5])).axes[0]
+        assert labels(axes)[:2] == ["1, 2", "3"]
+        assert np.ptp(drawn(places([13.1], [42.0])).axes[0].get_ylim()) * 111_195 == pytest.approx(116.0, rel=1e-3)
+        assert len(labels(drawn(places(np.linspace(1, 2, 30), [3.0] * 30)).axes[0])) == 11  # ten ranks and the scale
+
+    def test_decimal_commas_and_headings(self):
+        Path("g.csv").write_text(
+            "mechanism;width;height;# Longitude [deg];LAT\nblock;0,5;2;13,25;42,5\nblock;0,4;2;13,26;42,6\n"
+        )
+        where = coordinates(rk.survey("g.csv").result)
+        assert (where.longitude.tolist(), where.latitude.tolist()) == (pytest.approx([13.26, 13.25]), [42.6, 42.5])
+
+    def test_a_map_without_coordinates_is_refused_before_any_work(self):
+        said = run("survey", "t.csv", "--map", "m.png", "--out", "o.csv", code=2).stderr
+        assert "the structures have no longitude and latitude\n  --map needs columns longitude and latitude" in said
+        assert not Path("o.csv").exists()
+        for columns in (places([""], [""]), places([""], ["1"])):
+            with pytest.raises(InputError, match="no structure has both coordinates"):
+                rk.survey(columns, map="m.png")
+        with pytest.raises(InputError, match="the structures have no latitude"):
+            rk.survey({"mechanism": ["block"], "width": [1], "height": [2], "lon": [3]}, map="m.png")
+
+    def test_a_page_has_the_map_if_there_are_coordinates(self):
+        rk.survey(places([13.1, 13.2], [42.1, 42.2]), page="with.html")
+        rk.survey("t.csv", page="without.html")
+        has = ["Map of the structures" in Path(f"{each}.html").read_text("utf-8") for each in ("with", "without")]
+        assert has == [True, False]
+
+
+HOSTILE = {
+    "../x": "x", "a/b": "a-b", "A B": "A-B-2", "..\\..\\c:": "c", "NUL": "NUL_", "com1.txt": "com1.txt_",
+    "...": "structure", ".hidden": "hidden", "Santa Lucìa, n° 3": "Santa-Lucìa-n-3", "x" * 300: "x" * MAX_STEM_LENGTH,
+    "a b-2": "a-b-2-2", "\x00\n": "structure-2", "ＮＵＬ": "NUL_-2", "a.": "a",
+}  # fmt: skip
+
+
+class TestSheets:
+    def test_names_are_safe_on_every_system_and_each_once(self):
+        names = file_names([*HOSTILE], ".html")
+        assert names == [f"{each}.html" for each in HOSTILE.values()]
+        assert len({each.casefold() for each in names}) == len(names)
+        assert all(len(each.encode()) < 255 and not set(each) & set('<>:"/\\|?*') for each in names)
+
+    def sheet(self, *more, code=0):
+        call = "survey", "s.csv", "--site", "site.yaml", "--sheets", "sh", *more
+        return some(*call) if code == 5 else run(*call, code=code)
+
+    def table(self, *names, width="0.5"):
+        lines = ["mechanism,name,width,height", *(f'block,"{name}",{width},2' for name in names)]
+        Path("s.csv").write_text("\n".join(lines), encoding="utf-8")
+
+    def test_each_row_has_the_sheet_of_verify(self):
+        Path("s.csv").write_text(
+            "mechanism,name,width,height\nblock,../thin,0.3,2\nblock,bad,-1,2\nblock,thick,0.5,2\n"
+        )
+        result = self.sheet("--language", "it", "--author", "Ing. Bianchi", code=5)
+        assert "wrote 2 calculation sheets and sheets.txt to" in result.stderr
+        assert sorted(each.name for each in Path("sh").iterdir()) == [LIST_FILE, "thick.html", "thin.html"]
+        Path("b.yaml").write_text("mechanism: block\nname: thick\nwidth: 0.5\nheight: 2\n")
+        run(
+            "verify",
+            "b.yaml",
+            "--site",
+            "site.yaml",
+            "--sheet",
+            "v.html",
+            "--language",
+            "it",
+            "--author",
+            "Ing. Bianchi",
+        )
+        one, other = (Path(each).read_text("utf-8").split('id="inputs"')[0] for each in ("sh/thick.html", "v.html"))
+        assert one == other and "Ing. Bianchi" in one
+        inputs = Path("sh/thick.html").read_text("utf-8").split('id="inputs"')[1]
+        assert (
+            "s.csv, line 4" in inputs and "rocking survey s.csv --site site.yaml" in inputs and "width: 0.5" in inputs
+        )
+
+    def test_the_element_of_a_row_is_that_of_its_sheet(self):
+        self.table("a", width="0.3")
+        with Path("site.yaml").open("a") as stream:
+            stream.write("element: {kind: cantilever, L: 1.0, t: 0.4, w: 18000, E: 1.2e9}\n")
+        self.sheet()
+        text = re.sub(r"<[^>]+>", "", Path("sh/a.html").read_text("utf-8"))
+        assert "6.2 · 2/0.3 · 2" in " ".join(text.split()) and "0.102239 s" in text  # 6.2 (2/0.3) 2 1.236759e-3
+
+    def test_sheets_of_an_earlier_survey_are_replaced_and_nothing_else(self):
+        self.table("a", "b", "a")
+        self.sheet()
+        assert {each.name for each in Path("sh").iterdir()} == {"a.html", "b.html", "a-2.html", LIST_FILE}
+        first = Path("sh/a.html").read_bytes()
+        self.table("a", "c", width="0.6")
+        self.sheet()
+        assert {each.name for each in Path("sh").iterdir()} == {"a.html", "c.html", LIST_FILE}
+        assert Path("sh/a.html").read_bytes() != first
+        listed = dict(line.split("  ")[::-1] for line in Path("sh", LIST_FILE).read_text().splitlines()[1:])
+        assert listed == {
+            name: hashlib.sha256(Path("sh", name).read_bytes()).hexdigest() for name in ("a.html", "c.html")
+        }
+
+    @pytest.mark.parametrize("name", ["mine.txt", "a.html", "z.html", LIST_FILE])
+    def test_a_folder_with_files_of_others_is_refused_before_any_work(self, name):
+        self.table("a")
+        self.sheet()
+        Path("sh", name).write_text("edited by hand", encoding="utf-8")
+        before = {each.name: each.read_bytes() for each in Path("sh").iterdir()}
+        said = self.sheet("--out", "o.csv", code=2).stderr
+        assert "this file is in the folder of the sheets, and rocking did not write it, or not as it is now" in said
+        assert {each.name: each.read_bytes() for each in Path("sh").iterdir()} == before and not Path("o.csv").exists()
+
+    def test_an_error_in_one_row_does_not_stop_the_others(self, monkeypatch):
+        self.table("a", "b", "c")
+        whole = survey_sheets.sheets.rendered
+
+        def rendered(content, verification, suffix):
+            if verification.mechanism.name == "b":
+                raise InputError("no ink")
+            return whole(content, verification, suffix)
+
+        monkeypatch.setattr(survey_sheets.sheets, "rendered", rendered)
+        result = self.sheet(code=5)
+        assert (
+            "error: b: no calculation sheet: no ink" in result.stderr and "wrote 2 calculation sheets" in result.stderr
+        )
+        assert {each.name for each in Path("sh").iterdir()} == {"a.html", "c.html", LIST_FILE}
+
+    def test_a_full_disk_leaves_whole_sheets_and_a_list_of_them(self, monkeypatch):
+        self.table("a", "b", "c")
+        whole = survey_sheets.write_whole
+
+        def write(path, fill):
+            if path.name == "b.html":
+                raise Refused("b.html: no room")
+            whole(path, fill)
+
+        monkeypatch.setattr(survey_sheets, "write_whole", write)
+        with pytest.raises(Refused):
+            rk.survey("s.csv", site="site.yaml", sheets="sh")
+        assert {each.name for each in Path("sh").iterdir()} == {"a.html", LIST_FILE}
+        monkeypatch.setattr(survey_sheets, "write_whole", whole)
+        rk.survey("s.csv", site="site.yaml", sheets="sh")
+        assert len(list(Path("sh").iterdir())) == 4
+
+    def test_what_has_no_sheet_is_refused(self):
+        self.table("a")
+        assert (
+            "--sheets requires a site to verify at: give --site"
+            in run("survey", "s.csv", "--sheets", "sh", code=2).stderr
+        )
+        with pytest.raises(InputError, match="there is no calculation sheet in 'fr'"):
+            rk.survey("s.csv", site=SITE, sheets="sh", language="fr")
+        with pytest.raises(InputError, match=r"ends in \.html, \.docx or \.pdf"):
+            rk.survey("s.csv", site=SITE, sheets="sh", sheet_format="txt")
