@@ -2,7 +2,6 @@
 
 import ast
 import re
-from collections import Counter
 
 import pytest
 
@@ -23,18 +22,6 @@ VAGUE_CONSTANTS = {
     "rocking_cli/plotting/style.py": {"FAINT", "SMALL", "THIN", "TINY"},  # steps of a scale, read as `style.SMALL`
 }
 """Constants that keep a vague name: that of the kernels cannot change without building the shipped libraries anew."""
-EMPTY_LOCALS = {
-    "rocking_cli/codes/italian/chain.py": 4,
-    "rocking_cli/codes/italian/displaced.py": 2,
-    "rocking_cli/core/hung/everything.py": 7,
-    "rocking_cli/questions/design/metrics.py": 1,
-    "rocking_cli/questions/design/picture.py": 1,
-    "rocking_cli/questions/design/study.py": 1,
-    "rocking_cli/questions/design/view.py": 1,
-    "rocking_cli/questions/new/command.py": 1,
-    "rocking_cli/questions/select/view.py": 1,
-}
-"""Assignments to such locals that are left, by file: these numbers may only fall."""
 
 
 @pytest.fixture(scope="module")
@@ -82,6 +69,5 @@ def test_no_constant_is_a_vague_word_alone(package):
 
 
 def test_no_local_has_a_name_that_says_nothing(package):
-    empty = Counter(place for place, tree in package.items() for name in assigned(tree) if EMPTY.fullmatch(name))
-    more = {place: count for place, count in empty.items() if count > EMPTY_LOCALS.get(place, 0)}
-    assert not more, f"name these locals after what they hold: {more}"
+    empty = {place: names for place, tree in package.items() if (names := set(filter(EMPTY.fullmatch, assigned(tree))))}
+    assert not empty, f"name these locals after what they hold: {empty}"

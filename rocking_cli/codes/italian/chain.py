@@ -109,9 +109,9 @@ class Chain:
             if body.name in moving
         ]
         return of_bodies + [
-            Weight(thing.name, thing.spot, thing.mass, thing.weight, thing.horizontal, g)
-            for thing in self.mechanism.attached
-            if isinstance(thing, PointMass) and thing.spot.body in moving
+            Weight(attached.name, attached.spot, attached.mass, attached.weight, attached.horizontal, g)
+            for attached in self.mechanism.attached
+            if isinstance(attached, PointMass) and attached.spot.body in moving
         ]
 
     @cached_property
@@ -166,18 +166,18 @@ class Chain:
     def held_by(self, *, ties: bool) -> float:
         """Return the work per unit rotation at rest that ties absorb, or that forces absorb [N m]."""
         hung = self.mechanism.hung
-        return sum(self._moment(thing) for thing in hung.things if (thing in hung.ties) == ties)
+        return sum(self._moment(attached) for attached in hung.things if (attached in hung.ties) == ties)
 
     @property
     def works(self) -> dict[str, float]:
         """Work per unit rotation that each force and tie absorbs at rest, by name [N m]."""
-        held = [thing for thing in self.mechanism.attached if not isinstance(thing, PointMass)]
-        return {thing.name: self._moment(thing) for thing in held}
+        held = [attached for attached in self.mechanism.attached if not isinstance(attached, PointMass)]
+        return {attached.name: self._moment(attached) for attached in held}
 
-    def _moment(self, thing: Attached) -> float:
+    def _moment(self, attached: Attached) -> float:
         rest = np.zeros(1)
         total = Coefficients(rest, *(np.zeros(1) for _ in range(7)))
-        thing.act(total, self.direction, self._follow_at_rest)
+        attached.act(total, self.direction, self._follow_at_rest)
         return float(total.Q[0])
 
     @property

@@ -122,13 +122,13 @@ class DisplacedChain:
     def held(self) -> Sequence[ForceWork]:
         """The forces and ties in this position."""
         s, works = self.chain.direction, list[ForceWork]()
-        for thing in self._standing.hung.elements:
-            if isinstance(thing, ConstantForce):
-                force, rate = thing.in_direction(s), complex(self._follow(thing.spot).dz[0])
+        for element in self._standing.hung.elements:
+            if isinstance(element, ConstantForce):
+                force, rate = element.in_direction(s), complex(self._follow(element.spot).dz[0])
                 parts = [("x", s * force.real, s * rate.real), ("y", force.imag, rate.imag)]
-                works += [ForceWork(f"{thing.name}, {axis}", F, r, -F * r) for axis, F, r in parts if F]
+                works += [ForceWork(f"{element.name}, {axis}", F, r, -F * r) for axis, F, r in parts if F]
                 continue
-            for tie in thing.stretched:
+            for tie in element.stretched:
                 e, first, _ = tie.elongation(self._follow)
                 total = Coefficients(np.zeros(1), *(np.zeros(1) for _ in range(7)))
                 tie.act(total, s, self._follow)
@@ -204,17 +204,17 @@ def pulls(curve: ExactCurve, d: float) -> Sequence[Pull]:
     lengths = {tie.name: tie.length or tie.span for tie in chain.mechanism.ties or [] if tie.bed is None}
     loads = {load.name for load in chain.mechanism.loads or []}
     pulled = []
-    for thing in chain.mechanism.hung.elements:
-        if isinstance(thing, Spring):
-            e, length = thing.elongation(follow)[0], lengths[thing.name]
+    for element in chain.mechanism.hung.elements:
+        if isinstance(element, Spring):
+            e, length = element.elongation(follow)[0], lengths[element.name]
             strain = float(e[0]) / length if length else None
-            pulled.append(Pull(thing.name, float(thing.force(e)[0]), float(e[0]), strain))
-        elif isinstance(thing, ConstantForce) and thing.name in loads:
-            force = thing.in_direction(chain.direction)
+            pulled.append(Pull(element.name, float(element.force(e)[0]), float(e[0]), strain))
+        elif isinstance(element, ConstantForce) and element.name in loads:
+            force = element.in_direction(chain.direction)
             if chain.direction * force.real < 0:
-                moved = complex(follow(thing.spot).z[0]) - thing.spot.at
+                moved = complex(follow(element.spot).z[0]) - element.spot.at
                 against = -(moved.conjugate() * force).real / abs(force)
-                pulled.append(Pull(thing.name, abs(force), against, None))
+                pulled.append(Pull(element.name, abs(force), against, None))
     return pulled
 
 

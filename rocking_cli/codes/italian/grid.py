@@ -120,8 +120,8 @@ class Grid:
         The nodes about the site are numbered along the two directions of the grid, from the nearest node, which is a
         corner of the cell.
         """
-        near = away.argsort()[:NEIGHBOURS]
-        from_site = self.places[near] - complex(longitude, latitude)
+        nearest = away.argsort()[:NEIGHBOURS]
+        from_site = self.places[nearest] - complex(longitude, latitude)
         z = from_site.real * np.cos(np.radians(latitude)) + 1j * from_site.imag
         steps = (z[:, None] - z).ravel()
         along = steps[np.where(steps == 0, np.inf, np.abs(steps)).argmin()]
@@ -130,16 +130,18 @@ class Grid:
         width = np.abs(turned.imag[is_across]).min(initial=np.inf)
         numbered = (z - z[0]) / along
         numbered = numbered.real + 1j * numbered.imag / width
-        places = dict(zip(numbered.round().tolist(), near.tolist(), strict=True))
+        places = dict(zip(numbered.round().tolist(), nearest.tolist(), strict=True))
         for i, j in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
             corners = [places.get(each) for each in (0j, complex(i), complex(i, j), complex(0, j))]
             if None not in corners:
-                found = [k for k in corners if k is not None]
-                if _holds(self.places[found] - complex(longitude, latitude)):
-                    return found
+                whole = [k for k in corners if k is not None]
+                if _holds(self.places[whole] - complex(longitude, latitude)):
+                    return whole
         site = -z[0] / along
         in_step = max(abs(site.real), abs(site.imag) / width) < 1  # else the site is beyond the nodes next to this one
-        raise InputError(self._uncovered(longitude, latitude, float(away[near[0]]), int(near[0]), lacks_node=in_step))
+        raise InputError(
+            self._uncovered(longitude, latitude, float(away[nearest[0]]), int(nearest[0]), lacks_node=in_step)
+        )
 
     def _uncovered(self, longitude: float, latitude: float, away: float, nearest: int, *, lacks_node: bool) -> Problem:
         """Return the problem of a site that no cell of the grid contains."""
@@ -283,7 +285,7 @@ def _columns(file: str, above: Sequence[list[str]]) -> tuple[int, int, dict[int,
         raise InputError(Problem("no heading names the longitude", file, hint=COLUMNS_HINT))
     group, period_above = names[row - 1] if row else [], ""
     below = names[row + 1] if row + 1 < len(names) else []
-    lon, lat, units, found = None, None, set[str](), dict[int, dict[str, int]]()
+    lon, lat, units, places = None, None, set[str](), dict[int, dict[str, int]]()
     for k, name in enumerate(names[row]):
         period_above = group[k] if k < len(group) and group[k] else period_above
         lon, lat = (k if name.startswith("lon") else lon), (k if name.startswith("lat") else lat)
@@ -298,12 +300,12 @@ def _columns(file: str, above: Sequence[list[str]]) -> tuple[int, int, dict[int,
             raise InputError(Problem(message, file, hint=COLUMNS_HINT))
         if match["name"] == "ag":
             units.add(re.sub(r"t?r?\d+(years|anni)?", "", more))
-        found.setdefault(int(years[0]), {})[match["name"].replace("o", "0")] = k
-    incomplete = [f"{years} years" for years, columns in found.items() if len(columns) < 3]
-    if lon is None or lat is None or len(found) < 2 or incomplete:
+        places.setdefault(int(years[0]), {})[match["name"].replace("o", "0")] = k
+    incomplete = [f"{years} years" for years, columns in places.items() if len(columns) < 3]
+    if lon is None or lat is None or len(places) < 2 or incomplete:
         what = f"at {incomplete[0]} one of ag, F0 and TC is missing" if incomplete else "columns are missing"
         raise InputError(Problem(what, file, hint=COLUMNS_HINT))
-    return lon, lat, {years: [each["ag"], each["f0"], each["tc"]] for years, each in found.items()}, units
+    return lon, lat, {years: [each["ag"], each["f0"], each["tc"]] for years, each in places.items()}, units
 
 
 def _row(file: str, number: int, cells: Sequence[str], used: Sequence[int]) -> list[float]:

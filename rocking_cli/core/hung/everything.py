@@ -31,17 +31,17 @@ class Hung:
     @cached_property
     def things(self) -> Sequence[Attached]:
         """All attached things, as terms of the equation of motion."""
-        return [thing for _, thing in self.placed]
+        return [attached for _, attached in self.placed]
 
     @cached_property
     def elements(self) -> Sequence[Element]:
         """The attached things whose force follows from an elongation."""
-        return [thing for thing in self.things if isinstance(thing, Element)]
+        return [attached for attached in self.things if isinstance(attached, Element)]
 
     @property
     def masses(self) -> Sequence[PointMass]:
         """Loads that have a mass."""
-        return [thing for thing in self.things if isinstance(thing, PointMass)]
+        return [attached for attached in self.things if isinstance(attached, PointMass)]
 
     @property
     def ties(self) -> Sequence[Element]:
@@ -70,8 +70,8 @@ class Hung:
 
     def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:
         """Add the terms of all attached things to the coefficients `total`."""
-        for thing in self.things:
-            thing.act(total, direction, follow)
+        for attached in self.things:
+            attached.act(total, direction, follow)
 
     def slackness(self, follow: Follow, count: int) -> Reals:
         """Return a value that is zero where a tie goes slack, for each one-sided tie, shape (ties, count)."""
@@ -93,14 +93,16 @@ class Hung:
         gravity : float
             Gravitational acceleration [m/s2].
         """
-        weights = (thing.mass * thing.weight for thing in self.masses if thing.spot.body in on)
-        pushes = (push for thing in self.things for push in thing.forces(direction, follow) if push.spot.body in on)
+        weights = (attached.mass * attached.weight for attached in self.masses if attached.spot.body in on)
+        pushes = (
+            push for attached in self.things for push in attached.forces(direction, follow) if push.spot.body in on
+        )
         return gravity * sum(weights) - sum(float(push.force.imag[0]) for push in pushes)
 
     @property
     def carried(self) -> float:
         """Sum of the loads' masses that count as weight [kg]."""
-        return sum(thing.mass * thing.weight for thing in self.masses)
+        return sum(attached.mass * attached.weight for attached in self.masses)
 
     @property
     def lifting(self) -> float:

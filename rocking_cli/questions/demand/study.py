@@ -101,15 +101,15 @@ def spectra_of(site: SiteFile, damping: float) -> SpectraOfSite:
     if not 0 <= damping < 1:
         message = f"a damping ratio is from 0 to below 1, got {damping:g}"
         raise InputError(Problem(message, field="`damping`", hint="5 % is 0.05"))
-    code, found = code_of(site), demand_of(site)
-    last = max(each.last for each in found.states.values())
+    code, site_demand = code_of(site), demand_of(site)
+    last = max(each.last for each in site_demand.states.values())
     steps = [np.arange(0, min(LONGEST_FINE_PERIOD, last), FINE_STEP), np.arange(LONGEST_FINE_PERIOD, last, COARSE_STEP)]
-    corners = [T for each in found.states.values() for T in (*each.corners, each.last)]
+    corners = [T for each in site_demand.states.values() for T in (*each.corners, each.last)]
     periods = np.unique(np.concatenate([*steps, corners]).round(9))
-    states = {state: _at(each, periods, damping) for state, each in found.states.items()}
+    states = {state: _at(each, periods, damping) for state, each in site_demand.states.items()}
     return SpectraOfSite(
-        code.key, code.name, code.edition, site.site.name, damping, periods, states, found.first, found.headline,
-        found.parameters, found.tables, found.remarks,
+        code.key, code.name, code.edition, site.site.name, damping, periods, states, site_demand.first,
+        site_demand.headline, site_demand.parameters, site_demand.tables, site_demand.remarks,
     )  # fmt: skip
 
 

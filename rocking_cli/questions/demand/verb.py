@@ -43,6 +43,6 @@ def demand(site: SiteLike, *, damping: float = 0.05) -> Answer[SpectraOfSite]:
     from rocking_cli.questions.demand.study import spectra_of
     from rocking_cli.questions.demand.view import table, title, view
 
-    found = spectra_of(site_of(site), damping)
-    figure = drawn("questions.demand.picture.draw_spectra_of_site", found, title(found))
-    return Answer("demand", found, view(found), partial(table, found), figure)
+    spectra = spectra_of(site_of(site), damping)
+    figure = drawn("questions.demand.picture.draw_spectra_of_site", spectra, title(spectra))
+    return Answer("demand", spectra, view(spectra), partial(table, spectra), figure)

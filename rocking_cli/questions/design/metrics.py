@@ -107,7 +107,7 @@ class Metric:
             assert self.of_structure is not None
             return self.of_structure(structure, excitation), None
         assert excitation is not None
-        numbers = [(of(near, structure), near) for near in excitation.each(structure)]
+        numbers = [(of(neighbours, structure), neighbours) for neighbours in excitation.each(structure)]
         return max(numbers, key=lambda each: (each[0], each[1].at_most, each[1].overturned))
 
 
@@ -193,14 +193,14 @@ METRICS: Mapping[str, Metric] = {
 
 def _of_codes(name: str) -> Metric | None:
     """Return the metric of a name that codes of practice have among their `numbers`; None if none has it."""
-    own: dict[str, Number] = {}
+    numbers: dict[str, Number] = {}
     for key in codes():
         try:
             if (number := codes()[key].numbers.get(name)) is not None:
-                own[key] = number
+                numbers[key] = number
         except MechanismError as error:
             leave_out(error)
-    if not own:
+    if not numbers:
         return None
 
     def value(structure: Structure, excitation: Excitation | None) -> float:
@@ -212,14 +212,14 @@ def _of_codes(name: str) -> Metric | None:
                 )
         assert excitation is not None and excitation.site is not None
         key = excitation.site.site.code
-        of = own[key].of
+        of = numbers[key].of
         assert of is not None  # otherwise it is a metric of the structure
         verified = verify(structure, excitation.site).directions.values()
         with _blamed(key, name):
             return min((value for direction in verified if (value := of(direction)) is not None), default=nan)
 
-    first, one = next(iter(own.items()))
-    return Metric(name, one.unit, one.meaning, value, sited=one.of_structure is None, codes=tuple(own))
+    first, one = next(iter(numbers.items()))
+    return Metric(name, one.unit, one.meaning, value, sited=one.of_structure is None, codes=tuple(numbers))
 
 
 def _blamed(code: str, name: str) -> AbstractContextManager[None]:

@@ -65,7 +65,7 @@ def _height(found: Design) -> float:
 
 def _unknown(found: Design) -> NDArray[np.bool_]:
     """Return a mask of the values at which some neighbours have an unknown outcome."""
-    return np.array([near is not None and bool(near.unknown) for near in found.behind], dtype=bool)
+    return np.array([neighbours is not None and bool(neighbours.unknown) for neighbours in found.behind], dtype=bool)
 
 
 def _mark_unknown(axes: Axes, found: Design) -> None:

@@ -368,7 +368,7 @@ def _at(
     """Return the metric at a value, and the neighbours behind it; or NaN, and why it does not exist."""
     try:
         varied = structure.varied(field, value)
-        number, near = aim.metric.at(varied, excitation)
+        number, neighbours = aim.metric.at(varied, excitation)
     except InputError as error:
         return nan, None, "; ".join(str(Problem(problem.message, field=problem.field)) for problem in error.problems)
     except (MechanismError, SolverError) as error:
@@ -377,9 +377,9 @@ def _at(
         if aim.metric.sited:
             return nan, None, f"the site does not give what {aim.metric.name} requires"
         return nan, None, varied.why_no_block or f"{aim.metric.name} does not exist"
-    if near is not None and near.unknown and aim.wants_more:
-        return nan, near, f"{percent(near.unknown)} of the neighbouring motions have an unknown outcome"
-    return number, near, None
+    if neighbours is not None and neighbours.unknown and aim.wants_more:
+        return nan, neighbours, f"{percent(neighbours.unknown)} of the neighbouring motions have an unknown outcome"
+    return number, neighbours, None
 
 
 def _is_monotone(metric: Reals) -> bool:

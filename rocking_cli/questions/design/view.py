@@ -199,7 +199,7 @@ def doubts(found: Design, excitation: Excitation | None) -> list[str]:
 
 def _not_known(found: Design) -> Iterator[str]:
     """Say at how many values outcomes are unknown, or that the joints are not checked."""
-    shares = [near.unknown for near in found.behind if near is not None]
+    shares = [neighbours.unknown for neighbours in found.behind if neighbours is not None]
     some = [share for share in shares if share]
     if some:
         count = (

@@ -123,8 +123,8 @@ def _made(word: str, code: str | None, *, as_json: bool) -> dict[str, Any]:
     if name not in registry and name in find(complete.CODES):
         hint = f"`rocking new site --code {name}` prints a site file"
         raise InputError(Problem(f"{name} is a code of practice, not a mechanism", hint=hint))
-    if name not in registry and (near := get_close_matches(name, [*STARTERS, *italian()["templates"]], n=1)):
-        raise InputError(Problem(f"the mechanism {name!r} does not exist", hint=f"did you mean {near[0]}?"))
+    if name not in registry and (similar := get_close_matches(name, [*STARTERS, *italian()["templates"]], n=1)):
+        raise InputError(Problem(f"the mechanism {name!r} does not exist", hint=f"did you mean {similar[0]}?"))
     text = template(registry[name])
     try:
         parse_structure(text, f"rocking new {name}", name, registry)

@@ -148,17 +148,17 @@ def target_of_site(site: SiteFile, state: str | None, damping: float) -> TargetS
     InputError
         If the code has no spectra, or the site does not give the limit state.
     """
-    found = demand(site)
-    state = found.first if state is None else state
-    if state not in found.states:
-        message, hint = f"the site gives no limit state {state!r}", did_you_mean(state, [*found.states])
+    spectra = demand(site)
+    state = spectra.first if state is None else state
+    if state not in spectra.states:
+        message, hint = f"the site gives no limit state {state!r}", did_you_mean(state, [*spectra.states])
         raise InputError(Problem(message, site.document.file, field="`state`", hint=hint))
-    ground, corners = found.states[state].ground, found.states[state].corners
+    ground, corners = spectra.states[state].ground, spectra.states[state].corners
 
     def ordinate(period: float) -> float:
         return ground.acceleration(period, damping) / STANDARD_GRAVITY
 
-    periods = np.unique([*corners, found.states[state].last])
+    periods = np.unique([*corners, spectra.states[state].last])
     sa = np.array([ordinate(T) for T in periods.tolist()])
     return TargetSpectrum(f"{state} of {site.site.name or site.document.file}", periods, sa, formula=ordinate)
 

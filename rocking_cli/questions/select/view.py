@@ -91,7 +91,7 @@ def view(results: ShownSet) -> View:
         verdict(results),
         search(results),
     ]
-    parts += [said for said in (_left_out(results), _silent(results)) if said]
+    parts += [sentence for sentence in (_left_out(results), _silent(results)) if sentence]
     return View(lambda: data(results), parts)
 
 

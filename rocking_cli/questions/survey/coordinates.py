@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 LONGITUDE, LATITUDE = "longitude", "latitude"
 COORDINATES = {LONGITUDE: LONGITUDE, "lon": LONGITUDE, LATITUDE: LATITUDE, "lat": LATITUDE}
 """Which coordinate the column of a heading holds, in degrees."""
-LARGEST = {LONGITUDE: 180.0, LATITUDE: 90.0}  # degrees
+MAX_DEGREES = {LONGITUDE: 180.0, LATITUDE: 90.0}
 DEGREES = ("", "deg", "°")
 
 
@@ -62,8 +62,8 @@ def columns_of(sheet: Spreadsheet | None) -> dict[str, int]:
     """Return the places of the columns of longitude and latitude. Raises `InputError` if a table lacks one of them."""
     headings = enumerate(sheet.headings if sheet is not None else ())
     columns = {name: k for k, heading in headings if (name := coordinate(heading)) is not None}
-    if len(columns) < len(LARGEST):
-        lacks = " and ".join(each for each in LARGEST if each not in columns)
+    if len(columns) < len(MAX_DEGREES):
+        lacks = " and ".join(each for each in MAX_DEGREES if each not in columns)
         file = sheet.file if sheet is not None else None
         hint = "`map` needs columns longitude and latitude (or lon and lat), in degrees"
         raise InputError(Problem(f"the structures have no {lacks}", file, hint=hint))
@@ -84,7 +84,7 @@ def coordinates(found: Survey) -> Coordinates:
     for k, structure in enumerate(found.rows):
         row = sheet.rows[structure.row - 1]
         try:
-            point = [_degrees(sheet, row, columns[each], each) for each in LARGEST]
+            point = [_degrees(sheet, row, columns[each], each) for each in MAX_DEGREES]
         except InputError as error:
             wrong.append(str(error))
             continue
@@ -103,7 +103,8 @@ def _degrees(sheet: Spreadsheet, row: Row, place: int, name: str) -> float | Non
     if not cell:
         return None
     number = sheet.number(cell)
-    if number is None or abs(float(number)) > LARGEST[name]:
-        what = f"must be a number of degrees from -{LARGEST[name]:g} to {LARGEST[name]:g}, got {cut(one_line(cell))!r}"
+    if number is None or abs(float(number)) > MAX_DEGREES[name]:
+        largest = MAX_DEGREES[name]
+        what = f"must be a number of degrees from -{largest:g} to {largest:g}, got {cut(one_line(cell))!r}"
         raise InputError(Problem(what, sheet.file, row.line, field=cut(one_line(sheet.headings[place]))))
     return float(number)

@@ -86,11 +86,11 @@ def _extent(x: Reals, y: Reals) -> tuple[tuple[float, float], tuple[float, float
 
 def _label(axes: Axes, x: Reals, y: Reals, ranks: Sequence[int], narrower: float) -> None:
     """Write ranks beside their marks; those of structures in almost the same place in one label."""
-    near = SAME_PLACE_SHARE * float(np.ptp(axes.get_xlim())) * narrower
+    same_place = SAME_PLACE_SHARE * float(np.ptp(axes.get_xlim())) * narrower
     labels: dict[complex, list[str]] = {}
     for longitude, latitude, rank in zip(x, y, ranks, strict=True):
         point = complex(longitude * narrower, latitude)
-        place = next((each for each in labels if abs(each - point) < near), point)
+        place = next((each for each in labels if abs(each - point) < same_place), point)
         labels.setdefault(place, []).append(str(rank))
     for place, names in labels.items():
         axes.annotate(
