@@ -39,7 +39,7 @@ def commands() -> list[str]:
 def made(kind: str, what: str, runs: dict[str, Run]) -> str:
     """Return the text of a part."""
     if kind in RUNS:
-        output = f"\n\n```{'yaml' if '>' in what else 'text'}\n{runs[what].output}```" if kind == "run" else ""
+        output = f"\n\n```{'yaml' if ' > ' in what else 'text'}\n{runs[what].output}```" if kind == "run" else ""
         return f"    {what}{output}"
     if kind == "file":
         text = (PROJECT / what).read_text(encoding="utf-8")
