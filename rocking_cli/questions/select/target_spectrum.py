@@ -160,7 +160,8 @@ def target_of_site(site: SiteFile, state: str | None, damping: float) -> TargetS
 
     periods = np.unique([*corners, spectra.states[state].last])
     sa = np.array([ordinate(T) for T in periods.tolist()])
-    return TargetSpectrum(f"{state} of {site.site.name or site.document.file}", periods, sa, formula=ordinate)
+    where = "" if spectra.states[state].floor is None else ", at the ground below its floor"
+    return TargetSpectrum(f"{state} of {site.site.name or site.document.file}{where}", periods, sa, formula=ordinate)
 
 
 def _remedy(message: str) -> str:

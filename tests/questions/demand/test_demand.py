@@ -150,6 +150,12 @@ class TestSelect:
         damped = run_json(*words, "--target", "site.yaml", "--damping", "8%")["spectrum"]["target"]
         assert damped == pytest.approx([elastic(T, sqrt(10 / 13)) for T in periods], rel=1e-12)
 
+    def test_the_ground_is_the_target_of_a_site_with_a_floor(self, tmp_path):
+        words = ("select", EXAMPLES / "accel.csv", "--band", "0.2:2", "--count", 1, "--within", "0.01:99")
+        data = run_json(*words, "--target", written(tmp_path, SITE | {"floor": FLOOR}))
+        assert data["target"] == "SLV of school, at the ground below its floor"
+        assert data["spectrum"]["target"] == pytest.approx([elastic(T) for T in data["spectrum"]["period"]], rel=1e-12)
+
     def test_of_another_state(self, tmp_path):
         call = {
             "records": str(EXAMPLES / "accel.csv"),
