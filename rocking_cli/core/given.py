@@ -228,9 +228,12 @@ class Given(Described):
     @property
     def remarks(self) -> Sequence[str]:
         """Sentences, without a full stop, on weights that were read as masses, and on masses per metre."""
-        loads = [(each.name, each.mass_per_metre) for each in self.loads or () if each.mass_per_metre is not None]
         depth = self.depth or 0.0
-        over = [f"{name}: {mass:.6g} kg/m over a depth of {depth:g} m is {mass * depth:.6g} kg" for name, mass in loads]
+        over = [
+            f"{load.name}: {load.mass_per_metre:.6g} kg/m over a depth of {depth:g} m is "
+            f"{load.mass_per_metre * depth:.6g} kg{load.carried_in_words}"
+            for load in self.loads or () if load.mass_per_metre is not None
+        ]  # fmt: skip
         return [*self._weights, *over]
 
     @property

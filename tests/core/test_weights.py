@@ -57,6 +57,14 @@ def test_equiv_has_the_masses_and_says_each(tmp_path):
     ]
 
 
+def test_a_floor_per_metre_says_how_much_of_it_the_structure_carries():
+    floor = {"name": "roof", "mass": "24 kN/m", "at": [0.0, 2.0], "floor": "sliding"}
+    block = rk.Block(width=0.5, height=2.0, depth=5.0, density=1800.0, loads=[floor])
+    (carried,) = (each for each in block.attached if each.name == "roof")
+    assert carried.weight * carried.mass * 9.80665 == pytest.approx(0.5 * 24e3 * 5)
+    assert block.remarks[-1].endswith("is 12236.6 kg, of which the structure carries 50 % (floor: sliding)")
+
+
 def test_the_same_in_kilograms_says_nothing_and_is_the_same_block(tmp_path):
     by_weight = rk.equiv(made(FACADE)).to_dict()
     kilograms = FACADE.replace("19 kN/m3", repr(19000 / 9.80665)).replace("30 kN", repr(30000 / 9.80665))

@@ -573,6 +573,15 @@ class Load(Described):
             return self.mass
         return None if depth is None else self.mass_per_metre * depth
 
+    @property
+    def carried_in_words(self) -> str:
+        """How much of the weight of a floor the structure carries, after its mass; empty for other loads."""
+        if self.floor is None:
+            return ""
+        return (
+            f", of which the structure carries {100 * FLOOR_MATERIALS[self.floor]['weight']:g} % (floor: {self.floor})"
+        )
+
     def attached(self, body: str, mass: float | None, count: float) -> PointMass | ConstantForce:
         """Return `count` such loads, each of a mass [kg] or a force, as one term of the equation of motion."""
         spot = Spot(body, complex(*self.at))

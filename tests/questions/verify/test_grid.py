@@ -3,7 +3,6 @@
 import gzip
 import os
 import sys
-import time
 import zipfile
 from functools import cache
 from math import asin, cos, radians, sin, sqrt
@@ -379,11 +378,3 @@ class TestTheRealGrid:
     def test_sardinia_and_small_islands_are_not_in_it(self, lon, lat):
         with pytest.raises(InputError, match="is outside the grid"):
             read_grid(REAL).cell(lon, lat)
-
-    def test_ten_sites_take_less_than_a_second(self):
-        grid._read.cache_clear()
-        start = time.process_time()
-        site = {"FC": 1.0, "soil": "A", "VN": 50, "CU": 1, "latitude": 42.0, "grid": str(REAL)}
-        for k in range(10):
-            rk.verify(rk.Block(width=0.6, height=8.0), site | {"longitude": 12.6 + 0.1 * k})
-        assert time.process_time() - start < 1.0
