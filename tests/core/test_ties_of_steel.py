@@ -170,13 +170,17 @@ CASES = [
      "is missing, which `wall` requires: give both, or leave out `wall`"),
     (f"bars: 2, diameter: 0.02, steel: S235, {BOTH.replace(', shear: 5e4', '')}", "wall.shear", "is missing: shear"),
     (f"bars: 2, diameter: 0.02, steel: S235, {BOTH.replace('1e6', '1')}", "wall.compression", "at least 10000 Pa"),
-    (f"bars: 2, diameter: 0.02, steel: S235, {BOTH.replace('width: 0.3', 'width: 1.2')}", "plate.width",
+    (f"bars: 1, diameter: 0.02, steel: S235, {BOTH.replace('width: 0.3', 'width: 1.2')}", "plate.width",
      "1.2 m is more than the 1 m that the structure is deep: reduce it"),
     (f"spacing: 0.25, diameter: 0.02, steel: S235, {BOTH}", "plate.width", "more than the 0.25 m that bars are apart"),
     (f"bars: 2, diameter: 0.02, steel: S235, {BOTH.replace('height: 0.3', 'height: 6')}", "plate.height",
      "6 m is more than the 5 m that block is high"),
     (f"bars: 2, diameter: 0.02, steel: S235, {BOTH.replace('thickness: 0.6', 'thickness: 1.1')}", "wall.thickness",
      "1.1 m is more than the 1 m that block is wide"),
+    (f"bars: 4, diameter: 0.02, steel: S235, {BOTH}", "plate.width",
+     "1.2 m is more than the 1 m that the structure is deep, where 4 plates stand beside each other"),
+    (f"bars: 2, diameter: 0.02, steel: S235, {BOTH.replace('height: 0.3', 'height: 3')}", "plate.height",
+     "ends at y = 5.5 m, above the top of block at 5 m: lower the tie or reduce the plate"),
     ("stiffness: 1, bars: 2", "steel", "is missing"),
 ]  # fmt: skip
 
@@ -235,6 +239,22 @@ def test_a_verdict_that_relies_on_a_long_tie_says_so_at_once():
     assert f"Caution: at SLV this relies on the tie bar when it is {100 * strain:.2g} % longer" in first
     short = rk.verify(facade(bars=2, diameter=0.012, steel="S235"), {**SITE, "ag": 5.0})
     assert "not satisfied" in short.sentences[0] and "Caution" not in short.sentences[0]
+
+
+def test_a_facade_that_does_not_rock_relies_on_no_elongation():
+    """Strong bars: a_g S is below a0*, so that the onset of rocking governs and nothing moves."""
+    found = rk.verify(facade(bars=2, diameter=0.024, steel="S235"), SITE)
+    side = found.directions[Direction.POSITIVE]
+    assert side.a0 > 0.2 * 1.2 * G and side.governs == "damage"
+    assert found.to_dict()["directions"]["positive"]["ties"]["bar"]["strain_SLV"] > 0.02
+    assert not found.relies_on and "Caution" not in found.sentences[0]
+
+
+def test_a_tied_wall_is_told_to_be_verified_in_bending_too():
+    said = "may bend between its foot and the tie"
+    assert any(said in each for each in rk.verify(facade(**BARS), SITE).sentences)
+    alone = rk.Block(width=0.6, height=8.0, depth=5.0, density=1800.0, one_sided="positive", rebound=0.4)
+    assert not any(said in each for each in rk.verify(alone, SITE).sentences)
 
 
 def test_a_force_that_stands_for_a_tie_says_how_far_its_block_moves():

@@ -20,7 +20,16 @@ from rocking_cli.codes.italian.displaced import (
 from rocking_cli.codes.italian.grid import EARTH_RADIUS
 from rocking_cli.codes.italian.ground import SiteGround, bounded, return_period
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified, LimitState
-from rocking_cli.codes.italian.rules import DAMAGE, FIRST_STATE, FURTHER_STATES, LINEAR, NONLINEAR, RULES, STATES
+from rocking_cli.codes.italian.rules import (
+    DAMAGE,
+    FIRST_STATE,
+    FURTHER_STATES,
+    LINEAR,
+    NONLINEAR,
+    OF_STATE,
+    RULES,
+    STATES,
+)
 from rocking_cli.core import Mechanism
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import digits_apart
@@ -138,6 +147,8 @@ def _of_line(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark
 
 def _of_ties(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark]:
     remarks: list[Remark] = [*_of_strength(curve.chain.mechanism)]
+    if remarks and len(curve.chain.mechanism.bodies()) == 1:
+        remarks.append(Remark.of("bends"))
     if not elastic(curve.chain.mechanism):
         return remarks
     remarks += [Remark.of("ties", largest=curve.largest, over=curve.largest / curve.a0)]
@@ -176,13 +187,22 @@ def _of_stretch(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Rem
 
 
 def relied_on(directions: Iterable[ItalianVerified]) -> list[Remark]:
-    """Return the remarks on ties that stretch and on blocks that move too far as they are said with the conclusion."""
+    """Return the remarks on ties that stretch and on blocks that move too far as they are said with the conclusion.
+
+    If rocking does not start at any limit state, the conclusion relies on no displacement.
+    """
     key_of = {"stretched": "end_stretched", "wide": "end_wide"}
     return [
         Remark(key_of[each.key], each.values)
-        for verified in directions for each in verified.remarks
+        for verified in directions if _rocks(verified) for each in verified.remarks
         if isinstance(each, Remark) and each.key in key_of
     ]  # fmt: skip
+
+
+def _rocks(verified: ItalianVerified) -> bool:
+    """Return whether the nonlinear method governs at a limit state that the site gives."""
+    given = [state for state, at in verified.states.items() if state == FIRST_STATE or at.demand is not None]
+    return any(verified.governing[state] == OF_STATE[state][1] for state in given)
 
 
 def _of_break(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark]:

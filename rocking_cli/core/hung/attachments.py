@@ -162,19 +162,21 @@ def attach(
             continue
         if tie.spacing is not None and carrier.depth is None:
             raise RefusedFields(loc, "spacing", "requires the `depth` of the structure: give it, or give `bars`")
-        for body in bodies:
-            _check_plate(carrier, tie, body, loc)
+        for spot in spots:
+            _check_plate(carrier, tie, spot, loc)
         yield loc, tie.element(spots, tie.number_of_bars(carrier.depth))
 
 
-def _check_plate(carrier: Carrier, tie: Tie, body: str, loc: Loc) -> None:
-    """Refuse an anchor plate that is larger than the body, and a wall that is thicker, as far as sizes are known."""
-    if tie.plate is None or tie.wall is None:
+def _check_plate(carrier: Carrier, tie: Tie, spot: Spot, loc: Loc) -> None:
+    """Refuse anchor plates that do not fit on the body, and a wall that is thicker, as far as sizes are known."""
+    if tie.plate is None or tie.wall is None or spot.body is None:
         return
+    body, count = spot.body, 1.0 if tie.bars is None else float(tie.bars)
     corners = np.concatenate([np.asarray(shape) for shape in carrier.outlines.get(body, ())] or [np.zeros(0, complex)])
     sizes = (float(np.ptp(corners.real)), float(np.ptp(corners.imag))) if corners.size else (None, None)
+    beside = "the structure is deep" + (f", where {count:g} plates stand beside each other" if count > 1 else "")
     for place, field, size, most, what in (
-        ("plate", "width", tie.plate.width, carrier.depth, "the structure is deep"),
+        ("plate", "width", count * tie.plate.width, carrier.depth, beside),
         ("plate", "width", tie.plate.width, tie.spacing, "bars are apart"),
         ("plate", "height", tie.plate.height, sizes[1], f"{body} is high"),
         ("wall", "thickness", tie.wall.thickness, sizes[0], f"{body} is wide"),
@@ -182,6 +184,10 @@ def _check_plate(carrier: Carrier, tie: Tie, body: str, loc: Loc) -> None:
         if most is not None and size > most * (1 + OUTSIDE_DISTANCE):
             reason = f"{size:g} m is more than the {most:.4g} m that {what}: reduce it"
             raise RefusedFields((*loc, place), field, reason)
+    top, end = float(corners.imag.max(initial=-np.inf)), spot.at.imag + tie.plate.height / 2
+    if corners.size and end > top + OUTSIDE_DISTANCE:
+        reason = f"ends at y = {end:.4g} m, above the top of {body} at {top:.4g} m: lower the tie or reduce the plate"
+        raise RefusedFields((*loc, "plate"), "height", reason)
 
 
 def interlocked(interlock: Interlock, carrier: Carrier, density: float | None, gravity: float) -> Attached:
