@@ -24,7 +24,7 @@ MAX_LAMBDA = 100.0  # lambda beyond which an arch counts as too thick to hinge
 MAX_START_REACTION = 1e4  # bound on the reactions at the start of the search, over the weight
 LINE_TOLERANCE = 1e-12  # moment by which the line of thrust may leave the ring, over the moment of its weight
 MAX_ITERATIONS = 200
-FACE_OF_HINGE = np.array([-1.0, 1.0, -1.0, 1.0])  # intrados -1, extrados +1, for the hinges A, B, C and D
+FACE_OF_HINGE = np.array([-1.0, 1.0, -1.0, 1.0])  # faces of the hinges A, B, C and D: intrados -1, extrados 1
 
 
 class ArchCannotStand(Exception):
@@ -168,7 +168,7 @@ def _collapse(ring: Ring, joints: Reals) -> tuple[float, Reals, Reals]:
     else:
         raise MechanismError("the search for the arch's hinges did not settle")
     order = basis[np.argsort(np.append(np.tile(joints, 2), [np.inf] * 4)[basis], kind="stable")]
-    if order[-1] >= 2 * n:  # a bound is still needed: fewer than four hinges carry the state
+    if order[-1] >= 2 * n:  # a bound of the start is still active: fewer than four hinges carry the state
         return float(state[3]), np.zeros(4), np.zeros(4)
     return float(state[3]), joints[order % n], np.where(order < n, -1.0, 1.0)
 

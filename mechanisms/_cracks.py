@@ -18,7 +18,7 @@ from rocking_cli.core.kinematics import Points, area_of, distance, inside
 SCAN_POINTS = 24  # places of a crack that are tried first; half as many of each of two cracks
 MIN_EDGE_DISTANCE = 1e-6  # least distance of a crack from the ends of its line, over its length
 SAME_PLACE = 1e-5  # distance of cracks of both directions that coincide, over the length of the line
-INFINITE_LAMBDA = 1e100  # finite, as searches subtract values
+INFINITE_LAMBDA = 1e100  # lambda if there is no mechanism; finite, as searches subtract values
 CRACK_ACCURACY = 1e-9  # accuracy of the place of a crack, over the length of its line
 
 
@@ -50,7 +50,7 @@ class Crack(Described):
 
     @property
     def sides(self) -> tuple[str, str]:
-        """Words for the two pieces, relative to the crack."""
+        """Words for the position of the two pieces relative to the crack."""
         return ("below", "above") if self.cut == "horizontal" else ("left of", "right of")
 
     @property
@@ -190,7 +190,7 @@ def _piece(shape: Shape, corners: Points, whole: float) -> Shape:
 
 
 class _Names(NamedTuple):
-    """Meaning of the names in a side, with the cracks at given positions."""
+    """Translation of the names that a side uses, with the cracks at given positions."""
 
     direction: Direction
     cracks: Mapping[str, Crack]

@@ -74,7 +74,7 @@ def shared(one: Sequence[Outline], other: Sequence[Outline]) -> list[tuple[compl
 
 
 def lowest(body: Sequence[Outline]) -> tuple[complex, complex] | None:
-    """Return the ends of what a body stands on: its level sides at its lowest point; None if it has none there."""
+    """Return the ends of the base of a body: of its level sides at its lowest point; None if it has none there."""
     size, sides = _size(body), list(_sides(body))
     bottom = min((z.imag for side in sides for z in side), default=0.0)
     level = [z for side in sides if all(z.imag - bottom <= SIDE_DISTANCE * size for z in side) for z in side]

@@ -16,8 +16,8 @@ from rocking_cli.core.fields import Described
 
 SIDES_OF_CURVE = 4  # straight sides of each curved face of a voussoir
 MAX_BRICKS = 10_000
-FLOOR_MARGIN = 1.0  # by which the floor reaches beyond a wall [m]
-OPENING, BRICK = -1, 0  # what fills half a brick of a course; lintels count from 1
+FLOOR_MARGIN = 1.0  # distance by which the floor reaches beyond a wall [m]
+OPENING, BRICK = -1, 0  # codes of what fills half a brick of a course; lintels count from 1
 
 Box = Annotated[list[Annotated[float, Field(ge=-1e6, le=1e6)]], Field(min_length=4, max_length=4)]
 Size = Annotated[float, Field(gt=0, le=1e6)]
@@ -118,7 +118,7 @@ class Bricks(Described):
         return left, low, right, high
 
     def _cut(self, k: int) -> list[float]:
-        """Return an opening as it is cut [m]."""
+        """Return an opening moved to the edges of bricks: left, bottom, right and top [m]."""
         left, low, right, high = self._cells(k)
         x, y = self._edges
         return [float(each) for each in (x[left], y[low], x[right], y[high])]

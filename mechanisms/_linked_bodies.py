@@ -22,7 +22,7 @@ from rocking_cli.core import (
     rotation,
 )
 
-EQUAL_COLUMNS = 1e-6  # relative difference
+EQUAL_COLUMNS = 1e-6  # relative difference of two columns that count as equal
 
 
 class LinkedBodies(Mechanism):
@@ -54,7 +54,7 @@ class LinkedBodies(Mechanism):
         return self.mass is not None or all(each.weighs for each in self._members.values())
 
     def total_mass(self) -> float | None:
-        """Return the given mass of the structure; None if the bodies have the masses of density, or their own."""
+        """Return the given mass of the structure; None if the bodies have their own masses, or masses by density."""
         return self.mass
 
     def bodies(self) -> Sequence[Body]:
@@ -93,7 +93,7 @@ class LinkedBodies(Mechanism):
 
 
 def columns_of(contacts: Sequence[Contact]) -> tuple[Mapping[str, complex], Collection[str]]:
-    """Return the feet of bodies that hinge on the ground, and which of them carry one body with two others or more."""
+    """Return the feet of bodies that hinge on the ground, and the bodies of which three or more carry one together."""
     feet: dict[str, complex] = {}
     carried: dict[str, set[str]] = {}
     for contact in contacts:
@@ -109,7 +109,7 @@ def columns_of(contacts: Sequence[Contact]) -> tuple[Mapping[str, complex], Coll
 
 
 def _alike(known: RigidBody, body: Body, centroid: complex, right: complex) -> bool:
-    """Return whether a column is the same as one that is known."""
+    """Return whether a body is the same as a column found before."""
     one = [known.mass, known.inertia, *(known.centroid or ()), *(known.right_foot or ())]
     other = [body.mass, body.inertia, centroid.real, centroid.imag, right.real, right.imag]
     return bool(np.allclose(np.array(one, np.float64), other, rtol=EQUAL_COLUMNS, atol=EQUAL_COLUMNS * abs(centroid)))

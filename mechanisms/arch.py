@@ -39,7 +39,7 @@ from rocking_cli.errors import MechanismError
 
 MAX_STRAIGHT_ARC = radians(1.0)  # longest arc that is drawn straight
 RING_CUTS = 40  # possible cuts of a ring without voussoirs, beside its hinges
-MIN_CUT_ANGLE = 0.25  # from a hinge, over the angle between two cuts
+MIN_CUT_ANGLE = 0.25  # least angle of a cut from a hinge, over the angle between two cuts
 MAX_DRAWN_VOUSSOIRS = 200
 
 
@@ -137,7 +137,7 @@ class Arch(Mechanism):
             # The supporting segment comes first: the one nearer to the springing of its half of the ring.
             on_the_left = cuts[cut] <= self._beta / 2
             bodies = tuple(sides if on_the_left else sides[::-1])
-            normal = point / abs(point) * (-1j if on_the_left else 1j)  # along the ring
+            normal = point / abs(point) * (-1j if on_the_left else 1j)  # unit normal of the joint, along the ring
             joints.append(
                 Joint(
                     letter + direction.prime, point, bodies, normal=normal, face=bodies[0] if len(bodies) > 1 else None
@@ -162,7 +162,7 @@ class Arch(Mechanism):
         """Return the voussoirs, or the pieces between cuts; those beyond the outer hinges are at rest."""
         half, springing = self.thickness / 2, pi / 2 + self._beta / 2
         bodies, pieces = self.weighed(), []
-        density = bodies[0].mass / (self._cuts[1] - self._cuts[0])  # per angle
+        density = bodies[0].mass / (self._cuts[1] - self._cuts[0])  # mass per angle of the ring
         inner, outer = self.radius - half, self.radius + half
         per_area = 2 * density / (outer**2 - inner**2)
         for k, (start, end) in enumerate(pairwise(self._joint_angles)):

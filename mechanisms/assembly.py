@@ -121,7 +121,7 @@ class Support(Described):
 
 
 class Leads(Described):
-    """The blocks whose rotation is phi."""
+    """The blocks whose rotation is phi, one for each direction."""
 
     positive: Name | None = Field(None, description="in the positive direction")
     negative: Name | None = Field(None, description="in the negative one")
@@ -215,7 +215,7 @@ class Assembly(LinkedBodies):
         return self
 
     def _lay(self) -> None:
-        """Put the voussoirs and bricks among the blocks, and what they stand on into the ground if there is none."""
+        """Add the voussoirs and bricks to the blocks, and their supports to the ground if no ground is given."""
         self._laid = () if self.bricks is None else tuple(self.bricks.notes())
         laid = {key: each for key in ("voussoirs", "bricks") if (each := getattr(self, key)) is not None}
         blocks, ground = dict(self.blocks), dict(self.ground)
@@ -682,7 +682,7 @@ class Assembly(LinkedBodies):
             end = self.limit(direction) * (1 - 1e-6)
         steps = np.linspace(0.0, end, analysis.SEARCH_STEPS + 1)
         places = dict(zip(steps.tolist(), self._held(direction, steps), strict=True))
-        known: Reals | None = None  # forces in the joints at the last rotation that holds
+        known: Reals | None = None  # joint forces at the last rotation at which all joints hold
 
         def at(phi: float) -> tuple[analysis.DisplacedAssembly, Reals, float]:
             return places[phi] if phi in places else self._held(direction, np.array([phi]))[0]

@@ -83,7 +83,7 @@ class AsymmetricFrame(Mechanism):
         return self
 
     def total_mass(self) -> float | None:
-        """Return the given mass of the structure; None if its bodies have the masses of density, or their own."""
+        """Return the given mass of the structure; None if its bodies have their own masses, or masses by density."""
         return self.mass
 
     def bodies(self) -> Sequence[Body]:

@@ -68,7 +68,7 @@ class Cone(SingleBody):
         apex = 1j * self.height
         if self.kind == "solid":
             return ((left, right, apex),)
-        k = self.inner_ratio or SHELL_SCALE  # section of a shell through its axis
+        k = self.inner_ratio or SHELL_SCALE  # k: size of the inner cone over the outer one; a shell is drawn thicker
         return ((left, k * left, k * apex, k * right, right, apex),)
 
     def lengths(self) -> Sequence[Length]:

@@ -173,7 +173,7 @@ class Curve(Mechanism):
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
         ratio, arm = self._ratios[direction], self._arm(direction)
         r, slope = ratio(phi)
-        bend = slope / (1 + r**2)  # beta'
+        bend = slope / (1 + r**2)  # derivative of beta by phi
         path = self._way(phi, direction)
         speed: Points = arm * _along(r, direction)
         change: Points = 1j * direction * bend * speed
@@ -246,8 +246,8 @@ def read_curve(path: Path) -> tuple[list[Point], list[int]]:
     return points, lines
 
 
-MAX_VALUE = 1e6  # displacements [m] and ratios
-MIN_VALUE = 1e-12  # other than zero: slopes of smaller values overflow
+MAX_VALUE = 1e6  # largest displacement [m] and largest ratio
+MIN_VALUE = 1e-12  # least number other than zero: slopes of smaller values overflow
 
 
 def fault_of(points: Sequence[Point]) -> tuple[int, str] | None:

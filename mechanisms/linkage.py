@@ -38,7 +38,7 @@ from rocking_cli.core.fields import Name
 from rocking_cli.core.hung.ties import Place, Tie
 from rocking_cli.errors import MechanismError, StructureError
 
-MAX_CRACKS = 2  # in one direction
+MAX_CRACKS = 2  # number of cracks in one direction
 MIRROR_DISTANCE = 1e-6  # largest distance of a mirror image from its body, over the size of the structure
 
 EXAMPLE_BODIES = {

@@ -23,8 +23,8 @@ from rocking_cli.core import Reals
 from rocking_cli.core.contacts import MASONRY_FRICTION
 
 MIN_DECREASE = 0.01  # least relative decrease of the multiplier, below that by associated flow, that is searched
-MAX_JOINT_PROGRAMMES, MAX_JOINTS = 10_000, 100  # limits of a search: joints times linear programmes, and joints
-ZERO_PRODUCT = 1e-9  # forces over the weight, and rates over the unit velocity, that count as zero
+MAX_JOINT_PROGRAMMES, MAX_JOINTS = 10_000, 100  # limits of a search: joints times programmes solved, and joints
+ZERO_PRODUCT = 1e-9  # forces over the weight, and rates of opening or slip over the unit velocity, that count as zero
 SIMPLEST_INCREASE = 1e-9  # relative increase of the multiplier that is allowed for the simplest mechanism
 LAST_JOINT_COST = 0.01  # additional cost of the last joint relative to the first, to choose among equal mechanisms
 MOVING_SPEED = 1e-6  # speed from which a block moves, over the fastest one
@@ -100,7 +100,7 @@ def is_confined(problem: AssemblyProblem) -> bool:
         np.append(np.where(rays.one_sided, np.inf, MAX_GUIDE_FORCE), np.inf),
     )
     assert optimum is not None  # zero forces are a solution
-    # Forces that balance can be made any size, so that all or none of what is allowed is used.
+    # Balanced forces can be scaled freely, so that the optimum uses all of the allowed compression, or none.
     return bool(optimum.value < -(ZERO_PRODUCT**0.5))
 
 
@@ -121,7 +121,7 @@ def _least_normals(problem: AssemblyProblem, multiplier: float) -> Reals:
 class _Search:
     """Search for a mechanism on which `push` does the work 1, with the least multiplier of `push` that starts it.
 
-    The unknowns are the forces, the multiplier, what the forces leave of the friction, velocities, and rates. With an
+    The unknowns are the forces, the multiplier, the margins of shear to friction, velocities, and rates. With an
     `inertia` the velocities are also accelerations that the forces cause. With the least normal force of each joint,
     the friction dissipates no less than these do, so that the work bounds the multiplier from below.
     """
@@ -179,7 +179,7 @@ class _Search:
         unknowns, self.complete = self._least(cost, high, below)
         if unknowns is None:
             return None
-        # Among mechanisms with that multiplier, choose the one with the least motion and the least forces.
+        # Among mechanisms with the least multiplier, choose the one with the least motion and the least forces.
         high[self._multiplier] = self.multiplier(unknowns) * (1 + SIMPLEST_INCREASE) + SIMPLEST_INCREASE
         weights = np.linspace(1.0, 1.0 + LAST_JOINT_COST, len(self._left))
         cost = np.zeros(len(self._low))
@@ -207,7 +207,7 @@ class _Search:
                 unknowns, below = self._exactly(cost, bounds, best.x), best.value * (1 - SIMPLEST_INCREASE)
                 continue
             product = np.where(both, force * rate, 0.0)
-            # The first of equal ones, so that rounding does not decide.
+            # Branch on the first of equal products, so that rounding does not decide.
             k = int(np.flatnonzero(product >= product.max() * (1 - MOVING_SPEED))[0])
             for part in (self._left, self._rates):
                 without = bounds.copy()
@@ -216,7 +216,7 @@ class _Search:
         return unknowns, complete and not undecided
 
     def _exactly(self, cost: Reals, high: Reals, unknowns: Reals) -> Reals:
-        """Return the unknowns without forces and rates that the tolerance of the solver leaves in the way."""
+        """Return the unknowns with exactly zero for one of each excluding pair, which the solver leaves nearly zero."""
         high = high.copy()
         high[np.where(unknowns[self._left] < unknowns[self._rates], self._left, self._rates)] = 0.0
         try:
@@ -227,10 +227,10 @@ class _Search:
 
 
 def _alternatives(problem: AssemblyProblem) -> tuple[Sparse, Sparse]:
-    """Return rates of forces and velocities that exclude each other, one pair for each point and each sense of slip.
+    """Return matrices of velocities and forces of which one must be zero, a row for each point and each sense of slip.
 
     The first matrix gives the velocities on which the forces do work from openings and slips, which are at least zero.
-    The second gives normal forces, and what shear leaves of the friction, from the forces.
+    The second gives normal forces, and the margins of shear to the friction, from the forces.
     """
     bearings = problem.bearings
     forces, mu, shears = bearings.rates.shape[0], bearings.friction, bearings.shears

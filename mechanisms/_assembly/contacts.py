@@ -75,12 +75,12 @@ def contacts(
         [0.0 if k >= len(blocks) else gap * size if within is None else within for k, size in enumerate(sizes)]
     )
     thick = {block.name: thickness_of(z) for block, z in zip(blocks, outlines, strict=False)}
-    for block, tolerance in zip(blocks, reach.tolist(), strict=False):  # the largest distance of its faces in contact
+    for block, tolerance in zip(blocks, reach.tolist(), strict=False):  # tolerance: largest gap of a joint
         if thick[block.name] <= tolerance:
             raise _thin(block.name, thick[block.name], tolerance)
     for i, j in _near(outlines, reach):
         if i >= len(blocks):
-            continue  # ground on ground
+            continue  # parts of the ground have no joint with each other
         tolerance = gap * min(sizes[i], sizes[j]) if within is None else within
         if overlap(outlines[i], outlines[j], tolerance):
             raise ContactFault(f"{listed([names[i], names[j]])} overlap", (names[i], names[j]))
@@ -88,7 +88,7 @@ def contacts(
             normal = 1j * (end - start) / abs(end - start)
             joint = AssemblyContact(names[i], names[j], start, end, normal, friction)
             joint = replace(joint, faces=_faces(joint, outlines[i], outlines[j], tolerance))
-            bears = j >= len(blocks) or normal.imag < -ZERO_UPWARD  # the ground, or the lower of the two
+            bears = j >= len(blocks) or normal.imag < -ZERO_UPWARD  # whether j supports i: it is ground, or below i
             joints.append(joint.turned() if bears else joint)
     _all_touch(blocks, joints)
     size = dict(zip(names, sizes, strict=True))
@@ -161,7 +161,7 @@ def _merged(pieces: list[Piece], tolerance: float) -> list[Piece]:
     The merged part reaches from the first end to the last, because rigid bodies bear at both ends.
     """
     joined: dict[int, Piece] = {}
-    # Start with the longest piece, which defines the line best; return them in the order of the edges.
+    # Start with the longest piece, which defines the line best; return the pieces in the order of the edges.
     for n, piece in sorted(enumerate(pieces), key=lambda p: -abs(p[1][1] - p[1][0])):
         for k, other in joined.items():
             along = (other[1] - other[0]) / abs(other[1] - other[0])

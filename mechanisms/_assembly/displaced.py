@@ -23,7 +23,7 @@ from rocking_cli.core import Guide, Reals
 MAX_IMBALANCE = 1e-6  # largest imbalance of given forces, over the weight
 ZERO_TENSION = 1e-9  # tension that counts as zero, over the weight
 VIOLATION_ACCURACY = 1e-8  # accuracy of the first violation, over the range searched
-MAX_CORRECTIONS = 6  # for a similar state without tension
+MAX_CORRECTIONS = 6  # number of corrections that are tried to remove tension from a similar state
 TENSION_CUT = 0.3  # factor on a multiplier that would be tension
 SEARCH_STEPS = 32  # steps in which the first violation is searched
 
@@ -36,7 +36,7 @@ def remaining(
     guides: Sequence[Guide],
     states: Sequence[Opening],
 ) -> Bearings:
-    """Return the joints that a mechanism leaves, in their position at rest, from the state of each; none may slide."""
+    """Return the joints that bear in a mechanism, in their position at rest, from the state of each; none may slide."""
     for contact, state in zip(contacts, states, strict=True):
         if state is Opening.SLIDES:
             raise ValueError(f"the joint of {contact.a!r} and {contact.b!r} slides")
@@ -120,7 +120,7 @@ class DisplacedAssembly:
             raise NoAnswer(f"forces on the displaced blocks are off their balance by {off.max():.2g} of the weight")
         cases = cases - cases @ free @ free.T
         rays = self.bearings.rays()
-        if rays.count == 3 * n - free.shape[1]:  # the forces are statically determinate
+        if rays.count == 3 * n - free.shape[1]:  # statically determinate: the forces follow without a linear programme
             values = -solved(beside([rays.rates.T, free]), cases.T)[: rays.count].T[:, rays.one_sided]
             if values.shape[1] == 0:
                 return [Admissible(1.0, None)] * len(cases)

@@ -21,8 +21,8 @@ from rocking_cli.core import Reals
 from rocking_cli.core.contacts import MASONRY_FRICTION
 
 MAX_FRICTION = 10.0
-EQUAL_MULTIPLIERS = 1e-9  # relative difference
-FRICTION_ACCURACY = 1e-6  # relative error
+EQUAL_MULTIPLIERS = 1e-9  # relative difference of multipliers that count as equal
+FRICTION_ACCURACY = 1e-6  # relative error of the required coefficient of friction
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +55,7 @@ def friction(collapsed: Collapse) -> Friction:
     """
     problem, multiplier = collapsed.problem, collapsed.multiplier * collapsed.problem.strength
     search = _FrictionSearch(problem, multiplier)
-    if collapsed.associated is not None:  # without dilation, the shown state defines the friction
+    if collapsed.associated is not None:  # mechanism without dilation: the shown state defines the friction
         state = (
             np.concatenate([np.column_stack([collapsed.normal, collapsed.shear]).ravel(), collapsed.guide])
             / problem.weight
@@ -70,11 +70,11 @@ def friction(collapsed: Collapse) -> Friction:
     )
     limit = search.uses(shown_state)
     if given_friction < MAX_FRICTION:
-        search.bound(given_friction, shown_state)  # the joints of the mechanism have no more friction
+        search.bound(given_friction, shown_state)  # no joint has a larger coefficient of friction
     elif limit < MAX_FRICTION:
         search.bound(limit, shown_state)
     elif not search.carries(MAX_FRICTION):
-        # The state with the least shear beyond the greatest friction, and the joints that have such shear.
+        # Find the state with the least shear beyond the largest friction, and the joints that have such shear.
         shown_state, beyond, _ = _beyond(
             problem, multiplier, MAX_FRICTION, _most(collapsed, problem.bearings.rays(MAX_FRICTION))
         )
@@ -87,7 +87,7 @@ def friction(collapsed: Collapse) -> Friction:
 
 
 def _roots(known: Sequence[tuple[float, float, float]]) -> Iterator[float]:
-    """Yield estimates of the coefficient of friction at which a multiplier is just carried, the better one first.
+    """Yield estimates of the least coefficient of friction that balances a multiplier, the better one first.
 
     Each entry of `known` is a coefficient of friction that is too low, the shortfall with it (of the multiplier, or of
     shear force), and how fast this shortfall decreases with friction. The first estimate extrapolates the last two
@@ -113,10 +113,10 @@ class _FrictionSearch:
         self.problem, self.multiplier = problem, multiplier
         self.low, self.high = 0.0, MAX_FRICTION
         self.state: Reals = np.zeros(0)
-        # Friction, shortfall, and rate at which the shortfall shrinks.
+        # Values that are too low: friction, shortfall, and rate at which the shortfall decreases with friction.
         self._lows: list[tuple[float, float, float]] = []
         self._stood = True
-        self._carried = 0  # consecutive guesses that carried the multiplier
+        self._carried = 0  # number of consecutive guesses of friction that were sufficient
 
     def bound(self, mu: float, state: Reals) -> None:
         """Set the upper end of the bracket to `mu`, with a state that carries the multiplier with this friction."""
@@ -133,7 +133,7 @@ class _FrictionSearch:
             return True
         self.low, self._carried = mu, 0
         lacks, stands = self.multiplier - reached, True
-        if not np.isfinite(reached):  # the assembly does not stand: use the missing shear
+        if not np.isfinite(reached):  # use the missing shear as the shortfall if the assembly does not stand
             state, beyond, raw = _beyond(self.problem, self.multiplier, mu)
             lacks = float(np.abs(beyond).sum())
             stands = False
@@ -154,7 +154,7 @@ class _FrictionSearch:
         middle = (self.low + self.high) / 2
         if self._carried == 1:
             return max(self.below, middle)
-        if self._carried > 1:  # the multiplier is carried even just below the guess, so that the root is not near
+        if self._carried > 1:  # two guesses sufficed in a row: the root is well below the last one
             return middle
         return next(
             (min(root, self.below) for root in _roots(self._lows) if root > self.low * (1 + FRICTION_ACCURACY / 2)),
@@ -202,7 +202,7 @@ def sheared(required: Friction, contacts: Sequence[AssemblyContact]) -> tuple[in
 
 
 def _may_carry(collapsed: Collapse, search: _FrictionSearch) -> bool:
-    """Return whether the multiplier may be carried with slightly less friction than that of the sliding joints.
+    """Return whether the multiplier may stay the same with slightly less friction than that of the sliding joints.
 
     With less friction, joints open faster than they slide along the cone, and so carry no force. Mostly there is no
     equilibrium without them, which is found quickly; otherwise a linear programme decides.
@@ -232,7 +232,7 @@ def _beyond(
         Multiplier that the forces must carry.
     mu : float
         The coefficient of friction. Only joints with a larger coefficient, or none given, may carry more shear.
-    most : ndarray, optional
+    upper : ndarray, optional
         Upper bounds of the ray multipliers.
 
     Returns
@@ -246,12 +246,12 @@ def _beyond(
     """
     rays = problem.bearings.rays(mu)
     free: Rays = problem.bearings.rays()
-    # Includes joints that never slide, whose friction is NaN.
+    # Joints with more friction than mu, also those that never slide: their friction is NaN.
     joints = np.flatnonzero(~(problem.bearings.friction <= mu))
     rows = problem.bearings.shears[joints]
     extra = problem.bearings.rates[rows].T
     count, n = len(rows), rays.count
-    # A slightly smaller multiplier is allowed, or rounding may leave no state at all.
+    # Allow a slightly smaller multiplier, or rounding may leave no state at all.
     least_, greatest = (
         (EQUAL_MULTIPLIERS / 10, EQUAL_MULTIPLIERS / 10) if upper is None else (EQUAL_MULTIPLIERS, -EQUAL_MULTIPLIERS)
     )
@@ -264,7 +264,7 @@ def _beyond(
                         np.full(2 * count, np.inf)]),
     )  # fmt: skip
     beyond = np.zeros(len(problem.bearings.contact))
-    if optimum is None:  # infeasible by rounding
+    if optimum is None:  # rounding left no feasible state
         _, forces, raw = problem.greatest(free)
         return free.mix.T @ forces, beyond, raw
     state = rays.mix.T @ optimum.x[:n]

@@ -20,7 +20,7 @@ from mechanisms._assembly.problem import MAX_MULTIPLIER, ZERO_LOAD, AssemblyProb
 from mechanisms._assembly.unique import kept_rays, mechanisms_of, smallest, velocity_space
 from rocking_cli.core import Direction, Guide, Reals
 
-ZERO_RATE = 1e-11  # rates that count as zero, over the fastest velocity
+ZERO_RATE = 1e-11  # opening and sliding velocities that count as zero, over the fastest velocity
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,7 +166,7 @@ def collapse(
     if locked:
         raise NothingMoves("no acceleration sets it in motion", problem.frame.names)
     if multiplier <= ZERO_LOAD:
-        # Empty if the joints do not carry the weight.
+        # If the joints cannot carry the weight, `moving` returns nothing, and the blocks that lack support are named.
         falls = moving(problem.frame.names, raw, 1e-6) or problem.unheld(rays)[1]
         raise DoesNotStand(f"it barely stands: the least acceleration sets {listed(falls)} in motion", falls)
     kept = kept_rays(rays, problem.dead, problem.live, raw)

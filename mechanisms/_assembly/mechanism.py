@@ -13,8 +13,8 @@ from mechanisms._assembly.limit import Collapse
 from mechanisms._assembly.problem import Frame
 from rocking_cli.core import Direction, Guide, Reals
 
-ZERO_VELOCITY = 1e-8  # over the fastest velocity
-ZERO_NORMAL_FORCE = 1e-9  # over the largest normal force
+ZERO_VELOCITY = 1e-8  # velocity that counts as zero, over the fastest velocity
+ZERO_NORMAL_FORCE = 1e-9  # normal force that counts as zero, over the largest normal force
 SAME_PLACE = 1e-6  # distance of hinges that coincide, over the size of the assembly
 
 
@@ -98,7 +98,7 @@ def linkage(
     ----------
     blocks, contacts, guides
         Blocks, joints and guides of the assembly.
-    found : Collapse
+    collapsed : Collapse
         Weakest mechanism; if it is not unique, the first one is used.
 
     Returns
@@ -147,7 +147,7 @@ def linkage(
 
 
 def _state(start: float, end: float, slide: float, contact: AssemblyContact, still: float) -> Opening:
-    """Return the state of a joint from its rates; with friction, a sliding joint opens by at most that friction."""
+    """Return the state of a joint from its rates of opening and slip; slip may open it by friction times slip."""
     dilates = (contact.friction or 0.0) * slide
     if slide > still and min(start, end) <= dilates + still:
         slips = contact.friction == 0 and max(start, end) > still
@@ -162,7 +162,7 @@ def _state(start: float, end: float, slide: float, contact: AssemblyContact, sti
 def _hinges(
     contacts: Sequence[AssemblyContact], states: Sequence[Opening], number: dict[str, int], same_place: float
 ) -> tuple[AssemblyHinge, ...]:
-    """Return a hinge for each joint that opens about an end, without those that other hinges at the point imply."""
+    """Return a hinge for each joint that opens about an end, unless other hinges at that point imply it."""
     places: list[tuple[complex, JoinedNames]] = []
     hinges = []
     for k, (contact, state) in enumerate(zip(contacts, states, strict=True)):
@@ -179,13 +179,13 @@ def _hinges(
 
 
 class JoinedNames:
-    """Names joined to groups."""
+    """Partition of names into groups, which grow as names are joined."""
 
     def __init__(self, names: Sequence[str | int | None]) -> None:
         self.of = {name: name for name in names}
 
     def root(self, name: str | int | None) -> str | int | None:
-        """Return the name that represents the group of a name."""
+        """Return the name that represents the group to which a name belongs."""
         while self.of[name] != name:
             name = self.of[name]
         return name
@@ -223,7 +223,7 @@ def leading(mechanism: AssemblyLinkage, direction: Direction) -> int | None:
     return next(k for k in able if abs(turns[k]) >= fastest * (1 - ZERO_VELOCITY))
 
 
-ZERO_FORCE = 1e-9  # over the largest force
+ZERO_FORCE = 1e-9  # force that counts as zero, over the largest force
 
 
 @dataclass(frozen=True)

@@ -111,7 +111,7 @@ class AssemblyProblem:
         return optimum.value, moving(self.frame.names, optimum.prices, 1e-6)
 
     def by_contact(self, values: Reals) -> tuple[Reals, Reals, Reals]:
-        """Split values of all forces into those of the two ends of each joint, of its shear, and of the guides."""
+        """Split a value for each force into those of both ends of each joint, of its shear, and of the guides."""
         n = len(self.bearings.contact)
         joints = values[: 3 * n].reshape(n, 3)
         return joints[:, :2], joints[:, 2], values[3 * n :]
@@ -248,18 +248,18 @@ class Bearings:
 
     @cached_property
     def rates(self) -> Sparse:
-        """Velocities on which the forces do work, shape (forces, 3 blocks)."""
+        """Velocities on which the forces do work, shape (forces, 3 blocks); see the module."""
         return self.frame.rates(self.rows)
 
     @cached_property
     def shears(self) -> Indices:
-        """Row of the shear of each joint, after the rows of its normals."""
+        """Index of the row with the shear of each joint, which follows the rows of its normals."""
         return np.asarray(np.cumsum(self.count + 1) - 1, np.intp)
 
     def rays(self, max_friction: float | None = None, *, usual: float | None = None) -> Rays:
         """Return the rays of the forces.
 
-        The friction of joints is limited to `most`; joints without given friction have `usual`.
+        The friction of joints is limited to `max_friction`; joints without given friction have `usual`.
         """
         mu = self.friction if usual is None else np.where(np.isnan(self.friction), usual, self.friction)
         mu = mu if max_friction is None else np.fmin(mu, max_friction)

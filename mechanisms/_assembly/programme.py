@@ -22,9 +22,9 @@ from rocking_cli.core import Reals
 
 TOLERANCE = 1e-10  # the solver's own 1e-7 is too coarse for a multiplier that two theorems must agree on
 TIGHT_OPTIONS = {"primal_feasibility_tolerance": TOLERANCE, "dual_feasibility_tolerance": TOLERANCE}
-INTERRUPT_INTERVAL = 0.1  # s
+INTERRUPT_INTERVAL = 0.1  # s between two checks for an interrupt by the user
 MIN_INTERIOR_EQUATIONS = 600  # equations from which interior points are faster
-CROSSOVER_ITERATIONS = 1  # over the number of equations; crossovers that take longer do not converge
+CROSSOVER_ITERATIONS = 1  # limit of iterations over the number of equations; longer crossovers do not converge
 MAX_RESIDUAL = 1e-12  # residuals of a refined result, over its size
 BOUND_DISTANCE = 1e-9  # distance from a bound that counts as on the bound, over the largest variable
 MAX_REFINEMENTS, MAX_MAGNIFICATION = 4, 1e7
@@ -115,7 +115,7 @@ class _Programme:
         return Optimum(result.x, float(result.fun), result.eqlin.marginals, result.lower.marginals)
 
     def refined(self) -> Optimum | None:
-        """Return the optimum by repeated corrections, from zero, until its errors are rounding errors.
+        """Return the optimum, corrected repeatedly until its errors are rounding errors.
 
         The corrections end earlier if the solver finds no further one.
         """
@@ -164,7 +164,7 @@ def _beside(solve: Callable[[], Any]) -> Any:
     def run() -> None:
         try:
             results.append(solve())
-        except BaseException as error:  # raised in the calling thread
+        except BaseException as error:  # kept, and raised again in the calling thread
             failed.append(error)
 
     thread = Thread(target=run, daemon=True)
@@ -182,7 +182,7 @@ Sparse = Any  # scipy.sparse.csr_array, which has no types
 
 
 def from_entries(rows: ArrayLike, columns: ArrayLike, values: ArrayLike, shape: tuple[int, int]) -> Sparse:
-    """Build a matrix from the rows, columns and values of its entries; those of one place are added."""
+    """Build a matrix from the rows, columns and values of its entries; values in the same place are added."""
     from scipy.sparse import csr_array
 
     places = np.asarray(rows, np.intp), np.asarray(columns, np.intp)

@@ -34,8 +34,8 @@ from mechanisms._assembly.programme import Sparse, beside, components, from_bloc
 from rocking_cli.core import Reals
 from rocking_cli.core.kinematics import Points
 
-OPENING_RATE = 1e-7  # rate from which a ray opens, over the fastest rate
-CARRIED_FORCE = 1e-9  # force from which a ray carries, over the weight
+OPENING_RATE = 1e-7  # opening velocity from which a ray opens, over the fastest opening velocity
+CARRIED_FORCE = 1e-9  # force from which a ray counts as loaded, over the weight
 MAX_COUNTED_FORCE = 1e-3  # largest force of a ray that counts in the cost, over the weight
 MAX_STATE_FACTOR = 1e3  # largest factor on a state, so that small forces are found
 RANK_TOLERANCE = 1e-10  # singular values below this share of the largest one count as zero
@@ -105,7 +105,7 @@ def velocity_space(rates: Sparse, frame: Frame) -> Reals:
     """
     parts = rigid_parts(rates, frame)
     part_rates = (rates[parts.between] @ parts.basis).tocsr()
-    # Parts that no rate ties to each other are independent.
+    # Parts between which no row gives a relative velocity are independent of each other.
     entries = part_rates.tocoo()
     part = entries.col // 3
     of_row = np.zeros(part_rates.shape[0], np.intp)
@@ -127,11 +127,11 @@ def _members(label: Indices) -> dict[int, Indices]:
 
 
 def null_space(rows: Reals) -> Reals:
-    """Return orthonormal columns that span the null space of some rows."""
+    """Return orthonormal columns that span the null space of a matrix."""
     if len(rows) == 0:
         return np.eye(rows.shape[1])
     if len(rows) > rows.shape[1]:
-        rows = np.asarray(np.linalg.qr(rows, mode="r"))  # fewer rows with the same null space
+        rows = np.asarray(np.linalg.qr(rows, mode="r"))  # a matrix of fewer rows has the same null space
     _, values, basis = np.linalg.svd(rows)
     rank = int(np.count_nonzero(values > RANK_TOLERANCE * values[0]))
     return np.asarray(basis[rank:].T)
@@ -342,7 +342,7 @@ def smallest(problem: AssemblyProblem, rays: Rays, kept: Bools, space: Reals) ->
         alike = works & (np.abs(share @ share[k]) > 1 - EQUAL_VELOCITY**2)
         others = _candidates(share, np.flatnonzero(works & ~alike))
         if any(_reaches(opening, share[k], sign * share[j]) for j in others for sign in (1, -1)):
-            continue  # blocks outside this set can move without it
+            continue  # other blocks can move while these stay at rest
         field = _least_motion(opening, space, by_block, able, share[k])
         if field is None:
             continue
@@ -358,7 +358,7 @@ def smallest(problem: AssemblyProblem, rays: Rays, kept: Bools, space: Reals) ->
 
 
 def _does_work(problem: AssemblyProblem, by_block: Reals) -> Bools:
-    """Return on which blocks the forces do work, in any of the velocities."""
+    """Return a mask of the blocks on which loads do work in any of the given velocities."""
     work = [np.abs(np.einsum("bi,bid->bd", each.reshape(-1, 3), by_block)).max(axis=1)
             for each in (problem.dead, problem.live)]  # fmt: skip
     return np.asarray(np.maximum(*work) > ZERO_LOAD * np.abs(by_block).max(axis=(1, 2)))
