@@ -160,7 +160,7 @@ class Jointed(Kinematics):
 
     @property
     def propped(self) -> bool:
-        """Whether another of its bodies keeps a structure from rocking the other way; by default False."""
+        """Whether one of its own bodies keeps the structure from rocking to the other side; by default False."""
         return False
 
     def asserted(self) -> Sequence[str]:

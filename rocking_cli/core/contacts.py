@@ -116,7 +116,7 @@ class Contact:
 
     @property
     def support(self) -> str:
-        """Name of a guide in messages, by what it holds."""
+        """Name of a guide in messages, by the piece that it supports."""
         one, other = self.pieces
         return f"the support of {other}" if one is None else f"the smooth contact of {one} and {other}"
 

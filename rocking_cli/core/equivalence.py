@@ -16,7 +16,7 @@ from rocking_cli.core.mechanism import Mechanism
 from rocking_cli.errors import PluginError, RockingError, StructureError
 from rocking_cli.plugins.errors import plugin_error
 
-EQUAL_DIRECTIONS = 1e-9  # relative difference
+EQUAL_DIRECTIONS = 1e-9  # relative difference of parameters that count as equal in both directions
 
 
 class NoEquivalentBlock(StructureError):
@@ -93,7 +93,7 @@ def alike(one: EquivalentBlock | Statics, other: EquivalentBlock | Statics) -> b
 def _agree(one: float | str | None, other: float | str | None) -> bool:
     if isinstance(one, float) and isinstance(other, float):
         return isclose(one, other, rel_tol=EQUAL_DIRECTIONS, abs_tol=1e-12) or (isnan(one) and isnan(other))
-    return (one is None) == (other is None)  # numbers in texts may differ by rounding
+    return (one is None) == (other is None)  # texts count as equal: their numbers may differ by rounding
 
 
 def equivalent_block(mechanism: Mechanism, known: Sequence[Statics] = ()) -> Equivalence:

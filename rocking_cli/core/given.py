@@ -22,7 +22,7 @@ KINEMATIC = "kinematic"
 NEEDS_A_SIDE = "requires one_sided: otherwise the structure rocks through to the other side"
 
 
-Eta = Annotated[float, Field(gt=0, le=5)]  # the bound of a structure is checked in `checks`
+Eta = Annotated[float, Field(gt=0, le=5)]  # `check_restitution` applies the stricter bound of a structure
 
 
 class DirectionalRestitution(Described):
@@ -89,7 +89,7 @@ class Given(Described):
     """The name of the mechanism, that of its entry point."""
 
     _weights: ClassVar[Sequence[str]] = ()
-    """Remarks on weights that were read as masses; of a structure made by `from_fields`, its own."""
+    """Remarks on weights that were read as masses; a structure made by `from_fields` has its own remarks."""
 
     name: Name | None = Field(None, description="what to call the structure")
     gravity: float = Field(

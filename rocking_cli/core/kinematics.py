@@ -113,7 +113,7 @@ def four_bar(
     and twice, so that all are exact [paper, Eqs. 27-29].
     """
     s = int(direction)
-    w1 = -s  # psi_AB' ; psi_AB'' = 0
+    w1 = -s  # psi_AB', the rotation of AB by phi; psi_AB'' = 0
     ab = np.exp(1j * w1 * phi) * (b - a)
     bd = d - (a + ab)
     span, length_bc, length_cd = np.abs(bd), abs(c - b), abs(d - c)
@@ -224,7 +224,7 @@ class Rates:
         for k, shares in enumerate(rows):
             for side, share in enumerate(shares):
                 pieces[k, side] = share.piece
-                factors[:, k, side] += share.factors  # 0 + -0 is 0
+                factors[:, k, side] += share.factors  # adding to 0 turns -0 into 0
         return cls(count, pieces, factors)
 
     def dense(self) -> Reals:
@@ -238,7 +238,7 @@ class Rates:
     def at(self, velocity: Reals) -> Reals:
         """Return the velocities of all rows, shape (n, rows), from those of the pieces, shape (n, 3 count)."""
         moved = velocity.reshape(len(velocity), self.count, 3)
-        moved = np.concatenate([moved, np.zeros_like(moved[:, :1])], axis=1)  # the ground
+        moved = np.concatenate([moved, np.zeros_like(moved[:, :1])], axis=1)  # zeros for the ground, as last piece
         return np.asarray((self.factors * moved[:, self.pieces]).sum(axis=(2, 3)))
 
     def rotations(self, chosen: Integers | Sequence[int]) -> Rates:

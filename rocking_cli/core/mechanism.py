@@ -60,7 +60,7 @@ class Mechanism(Jointed):
 
     @classmethod
     def __pydantic_init_subclass__(cls, **named: Any) -> None:
-        """Refuse overrides of what is final, and report any failure in the others as an error of the plugin."""
+        """Refuse overrides of final members, and report any failure in other members as an error of the plugin."""
         super().__pydantic_init_subclass__(**named)
         for name in vars(cls):
             if any(_is_final(vars(base).get(name)) for base in cls.__mro__[1:]):
@@ -70,7 +70,7 @@ class Mechanism(Jointed):
         guard(cls, [name for name in answers if name[0] != "_"], failed("mechanism", "mechanism"), but=RefusedFields)
 
     def columns_alone(self) -> Sequence[Mechanism]:
-        """Return each column by itself, one of those that are equal, if three or more carry one beam; else none."""
+        """Return the columns if three or more carry one beam, each as a structure, equal ones once; otherwise none."""
         return ()
 
     @final
@@ -115,7 +115,7 @@ class Mechanism(Jointed):
     @cached_property
     @final
     def hung(self) -> Hung:
-        """Loads, forces and ties of the structure, with what the mechanism `carries`."""
+        """Loads, forces and ties of the structure, and what the mechanism's own fields attach (`carries`)."""
         attached: list[tuple[Loc, Attached]] = [((), attachment) for attachment in self.carries()]
         if self.is_laden:
             taken = [
@@ -277,7 +277,7 @@ def _is_final(member: object) -> bool:
     return any(getattr(getattr(member, key, member), "__final__", False) for key in ("fget", "func", "__func__"))
 
 
-RESTITUTION_ROUNDING = 1e-9  # the kinematic restitution of equal sides reaches the bound
+RESTITUTION_ROUNDING = 1e-9  # relative excess over the bound that is allowed, as equal sides reach the bound
 STRETCH_CHECKS = 129  # rotations at which it is checked whether a tie stretches
 MIN_ELONGATION = 1e-9  # elongation that counts, over the length of the path of a tie, or over 1 m if it is shorter
 NO_MASSES = "the structure has no masses: give density and depth, or its mass"

@@ -20,8 +20,8 @@ from rocking_cli.core.kinematics import Direction, Points, Reals, RigidMotion
 from rocking_cli.core.mechanism import Mechanism
 from rocking_cli.core.released import Pieces
 
-COMPARED_ROTATIONS = (0.21, 0.47)  # over the kinematic limit
-EQUAL_MOTION = 1e-9  # largest difference of two motions that count as one, over the largest displacement
+COMPARED_ROTATIONS = (0.21, 0.47)  # rotations at which motions are compared, over the kinematic limit
+EQUAL_MOTION = 1e-9  # largest difference of two motions that count as equal, over the largest displacement
 MAX_IMBALANCE = 1e-6  # largest imbalance at a joint, over the largest force
 UNIT_COUPLE = 0j  # stands for a couple among the unit forces of a joint
 WHOLE_JOINT = Joint("", 0j, ())
@@ -189,7 +189,7 @@ def _instead_of_joints(mechanism: Mechanism, direction: Direction) -> Sequence[C
 
 
 def _at_contacts(pieces: Pieces, contacts: Sequence[Contact], demand: Reals) -> Reactions | None:
-    """Return the forces at the contacts by three equations for each piece; None if no forces balance `demand`."""
+    """Return the forces at the contacts from three equations for each piece; None if no forces balance `demand`."""
     rates, rows = pieces.rates(contacts)
     jacobian = rates.dense()
     balance, needed = (jacobian / pieces.scale).swapaxes(1, 2), demand / pieces.scale
@@ -261,7 +261,7 @@ class _Moving:
             self._parts.append(_Part(path, self._by_name[name].dpsi, force, np.zeros(phi.shape)))
 
     def demand(self, body: str | None, at: Points, force: Points, couple: Reals | float = 0.0) -> None:
-        """Add a force at a point of a body, and a couple, to what its joints must exert; the ground needs none."""
+        """Add a force at a point of a body, and a couple, to what its joints must balance; the ground needs none."""
         if body is not None and (k := self._number[body]):
             part = self._parts[k - 1]
             part.force[:] += force

@@ -33,7 +33,7 @@ class Registry(Plugins[type[Mechanism]]):
     unknown = UnknownMechanismError
 
     def meant(self, name: str) -> str | None:
-        """Return the starter, or the nearest mechanism, that an unknown name means."""
+        """Return the template that an unknown name means, or else the mechanism with the nearest name, if any."""
         return instead_of_mechanism(name) or super().meant(name)
 
     @staticmethod

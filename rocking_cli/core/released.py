@@ -38,7 +38,7 @@ class Released:
         For each contact, the rows of its normal forces (one for each point) and the row of its shear force; a guide has
         neither, unless a load presses on it: then the row of this load, and that of the force that the guide exerts.
     force : ndarray, shape (n, rows, 4)
-        Force of each row [N], by its factors of 1, u_g'', phi.^2 and v_g''.
+        Force of each row [N]: its coefficients of 1, u_g'', phi.^2 and v_g''.
     compliance : ndarray, shape (n, rows)
         Acceleration of a contact that is released alone, divided by the force it would carry if closed [1/kg].
     """
@@ -93,7 +93,7 @@ def released(mechanism: Mechanism, direction: Direction, phi: Reals) -> Released
     rates, rows = pieces.rates(contacts)
     force, compliance = _solved(rates, pieces, pieces.demands())
     pressing = [pieces.pressing(contact) for contact in contacts if contact.pressed_by]
-    if pressing:  # loads never lift off
+    if pressing:  # add a row for each load that presses on a guide; such a load never lifts off
         force = np.concatenate([force, np.stack(pressing, axis=1)], axis=1)
         compliance = np.concatenate([compliance, np.zeros((len(force), len(pressing)))], axis=1)
     return Released(contacts, _with_loads(contacts, rows), force, compliance)
@@ -129,7 +129,7 @@ def tabulated_impulses(mechanism: Mechanism, ended: Direction) -> Reals | None:
     rest = np.zeros(1)
     old, new = (Pieces(mechanism, direction, rest) for direction in (ended, ended.opposite))
     rates, _ = new.rates(contacts)
-    # The velocities are -t_s before and eta t_-s after, t the derivatives by phi.
+    # The velocities are -t_s before and eta t_-s after the impact, with t the derivatives by phi.
     jump = np.stack([old.momentum(old.dq), new.momentum(new.dq)], axis=-1)
     pressing = [[old.thrown(contact), new.thrown(contact)] for contact in contacts if contact.pressed_by]
     return np.concatenate([_solved(rates, new, jump)[0][0], np.reshape(pressing, (-1, 2))])
@@ -250,14 +250,14 @@ class Pieces:
         return spot.body is not None and self._piece(spot) in self._column
 
     def _shifts(self, name: str, *spots: Spot) -> Sequence[complex]:
-        """Return how far beside its points a load or tie acts [m]: at every one of equal bodies if `each` has one."""
+        """Return the offsets [m] at which a load or tie acts: those of equal bodies if each has one, otherwise 0."""
         several = name in self._each and any(spot.body in self._mechanism.alike() for spot in spots)
         return list(dict.fromkeys(each.shift for each in self._parts)) if several else [0j]
 
     def _spread(self, spot: Spot, along: Points, shifts: Sequence[complex]) -> Reals:
         """Return the derivative of a point's velocity along a unit vector by all coordinates, shape (n, 3 pieces).
 
-        With several `shifts`, this is the mean over the points so far beside it.
+        With several `shifts`, this is the mean over the point moved by each of them.
         """
         derivative = np.zeros((self.phi.size, 3 * len(self._parts)))
         for shift in shifts:
@@ -303,7 +303,7 @@ class Pieces:
     def demands(self) -> Reals:
         """Return the forces that contacts must exert on the pieces, shape (n, 3 pieces, 4).
 
-        There is a force for each coordinate of each piece, by its factors of 1, u_g'', phi.^2 and v_g''.
+        There is a force for each coordinate of each piece: its coefficients of 1, u_g'', phi.^2 and v_g''.
         """
         n = self.phi.size
         forces = self.held_still()
@@ -323,13 +323,13 @@ class Pieces:
 
     @cached_property
     def _turning(self) -> Reals:
-        """phi.. [rad/s2] by its factors of 1, u_g'', phi.^2 and v_g'', shape (n, 4)."""
+        """Coefficients of 1, u_g'', phi.^2 and v_g'' in phi.. [rad/s2], shape (n, 4)."""
         at, g = self._mechanism.coefficients(self.phi, self._direction), self._mechanism.gravity
         # phi.. = -(J phi.^2 + (g + v_g'') G + Q + s B u_g'')/I   [Eq. 8]
         return -np.stack([g * at.G + at.Q, int(self._direction) * at.B, at.J, at.G], axis=-1) / at.I[:, None]
 
     def pressing(self, contact: Contact, *, still: bool = False) -> Reals:
-        """Return the vertical force of the load on a guide [N] by its factors of 1, u_g'', phi.^2, v_g'', (n, 4)."""
+        """Return the vertical force of a guide's load [N] by coefficients of 1, u_g'', phi.^2, v_g'', shape (n, 4)."""
         load, (_, dz, ddz) = self._load(contact)
         up = np.zeros((self.phi.size, 4))
         if not still:
@@ -349,7 +349,7 @@ class Pieces:
         return load, self._motions[self._piece(load.spot)].carry(load.spot.at)
 
     def held_still(self) -> Reals:
-        """Return the forces that contacts must exert on the pieces if these do not move, as `demands`."""
+        """Return the forces that contacts must exert on pieces that do not move, in the form of `demands`."""
         mechanism, direction, n = self._mechanism, self._direction, self.phi.size
         g = mechanism.gravity
         forces = np.zeros((n, 3 * len(self._parts), 4))

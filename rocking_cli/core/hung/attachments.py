@@ -18,7 +18,7 @@ from rocking_cli.core.kinematics import Points, RigidMotion, distance, inside
 from rocking_cli.core.sketch import Outline
 from rocking_cli.text import did_you_mean
 
-OUTSIDE_DISTANCE = 1e-6  # distance from a body of a point that counts as on it, over the size of the body
+OUTSIDE_DISTANCE = 1e-6  # largest distance at which a point counts as on a body, over the size of the body
 OWN_NAMES = ("top", "centroid")  # names of points of the structure itself in results
 FAR_LOAD_DISTANCE = 1.0  # distance of a load from its body from which there is a warning, over the size of the body
 

@@ -37,8 +37,8 @@ NO_ANSWER: dict[Question, str] = {
 }
 """Analyses other than the nonlinear history, with the message if an element does not allow one."""
 
-COINCIDENT_DISTANCE = 1e-9  # distance of points that coincide at rest [m], plus this share of that to the origin
-ZERO_ELONGATION = 1e-14  # elongations that count as zero [m], plus this share of that distance
+COINCIDENT_DISTANCE = 1e-9  # distance of coinciding points [m], plus this share of the distance to the origin
+ZERO_ELONGATION = 1e-14  # elongations that count as zero [m], plus this share of the distance to the origin
 SMALL_ROTATION = 1e-6  # rad; below it the distance of points that coincide at rest is its derivative times phi
 
 
@@ -53,7 +53,7 @@ class Element(ABC):
     is_linear: ClassVar[bool] = True
     """Whether its law is piecewise linear, so that linear models may use its slope at the critical rotation."""
     departs: ClassVar[str] = ""
-    """Verb that follows its name in messages if its law is not piecewise linear, such as `yields`."""
+    """Verb after the name of an element in messages if its law is not piecewise linear, such as `yields`."""
 
     def __init_subclass__(cls, **named: Any) -> None:
         """Wrap the methods of elements of other packages, so that their failures name that package."""
@@ -466,7 +466,7 @@ class Interlock(Described):
         136264
         """
         n, course = self.courses, self.height / self.courses
-        weight = density * gravity  # w, per volume
+        weight = density * gravity  # w, weight per volume [N/m3]
         return (
             COUNTED_SHARE
             * n
@@ -497,7 +497,7 @@ FLOOR_MATERIALS: dict[str, dict[str, float]] = {
     "sliding": {"horizontal": 0.0, "vertical": 1 / 3, "weight": 1 / 2},
     "dragged": {"horizontal": 1.0, "vertical": 1 / 3, "weight": 1 / 2},
 }
-"""Shares of a floor that turns about a support at its far end: carried here, sliding here, or dragged along."""
+"""Shares of the mass of a floor that turns about a support at its far end, by how the near end is supported."""
 
 
 class Load(Described):

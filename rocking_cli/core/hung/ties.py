@@ -249,7 +249,7 @@ class Tie(Described):
         return stress
 
     def number_of_bars(self, depth: float | None) -> float:
-        """Return the number of bars in a structure of this depth [m], a real one of a spacing; 1 without either."""
+        """Return the number of bars: depth [m] over the spacing, not rounded, or else as given; 1 without either."""
         if self.spacing is not None and depth is not None:
             return depth / self.spacing
         return float(self.bars or 1)
