@@ -21,7 +21,7 @@ from rocking_cli.excitation.base import GroundMotion
 
 # Impacts after the record: one ends the motion under way, two a free excursion to either side; later ones only weaken.
 DECISIVE_IMPACTS = 3
-RESTITUTION_ROUNDING = 1e-9  # the kinematic restitution of equal sides reaches the bound
+RESTITUTION_ROUNDING = 1e-9  # relative excess over the bound that is allowed, as equal sides reach the bound
 HISTORIES_PER_TASK = 256  # some 50 ms of work; handing it to a thread takes 20 us
 
 

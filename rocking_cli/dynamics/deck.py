@@ -24,7 +24,7 @@ Number = TypeVar("Number", np.float64, np.int64)
 
 NO_VALUES = np.empty(0)
 RELEASE_DT = 0.005  # s, for a free motion without a record
-MAX_IMPACTS = 20_000  # after the record; beyond, a structure is still rocking; with eta = 0.999 it rests after 14,000
+MAX_IMPACTS = 20_000  # impacts after the record; with more, a structure is still rocking (eta = 0.999 takes 14,000)
 
 
 def run_deck(
@@ -117,7 +117,7 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
         length = max(u.size, ceil((v.size - 1) * v_dt / dt) + 1)
         places = (*us.add(u), *vs.add(v), *aheads.add(_strongest_to_come(np.abs(u), 1.0, length)))
         if any_vertical:
-            for row, strength in ((v_aheads, -v), (v_aboves, v)):  # vertical acceleration, up and down
+            for row, strength in ((v_aheads, -v), (v_aboves, v)):  # downward and upward ground acceleration
                 row.add(_strongest_to_come(np.maximum(strength, 0.0), dt / v_dt, length))
         records.append((*places, dt, v_dt))
     return kernels.Deck(
@@ -156,14 +156,14 @@ def _corners(models: Sequence[Model]) -> Integers:
 
 
 class _Row:
-    """Arrays to be joined end to end."""
+    """Array that grows as other arrays are joined to its end."""
 
     def __init__(self) -> None:
         self.arrays: list[Reals] = []
         self.size = 0
 
     def add(self, array: Reals) -> tuple[int, int]:
-        """Add an array; return its start and its size."""
+        """Add an array to the end; return its start and its size."""
         self.arrays.append(array)
         self.size += array.size
         return self.size - array.size, array.size

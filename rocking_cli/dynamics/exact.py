@@ -1,6 +1,6 @@
 """Response of linear rocking blocks to a pulse: exactly, and by Eqs. 41-42 for a full sine.
 
-That of equivalent blocks is in SI units. Otherwise everything is dimensionless [paper, Eq. 40]: rotations
+The response of equivalent blocks is in SI units. Otherwise everything is dimensionless [paper, Eq. 40]: rotations
 x = phi/phi_cr, times tau = p t counted from uplift, pulse amplitude a = a_g/(g lambda) and frequency omega = omega_g/p.
 A full sine lifts the block where a sin = 1.
 """
@@ -20,10 +20,10 @@ if TYPE_CHECKING:  # avoid importing numpy, which only structures and pulses nee
     from rocking_cli.core import Equivalence
     from rocking_cli.excitation.pulses import Pulse, Segment
 
-MAX_IMPACTS = 5_000  # eta = 0.995 rests after 2800
+MAX_IMPACTS = 5_000  # largest number of impacts; with eta = 0.995 a block rests after 2800
 # Number of cycles and initial phase, as in `rocking_cli.excitation.pulses`, which imports numpy.
 SHAPE_CYCLES = {"sine": (1.0, 0.0), "cosine": (1.0, pi / 2), "half_sine": (0.5, 0.0), "rectangular": (1.0, pi / 2)}
-MAX_INPUT = 1e6  # a or omega, and 1/omega
+MAX_INPUT = 1e6  # largest a, omega and 1/omega
 MAX_EXPONENT = 690.0  # a larger exponential, times omega^2, overflows
 
 

@@ -21,11 +21,11 @@ from rocking_cli.excitation.base import GroundMotion
 
 FINEST_RTOL = 1e-14  # a smaller tolerance is below rounding, so that no step is accepted
 RTOL = 1e-9  # local error of a step by the lower order of the pair; peaks are then accurate to 1e-11
-TAIL_SECONDS = 10.0  # motion kept after the record
+TAIL_SECONDS = 10.0  # s after the record for which samples are kept
 MOST_SAMPLES = 20_000_000
-COLUMNS_PER_TASK = 256  # histories that a thread computes at a time
+COLUMNS_PER_TASK = 256  # number of histories that a thread computes at a time
 MIN_COLUMN_ETA = 1e-3  # lower bound on the restitution of a single column, which shifts with that of the structure
-MIN_IMPACT_RATE = 0.02  # over the rate of rotation before the strongest impact; weaker impacts are chatter
+MIN_IMPACT_RATE = 0.02  # least rate of a counted impact, over that of the strongest one; weaker impacts are chatter
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -91,7 +91,7 @@ class History(Outcome[bool, int, float]):
 
     @property
     def felt(self) -> Reals:
-        """The impacts that are counted, listed and marked, as `impacts` has them: not the chatter before rest.
+        """Impacts that are counted, listed and marked, as rows of `impacts`; the chatter before rest is left out.
 
         They are as fast as `MIN_IMPACT_RATE` times the fastest one or more.
         """
@@ -155,7 +155,7 @@ def follow(
         raise SolverError(
             f"the {model.name} time history could not be simulated past t = {end:.6g} s: the steps became too small"
         )
-    if outcome.unknown[0]:  # samples after this time are not valid
+    if outcome.unknown[0]:  # samples after `known_to` are not valid
         until = float(outcome.known_to[0])
         beyond = np.arange(samples) * dt > until
         phi[beyond] = rate[beyond] = np.nan

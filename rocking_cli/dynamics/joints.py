@@ -37,15 +37,15 @@ from rocking_cli.text import in_short
 FORCE_CELLS = 32  # cells of the forces from rest to phi_cr
 REDUNDANT_CELLS = 40  # cells where joints are redundant, whose modes take longer to find
 MAX_CELLS = 128
-CELL_SPLITS = 4  # cells of the certain bounds per cell of the forces
-ZERO_TENSION = 1e-9  # over the weight; a smaller tension is rounding
-MAX_OPENING_STEP = 3e-3  # over 1/p, for openings of small structures
-MAX_ACCELERATION = 1e6  # m/s2, more than any ground acceleration
-NO_BOUNDS = (np.inf, -1.0)  # stands for: no q.^2 keeps all joints closed
-WHOLE_RANGE = (-np.inf, np.inf)  # u_g'' at which no joint fails at rest
-MAX_MISSING_WEIGHTS = 1e3  # a force that no ground motion overcomes
-BOUND_MARGIN = 0.01  # over the width of the certain bounds, as cubics may cross them between nodes
-MAX_LISTED_NAMES = 4  # enough for the hinges of a frame or an arch in both directions
+CELL_SPLITS = 4  # number of cells of the certain bounds in each cell of the forces
+ZERO_TENSION = 1e-9  # tension over the weight that counts as zero, as rounding
+MAX_OPENING_STEP = 3e-3  # longest step in which openings of joints are integrated, over 1/p
+MAX_ACCELERATION = 1e6  # m/s2; larger than any ground acceleration
+NO_BOUNDS = (np.inf, -1.0)  # stands for bounds that no q.^2 meets, where no q.^2 keeps all joints closed
+WHOLE_RANGE = (-np.inf, np.inf)  # stands for: under any u_g'' no joint fails at rest
+MAX_MISSING_WEIGHTS = 1e3  # force over the weight that no ground motion overcomes
+BOUND_MARGIN = 0.01  # margin over the width of the certain bounds, as cubics may cross them between nodes
+MAX_LISTED_NAMES = 4  # names listed in a message: enough for the hinges of a frame or an arch in both directions
 PLACE_KINDS = (("foot", "feet"), ("hinge", "hinges"), ("closed joint", "closed joints"))
 
 
@@ -272,7 +272,7 @@ def joints_of(
     if len(released_sides) < len(sides) or not all(one.contacts for one in released_sides):
         return None
     still = resting(mechanism)
-    back = still.modes if mechanism.propped else ()  # supports keep being pushed back as the structure rocks
+    back = still.modes if mechanism.propped else ()  # modes that push supports back act on as the structure rocks
     known = [*released_sides, still.closed] if still.closed is not None else released_sides
     labels = list(dict.fromkeys(
         contact.label for one in known
@@ -325,7 +325,7 @@ def _factors(one: Released, inertia: Reals, weight: float) -> Reals:
 
 
 def _at_rest(still: Rest, labels: Sequence[str], bearing: Reals, weight: float) -> tuple[Reals, tuple[float, float]]:
-    """Return `JointTables.rest` and `steady`, and fill in the friction of joints that exist only at rest."""
+    """Return `rest` and `steady` of `JointTables`, and fill in the friction of joints that exist only at rest."""
     known = still.closed
     if known is None and not still.modes:
         return np.zeros((len(bearing), 3, 4)), WHOLE_RANGE
@@ -350,7 +350,7 @@ def _at_rest(still: Rest, labels: Sequence[str], bearing: Reals, weight: float) 
         if mode.opens:
             rest[j, 0] = *force, mode.compliance
             continue
-        # It slides in one sense only: in the other sense the large force is never missing.
+        # The mechanism slides in one sense only: the large force prevents it in the other sense.
         bearing[j, 0] = 1.0
         rest[j, 0, :3] = force * [1.0, 0.0, 1.0] + [MAX_MISSING_WEIGHTS * weight, 0.0, 0.0]
         rest[j, 2] = MAX_MISSING_WEIGHTS * weight, -force[1], 0.0, mode.compliance
@@ -371,7 +371,7 @@ def _at(table: DirectionTable, cells: int) -> Reals:
 def _contacts(
     mechanism: Mechanism, released_sides: Sequence[Released], labels: Sequence[str], modes: Sequence[EarlyMechanism]
 ) -> tuple[Integers, Reals]:
-    """Return `JointTables.contacts` and `bearing`, of joints first and then of mechanisms at rest."""
+    """Return `contacts` and `bearing` of `JointTables`, with rows of joints and then of mechanisms at rest."""
     count = len(labels) + len(modes)
     contacts = np.full((count, 2, 4), -1, np.int64)
     contacts[:, :, 3] = 0
@@ -533,7 +533,7 @@ def checked_joints(mechanism: Mechanism) -> Sequence[str]:
     mechanism : Mechanism
         The structure.
     """
-    letters: dict[str, set[str]] = {}  # letters of each joint; empty if it stays closed in both directions
+    letters: dict[str, set[str]] = {}  # letters of the hinges of each joint in drawings
     feet = set()
     for direction in mechanism.directions:
         drawn = {joint.point: joint.letter for joint in mechanism.joints(direction) if not joint.is_guide}

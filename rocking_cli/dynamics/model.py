@@ -40,8 +40,8 @@ MODELS: tuple[ModelName, ...] = ("nonlinear", "linear1", "linear2")
 
 FALLEN_ROTATION = 1e6  # rad: no realistic acceleration turns a linear block back from there
 EQUAL_TABLES = 1e-9  # difference of the tables of two directions by rounding, over the largest value
-KINEMATIC_SPREAD, MEASURED_SPREAD = 0.05, 0.03  # restitution from the shape, and given restitution
-SLENDERNESS_SPREAD = 0.10  # ln slenderness
+KINEMATIC_SPREAD, MEASURED_SPREAD = 0.05, 0.03  # standard deviation of a restitution from the shape, and of a given one
+SLENDERNESS_SPREAD = 0.10  # standard deviation of ln slenderness
 REST_RATE = 1e-6  # post-impact rate over p phi_cr below which a structure is at rest: it would rock to 5e-13 phi_cr
 
 

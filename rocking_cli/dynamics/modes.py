@@ -31,16 +31,16 @@ EDGE_ROTATIONS = 5  # rotations up to phi_cr at which edges are searched
 FIRST_DIRECTIONS = 8  # first search directions; more follow between corners
 MAX_CORNERS = 24  # corners of the admissible set
 MAX_SEARCHED = 30.0  # search bounds, over the uplift acceleration and the square of the fastest rate
-ZERO_VELOCITY = 1e-6  # over the largest velocity at a joint
-RANK_TOLERANCE = 1e-7  # over the largest singular value: below it, a singular value counts as zero
-MAX_THROWN_MODES = 6  # modes of a single impact
-CLOSING_TOLERANCE = 1e-5  # over the largest velocity at a joint
-ZERO_FACTOR = 1e-14  # over the largest factor
-MAX_PROGRAMME_FORCE = 1e5  # the solver's tolerances are absolute, and forces of light pieces are to count
+ZERO_VELOCITY = 1e-6  # velocity that counts as zero, over the largest velocity at a joint
+RANK_TOLERANCE = 1e-7  # singular value that counts as zero, over the largest one
+MAX_THROWN_MODES = 6  # largest number of modes of a single impact
+CLOSING_TOLERANCE = 1e-5  # closing velocity that counts as zero, over the largest velocity at a joint
+ZERO_FACTOR = 1e-14  # factor that counts as zero, over the largest factor
+MAX_PROGRAMME_FORCE = 1e5  # bound on forces, as the solver's tolerances are absolute and forces of light pieces count
 ZERO_CROSS = 1e-12  # cross product of two lines that count as parallel
 EQUAL_CORNERS = 1e-6  # distance of corners that coincide, over the size of the admissible set
-MIN_SINE_SQUARED = 1e-6  # between two different directions
-MIN_DISTANCE_SQUARED = 1e-10  # for lines of action without a common point, over their arms squared
+MIN_SINE_SQUARED = 1e-6  # squared sine of the least angle between two different directions
+MIN_DISTANCE_SQUARED = 1e-10  # squared distance over squared arms from which lines of action have no common point
 
 
 class Pattern(NamedTuple):
@@ -131,7 +131,7 @@ class _Followed(NamedTuple):
     velocity : ndarray, shape (n, coordinates)
         Velocities of all pieces; meaningless at rotations where the mode does not exist.
     force : ndarray, shape (n, 4)
-        Work of the required joint forces on the mode, by its factors of 1, u_g'', phi.^2 and v_g''.
+        Work of the required joint forces on the mode: its coefficients of 1, u_g'', phi.^2 and v_g''.
     compliance : ndarray, shape (n,)
         Acceleration of the opening, divided by the missing work.
     exists : ndarray of bool, shape (n,)
@@ -209,7 +209,7 @@ class _Placed:
         speed = np.abs(self.rates.rotations([first]).at(mode.velocity[first][None])[0])
         speeds = [max((speed[row] for row in (*normal, *([] if shear is None else [shear]))), default=0.0)
                 for normal, shear in self.rows]  # fmt: skip
-        # The first of contacts that open equally fast.
+        # Choose the first of several contacts that open equally fast.
         return self.contacts[int(np.argmax(np.array(speeds) >= (1 - ZERO_VELOCITY) * max(speeds)))].label
 
     def jump(self, mechanism: Mechanism) -> Reals | None:
@@ -263,7 +263,7 @@ class _Placed:
             return None
         force = np.einsum("nc,ncf->nf", velocity, self.demand)
         force[~exists] = 0.0
-        force[~exists, ONE] = np.abs(self.demand[0, :, ONE]).sum()  # so large that the joint never opens there
+        force[~exists, ONE] = np.abs(self.demand[0, :, ONE]).sum()  # a force so large that the joint never opens there
         plain = velocity
         if any(pattern.slips):  # sliding joints do not dilate as the motion continues
             without = self._alone(pattern, dilates=False)
@@ -292,7 +292,7 @@ class _Placed:
         rocking /= np.linalg.norm(rocking, axis=1, keepdims=True)
         matrix = np.concatenate([one.contracted(held).dense() / scale, rocking[:, None, :]], axis=1)
         at_rest = _values(np.linalg.svd(matrix[0], compute_uv=False), matrix)
-        if at_rest[-2] < RANK_TOLERANCE * at_rest[0]:  # true of most patterns of many pieces
+        if at_rest[-2] < RANK_TOLERANCE * at_rest[0]:  # the motion at rest is not unique, as with most patterns
             return None
         _, s, vt = np.linalg.svd(matrix, full_matrices=matrix.shape[1] < matrix.shape[2])
         padded = _values(s, matrix)
@@ -450,7 +450,7 @@ def _thrown(there: _Placed, jump: Reals) -> Iterator[Reals]:
 
 @dataclass(frozen=True, eq=False)
 class Stuck:
-    """Pieces joined to rigid parts, as they cannot move relative to one another in a mode, at n rotations.
+    """Pieces joined to rigid parts because they cannot move relative to one another in a mode, at n rotations.
 
     Parameters
     ----------
@@ -528,7 +528,7 @@ def stuck(held: Rates, centres: Points) -> Stuck:
         pairs, first, number = np.unique(
             np.array([low[apart], high[apart]]), axis=1, return_index=True, return_inverse=True
         )
-        # Wrenches about one point for each pair, near its joints.
+        # Take wrenches about one point for each pair, near its joints.
         number = number.ravel()
         about = _about(wrench[:, apart], place[:, apart] - place[:, apart[first[number]]])
         joined = pairs[:, _leave_nothing(number, about)]

@@ -51,7 +51,7 @@ def in_parts(
             raise
 
 
-MAX_PROCESSES = 8  # each takes some 200 MB of memory
+MAX_PROCESSES = 8  # largest number of processes: each takes some 200 MB of memory
 
 _work: Callable[[int, int], Any] | None = None
 

@@ -21,9 +21,9 @@ from rocking_cli.core.kinematics import Direction, Reals
 from rocking_cli.core.mechanism import Mechanism
 from rocking_cli.core.released import ONE, PUSH, Pieces, Released, Undetermined, inverted, released
 
-RELATIVE_TOLERANCE = 1e-6  # equal points, over the size of the structure; equal accelerations, over lambda
+RELATIVE_TOLERANCE = 1e-6  # relative difference of equal points (over the structure's size) and equal accelerations
 MAX_ACCELERATION_G = 30.0  # stronger ground accelerations are not analysed
-ZERO_MISSING_FORCE = 1e-9  # over the weight; a smaller missing force is rounding
+ZERO_MISSING_FORCE = 1e-9  # missing force over the weight that counts as zero, as rounding
 FEET_PLACE = "the ground and the feet"
 
 
@@ -60,7 +60,7 @@ class EarlyMechanism(NamedTuple):
     opens : bool
         Whether any joint opens.
     force : ndarray, shape (4,)
-        Work of the joints' forces on the mechanism by its factors of 1, u_g'', phi.^2 and v_g'' [N]; below 0 it moves.
+        Work of the joints' forces on the mechanism [N]: coefficients of 1, u_g'', phi.^2, v_g''; below 0 it moves.
     compliance : float
         Acceleration of the mechanism over the work that is missing [1/kg].
     velocity : ndarray, shape (3 pieces,)
@@ -76,7 +76,7 @@ class EarlyMechanism(NamedTuple):
 
 
 class Rest(NamedTuple):
-    """What may fail at rest: joints whose forces are known, and mechanisms that start before rocking.
+    """Possible failures at rest: of joints whose forces are known, and by mechanisms that start before rocking.
 
     `known` is whether all joints at rest are known, so that nothing else may fail.
     """
@@ -87,7 +87,7 @@ class Rest(NamedTuple):
 
 
 def resting(mechanism: Mechanism) -> Rest:
-    """Find what may fail in a structure at rest.
+    """Find the possible failures of a structure at rest.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def resting(mechanism: Mechanism) -> Rest:
 
 
 def _closed(contacts: Sequence[Contact], tolerance: float) -> list[Contact] | None:
-    """Return the joints of both directions with all of their points; None if they are not those of one face."""
+    """Return the joints of both directions, each with all its points; None if some are not on one face."""
     joints: dict[tuple[str, str | None, complex], Contact] = {}
     for contact in contacts:
         alike = (
@@ -163,7 +163,7 @@ def _as_one(mechanism: Mechanism, there: Pieces, closed: Sequence[Contact]) -> R
     if sideways or not hung or not level or len(friction) != 1 or None in friction:
         return None
     total = there.held_still()[0].reshape(-1, 3, 4).sum(axis=0)  # sum over the pieces
-    force = np.stack([total[1], total[0]])[None]  # N, T
+    force = np.stack([total[1], total[0]])[None]  # normal and shear force
     mass = there.mass[0, :, 0, 0].sum()
     foot = Contact((None, None), (0j,), friction=friction.pop(), name=FEET_PLACE)
     return Released([foot], [((0,), 1)], force, np.array([[0.0, 1 / mass]]))
@@ -294,7 +294,7 @@ def _weakest(
     fastest = speed.max()
     plain = _undilated(jacobian, closed, rows, velocity, scale)
     presses = [row for normal, _ in rows for row in normal if row < len(names)]
-    fastest_row = int(np.argmax(speed >= (1 - RELATIVE_TOLERANCE) * fastest))  # the first of equal ones
+    fastest_row = int(np.argmax(speed >= (1 - RELATIVE_TOLERANCE) * fastest))  # the first of equally fast rows
     return EarlyMechanism(
         names[fastest_row],
         fastest_row not in presses,
@@ -333,11 +333,11 @@ def first_failure(rest: Rest, direction: Direction) -> Failure | None:
         for force, joint, slides, opens in rows if int(direction) * force[PUSH] > 0
     ]  # fmt: skip
     least = min((each.push for each in fails), default=0.0) * (1 + RELATIVE_TOLERANCE)
-    return next((each for each in fails if each.push <= least), None)  # the first of equal ones
+    return next((each for each in fails if each.push <= least), None)  # the first of equal failures
 
 
 class EarlyFailure(NamedTuple):
-    """How a structure fails at rest in a direction, and its lambda there; None if it cannot rock in this direction."""
+    """How a structure fails at rest in a direction, and the lambda of that direction; None if it cannot rock so."""
 
     direction: Direction
     failure: Failure

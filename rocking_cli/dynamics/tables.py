@@ -17,9 +17,9 @@ from rocking_cli.core import Direction, Mechanism, both_statics
 from rocking_cli.core.coefficients import check_continuous
 from rocking_cli.core.equivalence import Statics
 
-CRITICAL_CELLS = 512  # from rest to phi_cr; coefficients are then accurate to 1e-12, those of short links to 1e-10
-MIN_CELLS, MAX_CELLS = 2048, 16384  # from rest to the kinematic limit
-MAX_CORNER_CELLS = 65536  # with which a corner of the force near rest falls on a node
+CRITICAL_CELLS = 512  # cells up to phi_cr; coefficients are then accurate to 1e-12, those of short links to 1e-10
+MIN_CELLS, MAX_CELLS = 2048, 16384  # bounds on the number of cells from rest to the kinematic limit
+MAX_CORNER_CELLS = 65536  # largest number of cells that put a corner of the force near rest on a node
 LIMIT_SHARE = 0.999  # end of the table over the kinematic limit, where a locking linkage has infinite inertia
 
 
@@ -154,7 +154,7 @@ def _one_direction(mechanism: Mechanism, direction: Direction, cells: int) -> Di
     phi, width = _even_steps(mechanism, direction, cells)
     at = mechanism.coefficients(phi, direction)
     c = 1 / np.sqrt(at.I)
-    dc = -at.J * c**4  # derivative by q, as for all slopes here; I' = 2 J
+    dc = -at.J * c**4  # derivative of c by q, as all slopes here; I' = 2 J
 
     bent: Bools = np.any(_bent(mechanism, direction, phi)[1], axis=0)
 

@@ -107,7 +107,7 @@ def _peak_time(run: History) -> float:
 
 
 def _difference(run: History, best: History) -> float:
-    shared = min(run.ratio.size, best.ratio.size)  # after the shorter history its structure is at rest
+    shared = min(run.ratio.size, best.ratio.size)  # a history ends when its structure is at rest
     beyond = float(np.sum(run.ratio[shared:] ** 2) + np.sum(best.ratio[shared:] ** 2))
     apart = float(np.sum((run.ratio[:shared] - best.ratio[:shared]) ** 2))
     return float(np.sqrt((apart + beyond) / np.sum(best.ratio**2)))

@@ -32,7 +32,7 @@ _forced: str | None = None
 
 
 def kernel(of: KernelSet) -> Kernel:
-    """Return the function of a kernel, with the arguments that it has in its source."""
+    """Return the function that runs a kernel in the chosen way, with the arguments of its source."""
     return _chosen()[1][of.name]
 
 
@@ -53,7 +53,7 @@ def forced(way: str) -> Iterator[None]:
 
 
 def forget() -> None:
-    """Forget what is loaded, for tests with other libraries."""
+    """Forget which way was chosen and which library was loaded, for tests with other libraries."""
     from rocking_cli.dynamics import shipped
 
     _choose.cache_clear()
