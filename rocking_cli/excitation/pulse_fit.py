@@ -26,13 +26,13 @@ Criterion = Literal["acceleration", "velocity"]
 
 CRITERIA: tuple[Criterion, ...] = ("acceleration", "velocity")
 FITTED: dict[str, type[Pulse]] = {"sine": Sine, "ricker": Ricker, "mavroeidis": MavroeidisPapageorgiou}
-MIN_SAMPLES_PER_PERIOD = 10  # the longest period is the length of the record
-PERIODS_PER_OCTAVE = 10  # 7 % apart
+MIN_SAMPLES_PER_PERIOD = 10  # samples in the shortest period that is tried; the longest one is the length of the record
+PERIODS_PER_OCTAVE = 10  # periods tried in an octave: they are 7 % apart
 TRIED_CYCLES = (1.25, 1.7, 2.3, 3.1, 4.2)  # starting values for near-fault pulses
 CYCLES_RANGE = (1.01, 6.0)  # the source defines no pulse of one cycle
 MIN_DISTANCE = 0.25  # share of a period; starting points further apart are refined separately
 MAX_REFINED = 4
-# Errors of every starting point, and of the best one, over a step of the grid.
+# Tolerances of the refinement of every starting point, and of the best one, over a step of the grid.
 ROUGH_TOLERANCE, FINE_TOLERANCE = 2e-2, 1e-6
 SAMPLES_PER_PERIOD = (10, 40, 500)  # steps of the search: grid, every starting point, best starting point
 

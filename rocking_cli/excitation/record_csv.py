@@ -41,7 +41,7 @@ def write_record_csv(stream: BinaryIO, motion: GroundMotion) -> None:
     stream.write(HEADER.encode())
     last = motion.npts - 1
     for start in range(0, motion.npts, LINES_PER_BLOCK):
-        values = (motion.acceleration[start : start + LINES_PER_BLOCK] + 0.0).tolist()  # no -0
+        values = (motion.acceleration[start : start + LINES_PER_BLOCK] + 0.0).tolist()  # + 0.0 turns -0 into 0
         times = [f"{(start + k) * motion.dt:.12g}" for k in range(len(values))]
         if start + len(values) > last:
             times[-1] = _last_time(motion.dt, last)

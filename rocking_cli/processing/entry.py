@@ -80,7 +80,7 @@ class _Entry(BaseModel):
 
 
 READING_ITEMS = tuple(name for name in READING if name not in CORRECTIONS)
-"""Options that are items of an entry; corrections are those of its `processing`."""
+"""Options that are items of an entry; corrections are not, as they belong in its `processing`."""
 
 if TYPE_CHECKING:
 

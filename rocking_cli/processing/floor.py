@@ -124,7 +124,7 @@ def _of_storeys(n: float) -> float:
 
 
 def _check_height(pairs: Mapping[str, object]) -> None:
-    """Refuse a height without that of the building, which may be meant as their ratio, and both together."""
+    """Refuse a floor height without that of the building (it may be meant as their ratio), and heights with a ratio."""
     hint = "give heights in metres, such as z=6m,H=9m, or their ratio, such as z/H=0.67"
     if "z" in pairs and not {"H", "z/H"} & set(pairs):
         z = pairs["z"]

@@ -20,7 +20,7 @@ LIST_SUFFIXES = (".yaml", ".yml")
 
 
 class Listed(NamedTuple):
-    """A record file with its entry in a list of records; None if the user named the file itself."""
+    """A record file, with its entry in a list of records; the entry is None if the user named the file itself."""
 
     path: Path
     entry: Entry | None = None

@@ -186,7 +186,7 @@ def _same(one: str | Path, other: str | Path) -> bool:
         return False
 
 
-DT_TOLERANCE = 1e-6  # relative; files print the same interval differently
+DT_TOLERANCE = 1e-6  # relative difference of equal intervals; files print the same interval differently
 
 
 def turned(one: GroundMotion, other: GroundMotion, azimuth: float) -> GroundMotion:

@@ -14,7 +14,7 @@ from rocking_cli.excitation.records.registry import Reader, load_readers, reader
 
 __all__ = ["read_measured", "read_record"]
 
-_MESSAGE, _EXCERPT = 500, 100  # characters
+_MESSAGE, _EXCERPT = 500, 100  # largest numbers of characters that are shown
 
 
 def read_record(

@@ -27,7 +27,7 @@ LABEL_LINES = 40  # number of lines above a table that may hold its labels
 MAX_LABEL_CHARACTERS = 10_000
 
 _TIME = regex(r"[\"']?(?:t|time)(?![a-z])", re.IGNORECASE)
-_BARE_T = regex(r"t", re.IGNORECASE)  # may be the time or the transverse component
+_BARE_T = regex(r"t", re.IGNORECASE)  # a label that may stand for the time or the transverse component
 _WORDS = regex(r"[^\s\[(]+(?: *(?:\[[^\]]*\]|\([^)]*\)))?")  # a word, with the brackets that follow it
 _GAPS = regex(r"\s{2,}|\t")
 _COLUMN = regex(r"col(?:umn)?\.? *(\d{1,4})")

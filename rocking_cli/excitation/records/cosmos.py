@@ -30,14 +30,14 @@ _DATA = regex(
     re.I,
 )
 _WIDTH = regex(r"\( *\d*[A-Z](\d+)(?:\.\d+)?(?:E\d*)? *\)", re.I)
-_MAX_LINE_CHARACTERS = 300  # the format has 80
+_MAX_LINE_CHARACTERS = 300  # the format has 80 characters in a line
 _CODE = regex(r"units *=[^(,]*\((\d{1,3})\)", re.I)
 _UNIT_CODES = {2: "g", 4: "cm/s2"}
 _END = regex(r"End-of-data for Chan *(\S+)", re.I)
-# Counted from 1, the interval of processed data [ms] and of the raw record [s], the second as long as nothing is done.
+# Places, from 1, of the interval of processed data [ms] and of raw records [s]; the latter is for unprocessed data.
 _DT_MS, _DT_RAW = 62, 34
 _PEAK_PLACE, _PEAK_TIME_PLACE = 64, 65  # places of the peak value and its time [s]
-_DISTANCE_PLACE = 17  # epicentral distance [km]
+_DISTANCE_PLACE = 17  # place of the epicentral distance [km]
 _UNSET = -999
 _FIELDS = {
     "azimuth": Field(regex(r"^Sta Chan?\.?:? *\S+: *(.*?) *\(", re.I)),
@@ -48,7 +48,7 @@ _FIELDS = {
     "hypocentre": Field(regex(r"^(Hypocenter.*)")),
 }
 _MAX_FIRST_LINE = 10_000
-_TEXT_LINES, _HEADER_VALUES, _COMMENT_LINES = 1000, 10_000, 100_000  # no header has as many
+_TEXT_LINES, _HEADER_VALUES, _COMMENT_LINES = 1000, 10_000, 100_000  # limits that no header exceeds
 
 
 @dataclass(frozen=True)
@@ -181,7 +181,7 @@ def _interval(file: str, headers: _Headers, count: int, length: float) -> float:
     places = ((_DT_MS, 0.001), (_DT_RAW, 1.0))
     stated = [headers.reals[place - 1] * size for place, size in places if place <= headers.reals.size]
     for candidate in stated:
-        # The length is rounded to a second; some files count intervals for it, others samples.
+        # The length is rounded to a second; files compute it from the number of intervals, or of samples.
         if candidate > 0 and abs(candidate * count - length) <= 1 + 2 * candidate:
             return float(candidate)
     intervals = " and ".join(f"{candidate:g} s" for candidate in stated if candidate > 0) or "nothing"

@@ -22,7 +22,7 @@ _FORMAT = regex(r"\b\d+F(\d+)\.\d+", re.I)
 _CHANNEL = regex(r"\bCHAN(?:NEL)? +\d+: *(.*\S)", re.I)
 _PEAK = regex(r"PEAK ACCELERATION *= *(\S+) +CM/SEC/SEC +AT +(\S+) *SEC", re.I)
 _DEFAULT_WIDTH = 10  # characters per number, as in 8F10.3
-_SEARCHED_CHARACTERS = 100_000  # the format is recognised within them
+_SEARCHED_CHARACTERS = 100_000  # characters within which the format is recognised
 
 
 def sniff(text: str) -> bool:
@@ -44,7 +44,7 @@ def read(
     while index < len(lines):
         line = lines[index]
         index += 1
-        # The first line of a channel also has its name, with more text; the line that begins with it comes later.
+        # The first line of a channel also has its name, with more text; a later line begins with the name.
         if _FIRST_LINE.match(line):
             start = index - 1
         if match := _CHANNEL.match(line.strip()):

@@ -79,7 +79,7 @@ def _component(file: str, lines: Lines, start: int, units: str | None) -> tuple[
     values, end, remarks = layout.fixed_width(
         file, lines, layout.RecordBlock(end, npts, _WIDTH, count_line), last=False
     )
-    for size in sizes[1:]:  # velocity and displacement
+    for size in sizes[1:]:  # skip the velocities and the displacements
         _, end, _ = layout.fixed_width(file, lines, layout.RecordBlock(end, size, _WIDTH, sizes_line + 1), last=False)
     # The time of the peak is not checked, as it excludes the taper before the values.
     remarks += peak_doubts(values, interval, unit, unit_line, peak)

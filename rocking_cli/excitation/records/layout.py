@@ -152,7 +152,7 @@ def fixed_width(file: str, lines: Lines, block: RecordBlock, *, last: bool = Tru
     lines.check_lengths(file)
     values = array("d")  # a list would need an object per value
     index = block.start
-    leaving: list[int] = []  # line numbers
+    leaving: list[int] = []  # line numbers of rows that leave the columns
     unread: InputError | None = None
     for line in lines.since(block.start):
         if not _is_row(line) or (len(values) >= block.count and not last):

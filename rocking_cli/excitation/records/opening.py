@@ -159,7 +159,7 @@ def _of_gzip(data: bytes, file: str) -> bytes:
 
 def _of_zip(data: bytes, file: str, channel: str | None) -> tuple[bytes, str, bool, str | None]:
     """Return content and name of the requested or only file, whether there are several, and the channel in it."""
-    if data.count(b"PK\x01\x02") > MAX_ARCHIVE_FILES:  # zipfile reads the whole list of files at once
+    if data.count(b"PK\x01\x02") > MAX_ARCHIVE_FILES:  # refused before zipfile reads the whole list of files at once
         raise InputError(
             Problem(f"the archive has more than {MAX_ARCHIVE_FILES} files: too many for a record", file, hint=_UNPACK)
         )

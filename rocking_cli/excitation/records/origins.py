@@ -105,7 +105,7 @@ def _within(value: object, above: float, upper: float) -> float | None:
 
 
 _DIGITS = regex(r"[+-]?(?:\d+\.?(\d*)|\.(\d+))(?:[EeDd]([+-]?\d{1,3}))?")
-_PEAK_TOLERANCE = 1e-4  # relative; some headers print the peak with more digits than the values have
+_PEAK_TOLERANCE = 1e-4  # relative difference; some headers print the peak with more digits than the values have
 
 
 def peak_doubts(

@@ -54,12 +54,12 @@ _BRACKETED = regex(rf"[\[(]\s*({_UNIT})\s*[\])](?! ?/)")
 _NAMED = [
     regex(pattern)
     for pattern in (
-        rf"{_ACCELERATION}{_GAP}({_UNIT})",  # accel_g, acceleration, m/s2
-        rf"{_ACCELERATION}.*\bin ({_UNIT})",  # acceleration time series in g
-        rf"{_UNITS_OF}({_UNIT})",  # units of g, units: cm/s2
+        rf"{_ACCELERATION}{_GAP}({_UNIT})",  # for example: accel_g, acceleration, m/s2
+        rf"{_ACCELERATION}.*\bin ({_UNIT})",  # for example: acceleration time series in g
+        rf"{_UNITS_OF}({_UNIT})",  # for example: units of g, units: cm/s2
         rf"\bin ({_SPELLED})",
-        rf"\ba ?g?[ ,:;=-]*({_SPELLED})",  # a_m/s2; but a_g is the ground acceleration, in any unit
-        rf"^(?:s|secs?|seconds?)[ ,;\t]+({_UNIT})$",  # a row of units: s,g
+        rf"\ba ?g?[ ,:;=-]*({_SPELLED})",  # for example: a_m/s2; but a_g is the ground acceleration, in any unit
+        rf"^(?:s|secs?|seconds?)[ ,;\t]+({_UNIT})$",  # for example a row of units: s,g
         rf"^({_SPELLED})$",
     )
 ]

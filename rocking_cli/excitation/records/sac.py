@@ -21,10 +21,10 @@ TAKES_WANTED = True
 
 _HEADER, _FOOTER = 632, 176  # bytes; version 7 repeats part of the header at its end, in double precision
 _VERSIONS = (6, 7)
-_TIME_SERIES, _XY = 1, 4  # values of IFTYPE
-_ACCELERATION_KIND = 8  # value of IDEP
+_TIME_SERIES, _XY = 1, 4  # values of the field IFTYPE: time series, and x against y
+_ACCELERATION_KIND = 8  # value of the field IDEP for accelerations
 _UNSET = -12345.0
-_EXTREMES_TOLERANCE = 1e-5  # relative; the extremes have 32 bits
+_EXTREMES_TOLERANCE = 1e-5  # relative difference; the extremes have 32 bits
 _OTHER_QUANTITIES = {6: "displacement", 7: "velocity", 50: "voltage"}
 _WITH_ARTICLE = {"acceleration": "an acceleration", "velocity": "a velocity", "displacement": "a displacement"}
 

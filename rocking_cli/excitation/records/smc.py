@@ -34,7 +34,7 @@ _FIELDS = {
 }
 # Places among the integers and the reals, counted from 1.
 _COMMENTS, _COUNT = 16, 17
-_RATE_PLACE = 2  # samples per second
+_RATE_PLACE = 2  # place of the rate in samples per second
 _EXTREMES_PLACES = ((29, 30), (31, 32))  # places of time and value of the largest and of the smallest acceleration
 
 

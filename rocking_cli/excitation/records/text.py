@@ -35,7 +35,7 @@ _SEARCHED_CHARACTERS = 100_000  # the format is recognised within them, so that 
 _MAX_VALUE = 1e30  # above any time or acceleration in any unit, and far below overflow
 _INTERVAL_RANGE = (1e-9, 1e6)  # s; sums overflow beyond these bounds, and no record has such intervals
 MAX_NUMBERS = 4 * MOST_SAMPLES
-_DT_TOLERANCE = 1e-3  # relative; either the given interval or that of the file may be rounded
+_DT_TOLERANCE = 1e-3  # relative difference; either the given interval or that of the file may be rounded
 
 
 def sniff(text: str) -> bool:
@@ -138,7 +138,7 @@ def usable(values: Reals) -> bool:
 
 
 def sensible(value: float) -> bool:
-    """Return whether one value is `usable`."""
+    """Return whether one value is finite, and not too large for arithmetic."""
     return abs(value) < _MAX_VALUE
 
 
@@ -236,7 +236,7 @@ def _header(file: str, lines: Sequence[str], delimiter: str | None, columns: int
     comments, header = [], []
     for number, line in enumerate(lines, start=1):
         line = line.strip()
-        if line.startswith(DONE_PREFIX):  # file names and gains in this line belong to the original file
+        if line.startswith(DONE_PREFIX):  # skipped: its file names and gains belong to the original file
             continue
         if line.startswith(("#", "%")):
             comments.append((number, line.lstrip("#% \t")))
@@ -281,7 +281,7 @@ def _table(
         if commas:
             page = _with_points(file, first, page)
         part = _quick_table(page, delimiter, columns)
-        if part is None:  # comments or empty cells may be the only reason
+        if part is None:  # try again without comments and empty cells
             part = _quick_table([row for line in page if (row := _clean(line))], delimiter, columns)
         if part is None:
             part = _careful_table(file, first, page, delimiter, names)
@@ -294,7 +294,7 @@ def _table(
 
 def _quick_table(lines: Sequence[str], delimiter: str | None, columns: int) -> Reals | None:
     """Parse lines with numpy; None if it cannot parse a line, or a value is not usable."""
-    if not any(line.strip() for line in lines):  # numpy warns of empty input
+    if not any(line.strip() for line in lines):  # numpy would warn of empty input
         return np.empty((0, columns))
     try:
         table = np.loadtxt(lines, dtype=np.float64, delimiter=delimiter, comments=None, ndmin=2)
@@ -364,7 +364,7 @@ def _not_a_number(file: str, line_number: int, line: str, token: str, *, known: 
 
 
 MAX_GRID_RATIO = 10  # samples of an even grid over recorded samples
-_MIN_DT = 1e-9  # s
+_MIN_DT = 1e-9  # s; shortest sampling interval that is accepted
 _MIN_DIGITS, _MAX_DIGITS = 5, 12  # significant digits with which programs print numbers
 _MIN_FINE_SHARE = 0.01
 """Share of times that must be finer than the coarsest one; otherwise times have equal decimals, not equal digits."""

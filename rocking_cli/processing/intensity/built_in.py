@@ -20,7 +20,7 @@ from rocking_cli.processing.oscillator import DAMPING, check_oscillator, respons
 MIN_FREQUENCY, MAX_FREQUENCY = 0.25, 20.0  # Hz; bounds of the frequencies of the mean period
 MAX_FREQUENCY_STEP = 0.05  # Hz
 HOUSNER_PERIODS = (0.1, 2.5)  # s; bounds of the integral of the Housner intensity
-HOUSNER_POINTS = 241  # one every 0.01 s
+HOUSNER_POINTS = 241  # periods, one every 0.01 s
 AVERAGED_PERIODS = 100
 
 
