@@ -29,7 +29,7 @@ CODE_METHODS = ("verify", "with_histories", "of_each", "located", "demand", "sho
 
 @dataclass(frozen=True)
 class Number:
-    """A number of a code that a structure can be designed for; of two directions the smaller counts.
+    """A quantity that a code computes, for which a structure can be designed; the smaller of both directions counts.
 
     Parameters
     ----------

@@ -243,7 +243,7 @@ class Later(Sequence[Working]):
         return len(self._written)
 
 
-CAPACITY_TOLERANCE = 1e-12  # relative; rounding may reduce a capacity that equals the demand
+CAPACITY_TOLERANCE = 1e-12  # relative shortfall of a capacity that passes, as rounding may reduce an equal one
 SAME_RATIO = 1e-9  # relative difference below which neither direction governs
 
 
@@ -383,12 +383,12 @@ class Verified:
 
     @property
     def checks(self) -> Sequence[Requirement]:
-        """All that the code requires; by default what `passed` says of the method that governs."""
+        """All that the code requires; by default the verdict `passed` on the method that governs."""
         return (Requirement.of("", self.governs, self.ratio, self.passed),)
 
     @property
     def conclusions(self) -> list[Conclusion]:
-        """What is concluded of each of `checks`."""
+        """The conclusion on each of `checks`."""
         return [
             Conclusion(
                 concluded=check.concluded, limit_state=check.state, method=check.method,

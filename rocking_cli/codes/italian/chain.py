@@ -31,7 +31,7 @@ class Weight:
     mass : float
         The mass [kg].
     w, h : float
-        The shares of it that the block carries, and that move sideways with the block.
+        Shares of the mass that the block carries, and that move sideways with the block.
     gravity : float
         Acceleration of gravity [m/s2].
     """

@@ -27,7 +27,7 @@ from rocking_cli.text import cut, one_line
 
 EARTH_RADIUS = 6371.0  # km
 MAX_BYTES = 100_000_000  # the table of the decree has three million
-MAX_HEADING_ROWS = 50  # of a sheet
+MAX_HEADING_ROWS = 50  # rows of a sheet in which its headings are searched
 GZIP, SPREADSHEETS = b"\x1f\x8b", (b"PK", b"\xd0\xcf\x11\xe0")
 NEIGHBOURS = 25  # nodes about a site, among which the steps of the grid are measured
 MAX_ALONG = 0.35  # cosine of the angle between the two directions of the grid, which is 70 to 110 degrees
@@ -71,7 +71,7 @@ class Cell(NamedTuple):
     corners : sequence of Corner
         Its four corners; of a site on a node this node alone.
     rows : list of list of float
-        Of each return period of the grid [years]: a_g [g], F0 and T_C* [s] at the site.
+        For each return period of the grid [years]: a_g [g], F0 and T_C* [s] at the site.
     unit : str
         Key of the text on the unit of a_g in the file.
     """
@@ -92,7 +92,7 @@ class Grid:
     periods : ndarray, shape (m,)
         Return periods, increasing [years].
     values : ndarray, shape (n, m, 3)
-        Of each node and return period: a_g [g], F0 and T_C* [s].
+        For each node and return period: a_g [g], F0 and T_C* [s].
     unit : str
         Key of the text on the unit of a_g in the file.
     """
@@ -197,7 +197,7 @@ def read_grid(path: Path) -> Grid:
 
 @lru_cache(maxsize=4)
 def _read(path: Path, changed: int | None, size: int | None) -> Grid:
-    del changed, size  # they only distinguish what the path holds at different times
+    del changed, size  # they only tell versions of the file apart in the cache
     file = str(path)
     lines = list(_lines(path))
     first = next((k for k, (_, cells) in enumerate(lines) if _is_of_numbers(cells)), len(lines))

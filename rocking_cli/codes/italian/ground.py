@@ -239,7 +239,7 @@ class Hazard:
         return self.table[0][0] <= TR * (1 + 1e-9) and self.table[-1][0] * (1 + 1e-9) >= TR
 
     def rounded(self, life: float) -> dict[str, float]:
-        """Return the row of each limit state [years] if the rows are those of limit states, with rounded periods.
+        """Return the period in the row of each limit state [years], if the rows are limit states with rounded periods.
 
         So programs print them: 45, 75, 712 and 1462 years. Each row must be within 1 % of the return period of a limit
         state, and rounded to whole years, unless the table does not reach the periods of the limit states. Any other
@@ -254,7 +254,7 @@ class Hazard:
         return rows if is_of_states and (whole or not all(self.covers(exact[state]) for state in STATES)) else {}
 
     def counted(self, life: float, state: str) -> float:
-        """Return the return period of a limit state as it is used, that of its own row or bounded by the code [years].
+        """Return the return period of a limit state that is used [years]: that of its row, or bounded by the code.
 
         Raises `InputError` if it is beyond the table of the hazard.
         """

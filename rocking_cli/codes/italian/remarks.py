@@ -187,9 +187,9 @@ def _of_stretch(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Rem
 
 
 def relied_on(directions: Iterable[ItalianVerified]) -> list[Remark]:
-    """Return the remarks on ties that stretch and on blocks that move too far as they are said with the conclusion.
+    """Return the remarks on ties that stretch and on blocks that move too far, in their form beside the conclusion.
 
-    If rocking does not start at any limit state, the conclusion relies on no displacement.
+    If rocking starts at no limit state, the conclusion relies on no displacement.
     """
     key_of = {"stretched": "end_stretched", "wide": "end_wide"}
     return [

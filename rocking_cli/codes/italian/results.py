@@ -169,7 +169,7 @@ class Dynamic:
         return len(self.records) < self.enough
 
     def checks(self) -> list[Requirement]:
-        """Return what the histories with FC prove; nothing if the code requires more of them."""
+        """Return the requirements on the mean of the histories with FC; none if the code requires more histories."""
         names, requirements = [each.name for each in self.records], []
         for state, allowed in () if self.too_few else self.allowed.items():
             mean, past = self.mean(confident=True), self.passed(confident=True)
@@ -266,13 +266,13 @@ class ItalianVerified(frame.Verified):
 
     @property
     def ratio(self) -> float | None:
-        """The smallest ratio of all limit states: of displacements; zeta_E if the onset of rocking governs."""
+        """Smallest ratio over the limit states: of displacement, or zeta_E where the onset of rocking governs."""
         known = [check.ratio for check in self._static]
         return None if None in known else min(ratio for ratio in known if ratio is not None)
 
     @property
     def checks(self) -> Sequence[Requirement]:
-        """The limit states that the site gives, and the time histories if there are enough of them, or they fail."""
+        """Requirements at the limit states that the site gives; those of time histories if these suffice, or fail."""
         return [*self._static, *([] if self.dynamic is None else self.dynamic.checks())]
 
     @property
@@ -319,7 +319,7 @@ class ItalianVerification(frame.Verification):
 
     @property
     def conclusion(self) -> Conclusion:
-        """The worst check of all; records that are too few to count are left out, and which of them it exceeds."""
+        """The worst check of all, with the records that are too few to count, and which of these exceed capacity."""
         conclusion, why = super().conclusion, dict[str, str]()
         for each in self.directions.values():
             if each.dynamic is not None and each.dynamic.too_few:

@@ -199,7 +199,7 @@ class ElementOfEach(VibratingElement):
 
 
 class ItalianSite(StateGround, Site):
-    """What a site file holds: the ground of limit states, of SLV if none is named; or the hazard of all of them."""
+    """Content of a site file: the ground at each limit state (SLV if none is named), or the hazard of all of them."""
 
     FC: Annotated[float, BeforeValidator(_confidence_factor)] = quantity(
         "confidence factor, by which accelerations are divided, or the knowledge level LC1, LC2 or LC3", ge=1, le=2
@@ -304,7 +304,7 @@ class ItalianSite(StateGround, Site):
 
     @classmethod
     def _tabled(cls, there: Callable[..., list[str]], source: str) -> Iterator[tuple[Place, str]]:
-        """Yield what is combined with a table of return periods, and what a site by coordinates lacks."""
+        """Yield given fields that exclude a table of return periods, and missing coordinates of a site on the grid."""
         others = [*GROUND_PARAMETERS, "TC_star", "spectrum", *STATES_OF_SITE, *COORDINATES * (source == "hazard")]
         for name in there(*others):
             yield (name,), f"cannot be combined with {source}, from which the ground is computed: give one of the two"

@@ -13,7 +13,7 @@ SETS = {True: "with FC", False: "without FC"}
 
 
 def items(say: Language, dynamic: Dynamic, FC: float) -> Iterator[Sentence | Table]:
-    """Yield what the dynamic method found in a direction."""
+    """Yield the results of the dynamic method in a direction, as sentences and a table."""
     (state,) = dynamic.allowed
     yield Sentence(say("dynamic_is", d0=dynamic.d0, state=state))
     yield Sentence(say(dynamic.motions.kind, floor=dynamic.motions.floor))

@@ -110,7 +110,7 @@ def of_cell(say: Language, ground: SiteGround) -> list[Table]:
 
 
 def _values(say: Language, part: object, fields: Mapping[str, tuple[str, str, str]], **names: str) -> list[list[str]]:
-    """Return the rows of fields that are given."""
+    """Return the table rows of those fields that the site file gives."""
     values = {key: getattr(part, key, None) for key in fields}
     return [
         [symbol, say(meaning, **names), value if isinstance(value, str) else say.number(float(value)), say(unit)]

@@ -1,6 +1,6 @@
 """Summary of the sheet: whether each direction passes at each limit state, by which margin, and what governs.
 
-The terminal has its verdicts and its methods, too.
+The terminal shows the verdicts and the table of methods of this summary, too.
 """
 
 from __future__ import annotations
