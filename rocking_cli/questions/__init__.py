@@ -1,1 +1,1 @@
-"""A folder a question: its study, view, picture, verb and command."""
+"""One folder for each question, with its study, view, picture, verb and command."""

@@ -200,9 +200,9 @@ def relied_on(directions: Iterable[ItalianVerified]) -> list[Remark]:
 
 
 def _rocks(verified: ItalianVerified) -> bool:
-    """Return whether the nonlinear method governs at a limit state that the site gives."""
-    given = [state for state, at in verified.states.items() if state == FIRST_STATE or at.demand is not None]
-    return any(verified.governing[state] == OF_STATE[state][1] for state in given)
+    """Return whether rocking starts at a limit state that the site gives."""
+    starts = (verified.methods[damage].zeta for damage, _ in OF_STATE.values())
+    return any(zeta is not None and zeta < 1 for zeta in starts)
 
 
 def _of_break(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark]:

@@ -40,7 +40,7 @@ DOTS_PER_INCH = 100
 SUPERSAMPLING = 2  # factor of enlargement while the parts at rest are drawn
 MAX_STRUCTURE_HEIGHT = 3.4  # inches
 TITLE_HEIGHT, FOOT_HEIGHT, TRACE_HEIGHT, PANEL_GAP, LEFT_MARGIN = 0.6, 0.42, 0.95, 0.12, 0.82  # inches
-BLENDS = (0.2, 0.4, 0.6, 0.8)  # between a colour and its background, for smooth edges
+BLENDS = (0.2, 0.4, 0.6, 0.8)  # shares of a colour over its background, for smooth edges
 HINGE_RADIUS = 3.0  # pixels
 NEARLY_WHITE = 0.97
 ARROW_HEAD_LENGTH = 0.13  # inches
@@ -225,7 +225,7 @@ class _Stage:
         pen.set_foreground(colour)
         pen.set_linewidth(self._renderer.points_to_pixels(points))
         pen.set_joinstyle("round")
-        pen.set_snap(False)  # it moves by fractions of a pixel
+        pen.set_snap(False)  # drawings move by fractions of a pixel
         return pen
 
     def _draw_ties(self, shown: hung.Symbols, *, behind: bool) -> None:

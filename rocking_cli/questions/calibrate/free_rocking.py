@@ -16,10 +16,10 @@ from scipy.interpolate import CubicSpline
 from rocking_cli.arrays import Integers, Reals
 from rocking_cli.core import Direction, Mechanism
 
-SPLINE_PIECES = 400  # of energy and inertia over the rotation
+SPLINE_PIECES = 400  # pieces of the splines of energy and inertia over the rotation
 KNOTS_PER_QUARTER_CYCLE = 16
-COARSE_KNOTS = 2  # enough to count the half-cycles
-MIN_RATE_SHARE = 2e-3  # of the rate at the first impact, below which the structure is at rest
+COARSE_KNOTS = 2  # knots of a first integration: enough to count the half-cycles
+MIN_RATE_SHARE = 2e-3  # rate over that of the first impact, below which the structure is at rest
 MAX_HALF_CYCLES = 1000
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 

@@ -16,8 +16,8 @@ from rocking_cli.questions.score.table import ObservedTest
 from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Draws, Neighbourhood, simulate_neighbours
 
-REGION_PROBABILITY = 0.9  # of the joint region, by the likelihood ratio
-EDGE_DROP = -float(np.log(1 - REGION_PROBABILITY))  # of the log-likelihood: half a chi-square of two degrees of freedom
+REGION_PROBABILITY = 0.9  # probability of the joint region, by the likelihood ratio
+EDGE_DROP = -float(np.log(1 - REGION_PROBABILITY))  # drop of the log-likelihood at its edge (chi-square, 2 degrees)
 
 
 @dataclass(frozen=True, eq=False)

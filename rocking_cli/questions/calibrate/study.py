@@ -34,16 +34,16 @@ MIN_IMPACTS = 3
 MAX_FITTED_ETAS = 15  # later impacts are too small to determine their restitution
 MIN_SAMPLES = 30
 MIN_ALPHA = 0.07  # rad: for smaller slenderness, p and alpha cannot be told apart
-MIN_ANGLE_SHARE = 1e-6  # of the rotation at which the structure overturns: no instrument resolves less
+MIN_ANGLE_SHARE = 1e-6  # angle over that of overturning: no instrument resolves less
 MAX_TRACE_DURATION = 1e6  # s
 MIN_PEAK_TO_NOISE = 3.0  # peak over noise, from which a half-cycle can be seen in the trace
 MIN_LARGEST_TO_NOISE = 5.0  # largest angle of a usable trace over its noise
 MAX_RELEASE_SHARE = 0.98  # release over the critical rotation
-FITTED_QUARTER_SHARE = 0.9  # of the quarter cycle before the first impact: earlier, the structure may be lifted or held
-# Share of the release by which a half-cycle exceeds the last on its side if a new test starts.
+FITTED_QUARTER_SHARE = 0.9  # share of the quarter cycle before the first impact that is fitted
+# Least share of the release by which a half-cycle exceeds the last on its side, if a new test starts there.
 MIN_NEW_TEST_GROWTH = 0.2
 MIN_GAP_RATIO = 3.0  # interval over the median interval, from which there is a gap in the trace
-START_ETAS = (0.6, 0.75, 0.85, 0.9, 0.94, 0.97, 0.985)  # tried if the times of the impacts do not lead to a fit
+START_ETAS = (0.6, 0.75, 0.85, 0.9, 0.94, 0.97, 0.985)  # restitutions tried if the impact times do not lead to a fit
 MAX_GOOD_RESIDUAL = 0.05  # share of the release; a missed impact gives more, and other starts are tried
 WINDOWS = (3, 6, 12, 24, 48, 1_000_000)  # numbers of impacts up to which the trace is fitted, in turn
 MIN_LEVEL_DISTANCE = 0.03  # share of the largest angle: closer levels of rest lead to the same fit
@@ -55,7 +55,7 @@ MAX_PATTERN_RATIO = 2.0  # variance of means of residuals over that of white noi
 GEOMETRY_STEP = 0.02  # share of the errors of the geometry, for finite differences
 RELEASE, START, OFFSET, DRIFT, ETA = range(5)  # indices of the parameters; further etas and the geometry follow
 PRIOR_IMPACTS = 1.0  # number of impacts that the scatter of other bodies counts for
-INTERVAL_DROP = 1.6  # of the log-likelihood, for an interval of 5 to 95 % (1.35 if there are many impacts)
+INTERVAL_DROP = 1.6  # drop of the log-likelihood at the ends of an interval of 5 to 95 % (1.35 if impacts are many)
 MAX_RESIDUAL_TO_NOISE = 1.2  # residual over the noise, above which the model does not explain the trace
 SIDES, P, ALPHA = range(3)  # indices: ln of alpha of one side over the other, of p and of alpha over those of the file
 
@@ -425,7 +425,7 @@ def _starts(problem: _Problem) -> list[Reals]:
 def _common(problems: Sequence[_Problem]) -> tuple[_Problem, Reals]:
     """Fit one restitution for all impacts to each part of a trace that may be the rocking; return the best."""
     starts = [(each, x) for each in sorted(problems, key=lambda each: -each.times[-1]) for x in _starts(each)]
-    # Starts from the times of impacts come first, then those nearest to the trace.
+    # Starts from the times of impacts come first, then starts that are nearest to the trace.
     first = [each for each in starts if each[1][ETA] not in START_ETAS]
     rest = sorted((each for each in starts if each[1][ETA] in START_ETAS), key=lambda each: each[0].distance(each[1]))
     best, least = starts[0], np.inf
@@ -436,7 +436,7 @@ def _common(problems: Sequence[_Problem]) -> tuple[_Problem, Reals]:
             x, _, rms = problem.fit(x, until)
             if until >= problem.times[-1] or rms > MAX_RESIDUAL:
                 break
-        same = abs(rms - least) < 1e-3 * rms  # two starts lead to this fit
+        same = abs(rms - least) < 1e-3 * rms  # whether two starts lead to the same fit
         if rms < least:
             best, least = (problem, x), rms
         if least < MAX_GOOD_RESIDUAL or same:
@@ -445,7 +445,7 @@ def _common(problems: Sequence[_Problem]) -> tuple[_Problem, Reals]:
 
 
 def _freed(problem: _Problem, x: Reals, free: Sequence[int]) -> tuple[_Problem, Reals, Reals]:
-    """Fit some of the geometry, too; return the problem that holds it, the parameters, and its covariance."""
+    """Fit some of the geometry, too; return the problem with this geometry, the parameters, and its covariance."""
     apart = replace(problem, free=free)
     x = np.append(x, np.zeros(len(free)))
     for _ in range(4):  # one fit may stop halfway along a valley
@@ -480,7 +480,7 @@ def _each(problem: _Problem, x: Reals, trace: Trace, structure: Structure, free_
     if len(problem.sides) > 1 and problem.distance(x) > MAX_RESIDUAL_TO_NOISE * noise:
         apart, other, covariance = _freed(problem, x, [SIDES])
         least = problem.distance(parameters) ** 2
-        # Different sides explain the scatter.
+        # Keep different sides if these explain most of the scatter.
         if apart.distance(other) ** 2 - least < 0.1 * (problem.distance(x) ** 2 - least):
             problem, x = apart, other
             ratio = float(np.exp(problem.sense * problem.geometry[SIDES]))
@@ -490,7 +490,7 @@ def _each(problem: _Problem, x: Reals, trace: Trace, structure: Structure, free_
         raise InputError(_is_other(problem, x, problem.distance(parameters), trace, structure))
     covariance = noise**2 * max(1.0, pattern) * solve @ solve.T
     deviation = np.sqrt(np.diag(covariance))
-    last = ETA + count - 1  # left out, as all later impacts share it
+    last = ETA + count - 1  # the last eta is left out of the mean, as all later impacts share it
     pooled = pool(parameters[ETA:last], covariance[ETA:last, ETA:last], MEASURED_SPREAD)
     w = pooled.weights
     variance = w @ covariance[ETA:last, ETA:last] @ w + pooled.scatter**2 * (w @ w)

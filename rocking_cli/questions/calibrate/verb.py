@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rocking_cli.questions.score.table import ObservedTest, TableOfTests
     from rocking_cli.structure import Structure
 
-# Defaults of the grid.
+# Default ranges of slenderness and restitution in the grid, and default numbers of its points and neighbours.
 SLENDERNESS_RANGE, RESTITUTION_RANGE, GRID_POINTS, GRID_NEIGHBOURS = (0.7, 1.3), (0.7, 0.99), 9, 40
 MIN_GRID_POINTS, MAX_GRID_POINTS = 3, 101
 

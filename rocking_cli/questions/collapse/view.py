@@ -14,10 +14,10 @@ from rocking_cli.text import in_short
 from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, rounded, table_of
 from rocking_cli.views.view import Table, View, force_unit, heading, number
 
-MAX_NAMED_BLOCKS = 6  # of a part: of a larger one, only SAMPLE_OF_BLOCKS are named
+MAX_NAMED_BLOCKS = 6  # blocks of a part that are named; of a larger part, only SAMPLE_OF_BLOCKS
 SAMPLE_OF_BLOCKS = 3
-FRICTION_TOLERANCE = 1e-6  # relative: within it, a mechanism uses all of the given friction
-MAX_JOINT_ROWS = 24  # with more joints, only those that move are listed
+FRICTION_TOLERANCE = 1e-6  # relative difference within which a mechanism uses all of the given friction
+MAX_JOINT_ROWS = 24  # number of joints up to which all are listed; with more, only those that move
 
 
 def view(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism]) -> View:

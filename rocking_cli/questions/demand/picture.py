@@ -8,7 +8,7 @@ from rocking_cli.plotting import style
 from rocking_cli.questions.demand.study import LONGEST_FINE_PERIOD, SpectraOfSite
 
 QUANTITIES = (("acceleration", "spectral acceleration [g]"), ("displacement", "spectral displacement [m]"))
-BOLDEST = 2.4  # pt, of the limit state that decides
+BOLDEST = 2.4  # weight [pt] of the curves at the limit state that decides
 SUPPORTS = {"": "ground", "floor_": "floor"}
 
 

@@ -20,7 +20,7 @@ CURVES = (
     ("floor_acceleration", "floor Sa", "g"),
     ("floor_displacement", "floor Sd", "m"),
 )
-"""Of each limit state: key, name in tables, and unit."""
+"""Curves of each limit state: key, name in tables, and unit."""
 
 
 def view(found: SpectraOfSite) -> View:

@@ -13,13 +13,13 @@ from rocking_cli.core.hung.ties import Tie
 from rocking_cli.io.dotted import words
 from rocking_cli.structure import Structure
 
-MAX_BARS = 4  # of a tie whose number of bars is not given
+MAX_BARS = 4  # largest number of bars proposed for a tie that does not give it
 MAX_PROPOSALS = 2  # the fewest bars that suffice, and more bars of a smaller diameter
 DEFAULT_STEEL: SteelName = "S235"
 
 
 class Bars(NamedTuple):
-    """Bars of one tie: their number, a real one of a spacing, diameter [m] and strength."""
+    """Bars of one tie: number (not whole if it follows from a spacing), diameter [m] and strength."""
 
     number: float
     diameter: float

@@ -133,7 +133,7 @@ def _ratio(structure: Structure, excitation: Excitation | None) -> float:
 
 
 def _median_of(measure: Callable[[Mechanism, Reals, Direction], Reals]) -> Callable[[Neighbours, Structure], float]:
-    """Return a metric: what half of the neighbours do not exceed of a function of the rotation, up to their peaks."""
+    """Return a metric: the median over neighbours of the largest value of a function of rotation up to their peaks."""
 
     def median(near: Neighbours, structure: Structure) -> float:
         mechanism = structure.mechanism
@@ -159,12 +159,12 @@ def _lacks_ties(structure: Structure) -> str | None:
 
 
 def taken_otherwise(structure: Structure, site: SiteFile) -> Sequence[LeftOut]:
-    """Return what a structure has and a code does not count, such as the stiffness of ties."""
+    """Return the ties of a structure that a code does not count in full, such as elastic ones."""
     return [each for each in verify(structure, site).left_out if each.what == "tie"]
 
 
 def relied_on(structure: Structure, site: SiteFile) -> Sequence[Remark]:
-    """Return what the verification of a structure relies on and may not be there, such as ties that stretch far."""
+    """Return remarks on what a verification relies on but may be absent, such as the force of a long tie."""
     return verify(structure, site).relies_on
 
 
@@ -192,7 +192,7 @@ METRICS: Mapping[str, Metric] = {
 
 
 def _of_codes(name: str) -> Metric | None:
-    """Return the metric of a name that codes of practice have among their `numbers`; None if none has it."""
+    """Return the metric that codes of practice declare under this name among their `numbers`; None if none does."""
     numbers: dict[str, Number] = {}
     for key in codes():
         try:
@@ -213,7 +213,7 @@ def _of_codes(name: str) -> Metric | None:
         assert excitation is not None and excitation.site is not None
         key = excitation.site.site.code
         of = numbers[key].of
-        assert of is not None  # otherwise it is a metric of the structure
+        assert of is not None  # a number without `of` is a metric of the structure alone
         verified = verify(structure, excitation.site).directions.values()
         with _blamed(key, name):
             return min((value for direction in verified if (value := of(direction)) is not None), default=nan)
@@ -223,7 +223,7 @@ def _of_codes(name: str) -> Metric | None:
 
 
 def _blamed(code: str, name: str) -> AbstractContextManager[None]:
-    """Turn errors in a number of a code into errors of the code's plugin."""
+    """Turn an error that occurs while a code of practice computes a metric into an error of the code's plugin."""
     return blame(f"the code {code} failed in its number {name}", type(codes()[code]).__module__)
 
 

@@ -12,7 +12,7 @@ from rocking_cli.questions.design.study import Design
 
 SATISFIED_COLOUR = "#d6e6f2"
 HEADROOM = 0.12  # share of the height above the curve
-MAX_MARKED_VALUES = 60  # of the scan
+MAX_MARKED_VALUES = 60  # largest number of values of the scan that are marked one by one
 
 
 def draw_design(found: Design) -> Figure:

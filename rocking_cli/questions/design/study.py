@@ -26,7 +26,7 @@ OPERATORS: dict[str, Callable[[float, float], bool]] = {
     "<=": operator.le, ">=": operator.ge, "<": operator.lt, ">": operator.gt,
 }  # fmt: skip
 SCAN_POINTS = 41
-EDGE_TOLERANCE = 1e-12  # share of the range, to which an edge is found
+EDGE_TOLERANCE = 1e-12  # share of the range to which an edge is found
 EDGE_TOLERANCE_OF_SHARES = 1e-3  # shares of histories change in steps, so that more precision has no meaning
 TREND_TOLERANCE = 1e-9  # relative size of steps against the trend that rounding may cause
 _AIM = re.compile(r"\s*([A-Za-z]\w*)\s*(<=|>=|<|>)\s*(\S.*?)\s*")
@@ -350,7 +350,7 @@ def _check_site(metric: Metric, excitation: Excitation | None) -> None:
 def _taken_otherwise(
     structure: Structure, field: str, span: tuple[float, float], aim: Aim, excitation: Excitation | None
 ) -> Sequence[LeftOut]:
-    """Return what the structure has and the code does not count, at either end of the range, without repetitions."""
+    """Return the ties of the structure that the code does not count in full, at either end of the range, each once."""
     if not aim.metric.sited or excitation is None or excitation.site is None:
         return []
     reasons: dict[LeftOut, None] = {}
@@ -422,7 +422,7 @@ def _edge(at: Callable[[float], float], aim: Aim, inside: float, outside: float)
         away = at(x) - aim.level
         return inf if isnan(away) else min(max(away, -bound), bound)
 
-    for end in (inside, outside):  # the metric equals the level, and the operator decides
+    for end in (inside, outside):  # if the metric equals the level here, the operator decides
         if beyond(end) == 0.0:
             return end
     closest = EDGE_TOLERANCE * abs(outside - inside)

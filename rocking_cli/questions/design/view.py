@@ -23,7 +23,7 @@ from rocking_cli.views.sheet.language import ENGLISH
 from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import ABSENT, Table, View
 
-MAX_SCAN_ROWS = 11  # values of the scan in the table
+MAX_SCAN_ROWS = 11  # values of the scan that the table lists
 
 
 def view(found: Design, excitation: Excitation | None = None) -> View:

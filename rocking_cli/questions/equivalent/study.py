@@ -177,7 +177,7 @@ def equivalent(
     linear = linear_model("linear block", scaling, (both, both), mechanisms[0].gravity)
     history = follow(linear, ground, tail=_tail(pulse, block.p))
     alone: OneOutcome = history
-    if pulse.segments():  # exact, whereas the history is of the sampled pulse
+    if pulse.segments():  # an exact outcome, whereas the history is of the sampled pulse
         alone = exact_response(
             Equivalence(both, both), pulse, kappa=kappa, gravity=mechanisms[0].gravity, polarity=polarity
         )

@@ -15,7 +15,7 @@ from rocking_cli.views.response import known_data
 from rocking_cli.views.verdict import unchecked, why_unknown
 from rocking_cli.views.view import View
 
-# Spread over the linear peak, of equivalent and of approximately equivalent structures.
+# Largest spread, over the linear peak, of equivalent and of approximately equivalent structures.
 MAX_SPREAD, MAX_APPROXIMATE_SPREAD = 0.05, 0.2
 
 

@@ -15,7 +15,7 @@ from rocking_cli.questions.error.study import Linearisation, preferred
 
 Reals = NDArray[np.float64]
 PREFERRED_STYLE, OTHER_STYLE = {"linestyle": "-", "linewidth": 2.0}, {"linestyle": "--", "linewidth": 1.3}
-MAX_SHOWN_ERROR = 0.5  # in either direction
+MAX_SHOWN_ERROR = 0.5  # largest error that is drawn, of either sign
 
 
 def draw_linearisation(curves: Sequence[Linearisation], asked: Sequence[Linearisation], title: str) -> Figure:

@@ -21,14 +21,14 @@ from rocking_cli.errors import InputError, SolverError
 from rocking_cli.structure import Structure
 
 NODES_TOLERANCE = 1e-10  # relative change at which doubling the nodes stops
-MIN_NODES, MAX_NODES = 16, 512  # along the motion
-ENERGY_NODES = 20  # between two rotations
+MIN_NODES, MAX_NODES = 16, 512  # nodes of the integration along the motion
+ENERGY_NODES = 20  # nodes of the integration of energy between two rotations
 # Tolerance, most nodes and energy nodes, if derivatives of the restoring moment have corners.
 ROUGH_INTEGRATION = (1e-5, 128, 100)
 CURVE_POINTS = 60
 MAX_CURVE_STRENGTH = 10.0  # acceleration over uplift acceleration at which the curves end
-MIN_RATIO_DISTANCE = 1e-6  # from no motion, and from the critical rotation, that energies still resolve
-MAX_STRENGTH = 1e6  # acceleration over uplift acceleration
+MIN_RATIO_DISTANCE = 1e-6  # distance of phi/phi_cr from 0 and from 1 that energies still resolve
+MAX_STRENGTH = 1e6  # largest acceleration over the uplift acceleration
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,7 +158,7 @@ def linearisation(
 def compare(
     structure: Structure, amplitudes: Sequence[float], accelerations: Sequence[float]
 ) -> tuple[list[Linearisation], list[Linearisation]]:
-    """Return the curves and the requested values, of one direction if both are alike; see `linearisation`."""
+    """Return the errors of the blocks over whole ranges and at the requested values; of one direction if both agree."""
     structure.ask("linear models")
     mechanism, equivalence = structure.mechanism, structure.equivalence
     directions = [mechanism.directions[0]] if equivalence.symmetric else list(Direction)
@@ -223,7 +223,7 @@ def velocity_ratios(block: EquivalentBlock, gravity: float) -> tuple[float, floa
     In q.. = p^2 (q - phi_cr), a velocity step v of the ground gives the rate p^2 kappa v/g, and a rate p phi_cr just
     overturns: v = g lambda/p.
     """
-    # NaN for a structure that overturns by itself, or nearly does.
+    # The ratio is NaN for a structure that overturns by itself, or nearly does.
     unit = gravity / (block.p * block.v_imp) if block.v_imp else np.nan
     return unit * block.lambda_lin, unit * block.lambda_
 

@@ -22,7 +22,7 @@ PREFERRED_KAPPA = {None: None, 0: "either", 1: "kappa1", 2: "kappa2"}
 
 
 class ErrorRow(NamedTuple):
-    """An error: of what, at which amplitude or acceleration, and the ratio to the structure with each kappa."""
+    """An error: the quantity, its amplitude or acceleration, and the ratio of block to structure with each kappa."""
 
     what: str
     at: str

@@ -26,7 +26,7 @@ from rocking_cli.questions.fragility.plan import Plan
 from rocking_cli.questions.fragility.store import Store
 from rocking_cli.questions.fragility.tally import Cells, Counted, Onset, Tally, count, intensities
 
-MAX_UNKNOWN_SHARE = 0.02  # of runs: with more, a second curve counts unknown runs the other way
+MAX_UNKNOWN_SHARE = 0.02  # share of unknown runs above which a second curve counts them the other way
 
 
 @dataclass(frozen=True)
@@ -232,7 +232,7 @@ def _twice(fit: Callable[[Cells], Fitted], cells: Cells, unknown: int) -> Fitted
 
 
 def _consistent(fits: Sequence[Fragility], onset: Onset | None) -> Iterator[Fragility]:
-    """Yield the curves of one structure over one measure, corrected so that none lies above one that it implies.
+    """Yield the curves of one structure over one measure, corrected so that none lies above a curve that it implies.
 
     Parameters
     ----------

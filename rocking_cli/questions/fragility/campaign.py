@@ -304,7 +304,7 @@ def _refuse_changes(store: Store, facts: dict[str, Any], known: Plan, now: Plan)
         old = before.get(record.name)
         if old is not None and old.reason is None and old.checksum != record.checksum:
             changes.append(f"the record {record.name} has changed, or cannot be read any more")
-    if not changes:  # equal fields, from which the mechanism may still derive other parameters
+    if not changes:  # fields are equal, but the mechanism may derive other parameters from them
         changes = [change for pair in zip(known.trials, now.trials, strict=True) for change in _other_mechanics(*pair)][
             :MAX_NAMED_CHANGES
         ]
@@ -315,7 +315,7 @@ def _refuse_changes(store: Store, facts: dict[str, Any], known: Plan, now: Plan)
 
 
 def _other_mechanics(before: Trial, now: Trial) -> list[str]:
-    """Return sentences on what a mechanism of the same version and fields computes differently than before."""
+    """Return sentences on parameters that a mechanism of the same version and fields computes otherwise than before."""
     name = f"sample {now.number} of {now.structure}"
     if (before.reason is None) != (now.reason is None):
         return [f"{name} {'can be run now' if now.reason is None else f'cannot be run any more: {now.reason}'}"]

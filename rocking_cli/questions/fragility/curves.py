@@ -26,15 +26,15 @@ from rocking_cli.studies.fit import (
 
 Kind = Literal["lognormal", "logistic", "step", "none"]
 LINKS: dict[Kind, Link] = {"lognormal": "probit", "logistic": "logit"}
-MIN_P_VALUE = 0.05  # of a curve that is not rejected
-MAX_DISPERSION = 5.0  # beyond, the limit state does not depend on the measure: exp(5) is 150
+MIN_P_VALUE = 0.05  # least p-value of a curve that is not rejected
+MAX_DISPERSION = 5.0  # dispersion above which the limit state does not depend on the measure: exp(5) is 150
 LIKELIHOOD_TOLERANCE = 1e-6  # smaller differences of log-likelihoods are rounding
 _DECREASING = (
     "no increasing curve exists: fewer runs count as exceeding the limit at higher intensities, so no curve fits this "
     "measure"
 )
 ZERO_INTENSITY = 1e-300  # replaces zero, which has no logarithm
-MIN_CUT = 0.001  # of a probability: smaller cuts of a curve are not reported
+MIN_CUT = 0.001  # change of a probability: smaller cuts of a curve are not reported
 
 
 @dataclass(frozen=True)
@@ -165,7 +165,7 @@ class FragilityCurve(FittedToRuns):
         if self.fit is not None:
             probability = self.fit.probability(self._design(x)).reshape(x.shape)
         elif self.step is not None:
-            known = self.step.low == self.step.high  # from the uplift acceleration, which a motion must exceed
+            known = self.step.low == self.step.high  # exactly known uplift acceleration, which a motion must exceed
             probability = np.heaviside(x - self.step.value, 0.0 if known else 0.5)
         else:
             return np.full(x.shape, np.nan)
@@ -516,7 +516,7 @@ def fit_surface(
         return replace(
             bare, why="the two measures are in proportion (of their logarithms): take a curve over either one"
         )
-    standard, some, none = standardised(design)[0], beyond > 0, beyond < number  # both if outcomes are mixed
+    standard, some, none = standardised(design)[0], beyond > 0, beyond < number  # cells of mixed outcomes are in both
     rows = np.concatenate([standard[some], standard[none]])
     if separable(rows, np.arange(len(rows)) < some.sum()):
         why = "a line in the plane of the two measures separates what exceeds from what does not"
@@ -559,7 +559,7 @@ def _words(both: Fit, p_values: tuple[float, float], aic: dict[str, float]) -> s
         for name, other, p in (("second", "first", p_values[1]), ("first", "second", p_values[0]))
     ]
     if max(p_values) >= MAX_P_VALUE_TO_ADD:
-        alike = min(p_values) >= MAX_P_VALUE_TO_ADD  # if neither adds to the other, the likelier one
+        alike = min(p_values) >= MAX_P_VALUE_TO_ADD  # neither measure adds to the other: take the likelier
         better = "first" if (aic["first"] <= aic["second"] if alike else p_values[0] < MAX_P_VALUE_TO_ADD) else "second"
         clauses.append(f"a curve over the {better} measure alone is sufficient")
     falls = [name for name, c in zip(("first", "second"), both.coefficients[1:], strict=True) if c < 0]

@@ -201,7 +201,7 @@ def in_units_of_fields(document: Document, load: Callable[[str], Mechanism]) -> 
                 continue
             try:
                 structure = structure or load(entry["file"])
-            except RockingError:  # reported when the study itself is read
+            except RockingError:  # the problem is reported when the study itself is read
                 break
             info = type(structure).model_fields.get(name)
             extra = info.json_schema_extra if info is not None else None

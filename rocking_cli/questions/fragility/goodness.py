@@ -10,7 +10,7 @@ from rocking_cli.arrays import Integers, Reals
 from rocking_cli.questions.fragility.observed import Observations
 from rocking_cli.studies.fit import MAX_ETA, Brackets, Counts, Fit, cumulative, density, standardised, totals
 
-MIN_EXPECTED = 2.0 - 1e-6  # records on either side, in a group or cell: two, less rounding
+MIN_EXPECTED = 2.0 - 1e-6  # expected records on either side in a group or cell: two, less rounding
 BY_RECORD = ", corrected for repeated records"
 
 

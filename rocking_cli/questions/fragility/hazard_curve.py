@@ -15,8 +15,8 @@ from rocking_cli.questions.fragility.curves import FragilityCurve
 from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE
 from rocking_cli.studies.points_file import read_points
 
-NODES_PER_PIECE = 16  # of Gauss's rule
-PIECE_WIDTH = 0.05  # of ln x: a curve of dispersion 0.02 is still smooth within it
+NODES_PER_PIECE = 16  # nodes of Gauss's rule in a piece
+PIECE_WIDTH = 0.05  # width of a piece in ln x: a curve of dispersion 0.02 is still smooth within it
 REFERENCE_LIFE = 50.0  # years
 
 

@@ -34,9 +34,9 @@ TYPES: Mapping[str, tuple[str, float]] = {
     "Arias": ("IA", 1.0),
     "CAV": ("CAV", 1 / STANDARD_GRAVITY),
 }
-SPECTRAL_MEASURE = re.compile(r"SA\(\s*([0-9.]+)\s*s?\s*\)", re.IGNORECASE)  # in g, here as in OpenQuake
+SPECTRAL_MEASURE = re.compile(r"SA\(\s*([0-9.]+)\s*s?\s*\)", re.IGNORECASE)  # values in g, here as in OpenQuake
 NEGLIGIBLE_DEVIATIONS = 3.719  # standard deviations below the median: a probability of 1e-4
-MIN_CROSSING = 0.001  # of a probability: curves that cross by less are written with the same value
+MIN_CROSSING = 0.001  # difference of probability up to which crossing curves are written with the same value
 CROSSING_POINTS = 400  # intensities at which curves are checked for crossing
 
 
@@ -202,7 +202,7 @@ def _why_not_together(
 
 
 def _most_curves(sets: Sequence[frozenset[Limit]]) -> frozenset[Limit]:
-    """Return the limit states that give most curves: their number times that of the functions that have them all."""
+    """Return the limit states that give most curves: their number times the number of functions with all of them."""
     candidates = set(sets)
     while new := {one & other for one in candidates for other in candidates} - candidates:
         candidates |= new

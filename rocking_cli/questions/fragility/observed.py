@@ -1,4 +1,4 @@
-"""Observed runs: those at one intensity, the share that exceeds, and the number of records behind it."""
+"""Observed runs, grouped by intensity: the share that exceeds a limit state, and the number of different records."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from rocking_cli.studies.fit import Counts, totals
 
 # Relative difference of equal intensities: far above rounding, far below a change of shaking.
 INTENSITY_TOLERANCE = 1e-9
-MIN_STRIPE_RECORDS = 5  # average number of records at one intensity from which each intensity is a group
+MIN_STRIPE_RECORDS = 5  # average number of records at one intensity, from which each intensity is a group
 MAX_STRIPES = 50  # with more intensities, they are grouped in tenths
-RUN_GROUPS = 10  # if intensities are no groups
+RUN_GROUPS = 10  # number of groups, if intensities are not groups themselves
 MIN_RELIABLE_RECORDS = 20  # with fewer, the coverage of intervals may differ from the nominal one
 # Measured coverage [%] of 95 % intervals, by number of records: docs/make_coverage.py.
 MEASURED_COVERAGE = {5: (89, 100), 10: (90, 98)}
@@ -127,7 +127,7 @@ class Observations:
         """Return the group of each run that `of` counted, from its intensity, record and level."""
         place = np.searchsorted(self.x, one_of_each(x if level is None else _of_levels(x, level)))
         who = np.unique(record, return_inverse=True)[1]
-        cells = self.counts.term * self.records + self.counts.record  # sorted
+        cells = self.counts.term * self.records + self.counts.record  # cells are sorted, so that they can be searched
         return np.asarray(self.group[np.searchsorted(cells, place * self.records + who)])
 
     def parts(self, confidence: float) -> ObservedParts:

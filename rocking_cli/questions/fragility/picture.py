@@ -24,18 +24,18 @@ from rocking_cli.questions.fragility.quantiles import MIN_RECORDS
 
 Reals = NDArray[np.float64]
 Integers = NDArray[np.int64]
-MIN_LOG_RATIO = 30.0  # of the ends of an axis that is logarithmic
+MIN_LOG_RATIO = 30.0  # ratio of the ends of an axis from which it is logarithmic
 CURVE_POINTS = 400
 MAX_MARKS = {True: 25, False: 10}  # observed shares of a single curve (True), and of each of several (False)
-MAX_FILLED_BANDS = 2  # if there are more, their edges are drawn
+MAX_FILLED_BANDS = 2  # if there are more bands, only their edges are drawn
 BAND_OPACITY = 0.14
-LEGEND_BAND_WIDTH = 0.35  # inches, of a band between two curves
+LEGEND_BAND_WIDTH = 0.35  # inches; width of a band between two curves in the legend
 HATCH_OPACITY = 0.4
 HATCHES = ("////", "\\\\\\\\", "||||", "----")
 MAX_LEGEND_LINE = 96  # characters
 MAX_DRAWN_RUNS = 3000  # runs and records that are drawn one by one
 MAX_DRAWN_LADDERS = 300
-CONTOUR_LEVELS = (0.1, 0.25, 0.5, 0.75, 0.9)  # probabilities
+CONTOUR_LEVELS = (0.1, 0.25, 0.5, 0.75, 0.9)  # probabilities of the contours
 EDGE_LABELS = (f"if {names.UNKNOWN} runs exceed", f"if {names.UNKNOWN} runs do not")
 FRACTILES = ((0.16, "16 %"), (0.5, "median"), (0.84, "84 %"))
 LABEL_FREE_MARGIN = 0.08  # share of the plane at its edges without names of contours
@@ -391,7 +391,7 @@ def _contours(axes: Axes, surface: Surface, across: Reals, up: Reals, color: str
         drawn, manual=_label_places(drawn, across, up), fmt=lambda level: f"{100 * level:g} %", fontsize=style.TICK
     ):
         name.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5})
-        name.set_zorder(6)  # above the marks
+        name.set_zorder(6)  # names are drawn above the marks
     return Line2D([], [], color=color, label=f"probability of exceedance{which and f', {which}'}")
 
 

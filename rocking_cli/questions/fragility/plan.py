@@ -342,7 +342,7 @@ class Plan:
 
 V_IMP = "v_imp"
 ORIGIN = ("magnitude", "distance")
-"""Fields of the earthquake of a record, stored beside its measures to check their residuals against."""
+"""Fields of a record's earthquake that are stored beside its measures, for the test of residuals."""
 Told = Callable[[int], None]
 """Called with the number of records processed since the last call."""
 
@@ -387,7 +387,7 @@ def complete(
     plan = _with_samples(plan, mechanisms, model, measures)
     bases = {str(each.base): each.base for each in measures if each.base is not None}
     of_run = {str(each): each for each in measures if isinstance(each, RunMeasure)}
-    if plan.measure != SCALE:  # without intensities, no run has a factor
+    if plan.measure != SCALE:  # the factors on records follow from this measure
         base = parse_measure(plan.measure).base
         assert base is not None
         bases[str(base)] = base
@@ -445,7 +445,7 @@ def _without_unscalable(plan: Plan) -> Plan:
         for record, value in zip(plan.records, values, strict=True)
     ]
     known = dict(plan.measured.of_record)
-    if str(base) in known:  # measured again once the record is corrected
+    if str(base) in known:  # remove the value, so that it is measured again once the record is corrected
         known[str(base)] = np.where(values > 0, values, nan)
     return replace(plan, records=records, measured=replace(plan.measured, of_record=known))
 

@@ -24,7 +24,7 @@ from rocking_cli.questions.fragility.tally import UNKNOWN_PEAK, Tally, endings_o
 QUANTILES = (0.16, 0.5, 0.84)
 MIN_RECORDS = (names.MIN_MOTIONS, names.MIN_MOTIONS_OF_MEDIAN, names.MIN_MOTIONS)
 """Smallest number of records with which each quantile is given."""
-COUNT_TOLERANCE = 1e-9  # of a number of runs, for rounding
+COUNT_TOLERANCE = 1e-9  # difference of numbers of runs that counts as rounding
 
 
 @dataclass(frozen=True)
@@ -163,7 +163,7 @@ def _group(peaks: Reals, record: Integers, x: Reals, mean: float, records: int) 
 
 
 def _not_exceeded(ranked: Reals, records: int) -> tuple[float, ...]:
-    """Return the lowest of increasing observed values that each share of them does not exceed; NaN of too few."""
+    """Return for each share the lowest of increasing observed values that it does not exceed; NaN if too few."""
     return tuple(
         float(ranked[int(np.ceil(share * ranked.size - COUNT_TOLERANCE)) - 1])
         if ranked.size and records >= fewest

@@ -15,8 +15,8 @@ from rocking_cli.plotting import style
 from rocking_cli.questions.fragility.quantiles import Quantiles
 
 Reals = NDArray[np.float64]
-MIN_LOG_RATIO = 30.0  # of the ends of an axis that is logarithmic
-BAND_OPACITY = 0.16  # between the lowest quantile and the highest
+MIN_LOG_RATIO = 30.0  # ratio of the ends of an axis from which it is logarithmic
+BAND_OPACITY = 0.16  # opacity of the area between the lowest quantile and the highest
 LINE_END = 0.85  # height in the band of overturning at which the lines end
 ORDER = (names.NO_UPLIFT, names.ROCKS, names.UNKNOWN, names.OVERTURNS)
 OVERTURNED_COLOUR = "#c46a1b"  # light enough for its line, and darker in grey than that of runs that rock

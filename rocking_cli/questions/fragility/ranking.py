@@ -21,12 +21,12 @@ from rocking_cli.questions.fragility.store import STANDS, Store
 from rocking_cli.questions.fragility.tally import samples_of
 from rocking_cli.studies.fragility.quantities import PGA, PGV
 
-MIN_P_VALUE = 0.05  # of residuals without a trend
+MIN_P_VALUE = 0.05  # least p-value of residuals without a trend
 OF_MOTION = ("Tm", "D5-95")
 """Measures against which residuals are tested if not all records state magnitude and distance."""
 LOGARITHMIC = ("magnitude",)  # quantities that are logarithms already
-MIN_RUNS = 3  # and records
-RATIO_TOLERANCE = 1e-9  # of a logarithm: measures whose ratio is constant within it count as one
+MIN_RUNS = 3  # least number of runs, and of records
+RATIO_TOLERANCE = 1e-9  # variation of ln of a ratio: measures whose ratio varies less count as one
 
 
 @dataclass(frozen=True)
@@ -205,7 +205,7 @@ def _rank(
     """Rank the measures of one structure."""
     runs, y = rocking(store, plan, structure)
     sample, record, _, level, _ = plan.places(runs)
-    factors, one = plan.factors(sample, record, level), plan.of_sets.one[record]  # repeated in several sets
+    factors, one = plan.factors(sample, record, level), plan.of_sets.one[record]  # one: the same record in any set
     ranked: list[Ranked] = []
     alike: dict[str, str] = {}
     left_out: dict[str, str] = {}
@@ -238,7 +238,7 @@ def _rank(
 def serves(
     measure: str, x: Reals, y: Reals, record: Integers, against: Mapping[str, Reals]
 ) -> tuple[float, float, int, int, dict[str, float]] | None:
-    """Return efficiency, practicality, number of runs, number of records and trends of a measure; None without a line.
+    """Return efficiency, practicality, numbers of runs and records, and trends of a measure; None if no line fits.
 
     Parameters
     ----------

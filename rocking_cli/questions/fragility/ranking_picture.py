@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from rocking_cli.plotting import style
 from rocking_cli.questions.fragility.ranking import MIN_P_VALUE, Ranking
 
-MIN_DRAWN_P_VALUE = 1e-4  # smaller values are drawn here
+MIN_DRAWN_P_VALUE = 1e-4  # smaller p-values are drawn at this value
 
 
 def draw_ranking(ranking: Ranking) -> Figure:

@@ -17,7 +17,7 @@ from rocking_cli.excitation.pulses.base import SAMPLING
 from rocking_cli.processing.reading import Reading
 from rocking_cli.questions.fragility.definition import RecordEntry
 
-MAX_SAMPLES_IN_MEMORY = 32_000_000  # of all records: a quarter of a gigabyte
+MAX_SAMPLES_IN_MEMORY = 32_000_000  # samples of all records: a quarter of a gigabyte
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ from rocking_cli.questions.fragility.workers import CONTINUE_HINT
 
 COMMIT_INTERVAL = 1.0  # s between two commits; runs that are not committed are repeated after a crash
 RUNS_PER_READ = 100_000
-MAX_RUN_NUMBER = 2**63 - 1  # above the number of any run
+MAX_RUN_NUMBER = 2**63 - 1  # larger than the number of any run
 STANDS, FAILED, UNKNOWN = 0, 2, 3  # outcomes; 1 and -1: overturns in the positive or the negative direction
 SEAL = "seal"  # key of the checksum of everything but the runs, in the table `study`
 MAX_NAMED_RUNS = 5  # damaged runs that an error message names
@@ -505,7 +505,7 @@ class Store:
         )
 
     def replace_record(self, k: int, record: Record) -> None:
-        """Replace what is stored of a record that could not be used so far."""
+        """Replace what is stored about a record that could not be used so far."""
         columns = asdict(record)
         names = ", ".join(f"{name} = ?" for name in columns)
         self._connection.execute(f"UPDATE record SET {names} WHERE id = ?", (*columns.values(), k))
@@ -684,7 +684,7 @@ def tables(connection: sqlite3.Connection) -> int:
 
 
 def is_beyond_reading(path: Path, error: sqlite3.DatabaseError) -> bool:
-    """Return whether an error means that a file, a store by its first bytes, cannot even be locked."""
+    """Return whether an error means that a file, which begins like a store, cannot even be locked."""
     with path.open("rb") as file:
         start = file.read(100)
     is_store = start.startswith(b"SQLite format 3\0") and start[68:72] == APPLICATION_ID.to_bytes(4, "big")
@@ -706,7 +706,7 @@ def open_locked(path: Path) -> sqlite3.Connection:
 
 
 def _identity(path: Path) -> tuple[int, int] | None:
-    """Return what tells a file from any that replaces it; None if there is none."""
+    """Return numbers that identify a file, and no file that replaces it; None if there is no file."""
     try:
         status = path.stat()
     except FileNotFoundError:

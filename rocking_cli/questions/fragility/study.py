@@ -307,7 +307,7 @@ def _sources(document: Document, place: Place, folder: Path, entry: RecordEntry,
         what = "a second component belongs to one record: give each record an entry of its own"
         document.problems.append(document.at((*place, "with"), what))
         return []
-    if other:  # a pattern that matches only this file
+    if other:  # a pattern is replaced by the only file that it matches
         entry = entry.model_copy(update={"other": _shown(other[0], folder)})
     return [one for file in files for one in _of_file_or_list(document, place, folder, entry, common, file, vertical)]
 

@@ -17,7 +17,7 @@ from rocking_cli.questions.fragility.store import FAILED, SLIDE_COLUMN, STANDS, 
 from rocking_cli.studies.fragility.quantities import USUAL_MEASURES, label
 
 CURVE_POINTS = 101
-MIN_LOG_RATIO = 30.0  # of the largest intensity over the least, from which intensities are spaced by a factor
+MIN_LOG_RATIO = 30.0  # ratio of largest to least intensity, from which intensities are spaced by a factor
 TEXT_COLUMNS = ("structure", "limit_state", "measure", "unit", "kind")
 NUMBER_COLUMNS = ("median", "dispersion", "scale", "x", "probability", "low", "high")
 LOWER_COLUMNS = tuple(f"lower_{name}" for name in ("median", "dispersion", "scale", "probability", "low", "high"))

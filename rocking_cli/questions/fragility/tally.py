@@ -31,7 +31,7 @@ from rocking_cli.studies.under_pulses import uplift
 Places = NDArray[np.int32]
 UNKNOWN_PEAK = float(np.finfo(np.float64).max)
 """Peak of a run of unknown outcome, for sorting: above every known peak, below that of overturning runs."""
-ROTATION_TOLERANCE = 1e-9  # relative, for rounding
+ROTATION_TOLERANCE = 1e-9  # relative difference of rotations that counts as rounding
 Counted = Callable[[int], None]
 """Called with the number of run numbers examined since the last call."""
 
@@ -251,7 +251,7 @@ def count(
         checked &= bool(endings.checked.all())
         doubtful = int(endings.unknown.sum())
         unknown += doubtful
-        if doubtful and lower is None:  # the bounds are equal so far
+        if doubtful and lower is None:  # up to the first unknown outcome, both counts are equal
             lower = deepcopy(upper)
         for limit in limits:
             rotations = reach[limit][sample] if limit in reach else None
@@ -373,7 +373,7 @@ def _differs_between_samples(plan: Plan, samples: range, measure: str) -> bool:
 
 
 def _drawn_otherwise(plan: Plan, samples: range) -> bool:
-    """Return whether samples differ in more than restitution, so that their relative intensities differ."""
+    """Return whether samples differ in more than restitution, which alone changes no relative intensity."""
     return any(set(plan.trials[k].drawn) - {RESTITUTION} for k in samples)
 
 
@@ -386,11 +386,11 @@ def _add(table: Integers, cell: Integers) -> None:
 
 
 Pair = tuple[float | None, float | None]
-"""Values in the positive and the negative direction; None if the structure never reaches them."""
+"""Values in the positive and the negative direction; None if a structure does not reach the displacement."""
 
 TOP_POINTS = 512  # rotations between rest and the end of a mechanism at which the displacement of its top is computed
 REFINEMENT = 32  # parts of a step in each refinement
-MAX_REFINEMENTS = 10  # after which only rounding is left
+MAX_REFINEMENTS = 10  # number of refinements, after which only rounding is left
 
 
 def rotations(
@@ -554,7 +554,7 @@ def onset(plan: Plan, samples: range, pair: Pair | None, measure: str) -> Onset 
         return None
     usable = [k for k in samples if plan.trials[k].reason is None]
     accelerations = np.array([plan.trials[k].lambda_ * plan.trials[k].gravity for k in usable])
-    # The uplift acceleration depends on a property that varies.
+    # If the accelerations differ, the uplift depends on a property that varies, and there is no single onset.
     if np.ptp(accelerations) > INTENSITY_TOLERANCE * accelerations.max():
         return None
     pga = accelerations[:1] / STANDARD_GRAVITY

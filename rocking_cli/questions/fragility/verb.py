@@ -117,7 +117,7 @@ def workers_of(jobs: int | None, scheduler: str | None) -> AbstractContextManage
 
 
 def _planned(study: Study, watch: Watcher) -> Answer[Plan]:
-    """Return what a study would run."""
+    """Return the plan of the runs of a study, without simulating them."""
     from rocking_cli.questions.fragility.campaign import examine_study
     from rocking_cli.questions.fragility.view import planned
 

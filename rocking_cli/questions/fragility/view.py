@@ -234,7 +234,7 @@ def _surfaces(
 
 
 def edges(found: Sequence[Fitted]) -> Iterator[tuple[str, Fitted]]:
-    """Yield all fits with their names; both edges of a band."""
+    """Yield all fits with their names; for a band, both of its edges."""
     for each in found:
         name = limit_name(each.limit)
         if each.is_band and each.lower is not None:
@@ -362,7 +362,7 @@ def _with_interval(estimate: Mapping[str, float]) -> str:
 
 
 def fit_columns(interval: str = "", width: str = "", *, rated: bool = False) -> list[Column[Named]]:
-    """Return the columns of a curve by its name, with the headings of its intervals; a rate is shown if there is one.
+    """Return the columns of named curves, with the headings of their intervals; and of the rate, if there is one.
 
     Some columns of a table stand for several of the data.
     """
@@ -394,7 +394,7 @@ def _coefficient(k: int) -> Callable[[Named], Any]:
 
 
 def plane_columns(interval: str = "") -> list[Column[Named]]:
-    """Return the columns of a surface by its name, with the headings of its intervals."""
+    """Return the columns of named surfaces, with the headings of their intervals."""
     return [
         only_shown("limit state", lambda row: row[0], text=True),
         *(only_shown(f"c{k}\n{interval}", _coefficient(k), _with_interval) for k in range(3)),
@@ -417,7 +417,7 @@ def of_fit(name: str) -> Callable[[Named], Any]:
 
 
 def _data(found: Fragility | Bivariate, columns: Sequence[Column[Named]], over: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a fit as plain data, with what it is over, its undecided runs and its lower edge."""
+    """Return a fit as plain data, with the measures that it is over, its undecided runs and its lower edge."""
     return {
         "structure": found.structure,
         "limit_state": found.limit,

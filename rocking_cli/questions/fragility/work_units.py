@@ -24,11 +24,11 @@ from rocking_cli.questions.fragility.study import Sample
 from rocking_cli.structure import Structure, with_restitution
 from rocking_cli.studies.contact import Contacts
 
-MIN_RUNS, MAX_RUNS = 64, 4096  # of a unit: some 10 ms to 1 s of work, against 1 to 10 ms for handing it out
-MAX_CHECKED_RUNS = 256  # of a unit that is checked for sliding: each run takes some ms
-MIN_UNITS_PER_WORKER = 16  # so that all workers end together
-MAX_SAMPLES = 4_000_000  # of the records of a unit: 64 megabytes
-MAX_MODELS = 16  # of a unit: some 30 megabytes, 120 for arches
+MIN_RUNS, MAX_RUNS = 64, 4096  # runs of a unit: some 10 ms to 1 s of work, against 1 to 10 ms for handing it out
+MAX_CHECKED_RUNS = 256  # runs of a unit that is checked for sliding: each run takes some ms
+MIN_UNITS_PER_WORKER = 16  # units for each worker, so that all workers end together
+MAX_SAMPLES = 4_000_000  # samples of the records of a unit: 64 megabytes
+MAX_MODELS = 16  # models of a unit: some 30 megabytes, 120 for arches
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 A = TypeVar("A")
 B = TypeVar("B")
 CONTINUE_HINT = "finished runs are kept: run the same command again to continue"
-UNITS_PER_WORKER = 2  # one at work, one waiting
+UNITS_PER_WORKER = 2  # units for each worker: one at work, one waiting
 MAX_LOST_WORKERS = 5  # workers lost with the same unit, before the study gives up
 CHECK_INTERVAL = 20.0  # s without a finished unit, after which the workers are checked
-SCHEDULER_TIMEOUT = 10.0  # s
+SCHEDULER_TIMEOUT = 10.0  # s to wait for an answer of the scheduler
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ DEFAULTS: tuple[Column[Mapping[str, Any]], ...] = (
     only_shown("of", lambda each: each["command"] or "every command", text=True),
     only_shown("from", itemgetter("place"), text=True),
 )
-"""Columns of the user's defaults, whose rows are the data."""
+"""Columns of the table of the user's defaults; a row is the plain data of one default."""
 
 
 def view(found: Installation, defaults: Mapping[str, Any]) -> View:

@@ -157,7 +157,7 @@ def margin(
 
 
 def conclusion(structure: Structure, motion: GroundMotion, polarities: Sequence[int], found: Margin) -> Conclusion:
-    """Return what is concluded at a factor of 1, with the share and the factor from which a tenth may overturn.
+    """Return the conclusion at a factor of 1, with the share, and the factor from which a tenth may overturn.
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ GOVERNING_ROW = "overturn or unknown"
 
 
 class MarginRow(NamedTuple):
-    """A motion: name, scale factor on the record as read, PGA with this factor [g], margin, and what is concluded."""
+    """A motion: name, scale factor on the record as read, PGA with this factor [g], margin, and conclusion."""
 
     name: str
     factor: float
@@ -77,7 +77,7 @@ COLUMNS: tuple[Column[_Line], ...] = (
 def view(
     structure: Structure, rows: Sequence[MarginRow], polarity: str, around: Neighbourhood, end: Conclusion
 ) -> View:
-    """Show the margins of a structure under some motions, what is concluded of all of them first."""
+    """Show the margins of a structure under some motions, the conclusion on all of them first."""
     mechanism, over = structure.mechanism, peaks_over([side.phi_cr is None for side in structure.statics])
     around = rows[0].margin.around if rows else around  # includes the deviations of the structure
     either = {

@@ -19,8 +19,8 @@ from rocking_cli.plotting import style
 from rocking_cli.questions.overturning.study import Comparison, OverturningMap, Region
 
 Reals = NDArray[np.float64]
-GRID_POINTS = 500  # along either axis, on which boundaries are traced
-CONTOUR_LEVELS = (0.1, 0.25, 0.5, 0.75)  # phi/phi_cr
+GRID_POINTS = 500  # number of points along either axis on which boundaries are traced
+CONTOUR_LEVELS = (0.1, 0.25, 0.5, 0.75)  # phi/phi_cr of the contours
 
 
 def draw_map(
@@ -96,7 +96,7 @@ def _draw_peaks(axes: Axes, across: Reals, up: Reals, peaks: Reals) -> list[Line
             continue
         line = max(each, key=len)
         axes.plot(*line.T, color=style.MEASURE, linewidth=style.CURVE)
-        # At half of the height, where the lines are farther apart.
+        # Put the label at half of the height, where the lines are farther apart.
         place = line[np.abs(line[:, 1] - line[:, 1].mean()).argmin()]
         axes.annotate(
             f"{level:g}", place, ha="center", va="center", fontsize=style.SMALL, color=style.MEASURE,
@@ -114,7 +114,7 @@ def _kinds(found: OverturningMap) -> NDArray[np.int64]:
 def _draw_boundaries(axes: Axes, found: OverturningMap, *, dimensionless: bool) -> list[Line2D]:
     omega = np.linspace(found.omega.min(), found.omega.max(), GRID_POINTS)
     a = np.linspace(found.a.min(), found.a.max(), GRID_POINTS)
-    if not dimensionless:  # evenly spaced along the drawn axis
+    if not dimensionless:  # space the points evenly along the drawn axis of periods
         omega = 2 * np.pi / np.linspace(2 * np.pi / omega[-1], 2 * np.pi / omega[0], GRID_POINTS)
     across, up = np.meshgrid(omega, a)
     drawn = []

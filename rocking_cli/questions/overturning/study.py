@@ -21,15 +21,15 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.studies.under_pulses import Progress, PulsedModel, outcomes
 
-SCAN_AMPLITUDES = 200  # simulated together: overturning has islands below larger amplitudes that do not overturn
+SCAN_AMPLITUDES = 200  # amplitudes simulated together, as overturning has islands below amplitudes that do not overturn
 MIN_SCAN_EXCESS = 1e-3  # a - 1 at the start of the scan
 RESCAN_RATIO = 4  # a scan is repeated from the least a - 1 over this: islands crowd just below it
-HALVINGS = 25  # of the interval left by the scan, some thousandths of a - 1
+HALVINGS = 25  # halvings of the interval left by the scan, which has some thousandths of a - 1
 USUAL_PASSES = 2  # scans that a search usually takes, for the estimate of progress
 TIE_TOLERANCE = 1e-6  # relative difference of least amplitudes below which structures overturn together
 OMEGA_RANGE, AMPLITUDE_RANGE = (0.5, 10.0), (0.5, 10.0)  # defaults of omega_g/p and a
-MIN_OMEGA = 1.0  # default at which the range of periods ends
-MAX_PARAMETER = 1e6  # a or omega, and 1/omega: slower pulses would be simulated for ever
+MIN_OMEGA = 1.0  # least omega_g/p, at which the default range of periods ends
+MAX_PARAMETER = 1e6  # largest a, omega and 1/omega: slower pulses would be simulated for ever
 
 
 class Region(IntEnum):
@@ -347,7 +347,7 @@ class _OverturningSearch:
                 np.repeat(self.periods[open_periods], SCAN_AMPLITUDES), scan.ravel(), report=turn < USUAL_PASSES
             )
             falls = counts(shaken).reshape(scan.shape).copy()
-            falls[:, -1] |= np.isfinite(high[open_periods])  # the least amplitude so far
+            falls[:, -1] |= np.isfinite(high[open_periods])  # an amplitude known to overturn
             some = falls.any(axis=1)
             open_periods, scan, first = open_periods[some], scan[some], falls[some].argmax(axis=1)
             row = np.arange(open_periods.size)
@@ -455,7 +455,7 @@ def _end_of(shape: Pulse) -> Callable[[Reals, Reals], tuple[Reals, Reals, Reals]
     as in the module; NaN if the block does not uplift.
     """
     (piece,) = shape.segments()
-    turns, periods = piece.omega * shape.duration, shape.duration / shape.period  # [rad], -
+    turns, periods = piece.omega * shape.duration, shape.duration / shape.period  # phase [rad] and number of periods
 
     def end(omega: Reals, a: Reals) -> tuple[Reals, Reals, Reals]:
         with np.errstate(invalid="ignore", over="ignore", divide="ignore"):

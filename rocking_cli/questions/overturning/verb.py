@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rocking_cli.structure import Structure
 
 MAP_POINTS, CURVE_POINTS = 256, 60  # along each side of a map, and of a curve
-ETA = 0.9  # of the linear block
+ETA = 0.9  # restitution of the linear block
 Range = tuple[float, float]
 
 

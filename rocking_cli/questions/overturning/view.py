@@ -19,7 +19,7 @@ from rocking_cli.views.column import only_shown, rounded, table_of
 from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import ABSENT, Table, View, number
 
-MAX_TABLE_ROWS = 9  # --out and --json have the whole curves
+MAX_TABLE_ROWS = 9  # rows of a table; --out and --json have the whole curves
 FROM_KINEMATICS = " (from kinematics, not measured)"
 NO_JOINTS = (
     "The equivalent block has no joints, so whether those of the structure stay closed is not checked here: the real "

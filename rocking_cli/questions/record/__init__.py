@@ -1,4 +1,4 @@
-"""`record`: what is in a record."""
+"""`record`: the contents and the strength of a record."""
 
 PLACE = 50
 MORE = {"verb": ["response_spectrum"]}

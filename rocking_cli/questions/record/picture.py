@@ -16,11 +16,11 @@ from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.plotting import style
 from rocking_cli.processing.oscillator import DAMPING, response_spectrum
 
-SPECTRUM_PERIODS = np.geomspace(0.02, 10.0, 120)  # s
+SPECTRUM_PERIODS = np.geomspace(0.02, 10.0, 120)  # s; periods of a spectrum
 MAX_BEFORE_RATIO = 3.0  # the series before processing is cut off at this multiple of the peak after it
 BEFORE_STYLE: dict[str, Any] = {"color": style.RECORD_COLOUR, "linewidth": style.CURVE}
 AFTER_STYLE: dict[str, Any] = {"color": style.INK, "linewidth": style.MEDIUM}
-MIN_PULSE_DURATIONS = 2.0  # shown after a pulse
+MIN_PULSE_DURATIONS = 2.0  # time shown after a pulse, over its duration
 PULSE_POINTS = 2000
 
 

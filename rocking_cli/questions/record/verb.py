@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from rocking_cli.processing.oscillator import ResponseSpectrum
     from rocking_cli.structure import Structure
 
-PROGRESS_DELAY = 1.0  # s
+PROGRESS_DELAY = 1.0  # s of work before progress is shown
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -185,7 +185,7 @@ def _examine(
     *,
     fit_pulse: bool,
 ) -> tuple[list[Examined], list[GroundMotion]]:
-    """Return what is found of a motion in each polarity, and the motions; warn of what is doubtful."""
+    """Return the results for a motion in each polarity, and the motions; warn of what is doubtful."""
     from rocking_cli.excitation.doubts import coarse_for, doubts
     from rocking_cli.excitation.measures import measure
     from rocking_cli.excitation.records.opening import name_of
@@ -234,7 +234,7 @@ def _answer(examined: Sequence[Examined], scaled: Sequence[GroundMotion], read: 
 
 
 def _clean_places(out: Path, motions: Motions, signs: Sequence[int]) -> dict[tuple[int, int], Path]:
-    """Return the clean file of each record, by its place and polarity; in a folder, named after record and channel.
+    """Return the clean file of each record, by its index and polarity; in a folder, named after record and channel.
 
     All are checked: they can be written, no file that is read is among them, and files that are not clean records are
     kept.

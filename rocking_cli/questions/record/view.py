@@ -146,13 +146,13 @@ def _long(records: Sequence[Examined], columns: Sequence[Column[Examined]]) -> T
 
 
 def _narrow(column: Column[Examined]) -> Column[Examined]:
-    """Return a column with its unit in the heading, which is folded."""
+    """Return a column with its unit in the heading, which is broken into lines."""
     unit = f"\n[{column.unit}]" if column.unit else ""
     return replace(column, head=f"{_folded(column.head or '', MAX_HEADING_LINE)}{unit}")
 
 
 def _columns(records: Sequence[Examined]) -> list[Column[Examined]]:
-    """Return the columns that tables show: those that say something of any record, and the measures asked for."""
+    """Return the columns that tables show: those with information on any record, and the requested measures."""
     # Rows in which all records have these values are left out.
     silent = {"channel": ABSENT, "processed": ABSENT, "scaled by": "1", "p dt": ABSENT}
     silent |= dict.fromkeys(("earthquake", "station", "magnitude", "distance"), ABSENT)

@@ -31,7 +31,7 @@ class HungTables(NamedTuple):
     strained : list of rows
         Motion, tie, largest force [kN] and elongation [mm].
     said : list of str
-        Sentences on these.
+        Sentences on the loads and ties.
     """
 
     masses: Rows
@@ -70,7 +70,7 @@ def hung_on(content: Assessment) -> HungTables | None:
 
 
 def _until(moved: Movements) -> str:
-    """Return a note after the name of a motion on until when peaks hold; empty if they hold throughout."""
+    """Return words to follow the name of a motion: until when its peaks are known; empty if all of it is known."""
     return "" if isnan(moved.known_to) else f", up to {moved.known_to:.4g} s"
 
 

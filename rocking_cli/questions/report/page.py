@@ -49,8 +49,8 @@ from rocking_cli.views.sheet.document import Sheet, SheetPart
 from rocking_cli.views.verdict import SENSE
 from rocking_cli.views.verification import showing
 
-TOTAL_BINS = 6000  # of all motions: each curve has some two samples in a bin
-MIN_BINS, MAX_BINS = 300, 2500  # of one motion
+TOTAL_BINS = 6000  # bins of the curves of all motions: each curve has some two samples in a bin
+MIN_BINS, MAX_BINS = 300, 2500  # bins of the curves of one motion
 ABSENT = "-"
 PER_MASS = " Per unit mass of the whole structure: the file gives no masses."
 SUBSCRIPT = re.compile(r"([φθλωψ]|\b[A-Za-z])_([A-Za-z]+(?:,\d)?)")
@@ -265,7 +265,7 @@ def _response(content: Assessment, result: MotionResult, k: int, bins: int) -> d
     pulses = [replace(each, sign=each.sign * result.polarity) for each in result.fits[:1] if result.file]
     charts = [ratio_chart(result.histories, bins), ground_chart(result.motion, pulses, bins)]
     moment = film.start
-    if best.fell:  # the time of overturning, or else of the peak
+    if best.fell:  # show the moment of overturning, or otherwise that of the peak
         moment = min(float(best.time[int(np.searchsorted(best.time, best.overturning_time))]), film.end)
     elif best.peak_ratio:
         moment = float(best.time[int(np.nanargmax(np.abs(best.ratio)))])

@@ -35,8 +35,8 @@ from rocking_cli.studies.under_pulses import parse_shape, pulsed_model
 ERROR_AMPLITUDES, ERROR_ACCELERATIONS = (0.25, 0.5, 0.75), (1.5, 2.0, 4.0)
 FITTED_PULSES = ("sine", "ricker")  # those whose only parameters are the two axes of a map, amplitude and period
 MIN_CAUTIONED_FACTOR = 2.0  # scale factor on a record, above which a report has a caution
-MAX_CLOSE_FACTOR = 1.25  # on the motion: if neighbours within it have the opposite outcome, the result is a close one
-MAP_POINTS = 80  # along each side
+MAX_CLOSE_FACTOR = 1.25  # factor on the motion: a result is close if neighbours within it have the opposite outcome
+MAP_POINTS = 80  # points along each side of a map
 MAP_OMEGAS, MIN_MAP_TOP = (1.0, 10.0), 10.0  # omega_g/p of a map, and least a_g/(g lambda) at its top
 MAP_HEADROOM = 1.15  # factor by which a map extends beyond a mark
 

@@ -140,7 +140,7 @@ def report(
         raise InputError("a report shows how close the result is: `neighbours` must be at least 1")
     around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
     site = site_of(verify) if verify is not None else None
-    if site is not None:  # before long computations
+    if site is not None:  # checked before long computations
         sheet_of(site)
         refuse(site, motions=bool(requested))
     ready = structure_of(structure, watch, opening)

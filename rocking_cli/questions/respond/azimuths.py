@@ -17,7 +17,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.reading import turned
 from rocking_cli.structure import Structure
 
-AZIMUTH_STEP = 2  # degrees
+AZIMUTH_STEP = 2  # degrees between two directions
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,7 +21,7 @@ BEST_FIT = "best"
 
 
 def _models(text: str) -> tuple[str, ...]:
-    """Return the models of a text, separated by commas."""
+    """Return the names of models in a text that separates them by commas."""
     chosen = tuple(dict.fromkeys(word.strip() for word in text.split(",")))
     if unknown := [word for word in chosen if word not in options.MODELS]:
         raise ValueError(f"{', '.join(unknown) or 'nothing'} is not a model: choose from {', '.join(options.MODELS)}")

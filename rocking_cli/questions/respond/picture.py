@@ -21,15 +21,15 @@ from rocking_cli.plotting import style
 from rocking_cli.studies.contact import ContactDemand
 from rocking_cli.studies.movements import Watched
 
-MAX_SHOWN_RATIO = 1.6  # phi/phi_cr
+MAX_SHOWN_RATIO = 1.6  # largest phi/phi_cr that is shown
 CUT_RATIO = 1.5  # phi/phi_cr at which a curve that overturns is cut off, with a cross
-MIN_TIME_AXIS = 0.1  # s
+MIN_TIME_AXIS = 0.1  # s; least length of the time axis
 PULSE_POINTS = 1000
-MAX_SHOWN_FRICTION = 2.0  # a joint with almost no normal force may require any
+MAX_SHOWN_FRICTION = 2.0  # cut of the axis, as a joint with almost no normal force may require any friction
 IMPACTS_LABEL = f"impacts of {100 * MIN_IMPACT_RATE:g} % of the strongest or more, in the order of the legend"
-FORCE_SUFFIX = " force [N]"  # of columns of forces
-MAX_TIES, MAX_TIE_NAME = 6, 30  # in a panel; characters
-MAX_LABELLED_SHARE = 0.7  # of the time axis: beyond, the right of it has no room for a label
+FORCE_SUFFIX = " force [N]"  # ending of the headings of forces
+MAX_TIES, MAX_TIE_NAME = 6, 30  # ties in a panel, and characters of a name
+MAX_LABELLED_SHARE = 0.7  # share of the time axis beyond which there is no room for a label on the right
 LANE_HEIGHT = 0.025  # share of the panel's height for the impacts of each model
 
 
@@ -178,7 +178,7 @@ def _draw_responses(
     )  # fmt: skip
     if not any(run.lifted for run in histories.values()):
         axes.text(0.5, 0.6, names.NO_UPLIFT, transform=axes.transAxes, ha="center", fontsize=style.LABEL)
-    # If so, the curve ends in the upper right corner.
+    # A curve that ends in positive overturning fills the upper right corner.
     falls_up = any(run.fell_to == Direction.POSITIVE for run in histories.values())
     axes.legend(
         loc="upper left" if falls_up else "upper right",

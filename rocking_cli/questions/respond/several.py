@@ -32,7 +32,7 @@ from rocking_cli.views.view import Table, heading, number
 
 
 class MotionRow(NamedTuple):
-    """A row of the table: name, PGA [g], what becomes of each model, the neighbours, and the peaks of the best model.
+    """A row of the table: name, PGA [g], outcome of each model, the neighbours, and the peaks of the best model.
 
     Peaks of an unknown outcome are None.
     """
@@ -186,7 +186,7 @@ def _fate_of(model: ModelName, row: MotionRow) -> str:
 
 
 def _peak(kind: str, place: int, of: str, row: MotionRow) -> float | None:
-    """Return a peak of a row; None if its outcome is unknown."""
+    """Return a peak of a row, such as that of a tie; None if the outcome of the row is unknown."""
     return None if row.moved is None else getattr(getattr(row.moved, kind)[place], of)
 
 

@@ -1,3 +1,3 @@
-"""`score`: stated shares of overturning against tests."""
+"""`score`: compare stated shares of overturning with shake-table tests."""
 
 PLACE = 120

@@ -28,8 +28,8 @@ from rocking_cli.studies.neighbours import Neighbourhood, simulate_neighbours
 
 SEED = 1963
 DRAWS = 2000
-INTERVAL_QUANTILES = (0.05, 0.95)  # of the draws
-SHARE_BINS = 5  # of equal width, for the predicted shares
+INTERVAL_QUANTILES = (0.05, 0.95)  # quantiles of the draws that bound an interval
+SHARE_BINS = 5  # number of bins of equal width for the stated shares
 
 
 class ScoreEstimate(NamedTuple):
@@ -255,7 +255,7 @@ def base_rates(seen: Reals, clusters: Sequence[str], halves: Sequence[str]) -> R
 
 
 def fitted_shares(measure: Reals, seen: Reals, clusters: Sequence[str], halves: Sequence[str]) -> Reals:
-    """Return the shares of a logistic curve over ln of a measure, fitted to the tests of which `base_rates` are.
+    """Return the shares of a logistic curve over ln of a measure, fitted to the same tests as `base_rates` counts.
 
     Parameters
     ----------
@@ -278,7 +278,7 @@ def fitted_shares(measure: Reals, seen: Reals, clusters: Sequence[str], halves: 
 
 
 def _logistic(x: Reals, seen: Reals, at: Reals) -> Reals:
-    """Fit a logistic curve to outcomes, and return its shares at other places; NaN if there is no fit."""
+    """Fit a logistic curve to outcomes, and return the shares that it gives at values `at`; NaN if there is no fit."""
     fell, stood = x[seen == 1], x[seen == 0]
     if not (fell.size and stood.size):
         return np.full(at.size, np.nan)
@@ -425,7 +425,7 @@ class Scored:
 
     @property
     def drawn(self) -> Mapping[Neighbourhood, Sequence[str]]:
-        """Deviations of the neighbours, each with the structures to which they apply."""
+        """Standard deviations of the neighbours, each with the names of the structures to which they apply."""
         drawn: dict[Neighbourhood, list[str]] = {}
         for each in self.tests:
             if each.around is not None and each.test.structure not in drawn.setdefault(each.around, []):
@@ -442,7 +442,7 @@ def score_tests(
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Scored:
-    """Simulate the neighbours of each test, and score what they state.
+    """Simulate the neighbours of each test, and score the shares that they predict.
 
     Parameters
     ----------
@@ -483,7 +483,7 @@ def score_tests(
 
 
 def state(test: ObservedTest, structure: Structure, motion: GroundMotion, around: Neighbourhood) -> Stated:
-    """Return what the neighbours of a test, and the simpler rules, state of it.
+    """Return what the neighbours of a test, and the simpler rules, predict for it.
 
     Parameters
     ----------
@@ -555,7 +555,7 @@ def _by_velocity(pgv: float, structure: Structure) -> float:
 
 
 def scored(stated: Sequence[Stated], around: Neighbourhood) -> Scored:
-    """Score what is stated of tests.
+    """Score the predictions for tests.
 
     Parameters
     ----------

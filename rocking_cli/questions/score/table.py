@@ -129,7 +129,7 @@ def parse_columns(columns: Mapping[str, Sequence[Any]], name: str = "table") -> 
 
 
 def parse_tests(sheet: Spreadsheet, folder: Path) -> TableOfTests:
-    """Return the tests of a table of text; `folder` is where its paths begin. Raises as `read_tests`."""
+    """Return the tests of a table of text, whose paths are relative to `folder`. Raises as `read_tests`."""
     problems: list[Problem] = []
     places = _check_headings(sheet, problems)
     if not sheet.rows:
@@ -141,7 +141,7 @@ def parse_tests(sheet: Spreadsheet, folder: Path) -> TableOfTests:
 
 
 def _check_headings(sheet: Spreadsheet, problems: list[Problem]) -> dict[str, tuple[int, str]]:
-    """Return the place and the unit of each column by its heading without the unit, and add what is wrong."""
+    """Return the place and the unit of each column by its heading without the unit; add what is wrong to `problems`."""
     places: dict[str, tuple[int, str]] = {}
     wrong: set[str] = set()  # columns that exist, but cannot be read
     at = partial(Problem, file=sheet.file, line=sheet.line)

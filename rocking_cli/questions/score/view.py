@@ -67,7 +67,7 @@ def view(found: Scored, file: str) -> View:
 
 
 def columns(found: Scored) -> dict[str, list[Any]]:
-    """Return what is stated of each test as columns by name."""
+    """Return the predictions for each test as columns by name."""
     return {**frame_of(ROWS, found.tests), "error": [reason(each) or "" for each in found.tests]}
 
 
@@ -154,7 +154,7 @@ def _scores(found: Scored, count: int) -> Iterator[Table | str]:
 
 
 def _listed(bins: Sequence[CalibrationBin]) -> str:
-    """Return bins with what was stated and observed."""
+    """Return the bins of stated shares in words, each with the observed share."""
     each_said = (
         f"the bin {each.low:g} to {each.high:g} (stated {each.stated:.3f}, observed {each.observed.value:.3f} "
         f"{_range(*each.observed[1:])})"
@@ -232,7 +232,7 @@ def _data(found: Scored) -> dict[str, Any]:
 
 
 def _neighbours(found: Scored) -> dict[str, Any]:
-    """Return how neighbours were drawn: of all structures, None where they differ, and of each."""
+    """Return the deviations of the neighbours: for all structures (None if they differ), and for each."""
     each = [asdict(around) | {"structures": structures} for around, structures in found.drawn.items()]
     same = {
         name: value if all(one[name] == value for one in each) else None
@@ -251,7 +251,7 @@ def _number(value: float) -> float | None:
 
 
 def _estimate(head: str, of_rule: Callable[[str], ScoreEstimate | None]) -> Column[str]:
-    """Return the column of an estimate of each rule in two lines: the value, and its interval."""
+    """Return the column of an estimate for each rule, in two lines: the value, and its interval."""
 
     def form(each: ScoreEstimate) -> str:
         return ABSENT if isnan(each.value) else f"{each.value:.3f}\n{_range(each.low, each.high)}"

@@ -9,7 +9,7 @@ from matplotlib.patches import Patch
 from rocking_cli.plotting import style
 from rocking_cli.questions.select.study import RecordSet
 
-MAX_TICKED_RATIO = 8.0  # of the ends of the band, up to which its axis has more ticks
+MAX_TICKED_RATIO = 8.0  # ratio of the ends of the band up to which its axis has more ticks
 MAX_OPAQUE_LINES = 12  # with more records, their lines are transparent
 MEAN_COLOUR, TARGET_COLOUR, LIMITS_COLOUR = "#111111", "#c46a1b", "#d6e6f2"
 MISSED_COLOUR = "#8a3b62"

@@ -28,7 +28,7 @@ PERIOD_SPACING = (0.01, 0.05)  # bounds of the step of ln T: the damping ratio i
 MIN_BAND_PERIODS = 50
 MAX_TARGET_PERIODS = 100  # periods of the target within the band that are added, if there are no more
 PERIOD_TOLERANCE = 1e-6  # relative difference of equal periods
-MIN_SAMPLES_PER_PERIOD = 4  # for the samples of a record to resolve a period
+MIN_SAMPLES_PER_PERIOD = 4  # samples of a record in a period, for the record to resolve it
 
 
 @dataclass(frozen=True)
@@ -205,7 +205,7 @@ def candidates(
     """
     target.check(wanted.band)
     names = [key_of(motion, wanted.one_per) for motion in motions]
-    # Before long computations.
+    # Check the numbers of records before long computations.
     _check_enough(len(motions), len(motions), int(_groups(names).max(initial=-1)) + 1, wanted)
     periods = periods_of(wanted.band, target, wanted.damping)
     spectra = np.zeros((len(motions), periods.size))

@@ -18,12 +18,12 @@ from numpy.typing import NDArray
 from rocking_cli.arrays import Reals
 
 Integers = NDArray[np.intp]
-MAX_SETS = 200_000  # up to this number, all sets are tried
-MAX_MEMBERS = 3_000_000  # curves of all these sets together
+MAX_SETS = 200_000  # number of sets up to which all are tried
+MAX_MEMBERS = 3_000_000  # limit on the curves of all these sets together
 MEMBERS_PER_BLOCK = 30_000  # curves of the sets that are judged at once
 SEARCH_STARTS = 20
-MISFIT_TOLERANCE = 1e-9  # in logarithms: within it sets are equal, and the earlier one is chosen
-LIMIT_MARGIN = 1e-12  # relative: keeps a mean at a limit within it in spite of rounding
+MISFIT_TOLERANCE = 1e-9  # difference of logarithms within which sets are equal; the earlier one is chosen
+LIMIT_MARGIN = 1e-12  # relative margin that keeps a mean at a limit within it in spite of rounding
 MAX_EXCHANGES = 1000  # exchanges of a curve in one search
 
 
@@ -149,7 +149,7 @@ def judge(problem: SubsetProblem, sums: Reals, count: int, least: Reals, most: R
     logs = np.log(sums / count)
     low, high = logs.min(axis=1), logs.max(axis=1)
     floor, roof = log(problem.within[0]), log(problem.within[1])
-    # Bounds of the common factor by the limits on factors; they contain zero, as the own factors obey the limits.
+    # Bounds of the common factor by the limits on factors; they contain zero, as each curve's own factor obeys them.
     down, up = log(problem.factors[0]) - least, log(problem.factors[1]) - most
     balanced = np.clip((floor - low + roof - high) / 2, down, up)
     excess = np.maximum(floor - low - balanced, balanced + high - roof)

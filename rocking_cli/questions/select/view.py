@@ -19,7 +19,7 @@ from rocking_cli.views.view import Table, View
 
 MAX_NAME_LENGTH = 40  # characters of an event or a station in the table
 MAX_LISTED_RECORDS = 5  # left-out records that a sentence names
-MAX_LISTED_SPANS = 4  # of periods, in a sentence
+MAX_LISTED_SPANS = 4  # ranges of periods that a sentence names
 
 
 @dataclass(frozen=True)

@@ -160,7 +160,7 @@ OMEGAS = (5.0, 2.5, 8.0, 1.5, 1.9, 3.2, 4.0, 6.3, 10.0, 20.0)
 """Frequencies omega_g/p of the pulses; up to some 6 blocks also overturn after an impact, in ranges of amplitudes."""
 AMPLITUDES = np.geomspace(1.01, 100.0, 250)
 """Amplitudes a_g/(g lambda), two of which enclose each threshold."""
-HALVINGS = 50  # to below the last bit
+HALVINGS = 50  # halvings of an interval, to below the last bit
 
 
 def pulses(quick: bool) -> float:
@@ -221,7 +221,7 @@ def _threshold(overturns: Callable[[Reals], Bools], low: Reals, high: Reals, beg
 
 # --- time histories --------------------------------------------------------------------------------------------------
 
-MAX_COMPARED_IMPACTS = 6  # the times of later ones depend on rounding
+MAX_COMPARED_IMPACTS = 6  # the times of later impacts depend on rounding
 FREE_DURATION = 10.0  # s after the motion within which each excursion ends
 MODELS: tuple[ModelName, ...] = ("nonlinear", "linear2", "linear1")
 
@@ -367,7 +367,7 @@ def neighbours(quick: bool) -> float:
 
 
 def openings(quick: bool) -> float:
-    """Return the largest difference of two times, known to the end of a step of 1.3 ms [s]; quick or not, of both.
+    """Return the largest error of two times of slip [s], which steps of 1.3 ms limit; quick or not, both are computed.
 
     A cube on friction mu = .2 under an acceleration of .21 g does not uplift: it slides by (a - mu g) t^2/2, and its
     motion is unknown once this exceeds .5 % of the displacement of its centroid at the critical rotation, 45 degrees.
@@ -627,7 +627,7 @@ def records_by_obspy(quick: bool) -> float:
 
 
 def _records(files: Mapping[str, RecordFile]) -> float:
-    """Raises `RockingError`, with all files that are not read, or not as their format."""
+    """Return the largest deviation of a sample, over the largest one. Raises `RockingError` with files read wrongly."""
     largest, wrong = 0.0, []
     for name, file in files.items():
         try:

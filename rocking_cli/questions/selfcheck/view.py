@@ -31,7 +31,7 @@ COLUMNS: tuple[Column[Checked], ...] = (
 
 
 def view(found: SelfCheck) -> View:
-    """Show what each check found, and what to do if one failed."""
+    """Show the result of each check, and what to do if one failed."""
     data = {
         "passed": found.passed,
         "quick": found.quick,

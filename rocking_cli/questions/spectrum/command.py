@@ -12,7 +12,7 @@ from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import NUMBER, Parsed, QuantityKind, angle, share, span
 
 DEFAULT_SIZES, MAX_SIZES = 60, 2000  # sizes of a curve
-SIZE = QuantityKind("period", "s", "0.8s", "1s:10s", 1e-3, 1e4)  # blocks of 0.2 um to 19,000 km
+SIZE = QuantityKind("period", "s", "0.8s", "1s:10s", 1e-3, 1e4)  # range of periods: blocks of 0.2 um to 19,000 km
 
 
 def _slenderness(text: str) -> tuple[float, ...]:

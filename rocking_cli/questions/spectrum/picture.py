@@ -22,7 +22,7 @@ from rocking_cli.plotting import style
 from rocking_cli.questions.spectrum.study import Spectrum
 
 MAX_NAME_LENGTH = 40  # characters of a structure's name in the legend
-MAX_TICKED_RATIO = 8.0  # of the ends of an axis, up to which it has more ticks
+MAX_TICKED_RATIO = 8.0  # ratio of the ends of an axis up to which it has more ticks
 MAX_SHADED_CURVES = 2  # more shades of the spread of motions cannot be told apart
 MAX_OPAQUE_LINES = 20  # with more motions, their lines are transparent
 MARK_ROW_HEIGHT = 0.06  # share of the height of the peaks, for a row of marks of overturning or unknown outcomes
@@ -117,7 +117,7 @@ def _draw_spread(axes: Axes, each: Spectrum, k: int, bounds: tuple[float, float]
     lower, upper = (np.minimum(each.fractile(q), top) * _within(each) for q in bounds)
     colour = style.distinct(k)["color"]
     axes.fill_between(each.periods, lower, upper, color=colour, alpha=0.15, linewidth=0)
-    for edge in (lower, upper):  # drawn up to overturning
+    for edge in (lower, upper):  # each edge is drawn up to overturning
         axes.plot(each.periods, np.where(edge < top, edge, np.nan), color=colour, linewidth=style.MEDIUM, zorder=2.2)
     if every:
         curves = np.where(np.isfinite(each.peak_ratio), each.peak_ratio, np.nan) * _within(each)
@@ -195,7 +195,7 @@ def _second_axis(axes: Axes, spectra: Sequence[Spectrum]) -> None:
         return
     of = of_structures[0] if of_structures else spectra[0]
     both: tuple[Callable[[Reals], Reals], ...] = (of.shape.scales, of.shape.periods)
-    if of.shape.own is not None:  # only sizes that were built are known
+    if of.shape.own is not None:  # interpolate between the sizes that were computed, each from a model of its own
         both = _between(of.periods, of.scales, 2.0), _between(of.scales, of.periods, 0.5)
     above = axes.secondary_xaxis("top", functions=both)  # type: ignore[arg-type]
     above.set_xlabel("scale (1: as given)" if of_structures else "size R of the blocks [m]", fontsize=style.LABEL)

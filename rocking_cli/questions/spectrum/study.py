@@ -108,7 +108,7 @@ def shape_of(structure: Structure, model: ModelName, eta: float | None = None) -
     InputError, MechanismError
         If the structure does not stand, or its restitution is not known.
     """
-    # A full sine is equal in both directions: the weakest one uplifts that with the smaller uplift acceleration.
+    # A full sine is equal in both directions, so that the one with the smaller uplift acceleration uplifts first.
     pulsed = pulsed_model(structure, model, parse_shape("sine"), eta=eta)
     mechanism = structure.mechanism
     built = mechanism if eta is None else with_restitution(mechanism, eta)
@@ -198,7 +198,7 @@ class Spectrum:
 
     @property
     def given(self) -> int | None:
-        """Index of the structure as given among the sizes; None for blocks of a slenderness."""
+        """Index of the structure as given among the sizes; None for blocks of a given slenderness."""
         return None if self.shape.slenderness is not None else int(np.flatnonzero(self.scales == 1.0)[0])
 
     @property
@@ -266,7 +266,7 @@ def fractile(peaks: Reals, q: float) -> Reals:
     place = np.round(q * last, 9)  # so that rounding gives no weight to a neighbour
     k = np.floor(place).astype(int)
     below, above = (np.take_along_axis(ordered, row[None], axis=0)[0] for row in (k, np.ceil(place).astype(int)))
-    with np.errstate(invalid="ignore"):  # inf - inf
+    with np.errstate(invalid="ignore"):  # inf - inf is NaN, which is replaced
         between: Reals = below + (place - k) * (above - below)
     return np.where(below == above, below, between)
 
@@ -320,7 +320,7 @@ def spectra(
 
 
 def _worst(found: Outcomes) -> tuple[Reals, Reals]:
-    """Return the peak ratios by the worse polarity, those of axis 1, and their lower bounds where they are unknown."""
+    """Return the peak ratios under the worse polarity (axis 1 of the outcomes), and lower bounds of unknown ones."""
     peak = np.where(found.fell, inf, np.where(found.unknown, 0.0, found.peak_ratio))
     peak = np.where(found.failed, nan, peak).max(axis=1)
     unknown = found.unknown.any(axis=1) & np.isfinite(peak)
@@ -398,7 +398,7 @@ def _signs(shape: SpectrumShape, polarities: Sequence[int]) -> Sequence[int]:
 
 
 SHAPE_TOLERANCE = 1e-7  # relative error, by solvers and rounding, of quantities that depend on shape alone
-# Scales at which these quantities are compared: in each row, the first that can be built.
+# Scales at which quantities of shape are compared: in each row, the first that can be built.
 CHECKED_SCALES = ((0.1, 0.5, 0.9), (10.0, 2.0, 1.1))
 PERIOD_TOLERANCE = 1e-10  # relative error of 2 pi/p of a size that is searched for
 MAX_SEARCH_STEPS = 50

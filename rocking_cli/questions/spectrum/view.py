@@ -19,7 +19,7 @@ from rocking_cli.views.column import Column, only_shown, rounded, table_of
 from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import ABSENT, Table, View
 
-MAX_TABLE_ROWS = 12  # besides that of the structure as given; --out and --json have the whole curves
+MAX_TABLE_ROWS = 12  # rows of a table, besides that of the structure as given; --out and --json have the whole curves
 SCALING_NOTE = (
     "All lengths are scaled, including the positions of loads and ties; their masses, stiffness and forces are not."
 )

@@ -79,7 +79,7 @@ def coordinates(found: Survey) -> Coordinates:
         If the table lacks a column of coordinates, or no structure has both.
     """
     sheet, columns = found.sheet, columns_of(found.sheet)
-    assert sheet is not None  # it has the columns
+    assert sheet is not None  # columns of coordinates were found in it
     wrong, degrees = list[str](), np.full((len(found.rows), 2), nan)
     for k, structure in enumerate(found.rows):
         row = sheet.rows[structure.row - 1]

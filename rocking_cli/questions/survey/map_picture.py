@@ -19,14 +19,14 @@ from rocking_cli.questions.survey.coordinates import Coordinates
 from rocking_cli.questions.survey.picture import MAX_RANKED_LABELS, MAX_VECTOR_MARKS
 from rocking_cli.questions.survey.study import Survey
 
-METRES_PER_DEGREE = 6_371_008.8 * np.pi / 180  # of latitude, on a sphere of the mean radius of the earth
-LEAST_EXTENT = 100.0  # m, of a map of one place
-BORDER_SHARE = 0.08  # of the extent, around the marks
-SLIMMEST = 0.6  # least side of a map over the other
-SCALE_SHARE = 0.3  # of the width, which the scale bar does not exceed
-SAME_PLACE_SHARE = 0.02  # of the width, within which structures share a label
+METRES_PER_DEGREE = 6_371_008.8 * np.pi / 180  # m per degree of latitude, on a sphere of the mean radius of the earth
+LEAST_EXTENT = 100.0  # m; extent of a map of one place
+BORDER_SHARE = 0.08  # border around the marks, over the extent of the map
+SLIMMEST = 0.6  # least ratio of the shorter side of a map to the longer one
+SCALE_SHARE = 0.3  # longest scale bar over the width of the map
+SAME_PLACE_SHARE = 0.02  # distance over the width of the map within which structures share a label
 RANKS = LinearSegmentedColormap.from_list("ranks", ["#4a1306", "#b3450f", "#e99a3c", "#f8dfa4"])
-"""From dark, for the first rank, to pale, so that the order is visible in grey."""
+"""Colours of the ranks, from dark for the first to pale, so that the order is visible in grey."""
 
 
 def draw_map(found: Survey, where: Coordinates, title: str) -> Figure:

@@ -28,7 +28,7 @@ FILE_COLUMN, MECHANISM_COLUMN = "file", "mechanism"
 YAML_SUFFIXES = (".yaml", ".yml")
 COMMENT_SIGN = "#"
 """First character of the headings of columns that are not read."""
-MAX_DIGITS = 308  # of the largest whole number that is a float
+MAX_DIGITS = 308  # digits of the largest whole number that is a float
 _UNIT = re.compile(r"(.*?)\s*\[([^\]]*)\]\s*", re.DOTALL)
 
 
@@ -185,7 +185,7 @@ class StructureTable(Sequence["TableRow"]):
         for name in sorted(self._mechanisms()):
             try:
                 classes.append(self.registry[name])
-            except (InputError, MechanismError):  # reported for each row of this file
+            except (InputError, MechanismError):  # the error is reported for each row of this file
                 continue
         if not {MECHANISM_COLUMN, FILE_COLUMN} & {column.path[0] for column in self.columns}:
             matches = get_close_matches(MECHANISM_COLUMN, [column.path[0].lower() for column in self.columns], n=1)
@@ -224,7 +224,7 @@ class StructureTable(Sequence["TableRow"]):
         for named in {self.base_of(row) for row in self.sheet.rows if not self.text(row, MECHANISM_COLUMN)} - {""}:
             try:
                 mechanisms.add(str(self.base(named).get(MECHANISM_COLUMN)))
-            except InputError:  # reported for each row of this file
+            except InputError:  # the error is reported for each row of this file
                 continue
         return mechanisms - {""}
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 Table = str | Path | Mapping[str, Sequence[Any]]
 """CSV file, or columns by their headings."""
-MIN_ROWS_FOR_PROCESSES, MIN_ROWS_FOR_PROCESSES_WITH_MOTION = 10_000, 1_000  # from which starting processes pays
+MIN_ROWS_FOR_PROCESSES, MIN_ROWS_FOR_PROCESSES_WITH_MOTION = 10_000, 1_000  # rows from which processes pay
 MAX_LISTED_DOUBTS = 3  # doubts about sizes that are printed
 
 
@@ -149,7 +149,7 @@ def survey(
             entries, shaken, signs, site=where, opening=opening, threads=threads, processes=count, progress=advance
         )
     _warn_of_sizes(result, watch)
-    if hasattr(entries, "sheet"):  # of other structures it was noted when they were opened
+    if hasattr(entries, "sheet"):  # a table: weights of other structures were noted when they were opened
         _note_weights(result, watch)
     if page is not None and result.rows:
         file = getattr(entries, "sheet", None)

@@ -145,7 +145,7 @@ def _number(name: str, unit: str) -> Column[RankedStructure]:
 
 
 def _kept(sheet: Spreadsheet | None, taken: Collection[str]) -> Iterator[Column[RankedStructure]]:
-    """Yield the columns of the table that came in, without those that the survey has by the same name."""
+    """Yield the columns of the given table, without those that the survey has under the same name."""
     for place, heading in sheet.columns.items() if sheet is not None else ():
         if heading not in ("name", "mechanism"):
             name = f"given {heading}" if heading in taken else heading
@@ -168,7 +168,7 @@ def blocks(found: Survey, decimal: str | None) -> Iterator[Columns]:
 
 
 def columns(found: Survey, start: int = 0, stop: int | None = None, decimal: str | None = None) -> Columns:
-    """Return some of the rows as columns of a table, followed by the columns that came in, as they stood.
+    """Return some of the rows as columns of a table, followed by the unchanged columns of the given table.
 
     With the decimal sign of a spreadsheet, numbers in cells that came in have this sign, and texts that a spreadsheet
     would compute an apostrophe in front.
