@@ -37,7 +37,7 @@ def in_rows(lengths: Sequence[Length], low: complex, high: complex) -> tuple[Row
         if side is None:
             inside.append(each)
             continue
-        for row in rows[side]:  # the first row with room
+        for row in rows[side]:  # place the length in the first row with room
             if all(_apart(each, other, side) for other in row):
                 row.append(each)
                 break
@@ -94,14 +94,14 @@ def _beside(out: complex, middle: complex, half: float, size: complex) -> list[L
     upright = out.imag == 0
     along, turned = (1j, 90.0) if upright else (1 + 0j, 0.0)
     slack = 0.5 * size.real + half + 0.06
-    places = [  # beyond the line, shifted along it past its ends
+    places = [  # places beside the line, shifted along it and past its ends
         LabelPlace(
             middle + beyond * out + shift * slack * along, turned, 2 * abs(shift) + 10 * abs(beyond - LABEL_OFFSET)
         )
         for beyond in (LABEL_OFFSET, 0.2, 0.36, 0.0, -LABEL_OFFSET)
         for shift in (0.0, 0.3, -0.3, 0.6, -0.6, 1.0, -1.0)
     ]
-    if upright:  # or horizontal, at the side of the line or past its ends
+    if upright:  # also places for a horizontal label, beside the line or past its ends
         places += [
             LabelPlace(middle + (size.real / 2 + 0.08) * out + 1j * up, 0.0, 2.0) for up in (0.0, 0.1, -0.1, 0.2)
         ]

@@ -17,15 +17,15 @@ from rocking_cli.studies.picture import Picture
 
 Points = NDArray[np.complex128]
 SYMBOL_OFFSET = 0.1  # inches from a point to the symbol of a short spring
-MAX_SPRING_LENGTH = 0.4  # inches
-MAX_SPRING_SHARE = 0.6  # of the length of its line
+MAX_SPRING_LENGTH = 0.4  # inches; longest symbol of a spring
+MAX_SPRING_SHARE = 0.6  # longest symbol of a spring, as a share of the length of its line
 SPRING_TEETH, SPRING_HALF_WIDTH = 4, 0.045  # number, and inches
 WEIGHT_HALF_WIDTH = 0.075  # inches
 ARROW_LENGTH = 0.45  # inches
 ANCHOR_HALF_WIDTH = 0.04  # inches
 MAX_NAME_WIDTH = 1.7  # inches
 NAME_MARGIN = 0.3  # inches at either side of a structure
-BACKGROUND_ZORDER = 0.8  # of symbols that the moving structure may cover
+BACKGROUND_ZORDER = 0.8  # layer of the symbols that the moving structure may cover
 SQUARE: Points = np.array([-1 - 1j, 1 - 1j, 1 + 1j, -1 + 1j], np.complex128)
 WEIGHT_OUTLINE: Points = np.array(
     [-1 - 1j, 1 - 1j, 0.7 + 0.6j, 0.3 + 0.6j, 0.3 + 1.1j, -0.3 + 1.1j, -0.3 + 0.6j, -0.7 + 0.6j], np.complex128

@@ -19,11 +19,11 @@ from rocking_cli.plotting.panels import Panel
 Points = NDArray[np.complex128]
 POINT_SPACING = 0.025  # inches between the points of a line that labels avoid
 LABEL_GAPS = (0.03, 0.1, 0.18, 0.28, 0.45)  # inches between a label and a line
-MAX_LINE_POINTS = 10_000  # as a line may extend far beyond the picture
+MAX_LINE_POINTS = 10_000  # limit, as a line may extend far beyond the picture
 CLEARANCE = 0.02  # inches around a label
-DISTANCE_COST = 8.0  # per inch between a label and its object; one point of a line costs LINE_COST
-OUTSIDE_COST = 1000.0  # per inch by which a label leaves the panel
-EDGE_COST, LINE_COST, MARK_COST, LABEL_COST = 1.0, 2.0, 6.0, 30.0  # per point of each that a label covers
+DISTANCE_COST = 8.0  # cost per inch between a label and its object; a covered point of a line costs LINE_COST
+OUTSIDE_COST = 1000.0  # cost per inch by which a label leaves the panel
+EDGE_COST, LINE_COST, MARK_COST, LABEL_COST = 1.0, 2.0, 6.0, 30.0  # cost per point of each kind that a label covers
 SUBSCRIPTS = str.maketrans("₀₁₂₃₄₅₆₇₈₉₊₋", "0123456789+-")
 
 

@@ -23,7 +23,7 @@ from rocking_cli.studies.film import Film
 from rocking_cli.views.animation import verdict_of, why_it_ends
 
 Reals = NDArray[np.float64]
-MAX_SHOWN_RATIO = 1.6  # of phi to phi_cr: beyond, a structure overturns or nearly does
+MAX_SHOWN_RATIO = 1.6  # largest ratio of phi to phi_cr: beyond it, a structure overturns or nearly does
 MIN_FRAME_INTERVAL = 0.01  # s between the rotations of a page
 MAX_FRAMES = 20_000  # rotations of a page
 PULSE_POINTS = 200

@@ -101,7 +101,7 @@ def _row(panels: Sequence[Panel], scale: float, base: float) -> float:
         each.scale = scale
     spare = style.PAGE_WIDTH - PANEL_GAP * (len(panels) + 1) - sum(each.inches.real for each in panels)
     depth = max(each.depth for each in panels)
-    height = max(each.inches.imag - each.depth for each in panels)  # above y = 0
+    height = max(each.inches.imag - each.depth for each in panels)  # largest height of a panel above y = 0 [inches]
     x = PANEL_GAP
     for each in panels:
         left, right, below, above = each.around

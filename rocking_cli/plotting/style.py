@@ -31,7 +31,7 @@ HAIR, THIN, CURVE, MEDIUM, BOLD = 0.4, 0.6, 0.7, 1.0, 1.6  # weights of line [pt
 LEGEND: dict[str, Any] = {"fontsize": TICK, "frameon": True, "framealpha": 0.9, "edgecolor": "none"}
 # Structures: bodies differ in darkness too; marks are black, dimensions blue, thrust lines dashed.
 BODIES = ("#dfe6ec", "#f1e2c6", "#c2cdd8")
-RESTING_COLOUR = "#f4f3f0"  # of parts at rest while the links of a structure move
+RESTING_COLOUR = "#f4f3f0"  # colour of parts at rest while the links of a structure move
 EARTH, MEASURE = "#8a7f70", "#2b5d86"
 CURSOR = "#c4371a"
 TRACE: dict[str, Any] = {"color": INK, "linestyle": "-", "linewidth": 0.9}
@@ -60,7 +60,7 @@ REGIONS = {
     f"{names.OVERTURNS} after one impact": "#f2b04a",
     f"{names.OVERTURNS} after two or more": "#c46a1b",
     f"{names.OVERTURNS} without impact": "#5b3a55",
-    names.UNKNOWN: "#c9c9c9",  # hatched, too
+    names.UNKNOWN: "#c9c9c9",  # grey, and hatched too
 }
 BOUNDARIES: dict[str, dict[str, Any]] = {
     "uplift": {"color": "#222222", "linestyle": "-", "linewidth": 1.0},
@@ -118,7 +118,7 @@ def one_panel(height: float, title: str) -> tuple[Figure, Axes]:
 
 def size_of(text: str, points: float, weight: str = "normal") -> complex:
     """Return width and height of a text [inches]; mathematics is between dollars, other dollars are escaped."""
-    text = printable(text)  # as written to the file
+    text = printable(text)  # text as it is written to the file
     math = text.count("$") > text.count(r"\$")
     with catch_warnings():
         filterwarnings("ignore", "Glyph .* missing from", UserWarning)

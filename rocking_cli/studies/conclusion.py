@@ -8,14 +8,14 @@ from enum import StrEnum
 from math import isclose
 from typing import NamedTuple, Self, TypeVar
 
-LEAST_SHARE = 0.1  # overturning neighbours at which the `ratio` of a margin is defined
+LEAST_SHARE = 0.1  # share of overturning neighbours that defines the `ratio` of a margin
 SAME_RATIO = 1e-6  # relative difference below which two conclusions are equally severe
 K = TypeVar("K")
 V = TypeVar("V")
 
 
 class Concluded(StrEnum):
-    """What is concluded, of a response or of a verification; the worst last."""
+    """Possible conclusions on a response or a verification, the worst last."""
 
     NO_UPLIFT = "does_not_uplift"
     ROCKS = "rocks"
@@ -30,7 +30,7 @@ SEVERITY = list(Concluded)
 
 
 class NextStep(StrEnum):
-    """What to do next: about a joint, a motion, what does not count, or a result that is not good enough."""
+    """Next step to advise: about a joint, a motion, an input that does not count, or a result that is too poor."""
 
     HINGE_AT_JOINT = "hinge_at_joint"
     HOLD_JOINT = "hold_joint"
@@ -57,7 +57,7 @@ OF_LEFT_OUT = {
 
 
 class LeftOut(NamedTuple):
-    """What was given and does not count.
+    """An input that was given but does not count in the result.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ class Concluding(dict[K, V]):
 
 
 def worst(found: Iterable[Conclusion]) -> Conclusion:
-    """Return the worst of several conclusions: by what is concluded, then by the neighbours, ratio and peak."""
+    """Return the worst of several conclusions: by `concluded`, then by share of neighbours, ratio and peak."""
     return max(found, key=severity)
 
 
@@ -187,6 +187,6 @@ def are_alike(one: Conclusion, other: Conclusion) -> bool:
 def severity(conclusion: Conclusion) -> tuple[int, float, float, float]:
     """Return how bad a conclusion is, to compare it with others."""
     share = conclusion.share.highest if conclusion.share is not None else 0.0
-    # Without a ratio, a motion takes the structure past its capacity.
+    # Without a ratio, a motion takes the structure past its capacity: this is the worst.
     ratio = 0.0 if conclusion.ratio is None else -conclusion.ratio
     return SEVERITY.index(conclusion.concluded), share, ratio, conclusion.peak_ratio or 0.0

@@ -378,7 +378,7 @@ class _States(NamedTuple):
     time: Reals
     sign: Reals  # sign of the direction
     phi: Reals  # rotation in this direction [rad]
-    rate: Reals  # [rad/s]
+    rate: Reals  # rate of this rotation [rad/s]
     ground: NDArray[np.complex128]  # u_g'' + i v_g'' [m/s2]
     rocks: Bools
 

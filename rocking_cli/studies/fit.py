@@ -68,7 +68,7 @@ class ExceedanceTerms:
         eta = sign * (design @ coefficients)
         if self._link == "probit":
             value = log_ndtr(eta)
-            ratio = np.exp(-eta * eta / 2 - value) / np.sqrt(2 * np.pi)  # phi/Phi
+            ratio = np.exp(-eta * eta / 2 - value) / np.sqrt(2 * np.pi)  # phi/Phi: normal density over probability
             weight = ratio * (ratio + eta)
         else:
             value, ratio = log_expit(eta), expit(-eta)
@@ -107,14 +107,14 @@ class Brackets:
         u, v = (np.where(np.isfinite(end), end, 0.0) for end in (lower, upper))
         low = np.where(np.isfinite(lower), a + b * u, -np.inf)
         high = np.where(np.isfinite(upper), a + b * v, np.inf)
-        flip = low > 0  # the difference of small numbers is accurate in this tail
+        flip = low > 0  # the difference of small numbers is accurate in the lower tail
         top, bottom = log_ndtr(np.where(flip, -low, high)), log_ndtr(np.where(flip, -high, low))
         value = top + np.log(-np.expm1(bottom - top))
         # phi/[Phi(high) - Phi(low)] at either end.
         at_low, at_high = (np.exp(-end * end / 2 - value) / np.sqrt(2 * np.pi) for end in (low, high))
         low, high = (np.where(np.isfinite(end), end, 0.0) for end in (low, high))
         score = np.stack([at_high - at_low, at_high * v - at_low * u], axis=-1)
-        # This form is accurate for narrow brackets.
+        # Written in this way, the information is accurate for narrow brackets.
         information = score[:, :, None] * score[:, None, :]
         for weight, end in ((high * at_high, v), (-low * at_low, u)):
             row = np.stack([np.ones_like(end), end], axis=-1)
@@ -180,11 +180,11 @@ def separable(design: Reals, exceeded: Bools) -> bool:
     return bool(-solution.fun > MIN_SEPARATION * exceeded.size)
 
 
-MAX_NEWTON_STEPS = 100  # six are usual
+MAX_NEWTON_STEPS = 100  # largest number of steps; six are usual
 MIN_DECREMENT = 1e-12  # log-likelihood per run that the last step must gain
 MIN_STEP_SHARE = 1e-10
 MIN_EIGENVALUE_RATIO = 1e-13  # smallest over largest; with less, the information says nothing in one direction
-TERMS_PER_BLOCK = 1 << 16  # ten megabytes
+TERMS_PER_BLOCK = 1 << 16  # terms computed at once, in some ten megabytes
 NO_MAXIMUM = "the likelihood found no maximum: the data hardly tell a slope"
 NO_ERRORS = "the errors of the fit cannot be told: without one record, or at all, the data hardly tell a slope"
 

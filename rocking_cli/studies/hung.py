@@ -14,8 +14,8 @@ from rocking_cli.core.hung.attached import PointMass
 from rocking_cli.core.hung.element import COINCIDENT_DISTANCE, ConstantForce, Element, SpringBed, Stretched
 
 Copies = Mapping[str, Sequence[tuple[int, complex]]]
-"""For each body, the parts as which it is drawn: the index of each, and its offset from the body [m]."""
-SPRINGS_PER_BED = 8  # drawn for a bed
+"""The parts as which each body is drawn: index of the part, and its offset from the body [m]."""
+SPRINGS_PER_BED = 8  # The parts drawn for each body: index of the part, and its offset from the body [m].
 TONNE = 1000.0  # kg; masses from here on are given in t
 
 
@@ -155,7 +155,7 @@ def walls(mechanism: Mechanism, low: complex, high: complex) -> tuple[Points, ..
     """
     if mechanism.rocks_both_ways:
         return ()
-    if mechanism.directions[0] is Direction.POSITIVE:  # it leans on what is to its left
+    if mechanism.directions[0] is Direction.POSITIVE:  # the structure leans on a wall to its left
         return (np.array([complex(low.real, high.imag), low]),)
     return (np.array([complex(high.real, low.imag), high]),)
 

@@ -40,7 +40,7 @@ MIN_SIZE = 1e-150  # m; scales of smaller drawings overflow
 MIN_TURN = 1e-9  # rate below which a body does not turn
 START_SHARE = 0.05  # displacement of the fastest part over the size, in a drawing of an initial motion
 MAX_SEPARATE_PARTS = 40  # above this number, parts that move together are drawn as one
-SHADE_COUNT = 3  # enough to tell each link from its neighbours
+SHADE_COUNT = 3  # number of shades: enough to tell each link from its neighbours
 SHOWN_LIMIT_SHARE = 0.1  # share of the kinematic limit that is drawn if there is no critical rotation
 
 ASSUMED_NOTE = (
@@ -396,7 +396,7 @@ class Picture:
 
     @property
     def furthest(self) -> float:
-        """The largest displacement that can be drawn in both directions, over the reference."""
+        """The largest displacement that can be drawn in both directions, over the reference rotation."""
         return min(self.limit[direction] / phi for direction, phi in self.reference.items())
 
     @cached_property

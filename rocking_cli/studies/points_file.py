@@ -27,7 +27,7 @@ class CurvePoints(NamedTuple):
 
 
 def separator_in(line: str) -> str | None:
-    """Return what separates the cells of a line; None for blanks."""
+    """Return the separator of the cells of a line; None for blanks."""
     return next((sign for sign in (";", "\t", ",") if sign in line), None)
 
 

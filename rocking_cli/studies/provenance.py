@@ -56,7 +56,7 @@ class TitleBlock:
 
     @property
     def known(self) -> dict[str, str]:
-        """The given ones of project, place and author, by name."""
+        """Project, place and author, as far as they are given, by name."""
         given = {"project": self.project, "place": self.place, "author": self.author}
         return {name: text for name, text in given.items() if text}
 

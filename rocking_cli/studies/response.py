@@ -136,12 +136,12 @@ class Response(Mapping[ModelName, History]):
 
     @cached_property
     def conclusions(self) -> Mapping[int, Conclusion]:
-        """What is concluded under each polarity."""
+        """The conclusion under each polarity."""
         return _of_each(self.runs, self.neighbours, self.given.motion.name if self.given is not None else "")
 
     @cached_property
     def conclusion(self) -> Conclusion:
-        """What is concluded, and what governs."""
+        """The conclusion under the polarity that governs."""
         return _together(self.conclusions)
 
     @cached_property

@@ -1,4 +1,4 @@
-"""Cautions on the results of a structure: what starts before it rocks, its restitution, and those of its mechanism."""
+"""Cautions on the results of a structure: on what starts before it rocks, on its restitution, and of its mechanism."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SLIDING_CAUTION = "Stronger motions move it by sliding, which is not modelled: p
 
 
 def cautions_of(mechanism: Mechanism) -> list[str]:
-    """Return all cautions on a structure, what starts before it rocks first."""
+    """Return all cautions on a structure; those on what starts before it rocks come first."""
     return [*before_rocking(mechanism), *of_restitution(mechanism), *mechanism.cautions()]
 
 

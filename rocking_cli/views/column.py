@@ -72,7 +72,7 @@ class Column(Generic[R]):
         return ABSENT if value is None else self.form(value)
 
     def filed(self, row: R) -> Any:
-        """Return the value of a row as files have it: what does not exist is NaN, or an empty text."""
+        """Return the value of a row for files: a value that does not exist is NaN, or an empty text."""
         value = self.of(row)
         return value if value is not None else "" if self.text else nan
 

@@ -65,7 +65,7 @@ def of_verification(found: Verification, say: Language = ENGLISH, title: str | N
 
 
 def uncounted_ties(end: Conclusion, say: Language = ENGLISH) -> list[str]:
-    """Return a sentence on the ties that do not count, and what makes them count; empty if all do."""
+    """Return a sentence on the ties that do not count, and the fields that make them count; empty if all do."""
     return not_counted([each for each in end.left_out if each.what == "tie"], say)
 
 

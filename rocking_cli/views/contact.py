@@ -119,7 +119,7 @@ def _at_impacts(found: ContactDemand, mechanism: Mechanism) -> str:
     """Return what to do about the friction that impacts require, as a clause with its colon."""
     if found.friction is None and found.impact_friction <= MASONRY_FRICTION:
         return ""
-    # The check uses impulses of the kinematic restitution; those of another one are not known at each joint.
+    # The check uses impulses of the kinematic restitution; impulses of another restitution are not known by joint.
     if not found.followed or restitution_source(mechanism) == "given":
         return ": joints with less slide at impacts, which is not simulated; prevent this, for instance by dowels"
     if found.friction is None:
@@ -164,7 +164,7 @@ def _where(letter: str) -> str:
 
 
 def _sums(found: ContactDemand, mechanism: Mechanism) -> str | None:
-    """Return what the forces are summed over: the whole structure, identical bodies, or nothing (None).
+    """Return the extent over which forces are summed: the whole structure, identical bodies, or none (None).
 
     `shared` is a least-squares estimate where statics alone does not determine the force at each joint.
     """

@@ -41,7 +41,7 @@ COLUMNS: tuple[Column[Mapping[str, Any]], ...] = (
     only_shown("default", _default, text=True),
     only_shown("meaning", itemgetter("description"), text=True),
 )
-"""Columns of the fields of a file, whose rows are the data."""
+"""Columns of the table of the fields of a structure file; a row is the plain data of one field."""
 
 
 class InstalledMechanism(NamedTuple):

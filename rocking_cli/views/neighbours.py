@@ -41,7 +41,7 @@ def neighbours_in_words(near: Neighbours) -> str:
         sentences.append(f"{'half' if median == 0 else '16 %'} do not uplift it")
     if 0 < median < inf:
         sentences.append(f"the median peak is {median:.2g} {near.over}")
-    # The highest known peak of these neighbours.
+    # The highest known fractile of the peaks of the neighbours.
     part, most = ("84 %", high) if high < inf else ("16 %", low if isinf(median) else 0.0)
     if enough and 0 < most < inf:
         sentences.append(f"{part} stay below {most:.2g} {near.over}")

@@ -33,7 +33,7 @@ from rocking_cli.views.verdict import SENSE, unchecked, verdict, why_unknown
 from rocking_cli.views.view import Table, View, force_unit, in_degrees, number
 
 Reals = NDArray[np.float64]
-MAX_LISTED_IMPACTS = 12  # of a model in its table; the data have all
+MAX_LISTED_IMPACTS = 12  # number of impacts of a model in its table; the data have all
 
 
 def record_data(motion: GroundMotion, factor: float, polarity: str, pulse: Pulse | None) -> dict[str, Any]:
@@ -185,14 +185,14 @@ def known_data(outcome: OneOutcome) -> dict[str, Any]:
 
 
 def not_checked(mechanism: Mechanism, histories: Iterable[History]) -> list[str]:
-    """A caution if the joints of a nonlinear history are not checked; else nothing."""
+    """Return a caution if the joints of a nonlinear history are not checked; otherwise an empty list."""
     if all(each.model != "nonlinear" or each.check is not None for each in histories):
         return []
     return [unchecked(why=mechanism.unchecked)]
 
 
 def _columns(*, unknown: bool = False, over: str = "phi_cr") -> list[Column[History]]:
-    """Return the columns of a history, without those of `KNOWN`.
+    """Return the columns of the table of histories, except those in `KNOWN`.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ from rocking_cli.structure import Structure
 from rocking_cli.views.verdict import SENSE
 
 ETA_TOLERANCE = 1e-9
-MIN_DOUBTFUL_ETA = 0.97  # from kinematics; tests measured less
+MIN_DOUBTFUL_ETA = 0.97  # restitution from kinematics above which there is a caution, as tests measured less
 
 
 def restitution_source(mechanism: Mechanism) -> str:
