@@ -19,8 +19,8 @@ from typing import Any
 
 __version__ = "0.1.0"
 
-# What is in which module; `rooms` finds what the questions offer. The stub beside this file, `__init__.pyi`, is written
-# from both by `make pages`.
+# Names that other modules define, by module; `rooms` finds those of the questions. The stub beside this file,
+# `__init__.pyi`, is written from both by `make pages`.
 _HOME = {
     "ask.answer": ["Answer", "MappingAnswer"],
     "ask.several": ["Answers"],
@@ -63,7 +63,7 @@ def _own_mechanisms() -> dict[str, str]:
 def __getattr__(name: str) -> Any:
     if name in _MODULES:
         return getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
-    from rocking_cli.plugins.rooms import names  # not for every import of the package
+    from rocking_cli.plugins.rooms import names  # imported here, as most uses do not need it
 
     if name == "__all__":
         return sorted(["__version__", "mechanisms", *_MODULES, *names()])

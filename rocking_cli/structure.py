@@ -35,7 +35,7 @@ from rocking_cli.io.yaml_file import Place
 from rocking_cli.names import OPENING
 from rocking_cli.text import cut, did_you_mean
 
-MAX_OPENING = 1000.0  # over D_cr; with wider openings every outcome is known
+MAX_OPENING = 1000.0  # bound on the largest opening over D_cr; with wider openings every outcome is known
 
 
 def with_restitution(mechanism: Mechanism, eta: float) -> Mechanism:

@@ -1,4 +1,4 @@
-"""Text from files and plugins (names, keys, lines): safe to show in a terminal, a plot or a page; patterns in it."""
+"""Text from files and plugins (names, keys, lines): safe to show in a terminal, a plot or a page."""
 
 from __future__ import annotations
 

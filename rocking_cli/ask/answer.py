@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 R = TypeVar("R")
 K = TypeVar("K")
 V = TypeVar("V")
-MAX_REPR_LENGTH = 100  # characters
+MAX_REPR_LENGTH = 100  # characters of the text that `repr` shows
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -164,7 +164,7 @@ def _write(figure: Figure, path: Path) -> None:
 
 
 def drawn(function: str, *args: Any, **named: Any) -> Callable[[], Figure]:
-    """Return what draws a plot by a function such as "questions.margin.picture.draw_margins", imported when called."""
+    """Return a function that draws a plot by the named one, such as "questions.margin.picture.draw_margins"."""
     return partial(_draw, function, *args, **named)
 
 

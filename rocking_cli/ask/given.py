@@ -40,12 +40,12 @@ SiteLike = Mapping[str, Any] | str | Path
 LOCAL_FILE = Path("rocking.yaml")
 """Stands for the structure that a command was not given: the file of this name in the current folder, or the block."""
 DEFAULT_STRUCTURE = "mechanism: block\nname: default block, 0.7 m x 2.8 m\nwidth: 0.7\nheight: 2.8\n"
-# Slow structures take about a second; the slowest of which the time was measured have MAX_TIMED_POLYGONS.
+# Numbers of polygons from which a structure is slow (about a second) and very slow, and the largest one timed.
 MIN_SLOW_POLYGONS, MIN_VERY_SLOW_POLYGONS, MAX_TIMED_POLYGONS = 100, 500, 1000
 
 
 def structure_of(given: StructureLike, watch: Watcher = SILENT, opening: float = OPENING) -> Structure:
-    """Open a structure, and warn of doubts about it: a mechanism, named by its kind if it has no name, or a file.
+    """Open a mechanism (named by its kind if it has no name), or a file, as a structure; warn of doubts about it.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def _what_blocks_take(count: int) -> str:
 def structures_of(
     given: Sequence[StructureLike], watch: Watcher = SILENT, opening: float = OPENING, *, least: int = 1
 ) -> list[Structure]:
-    """Open several structures; those that cannot be used are left out. Structures of the same name have their file too.
+    """Open several structures; those that cannot be used are left out. The name of a file tells equal names apart.
 
     Raises
     ------

@@ -28,7 +28,7 @@ from rocking_cli.views.view import MAX_DETAILED_MOTIONS
 
 Motion = GroundMotion | Pulse | Scaled | str | Path
 """Ground motion or pulse, file of a record, or pulse as text such as `sine:0.6g:0.8s`."""
-MAX_PGA, MAX_PGV = 1e3, 1e4  # g and m/s: beyond any ground motion, and too long to simulate
+MAX_PGA, MAX_PGV = 1e3, 1e4  # g and m/s: larger than in any ground motion, and too long to simulate
 Source = GroundMotion | Scaled | Pulse | Listed | InputError
 """Source of a motion: an object, a single file of a pattern or list, or the reason why there is no file."""
 
@@ -61,7 +61,7 @@ class Motions:
         *,
         usual: Mapping[str, Any] | None = None,
     ) -> Motions:
-        """Return the motions of a verb, from what it is given and its keyword arguments. Raises `InputError`.
+        """Return the motions of a verb, from its motion arguments and its keyword arguments. Raises `InputError`.
 
         `usual` is how files are read that do not state it themselves.
         """
@@ -139,7 +139,7 @@ class Motions:
         """
         self.check(with_vertical=with_vertical)
         if self.sources and all(isinstance(each, Scaled) for each in self.sources):
-            return [each for each in self.sources if isinstance(each, Scaled)]  # already read
+            return [each for each in self.sources if isinstance(each, Scaled)]  # these motions were read before
         chosen: list[Scaled] = []
         for place, source in enumerate(self.sources):
             try:

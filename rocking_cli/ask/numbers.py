@@ -51,7 +51,7 @@ def takes_numbers(verb: Callable[P, R]) -> Callable[P, R]:
 
 
 def _text(value: object) -> str | None:
-    """Return the text among what is given for numbers, if there is any."""
+    """Return the first text among the values given for numbers; None if there is none."""
     if isinstance(value, list | tuple):
         return next(filter(None, map(_text, value)), None)
     return value if isinstance(value, str) else None

@@ -79,7 +79,7 @@ def under_motions(verb: Callable[Concatenate[Any, Any, P], A | Answers[A]]) -> U
 
 
 def are_several(given: object, motions: Motions) -> bool:
-    """Return whether several motions are given, or a list of them."""
+    """Return whether several motions are given, or any number of them in a list."""
     return motions.count > 1 or (isinstance(given, list | tuple) and not isinstance(given, Scaled))
 
 
@@ -91,7 +91,7 @@ def answers(
     figure: Callable[[], Figure] | None = None,
     tables: Mapping[str, Callable[[], Columns]] = MappingProxyType({}),
 ) -> Answers[A]:
-    """Return the answers about several of something, such as motions, with the parts of their common view.
+    """Return the answers to a question about several motions or structures, with the parts of their common view.
 
     `figure` is their common plot and `tables` are further tables of all, if there are any.
     """

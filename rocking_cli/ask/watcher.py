@@ -57,7 +57,7 @@ class Watcher:
     def progress(
         self, total: int, what: str, *, done: int = 0, failed: int = 0
     ) -> AbstractContextManager[Advance]:  # fmt: skip
-        """Begin work of this many pieces, which `what` names; yields the function that counts them.
+        """Begin work of `total` pieces, which `what` names; yields the function that counts them.
 
         Of these, `done` were done before, and `failed` of them could not be.
         """

@@ -61,7 +61,7 @@ def _give(number: int) -> None:
     main = threading.main_thread().ident
     if hasattr(signal, "pthread_kill") and main is not None:
         signal.pthread_kill(main, number)
-    else:  # Windows
+    else:  # Windows can only raise the signal in this thread
         signal.raise_signal(number)
 
 

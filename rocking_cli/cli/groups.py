@@ -38,7 +38,7 @@ class ReadingOptions:
             terminal.note(f"--scale {scale:g} is negative: it reverses the motion, as --polarity -1 does")
 
     def of(self, *given: Motion) -> Motions:
-        """Return ground motions with how to read and scale them. Raises `InputError`."""
+        """Return ground motions together with the options for reading and scaling them. Raises `InputError`."""
         from rocking_cli.ask.ground_motions import Motions
 
         return Motions.of(given, self.options, usual=self.usual)
@@ -58,7 +58,7 @@ class GroundMotions(ReadingOptions):
 
     @cached_property
     def motions(self) -> Motions:
-        """Motions, and how to read and scale them."""
+        """The ground motions, together with the options for reading and scaling them."""
         from rocking_cli.excitation.pulses import parse_pulse
 
         return self.of(*map(Path, self.records), *map(parse_pulse, self.pulses))
@@ -130,7 +130,7 @@ class Output:
         check_table(self.out)
 
     def blocks(self, answer: Answer[Any]) -> Iterable[Columns]:
-        """Return the table to write of an answer, in blocks of rows."""
+        """Return the table of an answer that is written to a file, in blocks of rows."""
         return answer.blocks() if answer.blocks is not None else [answer.columns()]
 
     def show(self, answer: Answer[Any]) -> None:

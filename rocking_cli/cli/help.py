@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 OPTIONS_HEADING, RECORDS_HEADING = "Options", "Reading and processing of records"
-FREE_COLUMNS = 2  # at the right, as in click
+FREE_COLUMNS = 2  # number of columns left free at the right, as in click
 # Least width of help texts, and least width that click can lay out, in columns of the terminal.
 MIN_WIDTH, MIN_WIDTH_OF_CLICK = 20, 52
 

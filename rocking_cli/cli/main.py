@@ -21,7 +21,7 @@ from rocking_cli.text import cut, one_line, printable
 
 DIAGNOSTIC_COMMANDS = ("info", "selfcheck")
 """Commands that run even if the user's defaults are invalid."""
-MAX_EPOCH_DIGITS = 11  # of SOURCE_DATE_EPOCH, up to the year 5138
+MAX_EPOCH_DIGITS = 11  # number of digits of SOURCE_DATE_EPOCH, up to the year 5138
 
 
 class _Helped(click.Context):
@@ -39,7 +39,7 @@ class _Context(_Helped):
         if not self.resilient_parsing:
             try:
                 defaults.set_for(self)
-            except InputError as error:  # --help works without the defaults
+            except InputError as error:  # an invalid default is reported later, as --help works without it
                 self.refused = error
 
     def invoke(self, callback: Any, /, *args: Any, **named: Any) -> Any:
@@ -70,7 +70,7 @@ class LazyGroup(click.Group):
     context_class = _Helped
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Return the names in the order in which a newcomer needs them."""
+        """Return the names of the commands in the order in which a newcomer needs them."""
         return list(commands())
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:

@@ -42,7 +42,7 @@ as_json: Decorator = click.option(
 
 
 def output_path(*suffixes: str) -> Callable[[click.Context, click.Parameter, str | None], Path | None]:
-    """Make a callback of click that checks an output file: one of these suffixes, and a folder that can be written to.
+    """Make a callback of click that checks an output file: it needs one of these suffixes, and a writable folder.
 
     A table in text may be written to - for standard output, as `written.write_table` does.
     """
@@ -64,7 +64,7 @@ def output_path(*suffixes: str) -> Callable[[click.Context, click.Parameter, str
 
 
 def out(*suffixes: str, what: str, required: bool = False, metavar: str | None = None) -> Decorator:
-    """Declare the output file `out`, of one of these suffixes; `what` is its help."""
+    """Declare the output file `out`, which needs one of the given suffixes; `what` is its help."""
     return click.option(
         "-o",
         "--out",
@@ -167,7 +167,7 @@ table_signs: Decorator = in_order(
 
 
 def record_option(*names: str, **more: Any) -> Decorator:
-    """Declare an option that reads or processes records, for their heading in the help."""
+    """Declare an option that reads or processes records, so that the help lists it under their heading."""
     return click.option(*names, cls=RecordOption, **more)
 
 
@@ -186,7 +186,7 @@ ground_motions: Decorator = in_order(
 
 
 def _once(ctx: click.Context, param: click.Parameter, value: tuple[Any, ...]) -> Any:
-    """Return the value of a correction, as a callback of click."""
+    """Return the value of a correction, and refuse one that is given twice; a callback of click."""
     if len(value) > 1:
         hint = "a `processing:` list of a study, or of a list of records, may repeat a step."
         raise click.BadParameter(f"is given twice: give it once; {hint}", ctx, param)
@@ -194,14 +194,14 @@ def _once(ctx: click.Context, param: click.Parameter, value: tuple[Any, ...]) ->
 
 
 def _choices(option: Option) -> Callable[..., list[str]] | None:
-    """Return the completion of an option whose values are words of its metavar."""
+    """Return the completion of an option whose metavar lists its values."""
     if not option.metavar.startswith("["):
         return None
     return lambda ctx, param, typed: [each for each in option.metavar[1:-1].split("|") if each.startswith(typed)]
 
 
 def _declared(options: Mapping[str, Option]) -> Decorator:
-    """Declare the options of records by their declarations."""
+    """Declare the options for reading records, from the table of their declarations."""
     return in_order(
         *(
             record_option(
@@ -241,7 +241,7 @@ model: Decorator = click.option(
 
 
 def polarity(*choices: str, default: str = "1") -> Decorator:
-    """Declare the option `polarity` of a motion, with these choices; the help of a command explains `both`."""
+    """Declare the option `polarity` of a motion, with the given choices; the help of a command explains `both`."""
     return click.option(
         "--polarity",
         type=click.Choice(choices),
@@ -252,7 +252,7 @@ def polarity(*choices: str, default: str = "1") -> Decorator:
 
 
 def scaling(*polarities: str, default: str = "1") -> Decorator:
-    """Declare how to scale a motion, one of `scale`, `target_pga` and `target_pgv`, and `polarity`, one of these."""
+    """Declare the options that scale a motion (`scale`, `target_pga`, `target_pgv`), and those for `polarity`."""
     return in_order(_declared(SCALING), polarity(*polarities, default=default))
 
 
@@ -278,7 +278,7 @@ shape: Decorator = click.option(
 
 
 def sized_pulse(*polarities: str, required: bool = False) -> Decorator:
-    """Declare one pulse: `shape`, `ag`, `period` and `polarity`, which is one of these."""
+    """Declare one pulse: `shape`, `ag`, `period`, and `polarity` with the given choices."""
     return in_order(
         click.option(
             "--ag",

@@ -48,7 +48,7 @@ def results_only() -> Iterator[None]:
 
 @contextmanager
 def plugins_apart() -> Iterator[None]:
-    """Keep what plugins print out of the results, and show warnings about them as the others of this program."""
+    """Keep output of plugins out of the results, and show their warnings like other warnings of this program."""
     with results_only(), warnings.catch_warnings():
         warnings.simplefilter("always", PluginWarning)
         otherwise = warnings.showwarning
@@ -165,7 +165,7 @@ def _columns(stream: TextIO) -> int | None:
         return int(columns)
     try:
         return os.get_terminal_size(stream.fileno()).columns or DEFAULT_WIDTH
-    except (OSError, ValueError):  # not a terminal, or one of unknown size
+    except (OSError, ValueError):  # the stream is not a terminal, or is one of unknown size
         return None
 
 

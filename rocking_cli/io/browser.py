@@ -29,7 +29,7 @@ USUAL_PATHS = (  # usual places in macOS and Windows, where browsers are not on 
     r"C:\Program Files (x86)\Microsoft\Edge\Application\msedge.exe",
 )
 BROWSER_OPTIONS = ("headless", "disable-gpu", "no-first-run", "no-pdf-header-footer")
-PRINT_TIMEOUT = 120  # s
+PRINT_TIMEOUT = 120  # s until a print is given up
 
 
 def browser() -> str:

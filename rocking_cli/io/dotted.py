@@ -114,7 +114,7 @@ def _known(word: str, names: list[Any]) -> str:
 
 
 def closed(data: Any) -> Any:
-    """Return the data without list entries that received no value."""
+    """Return the data without the placeholders of list entries that received no value."""
     if isinstance(data, dict):
         return {key: closed(value) for key, value in data.items()}
     return [closed(each) for each in data if each is not HOLE] if isinstance(data, list) else data

@@ -19,7 +19,7 @@ OF_KIND: Any = {
     "float_type": (), "int_type": (), "string_type": (), "literal_error": (), "list_type": (), "model_type": (),
     "dict_type": (), list: ("list_type",), dict: ("model_type", "dict_type"),
 }  # fmt: skip
-"""Errors of pydantic on the kind of a value; for a list and for a mapping, those on its own kind."""
+"""Types of pydantic's errors on the kind of a value; under `list` and `dict`, those that apply to such a value."""
 
 
 def problems(
@@ -191,7 +191,7 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
     if kind == "literal_error":
         number = f"a number{f' in{unit}' if unit else ''}, or " if info and float in get_args(info.annotation) else ""
         close = did_you_mean(value, re.findall("'(.*?)'", ctx["expected"])) if isinstance(value, str) else None
-        hint = close if close and close.startswith("did") else None  # the message lists the others
+        hint = close if close and close.startswith("did") else None  # the message lists the other fields
         return f"must be {number}{ctx['expected']}, {got}".replace("'", ""), hint
     if kind in ("too_short", "too_long"):
         least, most = ctx.get("min_length"), ctx.get("max_length")

@@ -71,7 +71,7 @@ def write_csv(
 def _lines(table: np.ndarray) -> str:
     """Return a table of numbers as lines of text, faster than field by field, as a history has millions of them."""
     line = ",".join(["%.9g"] * table.shape[1]) + "\n"
-    return (line * len(table) % tuple((table + 0.0).ravel().tolist())).replace("nan", "")  # no -0
+    return (line * len(table) % tuple((table + 0.0).ravel().tolist())).replace("nan", "")  # + 0.0 turns -0 into 0
 
 
 def _field(value: object, digits: int | None, decimal: str) -> object:
@@ -81,7 +81,7 @@ def _field(value: object, digits: int | None, decimal: str) -> object:
         return value
     if value != value:
         return ""
-    return (repr(value + 0.0) if digits is None else f"{value + 0.0:.{digits}g}").replace(".", decimal)  # no -0
+    return (repr(value + 0.0) if digits is None else f"{value + 0.0:.{digits}g}").replace(".", decimal)  # avoids -0
 
 
 def _write_parquet(stream: BinaryIO, blocks: Iterable[Columns]) -> None:

@@ -175,7 +175,7 @@ def spell(place: Place) -> str | None:
 
 
 def read_text(path: Path, what: str) -> str:
-    """Return the text of a file of a kind `what`. Raises `InputError` if it cannot be read."""
+    """Return the text of a file; `what` is its kind in messages. Raises `InputError` if it cannot be read."""
     return decoded(read_bytes(path, f"{what} file", MAX_BYTES), str(path), what)
 
 

@@ -67,7 +67,7 @@ def guard(
 
 
 def failed(kind: str, attribute: str) -> Callable[[Any, str], str]:
-    """Return the beginning of messages on failures of a kind of plugin, whose name is in an attribute, for `guard`."""
+    """Return a function for `guard` that begins messages on failed plugins of a kind, named by an attribute."""
     return lambda own, method: f"the {kind} {getattr(own, attribute, own.__name__)} failed in {method}"
 
 

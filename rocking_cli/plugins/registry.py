@@ -29,9 +29,9 @@ def entry_points(group: str) -> EntryPoints:
 
 
 def _state(path: str) -> tuple[int, ...]:
-    """Return what changes when a package is installed in a folder; empty if there is no such folder."""
+    """Return values that change when a package is installed in a folder; empty if there is no such folder."""
     try:
-        status = os.stat(path or ".")  # noqa: PTH116  a Path would cost more than the question
+        status = os.stat(path or ".")  # noqa: PTH116  os.stat is faster than a Path here
     except OSError:
         return ()
     return status.st_dev, status.st_ino, status.st_mtime_ns
@@ -53,7 +53,7 @@ def find(group: str) -> dict[str, list[EntryPoint]]:
     return points
 
 
-@cache  # each call reads the metadata of the package from disk
+@cache  # without it, each call would read the metadata of the package from disk
 def package_of(point: EntryPoint) -> str:
     """Return the name and version of the package of a plugin."""
     return f"{point.dist.name} {point.dist.version}" if point.dist is not None else "unknown package"

@@ -8,7 +8,7 @@ from rocking_cli.core.hung import Element
 from rocking_cli.testing.mechanism import _demand
 
 ELONGATION_POINTS = 20_001
-MAX_RELATIVE_ERROR = 1e-6  # of the differences, over the largest value
+MAX_RELATIVE_ERROR = 1e-6  # error of the differences over the largest value
 
 
 def check_law(element: Element, shortest: float, longest: float) -> None:

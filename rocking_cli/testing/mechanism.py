@@ -57,9 +57,9 @@ Points = NDArray[np.complex128]
 
 MAX_STEP = 1e-4  # largest step of difference quotients [rad]
 FINE_STEP_SHARE = 0.02  # finer step, over the step
-STEP_SHARE = 1e-3  # step, over the range of rotations
+STEP_SHARE = 1e-3  # step of difference quotients, over the range of rotations
 SMOOTH_ROTATION = 1.2  # rotation up to which the motion must be smooth, over the critical rotation
-SMOOTH_LIMIT_SHARE = 0.8  # the same over the kinematic limit, near which derivatives grow without bound
+SMOOTH_LIMIT_SHARE = 0.8  # rotation up to which motion must be smooth, over the kinematic limit, where derivatives grow
 NO_JUMP_SHARE = 0.999  # rotation up to which there must be no jump, over the kinematic limit
 STENCIL = (-2, -1, 1, 2)  # steps at which difference quotients take values
 JUMP_INTERVALS = 4096
@@ -674,7 +674,7 @@ def _top(structure: Mechanism, direction: Direction) -> float:
 
 
 def _size(structure: Mechanism) -> float:
-    """Return the largest rate of a centroid with phi at rest, of the size of the lever arms [m]."""
+    """Return the largest speed of a centroid per unit rate of phi at rest [m], which has the size of the lever arms."""
     return max(
         abs(complex(motion.carry(body.centroid)[1][0]))
         for direction in structure.directions
