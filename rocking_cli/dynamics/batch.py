@@ -19,7 +19,7 @@ from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 
-# Impacts after the record: one ends the motion under way, two a free excursion to either side; later ones only weaken.
+# Impacts after the record: one ends the current motion, two end an excursion to either side; later motion decays.
 DECISIVE_IMPACTS = 3
 RESTITUTION_ROUNDING = 1e-9  # relative excess over the bound that is allowed, as equal sides reach the bound
 HISTORIES_PER_TASK = 256  # some 50 ms of work; handing it to a thread takes 20 us

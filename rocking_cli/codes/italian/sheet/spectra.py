@@ -65,7 +65,7 @@ def _peak_of_floor(say: Language, floor: FloorSpectrum) -> Iterator[Working]:
 
 
 def acceleration(say: Language, spectrum: GroundSpectrum | TableSpectrum, at: At) -> Iterator[Working]:
-    """Yield the step for S_e at a period; its eta comes before."""
+    """Yield the step for S_e at a period; the step for its eta comes before."""
     if isinstance(spectrum, TableSpectrum):
         yield from _of_table(say, spectrum, at)
         return
