@@ -82,6 +82,11 @@ class SiteGround:
         ground = self.on_ground(state)
         return None if ground is None else self._where_it_stands(ground, state)
 
+    def verified(self, state: str) -> DemandSpectrum | None:
+        """Return the spectrum at the support for a limit state to verify; None if it is left out or not given."""
+        states = self.site.states
+        return self.spectrum(state) if states is None or state in states else None
+
     @property
     def state_of_activation(self) -> str:
         """The limit state whose ground the linear method uses: SLD, or SLV if SLD is not given in the same form.

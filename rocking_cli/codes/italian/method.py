@@ -45,14 +45,14 @@ class _Case:
             d = min(d, curve.seat.d)
         a = with_elastic_branch(curve.acceleration(d), d, site.own_period)
         T = rule.factor * pi * sqrt(d / a)
-        spectrum = self.ground.spectrum(rule.state)
+        spectrum = self.ground.verified(rule.state)
         return LimitState(d, a, T, None if spectrum is None else spectrum.displacement(T, rule.damping))
 
     def method(
         self, title: str, clause: str, state: str, demand: Callable[[DemandSpectrum], float], capacity: float
     ) -> ItalianMethod:
         """Return the capacity a_g by one method."""
-        spectrum = self.ground.spectrum(state)
+        spectrum = self.ground.verified(state)
         if spectrum is None:
             return ItalianMethod(title, None, None, clause)
         a_g = self.ground.capacity(spectrum, demand, capacity)

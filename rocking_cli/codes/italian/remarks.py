@@ -57,6 +57,8 @@ def of_site(ground: SiteGround, directions: Collection[ItalianVerified]) -> list
     missing = [state for state in FURTHER_STATES if ground.spectrum(state) is None]
     if missing:
         remarks.append(Remark.of("missing", states=missing))
+    if left_out := [state for state in FURTHER_STATES if state not in missing and ground.verified(state) is None]:
+        remarks.append(Remark.of("states_left_out", states=left_out))
     crushes = any(each.chain.mechanism.crushing is not None for each in directions)
     if ground.site.FC < LARGEST_FC and not crushes:
         remarks.append(Remark.of("confidence", FC=ground.site.FC, least=LARGEST_FC))

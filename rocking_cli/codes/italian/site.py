@@ -209,6 +209,9 @@ class ItalianSite(StateGround, Site):
     SLV: StateGround | None = Field(None, description="the ground of SLV, if it is not given without a limit state")
     SLD: StateGround | None = Field(None, description="the ground at damage")
     SLO: StateGround | None = Field(None, description="the ground of SLO, which is shown and not verified")
+    states: Annotated[list[Literal["SLD", "SLV", "SLC"]], Field(min_length=1, max_length=3)] | None = Field(
+        None, description="limit states to verify, SLV among them; if omitted, all that the site gives"
+    )
     soil: Literal["A", "B", "C", "D", "E"] | None = Field(None, description="category of the soil")
     topography: Literal["T1", "T2", "T3", "T4"] = Field("T1", description="category of the topography")
     hazard: Annotated[list[Row], Field(min_length=2, max_length=MAX_TABLE_ROWS)] | None = Field(
@@ -279,6 +282,8 @@ class ItalianSite(StateGround, Site):
         def there(*names: str) -> list[str]:
             return [name for name in names if given.get(name) is not None]
 
+        if there("states") and FIRST_STATE not in given["states"]:
+            yield ("states",), f"must include {FIRST_STATE}, by which local mechanisms are verified"
         if there("element") and there("T0"):
             yield ("element",), "cannot be combined with T0, which is computed from it: give one of the two"
         if there("CU") and there("class"):

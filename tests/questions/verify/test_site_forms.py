@@ -7,6 +7,7 @@ import pytest
 import rocking_cli as rk
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.site import ItalianSite
+from rocking_cli.core import Direction
 from rocking_cli.errors import InputError
 from rocking_cli.verification.check import read_site
 from tests.cli.test_cli import run, run_json
@@ -200,6 +201,19 @@ def test_what_is_wrong_has_its_place_and_a_remedy(text, line, field, said, hint,
     found = [each for each in caught.value.problems if each.field == field and said in each.message]
     assert found, caught.value.problems
     assert (found[0].line, found[0].hint) == (line, hint) and found[0].file == str(file)
+
+
+def test_only_the_states_asked_for_are_verified():
+    """SLV is as it was, nothing of SLC and SLD decides, and both are named as left out."""
+    whole, alone = (rk.verify(BLOCK, ROUNDED | more) for more in ({}, {"states": ["SLV"]}))
+    assert whole.conclusion.limit_state in ("SLC", "SLD") and alone.conclusion.limit_state == "SLV"
+    of_whole, of_alone = (each.directions[Direction.POSITIVE].states for each in (whole, alone))
+    assert of_alone["SLV"] == of_whole["SLV"] and of_alone["SLC"].demand is None
+    said = "Not verified, because `states` of the site file leaves them out: SLC and SLD."
+    assert said in alone.sentences and said not in whole.sentences
+    assert rk.demand(ROUNDED | {"states": ["SLV"]}).states.keys() == PRINTED.keys()
+    with pytest.raises(InputError, match="must include SLV"):
+        rk.verify(BLOCK, ROUNDED | {"states": ["SLC"]})
 
 
 def test_the_command_verifies_each_form(tmp_path):
