@@ -10,7 +10,6 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from decimal import Context, Decimal
-from difflib import get_close_matches
 from math import isfinite
 
 from rocking_cli.text import cut, printable, regex
@@ -23,8 +22,24 @@ KINDS: Mapping[str, Mapping[str, str]] = {
     # Accelerations come before masses, as a field in g is an acceleration and masses are in kg.
     "acceleration": {"m/s2": "1", "cm/s2": "0.01", "mm/s2": "0.001", "gal": "0.01", "g": "9.80665", "ft/s2": "0.3048"},
     "mass": {"kg": "1", "g": "0.001", "t": "1000", "Mg": "1000", "lb": "0.45359237"},
-    "force": {"N": "1", "kN": "1000", "MN": "1000000", "lbf": "4.4482216152605", "kip": "4448.2216152605"},
-    "stiffness": {"N/m": "1", "kN/m": "1000", "MN/m": "1000000", "N/mm": "1000", "kN/mm": "1000000"},
+    "force": {
+        "N": "1",
+        "daN": "10",
+        "kN": "1000",
+        "MN": "1000000",
+        "kgf": "9.80665",
+        "lbf": "4.4482216152605",
+        "kip": "4448.2216152605",
+    },
+    "stiffness": {
+        "N/m": "1",
+        "daN/m": "10",
+        "kN/m": "1000",
+        "MN/m": "1000000",
+        "N/mm": "1000",
+        "kN/mm": "1000000",
+        "kgf/m": "9.80665",
+    },
     "area": {"m2": "1", "cm2": "0.0001", "mm2": "0.000001"},
     "pressure": {
         "Pa": "1",
@@ -32,14 +47,24 @@ KINDS: Mapping[str, Mapping[str, str]] = {
         "MPa": "1000000",
         "GPa": "1000000000",
         "N/mm2": "1000000",
+        "daN/m2": "10",
         "kN/m2": "1000",
+        "daN/cm2": "100000",
+        "kg/cm2": "98066.5",
+        "kgf/cm2": "98066.5",
         "bar": "100000",
         "psi": "4.4482216152605/0.00064516",
         "ksi": "4448.2216152605/0.00064516",
     },
     "density": {"kg/m3": "1", "t/m3": "1000", "g/cm3": "1000", "kg/dm3": "1000", "lb/ft3": "0.45359237/0.028316846592"},
     "mass per length": {"kg/m": "1", "t/m": "1000"},
-    "weight density": {"N/m3": "1", "kN/m3": "1000", "lbf/ft3": "4.4482216152605/0.028316846592"},
+    "weight density": {
+        "N/m3": "1",
+        "daN/m3": "10",
+        "kN/m3": "1000",
+        "kgf/m3": "9.80665",
+        "lbf/ft3": "4.4482216152605/0.028316846592",
+    },
     "time": {"s": "1", "ms": "0.001", "min": "60"},
     "velocity": {"m/s": "1", "cm/s": "0.01", "mm/s": "0.001", "in/s": "0.0254"},
     "angle": {"rad": "1", "deg": f"{PI}/180", "°": f"{PI}/180", "mrad": "0.001"},
@@ -51,6 +76,8 @@ WEIGHT_OF = {"mass": "force", "density": "weight density", "mass per length": "s
 _FORM = regex(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*([^\s\d.,+-].*)?", re.DOTALL)
 _COMMA = regex(r"[-+]?[0-9]+(,[0-9]+)+\s*\D*", re.ASCII)
 _RAISED = str.maketrans({"²": "2", "³": "3", "º": "°", "^": "", "·": "", "*": ""})
+_ITALIAN_POWER = regex(r"\b([cdm]?m)([qc])(?![a-z])")
+_PREFIX = regex(r"(da|[hdcmkMGTuµn])(?!\1)(.+)")
 _EXACT = Context(prec=60, Emax=10**6, Emin=-(10**6), traps=[])
 
 
@@ -88,8 +115,8 @@ def split(text: str) -> tuple[str, str] | None:
 
 
 def _plain(unit: str) -> str:
-    """Return a unit as the table spells it: `kg / m³` is `kg/m3`."""
-    return "".join(unit.translate(_RAISED).split())
+    """Return a unit as the table spells it: `kg / m³` and the Italian `kg/mc` are `kg/m3`."""
+    return _ITALIAN_POWER.sub(lambda power: power[1] + "23"[power[2] == "c"], "".join(unit.translate(_RAISED).split()))
 
 
 def read(text: str, unit: str) -> float:
@@ -135,7 +162,7 @@ def read(text: str, unit: str) -> float:
         return float(_EXACT.multiply(_EXACT.create_decimal(number), ratio))
     other = kind_of(stated)
     if other is None:
-        raise UnitError(f"{cut(printable(stated))!r} is not a unit of {kind or unit}", _guess(stated, known))
+        raise UnitError(f"{cut(printable(stated))!r} is not a unit of {kind or unit}", _guess(stated, kind, known))
     if (mass := mass_of_weight(text, unit)) is not None:
         raise UnitError(
             f"{quoted} is a weight, not a {kind}", f"divided by {STANDARD_GRAVITY} m/s2 it is {mass:.6g} {unit}"
@@ -179,10 +206,18 @@ def number_of(value: object, unit: str) -> float:
     return number
 
 
-def _guess(spelling: str, known: tuple[str, ...]) -> str:
-    alike = {unit.lower(): unit for unit in reversed(known)}
-    close = get_close_matches(spelling.lower(), list(alike), n=1)
-    return f"did you mean {alike[close[0]]}?" if close else f"known: {', '.join(known)}"
+def _guess(spelling: str, kind: str | None, known: tuple[str, ...]) -> str:
+    """Return a hint on the unit that a misspelling means, of masses also on weights; else the known units."""
+    kinds = [*WEIGHT_OF, *WEIGHT_OF.values()] if kind in WEIGHT_OF else []
+    units = dict.fromkeys([*known, *(unit for each in kinds for unit in KINDS[each])])
+    prefixed, word = _PREFIX.fullmatch(spelling), spelling.lower()
+    if prefixed is None or prefixed[2] not in units:  # otherwise it is another multiple of a known unit, such as mN
+        # One letter too many is a slip, while other similar units, such as kp and kip, are not alike in size.
+        words = (word, word[:-1], word[1:]) if word.isalpha() else (word,)
+        meant = next((unit for each in words for unit in units if unit.lower() == each), None)
+        if meant is not None:
+            return f"did you mean {meant}?"
+    return f"known: {', '.join(known)}"
 
 
 def _a(kind: str) -> str:

@@ -42,7 +42,8 @@ class Parsed(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generi
                 return self._parse(value)
         except InputError as error:
             (problem,) = error.problems
-            self.fail(f"{problem.message}{f': {problem.hint}' if problem.hint else ''}.", param, ctx)
+            text = f"{problem.message}{f': {problem.hint}' if problem.hint else ''}"
+            self.fail(text if text.endswith("?") else f"{text}.", param, ctx)
         except ValueError as error:
             self.fail(f"{error}.", param, ctx)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from itertools import pairwise
-from math import nan, sqrt
+from math import isclose, nan, sqrt
 from typing import Any, final
 
 import numpy as np
@@ -38,6 +38,7 @@ from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.core.sketch import Outline
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.plugins.errors import failed, guard
+from rocking_cli.units import STANDARD_GRAVITY
 
 
 class Mechanism(Jointed):
@@ -494,14 +495,24 @@ def doubtful_size(mechanism: Mechanism) -> str | None:
 
 
 MIN_USUAL_DENSITY = 100.0  # kg/m3; a smaller number is usually a unit weight in kN/m3
+MIN_USUAL_WEIGHT = 5.0  # kN/m3; a smaller number is usually a density in t/m3
+MAX_USUAL_DENSITY = 25_000.0  # kg/m3; no building material is heavier
+
+
+def _doubtful_density(density: float) -> str | None:
+    """Return a sentence on a density [kg/m3] that no building material has; None for any other."""
+    if density < MIN_USUAL_DENSITY:
+        unit = "t/m3" if density < MIN_USUAL_WEIGHT else "kN/m3"
+        return f"density is {density:g} kg/m3: did you mean {density:g} {unit}?"
+    if density <= MAX_USUAL_DENSITY:
+        return None
+    weight = density * float(STANDARD_GRAVITY) / 1000  # kN/m3
+    as_given = isclose(weight, round(weight), rel_tol=1e-9) and weight <= MAX_USUAL_DENSITY
+    meant = f"did you mean {weight:g} kg/m3?" if as_given else "are the units right?"
+    return f"density is {density:g} kg/m3, more than any building material: {meant}"
 
 
 def doubts(mechanism: Mechanism) -> list[str]:
     """Return what is unusual about the size or density of a structure or the places of its loads, as sentences."""
-    size, density = doubtful_size(mechanism), mechanism.density
-    light = density is not None and density < MIN_USUAL_DENSITY
-    return [
-        *([size] if size is not None else []),
-        *([f"density is {density:g} kg/m3: did you mean {density:g} kN/m3?"] if light else []),
-        *mechanism.far_off(),
-    ]
+    density = _doubtful_density(mechanism.density) if mechanism.density is not None else None
+    return [*filter(None, (doubtful_size(mechanism), density)), *mechanism.far_off()]

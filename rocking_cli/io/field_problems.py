@@ -15,6 +15,8 @@ from rocking_cli.io.starters import italian
 from rocking_cli.io.yaml_file import Document, Place, spell
 from rocking_cli.text import cut, did_you_mean
 
+DECIMAL_POINT = "write a decimal point"
+MIN_YIELD_STRESS = 1e7  # Pa; no other field has this bound
 OF_KIND: Any = {
     "float_type": (), "int_type": (), "string_type": (), "literal_error": (), "list_type": (), "model_type": (),
     "dict_type": (), list: ("list_type",), dict: ("model_type", "dict_type"),
@@ -49,9 +51,18 @@ def problems(
         if error["type"] == "geometry":
             place = (*place, *error["ctx"]["field"])
         message, hint = say(model, place, error, owner, lister)
+        if error["type"] == "too_long" and _has_commas(document, place, error["input"]):
+            hint = DECIMAL_POINT
         key = error["type"] == "extra_forbidden"
         by_place.setdefault(place, document.at(place, message, hint, key=key))
     return list(by_place.values())
+
+
+def _has_commas(document: Document, place: Place, value: Any) -> bool:
+    """Return whether a list in one line seems to have decimal commas, which split its numbers into whole ones."""
+    line = document.at(place, "").excerpt or ""
+    split = isinstance(value, list) and all(isinstance(each, int) for each in value)
+    return split and re.search(r"\d,\d", line) is not None and re.search(r"\d, ", line) is not None
 
 
 def of_arguments(model: type[BaseModel], errors: Iterable[ErrorDetails], owner: str) -> list[Problem]:
@@ -173,17 +184,22 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
         if word in fields:  # a second name of a field that is there
             return f"is the same field as {fields[word].validation_alias.choices[0]}: give one of the two", None
         similar = word.replace("*", "_star")  # T_C* is not T_C, of which it would be a misspelling
-        return f"is not a field of {within}", by_meaning(word, fields) or did_you_mean(similar, list(fields))
+        meant = _meanings_at(model, place[:-1]).get(word.lower())
+        hint = f"did you mean {meant}?" if meant is not None else by_meaning(word, fields)
+        if word.isdecimal() and value is None:  # {S: 1,2} has a key 2
+            hint = DECIMAL_POINT
+        return f"is not a field of {within}", hint or did_you_mean(similar, list(fields))
     if kind in BOUNDS:
         key, words = BOUNDS[kind]
-        return f"must be {words} {ctx[key]:g}{unit}, {got}", None
+        is_yield = unit == " Pa" and key == "ge" and ctx[key] == MIN_YIELD_STRESS and value > 0
+        hint = f"did you mean {value:g} {_unit_of_yield(value)}?" if is_yield else None
+        return f"must be {words} {ctx[key]:g}{unit}, {got}", hint
     if kind == "finite_number":
         return f"must be a finite number, {got}", None
     if kind == "float_type" and isinstance(value, int) and not isinstance(value, bool):
         return f"is outside the range of floating-point numbers, {got}", None  # an int may be larger than any float
     if kind in ("float_type", "float_parsing"):
-        comma = isinstance(value, str) and re.fullmatch(r"\s*[-+]?\d+(,\d+)+\s*\D*", value)
-        return f"must be a number{f' in{unit}' if unit else ''}, {got}", "write a decimal point" if comma else None
+        return f"must be a number{f' in{unit}' if unit else ''}, {got}", _of_comma(value)
     if kind in ("int_type", "int_parsing", "int_from_float"):
         return f"must be a whole number, {got}", None
     if kind == "string_type":
@@ -192,7 +208,7 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
         number = f"a number{f' in{unit}' if unit else ''}, or " if info and float in get_args(info.annotation) else ""
         close = did_you_mean(value, re.findall("'(.*?)'", ctx["expected"])) if isinstance(value, str) else None
         hint = close if close and close.startswith("did") else None  # the message lists the other fields
-        return f"must be {number}{ctx['expected']}, {got}".replace("'", ""), hint
+        return f"must be {number}{ctx['expected']}, {got}".replace("'", ""), _of_comma(value) or hint
     if kind in ("too_short", "too_long"):
         least, most = ctx.get("min_length"), ctx.get("max_length")
         wanted, count = ("at least", least) if least is not None else ("at most", most)
@@ -204,8 +220,19 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
     if kind in ("model_type", "model_attributes_type", "dict_type"):
         return f"must be a mapping, {got}", None
     if kind == "value_error":
-        return str(ctx["error"]), None
+        return str(ctx["error"]), _of_comma(value)
     return f"{error['msg'][0].lower()}{error['msg'][1:]}", None
+
+
+def _of_comma(value: Any) -> str | None:
+    """Return a hint for a text that is a number with a decimal comma, with or without a unit; None for others."""
+    comma = isinstance(value, str) and re.fullmatch(r"\s*[-+]?\d+(,\d+)+\s*\D*", value)
+    return DECIMAL_POINT if comma else None
+
+
+def _unit_of_yield(value: float) -> str:
+    """Return the unit in which the yield stress of a steel, some hundreds of MPa, has about this number."""
+    return next((unit for unit, most in {"MPa": 2e3, "kg/cm2": 2e4}.items() if value < most), "kPa")
 
 
 MEANINGS = {
@@ -263,8 +290,16 @@ def _leaves(annotation: Any) -> list[Any]:
 
 def fields_at(model: type[BaseModel], place: Place) -> dict[str, Any]:
     """Return the fields allowed at a place, of all models allowed there, by the names that users write."""
-    models = [each for _, annotation in _held(model, place) for each in _choices(annotation) if _is_model(each)]
-    return {name: info for each in models for name, info in _spelt(each).items()}
+    return {name: info for each in _models_at(model, place) for name, info in _spelt(each).items()}
+
+
+def _meanings_at(model: type[BaseModel], place: Place) -> dict[str, str]:
+    """Return what the models at a place know of words that are not their fields."""
+    return {word: name for each in _models_at(model, place) for word, name in getattr(each, "meanings", {}).items()}
+
+
+def _models_at(model: type[BaseModel], place: Place) -> list[type[BaseModel]]:
+    return [each for _, annotation in _held(model, place) for each in _choices(annotation) if _is_model(each)]
 
 
 def _held(model: type[BaseModel], place: Place) -> list[tuple[Any, Any]]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
-from typing import Any, Self, get_args, get_origin
+from collections.abc import Callable, Collection, Iterator, Mapping
+from typing import Any, ClassVar, Self, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 
@@ -20,6 +20,8 @@ class Part(BaseModel):
     """A part of a study file, or of a site file."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+    meanings: ClassVar[Mapping[str, str]] = {}
+    """Words in small letters that mean a field of another name, and what to write instead, for hints."""
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:

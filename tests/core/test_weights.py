@@ -107,7 +107,26 @@ def test_a_plain_number_stays_in_kilograms():
 
 def test_a_density_of_nineteen_is_doubted():
     assert doubts(made(FACADE.replace("19 kN/m3", "19"))) == ["density is 19 kg/m3: did you mean 19 kN/m3?"]
+    assert doubts(made(FACADE.replace("19 kN/m3", "1.9"))) == ["density is 1.9 kg/m3: did you mean 1.9 t/m3?"]
     assert doubts(made(FACADE)) == []
+
+
+def test_a_density_of_no_material_is_doubted_in_the_unit_that_it_was_meant_in():
+    """1800 kN/m3 over 9.80665 m/s2 is 183549 kg/m3, and 25.5 kN/m3 or 22.6 t/m3 are below 25000 kg/m3."""
+    said = "density is 183549 kg/m3, more than any building material: did you mean 1800 kg/m3?"
+    for text in ("1800 kN/m3", "1800 kN/mc", "1800000 N/m3"):
+        assert doubts(made(FACADE.replace("19 kN/m3", text))) == [said]
+    (said_of_tonnes,) = doubts(made(FACADE.replace("19 kN/m3", "180 t/m3")))
+    assert said_of_tonnes == "density is 180000 kg/m3, more than any building material: are the units right?"
+    for text in ("25.5 kN/m3", "22.6 t/m3"):
+        assert doubts(made(FACADE.replace("19 kN/m3", text))) == []
+
+
+def test_a_survey_doubts_such_a_density_too(tmp_path):
+    (tmp_path / "t.csv").write_text("mechanism,name,width,height,depth,density [kN/m3]\nblock,a,0.5,2,1,1800\n")
+    shown = run("survey", str(tmp_path / "t.csv"), "--out", str(tmp_path / "o.csv"))
+    assert "a: density is 183549 kg/m3, more than any" in shown.stderr and "did you mean 1800 kg/m3?" in shown.stderr
+    assert "did you mean 1800 kg/m3?" in (tmp_path / "o.csv").read_text(encoding="utf-8")
 
 
 def test_a_load_per_metre_follows_the_depth_and_keeps_its_mass_at_another_size():

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from itertools import pairwise
 from math import sqrt
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, PrivateAttr
 
@@ -51,6 +51,8 @@ def _ordinates(**more: Any) -> Any:
 
 class StateGround(Part):
     """The ground of one limit state: by its parameters, by those on rock, or as ordinates of a spectrum."""
+
+    meanings: ClassVar[Mapping[str, str]] = {"fo": "F0"}
 
     ag: float | None = quantity("ground acceleration on rock", unit="g", symbol="a_g", default=None, gt=0, le=10)
     F0: float | None = quantity("maximum spectral amplification", default=None, ge=1, le=10)
@@ -200,6 +202,16 @@ class ElementOfEach(VibratingElement):
 
 class ItalianSite(StateGround, Site):
     """Content of a site file: the ground at each limit state (SLV if none is named), or the hazard of all of them."""
+
+    meanings: ClassVar[Mapping[str, str]] = {
+        **StateGround.meanings,
+        **dict.fromkeys(("suolo", "sottosuolo", "categoria_suolo", "categoria_sottosuolo"), "soil"),
+        **dict.fromkeys(("topografia", "categoria_topografica"), "topography"),
+        **dict.fromkeys(("classe", "classe_uso", "classe_d_uso"), "class"),
+        **dict.fromkeys(("lc", "livello_conoscenza", "livello_di_conoscenza"), "FC: LC1, FC: LC2 or FC: LC3"),
+        "vita_nominale": "VN",
+        "lon": "longitude", "longitudine": "longitude", "lat": "latitude", "latitudine": "latitude",
+    }  # fmt: skip
 
     FC: Annotated[float, BeforeValidator(_confidence_factor)] = quantity(
         "confidence factor, by which accelerations are divided, or the knowledge level LC1, LC2 or LC3", ge=1, le=2

@@ -448,16 +448,23 @@ SIZES = {
     "length": {"m": 1, "mm": 1e-3, "cm": 1e-2, "dm": 0.1, "km": 1e3, "in": 0.0254, "ft": 0.3048},
     "acceleration": {"m/s2": 1, "cm/s2": 1e-2, "mm/s2": 1e-3, "gal": 1e-2, "g": 9.80665, "ft/s2": 0.3048},
     "mass": {"kg": 1, "g": 1e-3, "t": 1e3, "Mg": 1e3, "lb": 0.45359237},
-    "force": {"N": 1, "kN": 1e3, "MN": 1e6, "lbf": 4.4482216152605, "kip": 4448.2216152605},
-    "stiffness": {"N/m": 1, "kN/m": 1e3, "MN/m": 1e6, "N/mm": 1e3, "kN/mm": 1e6},
+    "force": {
+        "N": 1, "daN": 10, "kN": 1e3, "MN": 1e6, "kgf": 9.80665, "lbf": 4.4482216152605, "kip": 4448.2216152605,
+    },
+    "stiffness": {
+        "N/m": 1, "daN/m": 10, "kN/m": 1e3, "MN/m": 1e6, "N/mm": 1e3, "kN/mm": 1e6, "kgf/m": 9.80665,
+    },
     "area": {"m2": 1, "cm2": 1e-4, "mm2": 1e-6},
     "pressure": {
-        "Pa": 1, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6, "kN/m2": 1e3, "bar": 1e5,
+        "Pa": 1, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6, "daN/m2": 10, "kN/m2": 1e3,
+        "daN/cm2": 10 / 0.01**2, "kg/cm2": 9.80665 / 0.01**2, "kgf/cm2": 9.80665 / 0.01**2, "bar": 1e5,
         "psi": 4.4482216152605 / 0.0254**2, "ksi": 4448.2216152605 / 0.0254**2,
     },
     "density": {"kg/m3": 1, "t/m3": 1e3, "g/cm3": 1e3, "kg/dm3": 1e3, "lb/ft3": 0.45359237 / 0.3048**3},
     "mass per length": {"kg/m": 1, "t/m": 1e3},
-    "weight density": {"N/m3": 1, "kN/m3": 1e3, "lbf/ft3": 4.4482216152605 / 0.3048**3},
+    "weight density": {
+        "N/m3": 1, "daN/m3": 10, "kN/m3": 1e3, "kgf/m3": 9.80665, "lbf/ft3": 4.4482216152605 / 0.3048**3,
+    },
     "time": {"s": 1, "ms": 1e-3, "min": 60},
     "velocity": {"m/s": 1, "cm/s": 1e-2, "mm/s": 1e-3, "in/s": 0.0254},
     "angle": {"rad": 1, "deg": pi / 180, "°": pi / 180, "mrad": 1e-3},

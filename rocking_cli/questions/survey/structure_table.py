@@ -210,7 +210,8 @@ class StructureTable(Sequence["TableRow"]):
                 fields = {name: info for cls in classes for name, info in fields_at(cls, ()).items()}
                 guess = did_you_mean(column.path[0], sorted(known))
                 guess = guess if guess and guess.endswith("?") else ""
-                guess = f"{meant}." if (meant := by_meaning(column.path[0], fields)) else guess
+                guess = by_meaning(column.path[0], fields) or guess
+                guess = f"{guess}." if guess and not guess.endswith("?") else guess
                 what = "any mechanism in this table" if len(classes) > 1 else classes[0].mechanism
                 hint = f"{guess} A column whose heading starts with {COMMENT_SIGN} is ignored".strip()
                 message = f"is not a field of {what}"

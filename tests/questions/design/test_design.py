@@ -38,6 +38,11 @@ def of(metric, values=(0.0, 1.0), points=11, until="m >= 0.5"):
         return design(Structure(rk.Block(width=1.0, height=2.0)), "width", values, Aim.parse(until), points=points)
 
 
+def test_a_hint_in_the_form_of_a_question_has_no_stop_behind():
+    said = run("design", "--vary", "width=0.2:0.8", "--until", "zetaSLV >= 1", code=2).stderr
+    assert said.rstrip().endswith("did you mean zeta_SLV?")
+
+
 class TestClosedForms:
     @pytest.mark.parametrize(
         ("until", "least"), [("lambda >= 0.2", True), ("lambda > 0.2", True), ("lambda <= 0.2", False)]

@@ -216,6 +216,35 @@ def test_only_the_states_asked_for_are_verified():
         rk.verify(BLOCK, ROUNDED | {"states": ["SLC"]})
 
 
+@pytest.mark.parametrize(
+    ("line", "hint"),
+    [
+        ("suolo: B", "did you mean soil?"), ("Fo: 2.4", "did you mean F0?"), ("FO: 2.4", "did you mean F0?"),
+        ("SLD: {ag: 0.1, Fo: 2.4, S: 1, TC: 0.3}", "did you mean F0?"), ("LC: LC1", "did you mean FC: LC1"),
+        ("classe: II", "did you mean class?"), ("Tc*: 0.3", "did you mean TC_star?"), ("TC*: 0.3", "mean TC_star?"),
+        ("vita_nominale: 50", "did you mean VN?"), ("Vn: 50", "did you mean VN?"),
+        ("categoria_topografica: T1", "did you mean topography?"), ("topografia: T1", "did you mean topography?"),
+        ("lon: 13", "did you mean longitude?"), ("lat: 42", "did you mean latitude?"),
+        ("FC: 1,35", "write a decimal point"), ("q: 2,0", "write a decimal point"), ("S: 1,2", "write a decimal point"),
+        ("SLD: {ag: 0.1, F0: 2.4, TC: 0.3, S: 1,2}", "write a decimal point"),
+        ("hazard: [[30, 0.055, 2.45, 0.27], [475, 0,21, 2,42, 0,31]]", "write a decimal point"),
+    ],
+)  # fmt: skip
+def test_a_word_that_engineers_use_names_the_field_and_a_comma_is_a_point(line, hint, tmp_path):
+    (tmp_path / "s.yaml").write_text(f"{line}\n", encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        read_site(tmp_path / "s.yaml")
+    assert any(hint in (problem.hint or "") and problem.line == 1 for problem in caught.value.problems)
+
+
+def test_a_list_with_too_many_whole_numbers_has_no_decimal_commas(tmp_path):
+    (tmp_path / "s.yaml").write_text("hazard:\n- [30, 1, 2, 3, 4]\n- [475,1,2,3,4]\n", encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        read_site(tmp_path / "s.yaml")
+    long = [problem for problem in caught.value.problems if "at most 4 entries" in problem.message]
+    assert [problem.hint for problem in long] == [None, None]
+
+
 def test_the_command_verifies_each_form(tmp_path):
     (tmp_path / "site.yaml").write_text(OK, encoding="utf-8")
     data = run_json("verify", EXAMPLES / "verify" / "facade.yaml", "--site", "site.yaml")
