@@ -136,7 +136,9 @@ class Output:
     def show(self, answer: Answer[Any]) -> None:
         """Write the requested files of an answer, each made only if needed, show it, and end the command."""
         if self.out is not None:
-            write_table(self.out, self.blocks(answer), separator=self.separator or ",", decimal=self.decimal or ".")
+            mark = self.separator is not None or self.decimal is not None  # the table is for a spreadsheet
+            signs = {"separator": self.separator or ",", "decimal": self.decimal or "."}
+            write_table(self.out, self.blocks(answer), **signs, mark=mark)
         if self.plot is not None:
             write_picture(self.plot, answer.figure())
         terminal.show(answer.view, as_json=self.as_json)
@@ -157,7 +159,9 @@ def write_picture(path: Path, figure: Figure) -> None:
     terminal.note(f"wrote {path}")
 
 
-def write_table(out: Path, blocks: Iterable[Columns], *, separator: str = ",", decimal: str = ".") -> None:
+def write_table(
+    out: Path, blocks: Iterable[Columns], *, separator: str = ",", decimal: str = ".", mark: bool = False
+) -> None:
     """Write a table to a file and report it, or write CSV to standard output and keep everything else off it."""
     from rocking_cli.io import tables
 
@@ -165,7 +169,7 @@ def write_table(out: Path, blocks: Iterable[Columns], *, separator: str = ",", d
         with terminal.results_as_bytes() as stream:
             tables.write_csv(stream, blocks, separator=separator, decimal=decimal)
         return
-    tables.write_table(out, blocks, separator=separator, decimal=decimal)
+    tables.write_table(out, blocks, separator=separator, decimal=decimal, mark=mark)
     terminal.note(f"wrote {out}")
 
 

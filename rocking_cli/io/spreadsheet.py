@@ -1,4 +1,4 @@
-"""Tables of text written by spreadsheets: CSV with commas, semicolons or tabs, in UTF-8 or UTF-16."""
+"""Tables of text written by spreadsheets: CSV with commas, semicolons or tabs, in UTF-8, UTF-16 or Windows-1252."""
 
 from __future__ import annotations
 
@@ -19,6 +19,8 @@ DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?\s*(?:[^\d\s,.;][^,;]*
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 THOUSANDS = re.compile(r"[-+]?\d{1,3}(\.\d{3})+", re.ASCII)
 _BRACKETS = re.compile(r"(.*?)\s*(?:\[([^\]]*)\]|\(([^)]*)\))\s*", re.DOTALL)
+_DAMAGED_UTF8 = re.compile(rb"\xc3[\x80-\xbf]")  # accented letters in UTF-8 beside bytes that are not UTF-8
+_CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 _LINE_END = re.compile("\r\n|\r|\n")
 
 
@@ -60,6 +62,10 @@ class Spreadsheet:
         Rows that are not blank.
     decimal_comma : bool
         Whether numbers may have decimal commas; not if commas separate the cells.
+    separator : str
+        What separates the cells.
+    encoding : str
+        Encoding of the file: "UTF-8", "UTF-16" or "Windows-1252".
     """
 
     file: str
@@ -67,6 +73,8 @@ class Spreadsheet:
     headings: tuple[str, ...]
     rows: tuple[Row, ...]
     decimal_comma: bool
+    separator: str = ","
+    encoding: str = "UTF-8"
 
     @property
     def columns(self) -> dict[int, str]:
@@ -101,7 +109,7 @@ def read_sheet(path: Path) -> Spreadsheet:
 
 def parse_sheet(raw: bytes, file: str) -> Spreadsheet:
     """Return the table in the content of a file; `file` is its name in messages. Raises as `read_sheet`."""
-    text, skipped = _decoded(raw, file), 0
+    (text, encoding), skipped = _decoded(raw, file), 0
     if declared := re.match(r"(?i)\s*\"?sep=(.)\"?\r?\n", text):  # some spreadsheets declare their separator
         text, skipped = text[declared.end() :], declared[0].count("\n")
     first = next((line for line in _LINE_END.split(text[:100_000]) if line.strip(" \t,;")), "")
@@ -116,21 +124,34 @@ def parse_sheet(raw: bytes, file: str) -> Spreadsheet:
         headings = headings[:-1]
     _check_headings(headings, file, line)
     rows = tuple(_row(number, cells, len(headings)) for number, cells in lines)
-    comma = separator != "," and any(DECIMAL_COMMA.fullmatch(cell) for row in rows for cell in row.cells if "," in cell)
-    return Spreadsheet(file, line, tuple(headings), rows, comma)
+    cells = (part for row in rows for cell in row.cells if "," in cell for part in cell.strip("[]").split(";"))
+    comma = separator != "," and any(DECIMAL_COMMA.fullmatch(cell.strip()) for cell in cells)
+    return Spreadsheet(file, line, tuple(headings), rows, comma, separator, encoding)
 
 
-def _decoded(raw: bytes, file: str) -> str:
-    encoding = "utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
+def _decoded(raw: bytes, file: str) -> tuple[str, str]:
+    """Return the text of a file and its encoding. Raises `InputError` if it is not text."""
+    encoding = "UTF-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "UTF-8"
     try:
-        text = raw.decode(encoding)
+        text = raw.decode("utf-8-sig" if encoding == "UTF-8" else encoding)
     except UnicodeDecodeError as error:
+        if encoding == "UTF-8" and (windows := _windows_text(raw)) is not None:
+            return windows, "Windows-1252"
         line = raw[: error.start].count(b"\n") + 1
         hint = "save the table as `CSV UTF-8`"
         raise InputError(Problem("not UTF-8 text", file, line, hint=hint)) from None
     if "\0" in text:
         raise InputError(Problem("this is not a table: it is binary", file, hint="save the sheet as CSV"))
-    return text
+    return text, encoding
+
+
+def _windows_text(raw: bytes) -> str | None:
+    """Return a text in Windows-1252, in which spreadsheets write CSV unless told otherwise; None if it is not one."""
+    try:
+        text = raw.decode("cp1252")
+    except UnicodeDecodeError:
+        return None
+    return None if _DAMAGED_UTF8.search(raw) or _CONTROL.search(text) else text
 
 
 def _cells(text: str, separator: str, file: str, skipped: int) -> Iterator[tuple[int, list[str]]]:

@@ -28,7 +28,9 @@ def check_table(path: Path | None) -> None:
         raise InputError(Problem("Parquet needs the package pyarrow, which is not installed", str(path), hint=hint))
 
 
-def write_table(path: Path, blocks: Iterable[Columns], *, separator: str = ",", decimal: str = ".") -> None:
+def write_table(
+    path: Path, blocks: Iterable[Columns], *, separator: str = ",", decimal: str = ".", mark: bool = False
+) -> None:
     """Write a table.
 
     Parameters
@@ -40,17 +42,25 @@ def write_table(path: Path, blocks: Iterable[Columns], *, separator: str = ",", 
         Blocks of rows, all with the same columns; a column has words, integers or reals.
     separator, decimal : str
         What separates the cells of a text, and the decimal sign of its numbers.
+    mark : bool
+        Whether a text begins with the byte order mark, by which spreadsheets know UTF-8.
     """
-    text = partial(write_csv, separator=separator, decimal=decimal)
+    text = partial(write_csv, separator=separator, decimal=decimal, mark=mark)
     write = _write_parquet if path.suffix.lower() == PARQUET else text
     write_whole(path, lambda stream: write(stream, blocks))
 
 
 def write_csv(
-    stream: BinaryIO, blocks: Iterable[Columns], *, digits: int | None = 9, separator: str = ",", decimal: str = "."
+    stream: BinaryIO,
+    blocks: Iterable[Columns],
+    *,
+    digits: int | None = 9,
+    separator: str = ",",
+    decimal: str = ".",
+    mark: bool = False,
 ) -> None:
     """Write a table as text; see `write_table`. With `digits` None, numbers have all their digits."""
-    text = io.TextIOWrapper(stream, encoding="utf-8", newline="", write_through=True)
+    text = io.TextIOWrapper(stream, encoding="utf-8-sig" if mark else "utf-8", newline="", write_through=True)
     writer = csv.writer(text, delimiter=separator, lineterminator="\n")
     for k, columns in enumerate(blocks):
         if k == 0:

@@ -60,6 +60,7 @@ class _RowDocument(Document):
 
     line: int = 0
     base: str = ""
+    separator: str = ","
     columns: dict[Place, str] = field(default_factory=dict)
 
     def problem(
@@ -72,6 +73,8 @@ class _RowDocument(Document):
         """Return a problem with the content of a column, or with a field that has no column."""
         heading = next((self.columns[place[:k]] for k in range(len(place), 0, -1) if place[:k] in self.columns), None)
         of_file = ": ".join(each for each in (cut(one_line(self.base)), spell(place)) if each)
+        if heading and message.startswith("must be a list") and self.separator == ";":
+            hint = 'in a table with semicolons write the point in quotes: "-6,0;7,5"'
         return self.problem(message, None, heading or of_file, hint)
 
 
@@ -272,6 +275,7 @@ class TableRow:
         """
         table, row = self.table, self.row
         document = _RowDocument("structure", table.sheet.file, [], line=row.line, base=table.base_of(row))
+        document.separator = table.sheet.separator
         document.values[()] = document.values[(MECHANISM_COLUMN,)] = yaml.Mark(
             document.file, 0, row.line - 1, 0, None, 0
         )

@@ -176,6 +176,8 @@ def _entries(given: Any, watch: Watcher) -> Sequence[SurveyEntry]:
         return [MadeStructure(structure_of(each, watch).mechanism) for each in given]
     if not len(table):
         raise InputError(Problem("the table has no rows below its headings", table.sheet.file))
+    if table.sheet.encoding == "Windows-1252":
+        watch.note(f"{table.sheet.file} is not in UTF-8: read as Windows-1252")
     if short := table.short:
         lines = f"line {short[0]}" if len(short) == 1 else f"{len(short):,} lines, first in line {short[0]}"
         watch.warn(f"{table.sheet.file}: fewer cells than headings in {lines}: missing cells are read as empty")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
@@ -23,6 +24,7 @@ DEFAULT_ROWS = 20
 MAX_NAME_LENGTH = 30  # characters, in the table
 MAX_CAUTIONED = 3  # structures whose cautions are printed
 ROWS_PER_BLOCK = 10_000  # rows of a file that are written at once
+NUMBERS = re.compile(r"[-+]?[\d.,]+(\s*;\s*[-+]?[\d.,]+)*", re.ASCII)
 FORMULA_SIGNS = ("=", "+", "-", "@")
 """First characters of a text that a spreadsheet would read as a formula."""
 RANKED = {
@@ -185,12 +187,17 @@ def columns(found: Survey, start: int = 0, stop: int | None = None, decimal: str
             frame[column.heading] = [_safe(each) if decimal is not None else each for each in texts]
     if found.sheet is not None and decimal is not None:
         for cells in kept.values():
-            numbers = [found.sheet.number(cell) for cell in cells]
-            cells[:] = [
-                _safe(cell) if number is None else number.replace(".", decimal)
-                for cell, number in zip(cells, numbers, strict=True)
-            ]
+            cells[:] = [_with_decimal(found.sheet, cell, decimal) for cell in cells]
     return frame | kept
+
+
+def _with_decimal(sheet: Spreadsheet, cell: str, decimal: str) -> str:
+    """Return a cell that came in, its number or list of numbers with a decimal sign, any other text made safe."""
+    numbers = [sheet.number(part.strip()) for part in cell.split(";")]
+    known = [number.replace(".", decimal) for number in numbers if number is not None]
+    if len(known) == len(numbers):
+        return ";".join(known)
+    return cell if NUMBERS.fullmatch(cell) else _safe(cell)
 
 
 def _safe(text: str) -> str:

@@ -40,7 +40,7 @@ def here(tmp_path, monkeypatch):
 
 
 def cells(file, separator=","):
-    with Path(file).open(encoding="utf-8", newline="") as stream:
+    with Path(file).open(encoding="utf-8-sig", newline="") as stream:
         return list(csv.DictReader(stream, delimiter=separator))
 
 
@@ -75,6 +75,37 @@ class TestTables:
         Path("again.csv").write_text("\n".join(lines), encoding="utf-8")
         again = [json.loads(run("survey", file, "--json").stdout)["rows"] for file in ("t.csv", "again.csv")]
         assert [row["lambda"] for row in again[0]] == [row["lambda"] for row in again[1]]
+
+    def test_a_table_in_windows_1252_is_read_with_a_note_and_written_with_a_mark(self):
+        Path("w.csv").write_bytes(
+            "mechanism;name;width;height\nblock;Nicol\u00f2 \u00abA\u00bb;0,5;2\n".encode("cp1252")
+        )
+        shown = run("survey", "w.csv", "--out", "o.csv", "--separator", ";", "--decimal", ",")
+        assert "w.csv is not in UTF-8: read as Windows-1252" in shown.stderr and "Nicol\u00f2" in shown.stdout
+        assert (
+            Path("o.csv").read_bytes()[:3] == b"\xef\xbb\xbf"
+            and cells("o.csv", ";")[0]["name"] == "Nicol\u00f2 \u00abA\u00bb"
+        )
+        run("survey", "w.csv", "--out", "p.csv")
+        assert Path("p.csv").read_bytes()[:4] == b"rank"
+        assert "1252" not in run("survey", "t.csv").stderr
+
+    def test_a_kept_point_is_numbers_and_needs_quotes_among_semicolons(self):
+        head = "mechanism;name;width;height;depth;density;loads.deck.mass;loads.deck.at;#more\n"
+        Path("p.csv").write_text(f'{head}block;a;1;2;1;1800;100;"-0,5;1,5";-1+2\n', encoding="utf-8")
+        run("survey", "p.csv", "--out", "o.csv", "--separator", ";", "--decimal", ",")
+        (row,) = cells("o.csv", ";")
+        assert (row["loads.deck.at"], row["#more"]) == ("-0,5;1,5", "'-1+2")
+        assert rk.survey("p.csv").rows[0].lambda_ == rk.survey({
+            "mechanism": ["block"], "width": [1], "height": [2], "depth": [1], "density": [1800],
+            "loads.deck.mass": [100], "loads.deck.at": [[-0.5, 1.5]], "loads.deck.name": ["deck"],
+        }).rows[0].lambda_  # fmt: skip
+        run("survey", "p.csv", "--out", "o.csv")
+        assert cells("o.csv")[0]["loads.deck.at"] == "-0.5;1.5"
+        Path("q.csv").write_text(f"{head}block;a;1;2;1;1800;100;-0,5;1,5\n", encoding="utf-8")
+        said = " ".join(run("survey", "q.csv", code=2).stderr.split())
+        assert "must be a list, got -0.5" in said
+        assert 'in a table with semicolons write the point in quotes: "-6,0;7,5"' in said
 
     @pytest.mark.parametrize(
         ("options", "said"),

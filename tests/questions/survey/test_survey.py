@@ -110,7 +110,9 @@ class TestSpreadsheets:
         ("raw", "said"),
         [
             (b"", "the table is empty"), (b"\n\n,,\n", "the table is empty"), (b"a\0b", "it is binary"),
-            (b"name\n\xe9\n", "t.csv:2: not UTF-8 text"),
+            (b"name\n\x81\n", "t.csv:2: not UTF-8 text"),
+            (b"name\n\xe9\x07\n", "t.csv:2: not UTF-8 text"),
+            ("name\nNicol\u00f2\n".encode() + b"\xe9\n", "t.csv:3: not UTF-8 text"),
             (b'name\n"a\n', "t.csv:2: the row that starts here is not valid CSV"),
             (b'name\n"a"b\n', "t.csv:2: the row that starts here is not valid CSV"),
             (b"width,height,width\n", "t.csv:1: width is the heading of two columns, number 1 and 3"),
