@@ -471,6 +471,12 @@ class Verification:
         )
 
     @property
+    def relied_on(self) -> Sequence[Remark]:
+        """What the conclusion relies on, without repetitions: nothing if the verification is not satisfied."""
+        satisfied = self.conclusion.concluded is Concluded.SATISFIED
+        return [each for k, each in enumerate(self.relies_on) if satisfied and each not in self.relies_on[:k]]
+
+    @property
     def deciding(self) -> Any:
         """Result of the direction that governs the conclusion; of the first if both do."""
         label = self.conclusion.direction

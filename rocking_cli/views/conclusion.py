@@ -58,8 +58,7 @@ def of_verification(found: Verification, say: Language = ENGLISH, title: str | N
     sentences = [say(f"end_{first}", states=", ".join(end.limit_states))]
     if end.concluded is not Concluded.NOT_CHECKED:
         sentences.append(_governs(end, say, title or _method(found, end)))
-    if end.concluded is Concluded.SATISFIED:
-        sentences += dict.fromkeys(map(say, found.relies_on))
+    sentences += map(say, found.relied_on)
     others = [each for each in end.left_out if each.what != "tie"]
     return uncounted_ties(end, say) + sentences + not_counted(others, say)
 

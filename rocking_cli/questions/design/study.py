@@ -177,7 +177,7 @@ class Design:
     steel : SteelAnswer or None
         Bars of steel, if the field varies the force of a tie and the answer is the least that meets the requirement.
     relies_on : sequence of Remark
-        What the verification at the answer relies on and may not be there, see `Verification`.
+        What the verification at `decisive` relies on and may not be there, see `Verification`.
     """
 
     structure: str
@@ -203,6 +203,11 @@ class Design:
         """Whether the metric differs anywhere over the scan."""
         there = self.metric[~np.isnan(self.metric)]
         return there.size < 2 or not np.allclose(there, there[0], rtol=TREND_TOLERANCE, atol=0.0)
+
+    @property
+    def decisive(self) -> float:
+        """The answer; without one, the value tried at which the metric is closest to its limit, of these the first."""
+        return _closest(self.values, self.metric, self.aim.level) if self.value is None else self.value
 
     @property
     def everywhere(self) -> bool:
@@ -317,8 +322,7 @@ def design(
         _taken_otherwise(structure, field, span, aim, excitation),
         [each.name for each in excitation.motions] if excitation is not None else [],
         None if value is None else steel_answer(structure, field, value, float(values[-1] if met[-1] else values[0])),
-        relied_on(structure.varied(field, value), excitation.site)
-        if value is not None and aim.metric.sited and excitation is not None and excitation.site is not None else (),
+        _relied_on(structure, field, _closest(values, numbers, aim.level) if value is None else value, aim, excitation),
     )  # fmt: skip
 
 
@@ -360,6 +364,23 @@ def _taken_otherwise(
         except (InputError, MechanismError):  # the reason is listed in `not_built`
             continue
     return list(reasons)
+
+
+def _closest(values: Reals, metric: Reals, level: float) -> float:
+    """Return the value at which a metric is closest to a level; the first one if it exists at none."""
+    return float(values[np.nan_to_num(np.abs(metric - level), nan=inf).argmin()])
+
+
+def _relied_on(
+    structure: Structure, field: str, value: float, aim: Aim, excitation: Excitation | None
+) -> Sequence[Remark]:
+    """Return what the verification at a value relies on and may not be there; nothing without a site, or there."""
+    if not aim.metric.sited or excitation is None or excitation.site is None:
+        return ()
+    try:
+        return relied_on(structure.varied(field, value), excitation.site)
+    except (InputError, MechanismError):  # the reason is listed in `not_built`
+        return ()
 
 
 def _at(

@@ -167,7 +167,9 @@ def _steel_data(steel: SteelAnswer) -> dict[str, Any]:
 def doubts(found: Design, excitation: Excitation | None) -> list[str]:
     """Return remarks on the answer."""
     sentences = [f"{each} Next: {NEXT_STEPS[NextStep.YIELD_FORCE]}." for each in not_counted(found.taken_otherwise)]
-    sentences += map(ENGLISH, found.relies_on)
+    where = "" if found.value is not None else f", with {found.field} = {_with_unit(found, found.decisive)}"
+    relied = dict.fromkeys(map(ENGLISH, found.relies_on))
+    sentences += [f"Caution{where}: {each.removeprefix('Caution: ')}" for each in relied]
     count = len(found.values)
     if not found.has_effect and not found.aim.metric.shaken:
         sentences.append(

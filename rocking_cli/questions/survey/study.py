@@ -24,6 +24,7 @@ from rocking_cli.structure import Structure, check_opening
 from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.verification.check import code_of, of_each, row_numbers, verify
 from rocking_cli.verification.code import SiteFile
+from rocking_cli.verification.results import Remark
 
 STRUCTURES_PER_CHUNK = 8  # in the memory of a thread at a time: the tables of each are one megabyte, at most ten
 
@@ -121,6 +122,8 @@ class Surveyed:
         Whether a formula of that verification was not checked against the printed code.
     remarks : sequence of str
         Sentences on weights of the structure that were read as masses.
+    relies_on : sequence of Remark
+        What the verification relies on and may not be there, if it is satisfied; see `Verification`.
     numbers : mapping of str to float or None
         Further numbers of that verification, those of `Survey.units`.
     """
@@ -145,6 +148,7 @@ class Surveyed:
     verified: Conclusion | None = None
     unprinted: bool = False
     remarks: Sequence[str] = ()
+    relies_on: Sequence[Remark] = ()
     numbers: Mapping[str, float | None] = field(default_factory=dict)
 
 
@@ -374,6 +378,7 @@ def _alone(place: int, entry: SurveyEntry, structure: Structure, site: SiteFile 
         verified=verification.conclusion if verification is not None else None,
         unprinted=verification is not None and verification.unprinted,
         remarks=mechanism.remarks,
+        relies_on=verification.relied_on if verification is not None else (),
         numbers=row_numbers(verification, code_of(site)) if verification is not None and site is not None else {},
     )
 

@@ -16,8 +16,9 @@ from rocking_cli.names import digits_apart, percent
 from rocking_cli.questions.survey.study import Bad, Survey, Surveyed
 from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.text import cut, one_line
-from rocking_cli.views.column import Column, data_of, frame_of, of, table_of
+from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, table_of
 from rocking_cli.views.conclusion import uncounted_ties
+from rocking_cli.views.sheet.language import ENGLISH
 from rocking_cli.views.view import Table, View, number
 
 DEFAULT_ROWS = 20
@@ -59,6 +60,12 @@ def _not_counted(row: RankedStructure) -> str | None:
     return ", ".join(each.name for each in verified.left_out) or None if verified is not None else None
 
 
+def caution_of(row: RankedStructure) -> str | None:
+    """Return the cautions on a structure and on what its verification relies on, as one text; None without any."""
+    relied = [ENGLISH(each).removeprefix("Caution: ") for each in row.found.relies_on]
+    return " ".join(filter(None, [row.found.caution, *(f"{each[0].upper()}{each[1:]}" for each in relied)])) or None
+
+
 def _peak(peak: float) -> str:
     return "no uplift" if peak == 0 else number(peak, 3)
 
@@ -95,7 +102,7 @@ PARAMETERS: tuple[Column[RankedStructure], ...] = (
     Column("eta", of("found.eta"), head="eta"),
     Column("no_block", of("found.no_block"), text=True),
     Column("doubt", of("found.doubt"), text=True),
-    Column("caution", of("found.caution"), text=True),
+    Column("caution", caution_of, text=True),
 )
 
 
@@ -219,6 +226,9 @@ def table(found: Survey, top: int, longest: int | None = MAX_NAME_LENGTH) -> Tab
         empty |= LEFT_TO_PAGES
     empty |= {name for name in found.units if all(each.numbers[name] is None for each in found.rows)}
     shown = [column for column in _columns(found) if column.key not in empty]
+    if any(caution_of(row) is not None for row in _ranked(found)):
+        mark = caution_of if longest is None else lambda row: caution_of(row) and "yes"
+        shown.append(only_shown("caution", mark, text=True))
     whole = table_of(title(found), shown, _ranked(found, stop=top))
     if longest is None:
         return whole
@@ -260,17 +270,29 @@ def _of_site(rows: Sequence[Surveyed]) -> Iterator[str]:
     passed = sum(end.concluded is Concluded.SATISFIED for end in ends)
     if fail:
         does = "does" if len(fail) == 1 else "do"
-        yield f"{len(fail):,} of {_structures(len(rows))} {does} not satisfy the verification{_governing(fail)}."
+        clauses = _governing(fail) + _relying(rows)
+        yield f"{len(fail):,} of {_structures(len(rows))} {does} not satisfy the verification{clauses}."
     elif passed == len(rows):
-        yield "All structures satisfy the verification." if passed > 1 else "The structure satisfies the verification."
+        who = "All structures satisfy" if passed > 1 else "The structure satisfies"
+        yield f"{who} the verification{_relying(rows)}."
     else:
-        yield f"{passed:,} of {_structures(len(rows))} {'satisfies' if passed == 1 else 'satisfy'} the verification."
+        satisfy = "satisfies" if passed == 1 else "satisfy"
+        yield f"{passed:,} of {_structures(len(rows))} {satisfy} the verification{_relying(rows)}."
     if without := [each for each, end in zip(rows, ends, strict=True) if end.concluded is Concluded.NOT_CHECKED]:
         yield f"Not verified: {_named(without)}; `rocking verify` gives the reason."
     least = rows[0].ratio
     if least is not None and not isnan(least):
         ratio = number(least, digits_apart(least, 1.0, 3))
         yield f"The smallest ratio of capacity to demand is {ratio}, that of {_named(rows[:1])}."
+
+
+def _relying(rows: Sequence[Surveyed]) -> str:
+    """Return how many structures satisfy the verification only by what may have failed by then, as a clause."""
+    count = sum(bool(each.relies_on) for each in rows)
+    if not count:
+        return ""
+    which = f"{count:,} of those that satisfy it {'relies' if count == 1 else 'rely'}" if len(rows) > 1 else "it relies"
+    return f"; {which} on ties or forces at displacements where these may have failed (caution)"
 
 
 def _governing(fail: Sequence[Conclusion]) -> str:
@@ -315,8 +337,9 @@ def sentences(found: Survey, top: int | None = None) -> list[str]:
             "`rocking respond` and `rocking margin` to see how close the result is."
         )
         lines += _not_known(rows)
-    cautioned = [each for each in rows if each.caution is not None]
-    lines += [f"Caution: {each.name}: {each.caution}" for each in cautioned[:MAX_CAUTIONED]]
+    cautions = [(each.name, caution_of(RankedStructure(0, each))) for each in rows]
+    cautioned = [(name, caution) for name, caution in cautions if caution is not None]
+    lines += [f"Caution: {name}: {caution}" for name, caution in cautioned[:MAX_CAUTIONED]]
     if len(cautioned) > MAX_CAUTIONED:
         lines.append(f"{len(cautioned) - MAX_CAUTIONED:,} more structures have such a caution: JSON lists them all.")
     if any(each.unprinted for each in rows):

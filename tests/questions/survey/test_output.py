@@ -21,6 +21,7 @@ from rocking_cli.questions.survey.view import columns as written
 from rocking_cli.verification import Code
 from rocking_cli.verification.code import codes
 from tests.cli.test_cli import run, some
+from tests.core.test_ties_of_steel import facade
 
 SITE = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
 ITALIAN = """mechanism;name;width [mm];height;# proprietario;# quota
@@ -208,6 +209,39 @@ class TestNumbersOfTheCode:
         element = {key: element[key] for key in ("kind", "w", "E")}
         (bad,) = rk.survey([*structures[:2], structures[2]], site={**SITE, "element": element}).bad
         assert "element.t is missing: a point_mass has no height and thickness" in bad.reason
+
+    def test_what_a_satisfied_verification_relies_on_is_the_caution_of_verify(self):
+        """Ties of constant force, 60 and 120 kN, hold two facades until they are long; without one a third fails."""
+        tied = [
+            facade(stiffness=0, prestress=1e3 * force).model_copy(update={"name": f"t{force}"}) for force in (60, 120)
+        ]
+        loose = rk.Block(name="loose", width=0.3, height=8.0)
+        answer = rk.survey([*tied, loose], site=SITE)
+        data = {row["name"]: row["caution"] for row in answer.to_dict()["rows"]}
+        assert data["loose"] is None and not rk.verify(loose, SITE).ratio >= 1
+        for each in tied:
+            strain = rk.verify(each, SITE).to_dict()["directions"]["positive"]["ties"]["bar"]["strain_SLV"]
+            assert f"At SLV this relies on the tie bar when it is {100 * strain:.2g} % longer" in data[each.name]
+            assert data[each.name] in answer.columns()["caution"]
+            assert f"Caution: {each.name}: {data[each.name]}" in answer.sentences
+        assert answer.sentences[0].startswith(
+            "1 of 3 structures does not satisfy the verification; SLV governs; 2 of those that satisfy it rely on ties"
+        )
+        table = next(part for part in answer.view.parts if hasattr(part, "columns"))
+        marks = {row[1]: row[-1] for row in table.rows}
+        assert table.columns[-1] == "caution" and [marks[name] for name in ("t60", "t120", "loose")] == [
+            "yes",
+            "yes",
+            "-",
+        ]
+        rk.survey([*tied, loose], site=SITE, page="p.html")
+        assert data["t60"] in Path("p.html").read_text(encoding="utf-8")
+        alone = rk.survey(tied[:1], site=SITE).sentences[0]
+        assert alone.startswith(
+            "The structure satisfies the verification; it relies on ties or forces at displacements"
+        )
+        table = next(part for part in rk.survey([loose], site=SITE).view.parts if hasattr(part, "columns"))
+        assert "caution" not in table.columns
 
     def test_a_code_without_numbers_gives_none(self, monkeypatch):
         monkeypatch.setattr(type(codes()["NTC2018"]), "row_numbers", Code.row_numbers)
