@@ -23,8 +23,9 @@ if TYPE_CHECKING:
 
 F = TypeVar("F", bound=Verification)
 V = TypeVar("V", bound=Verified)
-SHOWN = ("of_direction", "data", "data_of_all", "table", "draw")
+SHOWN = ("of_direction", "in_short", "data", "data_of_all", "table", "draw")
 """Methods that a code may override; their failures are errors of the plugin."""
+BOTH = "Both directions"
 
 
 class MethodRow(NamedTuple):
@@ -77,12 +78,15 @@ class Showing(Generic[F, V]):
         Symbols of the lines of the site's calculation to show, in order; empty for all.
     say : Language
         How the keys of remarks are said.
+    say_in_short : Language, optional
+        How they are said in the short view, which leaves out those that it says as empty texts; by default as `say`.
     notation : str
         How clauses are cited, such as ": [formula] or §section".
     """
 
     of_site: Sequence[str] = ()
     say: Language = ENGLISH
+    say_in_short: Language | None = None
     notation: str = ""
 
     def __init_subclass__(cls, **named: Any) -> None:
@@ -92,9 +96,12 @@ class Showing(Generic[F, V]):
 
     def of_direction(self, found: F, each: V, where: str) -> Iterable[Table | str]:
         """Return the tables and sentences of a direction, which `where` names."""
+        return [*self.in_short(found, each, where), *map(self.say, each.remarks)]
+
+    def in_short(self, found: F, each: V, where: str) -> Iterable[Table | str]:
+        """Return the tables and sentences of a direction without which its verdict cannot be judged; no remarks."""
         rows = [row for row in rows_of(found) if row.direction is each.direction]
-        table = table_of(f"{where}: capacity by method", METHODS, rows)
-        return [table, verdict(each, where), *map(self.say, each.remarks)]
+        return [table_of(f"{where}: capacity by method", METHODS, rows), verdict(each, where)]
 
     def data(self, found: F, each: V) -> dict[str, Any]:
         """Return a direction as plain data."""
@@ -139,7 +146,7 @@ def showing_by(code: str) -> Showing[Any, Any]:
     return shown_by
 
 
-def view(found: Verification, site: str | None = None, *, every_step: bool = False) -> View:
+def view(found: Verification, site: str | None = None, *, every_step: bool = False, in_short: bool = False) -> View:
     """Show the methods side by side for each direction, which governs, and remarks.
 
     Parameters
@@ -150,6 +157,8 @@ def view(found: Verification, site: str | None = None, *, every_step: bool = Fal
         Name of the site.
     every_step : bool
         Whether to show also every line of the calculation: symbol, formula, numbers, result and clause.
+    in_short : bool
+        Whether to show only what is needed to judge the verdict, with remarks in short.
     """
     sides, shown_by = shown(found), showing(found)
     by = f"{heading(found.mechanism)}, by the {found.name} ({found.edition}){f', at {site}' if site else ''}"
@@ -157,27 +166,55 @@ def view(found: Verification, site: str | None = None, *, every_step: bool = Fal
     first, concluded = uncounted_ties(end), of_verification(found)
     parts: list[Table | str] = [*first]
     parts.append(" ".join(filter(None, [f"{by}.", *concluded[len(first) :], next_in_words(end)])))
-    if found.workings:
-        parts.append(_site(found, shown_by.of_site))
-    for where, each in sides.items():
-        parts += shown_by.of_direction(found, each, where)
-    if len(sides) > 1:
-        parts.append(_which_direction(found))
-    parts += map(shown_by.say, found.remarks)
+    parts += _in_short(found, sides) if in_short else _in_full(found, sides)
     if every_step:
         parts += steps(found.workings)
         for where, each in sides.items():
             parts += steps(each.workings, where)
     every = [*found.workings, *(line for each in sides.values() for line in each.workings)]
-    parts.append(standing(every, shown_by.notation))
+    parts.append(standing(every, None if in_short else shown_by.notation))
     parts += [f"Caution: {text}" for text in cautions_of(found.mechanism)]
+    if in_short:
+        parts.append("`rocking verify --all` shows the ground, both curves, every clause and the remarks in full.")
     return View(lambda: data(found), [part for part in parts if part])
+
+
+def _in_full(found: Verification, sides: Mapping[str, Any]) -> Iterator[Table | str]:
+    """Yield the ground, all of each direction, which of them governs, and the remarks."""
+    shown_by = showing(found)
+    if found.workings:
+        yield _site(found, shown_by.of_site)
+    for where, each in sides.items():
+        yield from shown_by.of_direction(found, each, where)
+    if len(sides) > 1:
+        yield _which_direction(found)
+    yield from map(shown_by.say, found.remarks)
+
+
+def _in_short(found: Verification, sides: Mapping[str, Any]) -> Iterator[Table | str]:
+    """Yield what decides, and the remarks in short: tables that directions share, what each has alone, and the rest."""
+    shown_by = showing(found)
+    say = shown_by.say_in_short or shown_by.say
+    both = BOTH if len(sides) > 1 else next(iter(sides))
+
+    def parts_of(each: Any, where: str) -> Iterator[Table | str]:
+        yield from shown_by.in_short(found, each, where)
+        lead = "" if where == both else f"{where}: "
+        yield from (f"{lead}{text}" for text in map(say, each.remarks) if text)
+
+    alike = [list(parts_of(each, both)) for each in sides.values()]
+    shared = [part for part in alike[0] if all(part in parts for parts in alike)]
+    yield from (part for part in shared if isinstance(part, Table))
+    for (where, each), parts in zip(sides.items(), alike, strict=True):
+        yield from (own for own, part in zip(parts_of(each, where), parts, strict=True) if part not in shared)
+    yield from (part for part in shared if isinstance(part, str))
+    yield from map(say, found.remarks)
 
 
 def shown(found: Verification) -> dict[str, Any]:
     """Return the directions that differ, by their names."""
     if len(found.distinct) < len(found.directions):
-        return {"Both directions": found.distinct[0]}
+        return {BOTH: found.distinct[0]}
     return {f"{one.direction.label.capitalize()} direction": one for one in found.distinct}
 
 
@@ -257,10 +294,11 @@ def table(found: Verification) -> Mapping[str, Sequence[Any]]:
     return showing(found).table(found)
 
 
-def standing(workings: Sequence[Working], notation: str = "") -> str:
+def standing(workings: Sequence[Working], notation: str | None = "") -> str:
     """Return a sentence on how far the formulas were checked against the code; empty without formulas.
 
-    `notation` is the form in which the code is cited, such as ": [formula] or §section".
+    `notation` is the form in which the code is cited, such as ": [formula] or §section"; None for the short form,
+    which counts or names formulas by their symbols alone.
     """
     plain = [each.in_plain() for each in workings]
     ours, unchecked, transcribed, printed = (
@@ -268,7 +306,7 @@ def standing(workings: Sequence[Working], notation: str = "") -> str:
         for standing in ("ours", "code", "transcription", "print")
     )
     sentences = []
-    if printed or transcribed or unchecked:
+    if notation is not None and (printed or transcribed or unchecked):
         sentences.append(f"The clauses name the place of each formula in the code{notation}.")
     if transcribed or unchecked:
         which = f"Only {', '.join(printed)} of the formulas" if printed else "None of the formulas"
@@ -280,10 +318,16 @@ def standing(workings: Sequence[Working], notation: str = "") -> str:
     elif printed:
         sentences.append("Every formula has been checked against the printed code.")
     if transcribed:
-        others = f", except for {', '.join(unchecked)}" if unchecked else ""
+        others = (
+            f", except for {', '.join(unchecked) if notation is not None else f'{len(unchecked)} of them'}"
+            if unchecked
+            else ""
+        )
         which = "The others" if printed else "They"
         sentences.append(f"{which} agree with a transcription of its text{others}.")
-    if ours:
+    if ours and notation is None:
+        sentences.append(f"Our own choices: {', '.join(ours)}.")
+    elif ours:
         named = ", ".join(f"{symbol} ({meaning})" for symbol, meaning in ours.items())
         sentences.append(f"Our own choices ('ours'), where the code is silent or we depart from its wording: {named}.")
     return " ".join(sentences)

@@ -172,7 +172,7 @@ CALLS = {
         {"structure": WEAK, "site": SITE, "motions": RECORD.scaled(2.0), "sheet": "s.html", "opening": 1.0},
         {"structure": OTHER, "site": NTC, "control": (0.3, 2.0), "motions": PULSE, "polarity": "both", "state": "SLC",
          "on_floor": True, "opening": 0.0001, "sheet": None, "language": "it", "project": "odd", "place": "odd",
-         "author": "odd", "logo": "in.svg", "every_step": True, "origin": "odd"},
+         "author": "odd", "logo": "in.svg", "every_step": True, "in_short": True, "origin": "odd"},
     ),
     "demand": ({"site": SITE}, {"site": NTC | {"soil": "D"}, "damping": 0.1}),
     "fragility": (
@@ -182,7 +182,7 @@ CALLS = {
     ),
     "report": (
         {"structure": BLOCK, "motions": RECORD, "neighbours": 2},
-        {"structure": OTHER, "motions": PULSE, "file": "o.html", "polarity": "1", "verify": SITE, "state": "SLC",
+        {"structure": OTHER, "motions": PULSE, "out": "o.html", "polarity": "1", "verify": SITE, "state": "SLC",
          "on_floor": True, "opening": 1.0, "project": "odd", "place": "odd", "author": "odd",
          "logo": "in.svg", "origin": "odd"} | AROUND,
     ),

@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.displaced import pulls, strengths
 from rocking_cli.codes.italian.remarks import differences
-from rocking_cli.codes.italian.results import Dynamic, ItalianVerification, ItalianVerified, LimitState
+from rocking_cli.codes.italian.results import (
+    Dynamic,
+    ItalianVerification,
+    ItalianVerified,
+    LimitState,
+)
+from rocking_cli.codes.italian.rules import OF_STATE
 from rocking_cli.codes.italian.sheet import dynamic
-from rocking_cli.codes.italian.sheet.steps import TERMINAL, ties
-from rocking_cli.codes.italian.sheet.summary import methods, verdicts
+from rocking_cli.codes.italian.sheet.steps import STATE_OF_METHOD, TERMINAL, ties
+from rocking_cli.codes.italian.sheet.summary import METHOD_NAMES, OTHER_ROLES, methods, verdicts
 from rocking_cli.verification.results import in_plain
 from rocking_cli.views.column import Column, frame_of, of
-from rocking_cli.views.conclusion import headline
+from rocking_cli.views.conclusion import digits_beside_one, headline
 from rocking_cli.views.sheet.document import Sentence
+from rocking_cli.views.sheet.language import texts_of
 from rocking_cli.views.verification import METHODS, MethodRow, Showing, cited, rows_of, shown
 from rocking_cli.views.view import Table, heading, number
 
@@ -30,6 +38,7 @@ COLUMNS: Sequence[Column[MethodRow]] = (
     Column("TR", of("method.return_period"), "years"),
     METHODS[-1],
 )
+IN_SHORT = replace(TERMINAL, own={**TERMINAL.own, **texts_of("rocking_cli.codes.italian", "en_in_short")})
 OF_SITE = [
     in_plain(each.symbol.format(at="T_[0]"))
     for each in (
@@ -42,7 +51,7 @@ OF_SITE = [
 class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
     """How the results of the Italian code are shown."""
 
-    of_site, say = OF_SITE, TERMINAL
+    of_site, say, say_in_short = OF_SITE, TERMINAL, IN_SHORT
     notation = ": [formula] or §section"
 
     def of_direction(self, found: ItalianVerification, each: ItalianVerified, where: str) -> Iterable[Table | str]:
@@ -55,6 +64,18 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
         if each.dynamic is not None:
             for item in dynamic.items(TERMINAL, each.dynamic, each.exact.confidence):
                 yield item.text if isinstance(item, Sentence) else item
+
+    def in_short(self, found: ItalianVerification, each: ItalianVerified, where: str) -> Iterable[Table | str]:
+        """Return the methods, the limit states and the ties where they are verified, and the time histories."""
+        yield _methods_in_short(each, where)
+        yield from _states_in_short(each, where)
+        verified = {state: at for state, at in each.states.items() if at.demand is not None}
+        yield from ties(IN_SHORT, each.exact, verified)
+        texts = list(map(IN_SHORT, differences(each, found.first)))
+        if each.dynamic is not None:
+            items = dynamic.items(IN_SHORT, each.dynamic, each.exact.confidence)
+            texts += [item.text for item in items if isinstance(item, Sentence)]
+        yield from (f"{where}: {text}" for text in texts if text)
 
     def data(self, found: ItalianVerification, each: ItalianVerified) -> dict[str, Any]:
         """Return a direction as plain data."""
@@ -123,6 +144,36 @@ def _capacity(each: ItalianVerified, where: str) -> Table:
             ]
     title = f"{where}: capacity, on the exact curve and on the straight line from a0* to d0*"
     return Table(title, ["", "exact\ncurve", "straight\nline", "unit", "clause"], rows, numbers=(1, 2))
+
+
+def _methods_in_short(each: ItalianVerified, where: str) -> Table:
+    """Return a table of the capacity by each method on the exact curve, narrow enough for a small terminal."""
+    rows = []
+    for key, method in each.methods.items():
+        if method.a_g is None or each.stands_back(key):
+            continue
+        end = OTHER_ROLES.get(key.split("_")[0], f"at {STATE_OF_METHOD[key]}")
+        if state := each.decides(key):
+            passes = method.passed if state == "SLD" else each.passes(state)
+            end = f"{state} {'passes' if passes else 'fails'}"
+        name = METHOD_NAMES[key.split("_")[0]].capitalize()
+        rows.append([name, number(method.a_g, 4), number(method.demand, 4), _ratio(method.zeta), end])
+    return Table(f"{where}: a_g [g] by each method", ["", "capacity", "demand", "zeta_E", ""], rows, numbers=(1, 2, 3))
+
+
+def _states_in_short(each: ItalianVerified, where: str) -> list[Table]:
+    """Return a table of the displacements at limit states, without those at which rocking does not start."""
+    rows = [
+        [state, number(at.d, 4), number(at.demand, 4), _ratio(at.ratio), number(at.T, 4)]
+        for state, at in each.states.items()
+        if at.demand is not None and each.governing[state] == OF_STATE[state][1]
+    ]
+    heads = ["", "capacity", "demand", "ratio", "T [s]"]
+    return [Table(f"{where}: displacement d [m] at limit states", heads, rows, range(1, 5))] if rows else []
+
+
+def _ratio(ratio: float | None) -> str:
+    return number(ratio, 4 if ratio is None else max(4, digits_beside_one(ratio)))
 
 
 def _data(each: ItalianVerified) -> dict[str, Any]:

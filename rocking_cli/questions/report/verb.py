@@ -1,4 +1,4 @@
-"""`rk.report`: write a report on a structure as one HTML page."""
+"""`rk.report`: write a report on a structure as one page of HTML, or as PDF."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 def report(
     structure: StructureLike,
     motions: Motion | Motions | Sequence[Motion] = (),
-    file: str | Path | None = "report.html",
+    out: str | Path | None = "report.html",
     *,
     polarity: str | int = "both",
     neighbours: int = Neighbourhood.count,
@@ -52,7 +52,7 @@ def report(
     watch: Watcher = SILENT,
     **options: Unpack[MotionArguments],
 ) -> Answer[Assessment]:
-    """Write a report: one HTML file that opens in any browser and can be printed.
+    """Write a report: one HTML file that opens in any browser and can be printed, or a PDF.
 
     Parameters
     ----------
@@ -60,8 +60,8 @@ def report(
         The structure, or its YAML file.
     motions : GroundMotion, Pulse, str or Path, or a sequence of these
         Ground motions, their files, or pulses as text; may be empty.
-    file : str or Path, optional
-        File to write; None to write none.
+    out : str or Path, optional
+        File to write: .html, or .pdf with a browser; None to write none.
     polarity : {"both", "1", "-1"}
         Polarity of the motions: as given, reversed, or both, of which the worse is shown.
     neighbours : int
@@ -108,11 +108,11 @@ def report(
     Examples
     --------
     >>> import rocking_cli as rk
-    >>> answer = rk.report(rk.Block(width=0.7, height=2.8), file=None)
+    >>> answer = rk.report(rk.Block(width=0.7, height=2.8), out=None)
     >>> answer.has_block
     True
     """
-    from rocking_cli.io.files import check_writable, write_whole
+    from rocking_cli.documents import files
     from rocking_cli.questions.report.page import render
     from rocking_cli.questions.report.study import count_steps, gather
     from rocking_cli.questions.report.view import view
@@ -121,8 +121,8 @@ def report(
     from rocking_cli.verification.results import Histories
     from rocking_cli.views.sheet.build import sheet_of
 
-    if file is not None:
-        check_writable(Path(file))
+    if out is not None:
+        files.check(Path(out), ".html", ".pdf")
     signs, requested = signs_of(polarity), Motions.of(motions, options)
     if (state is not None or on_floor) and (verify is None or not requested):
         raise InputError("`state` and `on_floor` describe records of a verification: give `verify` and `motions`")
@@ -153,10 +153,8 @@ def report(
         verified = _verified(ready, site, verify, chosen, histories, title, source)
     with watch.progress(count_steps(chosen), "parts of the report") as advance:
         content = gather(ready, source.structure, chosen, signs, around=around, title=title, progress=advance)
-    if file is not None:
-        page = render(content, verified).encode()
-        write_whole(Path(file), lambda stream: stream.write(page))
-        watch.note(f"wrote {file} ({len(page) / 1e6:.2g} MB)")
+    if out is not None:
+        watch.note(files.write(Path(out), files.laid_out(render(content, verified), Path(out).suffix.lower())))
     shown = view(content, verified.found if verified is not None else None)
     figure = drawn("plotting.structure.draw_structure", content.picture, heading(content.mechanism))
     return Answer("report", content, shown, partial(_columns, content), figure)

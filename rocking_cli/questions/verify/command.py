@@ -42,6 +42,9 @@ def _point(text: str) -> tuple[float, float, str | None]:
 @options.state
 @options.on_floor
 @options.plot("Plot the capacity curves")
+@click.option(
+    "--all", "in_full", is_flag=True, help="Show also the ground, both curves, every clause and the remarks in full."
+)
 @heads.sheet
 @options.as_json
 @click.pass_context
@@ -53,13 +56,15 @@ def command(
     asked: GroundMotions,
     sheet: Path | None,
     output: Output,
+    in_full: bool,
     **question: Any,
 ) -> None:
     """Verify a rocking mechanism by the code that the site file names: the Italian, NTC 2018 and Circolare 7/2019.
 
     The command compares the damage, linear and nonlinear methods for each direction, on the exact capacity curve and on
-    its straight-line approximation: the capacity by each method, which one governs, and why they differ. Every number
-    is given with its clause. The exit code is 0 whether the structure passes or fails.
+    its straight-line approximation: the capacity by each method, which one governs, and why they differ. The terminal
+    shows what is needed to judge the verdict; --all shows all, every number with its clause. The exit code is 0 whether
+    the structure passes or fails.
 
     With --record (repeatable), the dynamic method is added: time histories on the capacity curve, with and without the
     confidence factor; with --polarity both, the worse of the two polarities governs. A record whose outcome is unknown,
@@ -89,8 +94,9 @@ def command(
     motions = asked.motions
     read = [file, site, question["logo"], *(str(each.path) for each in motions.records)]
     keep_apart([("--plot", output.plot), ("--sheet", sheet)], read)
+    every_step = terminal.asked("verbose")
     answer = verify(
-        file, site, motions=motions, polarity=asked.polarity, sheet=sheet, every_step=terminal.asked("verbose"),
-        origin=heads.command_line(ctx), watch=output.watch, **question,
+        file, site, motions=motions, polarity=asked.polarity, sheet=sheet, every_step=every_step,
+        in_short=not (in_full or every_step), origin=heads.command_line(ctx), watch=output.watch, **question,
     )  # fmt: skip
     output.show(answer)

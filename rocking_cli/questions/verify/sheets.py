@@ -9,10 +9,8 @@ from typing import NamedTuple
 
 from rocking_cli.ask.given import SiteLike, yaml_of
 from rocking_cli.ask.watcher import Watcher
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.documents import files
 from rocking_cli.excitation.records.opening import STANDARD_INPUT, name_of, original
-from rocking_cli.io.browser import as_pdf, browser
-from rocking_cli.io.files import check_writable, write_whole
 from rocking_cli.io.json_text import json_text
 from rocking_cli.processing.listed import Scaled
 from rocking_cli.structure import Structure
@@ -60,16 +58,12 @@ class Head(NamedTuple):
 
 def check(file: Path, site: SiteFile, language: str) -> None:
     """Raise `InputError`, before any work, if a sheet cannot be written."""
-    if file.suffix.lower() not in (".html", ".docx", ".pdf"):
-        raise InputError(Problem("give a file name that ends in .html, .docx or .pdf", str(file)))
-    check_writable(file)
+    files.check(file, ".html", ".docx", ".pdf")
     sheet_of(site).language(language)
     if file.suffix.lower() == ".docx":
         from rocking_cli.documents.sheet_docx import check_package
 
         check_package()
-    if file.suffix.lower() == ".pdf":
-        browser()
 
 
 def sheet_for(
@@ -94,12 +88,9 @@ def rendered(content: Sheet, found: Verification, suffix: str) -> bytes:
         return render_docx(content, found.mechanism)
     from rocking_cli.documents.sheet_page import render
 
-    page = render(content, found.mechanism).encode()
-    return as_pdf(page) if suffix == ".pdf" else page
+    return files.laid_out(render(content, found.mechanism), suffix)
 
 
 def write(file: Path, content: Sheet, found: Verification, watch: Watcher) -> None:
     """Write a sheet, and tell that it was written."""
-    data = rendered(content, found, file.suffix.lower())
-    write_whole(file, lambda stream: stream.write(data))
-    watch.note(f"wrote {file} ({len(data) / 1e6:.2g} MB)")
+    watch.note(files.write(file, rendered(content, found, file.suffix.lower())))

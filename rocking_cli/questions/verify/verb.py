@@ -40,6 +40,7 @@ def verify(
     author: str | None = None,
     logo: str | Path | None = None,
     every_step: bool = False,
+    in_short: bool = False,
     origin: str | None = None,
     watch: Watcher = SILENT,
     **options: Unpack[MotionArguments],
@@ -72,6 +73,8 @@ def verify(
         Entries for the heading of the sheet, and a picture in .png, .jpg or .svg.
     every_step : bool
         Whether the answer lists every line of the calculation.
+    in_short : bool
+        Whether the answer shows only what is needed to judge the verdict; its data are the same.
     origin : str, optional
         What the sheet says of how it was made; by default this function and the structure.
     watch : Watcher
@@ -136,7 +139,7 @@ def verify(
         title = sheets.Head(project, place, author, logo).block(source, language)
         content = sheets.sheet_for(verification, known, site, chosen, language, title, source)
         sheets.write(Path(sheet), content, verification, watch)
-    shown = view(verification, known.site.name, every_step=every_step)
+    shown = view(verification, known.site.name, every_step=every_step, in_short=in_short)
     return Answer("verification", verification, shown, partial(table, verification), partial(_figure, verification))
 
 

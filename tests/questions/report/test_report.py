@@ -15,6 +15,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import rocking_cli as rk
 from rocking_cli.core.structure_file import load_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.records import read_record
@@ -22,6 +23,7 @@ from rocking_cli.questions.report.page import symbols
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.studies.under_pulses import parse_shape
 from rocking_cli.views.neighbours import deviations
+from tests.browser import launch
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, PROJECT, RECORDS
 from tests.following import respond
@@ -247,7 +249,8 @@ class TestReproduction:
         assert {
             "rocking_cli/documents/templates/report.html", "rocking_cli/documents/templates/report.css",
             "rocking_cli/data/motion.js", "rocking_cli/data/motion.css", "rocking_cli/data/animation.html",
-            "rocking_cli/codes/italian/texts/it.toml", "rocking_cli/views/sheet/texts/en.toml",
+            "rocking_cli/codes/italian/texts/it.toml", "rocking_cli/codes/italian/texts/en_in_short.toml",
+            "rocking_cli/views/sheet/texts/en.toml",
         } <= names  # fmt: skip
 
 
@@ -272,13 +275,47 @@ class TestCommand:
             (["--scale", "2"], "give --record or --pulse"),
             (["--pulse", "sine:1g:1s", "--scale", "2", "--target-pga", "1"], "cannot be combined"),
             (["--record", "none.csv"], "none.csv"),
-            (["-o", "r.pdf"], "does not end in .html"),
+            (["-o", "r.docx"], "does not end in .html or .pdf"),
             (["-o", "none/r.html"], "does not exist"),
         ],
     )
     def test_what_cannot_be_is_refused(self, arguments, said, tmp_path):
         assert said in run("report", *FEW, BLOCK, *arguments, code=2).stderr
         assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.rest
+def test_a_pdf_is_printed_on_numbered_pages_of_A4_by_a_browser(tmp_path):
+    """By the command and in Python; the tree of the PDF names the size of the pages, in points."""
+    found, driver = launch()  # skipped where there is none
+    found.close()
+    driver.stop()
+    run("report", BLOCK, "-o", tmp_path / "r.pdf")
+    rk.report(rk.Block(width=0.7, height=2.8), out=tmp_path / "p.pdf")
+    for name in ("r.pdf", "p.pdf"):
+        content = (tmp_path / name).read_bytes()
+        assert content.startswith(b"%PDF-") and content.rstrip().endswith(b"%%EOF")
+        width, height = map(float, re.search(rb"/MediaBox \[0 0 ([\d.]+) ([\d.]+)\]", content).groups())
+        assert (width, height) == (pytest.approx(595.28, abs=1), pytest.approx(841.89, abs=1))
+    style = (PROJECT / "rocking_cli" / "documents" / "templates" / "report.css").read_text(encoding="utf-8")
+    assert "counter(page)" in style
+
+
+@pytest.mark.parametrize("call", ["command", "python"])
+def test_without_a_browser_it_is_said_before_any_work(call, tmp_path, monkeypatch):
+    monkeypatch.setenv("ROCKING_BROWSER", "no-such-browser")
+    said = "there is no browser no-such-browser"
+    if call == "command":
+        assert said in run("report", BLOCK, "-o", tmp_path / "r.pdf", code=2).stderr
+    else:
+        with pytest.raises(rk.InputError, match=said):
+            rk.report("none.yaml", out=tmp_path / "r.pdf")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_python_refuses_another_ending(tmp_path):
+    with pytest.raises(rk.InputError, match=r"ends in \.html or \.pdf"):
+        rk.report(rk.Block(width=0.7, height=2.8), out=tmp_path / "r.docx")
 
 
 @pytest.mark.rest

@@ -280,7 +280,7 @@ class TestVerify:
         ratios = {side: each["ratio"] for side, each in found["directions"].items()}
         assert ratios == pytest.approx({side: 1.5 * G * each["lambda"] / 2.0 for side, each in sides.items()})
         assert found["governs"] == min(ratios, key=ratios.get)
-        assert f"The {found['governs']} direction governs" in run("verify", "frame.yaml", *demo).stdout
+        assert f"The {found['governs']} direction governs" in run("verify", "frame.yaml", *demo, "--all").stdout
 
     def test_a_wrong_field_has_its_line(self, demo):
         Path("site.yaml").write_text("code: UNI-demo\nfrequent: 0.8\nrare: -2\nFC: 1.35\n", encoding="utf-8")
@@ -414,7 +414,7 @@ class TestWorkings:
         row = next(line for line in said.splitlines() if line.split()[-2:] == ["of", "omega"])
         assert row.split() == "lambda0 Delta_i * beta^2 0.5 * (-3)^2 1.5 m/s2 3.1 onset of omega".split()  # noqa: SIM905
         assert "Every formula has been checked against the printed code." in said and "None" not in said
-        assert "lambda0" in run("verify", "block.yaml", *demo).stdout  # of the site
+        assert "lambda0" in run("verify", "block.yaml", *demo, "--all").stdout  # of the site
 
     def test_json_has_what_belongs_to_no_direction(self, demo):
         site_of(Worked)
@@ -539,7 +539,7 @@ class TestBadCodes:
     )
     def test_they_are_one_line_that_names_the_plugin(self, code, said, demo):
         site_of(code)
-        (line,) = run("verify", "block.yaml", *demo, code=3).stderr.splitlines()
+        (line,) = run("verify", "block.yaml", *demo, "--all", code=3).stderr.splitlines()
         assert re.fullmatch(f"error: {said}", line), line
 
     @pytest.mark.parametrize(

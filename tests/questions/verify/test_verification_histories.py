@@ -140,7 +140,9 @@ class TestTheCommand:
         assert negative[0]["d_with_FC"] > negative[0]["d_without_FC"] > 0
 
     def test_histories_have_a_table_and_a_verdict(self):
-        text = run("verify", "b.yaml", "--site", "site.yaml", "--pulse", "sine:2g:1.5s", "--polarity", "both").stdout
+        text = run(
+            "verify", "b.yaml", "--site", "site.yaml", "--pulse", "sine:2g:1.5s", "--polarity", "both", "--all"
+        ).stdout
         assert "overturns" in text and "With FC: not satisfied." in text
 
     def test_a_polarity_needs_a_motion(self):

@@ -51,10 +51,11 @@ def _said(say: Language, dynamic: Dynamic, state: str, *, confident: bool) -> It
         "state": state,
         "mean": mean,
         "allowed": dynamic.allowed[state],
+        "of": len(dynamic.records),
     }
     if passed := dynamic.passed(confident=confident):
-        yield say("past_d0", **values, names=", ".join(passed))
+        yield say("past_d0", **values, names=", ".join(passed), count=len(passed))
     if mean is not None:
         yield say("holds" if dynamic.holds(state, confident=confident) else "holds_not", **values)
     elif unknown:
-        yield say("unknown_fails", **values, names=", ".join(unknown))
+        yield say("unknown_fails", **values, names=", ".join(unknown), count=len(unknown))

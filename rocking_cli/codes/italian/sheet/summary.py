@@ -23,6 +23,8 @@ METHOD_NAMES = {
     HISTORIES: "time histories",
 }  # fmt: skip
 """Names of the methods within a sentence, by their kind."""
+OTHER_ROLES = {DAMAGE: "not required", LINEAR: "comparison"}
+"""Roles of the methods that decide at no limit state, by their kind: rocking may start before SLV and SLC."""
 
 
 def part(say: Language, verification: ItalianVerification, directions: Mapping[str, ItalianVerified]) -> SheetPart:
@@ -96,8 +98,10 @@ def methods(say: Language, where: str, each: ItalianVerified) -> Table:
             continue
         numbers = (method.a_g, each.straight_methods[key].a_g, method.demand, method.zeta)
         years = [method.lasts or say.number(None)] if known else []
-        decides = say("decides {state}", state=state) if (state := each.decides(key)) else ""
-        rows.append([title(say, key), *(say.number(value, 4) for value in numbers), *years, method.clause, decides])
+        role = say(OTHER_ROLES.get(key.split("_")[0], ""))
+        if state := each.decides(key):
+            role = say("decides {state}", state=state)
+        rows.append([title(say, key), *(say.number(value, 4) for value in numbers), *years, method.clause, role])
     heads = [say("method"), f"a_[g] [g]\n{say('exact curve')}", f"a_[g] [g]\n{say('straight line')}"]
     heads += [f"a_[g] [g]\n{say('demand')}", "ζ_[E]", *([say("T_[R] [years]")] if known else [])]
     heads = [in_plain(each) if say.is_plain else each for each in heads]

@@ -1,0 +1,151 @@
+"""The short view of a verification on the terminal: its length, and that nothing is lost that bears on the verdict."""
+
+from __future__ import annotations
+
+from math import isclose
+
+import pytest
+
+import rocking_cli as rk
+from rocking_cli.codes.italian.remarks import differences
+from rocking_cli.codes.italian.sheet.steps import TERMINAL
+from rocking_cli.codes.italian.view import IN_SHORT
+from rocking_cli.views.cautions import cautions_of
+from rocking_cli.views.sheet.language import texts_of
+from rocking_cli.views.verification import view
+from tests.cli.test_cli import run, run_json
+from tests.conftest import EXAMPLES
+
+MAX_LINES = 79  # of the short view, in 60 columns
+SITES = [EXAMPLES / "verify" / f"{name}.yaml" for name in ("site", "ground")]
+STRUCTURES = [
+    *(each for each in sorted((EXAMPLES / "verify").glob("*.yaml")) if each not in SITES),
+    *sorted((EXAMPLES / "walls").glob("*.yaml")),
+    *(EXAMPLES / f"{name}.yaml" for name in ("arch", "block", "assembly")),
+    EXAMPLES / "masonry" / "wall_of_three.yaml",  # two directions that differ
+]
+RECORDS = ("--record", EXAMPLES / "accel.csv", "--record", EXAMPLES / "accel_transverse.csv", "--polarity", "both")
+WITHOUT_HISTORIES = "tied_facade"  # its file has no `rebound`
+
+
+def cases():
+    for structure in STRUCTURES:
+        for site in SITES:
+            yield pytest.param(structure, site, (), id=f"{structure.stem}-{site.stem}")
+        if structure.stem != WITHOUT_HISTORIES:
+            yield pytest.param(structure, SITES[0], RECORDS, id=f"{structure.stem}-records")
+
+
+def on_a_line(text):
+    return " ".join(text.split())
+
+
+@pytest.mark.every(4)
+@pytest.mark.parametrize(("structure", "site", "more"), [*cases()])
+def test_it_is_short_and_has_what_decides(structure, site, more, monkeypatch):
+    """Each number of the verdict stands in it, and no line is wider than the terminal."""
+    monkeypatch.setenv("COLUMNS", "60")
+    asked = ("verify", structure, "--site", site, *more)
+    lines, data = run(*asked).stdout.splitlines(), run_json(*asked)
+    assert len(lines) <= MAX_LINES and max(map(len, lines)) <= 60
+    words = {tuple(each.split()) for each in lines}
+    named = {"damage": "Onset of rocking", "linear": "Linear method", "nonlinear": "Nonlinear method"}
+    for side in data["directions"].values():
+        for key, name in named.items():
+            a_g, zeta = (f"{side[part][key]:.4g}" for part in ("a_g", "zeta"))
+            start = (*name.split(), a_g)
+            assert any((row[: len(start)], row[len(start) + 1]) == (start, zeta) for row in words if len(row) > 5)
+        for state, at in side["states"].items():
+            if at["passes"] is None:
+                continue
+            assert any(row[-2:] == (state, "passes" if at["passes"] else "fails") for row in words)
+            if at["governs"].startswith("nonlinear"):
+                assert any(row[:4] == (state, *(f"{at[key]:.4g}" for key in ("d", "demand", "ratio"))) for row in words)
+            for name, tie in side.get("ties", {}).items():
+                numbers = [f"{tie[f'force_{state}'] / 1e3:.6g}", f"{tie[f'elongation_{state}']:.6g}"]
+                assert any(row[:-1] == (*name.split(), f"d_{state}", *numbers) for row in words)
+    text = on_a_line("\n".join(lines))
+    assert "have them checked before you rely on a verdict" in text and "--all" in text
+    whole = on_a_line(run(*asked, "--all").stdout)
+    assert text.split(": a_g")[0].rsplit(" ", 2)[0] in whole  # the conclusion is the same
+
+
+@pytest.mark.parametrize("width", ["80", "100"])
+def test_wider_terminals_have_the_same_tables(width, monkeypatch):
+    monkeypatch.setenv("COLUMNS", width)
+    text = run("verify", STRUCTURES[0], "--site", SITES[0]).stdout
+    assert "Onset of rocking" in text and "not required" in text and len(text.splitlines()) < MAX_LINES
+
+
+def _answer(structure, site=SITES[0], **how):
+    return rk.verify(structure, site, in_short=True, **how)
+
+
+@pytest.mark.parametrize("structure", STRUCTURES, ids=lambda each: each.stem)
+@pytest.mark.parametrize("site", SITES, ids=lambda each: each.stem)
+def test_every_caution_and_remark_is_in_it(structure, site):
+    """As a whole or in short; what is left out as empty is known by name."""
+    found = _answer(structure, site).result
+    said = " ".join(_answer(structure, site).sentences)
+    for side in found.distinct:
+        for each in (*differences(side, found.first), *side.remarks):
+            assert IN_SHORT(each) in said and (IN_SHORT(each) or each.key in LEFT_OUT)
+    for each in found.remarks:
+        assert IN_SHORT(each) in said and IN_SHORT(each)
+    assert all(f"Caution: {each}" in said for each in cautions_of(found.mechanism))
+    whole = [each for each in view(found).parts if isinstance(each, str) and each.startswith("Caution")]
+    assert len(whole) <= said.count("Caution")
+
+
+LEFT_OUT = {"line", "as_given"}
+
+
+def test_no_other_text_is_left_out_and_each_shortens_a_longer_one_that_exists():
+    short, long = (texts_of("rocking_cli.codes.italian", key) for key in ("en_in_short", "en"))
+    assert {key for key, text in short.items() if not text} == LEFT_OUT
+    assert short.keys() <= long.keys() and all(
+        len(short[key]) <= len(long[key]) or "{count}" in short[key] for key in short
+    )
+    for key in short:  # a caution stays one
+        assert key in LEFT_OUT or short[key].startswith("Caution") == long[key].startswith("Caution")
+
+
+def test_a_far_stretched_tie_and_what_it_relies_on():
+    answer = _answer(EXAMPLES / "verify" / "tied_facade.yaml", SITES[1])
+    (side,) = answer.result.distinct
+    at, tie = side.states["SLV"], answer.to_dict()["directions"]["positive"]["ties"]["bar"]
+    said = " ".join(answer.sentences)
+    longer = f"the tie bar is {tie['elongation_SLV']:.3g} m longer than at rest, {100 * tie['strain_SLV']:.2g} %"
+    assert f"Caution: at d_SLV {longer}" in said and "Caution: at SLV this relies on the tie bar" in said
+    assert isclose(at.ratio, 1.107, rel_tol=1e-3)
+    assert "SLC and SLD: no verification is made" in said and "No factor is applied" in said
+
+
+def test_rocking_before_SLV_is_no_failure_and_a_structure_that_stays_at_rest_passes():
+    """The role beside a method: at SLV of the facade displacement decides, for the wall the onset."""
+    rows = {row[0]: row for row in _table(_answer(EXAMPLES / "verify" / "facade.yaml"))[:3]}
+    assert float(rows["Onset of rocking"][3]) < 1 and rows["Onset of rocking"][4] == "not required"
+    assert rows["Linear method"][4] == "comparison" and rows["Nonlinear method"][4] == "SLV passes"
+    at_rest = _answer(EXAMPLES / "masonry" / "wall_of_three.yaml")
+    assert _table(at_rest)[0][0] == "Onset of rocking" and _table(at_rest)[0][4] == "SLV passes"
+    assert not any("displacement d" in each.title for each in _tables(at_rest))
+
+
+def _tables(answer):
+    return [each for each in answer.view.parts if not isinstance(each, str)]
+
+
+def _table(answer):
+    return next(each.rows for each in _tables(answer) if "by each method" in each.title)
+
+
+def test_python_shows_all_unless_asked_and_data_are_the_same():
+    whole = rk.verify(EXAMPLES / "verify" / "facade.yaml", SITES[0])
+    short = _answer(EXAMPLES / "verify" / "facade.yaml")
+    assert whole.to_dict() == short.to_dict() and len(whole.view.parts) > len(short.view.parts)
+    assert any(TERMINAL(each) in whole.sentences for each in whole.result.remarks)
+
+
+def test_weights_are_named_by_their_body_once():
+    said = run("verify", EXAMPLES / "verify" / "facade.yaml", "--site", SITES[0], "--all").stdout
+    assert "sideways with block" in on_a_line(said) and "block block" not in said
