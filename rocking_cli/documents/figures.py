@@ -18,7 +18,7 @@ FONT_FAMILY = "system-ui, 'Segoe UI', Helvetica, Arial, 'DejaVu Sans', sans-seri
 SVG_ATTRIBUTES = 'aria-hidden="true" focusable="false" style="stroke-linejoin: round; stroke-linecap: butt"'
 
 
-def template(name: str, **filters: Callable[[str], object]) -> Template:
+def template(name: str, **filters: Callable[..., object]) -> Template:
     """Return the template of a page, with filters of its own; whatever it is given is escaped."""
     environment = Environment(
         loader=PackageLoader("rocking_cli", "documents/templates"), autoescape=True, undefined=StrictUndefined,

@@ -9,7 +9,7 @@ from itertools import count
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.core import Mechanism
-from rocking_cli.documents.sheet_page import ORIGIN_MARKS, figure_of, runs
+from rocking_cli.documents.sheet_page import ORIGIN_MARKS, SIGNATURE_FIELDS, figure_of, runs
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.plotting import style
 from rocking_cli.text import printable
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 TEXT_WIDTH = 17.0  # cm of an A4 page, between margins of 2 cm
 TABLE_FONT_SIZE = 8.5  # pt
 LOGO_HEIGHT = 1.6  # cm
+SIGNATURE_LINES = 5  # empty lines of the place for a signature or a stamp
 PICTURE_PREFIXES = ("data:image/png;", "data:image/jpeg;")
 """Beginnings of the data addresses of pictures that a document can contain."""
 
@@ -80,8 +81,33 @@ class _Writer:
         self._text(self.document.add_heading(level=0), sheet.heading)
         self._text(self.document.add_paragraph(), sheet.subtitle)
         self._table([[[name], [text]] for name, text in sheet.about.items()])
-        for each in sheet.parts:
+        for k, each in enumerate(sheet.parts):
             self._part(each, 1)
+            if k == 0:
+                self._sign_and_list()
+
+    def _sign_and_list(self) -> None:
+        """Write the place for the signature, and the table of contents, which a word processor fills on request."""
+        say = self.sheet.language
+        self._table([[[say(name), *[""] * SIGNATURE_LINES] for name in SIGNATURE_FIELDS]])
+        title = self.document.add_paragraph()
+        title.paragraph_format.page_break_before = title.paragraph_format.keep_with_next = True
+        self._text(title, say("Contents"), bold=True, size=14)
+        self._field(
+            self.document.add_paragraph(), r'TOC \o "1-2" \h \z', "; ".join(each.heading for each in self.sheet.parts)
+        )
+
+    def _field(self, paragraph: Paragraph, code: str, until_filled: str) -> None:
+        """Write a field, such as the number of the page, with the text that stands until a word processor fills it."""
+        from docx.oxml import OxmlElement
+        from docx.oxml.ns import qn
+
+        field = OxmlElement("w:fldSimple")
+        field.set(qn("w:instr"), code)
+        field.set(qn("w:dirty"), "true")
+        run = paragraph.add_run(printable(until_filled))
+        field.append(run._r)
+        paragraph._p.append(field)
 
     def _page(self) -> None:
         """Set the page to A4, and the language of the text."""
@@ -91,6 +117,7 @@ class _Writer:
         section = self.document.sections[0]
         section.page_width, section.page_height = Cm(21.0), Cm(29.7)
         section.left_margin = section.right_margin = section.top_margin = section.bottom_margin = Cm(2.0)
+        self._field(section.footer.paragraphs[0], "PAGE", "1")
         normal = self.document.styles["Normal"]
         normal.font.size = Pt(10)
         fonts = self.document.styles.element.find(f".//{qn('w:lang')}")
@@ -130,9 +157,11 @@ class _Writer:
             self._table([self._step(row) for row in item.rows], widths=(1.1, 10.1, 3.2, 2.6))
         elif isinstance(item, Drawing):
             stream = BytesIO()
-            style.save(figure_of(self.sheet, self.mechanism), stream, format="png")
+            style.save(figure_of(item, self.sheet, self.mechanism), stream, format="png")
             stream.seek(0)
             self.document.add_picture(stream, width=Cm(TEXT_WIDTH))
+            self.document.paragraphs[-1].paragraph_format.keep_with_next = True
+            self._text(self.document.add_paragraph(), item.label)
         elif isinstance(item, Listing):
             for line in item.text.split("\n"):
                 paragraph = self.document.add_paragraph()
@@ -140,7 +169,7 @@ class _Writer:
                 run = paragraph.add_run(printable(line))
                 run.font.name, run.font.size = "Courier New", Pt(8)
         else:
-            self._text(self.document.add_paragraph(), item.text, bold=item.answers)
+            self._text(self.document.add_paragraph(), item.text, bold=item.answers, marked=item.is_open)
 
     def _step(self, row: Working) -> list[list[str]]:
         """Return the cells of a step: number, meaning and formula with numbers, result, clause."""
@@ -159,6 +188,8 @@ class _Writer:
 
         table: Any = self.document.add_table(rows=0, cols=len(rows[0]), style="Table Grid")
         table.autofit = not widths
+        for column, width in zip(table.columns, widths, strict=False):
+            column.width = Cm(width)
         for k, row in enumerate(rows):
             cells = table.add_row().cells
             table.rows[-1]._tr.get_or_add_trPr().append(OxmlElement("w:cantSplit"))
@@ -173,13 +204,17 @@ class _Writer:
                     cell.width = Cm(widths[n])
         self.document.add_paragraph()
 
-    def _text(self, paragraph: Paragraph, text: str, *, bold: bool = False, size: float | None = None) -> None:
+    def _text(
+        self, paragraph: Paragraph, text: str, *, bold: bool = False, size: float | None = None, marked: bool = False
+    ) -> None:
         """Write a text with its sub- and superscripts; characters that XML cannot hold are spelled out."""
+        from docx.enum.text import WD_COLOR_INDEX
         from docx.shared import Pt
 
         for piece, place in runs(text):
             run = paragraph.add_run(printable(piece))
             run.bold = bold or None
+            run.font.highlight_color = WD_COLOR_INDEX.YELLOW if marked else None
             if place:
                 setattr(run.font, {"sub": "subscript", "sup": "superscript"}[place], True)
             if size is not None:

@@ -20,6 +20,7 @@ from rocking_cli.views.sheet.document import Drawing, Sheet
 
 ORIGIN_MARKS = {"print": "", "transcription": "*", "code": "†", "ours": "‡", "plain": ""}
 """Marks beside formulas, by how far these were checked."""
+SIGNATURE_FIELDS = ("Place and date", "Name", "Signature", "Stamp")
 
 
 def render(sheet: Sheet, mechanism: Mechanism) -> str:
@@ -33,24 +34,35 @@ def render(sheet: Sheet, mechanism: Mechanism) -> str:
         The mechanism to draw.
     """
     page = template("sheet.html").render(
-        sheet=sheet, say=sheet.language, parts=parts(sheet, mechanism), motion_style=Markup(asset("motion.css"))
+        sheet=sheet,
+        say=sheet.language,
+        parts=parts(sheet, mechanism, alone=True),
+        motion_style=Markup(asset("motion.css")),
     )
     return printable(page)
 
 
-def parts(sheet: Sheet, mechanism: Mechanism, level: int = 2) -> Markup:
-    """Return the sections of a sheet alone as HTML, with headings from a given level, such as for a report."""
-    has_drawing = any(isinstance(item, Drawing) for each in sheet.parts for item in each.items)
-    steps = count(1)
-    text = template("sheet_parts.html", formula=formula).render(
-        sheet=sheet, level=level, step=lambda: next(steps), number=sheet.language.number, marks=ORIGIN_MARKS,
-        drawing=inline_svg(figure_of(sheet, mechanism), "sheet-drawing") if has_drawing else "",
+def parts(sheet: Sheet, mechanism: Mechanism, level: int = 2, *, alone: bool = False) -> Markup:
+    """Return the sections of a sheet as HTML, with headings from a given level, such as for a report.
+
+    A sheet that stands `alone` has a place for the signature and its contents after the first section.
+    """
+    steps, pictures = count(1), count(1)
+
+    def svg(item: Drawing) -> Markup:
+        return inline_svg(figure_of(item, sheet, mechanism), f"sheet-{next(pictures)}")
+
+    text = template("sheet_parts.html", formula=formula, svg=svg).render(
+        sheet=sheet, say=sheet.language, level=level, step=lambda: next(steps), number=sheet.language.number,
+        marks=ORIGIN_MARKS, alone=alone, signed=SIGNATURE_FIELDS,
     )  # fmt: skip
     return Markup(text)
 
 
-def figure_of(sheet: Sheet, mechanism: Mechanism) -> Figure:
-    """Return the drawing of the structure, in the language of a sheet."""
+def figure_of(item: Drawing, sheet: Sheet, mechanism: Mechanism) -> Figure:
+    """Return a picture of a sheet, which by default is the drawing of the structure in its language."""
+    if item.figure is not None:
+        return item.figure()
     say = sheet.language
     title = f"{mechanism.name}: {say.mechanism(mechanism.mechanism, mechanism.title)}"
     figure = draw_structure(picture(mechanism), title)

@@ -115,8 +115,8 @@ def _draw_rest(
     """Draw a structure at rest, with its dimensions in rows beside its box [m] and inside it."""
     axes.set_title("at rest", fontsize=style.LABEL, color=style.INK)
     draw_ground(axes, picture, panel)
-    labels = _labels(axes, picture, panel, 0.0)
-    _draw_parts(axes, picture, 0.0, weight(picture, panel.scale))
+    labels = labels_of(axes, picture, panel, 0.0)
+    draw_parts(axes, picture, 0.0, weight(picture, panel.scale))
     _draw_lines(axes, picture, labels)
     _draw_forces(axes, picture, panel.scale)
     hung.draw_hung(axes, picture, 0.0, panel, labels)
@@ -134,8 +134,8 @@ def _draw_displaced(axes: Axes, picture: Picture, panel: Panel, direction: Direc
     """Draw a structure at a signed rotation [rad] over its outline at rest."""
     draw_ground(axes, picture, panel)
     _draw_outline_at_rest(axes, picture, min(style.THIN, weight(picture, panel.scale)))
-    _draw_parts(axes, picture, turn, weight(picture, panel.scale))
-    labels = _labels(axes, picture, panel, turn)
+    draw_parts(axes, picture, turn, weight(picture, panel.scale))
+    labels = labels_of(axes, picture, panel, turn)
     hung.draw_hung(axes, picture, turn, panel, labels)
     own_pins = [pin for pin in picture.pins if pin.direction is direction]
     pins = _draw_pins(axes, picture, turn, own_pins, panel, labels)
@@ -150,7 +150,7 @@ def draw_at_rest(axes: Axes, picture: Picture, title: str) -> None:
     axes.set_aspect("equal")
     for line in (*picture.ground, *picture.walls):
         axes.plot(line.real, line.imag, color=style.EARTH, linewidth=style.BOLD, zorder=1)
-    _draw_parts(axes, picture, 0.0, style.MEDIUM)
+    draw_parts(axes, picture, 0.0, style.MEDIUM)
     across, up = (high - low).real, (high - low).imag
     axes.set_xlim(low.real - 0.1 * across, high.real + 0.1 * across)
     axes.set_ylim(low.imag - 0.05 * up, high.imag + 0.05 * up)
@@ -241,7 +241,8 @@ def weight(picture: Picture, scale: float) -> float:
     return min(style.MEDIUM, max(style.HAIR, LINE_WEIGHT_SHARE * _smaller_side(picture) * scale * POINTS_PER_INCH))
 
 
-def _draw_parts(axes: Axes, picture: Picture, rotation: float, line: float) -> None:
+def draw_parts(axes: Axes, picture: Picture, rotation: float, line: float) -> None:
+    """Draw the parts at a signed rotation [rad] with lines of a weight [pt], and their centroids."""
     outlines, _ = picture.placed(rotation)
     centroids = picture.marks(rotation)
     direction = picture.side(rotation)
@@ -271,7 +272,7 @@ def _patches(part: DrawnPart, polygons: Sequence[Points], **look: Any) -> list[P
     return [PathPatch(Path.make_compound_path(*paths), **look)]
 
 
-def _labels(axes: Axes, picture: Picture, panel: Panel, rotation: float) -> Labels:
+def labels_of(axes: Axes, picture: Picture, panel: Panel, rotation: float) -> Labels:
     """Return the labels of a panel, which keep off edges and centroids of the structure, and off the ground."""
     labels = Labels(axes, panel)
     outlines, _ = picture.placed(rotation)

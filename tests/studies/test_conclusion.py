@@ -136,7 +136,7 @@ def test_an_elastic_tie_is_named_in_the_conclusion(pillar, tmp_path):
     run("verify", *asked, "--sheet", "en.html")
     run("report", "pillar.yaml", "--verify", "s.site.yaml", "-o", "r.html")
     for page in ("en.html", "r.html"):
-        assert re.search(r"Summary (?!.*Summary)Not counted: bar", text_of(Path(page).read_text(encoding="utf-8")))
+        assert "Summary Not counted: bar" in text_of(Path(page).read_text(encoding="utf-8"))
     rows = run_json("survey", "rows.csv", "--site", "s.site.yaml")["rows"]
     assert [row["not_counted"] for row in rows] == ["bar", "bar"]
     (table,) = (part for part in rk.survey("rows.csv", site="s.site.yaml").view.parts if isinstance(part, Table))

@@ -150,8 +150,8 @@ TIE_BEARING = Formula("N_[b]", "n b h f_[c]", "{n} · {b} · {h} · {f}", "kN", 
 TIE = Formula("N", "min(N_[y]; N_[p]; N_[b])", "min({N}; …)", "kN", meaning="tie_strength", standing="plain")
 
 # Kinematic chain
-P = Formula("P_[{k}]", "Σ", "{P} + …", "{unit}", clauses.ALPHA0, meaning="of_block_P")
-PQ = Formula("PQ_[{k}]", "Σ", "{P} + …", "{unit}", clauses.ALPHA0, meaning="of_block_PQ")
+P = Formula("P_[{k}]", "{P}", "{P} + …", "{unit}", clauses.ALPHA0, meaning="of_block_P")
+PQ = Formula("PQ_[{k}]", "{P+Q}", "{P} + …", "{unit}", clauses.ALPHA0, meaning="of_block_PQ")
 G = Formula("{axis}_[G{k}]", "Σ (P+Q) {axis}/Σ (P+Q)", "({P} · {x} + …)/({P} + …)", "m", meaning="G", standing="plain")
 GP = Formula("x_[P{k}]", "Σ P x/Σ P", "({P} · {x} + …)/({P} + …)", "m", meaning="GP", standing="plain")
 PY = Formula("ΣPy′", "Σ P y′", "{P} · {y} + …", "{unit} m", clauses.ALPHA0, meaning="Py")

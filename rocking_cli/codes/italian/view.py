@@ -91,32 +91,9 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
 
     def draw(self, found: ItalianVerification) -> Figure:
         """Draw the capacity curves of each direction, with capacity and demand at each limit state."""
-        from rocking_cli.plotting import style
+        from rocking_cli.codes.italian.sheet.figures import draw_capacity
 
-        sides = shown(found)
-        figure = style.new_figure(3.4 * len(sides))
-        every = figure.subplots(len(sides), 1, squeeze=False)[:, 0]
-        for axes, (where, side) in zip(every, sides.items(), strict=True):
-            d, a = side.exact.points()
-            axes.plot(d, a, color=style.INK, linewidth=style.BOLD, label="exact curve")
-            line = {"color": style.MEASURE, "linestyle": "--", "linewidth": style.MEDIUM}
-            axes.plot([0, side.d0], [side.a0, 0], label="straight line", **line)
-            for k, (name, at) in enumerate(side.states.items()):
-                look = style.distinct(k + 1)
-                color, dashes = look["color"], look["linestyle"]
-                axes.plot(at.d, at.a, marker=look["marker"], color=color, linestyle="none", label=f"capacity d_{name}")
-                if at.demand is not None:
-                    label = f"demand at {name}"
-                    axes.axvline(at.demand, color=color, linestyle=dashes, linewidth=style.MEDIUM, label=label)
-            axes.set_xlim(left=0)
-            axes.set_ylim(bottom=0)
-            axes.set_ylabel("acceleration a* [m/s2]", fontsize=style.LABEL)
-            axes.legend(**style.LEGEND)
-            what = f"{where.lower()}, FC = {side.exact.confidence:g}"
-            style.heading(axes, f"{heading(found.mechanism)}, {what} ({headline(found.conclusion)})")
-            style.tidy(axes)
-        every[-1].set_xlabel("displacement d of the single-degree-of-freedom system [m]", fontsize=style.LABEL)
-        return figure
+        return draw_capacity(TERMINAL, shown(found), heading(found.mechanism), f" ({headline(found.conclusion)})")
 
 
 def _capacity(each: ItalianVerified, where: str) -> Table:

@@ -98,7 +98,8 @@ def sheet(found: Verification, site: SiteFile, language: Language, title: TitleB
     """
     chapters = sheet_of(site)
     say, mechanism = chapters.language(language.key), found.mechanism
-    about = {say(name.capitalize()): text for name, text in title.known.items()}
+    about = {say("Structure"): f"{mechanism.name}: {say.mechanism(mechanism.mechanism, mechanism.title)}"}
+    about |= {say(name.capitalize()): text for name, text in title.known.items()}
     if site.site.name:
         about[say("Site")] = site.site.name
     about[say("Date")] = title.date
@@ -112,8 +113,12 @@ def sheet(found: Verification, site: SiteFile, language: Language, title: TitleB
     if not mechanism.has_mass:
         reading.append(say("The file gives no masses: weights are per kilogram of the whole structure, in N/kg."))
     how = SheetPart("reading", say("How to read it"), [*map(Sentence, reading)])
+    workings = SheetPart(
+        "workings", say("Appendix A: workings"), [], [how, *(each for each in others if each.appended)]
+    )
     subtitle = say("subtitle", structure=say.mechanism(mechanism.mechanism, mechanism.title))
-    parts = [first, how, *others, _inputs(say, found, title, made)]
+    front = [each for each in others if not each.appended]
+    parts = [first, *front, workings, _inputs(say, found, title, made)]
     return Sheet(say, say("Calculation sheet: {name}", name=mechanism.name), subtitle, about, parts, title.logo)
 
 
@@ -138,4 +143,4 @@ def _inputs(say: Language, found: Verification, title: TitleBlock, made: SheetSo
             more = len(lines) - MAX_LISTED_LINES
             text.append(Sentence(say("(the file continues: {more} more lines are not printed)", more=more)))
         texts.append(SheetPart(f"{kind}_text", say(f"{kind.capitalize()} file"), text))
-    return SheetPart("inputs", say("Files and versions"), items, texts)
+    return SheetPart("inputs", say("Appendix B: files and versions"), items, texts)

@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from rocking_cli.verification.results import Working
 from rocking_cli.views.sheet.language import Language
 from rocking_cli.views.view import Table
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 
 @dataclass(frozen=True)
 class Sentence:
-    """A paragraph; `answers` marks the answer of the sheet, `fails` a negative one."""
+    """A paragraph; `answers` marks the answer of the sheet, `fails` a negative one, `is_open` what the user writes."""
 
     text: str
     answers: bool = False
     fails: bool = False
+    is_open: bool = False
 
 
 @dataclass(frozen=True)
@@ -28,9 +33,10 @@ class Steps:
 
 @dataclass(frozen=True)
 class Drawing:
-    """The drawing of the structure, with a label of its content."""
+    """A picture with its caption: what `figure` draws, by default the structure."""
 
     label: str
+    figure: Callable[[], Figure] | None = None
 
 
 @dataclass(frozen=True)
@@ -56,12 +62,15 @@ class SheetPart:
         Content of the section.
     parts : sequence of SheetPart
         Subsections.
+    appended : bool
+        Whether a section stands in the appendix, with the workings.
     """
 
     key: str
     heading: str
     items: Sequence[Item]
     parts: Sequence[SheetPart] = ()
+    appended: bool = False
 
 
 def workings(parts: Iterable[SheetPart]) -> Iterator[Working]:

@@ -120,6 +120,10 @@ class Language:
         """Return the title of a mechanism in this language; the given title if there is no translation."""
         return self.texts.get(f"mechanism_{key}", plain(title))
 
+    def body(self, mechanism: str, name: str) -> str:
+        """Return the name of a body of a mechanism in this language; names that the user chose stay as they are."""
+        return re.sub(r"^.+?(?= \d+$|$)", lambda word: self.texts.get(f"body_{mechanism} {word[0]}", word[0]), name)
+
     def caution(self, key: str, text: str) -> str:
         """Return the caution about a mechanism in this language; the given text if there is no translation."""
         return self.texts.get(f"caution_{key}", plain(text))

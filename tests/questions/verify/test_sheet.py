@@ -23,12 +23,12 @@ from rocking_cli.core import Direction
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.documents import sheet_docx, sheet_page
-from rocking_cli.documents.sheet_page import ORIGIN_MARKS
+from rocking_cli.documents.sheet_page import ORIGIN_MARKS, SIGNATURE_FIELDS
 from rocking_cli.io.yaml_file import parse
 from rocking_cli.studies.conclusion import Concluded
 from rocking_cli.verification.check import site_in
 from rocking_cli.verification.results import control_at
-from rocking_cli.views.sheet.document import Steps
+from rocking_cli.views.sheet.document import Sentence, Steps
 from rocking_cli.views.sheet.language import texts_of
 from rocking_cli.views.verdict import SENSE
 from rocking_cli.views.verification import data, view
@@ -624,6 +624,8 @@ class TestAskingForIt:
         self.asked(tmp_path, "--sheet", tmp_path / "o.pdf", code=0)
         content = (tmp_path / "o.pdf").read_bytes()
         assert content.startswith(b"%PDF-") and content.count(b"/Type /Page\n") + content.count(b"/Type/Page") > 3
+        (box,) = {tuple(map(float, each.split())) for each in re.findall(rb"/MediaBox ?\[([^]]*)\]", content)}
+        assert box == pytest.approx((0, 0, 210 / 25.4 * 72, 297 / 25.4 * 72), abs=0.5)  # A4
         assert content.rstrip().endswith(b"%%EOF")
         assert {each.name for each in tmp_path.iterdir()} == {"o.pdf", "s.yaml", "site.yaml"}
 
@@ -692,8 +694,17 @@ def test_every_text_has_a_user():
     known = Registry()
     own = {key: known[key] for key in known if known[key].__module__.startswith("mechanisms.")}
     families = {f"mechanism_{key}" for key in own} | {f"caution_{key}" for key, each in own.items() if each.caution}
+    families |= {each for each in keys if re.match(rf"body_({'|'.join(own)}) ", each)} | {"caution_own_symmetric_frame"}
     assert families <= keys
-    families |= {*calendar.month_name[1:], "Project", "Place", "Author", "Structure file", "Site file"}
+    families |= {
+        *calendar.month_name[1:],
+        "Project",
+        "Place",
+        "Author",
+        *SIGNATURE_FIELDS,
+        "Structure file",
+        "Site file",
+    }
     families |= {"drawing at rest", *(f"drawing {each.label} ({SENSE[each]})" for each in Direction)}
     families |= {f"end_direction_{each.label}" for each in Direction} | {f"end_{each}" for each in ENDS}
     families |= {"a_g_start_iterated", "a_g_method_iterated", f"it has more than {MAX_CHECKED_COLUMNS} columns"}
@@ -711,9 +722,8 @@ def test_every_remark_is_on_the_sheet_and_in_the_terminal(name, language):
     remarks = [each for side in found.distinct for each in (*differences(side, found.first), *side.remarks)]
     remarks += found.remarks
     say = build.SHEET.language(language)
-    summary = next(iter(build.parts(say, found, given)))
-    (part,) = summary.parts
-    said = " ".join(item.text for item in part.items)
+    summary, methods, *_ = build.parts(say, found, given)
+    said = " ".join(item.text for part in (summary, methods) for item in part.items if isinstance(item, Sentence))
     assert len(remarks) > 1 and all(say(each) in said for each in remarks)
     assert found.mechanism.caution == "" or ("Caution: " if language == "en" else "Attenzione: ") in said
     terminal = [each for each in view(found).parts if isinstance(each, str)]

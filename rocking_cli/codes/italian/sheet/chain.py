@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
-from rocking_cli.codes.italian.displaced import DisplacedChain, Moved
+from rocking_cli.codes.italian.displaced import DisplacedChain, ForceWork, Moved
+from rocking_cli.core.hung.element import INTERLOCK_NAME
 from rocking_cli.core.hung.ties import Tie
 from rocking_cli.verification.results import Working
 from rocking_cli.views.sheet.document import Item, SheetPart, Steps
 from rocking_cli.views.sheet.language import Language
 from rocking_cli.views.view import Table
 
-ROUNDING_SHARE = 1e-12  # share of the size of the structure below which a coordinate is zero
+ROUNDING_SHARE = 1e-9  # share of the size of the structure below which a coordinate is zero
 KILO = 1e3  # forces of ties are printed in kN, stresses in kN/m2
 MIN_SHARE = 1e-9  # share of the terms of a sum below which the sum is zero
 
@@ -47,6 +49,10 @@ class Scale:
         """Convert a weight [N] to the printed unit."""
         return value / self.size
 
+    def work(self, each: ForceWork) -> float:
+        """Convert the work of a force or tie [N m] to the printed unit; zero if its point does not move along it."""
+        return self.weight(each.work) if self.near(each.rate) else 0.0
+
     def near(self, value: float) -> float:
         """Return a length, with rounding errors about zero removed [m]."""
         return 0.0 if abs(value) < ROUNDING_SHARE * self.length else value
@@ -76,9 +82,9 @@ def _weights(say: Language, chain: Chain, scale: Scale) -> Table:
     rows = []
     for each in chain.weights:
         block = next(k for k, block in enumerate(chain.blocks, 1) if each.spot.body in block.bodies)
-        numbers = [each.spot.at.real, each.spot.at.imag, each.mass, each.w, each.h]
+        numbers = [*map(scale.near, (each.spot.at.real, each.spot.at.imag)), each.mass, each.w, each.h]
         forces = [scale.weight(each.carried), scale.weight(each.inertial)]
-        rows.append([each.name, str(block), *map(say.number, numbers + forces)])
+        rows.append([say.body(chain.mechanism.mechanism, each.name), str(block), *map(say.number, numbers + forces)])
     heads = [say("weight"), say("block"), "x [m]", "y [m]", "M [kg]", "w", "h"]
     caption = say("weights", g=say.number(chain.mechanism.gravity))
     return Table(caption, [*heads, f"P [{scale.unit}]", f"P + Q [{scale.unit}]"], rows, range(1, 9))
@@ -89,16 +95,24 @@ def _of_blocks(say: Language, chain: Chain, scale: Scale) -> Iterator[Working]:
     for k, block in enumerate(chain.blocks, 1):
         weights = [each for each in chain.weights if each.spot.body in block.bodies]
         carried, inertial = ([scale.weight(getattr(each, key)) for each in weights] for key in ("carried", "inertial"))
-        names = {"k": k, "block": " + ".join(block.bodies), "unit": scale.unit}
+        key, of = chain.mechanism.mechanism, [each.name for each in weights]
+        bodies = " + ".join(say.body(key, each) for each in block.bodies)
+        names = {"k": str(k), "block": bodies, "unit": scale.unit}
+        names |= {kind: _summands(kind, [say.body(key, each) for each in of]) for kind in ("P", "P+Q")}
         yield say.step(F.P, scale.weight(block.P), names, P=carried)
         moved = F.PQ if chain.is_by_the_letter else replace(F.PQ, standing="ours")
         yield say.step(moved, scale.weight(block.PQ), names, P=inertial)
         for axis, at in (("x", block.at.real), ("y", block.at.imag)):
-            places = [each.spot.at.real if axis == "x" else each.spot.at.imag for each in weights]
+            places = [scale.near(each.spot.at.real if axis == "x" else each.spot.at.imag) for each in weights]
             yield say.step(F.G, scale.near(at), {**names, "axis": axis}, P=inertial if block.PQ else carried, x=places)
         if block.P and block.P != block.PQ:
-            places = [each.spot.at.real for each in weights]
+            places = [scale.near(each.spot.at.real) for each in weights]
             yield say.step(F.GP, scale.near(block.x_of_P), names, P=carried, x=places)
+
+
+def _summands(kind: str, names: Sequence[str]) -> str:
+    """Return the sum of the weights of a kind, P or P + Q, by the names of the masses."""
+    return " + ".join(f"{kind.join('()') if '+' in kind else kind}_[{re.sub(r'[][]', '', each)}]" for each in names)
 
 
 def at_work(say: Language, position: DisplacedChain, scale: Scale) -> Table:
@@ -107,8 +121,9 @@ def at_work(say: Language, position: DisplacedChain, scale: Scale) -> Table:
     for k, each in enumerate(position.blocks, 1):
         lengths = [each.gone, each.at.real, each.at.imag, _x_of_P(position, each), each.dx, each.dy]
         gone, x_G, y_G, x_P, dx, dy = map(scale.near, lengths)
+        turns = 0.0 if each.centre is None else each.turns
         centre = (None, None) if each.centre is None else map(scale.near, (each.centre.real, each.centre.imag))
-        rows.append([str(k), *map(say.number, (gone, x_G, y_G, x_P, each.turns, *centre, dx, dy))])
+        rows.append([str(k), *map(say.number, (gone, x_G, y_G, x_P, turns, *centre, dx, dy))])
     caption = say("at_work_rest" if position.phi == 0 else "at_work", phi=say.number(position.phi), across="@")
     caption = caption.replace("@", "(x_[O] − x_[P])" if position.chain.direction > 0 else "(x_[P] − x_[O])")
     heads = [say("block"), "Δx [m]", "x_[G] [m]", "y_[G] [m]", "x_[P] [m]", "θ′", "x_[O] [m]", "y_[O] [m]",
@@ -142,12 +157,17 @@ def _of_steel(say: Language, tie: Tie, depth: float | None) -> Iterator[Working]
     yield say.step(F.TIE, strength.force / KILO, names, N=[*limits.values()])
 
 
+def named(say: Language, name: str) -> str:
+    """Return the name of a force; that of crossing walls is of the program, all others are the user's."""
+    return say(INTERLOCK_NAME) + name.removeprefix(INTERLOCK_NAME) if name.partition(",")[0] == INTERLOCK_NAME else name
+
+
 def held(say: Language, position: DisplacedChain, scale: Scale) -> list[Item]:
     """Return a table of forces and ties in a position; empty if there are none."""
     if not position.held:
         return []
     rows = [
-        [each.name, *map(say.number, (scale.weight(each.force), scale.near(each.rate), scale.weight(each.work)))]
+        [named(say, each.name), *map(say.number, (scale.weight(each.force), scale.near(each.rate), scale.work(each)))]
         for each in position.held
     ]
     heads = [say("force or tie"), f"F, N [{scale.unit}]", "r′, L′ [m]", f"−F r′, N L′ [{scale.unit} m]"]
@@ -168,7 +188,7 @@ def multiplier(say: Language, position: DisplacedChain, scale: Scale, symbol: st
     carried, inertial = ([scale.weight(getattr(each.block, key)) for each in blocks] for key in ("P", "PQ"))
     yield say.step(F.PY, over[F.PY.text], unit, P=carried, y=[scale.near(each.dy) for each in blocks])
     if position.held:
-        works = [scale.weight(each.work) for each in position.held]
+        works = [scale.work(each) for each in position.held]
         over["L"] = sum(works)
         yield say.step(F.HELD, over["L"], unit, L=works)
     if position.rest:

@@ -58,8 +58,8 @@ OF_FLOOR = {
 def part(say: Language, ground: SiteGround) -> SheetPart:
     """Return the part on the site, with a part for each limit state that it gives."""
     states = [each for each in STATES if ground.spectrum(each) is not None]
-    items = [_given(say, ground), *of_cell(say, ground)]
-    return SheetPart("site", say("Site"), items, [_of_state(say, ground, each) for each in states])
+    parts = [_of_state(say, ground, each) for each in states]
+    return SheetPart("site", say("Site"), of_cell(say, ground), parts, appended=True)
 
 
 def given(say: Language, ground: SiteGround) -> Iterator[Working]:
@@ -75,7 +75,7 @@ def given(say: Language, ground: SiteGround) -> Iterator[Working]:
             yield say.step(F.XI1, mode.xi1, {"state": state})
 
 
-def _given(say: Language, ground: SiteGround) -> Table:
+def given_table(say: Language, ground: SiteGround) -> Table:
     """Return a table of the values of the site file, without its tables."""
     site = ground.site
     FC, q, *modes = ([each.symbol, each.meaning, say.number(each.value), each.unit] for each in given(say, ground))

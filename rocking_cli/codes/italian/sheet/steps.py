@@ -135,7 +135,10 @@ class DirectionSteps:
         chain, control = curve.chain, curve.control
         d_C, total = chain.displacement_of_control(position.phi, control), scale.weight(chain.inertial)
         if control.body is None:
-            weights, ways = [scale.weight(each.block.PQ) for each in position.blocks], [b.gone for b in position.blocks]
+            weights, ways = (
+                [scale.weight(each.block.PQ) for each in position.blocks],
+                [scale.near(b.gone) for b in position.blocks],
+            )
             yield say.step(F.D_C, d_C, names, P=weights, x=ways, PQ=total)
         else:
             follow = chain.mechanism.followed(np.array([position.phi]), chain.direction)

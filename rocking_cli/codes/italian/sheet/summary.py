@@ -25,32 +25,39 @@ METHOD_NAMES = {
 """Names of the methods within a sentence, by their kind."""
 OTHER_ROLES = {DAMAGE: "not required", LINEAR: "comparison"}
 """Roles of the methods that decide at no limit state, by their kind: rocking may start before SLV and SLC."""
+CAUTIONS = ("stretched", "wide", "same_mode")
+"""Keys of the remarks that stand on the first page."""
 
 
-def part(say: Language, verification: ItalianVerification, directions: Mapping[str, ItalianVerified]) -> SheetPart:
-    """Return the part with the summary."""
+def parts(
+    say: Language, verification: ItalianVerification, directions: Mapping[str, ItalianVerified]
+) -> Iterator[SheetPart]:
+    """Yield what decides: the verdict, capacity and demand, cautions; and then the methods and further remarks."""
     end, mechanism = verification.conclusion, verification.mechanism
     answer = " ".join(of_verification(verification, say, say(METHOD_NAMES[end.method.split("_")[0]])))
     items: list[Item] = [Sentence(answer, answers=True, fails=end.concluded is not Concluded.SATISFIED)]
-    for where, each in directions.items():
-        items += map(Sentence, verdicts(say, where, each))
+    items += [_states(say, where, each) for where, each in directions.items()]
     if len(directions) > 1:
         least = verification.governs
         ratio, rest = (verification.compared(direction) for direction in (least, least.opposite))
         if ratio is not None and rest is not None and not verification.alike:
             items.append(Sentence(say("which", least=say(least.label), ratio=ratio, rest=rest)))
-    for where, each in directions.items():
-        items += [_states(say, where, each), methods(say, where, each)]
     notes = [
         f"{where}: {say(text)}" if len(directions) > 1 else say(text)
         for where, each in directions.items() for text in differences(each, verification.first)
     ]  # fmt: skip
-    notes += [say(each) for one in directions.values() for each in one.remarks]
-    notes += map(say, verification.remarks)
+    remarks = [*(each for one in directions.values() for each in one.remarks), *verification.remarks]
+    cautions = [say(each) for each in remarks if isinstance(each, Remark) and each.key in CAUTIONS]
     general = say.caution(mechanism.mechanism, mechanism.caution) if mechanism.caution else ""
-    notes += [say("Caution: {text}", text=each) for each in (general, mechanism.own_caution()) if each]
-    under = [SheetPart("remarks", say("Remarks"), [*map(Sentence, dict.fromkeys(notes))])] if notes else []
-    return SheetPart("summary", say("Summary"), items, under)
+    particular = say.caution(f"own_{mechanism.mechanism}", mechanism.own_caution()) if mechanism.own_caution() else ""
+    cautions += [say("Caution: {text}", text=each) for each in (general, particular) if each]
+    notes += [text for text in map(say, remarks) if text not in cautions]
+    items += map(Sentence, dict.fromkeys(cautions))
+    more: list[Item] = [Sentence(text) for where, each in directions.items() for text in verdicts(say, where, each)]
+    more += [methods(say, where, each) for where, each in directions.items()]
+    more += map(Sentence, dict.fromkeys(notes))
+    yield SheetPart("summary", say("Summary"), items)
+    yield SheetPart("remarks", say("Methods and remarks"), more)
 
 
 def verdicts(say: Language, where: str, each: ItalianVerified) -> Iterator[str]:
@@ -78,15 +85,19 @@ def _states(say: Language, where: str, each: ItalianVerified) -> Table:
     rows = []
     for state, at in each.states.items():
         outcome = "not required" if at.ratio is None else "satisfied" if each.passes(state) else "not satisfied"
-        rows.append([state, *(say.number(v, 4) for v in (at.d, at.demand, at.T, at.ratio)), say(outcome)])
+        by = say.number(None) if at.ratio is None else title(say, each.governing[state])
+        zeta = each.methods[each.governing[state]].zeta
+        rows.append([state, *(say.number(v, 4) for v in (at.d, at.demand, at.T, at.ratio)), say(outcome), by,
+                     say.number(zeta, 4)])  # fmt: skip
     damage = each.methods["SLD"]
     if damage.zeta is not None:
         numbers = [f"{say.number(damage.a_g, 4)} g", f"{say.number(damage.demand, 4)} g", say.number(None)]
         outcome = say("satisfied" if damage.passed else "not satisfied")
-        rows.append([say("{state}, onset of rocking", state="SLD"), *numbers, say.number(damage.zeta, 4), outcome])
+        rows.append([say("{state}, onset of rocking", state="SLD"), *numbers, say.number(damage.zeta, 4), outcome,
+                     title(say, "SLD"), say.number(damage.zeta, 4)])  # fmt: skip
     heads = [say("limit state"), f"{say('capacity')} [m]", f"{say('demand')} [m]", "T [s]", say("ratio")]
-    title = say("{where}: limit states, on the exact capacity curve", where=where)
-    return Table(title, [*heads, say("verification")], rows, (1, 2, 3, 4))
+    caption = say("{where}: limit states, on the exact capacity curve", where=where)
+    return Table(caption, [*heads, say("verification"), say("governs"), "ζ_[E]"], rows, (1, 2, 3, 4, 7))
 
 
 def methods(say: Language, where: str, each: ItalianVerified) -> Table:

@@ -1,0 +1,249 @@
+"""Figures of a verification by the Italian code: the forces on the chain, its capacity with the demand, the spectra."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+
+from rocking_cli.codes.italian.demand import REFERENCE_DAMPING
+from rocking_cli.codes.italian.displaced import DisplacedChain
+from rocking_cli.codes.italian.results import ItalianVerification, ItalianVerified
+from rocking_cli.codes.italian.rules import FIRST_STATE, RULES
+from rocking_cli.codes.italian.sheet.chain import Scale, named
+from rocking_cli.core import Length
+from rocking_cli.plotting import dimensions, hung, style
+from rocking_cli.plotting.labels import MARK_COST, Labels
+from rocking_cli.plotting.panels import PANEL_GAP, Panel, lay_out
+from rocking_cli.plotting.spectra import draw_spectra_of_site
+from rocking_cli.plotting.structure import draw_ground, draw_parts, labels_of, weight
+from rocking_cli.studies.picture import Picture, box_around, picture
+from rocking_cli.verification.demand import SiteDemand, StateDemand
+from rocking_cli.verification.spectra import spectra_at_states
+from rocking_cli.views.sheet.language import Language
+
+MAX_WEIGHTS = 6  # of more masses, the blocks are drawn with the sums of their weights
+ARROW_LENGTH = 0.45  # inches
+TITLE_HEIGHT, FOOT_HEIGHT = 0.34, 0.12  # inches above and below the drawing of a chain
+CENTRE_SHARE = 1.0  # share of the size of a structure within which a centre of rotation is drawn
+SHORTEST_PERIOD, PERIODS_PER_SPECTRUM = 0.02, 400  # s, and number
+TALLEST_SHARE = 3.0  # of the largest acceleration of a capacity curve, above which a spectrum is cut off
+FORCE_DIGITS = 4
+LABEL_BACKGROUND = {**dimensions.TEXT_BACKGROUND, "alpha": 0.8}
+
+
+class DrawnWeight(NamedTuple):
+    """A weight of the chain as it is drawn: name, point [m], centre of rotation [m], and P and P + Q [N]."""
+
+    name: str
+    at: complex
+    centre: complex | None
+    P: float
+    PQ: float
+
+
+def in_language(say: Language, figure: Figure) -> Figure:
+    """Return a figure whose numbers have the decimal marks of a language, and whose labels stay text in an SVG."""
+    for each in figure.findobj(Text):
+        assert isinstance(each, Text)  # as selected above
+        each.set_text(say.formula(each.get_text()))
+        if each.get_path_effects():  # a halo turns text into outlines: a background does without
+            each.set_path_effects([])
+            each.set_bbox(LABEL_BACKGROUND)
+    for axis in (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)):
+        axis.set_major_formatter(lambda value, _: say.formula(f"{value:g}"))
+    return figure
+
+
+def draw_chain(say: Language, found: ItalianVerification, side: ItalianVerified) -> Figure:
+    """Draw the chain at rest in a direction: weights, forces and ties, and their arms and heights about the centres."""
+    drawing, position = picture(found.mechanism).grouped, DisplacedChain(side.exact, 0.0)
+    weights = _weights(say, side, position)
+    outlines = [each for part in drawing.parts for each in part.outlines]
+    low, high = box_around([*outlines, np.array([*drawing.held(0.0), *(each.at for each in weights)])])
+    reach = CENTRE_SHARE * abs(high - low)
+    centres = {each.centre for each in weights if each.centre is not None and abs(each.centre - each.at) <= reach}
+    low, high = box_around([np.array([low, high, *centres])])
+    weights = [each if each.centre in centres else each._replace(centre=None) for each in weights]
+    rows, _ = dimensions.in_rows(_arms(weights, low, high), low, high)
+    around = np.maximum(dimensions.room(rows, low, high), hung.margins(drawing)).tolist()
+    panel = Panel(low, high, (around[0] + 1.2, around[1] + 1.2, max(around[2], ARROW_LENGTH), around[3] + 0.1))
+    height = lay_out([panel], panel, TITLE_HEIGHT, FOOT_HEIGHT)
+    figure = Figure(figsize=(style.PAGE_WIDTH, height), dpi=style.DPI)
+    axes = panel.axes(figure)
+    draw_ground(axes, drawing, panel)
+    labels = labels_of(axes, drawing, panel, 0.0)
+    draw_parts(axes, drawing, 0.0, weight(drawing, panel.scale))
+    hung.draw_hung(axes, drawing, 0.0, panel, labels)
+    dimensions.draw_outside(axes, rows, panel, low, high, labels)
+    _draw_weights(say, axes, weights, panel, labels, Scale.of(side.chain))
+    _name_held(say, drawing, position, panel, labels, Scale.of(side.chain))
+    title = say("{name}: weights, forces and arms at rest, {way} direction", name=found.mechanism.name,
+                way=say(side.direction.label))  # fmt: skip
+    figure.text(
+        PANEL_GAP / style.PAGE_WIDTH, 1 - 0.09 / height, style.fitted(title), va="top", fontsize=style.TITLE,
+        color=style.INK, parse_math=False,
+    )  # fmt: skip
+    return in_language(say, figure)
+
+
+def _weights(say: Language, side: ItalianVerified, position: DisplacedChain) -> list[DrawnWeight]:
+    """Return the weights that move; if there are many, the sums of each block at its barycentre."""
+    key, chain = side.chain.mechanism.mechanism, side.chain
+    if len(chain.weights) > MAX_WEIGHTS:
+        return [
+            DrawnWeight(say("block {k}", k=k), each.at, each.centre, each.block.P, each.block.PQ)
+            for k, each in enumerate(position.blocks, 1)
+        ]
+    centre = {name: each.centre for each in position.blocks for name in each.block.bodies}
+    return [
+        DrawnWeight(say.body(key, each.name), each.spot.at, centre[each.spot.body or ""], each.carried, each.inertial)
+        for each in chain.weights
+    ]
+
+
+def _arms(weights: Sequence[DrawnWeight], low: complex, high: complex) -> list[Length]:
+    """Return the arms below the structure and the heights at its right, about the centres; equal ones once."""
+    lengths: dict[tuple[complex, complex], list[int]] = {}
+    for k, each in enumerate(weights, 1):
+        if each.centre is None:
+            continue
+        ends = [(complex(z.real, low.imag), complex(high.real, z.imag)) for z in (each.centre, each.at)]
+        for start, end in zip(*ends, strict=True):
+            lengths.setdefault((start, end), []).append(k)
+    least = 1e-6 * abs(high - low)
+    return [
+        Length(", ".join(f"{'b' if start.imag == end.imag else 'h'}{k}" for k in of), start, end)
+        for (start, end), of in lengths.items() if abs(end - start) > least
+    ]  # fmt: skip
+
+
+def _draw_weights(
+    say: Language, axes: Axes, weights: Sequence[DrawnWeight], panel: Panel, labels: Labels, scale: Scale
+) -> None:
+    """Draw an arrow for each weight, with its number, name and size, and the centres of rotation."""
+    for centre in {each.centre for each in weights if each.centre is not None}:
+        axes.plot(centre.real, centre.imag, marker="o", color=style.CURSOR, markersize=4.5, zorder=7)
+        labels.keep_off([centre], MARK_COST)
+        labels.write("O", labels.around(centre, -1 - 1j, 0.05, style.size_of("O", style.LABEL)), fontsize=style.LABEL,
+                     color=style.CURSOR, zorder=7)  # fmt: skip
+    for k, each in enumerate(weights, 1):
+        tip = each.at - 1j * ARROW_LENGTH / panel.scale
+        look = {"arrowstyle": "-|>,head_width=0.2,head_length=0.45", "color": style.INK, "linewidth": style.BOLD}
+        axes.annotate("", (tip.real, tip.imag), (each.at.real, each.at.imag), annotation_clip=False, zorder=6,
+                      arrowprops={**look, "shrinkA": 0, "shrinkB": 0})  # fmt: skip
+        labels.keep_off([each.at, tip], MARK_COST)
+        P, PQ = (say.number(scale.weight(value), FORCE_DIGITS) for value in (each.P, each.PQ))
+        moved = "" if P == PQ else f", P + Q = {PQ} {scale.unit}"
+        text = style.plain(
+            f"{k} {style.fitted(each.name, hung.MAX_NAME_WIDTH, style.TICK)}: P = {P} {scale.unit}{moved}"
+        )
+        size = style.size_of(text, style.TICK)
+        labels.write(text, labels.around(tip, 1 + 0.2j, 0.06, size, turning=0.6), fontsize=style.TICK, zorder=8,
+                     color=style.INK)  # fmt: skip
+
+
+def _name_held(
+    say: Language, drawing: Picture, position: DisplacedChain, panel: Panel, labels: Labels, scale: Scale
+) -> None:
+    """Write force and arm beside each tie, and beside the point of each force."""
+    works = {each.name: each for each in position.held}
+    places, ties, _ = drawing.hung(0.0, hung.SYMBOL_OFFSET / panel.scale)
+    at = {each.name: (place, place) for each, place in zip(drawing.loads, places.tolist(), strict=True) if each.force}
+    for tie, pieces in zip(drawing.ties, ties, strict=True):
+        at[tie.name] = max(pieces, key=lambda ends: abs(ends[1] - ends[0]))
+    for name, ends in at.items():
+        of = [works[key] for key in (name, f"{name}, x", f"{name}, y") if key in works]
+        sizes = [
+            f"{say.number(scale.weight(each.force), FORCE_DIGITS)} {scale.unit} "
+            f"({say('arm')} {say.number(scale.near(abs(each.rate)), 3)} m)"
+            for each in of
+        ]
+        if not sizes:
+            continue
+        text = style.plain(f"{style.fitted(named(say, name), hung.MAX_NAME_WIDTH, style.TICK)}: {'; '.join(sizes)}")
+        size = style.size_of(text, style.TICK)
+        start, end = ends
+        spots = labels.around(start, 1j, 0.1, size, turning=0.6) if start == end else labels.along(start, end, size)
+        labels.write(text, spots, fontsize=style.TICK, color=style.TIE["color"], zorder=8)
+
+
+def draw_capacity(
+    say: Language, sides: Mapping[str, ItalianVerified], title: str, end: str = "", demand: SiteDemand | None = None
+) -> Figure:
+    """Draw the capacity curve of each direction, with capacity and demand at each limit state.
+
+    Parameters
+    ----------
+    say : Language
+        Language of titles, axes and legends.
+    sides : mapping of str to ItalianVerified
+        Each direction by its name.
+    title, end : str
+        Title of each panel, before and after its direction and FC.
+    demand : SiteDemand, optional
+        Spectra of the site to draw into the same axes, with the line of the period of the first limit state.
+    """
+    figure = style.new_figure((3.4 if demand is None else 4.2) * len(sides))
+    every = figure.subplots(len(sides), 1, squeeze=False)[:, 0]
+    for axes, (where, side) in zip(every, sides.items(), strict=True):
+        d, a = side.exact.points()
+        axes.plot(d, a, color=style.INK, linewidth=style.BOLD, label=say("exact curve"))
+        line = {"color": style.MEASURE, "linestyle": "--", "linewidth": style.MEDIUM}
+        axes.plot([0, side.d0], [side.a0, 0], label=say("straight line"), **line)
+        axes.set_xlim(0, 1.03 * max([side.d0, *(each.demand or 0.0 for each in side.states.values())]))
+        tallest = max(side.exact.largest, side.a0)
+        for k, rule in enumerate(RULES, 1):
+            name, at, look = rule.state, side.states[rule.state], style.distinct(k)
+            color, dashes = look["color"], look["linestyle"]
+            mark = {"marker": look["marker"], "color": color, "linestyle": "none", "zorder": 5}
+            axes.plot(at.d, at.a, label=say("capacity d_{state}", state=name), **mark)
+            if at.demand is None:
+                continue
+            if demand is None:
+                label = say("demand at {state}", state=name)
+                axes.axvline(at.demand, color=color, linestyle=dashes, linewidth=style.MEDIUM, label=label)
+                continue
+            spectrum = _acceleration_displacement(demand.states[name], rule.damping)
+            label = say("spectrum of {state}, ξ = {xi:g} %", state=name, xi=100 * rule.damping)
+            axes.plot(*spectrum, color=color, linestyle=dashes, linewidth=style.MEDIUM, label=label)
+            steep = (2 * pi / at.T) ** 2
+            axes.plot(at.demand, steep * at.demand, **{**mark, "fillstyle": "none"}, markersize=8,
+                      label=say("demand at {state}", state=name))  # fmt: skip
+            tallest = max(tallest, min(TALLEST_SHARE * tallest, spectrum[1].max()), 1.1 * steep * at.demand)
+            if name == FIRST_STATE:
+                label = say("line of the period T_{state}", state=name)
+                axes.axline((0, 0), slope=steep, color=style.FAINT, linewidth=style.MEDIUM, label=label)
+                style.note(axes, f"T_{name} = {at.T:.4g} s")
+        axes.set_ylim(0, 1.08 * tallest)
+        axes.set_ylabel(say("acceleration a* [m/s2]" if demand is None else "acceleration a*, S_e [m/s²]"),
+                        fontsize=style.LABEL)  # fmt: skip
+        style.heading(axes, f"{title}, {where.lower()}, FC = {side.exact.confidence:g}{end}")
+        style.tidy(axes)
+        if demand is None:
+            axes.legend(**style.LEGEND)
+    of = "displacement d of the single-degree-of-freedom system [m]"
+    every[-1].set_xlabel(say(of if demand is None else "displacement d, S_De [m]"), fontsize=style.LABEL)
+    if demand is not None:
+        style.legend_below(figure, every[0].get_legend_handles_labels()[0], 3)
+    return in_language(say, figure)
+
+
+def _acceleration_displacement(state: StateDemand, damping: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the displacement spectrum S_De [m], and 4 pi^2 S_De/T^2 over it [m/s2], at the support of a structure."""
+    spectrum = state.floor or state.ground
+    T = np.geomspace(SHORTEST_PERIOD, state.last * (1 - 1e-9), PERIODS_PER_SPECTRUM)
+    d = np.array([spectrum.displacement(each, damping) for each in T.tolist()])
+    return d, d * (2 * pi / T) ** 2
+
+
+def draw_site(say: Language, demand: SiteDemand, title: str) -> Figure:
+    """Draw the spectra of the site at each limit state and 5 % damping."""
+    periods, states = spectra_at_states(demand, REFERENCE_DAMPING)
+    return in_language(say, draw_spectra_of_site(periods, states, demand.first, title, partial(say)))

@@ -1,0 +1,181 @@
+"""The calculation sheet as a paper: what decides first, the headings of the code, figures, and sums of each addend."""
+
+import re
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+
+from rocking_cli.codes.italian.ground import SiteGround
+from rocking_cli.codes.italian.sheet import build, figures
+from rocking_cli.codes.italian.site import of_structure
+from rocking_cli.codes.italian.site_demand import site_demand
+from rocking_cli.core import Direction
+from tests.cli.test_cli import run
+from tests.conftest import EXAMPLES
+from tests.questions.verify.test_sheet import CASES, CASES_WRITTEN, SITE, WALL, Step, items_of, number, verified
+
+G = 9.80665
+TIED_FACADE = (EXAMPLES / "verify" / "tied_facade.yaml").read_text(encoding="utf-8")
+LINKAGE = (EXAMPLES / "linkage.yaml").read_text(encoding="utf-8")
+HEADINGS = {
+    "en": [
+        "Summary", "Contents", "Methods and remarks", "Calculation by a program (NTC 2018, §10.2.1)",
+        "Kind of analysis", "Origin and features of the program", "Reliability and validation of the program",
+        "Presentation of the results", "General information on the calculation",
+        "Reasoned judgement of the acceptability of the results", "Input", "Capacity and demand",
+        "Appendix A: workings", "How to read it", "Site", "Ground at SLV", "Positive direction (clockwise)",
+        "Kinematic chain, at rest", "Appendix B: files and versions", "Structure file", "Site file",
+    ],
+    "it": [
+        "Sintesi", "Indice", "Metodi e osservazioni", "Calcolo mediante codice (NTC 2018, §10.2.1)",
+        "Tipo di analisi svolta", "Origine e caratteristiche dei codici di calcolo",
+        "Affidabilità e validazione dei codici utilizzati", "Modalità di presentazione dei risultati",
+        "Informazioni generali sull'elaborazione", "Giudizio motivato di accettabilità dei risultati", "Dati",
+        "Capacità e domanda", "Appendice A: sviluppo dei calcoli", "Come leggere la relazione", "Sito",
+        "Azione sismica allo SLV", "Verso positivo (orario)", "Catena cinematica, a riposo",
+        "Appendice B: file e versioni", "File della struttura", "File del sito",
+    ],
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module", params=["en", "it"])
+def page(request, tmp_path_factory):
+    """The language, and the page of a facade with loads and a tie in it."""
+    folder = tmp_path_factory.mktemp("sheet")
+    (folder / "s.yaml").write_text(TIED_FACADE, encoding="utf-8")
+    (folder / "site.yaml").write_text(SITE, encoding="utf-8")
+    files = (folder / "s.yaml", "--site", folder / "site.yaml", "--sheet", folder / "o.html")
+    run("verify", *files, "--language", request.param)
+    return request.param, (folder / "o.html").read_text(encoding="utf-8")
+
+
+def plain(html):
+    """The text of a piece of a page."""
+    text = re.sub(r"<[^>]+>", "", html)
+    for sign, entity in (("'", "&#39;"), ("&", "&amp;")):
+        text = text.replace(entity, sign)
+    return text
+
+
+def in_order(wanted, found):
+    rest = iter(found)
+    return all(each in rest for each in wanted)
+
+
+def test_headings_stand_in_their_order_and_the_contents_lead_to_them(page):
+    language, text = page
+    headings = [plain(each) for each in re.findall(r"<h[2-6][^>]*>(.*?)</h[2-6]>", text)]
+    assert in_order(HEADINGS[language], headings)
+    links = dict(re.findall(r'<a href="#([^"]+)">(.*?)</a>', text[text.index('<nav class="contents"') :]))
+    sections = dict(re.findall(r'<section id="([^"]+)".*?\n<h\d[^>]*>(.*?)</h', text))
+    assert links == sections and len(links) > 25
+
+
+def test_the_first_page_has_what_decides_and_a_place_to_sign(page):
+    language, text = page
+    first = text[text.index("<header>") : text.index('<nav class="contents"')]
+    words = plain(first)
+    wanted = ["facade", "SLV", "Signature", "Stamp", "capacity over demand", "Nonlinear method at SLV", "Caution"]
+    if language == "it":
+        wanted = ["facade", "SLV", "Firma", "Timbro", "rapporto tra capacità e domanda", "Metodo non lineare allo SLV",
+                  "Attenzione"]  # fmt: skip
+    assert all(each in words for each in wanted)
+    assert "ul class=" not in first and "<svg" not in first  # no workings and no figures
+    assert text.count('<p class="open">') == 2  # what only the designer can write
+    assert re.search(r"@page \{\s*size: A4; margin:", text)
+
+
+def test_figures_have_the_numbers_of_the_structure(page):
+    language, text = page
+    pictures = [" ".join(map(plain, re.findall(r"<text.*?</text>", each, re.DOTALL)))
+                for each in re.findall(r"<svg.*?</svg>", text, re.DOTALL)]  # fmt: skip
+    assert len(pictures) == 4
+    forces = pictures[1].replace(",", ".") if language == "it" else pictures[1]
+    names = {"en": ("block", "arm"), "it": ("blocco", "braccio")}[language]
+    # 18 kN/m3 of a wall 0.6 x 8 x 5 m; half of 12 and of 9 kN/m over 5 m; one bar of 14 mm of 235 MPa.
+    bar = pi * 0.014**2 / 4 * 235e3
+    for each in (
+        f"1 {names[0]}: P = {18 * 0.6 * 8 * 5:.4g} kN", f"P = {12 * 5 / 2:.4g} kN", f"P = {9 * 5 / 2:.4g} kN",
+        f"bar: {bar:.4g} kN ({names[1]} 7.5 m)", "b1. b2 = 0.3 m" if language == "it" else "b1, b2 = 0.3 m",
+        "b3 = 0.45 m", "h2 = 8 m",
+    ):  # fmt: skip
+        assert each in forces, each
+    assert {"en": "spectrum of SLV, ξ = 8 %", "it": "spettro dello SLV, ξ = 8 %"}[language] in pictures[2]
+    assert {"en": "spectral displacement [m]", "it": "spostamento spettrale [m]"}[language] in pictures[3]
+    if language == "it":
+        assert not re.search(r"\d\.\d", " ".join(pictures[1:]))
+
+
+def test_capacity_and_demand_stand_where_they_are():
+    """The spectrum is by hand: constant velocity between T_C = 0.4 s and T_D = 2.4 s, with 8 % damping."""
+    found, given = verified(*CASES["facade"])
+    side = found.distinct[0]
+    demand = site_demand(SiteGround(of_structure(given, found.mechanism)).site)
+    (axes,) = figures.draw_capacity(build.SHEET.language("en"), {"both": side}, "facade", demand=demand).axes
+    lines = {each.get_label(): each for each in axes.get_lines()}
+    at = side.states["SLV"]
+    assert lines["capacity d_SLV"].get_xydata()[0] == pytest.approx([at.d, at.a])
+    steep = (2 * pi / at.T) ** 2
+    assert lines["demand at SLV"].get_xydata()[0] == pytest.approx([at.demand, steep * at.demand])
+    assert lines["line of the period T_SLV"].get_slope() == pytest.approx(steep)
+    x, y = lines["spectrum of SLV, ξ = 8 %"].get_xydata().T
+    falling = slice(int(y.argmax()), int(x.argmax()))
+    for T in (0.6, 1.0, 2.0):
+        S_e = 0.2 * G * 1.2 * sqrt(10 / 13) * 2.5 * 0.4 / T
+        d = S_e * (T / (2 * pi)) ** 2
+        assert np.interp(d, x[falling], y[falling]) == pytest.approx(S_e, rel=1e-3)
+    d, a = lines["exact curve"].get_xydata().T
+    assert a[0] == pytest.approx(side.a0) and d[-1] == pytest.approx(side.d0) and a[-1] == pytest.approx(0, abs=1e-9)
+
+
+def test_a_force_has_its_size_beside_it_and_a_block_of_many_weights_its_sum():
+    loads = [f"{{name: m{k}, mass: 1000, at: [0, {k}]}}" for k in range(1, 8)]
+    text = WALL.replace("wall\nname", "block\nname").replace(
+        "thickness: 0.3\nheight: 3", "width: 1\nheight: 8\nmass: 1000"
+    )
+    pushed = "{name: push, force: [-2 kN, 0 kN], at: [-0.5, 6]}"
+    found, _ = verified(f"{text}loads: [{', '.join([*loads, pushed])}]\n", SITE)
+    side = found.directions[Direction.POSITIVE]
+    figure = figures.draw_chain(build.SHEET.language("en"), found, side)
+    words = [each.get_text() for axes in figure.axes for each in axes.texts]
+    assert f"1 block 1: P = {8 * G:.4g} kN" in words and "push: -2 kN (arm 6 m)".replace("-", "−") in words
+
+
+@pytest.mark.parametrize(("name", "language"), CASES_WRITTEN)
+def test_weights_of_a_block_are_sums_of_named_addends(name, language):
+    items = items_of(*verified(*CASES[name]), language)
+    sums = [each for each in items if isinstance(each, Step) and re.match(r"PQ?_\[", each.symbol)]
+    assert sums
+    for each in sums:
+        names = re.findall(r"(?:P|\(P\+Q\))_\[([^]]+)\]", each.formula)
+        values = [number(value) for value in each.numbers.split(" + ")]
+        assert len(names) == len(values) > 0 and sum(values) == pytest.approx(number(each.result), rel=1e-5)
+        assert " + ".join(names) in each.formula.replace("P_[", "").replace("(P+Q)_[", "").replace("]", "")
+
+
+def test_no_rounding_error_is_printed():
+    for structure in (LINKAGE, TIED_FACADE):
+        assert not re.search(r"10\^\[−(9|\d\d)", repr(items_of(*verified(structure, SITE))))
+
+
+def test_names_of_bodies_are_in_italian_unless_they_are_the_users():
+    assert "blocco superiore" in repr(items_of(*verified(WALL, SITE), "it"))
+    assert "upper block" not in repr(items_of(*verified(WALL, SITE), "it"))
+    assert "upper" in repr(items_of(*verified(LINKAGE, SITE), "it"))
+    arch = (EXAMPLES / "arch.yaml").read_text(encoding="utf-8")
+    assert "concio 2" in repr(items_of(*verified(arch, SITE), "it"))
+
+
+def test_a_document_has_the_figures_and_the_contents(tmp_path):
+    docx = pytest.importorskip("docx")
+    (tmp_path / "s.yaml").write_text(TIED_FACADE, encoding="utf-8")
+    (tmp_path / "site.yaml").write_text(SITE, encoding="utf-8")
+    run("verify", tmp_path / "s.yaml", "--site", tmp_path / "site.yaml", "--sheet", tmp_path / "o.docx")
+    document = docx.Document(str(tmp_path / "o.docx"))
+    assert len(document.inline_shapes) == 4
+    assert "TOC \\o &quot;1-2&quot;" in document.element.xml and "PAGE" in document.sections[0].footer._element.xml
+    headings = [each.text for each in document.paragraphs if each.style.name.startswith("Heading")]
+    assert in_order([each for each in HEADINGS["en"] if each != "Contents"], headings)
+    highlighted = [each.text for each in document.paragraphs for run in each.runs if run.font.highlight_color]
+    assert len(highlighted) == 2
