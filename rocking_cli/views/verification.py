@@ -174,8 +174,6 @@ def view(found: Verification, site: str | None = None, *, every_step: bool = Fal
     every = [*found.workings, *(line for each in sides.values() for line in each.workings)]
     parts.append(standing(every, None if in_short else shown_by.notation))
     parts += [f"Caution: {text}" for text in cautions_of(found.mechanism)]
-    if in_short:
-        parts.append("`rocking verify --all` shows the ground, both curves, every clause and the remarks in full.")
     return View(lambda: data(found), [part for part in parts if part])
 
 
@@ -206,7 +204,8 @@ def _in_short(found: Verification, sides: Mapping[str, Any]) -> Iterator[Table |
     shared = [part for part in alike[0] if all(part in parts for parts in alike)]
     yield from (part for part in shared if isinstance(part, Table))
     for (where, each), parts in zip(sides.items(), alike, strict=True):
-        yield from (own for own, part in zip(parts_of(each, where), parts, strict=True) if part not in shared)
+        named = zip(parts_of(each, where), parts, strict=True)
+        yield from (with_direction for with_direction, part in named if part not in shared)
     yield from (part for part in shared if isinstance(part, str))
     yield from map(say, found.remarks)
 

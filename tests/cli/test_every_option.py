@@ -211,7 +211,7 @@ IDLE = [
     ("verify", {"structure": BLOCK, "site": SITE},
      {"polarity": "-1", "opening": 0.1, "language": "it", "project": "odd", "place": "odd", "author": "odd",
       "logo": "in.svg"}),
-    ("report", {"structure": BLOCK, "file": None}, {"polarity": "-1", "opening": 0.1} | AROUND),
+    ("report", {"structure": BLOCK, "out": None}, {"polarity": "-1", "opening": 0.1} | AROUND),
     ("pulse", {"a": 4.0, "omega": 6.0}, {"opening": 0.1}),
     ("overturning", {"points": 3}, {"opening": 0.1}),
     ("overturning_map", {"points": 3}, {"opening": 0.1}),

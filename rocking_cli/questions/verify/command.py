@@ -95,8 +95,11 @@ def command(
     read = [file, site, question["logo"], *(str(each.path) for each in motions.records)]
     keep_apart([("--plot", output.plot), ("--sheet", sheet)], read)
     every_step = terminal.asked("verbose")
+    in_short = not (in_full or every_step)
     answer = verify(
         file, site, motions=motions, polarity=asked.polarity, sheet=sheet, every_step=every_step,
-        in_short=not (in_full or every_step), origin=heads.command_line(ctx), watch=output.watch, **question,
+        in_short=in_short, origin=heads.command_line(ctx), watch=output.watch, **question,
     )  # fmt: skip
     output.show(answer)
+    if in_short and not output.as_json:
+        terminal.note("--all shows also the ground, both curves, every clause, and the remarks in full")
