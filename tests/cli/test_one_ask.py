@@ -26,7 +26,8 @@ WITHOUT = {
 }
 """Commands that ask nothing about a structure or a motion."""
 OF_THE_TERMINAL = {
-    "as_json", "as_csv", "plot", "out", "page", "curves", "nrml", "sheet", "separator", "decimal", "help", "version"
+    "as_json", "as_csv", "plot", "out", "page", "curves", "nrml", "sheet", "separator", "decimal", "in_full", "help",
+    "version",
 }  # fmt: skip
 """Options that say where an answer goes, and in which form."""
 NAMED = {"records": "motions", "pulses": "motions"}

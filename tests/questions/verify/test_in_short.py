@@ -83,6 +83,7 @@ def _answer(structure, site=SITES[0], **how):
     return rk.verify(structure, site, in_short=True, **how)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("structure", STRUCTURES, ids=lambda each: each.stem)
 @pytest.mark.parametrize("site", SITES, ids=lambda each: each.stem)
 def test_every_caution_and_remark_is_in_it(structure, site):

@@ -731,6 +731,7 @@ def test_every_remark_is_on_the_sheet_and_in_the_terminal(name, language):
 
 
 @pytest.mark.usefixtures("small_maps")
+@pytest.mark.rest
 def test_records_are_on_the_sheet_and_a_report_has_it_all(tmp_path):
     (tmp_path / "site.yaml").write_text(SITE, encoding="utf-8")
     (tmp_path / "s.yaml").write_text(FACADE, encoding="utf-8")

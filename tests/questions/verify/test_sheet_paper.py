@@ -93,10 +93,10 @@ def test_figures_have_the_numbers_of_the_structure(page):
     assert len(pictures) == 4
     forces = pictures[1].replace(",", ".") if language == "it" else pictures[1]
     names = {"en": ("block", "arm"), "it": ("blocco", "braccio")}[language]
-    # 18 kN/m3 of a wall 0.6 x 8 x 5 m; half of 12 and of 9 kN/m over 5 m; one bar of 14 mm of 235 MPa.
+    # 18 kN/m3 of a wall 0.6 x 8 x 5 m; half of 24 and of 18 kN/m over 5 m; one bar of 14 mm of 235 MPa.
     bar = pi * 0.014**2 / 4 * 235e3
     for each in (
-        f"1 {names[0]}: P = {18 * 0.6 * 8 * 5:.4g} kN", f"P = {12 * 5 / 2:.4g} kN", f"P = {9 * 5 / 2:.4g} kN",
+        f"1 {names[0]}: P = {18 * 0.6 * 8 * 5:.4g} kN", f"P = {24 * 5 / 2:.4g} kN", f"P = {18 * 5 / 2:.4g} kN",
         f"bar: {bar:.4g} kN ({names[1]} 7.5 m)", "b1. b2 = 0.3 m" if language == "it" else "b1, b2 = 0.3 m",
         "b3 = 0.45 m", "h2 = 8 m",
     ):  # fmt: skip
