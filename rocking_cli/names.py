@@ -50,7 +50,7 @@ HALF_UP = 1e-9  # %: a share that ends in .5 is rounded up despite floating-poin
 
 
 def percent(share: float) -> str:
-    """Return a share in per cent: two digits below ten per cent, whole numbers above; 100 % only of all.
+    """Return a share in per cent: two digits below 10 %, whole numbers above; `100 %` stands for all alone.
 
     Examples
     --------

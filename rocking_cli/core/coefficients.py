@@ -129,7 +129,7 @@ def check_continuous(mechanism: str, direction: Direction, at: Coefficients, in_
         If V, G, B or I changes between two rotations by what its derivative there does not explain; a `StructureError`
         if the file of the structure gives its motion.
     """
-    moment = np.median(np.abs(at.G) + np.abs(at.B))  # size of the moments, some m R; V has the same unit
+    moment = np.median(np.abs(at.G) + np.abs(at.B))  # typical size of G and B, of the order of m R, in the unit of V
     pairs = {"V": (at.V, at.G, moment), "G": (at.G, at.dG, moment), "B": (at.B, at.dB, moment)}
     pairs["I"] = (at.I, 2 * at.J, np.median(at.I))
     jumps = {name: jump(at.phi, *pair) for name, pair in pairs.items()}

@@ -36,7 +36,9 @@ RANK_TOLERANCE = 1e-7  # singular value that counts as zero, over the largest on
 MAX_THROWN_MODES = 6  # largest number of modes of a single impact
 CLOSING_TOLERANCE = 1e-5  # closing velocity that counts as zero, over the largest velocity at a joint
 ZERO_FACTOR = 1e-14  # factor that counts as zero, over the largest factor
-MAX_PROGRAMME_FORCE = 1e5  # bound on forces, as the solver's tolerances are absolute and forces of light pieces count
+MAX_PROGRAMME_FORCE = (
+    1e5  # bound on forces over their scale: with larger ones, the solver's absolute tolerances are too coarse
+)
 ZERO_CROSS = 1e-12  # cross product of two lines that count as parallel
 EQUAL_CORNERS = 1e-6  # distance of corners that coincide, over the size of the admissible set
 MIN_SINE_SQUARED = 1e-6  # squared sine of the least angle between two different directions

@@ -421,7 +421,7 @@ def _states(mechanism: Mechanism, history: History, motion: GroundMotion | None)
 
 
 def _base(reactions: Reactions, rest: Collection[str] = ()) -> Reals:
-    """Return the horizontal force on the structure of the ground and of bodies at rest, without guides, shape (n,)."""
+    """Return the horizontal force of the ground and bodies at rest on the structure, without guides, shape (n,)."""
     total = np.zeros(reactions.force.shape[1])
     for joint, force in zip(reactions.joints, reactions.force.real, strict=True):
         moves = [name not in rest for name in joint.bodies]

@@ -40,7 +40,7 @@ class Slopes:
 
 
 class ExceedanceTerms:
-    """The terms of runs: for each row of a design, a run that exceeds or one that does not.
+    """Terms of the likelihood of a curve: one for each run, which exceeds the limit state or does not.
 
     Parameters
     ----------

@@ -574,7 +574,7 @@ class Histories:
 
 
 def where_it_stands(histories: Histories, floor: Floor | None) -> tuple[MotionPlace, Sequence[GroundMotion]]:
-    """Return the kind of the motions of histories, and the motions, converted to the floor of a site if there is one.
+    """Return the kind of the motions (of ground or floor), and the motions, converted to the floor of the site.
 
     Parameters
     ----------

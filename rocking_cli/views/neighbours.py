@@ -1,4 +1,4 @@
-"""The neighbours of a ground motion in words, as plain data and as cells of a table."""
+"""Outcomes of neighbours (histories next to that of a ground motion): as sentences, as data and as cells of a table."""
 
 from __future__ import annotations
 

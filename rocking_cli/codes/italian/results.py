@@ -319,7 +319,7 @@ class ItalianVerification(frame.Verification):
 
     @property
     def conclusion(self) -> Conclusion:
-        """The worst check of all, with the records that are too few to count, and which of these exceed capacity."""
+        """The check that governs, with the records that are too few to count, and which of them exceed capacity."""
         conclusion, why = super().conclusion, dict[str, str]()
         for each in self.directions.values():
             if each.dynamic is not None and each.dynamic.too_few:

@@ -372,7 +372,7 @@ def floor_at(site: ItalianSite, state: str) -> Floor | None:
 
 
 def of_structure(site: ItalianSite, mechanism: Mechanism) -> ItalianSite:
-    """Return the site with the dimensions of its element, from the structure if needed. Raises `InputError`."""
+    """Return the site with its vibrating element, which takes missing sizes from the structure. Raises `InputError`."""
     return site if site.element is None else site.model_copy(update={"element": site.element.sized(mechanism)})
 
 

@@ -363,7 +363,7 @@ def _problem(
     if not crossings:
         return None
     contact = crossings[0][0]
-    for _ in range(3):  # larger angles before, while the structure is lifted, do not count
+    for _ in range(3):  # repeated without the larger angles before the release, while it is lifted
         falling = (times > contact - np.interp(release, sizes, table)) & (times < contact)
         highest = float(np.max(sign * angles[falling], initial=0.0))
         release = highest if highest > release / 2 else release  # otherwise it falls more slowly than this structure
@@ -460,7 +460,7 @@ def _freed(problem: _Problem, x: Reals, free: Sequence[int]) -> tuple[_Problem, 
 
 
 def _each(problem: _Problem, x: Reals, trace: Trace, structure: Structure, free_geometry: bool) -> TraceFit:
-    """Fit a restitution for each impact, and return both fits in the units of the trace. Raises `InputError`."""
+    """Fit a restitution for each impact, and return it and the fit of a common one, in the units of the trace."""
     times, scale = problem.times, problem.scale
     one = problem.distance(x)
     if not one < MAX_RESIDUAL:
@@ -496,9 +496,8 @@ def _each(problem: _Problem, x: Reals, trace: Trace, structure: Structure, free_
     variance = w @ covariance[ETA:last, ETA:last] @ w + pooled.scatter**2 * (w @ w)
     for error in errors:
         geometry = np.array(problem.geometry) + GEOMETRY_STEP * np.append(0.0, error)
-        moved = solve @ (
-            replace(problem, geometry=tuple(geometry)).model(parameters, times) - problem.model(parameters, times)
-        )
+        changed = replace(problem, geometry=tuple(geometry))
+        moved = solve @ (changed.model(parameters, times) - problem.model(parameters, times))
         variance += (w @ moved[ETA:last] / GEOMETRY_STEP) ** 2
     origin = problem.origin
     offset, drift = _baseline(problem, parameters, covariance)

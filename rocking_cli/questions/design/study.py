@@ -386,7 +386,7 @@ def _relied_on(
 def _at(
     structure: Structure, field: str, value: float, aim: Aim, excitation: Excitation | None
 ) -> tuple[float, Neighbours | None, str | None]:
-    """Return the metric at a value, and the neighbours behind it; or NaN, and why it does not exist."""
+    """Return the metric at a value of the field, and the neighbours it was counted from; or NaN and the reason."""
     try:
         varied = structure.varied(field, value)
         number, neighbours = aim.metric.at(varied, excitation)

@@ -328,7 +328,7 @@ class Plan:
         return np.asarray(parsed.relative(value, self.reference(sample)), dtype=np.float64)
 
     def factors(self, sample: Integers, record: Integers, level: Integers) -> Reals:
-        """Return the factors that scale records to levels, for indices of one shape."""
+        """Return the factors that scale records to intensity levels, for arrays of indices of equal shape."""
         wanted = np.array(self.levels)[level]
         if self.sets is not None and not self.sets.scaled:
             return np.ones(wanted.shape)

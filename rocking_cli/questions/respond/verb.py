@@ -176,8 +176,7 @@ def respond(
     if "nonlinear" not in names:
         refuse_idle("on linear blocks, which have no joints", opening=opening != OPENING)
     ready.models(names)
-    title = heading(ready.mechanism) if title is None else title
-    doubts = doubts_of(ready.mechanism)
+    title, doubts = heading(ready.mechanism) if title is None else title, doubts_of(ready.mechanism)
 
     def one(given: Scaled | None, title: str, table: str | Path | None, picture: str | Path | None) -> ResponseAnswer:
         response = response_of(ready, names, given, question)

@@ -595,7 +595,7 @@ def scored(stated: Sequence[Stated], around: Neighbourhood) -> Scored:
 
 
 def stated_by(tests: Sequence[Stated], seen: Reals) -> dict[str, Reals]:
-    """Return the shares that each rule states of tests, NaN where it states none, by the name of the rule.
+    """Return the share of overturning that each rule states for each test, by the name of the rule; NaN without one.
 
     Parameters
     ----------

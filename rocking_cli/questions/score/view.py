@@ -175,7 +175,7 @@ def _compared(name: str, each: ScoreEstimate) -> str:
 
 
 def _calibrated(found: Scored) -> str:
-    """Return a sentence on how far stated shares are from observed ones."""
+    """Return a sentence on how far the stated shares of overturning are from those observed in the tests."""
     points = 100 * found.bias.value
     more = "more" if points > 0 else "less"
     low, high = (100 * each for each in found.bias[1:])
