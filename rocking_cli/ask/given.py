@@ -75,7 +75,7 @@ def structure_of(given: StructureLike, watch: Watcher = SILENT, opening: float =
         raise InputError(
             Problem(f"must be a mechanism or a YAML file, got {type_in_words(given)}", field="structure", hint=hint)
         )
-    note_weights(ready.mechanism, watch)
+    note_remarks(ready.mechanism, watch)
     warn_of(ready.mechanism, watch)
     return ready
 
@@ -159,8 +159,8 @@ def joined(errors: Sequence[RockingError]) -> InputError:
     return InputError(*(problem for error in errors if isinstance(error, InputError) for problem in error.problems))
 
 
-def note_weights(mechanism: Mechanism, watch: Watcher) -> None:
-    """Note the weights of a structure that were read as masses, with their values in kg."""
+def note_remarks(mechanism: Mechanism, watch: Watcher) -> None:
+    """Note how the fields of a structure were read: weights as masses, openings at the edges of bricks."""
     for remark in mechanism.remarks:
         watch.note(f"{mechanism.name}: {remark}")
 

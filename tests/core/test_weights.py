@@ -173,7 +173,7 @@ def test_a_table_takes_weights_in_headings_and_cells_and_notes_each_once(tmp_pat
     )
     shown = run("survey", "t.csv", "--json")
     *first, rest = shown.stderr.splitlines()
-    assert rest == "further remarks of this kind, on weights and loads per metre: 2" and len(set(first)) == 3
+    assert rest == "further remarks on how fields were read: 2" and len(set(first)) == 3
     assert "18 kN/m3 is a weight, taken as a mass: 1835.49 kg/m3 (divided by 9.80665 m/s2)" in first
     alone = yaml.safe_load(FACADE)
     alone["loads"] = [{"name": "roof", "mass": "60 kN", "at": [0, 8]}]

@@ -185,7 +185,7 @@ def _check_plate(carrier: Carrier, tie: Tie, spot: Spot, loc: Loc) -> None:
             reason = f"{size:g} m is more than the {most:.4g} m that {what}: reduce it"
             raise RefusedFields((*loc, place), field, reason)
     top, end = float(corners.imag.max(initial=-np.inf)), spot.at.imag + tie.plate.height / 2
-    if corners.size and end > top + OUTSIDE_DISTANCE:
+    if sizes[1] is not None and end > top + OUTSIDE_DISTANCE * sizes[1]:
         reason = f"ends at y = {end:.4g} m, above the top of {body} at {top:.4g} m: lower the tie or reduce the plate"
         raise RefusedFields((*loc, "plate"), "height", reason)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rocking_cli.arrays import Reals
@@ -10,8 +10,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.verification.check import code_of
 from rocking_cli.verification.check import demand as demand_of
 from rocking_cli.verification.code import SiteFile
-from rocking_cli.verification.demand import DemandParameter, DemandTable
-from rocking_cli.verification.results import Remark
+from rocking_cli.verification.demand import SiteDemand
 from rocking_cli.verification.spectra import StateSpectra, spectra_at_states
 
 
@@ -31,16 +30,8 @@ class SpectraOfSite:
         Periods from 0, with those at which a spectrum changes its form [s].
     states : mapping of str to StateSpectra
         The limit states, from the most frequent to the rarest.
-    first : str
-        Name of the limit state that decides.
-    headline : str or Remark
-        What decides, in one sentence.
-    parameters : sequence of DemandParameter
-        The parameters of the spectra.
-    origins : sequence of DemandTable
-        Tables from which the parameters follow.
-    remarks : sequence of (str or Remark)
-        Further sentences.
+    demand : SiteDemand
+        Demand of the site by the code: parameters, the limit state that decides, tables and sentences.
     """
 
     code: str
@@ -50,11 +41,7 @@ class SpectraOfSite:
     damping: float
     periods: Reals
     states: Mapping[str, StateSpectra]
-    first: str
-    headline: str | Remark
-    parameters: Sequence[DemandParameter]
-    origins: Sequence[DemandTable]
-    remarks: Sequence[str | Remark]
+    demand: SiteDemand
 
 
 def spectra_of(site: SiteFile, damping: float) -> SpectraOfSite:
@@ -77,7 +64,4 @@ def spectra_of(site: SiteFile, damping: float) -> SpectraOfSite:
         raise InputError(Problem(message, field="`damping`", hint="5 % is 0.05"))
     code, site_demand = code_of(site), demand_of(site)
     periods, states = spectra_at_states(site_demand, damping)
-    return SpectraOfSite(
-        code.key, code.name, code.edition, site.site.name, damping, periods, states, site_demand.first,
-        site_demand.headline, site_demand.parameters, site_demand.tables, site_demand.remarks,
-    )  # fmt: skip
+    return SpectraOfSite(code.key, code.name, code.edition, site.site.name, damping, periods, states, site_demand)

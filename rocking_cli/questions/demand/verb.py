@@ -44,6 +44,6 @@ def demand(site: SiteLike, *, damping: float = 0.05) -> Answer[SpectraOfSite]:
     from rocking_cli.questions.demand.view import table, title, view
 
     spectra = spectra_of(site_of(site), damping)
-    shown = (spectra.periods, spectra.states, spectra.first, title(spectra))
+    shown = (spectra.periods, spectra.states, spectra.demand.first, title(spectra))
     figure = drawn("plotting.spectra.draw_spectra_of_site", *shown)
     return Answer("demand", spectra, view(spectra), partial(table, spectra), figure)

@@ -28,14 +28,14 @@ def view(found: SpectraOfSite) -> View:
     say = showing_by(found.code).say
     states = list(found.states)
     values = [each.values for each in found.states.values()]
-    columns = [_parameter(*each) for each in found.parameters]
+    columns = [_parameter(*each) for each in found.demand.parameters]
     after = {"unit": lambda column: column.unit, "": lambda column: column.words}
-    parts: list[Table | str] = [say(found.headline), table_across(title(found), columns, states, values, after)]
+    parts: list[Table | str] = [say(found.demand.headline), table_across(title(found), columns, states, values, after)]
     parts += [
         table_of(each.title, [_column(k, key, unit) for k, (key, unit) in enumerate(each.columns.items())], each.rows)
-        for each in found.origins
+        for each in found.demand.tables
     ]
-    parts += [*_ordinates(found), *map(say, found.remarks)]
+    parts += [*_ordinates(found), *map(say, found.demand.remarks)]
     return View(lambda: data(found), parts)
 
 
@@ -53,16 +53,16 @@ def data(found: SpectraOfSite) -> dict[str, Any]:
         "code": found.code,
         "edition": found.edition,
         "damping": found.damping,
-        "first": found.first,
+        "first": found.demand.first,
         "periods": found.periods.tolist(),
         "states": {
-            state: {each.key: spectra.values[each.key] for each in found.parameters}
+            state: {each.key: spectra.values[each.key] for each in found.demand.parameters}
             | {key: _known(getattr(spectra, key)) for key, *_ in CURVES}
             for state, spectra in found.states.items()
         },
-        **{each.key: [dict(zip(each.columns, row, strict=True)) for row in each.rows] for each in found.origins},
-        "verdict": say(found.headline),
-        "remarks": list(map(say, found.remarks)),
+        **{each.key: [dict(zip(each.columns, row, strict=True)) for row in each.rows] for each in found.demand.tables},
+        "verdict": say(found.demand.headline),
+        "remarks": list(map(say, found.demand.remarks)),
     }
 
 

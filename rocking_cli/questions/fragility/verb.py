@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.ask.answer import Answer, no_plot
-from rocking_cli.ask.given import note_weights, warn_of
+from rocking_cli.ask.given import note_remarks, warn_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
@@ -93,7 +93,7 @@ def fragility(
     loaded = load_study(study, Path(store or file).stem)
     place = Path(store) if store is not None else file.with_suffix(".db")
     for mechanism in loaded.structures:
-        note_weights(mechanism, watch)
+        note_remarks(mechanism, watch)
     # Varied properties may differ much from the file, so the first sample is checked.
     for mechanism in {sample.structure: sample.mechanism for sample in loaded.samples if sample.number == 0}.values():
         warn_of(mechanism, watch)

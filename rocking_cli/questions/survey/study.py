@@ -121,7 +121,7 @@ class Surveyed:
     unprinted : bool
         Whether a formula of that verification was not checked against the printed code.
     remarks : sequence of str
-        Sentences on weights of the structure that were read as masses.
+        Sentences on how fields of the structure were read, such as weights as masses.
     relies_on : sequence of Remark
         What the verification relies on and may not be there, if it is satisfied; see `Verification`.
     numbers : mapping of str to float or None

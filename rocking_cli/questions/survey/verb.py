@@ -150,7 +150,7 @@ def survey(
         )
     _warn_of_sizes(result, watch)
     if hasattr(entries, "sheet"):  # a table: weights of other structures were noted when they were opened
-        _note_weights(result, watch)
+        _note_remarks(result, watch)
     if page is not None and result.rows:
         file = getattr(entries, "sheet", None)
         _write_page(Path(page), result, Path(file.file).name if file is not None else "structures", watch)
@@ -202,14 +202,12 @@ def _warn_of_sizes(found: Survey, watch: Watcher) -> None:
         watch.warn(f"{len(doubtful) - MAX_LISTED_DOUBTS:,} more structures have doubtful sizes: JSON lists them")
 
 
-def _note_weights(found: Survey, watch: Watcher) -> None:
+def _note_remarks(found: Survey, watch: Watcher) -> None:
     remarks = list(dict.fromkeys(remark for each in found.rows for remark in each.remarks))
     for remark in remarks[:MAX_LISTED_DOUBTS]:
         watch.note(remark)
     if len(remarks) > MAX_LISTED_DOUBTS:
-        watch.note(
-            f"further remarks of this kind, on weights and loads per metre: {len(remarks) - MAX_LISTED_DOUBTS:,}"
-        )
+        watch.note(f"further remarks on how fields were read: {len(remarks) - MAX_LISTED_DOUBTS:,}")
 
 
 def _write_map(place: Path, found: Survey, title: str, watch: Watcher) -> None:

@@ -85,7 +85,7 @@ class TestSpectra:
         sld = found.states["SLD"].acceleration
         assert np.isnan(sld[found.periods > 2.001]).all() and not np.isnan(sld[found.periods <= 2]).any()
         assert found.to_dict()["states"]["SLD"]["acceleration"][-1] is None
-        assert "ag" not in [each.key for each in found.parameters]
+        assert "ag" not in [each.key for each in found.demand.parameters]
         assert found.sentences[0] == "SLV: the peak ground acceleration is a_g S = 0.24 g."
 
     def test_slo_beyond_the_hazard_is_left_out_which_is_said(self):
