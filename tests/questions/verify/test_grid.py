@@ -214,7 +214,7 @@ class TestTables:
         found = rk.demand(site)
         assert any(said in each for each in found.sentences)
         wanted = by_hand([NODES[i, j] for i in (1, 2) for j in (1, 2)], 13.12, 42.07)[0] / 10
-        assert found.origins[1].rows[0][1] == pytest.approx(wanted, rel=1e-5)
+        assert found.demand.tables[1].rows[0][1] == pytest.approx(wanted, rel=1e-5)
 
     WRONG = (
         (
