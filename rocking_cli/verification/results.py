@@ -102,6 +102,27 @@ class Working:
         return replace(self, **texts, section=in_plain(self.section if section is None else section))
 
 
+class Evaluated(NamedTuple):
+    """A line of a calculation that is not written in a language yet: a formula with its result, names and numbers.
+
+    Parameters
+    ----------
+    formula : Formula
+        The formula.
+    value : float
+        The result.
+    names : mapping of str to object
+        Names for the slots of symbol, text, unit and meaning, see `Formula.working`.
+    numbers : mapping of str to object
+        Values for the slots of the numbers.
+    """
+
+    formula: Formula
+    value: float
+    names: Mapping[str, Any]
+    numbers: Mapping[str, Any]
+
+
 def as_written(value: float) -> str:
     """Return a number as it is written in a formula."""
     return f"{value + 0.0:.6g}"
@@ -188,6 +209,10 @@ class Formula:
             self.standing,
             names.get("state", ""),
         )
+
+    def line(self, value: float, names: Mapping[str, Any] | None = None, /, **numbers: Any) -> Evaluated:
+        """Return a line of a calculation by this formula, to be written in a language later; see `working`."""
+        return Evaluated(self, value, names or {}, numbers)
 
 
 def put(numbers: str, values: Mapping[str, Any], write: Callable[[float], str]) -> str:

@@ -15,10 +15,10 @@ from rocking_cli.codes.italian.results import (
     ItalianVerified,
     LimitState,
 )
-from rocking_cli.codes.italian.rules import OF_STATE
+from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, OF_STATE
 from rocking_cli.codes.italian.sheet import dynamic
 from rocking_cli.codes.italian.sheet.steps import STATE_OF_METHOD, TERMINAL, ties
-from rocking_cli.codes.italian.sheet.summary import METHOD_NAMES, OTHER_ROLES, methods, verdicts
+from rocking_cli.codes.italian.sheet.summary import METHOD_NAMES, methods, verdicts
 from rocking_cli.verification.results import in_plain
 from rocking_cli.views.column import Column, frame_of, of
 from rocking_cli.views.conclusion import digits_beside_one, headline
@@ -38,6 +38,8 @@ COLUMNS: Sequence[Column[MethodRow]] = (
     Column("TR", of("method.return_period"), "years"),
     METHODS[-1],
 )
+OTHER_ROLES = {DAMAGE: "not required", LINEAR: "comparison"}
+"""Roles of the methods that decide at no limit state, by their kind: rocking may start before SLV and SLC."""
 IN_SHORT = replace(TERMINAL, own={**TERMINAL.own, **texts_of("rocking_cli.codes.italian", "en_in_short")})
 OF_SITE = [
     in_plain(each.symbol.format(at="T_[0]"))
@@ -58,7 +60,7 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
         """Return the capacity curve, the methods, the verdicts, why the methods differ, and the time histories."""
         yield _capacity(each, where)
         yield from ties(TERMINAL, each.exact, each.states)
-        yield methods(TERMINAL, where, each)
+        yield from methods(TERMINAL, where, each)
         yield from verdicts(TERMINAL, where, each)
         yield from map(TERMINAL, [*differences(each, found.first), *each.remarks])
         if each.dynamic is not None:

@@ -1,20 +1,22 @@
-"""Assembly of the calculation sheet of a verification: its heading, the parts of its code, and its sources."""
+"""Assembly of the calculation sheet of a verification: its heading, and the template of its code with its values."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from importlib.resources import files
 from typing import Any
 
 from rocking_cli.errors import InputError, PluginError, Problem
+from rocking_cli.names import LANGUAGES
 from rocking_cli.plugins.errors import blame
 from rocking_cli.studies.provenance import File, TitleBlock
 from rocking_cli.verification.check import code_of
 from rocking_cli.verification.code import SiteFile
 from rocking_cli.verification.results import Verification
-from rocking_cli.views.column import table_of, text_columns
-from rocking_cli.views.sheet.document import Item, Listing, Sentence, Sheet, SheetPart
-from rocking_cli.views.sheet.language import SIGNIFICANT_DIGITS, Language
+from rocking_cli.views.sheet import template
+from rocking_cli.views.sheet.document import Sheet
+from rocking_cli.views.sheet.language import SIGNIFICANT_DIGITS, Language, texts_of
 
 MAX_LISTED_LINES = 200  # lines of a file that a sheet shows
 
@@ -37,31 +39,38 @@ class SheetSources:
     records: Mapping[str, File | None]
     versions: Mapping[str, str]
 
+    @staticmethod
+    def listed(file: File) -> tuple[str, int]:
+        """Return the beginning of a file, and how many lines of it follow."""
+        lines = file.text.splitlines()
+        return "\n".join(lines[:MAX_LISTED_LINES]), max(0, len(lines) - MAX_LISTED_LINES)
+
 
 @dataclass(frozen=True)
 class SheetOfCode:
-    """The texts and parts that a code contributes to its calculation sheet.
+    """The templates and values that a code contributes to its calculation sheet.
 
     Parameters
     ----------
-    texts : mapping of str to mapping
-        For each language, the texts by their keys or their English form, including `subtitle`,
-        `reading_digits` and `reading_marks`.
-    parts : callable
-        `parts(language, verification, site)` returns the parts of the sheet, the summary first.
+    package : str
+        The package of the code. Its folder `texts` has, for each language, a template `LANGUAGE/sheet.md` and texts
+        `LANGUAGE.toml` by their keys, among them `subtitle`.
+    context : callable
+        `context(language, verification, site)` returns the values that the template uses by name, besides
+        `mechanism`, `digits`, `command`, `sources` and those of `template.parts`.
     """
 
-    texts: Mapping[str, Mapping[str, str]]
-    parts: Callable[[Language, Any, Any], Iterable[SheetPart]]
+    package: str
+    context: Callable[[Language, Any, Any], Mapping[str, Any]]
 
     def language(self, key: str) -> Language:
         """Return a language with the texts of the code. Raises `InputError` if there are none."""
-        if key not in self.texts:
-            known = ", ".join(self.texts)
-            raise InputError(
-                Problem(f"there is no calculation sheet in {key!r}", field="`language`", hint=f"known: {known}")
-            )
-        return Language(key, self.texts[key])
+        folder = files(self.package) / "texts"
+        known = [each for each in LANGUAGES if (folder / each / "sheet.md").is_file()]
+        if key not in known:
+            hint = f"known: {', '.join(known)}"
+            raise InputError(Problem(f"there is no calculation sheet in {key!r}", field="`language`", hint=hint))
+        return Language(key, texts_of(self.package, key))
 
 
 def sheet_of(site: SiteFile) -> SheetOfCode:
@@ -98,49 +107,18 @@ def sheet(found: Verification, site: SiteFile, language: Language, title: TitleB
     """
     chapters = sheet_of(site)
     say, mechanism = chapters.language(language.key), found.mechanism
-    about = {say("Structure"): f"{mechanism.name}: {say.mechanism(mechanism.mechanism, mechanism.title)}"}
+    kind = say.mechanism(mechanism.mechanism, mechanism.title)
+    about = {say("Structure"): f"{mechanism.name}: {kind}"}
     about |= {say(name.capitalize()): text for name, text in title.known.items()}
     if site.site.name:
         about[say("Site")] = site.site.name
     about[say("Date")] = title.date
     about[say("Program")] = f"rocking-cli {made.versions['rocking-cli']}"
-    with blame(f"the code {site.site.code} failed in its sheet", chapters.parts.__module__):
-        first, *others = chapters.parts(say, found, site.site)
-    reading = [
-        say("reading_digits", digits=SIGNIFICANT_DIGITS, force="kN" if mechanism.has_mass else "N/kg"),
-        say("reading_marks"),
-    ]
-    if not mechanism.has_mass:
-        reading.append(say("The file gives no masses: weights are per kilogram of the whole structure, in N/kg."))
-    how = SheetPart("reading", say("How to read it"), [*map(Sentence, reading)])
-    workings = SheetPart(
-        "workings", say("Appendix A: workings"), [], [how, *(each for each in others if each.appended)]
-    )
-    subtitle = say("subtitle", structure=say.mechanism(mechanism.mechanism, mechanism.title))
-    front = [each for each in others if not each.appended]
-    parts = [first, *front, workings, _inputs(say, found, title, made)]
-    return Sheet(say, say("Calculation sheet: {name}", name=mechanism.name), subtitle, about, parts, title.logo)
-
-
-def _inputs(say: Language, found: Verification, title: TitleBlock, made: SheetSources) -> SheetPart:
-    files = {"structure": made.structure, "site": made.site}
-    rows = [[say(kind), file.name, file.checksum] for kind, file in files.items()]
-    for name, file in made.records.items():
-        seen = [name, say("pulse, computed from its formula")] if file is None else [file.name, file.checksum]
-        rows.append([say("record"), *seen])
-    items: list[Item] = [
-        Sentence(say("Run this command with these files and versions to reproduce the sheet.")),
-        Listing(title.command),
-        table_of(say("Files"), text_columns("", say("file"), "SHA-256"), rows),
-        table_of(say("Versions"), text_columns(say("package"), say("version")), list(made.versions.items())),
-        Sentence(say("Mechanism: {source}.", source=found.mechanism.source)),
-    ]
-    texts = []
-    for kind, file in files.items():
-        lines = file.text.splitlines()
-        text: list[Item] = [Listing("\n".join(lines[:MAX_LISTED_LINES]))]
-        if len(lines) > MAX_LISTED_LINES:  # long files are cut
-            more = len(lines) - MAX_LISTED_LINES
-            text.append(Sentence(say("(the file continues: {more} more lines are not printed)", more=more)))
-        texts.append(SheetPart(f"{kind}_text", say(f"{kind.capitalize()} file"), text))
-    return SheetPart("inputs", say("Appendix B: files and versions"), items, texts)
+    of_every_sheet = {
+        "mechanism": mechanism, "digits": SIGNIFICANT_DIGITS, "command": title.command, "sources": made,
+    }  # fmt: skip
+    with blame(f"the code {site.site.code} failed in its sheet", chapters.context.__module__):
+        context = {**of_every_sheet, **chapters.context(say, found, site.site)}
+        parts = template.parts(say, chapters.package, "sheet", context)
+    heading = say("Calculation sheet: {name}", name=mechanism.name)
+    return Sheet(say, heading, say("subtitle", structure=kind), about, parts, title.logo)

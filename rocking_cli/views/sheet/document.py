@@ -62,15 +62,12 @@ class SheetPart:
         Content of the section.
     parts : sequence of SheetPart
         Subsections.
-    appended : bool
-        Whether a section stands in the appendix, with the workings.
     """
 
     key: str
     heading: str
     items: Sequence[Item]
     parts: Sequence[SheetPart] = ()
-    appended: bool = False
 
 
 def workings(parts: Iterable[SheetPart]) -> Iterator[Working]:

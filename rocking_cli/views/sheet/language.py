@@ -10,9 +10,9 @@ from functools import cached_property
 from importlib.resources import files
 from math import isnan
 from string import Formatter
-from typing import Any
+from typing import Any, NamedTuple
 
-from rocking_cli.verification.results import MINUS, Formula, Remark, Working, in_plain
+from rocking_cli.verification.results import MINUS, Evaluated, Remark, Working, in_plain
 from rocking_cli.views import view
 
 WITH_COMMA = frozenset({"it"})
@@ -35,6 +35,14 @@ class _WithComma(Formatter):
     def format_field(self, value: Any, spec: str) -> str:
         text: str = super().format_field(value, spec)
         return text.replace(".", ",") if isinstance(value, float) else text
+
+
+class BodyName(NamedTuple):
+    """Name of a body in a line of a calculation, which may be the subscript of a symbol."""
+
+    mechanism: str
+    name: str
+    symbol: str = ""
 
 
 @dataclass(frozen=True)
@@ -96,17 +104,26 @@ class Language:
         text = self.formula(mantissa.replace("-", MINUS))
         return f"{text} · 10^[{str(int(power)).replace('-', MINUS)}]" if power else text
 
-    def step(
-        self, formula: Formula, value: float, names: Mapping[str, Any] | None = None, /, **numbers: Any
-    ) -> Working:
-        """Return a line of a calculation by a formula of the code, in this language; see `Formula.working`."""
-        working = formula.working(value, names, write=self.number, marks=self.formula, **numbers)
+    def written(self, line: Evaluated) -> Working:
+        """Return a line of a calculation in this language; its formula means a key of the texts, or an English text."""
+        names = {name: self.name(value) for name, value in line.names.items()}
+        numbers = {name: self.formula(each) if isinstance(each, str) else each for name, each in line.numbers.items()}
+        working = line.formula.working(line.value, names, write=self.number, marks=self.formula, **numbers)
         return replace(
             working,
-            meaning=self(formula.meaning, **(names or {})),
+            meaning=self(line.formula.meaning, **names),
             unit=self.texts.get(working.unit, working.unit),
             clause=self.texts.get(working.clause, working.clause),
         )
+
+    def name(self, value: Any) -> Any:
+        """Return the name of a body, several joined by plus signs, or a remark, in this language; else the value."""
+        if isinstance(value, BodyName):
+            text = self.body(value.mechanism, value.name)
+            return f"{value.symbol}_[{re.sub(r'[][]', '', text)}]" if value.symbol else text
+        if isinstance(value, list):
+            return " + ".join(map(self.name, value))
+        return self(value) if isinstance(value, Remark) else value
 
     def formula(self, formula: str) -> str:
         """Return a formula with the decimal marks of its constants, such as 1.68, as the language writes them."""

@@ -19,7 +19,6 @@ from mechanisms.block import Block
 from rocking_cli.codes import italian
 from rocking_cli.codes.italian import formulas
 from rocking_cli.codes.italian.rules import RULES
-from rocking_cli.codes.italian.sheet.build import SHEET, parts
 from rocking_cli.core import Direction
 from rocking_cli.verification.results import Formula, as_written, in_plain, put
 from rocking_cli.views.sheet.document import Sentence, Steps
@@ -27,7 +26,7 @@ from rocking_cli.views.verification import shown, view
 from rocking_cli.views.view import Table
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
-from tests.questions.verify.test_sheet import CASES, FACADE, FLOOR, HAZARD, HEAVY, PARAPET, SITE, SLC
+from tests.questions.verify.test_sheet import CASES, FACADE, FLOOR, HAZARD, HEAVY, PARAPET, SITE, SLC, parts_of
 from tests.questions.verify.test_sheet import verified as verified_of
 
 NUMBER = re.compile(r"\d+\.?\d*(?:e-?\d+)?")
@@ -91,7 +90,7 @@ def steps(language, verified, site):
         for below in each.parts:
             yield from of(below)
 
-    return [row for part in parts(SHEET.language(language), verified, site) for row in of(part)]
+    return [row for part in parts_of(verified, site, language) if part.key != "inputs" for row in of(part)]
 
 
 def outputs(name):
@@ -237,7 +236,7 @@ def test_a_new_limit_state_is_a_rule_and_its_fields(with_one_more, site, languag
     verified = code.verify(block, given)
     side = verified.directions[Direction.POSITIVE]
     assert "SLN" in side.states
-    parts = by_key(build.parts(build.SHEET.language(language), verified, given))
+    parts = by_key(parts_of(verified, given, language, build.SHEET))
     own = {key: items for key, items in parts.items() if "SLC" in key}
     assert "positive-SLC-line" in own and ("positive-nonlinear_SLC-line" in own) == (site != "not given")
     assert {key for key in parts if "SLN" in key} == {key.replace("SLC", "SLN") for key in own}

@@ -145,11 +145,10 @@ class BadSheet(Demo):
     key = "bad_sheet"
 
     def sheet(self):
-        def parts(language, found, site):
-            yield 1 / 0
+        def context(language, found, site):
+            return {"each": 1 / 0}
 
-        texts = {"en": {"subtitle": "", "reading_digits": "", "reading_marks": ""}}
-        return SheetOfCode(texts, parts)
+        return SheetOfCode("rocking_cli.codes.italian", context)
 
     def with_histories(self, found, structure, site, asked):
         return found.directions
@@ -614,14 +613,20 @@ class TestGuide:
     @pytest.fixture
     def guide(self, demo, monkeypatch, tmp_path):
         section = (PROJECT / "docs" / "plugins.md").read_text(encoding="utf-8")
-        code, sheet = (
+        code, sheet, text, values = (
             dedent(section.partition(f"\n{before}\n")[2].partition(f"\n{after}")[0])
             for before, after in (
                 ("A complete code:", "4. *Methods.*"),
-                ("A sheet of one part:", "`language.step"),
+                ("Its text is a Jinja template, `texts/en/sheet.md`:", "Further texts are in"),
+                ("Further texts are in `texts/en.toml`:", "The values come"),
+                ("The values come from the code:", "Blocks of a template"),
             )
-        )
-        (tmp_path / "rocking_guide.py").write_text(f"{code}\n{sheet}", encoding="utf-8")
+        )  # fmt: skip
+        package = tmp_path / "rocking_guide"
+        (package / "texts" / "en").mkdir(parents=True)
+        (package / "__init__.py").write_text(f"{code}\n{values}", encoding="utf-8")
+        (package / "texts" / "en.toml").write_text(text, encoding="utf-8")
+        (package / "texts" / "en" / "sheet.md").write_text(sheet, encoding="utf-8")
         monkeypatch.syspath_prepend(tmp_path)
         yield lambda name: beside(monkeypatch, EntryPoint("UNI-demo", f"rocking_guide:{name}", Codes.group))
         sys.modules.pop("rocking_guide", None)
@@ -638,7 +643,7 @@ class TestGuide:
         guide("DemoWithSheet")
         run("verify", "block.yaml", *demo, "--sheet", "s.html")
         page = Path("s.html").read_text(encoding="utf-8")
-        assert "The verification is satisfied: ratio 1.83" in page and "1.5 · 2.45166" in page
+        assert "The verification is satisfied." in page and "The ratio is 1.83" in page and "1.5 · 2.45166" in page
         monkeypatch.setattr("rocking_cli.verification.check.verify", lambda *given: pytest.fail("too late"))
         said = run("verify", "block.yaml", *demo, "--sheet", "t.html", "--language", "it", code=2).stderr
         assert "--language: there is no calculation sheet in 'it'" in said and "known: en" in said

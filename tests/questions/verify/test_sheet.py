@@ -26,10 +26,13 @@ from rocking_cli.documents import sheet_docx, sheet_page
 from rocking_cli.documents.sheet_page import ORIGIN_MARKS, SIGNATURE_FIELDS
 from rocking_cli.io.yaml_file import parse
 from rocking_cli.studies.conclusion import Concluded
+from rocking_cli.studies.provenance import File, versions
 from rocking_cli.verification.check import site_in
 from rocking_cli.verification.results import control_at
+from rocking_cli.views.sheet import template
+from rocking_cli.views.sheet.build import SheetSources
 from rocking_cli.views.sheet.document import Sentence, Steps
-from rocking_cli.views.sheet.language import texts_of
+from rocking_cli.views.sheet.language import SIGNIFICANT_DIGITS, texts_of
 from rocking_cli.views.verdict import SENSE
 from rocking_cli.views.verification import data, view
 from rocking_cli.views.view import Table
@@ -144,8 +147,17 @@ def verified(structure, site, control=None):
     return Italian().verify(mechanism, given, control_at(mechanism, *control) if control else None), given
 
 
+def parts_of(found, given, language="en", by=build.SHEET):
+    """The parts of the sheet of a verification."""
+    say = by.language(language)
+    sources = SheetSources(File("s.yaml", b"s: 1"), File("site.yaml", b"t: 1"), {}, versions(found.mechanism))
+    every = {"mechanism": found.mechanism, "digits": SIGNIFICANT_DIGITS, "command": "rocking", "sources": sources}
+    context = {**every, **by.context(say, found, given)}
+    return template.parts(say, by.package, "sheet", context)
+
+
 def items_of(found, given, language="en"):
-    """Headings, tables and steps in the order of the sheet."""
+    """Headings, tables and steps in the order of the sheet, without its origin."""
     say = build.SHEET.language(language)
 
     def of(part):
@@ -159,7 +171,7 @@ def items_of(found, given, language="en"):
         for each in part.parts:
             yield from of(each)
 
-    return [each for part in build.parts(say, found, given) for each in of(part)]
+    return [each for part in parts_of(found, given, language) if part.key != "inputs" for each in of(part)]
 
 
 @cache
@@ -560,7 +572,7 @@ def test_what_does_not_begin_to_rock_is_satisfied_at_collapse_too():
     states = next(each for each in items if isinstance(each, list) and "limit states" in each[0])
     row = next(each for each in states[2:] if each[0] == "SLC")
     assert number(row[4]) < 1 and row[5] == "satisfied"
-    words = repr([*build.parts(build.SHEET.language("en"), found, given)])
+    words = repr(parts_of(found, given))
     assert "SLC: the verification is satisfied. ζ_[E] = 1.029; the damage method governs" in words
     assert "at SLC: below 1, but satisfied, as rocking does not start" in words
 
@@ -680,11 +692,32 @@ def test_italian_has_all_texts_with_the_same_slots(package):
     english, italian = texts_of(package, "en"), texts_of(package, "it")
     assert english.keys() <= italian.keys()
     assert all(slots(english.get(key, key)) == slots(text) for key, text in italian.items())
-    files = [each for each in files_of(package).rglob("*") if each.suffix in (".py", ".html")]
+    files = [each for each in files_of(package).rglob("*") if each.suffix in (".py", ".html", ".md")]
     written = "".join(each.read_text(encoding="utf-8") for each in files)
     used = {*re.findall(r'(?:\bsay\(|meaning=|Remark\.of\()"([^"]+)"', written), *TABLES}
     known = texts_of("rocking_cli.codes.italian", "it").keys() | texts_of("rocking_cli.views.sheet", "it").keys()
     assert len(used) > 20 and used <= known
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_templates_of_both_languages_say_the_same(name):
+    """The same sections, with the same kinds of items, tables of the same shape, and the same numbers."""
+
+    def skeleton(part):
+        yield part.key
+        for item in part.items:
+            numbers = re.findall(r"(?<![\w.,])\d+[.,]\d+(?!\w)", getattr(item, "text", getattr(item, "label", "")))
+            yield type(item), [each.replace(",", ".") for each in numbers]
+            if isinstance(item, Table):
+                yield len(item.columns), len(item.rows), [*item.numbers]
+        for each in part.parts:
+            yield from skeleton(each)
+
+    found, given = verified(*CASES[name])
+    english, italian = (
+        [each for part in parts_of(found, given, language) for each in skeleton(part)] for language in ("en", "it")
+    )
+    assert english == italian and len(english) > 60
 
 
 def test_every_text_has_a_user():
@@ -696,20 +729,12 @@ def test_every_text_has_a_user():
     families = {f"mechanism_{key}" for key in own} | {f"caution_{key}" for key, each in own.items() if each.caution}
     families |= {each for each in keys if re.match(rf"body_({'|'.join(own)}) ", each)} | {"caution_own_symmetric_frame"}
     assert families <= keys
-    families |= {
-        *calendar.month_name[1:],
-        "Project",
-        "Place",
-        "Author",
-        *SIGNATURE_FIELDS,
-        "Structure file",
-        "Site file",
-    }
+    families |= {*calendar.month_name[1:], "Project", "Place", "Author", *SIGNATURE_FIELDS}
     families |= {"drawing at rest", *(f"drawing {each.label} ({SENSE[each]})" for each in Direction)}
     families |= {f"end_direction_{each.label}" for each in Direction} | {f"end_{each}" for each in ENDS}
     families |= {"a_g_start_iterated", "a_g_method_iterated", f"it has more than {MAX_CHECKED_COLUMNS} columns"}
     files = [each for folder in ("rocking_cli", "mechanisms") for each in files_of(folder).rglob("*")
-             if each.suffix in (".py", ".html")]  # fmt: skip
+             if each.suffix in (".py", ".html", ".md")]  # fmt: skip
     written = "".join(each.read_text(encoding="utf-8") for each in files)
     assert not [key for key in keys - families if not re.search(rf"""["']{re.escape(key)}["']""", written)]
 
@@ -722,7 +747,7 @@ def test_every_remark_is_on_the_sheet_and_in_the_terminal(name, language):
     remarks = [each for side in found.distinct for each in (*differences(side, found.first), *side.remarks)]
     remarks += found.remarks
     say = build.SHEET.language(language)
-    summary, methods, *_ = build.parts(say, found, given)
+    summary, methods, *_ = parts_of(found, given, language)
     said = " ".join(item.text for part in (summary, methods) for item in part.items if isinstance(item, Sentence))
     assert len(remarks) > 1 and all(say(each) in said for each in remarks)
     assert found.mechanism.caution == "" or ("Caution: " if language == "en" else "Attenzione: ") in said

@@ -1,23 +1,24 @@
-"""The parts of a calculation sheet that depend on the Italian code."""
+"""Values of a calculation sheet by the Italian code, for its templates."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import platform
+from collections.abc import Callable
 from functools import partial
+from importlib.metadata import metadata
+from math import isclose
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.codes.italian.ground import SiteGround
-from rocking_cli.codes.italian.results import ItalianVerification, ItalianVerified
-from rocking_cli.codes.italian.sheet import basis, dynamic, site, summary
-from rocking_cli.codes.italian.sheet.steps import DirectionSteps
+from rocking_cli.codes.italian.results import ItalianVerification
+from rocking_cli.codes.italian.sheet import site, summary
+from rocking_cli.codes.italian.sheet.chain import named
+from rocking_cli.codes.italian.sheet.steps import PACKAGE, DirectionSteps, title
 from rocking_cli.codes.italian.site import ItalianSite, of_structure
 from rocking_cli.codes.italian.site_demand import site_demand
 from rocking_cli.core import Direction
-from rocking_cli.names import LANGUAGES
-from rocking_cli.verification.demand import SiteDemand
 from rocking_cli.views.sheet.build import SheetOfCode
-from rocking_cli.views.sheet.document import Drawing, Item, SheetPart
-from rocking_cli.views.sheet.language import Language, texts_of
+from rocking_cli.views.sheet.language import Language
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,67 +27,46 @@ DIRECTION_TITLES = {
     Direction.POSITIVE: "Positive direction (clockwise)",
     Direction.NEGATIVE: "Negative direction (anticlockwise)",
 }
+SAME_MULTIPLIER = 1e-6  # relative difference up to which two multipliers agree
 
 
-def parts(say: Language, verification: ItalianVerification, site_values: ItalianSite) -> Iterator[SheetPart]:
-    """Yield the summary, what the code says of programs, input, figures, and the workings of site and directions.
-
-    Both directions are one if they have the same numbers.
-    """
-    directions = {say(DIRECTION_TITLES[one.direction]): one for one in verification.distinct}
-    if len(verification.distinct) < len(verification.directions):
-        directions = {say("Both directions"): verification.distinct[0]}
+def context(say: Language, verification: ItalianVerification, site_values: ItalianSite) -> dict[str, Any]:
+    """Return the values for the templates; both directions are one if they have the same numbers."""
     ground = SiteGround(of_structure(site_values, verification.mechanism))
-    yield from summary.parts(say, verification, directions)
-    yield basis.part(say, verification)
-    yield _input(say, verification, directions, ground)
-    yield _figures(say, verification, directions, site_demand(ground.site))
-    yield site.part(say, ground)
-    for where, each in directions.items():
-        key = each.direction.label
-        subparts = list(DirectionSteps(say, ground, each).parts())
-        if each.dynamic is not None:
-            items = list(dynamic.items(say, each.dynamic, each.exact.confidence))
-            subparts.append(SheetPart(f"{key}-dynamic", say("Dynamic method"), items))
-        yield SheetPart(key, where, [], subparts, appended=True)
-
-
-def _input(
-    say: Language, found: ItalianVerification, directions: Mapping[str, ItalianVerified], ground: SiteGround
-) -> SheetPart:
-    """Return the part on the structure, its weights and ties, and the site."""
-    name = found.mechanism.name
-    at_rest = say("{name} at rest with its dimensions, and displaced to its critical rotation", name=name)
-    items: list[Item] = [Drawing(at_rest)]
-    for where, each in directions.items():
-        label = say("forces_of", where=where)
-        items.append(Drawing(label, partial(_drawn, "draw_chain", say, found, each)))
-    return SheetPart("input", say("Input"), [*items, site.given_table(say, ground)])
-
-
-def _figures(
-    say: Language, found: ItalianVerification, directions: Mapping[str, ItalianVerified], demand: SiteDemand
-) -> SheetPart:
-    """Return the part with the capacity curves and the spectra."""
-    heading = say("{name}: capacity and demand", name=found.mechanism.name)
-    of_site = say("Elastic spectra of the site, 5 % damping")
-    items = [
-        Drawing(
-            say("capacity_and_demand", where=where),
-            partial(_drawn, "draw_capacity", say, {where: each}, heading, demand=demand),
-        )
-        for where, each in directions.items()
+    both = say("Both directions") if len(verification.distinct) < len(verification.directions) else ""
+    sides = [
+        DirectionSteps(ground, each, both or say(DIRECTION_TITLES[each.direction]), say)
+        for each in verification.distinct
     ]
-    spectra = Drawing(of_site, partial(_drawn, "draw_site", say, demand, of_site))
-    return SheetPart("figures", say("Capacity and demand"), [*items, spectra])
+    return {
+        "language": say, "verification": verification, "ground": ground, "site": site, "sides": sides,
+        "title": partial(title, say), "named": partial(named, say),
+        "figure": partial(_figure, say, verification, ground), "is_same": partial(isclose, rel_tol=SAME_MULTIPLIER),
+        "program": {
+            "licence": metadata("rocking-cli")["License-Expression"], "python": platform.python_version(),
+            "system": platform.platform(terse=True),
+        },
+        **summary.context(say, verification, sides),
+    }  # fmt: skip
 
 
-def _drawn(function: str, *args: Any, **named: Any) -> Figure:
-    """Return a figure; what draws it is imported only for a sheet that is written."""
-    from rocking_cli.codes.italian.sheet import figures
+def _figure(
+    say: Language, found: ItalianVerification, ground: SiteGround, kind: str, side: DirectionSteps | None = None
+) -> Callable[[], Figure]:
+    """Return what draws a figure of a kind; it is imported only for a sheet that is written."""
 
-    figure: Figure = getattr(figures, function)(*args, **named)
-    return figure
+    def drawn() -> Figure:
+        from rocking_cli.codes.italian.sheet import figures
+
+        demand = site_demand(ground.site)
+        if side is None:
+            return figures.draw_site(say, demand, say("Elastic spectra of the site, 5 % damping"))
+        if kind == "draw_chain":
+            return figures.draw_chain(say, found, side.found)
+        heading = say("{name}: capacity and demand", name=found.mechanism.name)
+        return figures.draw_capacity(say, {side.where: side.found}, heading, demand=demand)
+
+    return drawn
 
 
-SHEET = SheetOfCode({key: texts_of("rocking_cli.codes.italian", key) for key in LANGUAGES}, parts)
+SHEET = SheetOfCode(PACKAGE, context)

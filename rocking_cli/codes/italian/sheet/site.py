@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from math import log
+from typing import Any
+
+from markupsafe import Markup
 
 from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.demand import REFERENCE_DAMPING, FloorSpectrum
@@ -24,11 +27,10 @@ from rocking_cli.codes.italian.ground import (
 )
 from rocking_cli.codes.italian.rules import FIRST_STATE, FURTHER_STATES, RULES, STATES
 from rocking_cli.codes.italian.sheet import spectra
+from rocking_cli.codes.italian.sheet.chain import Rows
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.verification.results import Working
-from rocking_cli.views.sheet.document import Item, Sentence, SheetPart, Steps
+from rocking_cli.verification.results import Evaluated, Working
 from rocking_cli.views.sheet.language import Language
-from rocking_cli.views.view import Table
 
 OF_GROUND = {
     "ag": ("a_[g]", "g", "ground acceleration on rock, {state}"),
@@ -55,99 +57,93 @@ OF_FLOOR = {
 """Symbol, unit and meaning of fields of the site file."""
 
 
-def part(say: Language, ground: SiteGround) -> SheetPart:
-    """Return the part on the site, with a part for each limit state that it gives."""
-    states = [each for each in STATES if ground.spectrum(each) is not None]
-    parts = [_of_state(say, ground, each) for each in states]
-    return SheetPart("site", say("Site"), of_cell(say, ground), parts, appended=True)
+def states(ground: SiteGround) -> list[str]:
+    """Return the limit states that the site gives."""
+    return [each for each in STATES if ground.spectrum(each) is not None]
 
 
-def given(say: Language, ground: SiteGround) -> Iterator[Working]:
+def given(ground: SiteGround) -> Iterator[Evaluated]:
     """Yield the values of the site file that belong to a clause of the code."""
     site = ground.site
-    yield say.step(F.FC, site.FC)
-    yield say.step(F.Q, site.q)
+    yield F.FC.line(site.FC)
+    yield F.Q.line(site.q)
     for state in STATES:
         known = ground.spectrum(state) is not None or getattr(site.floor, state, None) is not None
         if site.floor is not None and known:
             mode = site.floor.mode(state)
-            yield say.step(F.T1, mode.T1, {"state": state})
-            yield say.step(F.XI1, mode.xi1, {"state": state})
+            yield F.T1.line(mode.T1, {"state": state})
+            yield F.XI1.line(mode.xi1, {"state": state})
 
 
-def given_table(say: Language, ground: SiteGround) -> Table:
-    """Return a table of the values of the site file, without its tables."""
+def data(say: Language, ground: SiteGround) -> Rows:
+    """Return a row for each value of the site file, without its tables: symbol, meaning, value and unit."""
     site = ground.site
-    FC, q, *modes = ([each.symbol, each.meaning, say.number(each.value), each.unit] for each in given(say, ground))
+    FC, q, *modes = (_given(say.written(each)) for each in given(ground))
     rows = [FC, q]
     for state in (FIRST_STATE, *FURTHER_STATES):
         at = site.shaking(state)
         if at is not None and at.spectrum is not None:
             meaning = say("ground acceleration, the ordinate of the table at T = 0, {state}", state=state)
-            rows.append(["a_[g]", meaning, say.number(at.spectrum[0][1]), "g"])
+            rows.append([Markup("a_[g]"), meaning, at.spectrum[0][1], "g"])
         rows += _values(say, at, OF_GROUND, state=state)
     rows += _values(say, site, OF_SITE)
     if ground.on_rock(FIRST_STATE) is not None:
         rows.append(["", say("topographic class"), site.topography, ""])
-    rows += _values(say, site.floor, OF_FLOOR)
-    heads = [say(key) for key in ("symbol", "quantity", "value", "unit")]
-    return Table(say("Data of the site file"), heads, [*rows, *modes], (2,))
+    return [*rows, *_values(say, site.floor, OF_FLOOR), *modes]
 
 
-def of_cell(say: Language, ground: SiteGround) -> list[Table]:
-    """Return the nodes of the reference grid about the site, and the hazard between them; empty without a grid."""
-    cell = ground.site.cell
-    if cell is None:
-        return []
-    nodes = [list(map(say.number, corner)) for corner in cell.corners]
-    heads = ["longitude [deg]", "latitude [deg]", "distance [km]", "weight in the mean"]
-    rows = [list(map(say.number, row)) for row in cell.rows]
-    of_rows = ["T_[R] [years]", "a_[g] [g]", "F_[0]", "T_[C]^[*] [s]"]
-    return [
-        Table(say("Nodes of the reference grid"), list(map(say, heads)), nodes, range(4)),
-        Table(say("Hazard at the site, the weighted mean of the nodes"), list(map(say, of_rows)), rows, range(4)),
-    ]
+def _given(row: Working) -> list[Any]:
+    return [Markup(row.symbol), row.meaning, row.value, row.unit]
 
 
-def _values(say: Language, part: object, fields: Mapping[str, tuple[str, str, str]], **names: str) -> list[list[str]]:
+def _values(say: Language, part: object, fields: Mapping[str, tuple[str, str, str]], **names: str) -> list[list[Any]]:
     """Return the table rows of those fields that the site file gives."""
     values = {key: getattr(part, key, None) for key in fields}
     return [
-        [symbol, say(meaning, **names), value if isinstance(value, str) else say.number(float(value)), say(unit)]
+        [Markup(symbol), say(meaning, **names), value if isinstance(value, str) else float(value), say(unit)]
         for key, (symbol, unit, meaning) in fields.items() if (value := values[key]) is not None
     ]  # fmt: skip
 
 
-def _of_state(say: Language, ground: SiteGround, state: str) -> SheetPart:
+def of_state(ground: SiteGround, state: str) -> list[Evaluated]:
+    """Return the lines to the ground, or floor, at a limit state that the site gives."""
     spectrum = ground.spectrum(state)
     assert spectrum is not None  # only limit states with a spectrum are shown
-    rows = [*_of_life(say, ground, state), *spectra.peaks(say, spectrum, state)]
-    items: list[Item] = [Steps(rows)]
-    T0 = ground.site.own_period
-    if T0 is not None:
-        if (one := ground.site.element) is not None:
-            L, t = one.size
-            sizes = {"kappa": one.kappa, "L": L, "t": t, "w": one.w, "E": one.E, "g": STANDARD_GRAVITY}
-            items.append(Steps([say.step(F.OWN_PERIOD, one.period, **sizes)]))
-        items += [Sentence(say("free")), Steps(list(spectra.at_own_period(say, spectrum, T0, REFERENCE_DAMPING)))]
-    return SheetPart(f"site-{state}", say("Ground at {state}", state=state), items)
+    return [*_of_life(ground, state), *spectra.peaks(spectrum, state)]
 
 
-def _of_life(say: Language, ground: SiteGround, state: str) -> Iterator[Working]:
+def of_element(ground: SiteGround) -> list[Evaluated]:
+    """Return the line to the own period of an element from its size; empty if the site does not give it."""
+    one = ground.site.element
+    if one is None:
+        return []
+    L, t = one.size
+    sizes = {"kappa": one.kappa, "L": L, "t": t, "w": one.w, "E": one.E, "g": STANDARD_GRAVITY}
+    return [F.OWN_PERIOD.line(one.period, **sizes)]
+
+
+def at_own_period(ground: SiteGround, state: str) -> list[Evaluated]:
+    """Return the lines to the demand on an element that is free to vibrate, at a limit state."""
+    spectrum, T0 = ground.spectrum(state), ground.site.own_period
+    assert spectrum is not None and T0 is not None
+    return list(spectra.at_own_period(spectrum, T0, REFERENCE_DAMPING))
+
+
+def _of_life(ground: SiteGround, state: str) -> Iterator[Evaluated]:
     """Yield the steps to the return period of a limit state, and to the ground on the soil."""
     site, TR, hazard, rock = ground.site, ground.return_period(state), ground.hazard, ground.on_rock(state)
     if site.life is not None and TR is not None and site.VN is not None:
         bound = F.REFERENCE_LIFE if is_close(site.VN * (site.use or 0.0), site.life) else F.REFERENCE_LIFE_BOUND
-        yield say.step(bound, site.life, VN=site.VN, CU=site.use)
-        yield from _to_return_period(say, ground, state, site.life, TR)
+        yield bound.line(site.life, VN=site.VN, CU=site.use)
+        yield from _to_return_period(ground, state, site.life, TR)
     if rock is None:
         return
     if hazard is not None and TR is not None:
-        yield from _on_rock(say, hazard, TR, is_row=state in hazard.rounded(site.life or 0.0))
-    yield from _on_soil(say, site.soil or "A", site.topography, rock)
+        yield from _on_rock(hazard, TR, is_row=state in hazard.rounded(site.life or 0.0))
+    yield from _on_soil(site.soil or "A", site.topography, rock)
 
 
-def _to_return_period(say: Language, ground: SiteGround, state: str, life: float, TR: float) -> Iterator[Working]:
+def _to_return_period(ground: SiteGround, state: str, life: float, TR: float) -> Iterator[Evaluated]:
     """Yield the steps to the return period of a limit state from the reference life [years]."""
     P, exact, hazard = PROBABILITY[state], return_period(life, state), ground.hazard
     is_row = hazard is not None and state in hazard.rounded(life)
@@ -155,9 +151,9 @@ def _to_return_period(say: Language, ground: SiteGround, state: str, life: float
     ends = [row[0] for row in hazard.table] if hazard is not None and not is_row else [0.0, LONGEST_RETURN_PERIOD]
     first, last = max(SHORTEST_RETURN_PERIOD, ends[0]), min(LONGEST_RETURN_PERIOD, ends[-1])
     formula = F.RETURN_PERIOD if is_close(exact, period) else F.RETURN_PERIOD_BOUND
-    yield say.step(formula, period, {"state": state, "percent": 100 * P}, VR=life, P=P, first=first, last=last)
+    yield formula.line(period, {"state": state, "percent": 100 * P}, VR=life, P=P, first=first, last=last)
     if is_row:
-        yield say.step(F.RETURN_PERIOD_OF_ROW, TR, {"state": state})
+        yield F.RETURN_PERIOD_OF_ROW.line(TR, {"state": state})
 
 
 def is_close(one: float, other: float) -> bool:
@@ -165,44 +161,44 @@ def is_close(one: float, other: float) -> bool:
     return abs(one - other) <= 1e-9 * abs(other)
 
 
-def hazard_at(say: Language, hazard: Hazard, TR: float) -> Iterator[Working]:
+def hazard_at(hazard: Hazard, TR: float) -> Iterator[Evaluated]:
     """Yield the steps to the ground at a return period, from the adjacent rows of the table."""
-    yield from _on_rock(say, hazard, TR)
-    yield from _on_soil(say, hazard.soil, hazard.topography, hazard.parameters(TR))
+    yield from _on_rock(hazard, TR)
+    yield from _on_soil(hazard.soil, hazard.topography, hazard.parameters(TR))
 
 
-def _on_rock(say: Language, hazard: Hazard, TR: float, *, is_row: bool = False) -> Iterator[Working]:
+def _on_rock(hazard: Hazard, TR: float, *, is_row: bool = False) -> Iterator[Evaluated]:
     parameters = hazard.parameters(TR)
     if is_row:
         for formula, value in zip(F.ON_ROCK, parameters, strict=True):
-            yield say.step(replace(formula, text="", numbers=""), value)
+            yield replace(formula, text="", numbers="").line(value)
         return
     last = len(hazard.table) - 2
     k = min(next((k for k, row in enumerate(hazard.table[1:]) if row[0] >= TR), last), last)
     low, high = hazard.table[k], hazard.table[k + 1]
     r = log(TR / low[0]) / log(high[0] / low[0])
-    yield say.step(F.BETWEEN, r, T=TR, a=low[0], b=high[0])
+    yield F.BETWEEN.line(r, T=TR, a=low[0], b=high[0])
     for j, (formula, value) in enumerate(zip(F.ON_ROCK, parameters, strict=True), 1):
-        yield say.step(formula, value, a=low[j], b=high[j], r=r)
+        yield formula.line(value, a=low[j], b=high[j], r=r)
 
 
-def _on_soil(say: Language, soil: str, topography: str, rock: RockMotion) -> Iterator[Working]:
+def _on_soil(soil: str, topography: str, rock: RockMotion) -> Iterator[Evaluated]:
     first, second, least, most, factor, power = SOILS[soil]
     S_S, S_T, C_C = soil_factor(soil, rock.F0, rock.ag), TOPOGRAPHY[topography], corner_factor(soil, rock.TC_star)
     sizes = {"least": least, "most": most, "first": first, "second": second}
     names = {key: f"{value:.2f}" if key in ("first", "second") else f"{value:.3g}" for key, value in sizes.items()}
     names |= {"soil": soil, "factor": f"{factor:.2f}", "power": f"{power:.2f}".replace("-", "−")}
-    yield say.step(F.SOIL if second else F.SOIL_A, S_S, names, F0=rock.F0, ag=rock.ag, **sizes)
-    yield say.step(F.S, S_S * S_T, S_S=S_S, S_T=S_T)
+    yield (F.SOIL if second else F.SOIL_A).line(S_S, names, F0=rock.F0, ag=rock.ag, **sizes)
+    yield F.S.line(S_S * S_T, S_S=S_S, S_T=S_T)
     corner = F.CORNER if power else F.CORNER_A
-    yield say.step(corner, C_C, names, factor=factor, T=rock.TC_star, power=say.formula(names["power"]))
-    yield say.step(F.TC, rock.on_soil(soil, topography).TC, C=C_C, T=rock.TC_star)
+    yield corner.line(C_C, names, factor=factor, T=rock.TC_star, power=names["power"])
+    yield F.TC.line(rock.on_soil(soil, topography).TC, C=C_C, T=rock.TC_star)
 
 
-def amplifications(say: Language, ground: SiteGround) -> Iterator[Working]:
+def amplifications(ground: SiteGround) -> Iterator[Evaluated]:
     """Yield the step for the amplification A of a floor at each limit state that the site gives."""
     damping = {rule.state: rule.damping for rule in RULES}
     for state in STATES:
         spectrum = ground.spectrum(state)
         if isinstance(spectrum, FloorSpectrum):
-            yield spectra.amplified(say, spectrum, damping.get(state, REFERENCE_DAMPING), state)
+            yield spectra.amplified(spectrum, damping.get(state, REFERENCE_DAMPING), state)
