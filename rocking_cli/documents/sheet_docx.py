@@ -8,7 +8,6 @@ from io import BytesIO
 from itertools import count
 from typing import TYPE_CHECKING, Any
 
-from rocking_cli.core import Mechanism
 from rocking_cli.documents.sheet_page import ORIGIN_MARKS, SIGNATURE_FIELDS, figure_of, runs
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.plotting import style
@@ -38,15 +37,13 @@ def check_package() -> None:
         raise InputError(Problem("a .docx file needs the package python-docx", hint=hint)) from None
 
 
-def render(sheet: Sheet, mechanism: Mechanism) -> bytes:
+def render(sheet: Sheet) -> bytes:
     """Return the document of a calculation sheet.
 
     Parameters
     ----------
     sheet : Sheet
         The sheet.
-    mechanism : Mechanism
-        The mechanism to draw.
 
     Raises
     ------
@@ -56,7 +53,7 @@ def render(sheet: Sheet, mechanism: Mechanism) -> bytes:
     check_package()
     from docx import Document
 
-    writer = _Writer(Document(), sheet, mechanism)
+    writer = _Writer(Document(), sheet)
     writer.write()
     stream = BytesIO()
     writer.document.save(stream)
@@ -66,10 +63,9 @@ def render(sheet: Sheet, mechanism: Mechanism) -> bytes:
 class _Writer:
     """Writer of a document, part by part."""
 
-    def __init__(self, document: Document, sheet: Sheet, mechanism: Mechanism) -> None:
+    def __init__(self, document: Document, sheet: Sheet) -> None:
         self.document = document
         self.sheet = sheet
-        self.mechanism = mechanism
         self.steps = count(1)
 
     def write(self) -> None:
@@ -157,7 +153,7 @@ class _Writer:
             self._table([self._step(row) for row in item.rows], widths=(1.1, 10.1, 3.2, 2.6))
         elif isinstance(item, Drawing):
             stream = BytesIO()
-            style.save(figure_of(item, self.sheet, self.mechanism), stream, format="png")
+            style.save(figure_of(item, self.sheet.language), stream, format="png")
             stream.seek(0)
             self.document.add_picture(stream, width=Cm(TEXT_WIDTH))
             self.document.paragraphs[-1].paragraph_format.keep_with_next = True

@@ -17,32 +17,31 @@ from rocking_cli.studies.picture import picture
 from rocking_cli.text import printable
 from rocking_cli.verification.results import MARK
 from rocking_cli.views.sheet.document import Drawing, Sheet
+from rocking_cli.views.sheet.language import Language
 
 ORIGIN_MARKS = {"print": "", "transcription": "*", "code": "†", "ours": "‡", "plain": ""}
 """Marks beside formulas, by how far these were checked."""
 SIGNATURE_FIELDS = ("Place and date", "Name", "Signature", "Stamp")
 
 
-def render(sheet: Sheet, mechanism: Mechanism) -> str:
+def render(sheet: Sheet) -> str:
     """Return the page of a calculation sheet.
 
     Parameters
     ----------
     sheet : Sheet
         The sheet; every text in it is escaped.
-    mechanism : Mechanism
-        The mechanism to draw.
     """
     page = template("sheet.html").render(
         sheet=sheet,
         say=sheet.language,
-        parts=parts(sheet, mechanism, alone=True),
+        parts=parts(sheet, alone=True),
         motion_style=Markup(asset("motion.css")),
     )
     return printable(page)
 
 
-def parts(sheet: Sheet, mechanism: Mechanism, level: int = 2, *, alone: bool = False) -> Markup:
+def parts(sheet: Sheet, level: int = 2, *, alone: bool = False) -> Markup:
     """Return the sections of a sheet as HTML, with headings from a given level, such as for a report.
 
     A sheet that stands `alone` has a place for the signature and its contents after the first section.
@@ -50,7 +49,7 @@ def parts(sheet: Sheet, mechanism: Mechanism, level: int = 2, *, alone: bool = F
     steps, pictures = count(1), count(1)
 
     def svg(item: Drawing) -> Markup:
-        return inline_svg(figure_of(item, sheet, mechanism), f"sheet-{next(pictures)}")
+        return inline_svg(figure_of(item, sheet.language), f"sheet-{next(pictures)}")
 
     text = template("sheet_parts.html", formula=formula, svg=svg).render(
         sheet=sheet, say=sheet.language, level=level, step=lambda: next(steps), number=sheet.language.number,
@@ -59,11 +58,11 @@ def parts(sheet: Sheet, mechanism: Mechanism, level: int = 2, *, alone: bool = F
     return Markup(text)
 
 
-def figure_of(item: Drawing, sheet: Sheet, mechanism: Mechanism) -> Figure:
-    """Return a picture of a sheet, which by default is the drawing of the structure in its language."""
-    if item.figure is not None:
+def figure_of(item: Drawing, say: Language) -> Figure:
+    """Return a picture of a sheet; the drawing of a structure is in the language of the sheet."""
+    if not isinstance(item.figure, Mechanism):
         return item.figure()
-    say = sheet.language
+    mechanism = item.figure
     title = f"{mechanism.name}: {say.mechanism(mechanism.mechanism, mechanism.title)}"
     figure = draw_structure(picture(mechanism), title)
     for each in figure.findobj(Text):

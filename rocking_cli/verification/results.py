@@ -454,6 +454,8 @@ class Verification:
         What was given and does not count.
     relies_on : sequence of Remark
         What a satisfied verification relies on and may not be there, such as the force of a tie that stretches far.
+    strengthened : Verification, optional
+        The same verification of the strengthened structure, with which this one is compared.
     """
 
     mechanism: Mechanism
@@ -465,6 +467,7 @@ class Verification:
     remarks: Sequence[str | Remark] = field(default=(), kw_only=True)
     left_out: Sequence[LeftOut] = field(default=(), kw_only=True)
     relies_on: Sequence[Remark] = field(default=(), kw_only=True)
+    strengthened: Verification | None = field(default=None, kw_only=True)
 
     @property
     def unprinted(self) -> bool:

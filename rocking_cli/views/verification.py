@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from rocking_cli.core import Direction
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
 F = TypeVar("F", bound=Verification)
 V = TypeVar("V", bound=Verified)
-SHOWN = ("of_direction", "in_short", "data", "data_of_all", "table", "draw")
+SHOWN = ("of_direction", "in_short", "compared", "data", "data_of_all", "table", "draw")
 """Methods that a code may override; their failures are errors of the plugin."""
 BOTH = "Both directions"
 
@@ -103,6 +104,16 @@ class Showing(Generic[F, V]):
         rows = [row for row in rows_of(found) if row.direction is each.direction]
         return [table_of(f"{where}: capacity by method", METHODS, rows), verdict(each, where)]
 
+    def compared(self, found: F, strengthened: F) -> Iterable[Table | str]:
+        """Return the methods of the existing structure and of the strengthened one, in the directions that decide."""
+        rows = [
+            (method.title, *(of.deciding.methods[key].ratio for of in (found, strengthened)))
+            for key, method in found.deciding.methods.items()
+        ]
+        names = ("", "existing", "strengthened")
+        columns = [only_shown(name, itemgetter(k), number if k else str) for k, name in enumerate(names)]
+        yield table_of("Capacity over demand by method", columns, rows)
+
     def data(self, found: F, each: V) -> dict[str, Any]:
         """Return a direction as plain data."""
         return {
@@ -160,30 +171,50 @@ def view(found: Verification, site: str | None = None, *, every_step: bool = Fal
     in_short : bool
         Whether to show only what is needed to judge the verdict, with remarks in short.
     """
-    sides, shown_by = shown(found), showing(found)
-    by = f"{heading(found.mechanism)}, by the {found.name} ({found.edition}){f', at {site}' if site else ''}"
-    end = found.conclusion
-    first, concluded = uncounted_ties(end), of_verification(found)
-    parts: list[Table | str] = [*first]
-    parts.append(" ".join(filter(None, [f"{by}.", *concluded[len(first) :], next_in_words(end)])))
-    parts += _in_short(found, sides) if in_short else _in_full(found, sides)
-    if every_step:
-        parts += steps(found.workings)
-        for where, each in sides.items():
-            parts += steps(each.workings, where)
-    every = [*found.workings, *(line for each in sides.values() for line in each.workings)]
-    parts.append(standing(every, None if in_short else shown_by.notation))
-    parts += [f"Caution: {text}" for text in cautions_of(found.mechanism)]
+    parts: list[Table | str] = []
+    for each in (found, found.strengthened):
+        if each is not None:
+            parts += _sentences(each, site)
+    if found.strengthened is not None:
+        parts += showing(found).compared(found, found.strengthened)
+    if found.strengthened is None or not in_short:
+        parts += _in_short(found, shown(found)) if in_short else _in_full(found, shown(found))
+    if found.strengthened is not None and not in_short:
+        parts += _in_full(found.strengthened, shown(found.strengthened), ", strengthened")
+    every = list[Working]()
+    for lines, where in _workings(found):
+        every += lines
+        parts += steps(lines, where) if every_step else ()
+    parts.append(standing(every, None if in_short else showing(found).notation))
+    mechanisms = [each.mechanism for each in (found, found.strengthened) if each is not None]
+    parts += dict.fromkeys(f"Caution: {text}" for each in mechanisms for text in cautions_of(each))
     return View(lambda: data(found), [part for part in parts if part])
 
 
-def _in_full(found: Verification, sides: Mapping[str, Any]) -> Iterator[Table | str]:
+def _sentences(found: Verification, site: str | None) -> list[str]:
+    """Return the conclusion in sentences: first the ties that do not count."""
+    by = f"{heading(found.mechanism)}, by the {found.name} ({found.edition}){f', at {site}' if site else ''}"
+    end = found.conclusion
+    first, concluded = uncounted_ties(end), of_verification(found)
+    return [*first, " ".join(filter(None, [f"{by}.", *concluded[len(first) :], next_in_words(end)]))]
+
+
+def _workings(found: Verification, of: str = "") -> Iterator[tuple[Sequence[Working], str]]:
+    """Yield the lines of a calculation, and the direction to which they belong."""
+    yield found.workings, ""
+    for where, each in shown(found).items():
+        yield each.workings, f"{where}{of}"
+    if found.strengthened is not None:
+        yield from _workings(found.strengthened, ", strengthened")
+
+
+def _in_full(found: Verification, sides: Mapping[str, Any], of: str = "") -> Iterator[Table | str]:
     """Yield the ground, all of each direction, which of them governs, and the remarks."""
     shown_by = showing(found)
     if found.workings:
         yield _site(found, shown_by.of_site)
     for where, each in sides.items():
-        yield from shown_by.of_direction(found, each, where)
+        yield from shown_by.of_direction(found, each, f"{where}{of}")
     if len(sides) > 1:
         yield _which_direction(found)
     yield from map(shown_by.say, found.remarks)
@@ -285,12 +316,18 @@ def data(found: Verification) -> dict[str, Any]:
         "directions": {direction.label: shown_by.data(found, each) for direction, each in found.directions.items()},
         "governs": found.governs.label,
         **shown_by.data_of_all(found),
+        **({} if found.strengthened is None else {"strengthened": data(found.strengthened)}),
     }
 
 
 def table(found: Verification) -> Mapping[str, Sequence[Any]]:
-    """Return a table as columns, with a row for each direction and method."""
-    return showing(found).table(found)
+    """Return a table as columns, with a row for each direction and method; of both structures if two are compared."""
+    rows = showing(found).table(found)
+    if found.strengthened is None:
+        return rows
+    of_both = {"existing": rows, "strengthened": showing(found).table(found.strengthened)}
+    structures = [name for name, each in of_both.items() for _ in next(iter(each.values()))]
+    return {"structure": structures, **{key: [*rows[key], *of_both["strengthened"][key]] for key in rows}}
 
 
 def standing(workings: Sequence[Working], notation: str | None = "") -> str:

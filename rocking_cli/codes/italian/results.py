@@ -253,6 +253,10 @@ class ItalianVerified(frame.Verified):
         of = {key: state for state, key in self.governing.items()} | {"SLD": "SLD"}
         return of.get(method, "")
 
+    def zeta_at(self, state: str) -> float | None:
+        """Return zeta_E at a limit state, by the method that governs there."""
+        return self.methods[self.governing[state]].zeta
+
     def passes(self, state: str) -> bool | None:
         """Return whether the direction passes at a limit state; None if the site does not give it."""
         held = self.methods[self.governing[state]].passed

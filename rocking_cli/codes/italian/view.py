@@ -18,7 +18,7 @@ from rocking_cli.codes.italian.results import (
 from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, OF_STATE
 from rocking_cli.codes.italian.sheet import dynamic
 from rocking_cli.codes.italian.sheet.steps import STATE_OF_METHOD, TERMINAL, ties
-from rocking_cli.codes.italian.sheet.summary import METHOD_NAMES, methods, verdicts
+from rocking_cli.codes.italian.sheet.summary import METHOD_NAMES, comparison, methods, verdicts
 from rocking_cli.verification.results import in_plain
 from rocking_cli.views.column import Column, frame_of, of
 from rocking_cli.views.conclusion import digits_beside_one, headline
@@ -78,6 +78,10 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
             items = dynamic.items(IN_SHORT, each.dynamic, each.exact.confidence)
             texts += [item.text for item in items if isinstance(item, Sentence)]
         yield from (f"{where}: {text}" for text in texts if text)
+
+    def compared(self, found: ItalianVerification, strengthened: ItalianVerification) -> Iterable[Table]:
+        """Return the capacity of the existing structure and of the strengthened one, side by side."""
+        return comparison(TERMINAL, found, strengthened)
 
     def data(self, found: ItalianVerification, each: ItalianVerified) -> dict[str, Any]:
         """Return a direction as plain data."""

@@ -113,7 +113,7 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
     page = template("report.html", symbols=symbols, greek=_greek).render(
         content=content,
         verified=verified,
-        verification=parts(verified.within, content.mechanism, level=3) if verified is not None else "",
+        verification=parts(verified.within, level=3) if verified is not None else "",
         answer=words.in_a_sentence(content, verified.found if verified is not None else None),
         falls=_is_bad(content.conclusion) or (verified is not None and _is_bad(verified.found.conclusion)),
         verdicts=words.verdicts(content),

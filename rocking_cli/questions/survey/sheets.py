@@ -132,7 +132,7 @@ class SheetFolder:
         origin = sheets.SheetOrigin(self.call, File(source, yaml_of(structure.mechanism).encode()))
         title = self.head.block(origin, self.language)
         content = sheets.sheet_for(verification, site, self.given, [], self.language, title, origin)
-        return sheets.rendered(content, verification, self.suffix)
+        return sheets.rendered(content, self.suffix)
 
     def _listed(self) -> dict[str, str]:
         """Return the checksums of the sheets of an earlier survey, by their names."""

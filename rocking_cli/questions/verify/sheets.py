@@ -23,18 +23,23 @@ from rocking_cli.views.sheet.language import Language
 
 
 class SheetOrigin(NamedTuple):
-    """Origin of a document: the command that wrote it, and the file of the structure as it was given."""
+    """Origin of a document: the command that wrote it, and the files of its structures as they were given."""
 
     command: str
     structure: File
+    strengthened: File | None = None
 
     @classmethod
-    def of(cls, call: str, structure: Structure) -> SheetOrigin:
+    def of(cls, call: str, structure: Structure, strengthened: Structure | None = None) -> SheetOrigin:
         """Return the origin of a document that a command, or a call of Python, writes."""
-        file = structure.file
-        if file is None:
-            return cls(call, File(structure.name, yaml_of(structure.mechanism).encode()))
-        return cls(call, File(file, original(STANDARD_INPUT if file == name_of(STANDARD_INPUT) else file)))
+        return cls(call, _file_of(structure), None if strengthened is None else _file_of(strengthened))
+
+
+def _file_of(structure: Structure) -> File:
+    file = structure.file
+    if file is None:
+        return File(structure.name, yaml_of(structure.mechanism).encode())
+    return File(file, original(STANDARD_INPUT if file == name_of(STANDARD_INPUT) else file))
 
 
 class Head(NamedTuple):
@@ -76,21 +81,21 @@ def sheet_for(
     else:
         of_site = File("site", json_text(given).encode())
     records = {each.motion.name: file_of_motion(each) for each in motions}
-    sources = SheetSources(origin.structure, of_site, records, versions(found.mechanism))
+    sources = SheetSources(origin.structure, of_site, records, versions(found.mechanism), origin.strengthened)
     return sheet(found, site, Language(language), title, sources)
 
 
-def rendered(content: Sheet, found: Verification, suffix: str) -> bytes:
+def rendered(content: Sheet, suffix: str) -> bytes:
     """Return a sheet as the content of a file with a suffix."""
     if suffix == ".docx":
         from rocking_cli.documents.sheet_docx import render as render_docx
 
-        return render_docx(content, found.mechanism)
+        return render_docx(content)
     from rocking_cli.documents.sheet_page import render
 
-    return files.laid_out(render(content, found.mechanism), suffix)
+    return files.laid_out(render(content), suffix)
 
 
-def write(file: Path, content: Sheet, found: Verification, watch: Watcher) -> None:
+def write(file: Path, content: Sheet, watch: Watcher) -> None:
     """Write a sheet, and tell that it was written."""
-    watch.note(files.write(file, rendered(content, found, file.suffix.lower())))
+    watch.note(files.write(file, rendered(content, file.suffix.lower())))

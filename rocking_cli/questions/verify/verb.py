@@ -138,7 +138,7 @@ def verify(
         source = sheets.SheetOrigin.of(origin or "rocking_cli.verify(...)", ready)
         title = sheets.Head(project, place, author, logo).block(source, language)
         content = sheets.sheet_for(verification, known, site, chosen, language, title, source)
-        sheets.write(Path(sheet), content, verification, watch)
+        sheets.write(Path(sheet), content, watch)
     shown = view(verification, known.site.name, every_step=every_step, in_short=in_short)
     return Answer("verification", verification, shown, partial(table, verification), partial(_figure, verification))
 

@@ -32,12 +32,15 @@ class SheetSources:
     records : mapping of str to File or None
         File of each ground motion; None for a pulse.
     versions : mapping of str to str
+    strengthened : File, optional
+        The file of the strengthened structure, if two are compared.
     """
 
     structure: File
     site: File
     records: Mapping[str, File | None]
     versions: Mapping[str, str]
+    strengthened: File | None = None
 
     @staticmethod
     def listed(file: File) -> tuple[str, int]:

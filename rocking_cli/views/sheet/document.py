@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rocking_cli.core import Mechanism
 from rocking_cli.verification.results import Working
 from rocking_cli.views.sheet.language import Language
 from rocking_cli.views.view import Table
@@ -33,10 +34,10 @@ class Steps:
 
 @dataclass(frozen=True)
 class Drawing:
-    """A picture with its caption: what `figure` draws, by default the structure."""
+    """A picture with its caption: what `figure` draws, or the structure."""
 
     label: str
-    figure: Callable[[], Figure] | None = None
+    figure: Callable[[], Figure] | Mechanism
 
 
 @dataclass(frozen=True)

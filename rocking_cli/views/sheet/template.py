@@ -73,10 +73,11 @@ def parts(say: Language, package: str, name: str, context: Mapping[str, Any]) ->
         Name of the template, without its ending.
     context : mapping of str to object
         What the template may use, besides `n` (a number, with its digits), `say` (a text by its key), `steps` (lines of
-        a calculation), `rows` (of a table), `draw` (a figure, before its caption), `listing` (the text of a file) and
-        `put` (a sentence or table).
+        a calculation), `rows` (of a table), `draw` (a figure, before its caption), `listing` (the text of a file),
+        `put` (a sentence or table) and `formulas` (each formula so far once, with its symbol and text).
     """
     objects: list[Item] = []
+    formulas: dict[tuple[str, str], Working] = {}
 
     def put(item: Item) -> Markup:
         objects.append(item)
@@ -84,6 +85,9 @@ def parts(say: Language, package: str, name: str, context: Mapping[str, Any]) ->
 
     def steps(lines: Sequence[Evaluated | Working]) -> Markup:
         rows = [say.written(each) if isinstance(each, Evaluated) else each for each in lines]
+        for each, row in zip(lines, rows, strict=True):
+            text = each.formula.text if isinstance(each, Evaluated) else row.formula
+            formulas.setdefault((row.clause, text), row)
         return put(Steps(rows)) if rows else Markup("")
 
     def cell(value: Any) -> str:
@@ -96,6 +100,7 @@ def parts(say: Language, package: str, name: str, context: Mapping[str, Any]) ->
         steps=steps,
         rows=lambda table: Markup("\n".join(f"| {' | '.join(map(cell, row))} |" for row in table)),
         put=put,
+        formulas=lambda: [(each, _guarded(each.symbol), _guarded(each.formula)) for each in formulas.values()],
         draw=lambda figure: Markup(put(Drawing("", figure)).strip() + " "),
         listing=lambda content: put(Listing(content)),
     )  # fmt: skip

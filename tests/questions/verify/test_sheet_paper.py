@@ -11,28 +11,43 @@ from rocking_cli.codes.italian.sheet import build, figures
 from rocking_cli.codes.italian.site import of_structure
 from rocking_cli.codes.italian.site_demand import site_demand
 from rocking_cli.core import Direction
+from rocking_cli.views.sheet.document import Steps
+from rocking_cli.views.view import Table
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
-from tests.questions.verify.test_sheet import CASES, CASES_WRITTEN, SITE, WALL, Step, items_of, number, verified
+from tests.questions.verify.test_sheet import (
+    CASES,
+    CASES_WRITTEN,
+    SITE,
+    TABLE_OF_HAZARD,
+    WALL,
+    Step,
+    items_of,
+    number,
+    parts_of,
+    verified,
+)
 
 G = 9.80665
 TIED_FACADE = (EXAMPLES / "verify" / "tied_facade.yaml").read_text(encoding="utf-8")
 LINKAGE = (EXAMPLES / "linkage.yaml").read_text(encoding="utf-8")
 HEADINGS = {
     "en": [
-        "Summary", "Contents", "Methods and remarks", "Calculation by a program (NTC 2018, §10.2.1)",
+        "Summary", "Contents", "Methods and remarks", "Input", "Capacity and demand",
+        "Calculation by a program (NTC 2018, §10.2.1)",
         "Kind of analysis", "Origin and features of the program", "Reliability and validation of the program",
         "Presentation of the results", "General information on the calculation",
-        "Reasoned judgement of the acceptability of the results", "Input", "Capacity and demand",
+        "Reasoned judgement of the acceptability of the results",
         "Appendix A: workings", "How to read it", "Site", "Ground at SLV", "Positive direction (clockwise)",
         "Kinematic chain, at rest", "Appendix B: files and versions", "Structure file", "Site file",
     ],
     "it": [
-        "Sintesi", "Indice", "Metodi e osservazioni", "Calcolo mediante codice (NTC 2018, §10.2.1)",
+        "Sintesi", "Indice", "Metodi e osservazioni", "Dati", "Capacità e domanda",
+        "Calcolo mediante codice (NTC 2018, §10.2.1)",
         "Tipo di analisi svolta", "Origine e caratteristiche dei codici di calcolo",
         "Affidabilità e validazione dei codici utilizzati", "Modalità di presentazione dei risultati",
-        "Informazioni generali sull'elaborazione", "Giudizio motivato di accettabilità dei risultati", "Dati",
-        "Capacità e domanda", "Appendice A: sviluppo dei calcoli", "Come leggere la relazione", "Sito",
+        "Informazioni generali sull'elaborazione", "Giudizio motivato di accettabilità dei risultati",
+        "Appendice A: sviluppo dei calcoli", "Come leggere la relazione", "Sito",
         "Azione sismica allo SLV", "Verso positivo (orario)", "Catena cinematica, a riposo",
         "Appendice B: file e versioni", "File della struttura", "File del sito",
     ],
@@ -129,6 +144,46 @@ def test_capacity_and_demand_stand_where_they_are():
     assert a[0] == pytest.approx(side.a0) and d[-1] == pytest.approx(side.d0) and a[-1] == pytest.approx(0, abs=1e-9)
 
 
+def test_the_hazard_is_drawn_with_its_rows_and_the_limit_states():
+    """The rows of CASES, and the ground of SLC at 975 years, where the table has a row."""
+    found, given = verified(*CASES["laden, on a hazard"])
+    ground = SiteGround(of_structure(given, found.mechanism))
+    figure = figures.draw_hazard(build.SHEET.language("en"), ground, ground.hazard, "hazard")
+    for k, axes in enumerate(figure.axes, 1):
+        curve, rows, *states = axes.get_lines()
+        assert rows.get_xydata().tolist() == [[row[0], row[k]] for row in TABLE_OF_HAZARD]
+        assert [each.get_label() for each in states] == ["SLD", "SLV", "SLC"]
+        TR = [-50 / np.log(1 - P) for P in (0.63, 0.1, 0.05)]
+        x, y = np.array(TABLE_OF_HAZARD)[:, [0, k]].T
+        wanted = np.exp(np.interp(np.log(TR), np.log(x), np.log(y)))
+        assert np.array([each.get_xydata()[0] for each in states]) == pytest.approx(np.array([TR, wanted]).T)
+        at = np.searchsorted(curve.get_xdata(), 475)
+        assert curve.get_ydata()[at] == pytest.approx(y[3], rel=0.01)
+
+
+@pytest.mark.parametrize(("name", "language"), CASES_WRITTEN)
+def test_what_a_formula_stands_on_is_what_its_lines_are_marked_with(name, language):
+    parts = parts_of(*verified(*CASES[name]), language)
+    workings = next(each for each in parts if each.key == "workings")
+    (table,) = [each for each in workings.parts[-1].items if isinstance(each, Table)]
+    lines = [line for part in workings.parts for line in lines_of(part) if line.clause and line.standing != "plain"]
+    marks = {"transcription": "(*)", "code": "(†)", "ours": "(‡)"}
+    assert {(row[0], re.search(r"\(.\)$", row[3])[0]) for row in table.rows} == {
+        (line.clause, marks[line.standing]) for line in lines
+    }
+    formulas = [(row[0], row[2]) for row in table.rows]
+    assert len({*formulas}) == len(formulas) > 20 and {row[2] for row in table.rows} <= {
+        line.formula or "–" for line in lines
+    }
+
+
+def lines_of(part):
+    for item in part.items:
+        yield from item.rows if isinstance(item, Steps) else ()
+    for each in part.parts:
+        yield from lines_of(each)
+
+
 def test_a_force_has_its_size_beside_it_and_a_block_of_many_weights_its_sum():
     loads = [f"{{name: m{k}, mass: 1000, at: [0, {k}]}}" for k in range(1, 8)]
     text = WALL.replace("wall\nname", "block\nname").replace(
@@ -137,7 +192,7 @@ def test_a_force_has_its_size_beside_it_and_a_block_of_many_weights_its_sum():
     pushed = "{name: push, force: [-2 kN, 0 kN], at: [-0.5, 6]}"
     found, _ = verified(f"{text}loads: [{', '.join([*loads, pushed])}]\n", SITE)
     side = found.directions[Direction.POSITIVE]
-    figure = figures.draw_chain(build.SHEET.language("en"), found, side)
+    figure = figures.draw_chain(build.SHEET.language("en"), side)
     words = [each.get_text() for axes in figure.axes for each in axes.texts]
     assert f"1 block 1: P = {8 * G:.4g} kN" in words and "push: -2 kN (arm 6 m)".replace("-", "−") in words
 

@@ -27,43 +27,64 @@ DIRECTION_TITLES = {
     Direction.POSITIVE: "Positive direction (clockwise)",
     Direction.NEGATIVE: "Negative direction (anticlockwise)",
 }
+OF_STRUCTURE = {"": "", "existing": ", existing", "strengthened": ", strengthened"}
+"""Endings of the names of directions if two structures are compared."""
 SAME_MULTIPLIER = 1e-6  # relative difference up to which two multipliers agree
 
 
 def context(say: Language, verification: ItalianVerification, site_values: ItalianSite) -> dict[str, Any]:
-    """Return the values for the templates; both directions are one if they have the same numbers."""
+    """Return the values for the templates."""
     ground = SiteGround(of_structure(site_values, verification.mechanism))
-    both = say("Both directions") if len(verification.distinct) < len(verification.directions) else ""
-    sides = [
-        DirectionSteps(ground, each, both or say(DIRECTION_TITLES[each.direction]), say)
-        for each in verification.distinct
-    ]
+    strengthened = verification.strengthened
+    if strengthened is None:
+        subjects = [_subject(say, verification, site_values)]
+    else:
+        assert isinstance(strengthened, ItalianVerification)  # both are verified by the same code
+        subjects = [
+            _subject(say, verification, site_values, "existing"),
+            _subject(say, strengthened, site_values, "strengthened"),
+        ]
     return {
-        "language": say, "verification": verification, "ground": ground, "site": site, "sides": sides,
-        "title": partial(title, say), "named": partial(named, say),
-        "figure": partial(_figure, say, verification, ground), "is_same": partial(isclose, rel_tol=SAME_MULTIPLIER),
+        "language": say, "verification": verification, "ground": ground, "site": site, "subjects": subjects,
+        "title": partial(title, say), "named": partial(named, say), "figure": partial(_figure, say, ground),
+        "is_same": partial(isclose, rel_tol=SAME_MULTIPLIER),
         "program": {
             "licence": metadata("rocking-cli")["License-Expression"], "python": platform.python_version(),
             "system": platform.platform(terse=True),
         },
-        **summary.context(say, verification, sides),
     }  # fmt: skip
 
 
-def _figure(
-    say: Language, found: ItalianVerification, ground: SiteGround, kind: str, side: DirectionSteps | None = None
-) -> Callable[[], Figure]:
+def _subject(say: Language, found: ItalianVerification, site_values: ItalianSite, state: str = "") -> dict[str, Any]:
+    """Return the values of a structure, which is in the existing state or strengthened if two are compared.
+
+    Both directions are one if they have the same numbers.
+    """
+    ground = SiteGround(of_structure(site_values, found.mechanism))
+    both = say("Both directions") if len(found.distinct) < len(found.directions) else ""
+    of = say(OF_STRUCTURE[state])
+    sides = [
+        DirectionSteps(ground, each, f"{both or say(DIRECTION_TITLES[each.direction])}{of}", say, state)
+        for each in found.distinct
+    ]
+    return {"state": state, "verification": found, "sides": sides, **summary.context(say, found, sides)}
+
+
+def _figure(say: Language, ground: SiteGround, kind: str, side: DirectionSteps | None = None) -> Callable[[], Figure]:
     """Return what draws a figure of a kind; it is imported only for a sheet that is written."""
 
     def drawn() -> Figure:
         from rocking_cli.codes.italian.sheet import figures
 
+        if kind == "draw_hazard":
+            assert ground.hazard is not None  # as the template draws it
+            return figures.draw_hazard(say, ground, ground.hazard, say("Seismic hazard of the site, on rock"))
         demand = site_demand(ground.site)
         if side is None:
             return figures.draw_site(say, demand, say("Elastic spectra of the site, 5 % damping"))
         if kind == "draw_chain":
-            return figures.draw_chain(say, found, side.found)
-        heading = say("{name}: capacity and demand", name=found.mechanism.name)
+            return figures.draw_chain(say, side.found)
+        heading = say("{name}: capacity and demand", name=side.found.chain.mechanism.name)
         return figures.draw_capacity(say, {side.where: side.found}, heading, demand=demand)
 
     return drawn

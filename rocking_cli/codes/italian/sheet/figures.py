@@ -14,9 +14,11 @@ from matplotlib.text import Text
 
 from rocking_cli.codes.italian.demand import REFERENCE_DAMPING
 from rocking_cli.codes.italian.displaced import DisplacedChain
-from rocking_cli.codes.italian.results import ItalianVerification, ItalianVerified
+from rocking_cli.codes.italian.ground import Hazard, SiteGround
+from rocking_cli.codes.italian.results import ItalianVerified
 from rocking_cli.codes.italian.rules import FIRST_STATE, RULES
 from rocking_cli.codes.italian.sheet.chain import Scale, named
+from rocking_cli.codes.italian.sheet.site import states
 from rocking_cli.core import Length
 from rocking_cli.plotting import dimensions, hung, style
 from rocking_cli.plotting.labels import MARK_COST, Labels
@@ -35,6 +37,7 @@ CENTRE_SHARE = 1.0  # share of the size of a structure within which a centre of 
 SHORTEST_PERIOD, PERIODS_PER_SPECTRUM = 0.02, 400  # s, and number
 TALLEST_SHARE = 3.0  # of the largest acceleration of a capacity curve, above which a spectrum is cut off
 FORCE_DIGITS = 4
+OF_HAZARD = ("a_g [g]", "F_0", "T_C* [s]")  # labels of the parameters on rock
 LABEL_BACKGROUND = {**dimensions.TEXT_BACKGROUND, "alpha": 0.8}
 
 
@@ -61,9 +64,9 @@ def in_language(say: Language, figure: Figure) -> Figure:
     return figure
 
 
-def draw_chain(say: Language, found: ItalianVerification, side: ItalianVerified) -> Figure:
+def draw_chain(say: Language, side: ItalianVerified) -> Figure:
     """Draw the chain at rest in a direction: weights, forces and ties, and their arms and heights about the centres."""
-    drawing, position = picture(found.mechanism).grouped, DisplacedChain(side.exact, 0.0)
+    drawing, position = picture(side.chain.mechanism).grouped, DisplacedChain(side.exact, 0.0)
     weights = _weights(say, side, position)
     outlines = [each for part in drawing.parts for each in part.outlines]
     low, high = box_around([*outlines, np.array([*drawing.held(0.0), *(each.at for each in weights)])])
@@ -84,7 +87,7 @@ def draw_chain(say: Language, found: ItalianVerification, side: ItalianVerified)
     dimensions.draw_outside(axes, rows, panel, low, high, labels)
     _draw_weights(say, axes, weights, panel, labels, Scale.of(side.chain))
     _name_held(say, drawing, position, panel, labels, Scale.of(side.chain))
-    title = say("{name}: weights, forces and arms at rest, {way} direction", name=found.mechanism.name,
+    title = say("{name}: weights, forces and arms at rest, {way} direction", name=side.chain.mechanism.name,
                 way=say(side.direction.label))  # fmt: skip
     figure.text(
         PANEL_GAP / style.PAGE_WIDTH, 1 - 0.09 / height, style.fitted(title), va="top", fontsize=style.TITLE,
@@ -232,6 +235,28 @@ def draw_capacity(
     every[-1].set_xlabel(say(of if demand is None else "displacement d, S_De [m]"), fontsize=style.LABEL)
     if demand is not None:
         style.legend_below(figure, every[0].get_legend_handles_labels()[0], 3)
+    return in_language(say, figure)
+
+
+def draw_hazard(say: Language, ground: SiteGround, hazard: Hazard, title: str) -> Figure:
+    """Draw the parameters of the ground on rock over the return period: rows of the hazard, and the limit states."""
+    figure = style.new_figure(4.6)
+    panels = figure.subplots(len(OF_HAZARD), 1, sharex=True)
+    TR = np.geomspace(hazard.first, hazard.last, PERIODS_PER_SPECTRUM)
+    rows, curves = np.array(hazard.table).T, np.array([hazard.parameters(each) for each in TR.tolist()]).T
+    for k, (axes, label) in enumerate(zip(panels, OF_HAZARD, strict=True)):
+        axes.plot(TR, curves[k], color=style.FAINT, linewidth=style.MEDIUM)
+        axes.plot(rows[0], rows[k + 1], "o", color=style.INK, markersize=3.5, label=say("rows of the hazard"))
+        for n, state in enumerate(states(ground), 1):
+            of_state, rock = ground.return_period(state), ground.on_rock(state)
+            assert of_state is not None and rock is not None  # as the site gives a hazard
+            look = {**style.distinct(n), "linestyle": "none", "fillstyle": "none", "markersize": 8}
+            axes.plot(of_state, rock[k], label=state, **look)
+        style.tidy(axes, say("return period T_R [years]") if axes is panels[-1] else "", label)
+    panels[-1].set_xscale("log")
+    style.heading(panels[0], title)
+    figure.align_ylabels()
+    style.legend_below(figure, panels[0].get_legend_handles_labels()[0], 5)
     return in_language(say, figure)
 
 

@@ -152,17 +152,20 @@ class DirectionSteps:
         Name of the direction, or of both, in the language of the sheet.
     say : Language
         The language.
+    state : str
+        "existing" or "strengthened" if two structures are compared; otherwise empty.
     """
 
     ground: SiteGround
     found: ItalianVerified
     where: str = ""
     say: Language = ENGLISH
+    state: str = ""
 
     @property
     def key(self) -> str:
-        """Name of the direction."""
-        return self.found.direction.label
+        """Key of the sections of the direction."""
+        return "-".join(filter(None, (self.state, self.found.direction.label)))
 
     @property
     def curve(self) -> ExactCurve:

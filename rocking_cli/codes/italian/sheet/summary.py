@@ -64,6 +64,11 @@ def _compared(verification: ItalianVerification) -> dict[str, Any] | None:
     return {"least": least.label, "ratio": ratio, "rest": rest}
 
 
+def comparison(say: Language, existing: ItalianVerification, strengthened: ItalianVerification) -> list[Table]:
+    """Return a table of the existing structure and the strengthened one, each in the direction that decides."""
+    return tables(say, PACKAGE, "comparison", {"existing": existing.deciding, "strengthened": strengthened.deciding})
+
+
 def verdicts(say: Language, where: str, each: ItalianVerified) -> Iterator[str]:
     """Yield whether a direction passes at each limit state that the site gives, by what margin, and what governs."""
     for state, at in each.states.items():
