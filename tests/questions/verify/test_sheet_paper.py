@@ -11,13 +11,15 @@ from rocking_cli.codes.italian.sheet import build, figures
 from rocking_cli.codes.italian.site import of_structure
 from rocking_cli.codes.italian.site_demand import site_demand
 from rocking_cli.core import Direction
+from rocking_cli.questions.selfcheck.study import CHECKS
 from rocking_cli.views.sheet.document import Steps
 from rocking_cli.views.view import Table
 from tests.cli.test_cli import run
-from tests.conftest import EXAMPLES
+from tests.conftest import EXAMPLES, PROJECT
 from tests.questions.verify.test_sheet import (
     CASES,
     CASES_WRITTEN,
+    FACADE,
     SITE,
     TABLE_OF_HAZARD,
     WALL,
@@ -29,6 +31,7 @@ from tests.questions.verify.test_sheet import (
 )
 
 G = 9.80665
+DOCS = PROJECT / "docs"
 TIED_FACADE = (EXAMPLES / "verify" / "tied_facade.yaml").read_text(encoding="utf-8")
 LINKAGE = (EXAMPLES / "linkage.yaml").read_text(encoding="utf-8")
 HEADINGS = {
@@ -142,6 +145,29 @@ def test_capacity_and_demand_stand_where_they_are():
         assert np.interp(d, x[falling], y[falling]) == pytest.approx(S_e, rel=1e-3)
     d, a = lines["exact curve"].get_xydata().T
     assert a[0] == pytest.approx(side.a0) and d[-1] == pytest.approx(side.d0) and a[-1] == pytest.approx(0, abs=1e-9)
+
+
+def test_what_a_sheet_says_of_its_validation_is_what_the_pages_have(tmp_path):
+    """The numbers of the table: those of the pages of the documentation, and of `selfcheck`."""
+    for file, text in (("s", FACADE), ("site", SITE)):
+        (tmp_path / f"{file}.yaml").write_text(text, encoding="utf-8")
+    sheet = tmp_path / "o.html"
+    run("verify", tmp_path / "s.yaml", "--site", tmp_path / "site.yaml", "--sheet", sheet, "--pulse", "sine:0.05g:0.5s")
+    words = plain(sheet.read_text(encoding="utf-8"))
+    validation = (DOCS / "validation.md").read_text(encoding="utf-8").split("## ")
+    rows = [each for part in validation[1:3] for each in part.splitlines() if each.startswith("| ")]
+    rows = [each for each in rows if "| reference |" not in each]
+    assert f"{len(rows)} formulas and numbers of the literature" in words
+    assert f"in {len(CHECKS)} checks that `rocking selfcheck` repeats" in words
+    cells = [each.split(" | ") for each in (DOCS / "scoreboard.md").read_text(encoding="utf-8").splitlines()]
+    scores = {each[0].removeprefix("| "): each for each in cells if len(each) == 10}
+    boulders, pulses, base = (scores[key] for key in (
+        "granite boulders", "shakebot pulses", "shakebot pulses, by base rates"
+    ))  # fmt: skip
+    right = 100 * float(boulders[7].split()[0])
+    assert f"{boulders[2]} shake-table tests of two granite boulders" in words and f"{right:.3g} % of the" in words
+    assert f"{pulses[2]} further tests under pulses" in words
+    assert float(pulses[4].split()[0]) >= float(base[4].split()[0])  # the Brier score is the smaller the better
 
 
 def test_the_hazard_is_drawn_with_its_rows_and_the_limit_states():

@@ -48,6 +48,7 @@ def context(say: Language, verification: ItalianVerification, site_values: Itali
         "language": say, "verification": verification, "ground": ground, "site": site, "subjects": subjects,
         "title": partial(title, say), "named": partial(named, say), "figure": partial(_figure, say, ground),
         "is_same": partial(isclose, rel_tol=SAME_MULTIPLIER),
+        "has_histories": verification.deciding.dynamic is not None,
         "program": {
             "licence": metadata("rocking-cli")["License-Expression"], "python": platform.python_version(),
             "system": platform.platform(terse=True),
