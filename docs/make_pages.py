@@ -56,7 +56,7 @@ def made(kind: str, what: str, runs: dict[str, Run]) -> str:
         return make_reference.helpers(what, verification)
     if kind == "names":
         return make_reference.public_names(what)
-    return {"options": make_reference.command_line}[kind]()
+    return {"options": make_reference.command_line, "formulas": make_reference.standing_of_formulas}[kind]()
 
 
 def of_the_readme(name: str) -> str:

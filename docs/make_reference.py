@@ -184,3 +184,46 @@ def docstrings(names: str) -> str:
     }
     directives = [f".. auto{kind}:: {name}" + "\n   :members:" * (kind == "class") for name, kind in kinds.items()]
     return "\n".join(["```{eval-rst}", ".. currentmodule:: rocking_cli", "", *directives, "```", ""])
+
+
+SAMPLES = {
+    "state": "SLV", "on": "SLV", "at": "T", "k": "1", "axis": "x", "more": "", "P": "Σ P", "P+Q": "Σ (P+Q)",
+    "over": "sumPy' + L", "under": "sum(P+Q)x'", "share": "0.4", "ends": "d_[t]; d_[a]", "a": "a^[*]",
+    "bounds": "d_[Z]; d_[g]; d_[b]", "asked": "a_[g] demand",
+}  # fmt: skip
+"""What the slots of a formula hold in the table of formulas; others hold their own names."""
+SYMBOLS = {
+    "alpha": "alpha", "S_eZ": "S_[eZ](T)", "S_De": "S_[De](T)", "S_De_long": "S_[De](T)", "S_De_ground": "S_[De](T)",
+    "": "d", "zeta": "a_[g]", "TR_capacity": "a_[g]",
+}  # fmt: skip
+"""Symbols of formulas that have several, by their meanings."""
+STANDING = {
+    "print": "the print",
+    "transcription": "a transcription",
+    "code": "not yet",
+    "ours": "our reading or choice",
+}
+
+
+class _Slots(dict[str, str]):
+    def __missing__(self, name: str) -> str:
+        return name
+
+
+def standing_of_formulas() -> str:
+    """Return a table of the formulas of the Italian code: clause, formula, and what it was checked against."""
+    from rocking_cli.codes.italian import formulas
+    from rocking_cli.verification.results import Formula, Working
+
+    def written(each: Formula) -> Working:
+        slots = _Slots(SAMPLES, symbol=SYMBOLS.get(each.meaning, "symbol"))
+        text = {key: getattr(each, key).format_map(slots) for key in ("symbol", "text")}
+        return Working(text["symbol"], "", text["text"], "", 0.0, "", each.clause, each.standing).in_plain()
+
+    every = [each for each in vars(formulas).values() if isinstance(each, Formula)] + [*formulas.PERIOD.values()]
+    every = [each for each in every if each.clause and each.standing != "plain" and each.text not in ("", "given", "1")]
+    rows = []
+    for formula, line in zip(every, map(written, every), strict=True):
+        text = f"{line.symbol}{' =' if formula.numbers else ':'} {line.formula}".replace("|", r"\|")
+        rows.append(f"| {line.clause} | `{text}` | {STANDING[line.standing]} |")
+    return "\n".join(["| clause | formula | checked against |", "|---|---|---|", *dict.fromkeys(rows)])
