@@ -17,6 +17,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.verification.results import Control
 
 MIN_SIDEWAYS_SHARE = 1e-9  # share of the largest virtual displacement from which a control point moves sideways
+ROUNDING_SHARE = 1e-14  # share of the farthest coordinate below which a displacement is a rounding error
 
 
 @dataclass(frozen=True)
@@ -244,9 +245,12 @@ class Chain:
         """Return the horizontal displacement d_C of a control point at rotations, shape (n,) [m]."""
         follow = self.mechanism.followed(phi, self.direction)
         if control.body is not None:
-            return np.asarray(self.direction * (follow(Spot(control.body, control.at)).z - control.at).real)
-        ways = [each.inertial * (follow(each.spot).z - each.spot.at).real for each in self.weights]
-        return np.asarray(self.direction * np.sum(ways, axis=0) / self.inertial)
+            way = self.direction * (follow(Spot(control.body, control.at)).z - control.at).real
+        else:
+            ways = [each.inertial * (follow(each.spot).z - each.spot.at).real for each in self.weights]
+            way = self.direction * np.sum(ways, axis=0) / self.inertial
+        farthest = max(abs(each) for each in (control.at, *(one.spot.at for one in self.weights)))
+        return np.where(np.abs(way) < ROUNDING_SHARE * farthest, 0.0, way)
 
     def displacement_of_control(self, phi: float, control: Control) -> float:
         """Return d_C of a control point at one rotation [m]."""
