@@ -33,6 +33,7 @@ STRUCTURES = sorted(
 )
 ACCEL = "--record examples/accel.csv"
 SITE = "--site examples/verify/site.yaml"
+SETS = "--state SLV --set examples/accel.csv --state SLC --set examples/accel_transverse.csv --target-pga 0.1"
 OF_EACH = (
     "equiv {0} --json",
     "equiv {0}",
@@ -52,6 +53,7 @@ ONCE = (
     f"verify examples/verify/facade.yaml {SITE}",
     f"verify examples/verify/facade.yaml {SITE} --json",
     f"verify examples/verify/facade.yaml {SITE} {ACCEL} --json",
+    f"verify examples/verify/facade.yaml {SITE} {SETS} --json --sheet sets.html",
     f"survey examples/survey/parapets.csv {ACCEL} --json --out survey.csv",
     f"survey examples/survey/parapets.csv {SITE} --json",
     'design examples/block.yaml --vary width=0.3m:1m --until "lambda >= 0.3" --json',

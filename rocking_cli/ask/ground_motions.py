@@ -17,7 +17,7 @@ from rocking_cli.excitation.measures import Measures, measure
 from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
 from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.records.opening import allow_again, matching_files
-from rocking_cli.processing.listed import Listed, Scaled, is_list
+from rocking_cli.processing.listed import LIST_FILE, Listed, Scaled, is_list
 from rocking_cli.processing.reading import Reading, reading_of
 from rocking_cli.processing.reading_options import SCALING
 from rocking_cli.processing.reading_options import MotionArguments as MotionArguments
@@ -161,6 +161,11 @@ class Motions:
         warn_about([one.motion for one in chosen if one.pulse is None], watch, p, whom)
         return chosen
 
+    def refused(self, chosen: Sequence[Scaled]) -> list[str]:
+        """Return the names of the files that are not among the motions that can be used, in their order."""
+        used = [id(each.record) for each in chosen]
+        return [each.path.name for each in self.records if id(each) not in used]
+
     def vertical(
         self, motion: Scaled, file: str | Path, dt: float | None, channel: str | None, watch: Watcher = SILENT
     ) -> GroundMotion:
@@ -270,9 +275,9 @@ def motion_of(given: Motion) -> GroundMotion:
 
 
 def files_of(place: str) -> list[Listed]:
-    """Return the records of a file, a pattern or a list of records. Raises `InputError` if there are none."""
-    listed = []
-    for path in matching_files(place):
+    """Return the records of a file, a pattern, a list or its folder. Raises `InputError` if there are none."""
+    listed, of_folder = [], Path(place) / LIST_FILE
+    for path in [of_folder] if of_folder.is_file() else matching_files(place):
         if is_list(path):
             from rocking_cli.processing.record_list import read_list
 

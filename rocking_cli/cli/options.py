@@ -258,11 +258,6 @@ def scaling(*polarities: str, default: str = "1") -> Decorator:
 
 site: Decorator = click.option("--site", type=click.Path(), metavar="SITE.yaml", help=HELP["site"])
 
-state: Decorator = click.option(
-    "--state",
-    metavar="STATE",
-    help="Limit state to which the records belong, such as SLC, if the site gives it.  [default: that of the verdict]",
-)
 on_floor: Decorator = click.option(
     "--on-floor", is_flag=True, help="The motions are those of the floor of the site, and not of the ground."
 )

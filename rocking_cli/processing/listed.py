@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -10,6 +11,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.origins import name
 from rocking_cli.processing.reading import Reading
+from rocking_cli.processing.steps import Factor
 
 if TYPE_CHECKING:  # pydantic is slow to import, and only lists need it
     from rocking_cli.excitation.pulses import Pulse
@@ -17,6 +19,8 @@ if TYPE_CHECKING:  # pydantic is slow to import, and only lists need it
 
 
 LIST_SUFFIXES = (".yaml", ".yml")
+LIST_FILE = "set.yaml"
+"""The list in a folder of records that `rocking select` writes."""
 
 
 class Listed(NamedTuple):
@@ -67,6 +71,12 @@ class Scaled(NamedTuple):
     pulse: Pulse | None = None
     record: Listed | None = None
     reading: Reading | None = None
+
+    @property
+    def scale_factor(self) -> float:
+        """The factor on the accelerations of the record, with those of its list."""
+        steps = self.reading.steps if self.reading is not None else ()
+        return self.factor * prod(step.by for step in steps if isinstance(step, Factor))
 
     @property
     def file(self) -> Path | None:

@@ -71,12 +71,15 @@ class LeftOut(NamedTuple):
         verified.
     give : str
         Path of the field of the structure that makes it count; empty if none does.
+    state : str
+        The limit state at which it does not count; empty if at none.
     """
 
     what: str
     name: str
     why: str
     give: str = ""
+    state: str = ""
 
 
 class NeighbourShare(NamedTuple):

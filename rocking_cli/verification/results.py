@@ -18,6 +18,7 @@ from rocking_cli.core.hung.attachments import RefusedFields
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.floor import Floor
+from rocking_cli.processing.listed import Scaled
 from rocking_cli.studies.conclusion import Concluded, Conclusion, LeftOut, worst
 
 Standing = Literal["print", "transcription", "code", "ours", "plain"]
@@ -582,8 +583,8 @@ class Histories:
 
     Parameters
     ----------
-    motions : sequence of GroundMotion
-        The scaled records. If the site has a floor, ground motions are converted to motions of this floor.
+    records : sequence of Scaled
+        The records of one set. If the site has a floor, ground motions are converted to motions of this floor.
     signs : sequence of int
         The polarities: 1, -1 or both.
     state : str, optional
@@ -592,13 +593,21 @@ class Histories:
         Whether the motions are those of the floor of the site, and not of the ground.
     progress : callable
         Called with 1 after each record.
+    refused : sequence of str
+        Names of records of the set that could not be used.
     """
 
-    motions: Sequence[GroundMotion]
+    records: Sequence[Scaled]
     signs: Sequence[int] = (1,)
     state: str | None = None
     on_floor: bool = False
     progress: Callable[[int], object] = int
+    refused: Sequence[str] = ()
+
+    @cached_property
+    def motions(self) -> Sequence[GroundMotion]:
+        """The scaled records."""
+        return [each.motion.scaled(each.factor) for each in self.records]
 
 
 def where_it_stands(histories: Histories, floor: Floor | None) -> tuple[MotionPlace, Sequence[GroundMotion]]:

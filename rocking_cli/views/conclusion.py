@@ -70,8 +70,10 @@ def uncounted_ties(end: Conclusion, say: Language = ENGLISH) -> list[str]:
 
 def not_counted(left_out: Sequence[LeftOut], say: Language = ENGLISH) -> list[str]:
     """Return a sentence for each reason for which something does not count, in a language."""
-    of = {why: [each.name for each in left_out if each.why == why] for why in (each.why for each in left_out)}
-    return [say(f"end_{why}", names=", ".join(names)) for why, names in of.items()]
+    of: dict[tuple[str, str], list[str]] = {}
+    for each in left_out:
+        of.setdefault((each.why, each.state), []).append(each.name)
+    return [say(f"end_{why}", names=", ".join(names), state=state) for (why, state), names in of.items()]
 
 
 def _governs(end: Conclusion, say: Language, method: str) -> str:

@@ -171,7 +171,7 @@ HISTORIES = {
         lambda found: found["motions"][0]["unknown"][-1] == 1 and found["motions"][0]["levels"]["50"]["first"] is None
     ),
     "verify A --site site.yaml --record R --sheet sheet.html": lambda found: all(
-        side["dynamic"][FC]["unknown"] == [R]
+        side["dynamic"]["SLV"][FC]["unknown"] == [R]
         for side in found["directions"].values()
         for FC in ("with_FC", "without_FC")
     ),
@@ -237,7 +237,7 @@ def offences(data, at=""):
     else:
         *_, key = at.rpartition(".")
         known = key in ("outcome", "headline") and data in KNOWN
-        if known or (key == "overturned" and data is False) or (data is True and (".holds." in at or key == "passes")):
+        if known or (key == "overturned" and data is False) or (data is True and key in ("holds", "passes")):
             yield f"{at} = {data}"
 
 

@@ -125,7 +125,7 @@ def test_an_elastic_tie_is_named_in_the_conclusion(pillar, tmp_path):
     (tmp_path / "pillar.yaml").write_text(yaml.safe_dump(tied), encoding="utf-8")
     data = run_json("verify", *asked)
     assert data["conclusion"]["left_out"] == [
-        {"what": "tie", "name": "bar", "why": "elastic", "give": "ties.bar.steel"}
+        {"what": "tie", "name": "bar", "why": "elastic", "give": "ties.bar.steel", "state": ""}
     ]
     said = "Not counted: bar, because an elastic tie has no strength: give its `steel` or `yield`, so that it counts."
     assert " ".join(run("verify", *asked).stdout.split()).startswith(said)

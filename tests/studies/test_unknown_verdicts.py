@@ -199,7 +199,7 @@ class TestVerification:
         known = None if with_FC is not None else d, None if without is not None else d
         records = [RecordPeak("one", d, d), RecordPeak("two", *known, with_FC, without)]
         unchecked = None if checked else "give spacing and beam_depth"
-        return Dynamic(records, 0.25, {state: {"SLV": 0.1, "SLC": 0.15}[state]}, 7, unchecked=unchecked)
+        return Dynamic(state, records, 0.25, {"SLV": 0.1, "SLC": 0.15}[state], 7, unchecked=unchecked)
 
     @pytest.mark.parametrize("state", ["SLV", "SLC"])
     @pytest.mark.parametrize("confident", [True, False])
@@ -208,7 +208,7 @@ class TestVerification:
         for variant in (True, False):
             passes = variant is not confident
             assert found.mean(confident=variant) == (0.01 if passes else None)
-            assert found.holds(state, confident=variant) == passes
+            assert found.holds(confident=variant) == passes
             assert found.passed(confident=variant) == []  # nor is it known to pass d0*
             assert found.unknown(confident=variant) == ([] if passes else ["two"])
         _, _, _, one, other, changes, _ = sheets.items(ENGLISH, found, 1.2)
@@ -218,7 +218,7 @@ class TestVerification:
 
     def test_what_is_not_checked_passes_with_a_caution(self):
         found = self.made(checked=False)
-        assert found.holds("SLV", confident=True)
+        assert found.holds(confident=True)
         assert any("the joints of this mechanism are not checked" in getattr(item, "text", "")
                    for item in sheets.items(ENGLISH, found, 1.2))  # fmt: skip
 
@@ -231,22 +231,23 @@ class TestVerification:
     def test_the_sheet_says_so_for_each_state(self, language, cell, verdict, state):
         found = self.made(with_FC=3.5, checked=False, state=state)
         _, _, grid, *said = sheets.items(SHEET.language(language), found, 1.2)
-        assert grid.rows[1][1:] == [cell, "0,01" if language == "it" else "0.01"]
+        assert grid.rows[1][2:] == [cell, "0,01" if language == "it" else "0.01"]
         failed = [item.text for item in said if verdict in item.text]
         assert len(failed) == 1 and state in failed[0]
 
     def test_a_direction_that_a_polarity_overturns_is_known(self):
         falls = SimpleNamespace(fell=True, fell_to=1, unknown=False, peak_positive=nan, peak_negative=0.01)
         open_ = SimpleNamespace(fell=False, fell_to=0, unknown=True, known_to=2.0, peak_positive=0.0, peak_negative=0.1)
-        curve = SimpleNamespace(displacement_at=lambda phi: 2 * phi, end=1.0, d0=1.5)
-        assert dynamic._largest(curve, Direction.POSITIVE, [falls, open_]) == (None, None)
-        assert dynamic._largest(curve, Direction.NEGATIVE, [falls, open_]) == (None, 2.0)
-        assert dynamic._largest(curve, Direction.NEGATIVE, [falls]) == (0.02, None)
+        chain = SimpleNamespace(displacement=lambda phi, control: 2 * phi)
+        curve = SimpleNamespace(chain=chain, control=None, end=1.0, d0=1.5)
+        assert dynamic._largest(curve, Direction.POSITIVE, [falls, open_]) == (None, None, None)
+        assert dynamic._largest(curve, Direction.NEGATIVE, [falls, open_]) == (None, 2.0, None)
+        assert dynamic._largest(curve, Direction.NEGATIVE, [falls]) == (0.02, None, falls)
 
     def test_times_with_FC_are_those_of_the_record(self, folder):
         """With FC the motion is simulated 1.1 times as quick: the moment is given as one of the record."""
         found = run_json("verify", folder / "arch.yaml", "--site", folder / "site.yaml", *PULSE)
-        (record,) = found["directions"]["positive"]["dynamic"]["records"]
+        (record,) = found["directions"]["positive"]["dynamic"]["SLV"]["records"]
         assert record["d_with_FC"] is record["d_without_FC"] is None
         assert (
             0.9 < record["known_to_with_FC"] / record["known_to_without_FC"] < 1

@@ -11,6 +11,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import sqrt
 
+import numpy as np
+
+from rocking_cli.arrays import Reals
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.results import Dynamic, ItalianVerification, RecordPeak
 from rocking_cli.codes.italian.site import ItalianSite, floor_at
@@ -20,7 +23,6 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import follow
-from rocking_cli.text import did_you_mean
 from rocking_cli.verification.results import Histories, where_it_stands
 
 MIN_RECORDS_FOR_MEAN = 7
@@ -66,10 +68,10 @@ def peaks(
     }
     of_direction = {}
     for direction, curve in curves.items():
-        d, known_to = _largest(curve, direction, histories)
-        d_FC, known_to_FC = _largest(curve, direction, weaker[curve.confidence])
+        d, known_to, _ = _largest(curve, direction, histories)
+        d_FC, known_to_FC, history = _largest(curve, direction, weaker[curve.confidence])
         slow = None if known_to_FC is None else sqrt(curve.confidence) * known_to_FC
-        of_direction[direction] = RecordPeak(motion.name, d_FC, d, slow, known_to)
+        of_direction[direction] = RecordPeak(motion.name, d_FC, d, slow, known_to, history=history)
     return of_direction
 
 
@@ -86,20 +88,17 @@ def with_histories(
     for motion in moved:
         every.append(peaks(taken, curves, motion, histories.signs))
         histories.progress(1)
-    directions = {
-        direction: replace(
-            each,
-            dynamic=Dynamic(
-                [peak[direction] for peak in every],
-                each.d0,
-                {state: each.states[state].d},
-                MIN_RECORDS_FOR_MEAN,
-                unchecked=unchecked,
-                motions=what,
-            ),
-        )
-        for direction, each in verification.directions.items()
-    }
+    directions = {}
+    for direction, each in verification.directions.items():
+        records = [
+            replace(peak[direction], scale_factor=one.scale_factor)
+            for peak, one in zip(every, histories.records, strict=True)
+        ]
+        of_state = Dynamic(
+            state, records, each.d0, each.states[state].d, MIN_RECORDS_FOR_MEAN, unchecked, what, histories.motions,
+            histories.refused,
+        )  # fmt: skip
+        directions[direction] = replace(each, dynamic={**each.dynamic, state: of_state})
     return replace(verification, directions=directions)
 
 
@@ -109,7 +108,7 @@ def _state_of_records(verification: ItalianVerification, state: str | None) -> s
         return verification.first
     states = next(iter(verification.directions.values())).states
     if state not in states:
-        hint = did_you_mean(state, list(states)) or f"give one of {', '.join(states)}"
+        hint = f"time histories verify {' or '.join(states)}"
         raise InputError(Problem(f"{state!r} is not a limit state of displacement", field="`state`", hint=hint))
     if states[state].demand is None:
         hint = f"give {state} in the site file: the records must match its spectrum"
@@ -119,16 +118,31 @@ def _state_of_records(verification: ItalianVerification, state: str | None) -> s
 
 def _largest(
     curve: ExactCurve, direction: Direction, histories: Sequence[History]
-) -> tuple[float | None, float | None]:
-    """Return the largest d of several histories in a direction [m], and until when they are known [s], or None.
+) -> tuple[float | None, float | None, History | None]:
+    """Return the largest d of several histories in a direction [m], until when they are known [s], and its history.
 
     There is no d if a history overturned in this direction, or has an unknown outcome.
     """
     if any(history.fell and history.fell_to == direction for history in histories):
-        return None, None
+        return None, None, None
     unknown = [history.known_to for history in histories if history.unknown]
     if unknown:
-        return None, min(unknown)
-    phi = max(history.peak_positive if direction > 0 else history.peak_negative for history in histories)
-    d = curve.displacement_at(phi)
-    return max(d, curve.d0) if phi >= curve.end else d, None  # the control point may move back
+        return None, min(unknown), None
+    rotations = [history.peak_positive if direction > 0 else history.peak_negative for history in histories]
+    phi = max(rotations)
+    return float(displacement(curve, np.array([phi]))[0]), None, histories[rotations.index(phi)]
+
+
+def displacement(curve: ExactCurve, phi: Reals) -> Reals:
+    """Return d at rotations, shape (n,) [m]; where the control point may move back, past d0*, at least d0*."""
+    d = curve.chain.displacement(phi, curve.control)
+    return np.where(phi >= curve.end, np.maximum(d, curve.d0), d)
+
+
+def displacement_history(curve: ExactCurve, direction: Direction, history: History) -> tuple[Reals, Reals]:
+    """Return the times of a history with FC [s], as those of the record, and d in a direction [m], shape (n,) each.
+
+    d is 0 while the structure rocks in the other direction; samples after it overturns there are left out.
+    """
+    phi = direction * history.phi[np.isfinite(history.phi)]
+    return sqrt(curve.confidence) * history.time[: len(phi)], displacement(curve, np.maximum(phi, 0.0))

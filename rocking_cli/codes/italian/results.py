@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf, isclose
+from typing import TYPE_CHECKING
 
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
@@ -13,6 +14,10 @@ from rocking_cli.core import Direction
 from rocking_cli.studies.conclusion import SEVERITY, Concluded, Conclusion, LeftOut, worst
 from rocking_cli.verification import results as frame
 from rocking_cli.verification.results import CAPACITY_TOLERANCE, MotionPlace, Requirement
+
+if TYPE_CHECKING:
+    from rocking_cli.dynamics.history import History
+    from rocking_cli.excitation.base import GroundMotion
 
 HISTORIES = "histories"
 """The key of the method by time histories in a conclusion."""
@@ -94,6 +99,10 @@ class RecordPeak:
         The peak displacement [m]; None if the structure overturned, or the outcome is unknown.
     known_to_with_confidence, known_to_without : float or None
         Time until which the history is known [s]; None if all of it is known.
+    scale_factor : float
+        Factor on the accelerations of the file.
+    history : History, optional
+        The history with FC that has the peak `with_confidence`, in the time of `dynamic.with_confidence`.
     """
 
     name: str
@@ -101,6 +110,8 @@ class RecordPeak:
     without: float | None
     known_to_with_confidence: float | None = None
     known_to_without: float | None = None
+    scale_factor: float = 1.0
+    history: History | None = field(default=None, compare=False)
 
     def peak(self, *, confident: bool) -> float | None:
         """Return the peak displacement with FC, or without [m]."""
@@ -113,30 +124,39 @@ class RecordPeak:
 
 @dataclass(frozen=True)
 class Dynamic:
-    """Results of the time histories in one direction.
+    """Results of the time histories in one direction, under the set of records of one limit state.
 
     Parameters
     ----------
+    state : str
+        The limit state to which the records belong.
     records : sequence of RecordPeak
         Peak displacements under each record.
     d0 : float
         Displacement d0* that no record may exceed [m].
-    allowed : mapping of str to float
-        The displacement that the mean may reach at the limit state to which the records belong [m].
+    allowed : float
+        The displacement that the mean may reach at the limit state [m].
     enough : int
         Number of records that the code requires.
     unchecked : str, optional
         Why the joints of the structure are not checked, see `Mechanism.unchecked`; then no outcome is unknown.
     motions : MotionPlace
         Kind of the motions: of the ground or of a floor.
+    scaled : sequence of GroundMotion
+        The scaled records as given, before they are carried to a floor of the site.
+    refused : sequence of str
+        Names of the records of the set that could not be used, and do not count.
     """
 
+    state: str
     records: Sequence[RecordPeak]
     d0: float
-    allowed: Mapping[str, float]
+    allowed: float
     enough: int
     unchecked: str | None = None
     motions: MotionPlace = field(default_factory=MotionPlace)
+    scaled: Sequence[GroundMotion] = ()
+    refused: Sequence[str] = ()
 
     @property
     def checked(self) -> bool:
@@ -153,6 +173,16 @@ class Dynamic:
         """Return the peak displacement under each record [m]."""
         return [each.peak(confident=confident) for each in self.records]
 
+    def largest(self, *, confident: bool) -> float | None:
+        """Return the largest known peak [m], of the records that do not overturn the structure; None without one."""
+        return max((d for d in self.peaks(confident=confident) if d is not None), default=None)
+
+    @property
+    def drawn(self) -> RecordPeak | None:
+        """The record with the largest known peak with FC, whose history is drawn; None if no such peak is known."""
+        known = [each for each in self.records if each.with_confidence is not None]
+        return max(known, key=lambda each: each.with_confidence or 0.0, default=None)
+
     def passed(self, *, confident: bool) -> list[str]:
         """Return the names of the records that exceed d0* or overturn the structure."""
         known = [each for each in self.records if each.known_to(confident=confident) is None]
@@ -168,24 +198,24 @@ class Dynamic:
         """Whether the code requires more records before their mean may be used."""
         return len(self.records) < self.enough
 
-    def checks(self) -> list[Requirement]:
-        """Return the requirements on the mean of the histories with FC; none if the code requires more histories."""
-        names, requirements = [each.name for each in self.records], []
-        for state, allowed in () if self.too_few else self.allowed.items():
-            mean, past = self.mean(confident=True), self.passed(confident=True)
-            if past or (mean is not None and not self.holds(state, confident=True)):
-                concluded = Concluded.NOT_SATISFIED
-            else:
-                concluded = Concluded.UNKNOWN if mean is None else Concluded.SATISFIED
-            ratio = None if mean is None else allowed / mean if mean else inf
-            motion = next(iter(past + self.unknown(confident=True)), "")
-            requirements.append(Requirement(state, HISTORIES, ratio, concluded, names, motion))
-        return requirements
+    @property
+    def requirement(self) -> Requirement | None:
+        """The requirement on the mean of the histories with FC; None if the code requires more histories."""
+        if self.too_few:
+            return None
+        mean, past = self.mean(confident=True), self.passed(confident=True)
+        if past or (mean is not None and not self.holds(confident=True)):
+            concluded = Concluded.NOT_SATISFIED
+        else:
+            concluded = Concluded.UNKNOWN if mean is None else Concluded.SATISFIED
+        ratio = None if mean is None else self.allowed / mean if mean else inf
+        motion = next(iter(past + self.unknown(confident=True)), "")
+        return Requirement(self.state, HISTORIES, ratio, concluded, [each.name for each in self.records], motion)
 
-    def holds(self, state: str, *, confident: bool) -> bool:
-        """Return whether the mean passes at a limit state; with an unknown outcome it does not."""
+    def holds(self, *, confident: bool) -> bool:
+        """Return whether the mean passes; with an unknown outcome it does not."""
         mean = self.mean(confident=confident)
-        return mean is not None and mean <= self.allowed[state]
+        return mean is not None and mean <= self.allowed
 
 
 @dataclass(frozen=True, eq=False)
@@ -208,8 +238,8 @@ class ItalianVerified(frame.Verified):
         The method that governs at each limit state; `governs` is that at the first one.
     T0 : float, optional
         Period of an element that vibrates before it rocks [s].
-    dynamic : Dynamic, optional
-        Results of time histories.
+    dynamic : mapping of str to Dynamic
+        Results of time histories, by the limit state to which each set of records belongs; empty without records.
     """
 
     methods: Mapping[str, ItalianMethod]
@@ -224,7 +254,7 @@ class ItalianVerified(frame.Verified):
     straight_methods: Mapping[str, ItalianMethod]
     governing: Mapping[str, str]
     T0: float | None = None
-    dynamic: Dynamic | None = None
+    dynamic: Mapping[str, Dynamic] = field(default_factory=dict)
 
     @property
     def zeta_E(self) -> float | None:
@@ -277,7 +307,7 @@ class ItalianVerified(frame.Verified):
     @property
     def checks(self) -> Sequence[Requirement]:
         """Requirements at the limit states that the site gives; those of time histories if these suffice, or fail."""
-        return [*self._static, *([] if self.dynamic is None else self.dynamic.checks())]
+        return [*self._static, *filter(None, (each.requirement for each in self.dynamic.values()))]
 
     @property
     def _static(self) -> list[Requirement]:
@@ -301,9 +331,7 @@ class ItalianVerified(frame.Verified):
         assert isinstance(other, ItalianVerified)  # all directions are verified by the same code
         pairs = [(self.a0, other.a0), (self.d0, other.d0), (self.chain.e_star, other.chain.e_star)]
         pairs += [(self.states[key].a, other.states[key].a) for key in self.states]
-        return (
-            self.dynamic is None and other.dynamic is None and all(isclose(a, b, rel_tol=SAME_RATIO) for a, b in pairs)
-        )
+        return not (self.dynamic or other.dynamic) and all(isclose(a, b, rel_tol=SAME_RATIO) for a, b in pairs)
 
 
 @dataclass(frozen=True, eq=False)
@@ -324,10 +352,11 @@ class ItalianVerification(frame.Verification):
     @property
     def conclusion(self) -> Conclusion:
         """The check that governs, with the records that are too few to count, and which of them exceed capacity."""
-        conclusion, why = super().conclusion, dict[str, str]()
-        for each in self.directions.values():
-            if each.dynamic is not None and each.dynamic.too_few:
-                past = each.dynamic.passed(confident=True)
-                for record in each.dynamic.records:
-                    why[record.name] = "too_few_and_past" if record.name in past else why.get(record.name, "too_few")
-        return replace(conclusion, left_out=[*conclusion.left_out, *(LeftOut("motion", *pair) for pair in why.items())])
+        conclusion, why = super().conclusion, dict[tuple[str, str], str]()
+        for each in (one for side in self.directions.values() for one in side.dynamic.values() if one.too_few):
+            past = each.passed(confident=True)
+            for record in each.records:
+                key = each.state, record.name
+                why[key] = "too_few_and_past" if record.name in past else why.get(key, "too_few")
+        uncounted = [LeftOut("motion", name, reason, state=state) for (state, name), reason in why.items()]
+        return replace(conclusion, left_out=[*conclusion.left_out, *uncounted])

@@ -19,6 +19,7 @@ from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, OF_STATE
 from rocking_cli.codes.italian.sheet import dynamic
 from rocking_cli.codes.italian.sheet.steps import STATE_OF_METHOD, TERMINAL, ties
 from rocking_cli.codes.italian.sheet.summary import METHOD_NAMES, comparison, methods, verdicts
+from rocking_cli.studies.conclusion import Concluded
 from rocking_cli.verification.results import in_plain
 from rocking_cli.views.column import Column, frame_of, of
 from rocking_cli.views.conclusion import digits_beside_one, headline
@@ -41,6 +42,7 @@ COLUMNS: Sequence[Column[MethodRow]] = (
 OTHER_ROLES = {DAMAGE: "not required", LINEAR: "comparison"}
 """Roles of the methods that decide at no limit state, by their kind: rocking may start before SLV and SLC."""
 IN_SHORT = replace(TERMINAL, own={**TERMINAL.own, **texts_of("rocking_cli.codes.italian", "en_in_short")})
+OUTCOMES = {Concluded.SATISFIED: "passes", Concluded.NOT_SATISFIED: "fails", Concluded.UNKNOWN: "unknown"}
 OF_SITE = [
     in_plain(each.symbol.format(at="T_[0]"))
     for each in (
@@ -63,8 +65,8 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
         yield from methods(TERMINAL, where, each)
         yield from verdicts(TERMINAL, where, each)
         yield from map(TERMINAL, [*differences(each, found.first), *each.remarks])
-        if each.dynamic is not None:
-            for item in dynamic.items(TERMINAL, each.dynamic, each.exact.confidence):
+        for of_state in each.dynamic.values():
+            for item in dynamic.items(TERMINAL, of_state, each.exact.confidence):
                 yield item.text if isinstance(item, Sentence) else item
 
     def in_short(self, found: ItalianVerification, each: ItalianVerified, where: str) -> Iterable[Table | str]:
@@ -74,10 +76,12 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
         verified = {state: at for state, at in each.states.items() if at.demand is not None}
         yield from ties(IN_SHORT, each.exact, verified)
         texts = list(map(IN_SHORT, differences(each, found.first)))
-        if each.dynamic is not None:
-            items = dynamic.items(IN_SHORT, each.dynamic, each.exact.confidence)
+        for of_state in each.dynamic.values():
+            items = dynamic.items(IN_SHORT, of_state, each.exact.confidence)
             texts += [item.text for item in items if isinstance(item, Sentence)]
-        yield from (f"{where}: {text}" for text in texts if text)
+        if each.dynamic:
+            yield _histories_in_short(each, where)
+        yield from (f"{where}: {text}" for text in dict.fromkeys(texts) if text)
 
     def compared(self, found: ItalianVerification, strengthened: ItalianVerification) -> Iterable[Table]:
         """Return the capacity of the existing structure and of the strengthened one, side by side."""
@@ -155,6 +159,17 @@ def _states_in_short(each: ItalianVerified, where: str) -> list[Table]:
     return [Table(f"{where}: displacement d [m] at limit states", heads, rows, range(1, 5))] if rows else []
 
 
+def _histories_in_short(each: ItalianVerified, where: str) -> Table:
+    """Return a table of the time histories with FC at each limit state that has records."""
+    rows = []
+    for state, at in each.dynamic.items():
+        numbers = (at.allowed, at.mean(confident=True), at.largest(confident=True))
+        outcome = "too few" if at.requirement is None else OUTCOMES[at.requirement.concluded]
+        rows.append([state, str(len(at.records)), *(number(value, 4) for value in numbers), outcome])
+    heads = ["", "records", "capacity", "mean", "largest\nknown", ""]
+    return Table(f"{where}: peak d [m] in time histories with FC", heads, rows, range(1, 5))
+
+
 def _ratio(ratio: float | None) -> str:
     return number(ratio, 4 if ratio is None else max(4, digits_beside_one(ratio)))
 
@@ -179,7 +194,7 @@ def _data(each: ItalianVerified) -> dict[str, Any]:
         "a_g": {key: method.a_g for key, method in each.methods.items() if key != "SLD"},
         "zeta": {key: method.zeta for key, method in each.methods.items()},
         "governs": each.governs,
-        "dynamic": _histories(each.dynamic) if each.dynamic is not None else None,
+        "dynamic": {state: _histories(at) for state, at in each.dynamic.items()},
         **({"return_period": periods} if periods else {}),
     }
 
@@ -209,18 +224,21 @@ def _histories(dynamic: Dynamic) -> dict[str, Any]:
     def of(confident: bool) -> dict[str, Any]:
         return {
             "mean": dynamic.mean(confident=confident),
+            "largest_known": dynamic.largest(confident=confident),
             "past_d0": dynamic.passed(confident=confident),
             "unknown": dynamic.unknown(confident=confident) if dynamic.checked else None,
-            "holds": {state: dynamic.holds(state, confident=confident) for state in dynamic.allowed},
+            "holds": dynamic.holds(confident=confident),
         }
 
     return {
-        "state": next(iter(dynamic.allowed)),
+        "capacity": dynamic.allowed,
+        "concluded": None if dynamic.requirement is None else dynamic.requirement.concluded,
         "motions": dynamic.motions.kind,
         "floor": dynamic.motions.floor,
         "records": [
             {
                 "name": each.name,
+                "scale_factor": each.scale_factor,
                 "d_with_FC": each.with_confidence,
                 "d_without_FC": each.without,
                 "known_to_with_FC": each.known_to_with_confidence,
@@ -228,6 +246,7 @@ def _histories(dynamic: Dynamic) -> dict[str, Any]:
             }
             for each in dynamic.records
         ],
+        "refused": list(dynamic.refused),
         "wanted": dynamic.enough,
         "with_FC": of(True),
         "without_FC": of(False),

@@ -28,7 +28,10 @@ from rocking_cli.questions.verify import heads
     "--verify", type=click.Path(), metavar="SITE.yaml", shell_complete=complete.files,
     help="Site file of a verification by code that becomes part of the report.",
 )  # fmt: skip
-@options.state
+@click.option(
+    "--state", metavar="STATE",
+    help="Limit state to which the records belong, such as SLC, if the site gives it.  [default: that of the verdict]",
+)  # fmt: skip
 @options.on_floor
 @options.around
 @options.opening

@@ -149,7 +149,7 @@ def report(
     chosen = requested.gather(ready.growth, watch) if requested else []
     verified = None
     if verify is not None and site is not None:
-        histories = Histories([each.motion.scaled(each.factor) for each in chosen], signs, state, on_floor)
+        histories = Histories(chosen, signs, state, on_floor, refused=requested.refused(chosen))
         verified = _verified(ready, site, verify, chosen, histories, title, source)
     with watch.progress(count_steps(chosen), "parts of the report") as advance:
         content = gather(ready, source.structure, chosen, signs, around=around, title=title, progress=advance)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rocking_cli.cli import terminal
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.processing.listed import LIST_FILE
 from rocking_cli.text import numbered, one_line
 
 if TYPE_CHECKING:
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from rocking_cli.processing.reading import Reading
     from rocking_cli.questions.select.view import ShownSet
 
-LIST_FILE = "set.yaml"
 OVERWRITE_HINT = "move it, or name another folder"
 LIST_HEADER = "# A set of records, chosen by rocking select."
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -14,6 +14,9 @@ from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import Parsed, number
 from rocking_cli.questions.verify import heads
 
+if TYPE_CHECKING:
+    from rocking_cli.ask.ground_motions import Motions
+
 
 def _point(text: str) -> tuple[float, float, str | None]:
     """Return a point x,y of a body, or x,y,body."""
@@ -23,6 +26,24 @@ def _point(text: str) -> tuple[float, float, str | None]:
         return number(x), number(y), body.strip() or None
     except ValueError:
         raise ValueError(f"{text!r} is not a valid point: give x,y in m, or x,y,BODY, such as 0.3,8.0") from None
+
+
+def _given(asked: GroundMotions, states: tuple[str, ...], sets: tuple[str, ...]) -> Motions | dict[str, Motions]:
+    """Return the set of records of each state; those of `--record` and `--pulse` if there is no `--set`."""
+    if not sets:
+        if len(states) > 1:
+            raise click.UsageError(f"--state is given {len(states)} times: give the records of each state with --set.")
+        asked.check()
+        return asked.motions
+    if asked:
+        hint = "give all records of a state as one set"
+        raise click.UsageError(f"--set cannot be combined with --record or --pulse: {hint}.")
+    if len(states) != len(sets):
+        counts = f"--state is given for {len(states)}, and --set for {len(sets)}"
+        raise click.UsageError(f"{counts} of the limit states: give a --state for each --set, in the same order.")
+    if twice := [state for k, state in enumerate(states) if state in states[:k]]:
+        raise click.UsageError(f"--state {twice[0]} is given twice: give all its records as one set.")
+    return {state: asked.of(Path(place)) for state, place in zip(states, sets, strict=True)}
 
 
 @click.command(cls=Command, short_help="Verify a masonry mechanism by a code, such as NTC 2018.")
@@ -39,7 +60,23 @@ def _point(text: str) -> tuple[float, float, str | None]:
 @options.reading
 @options.scaling("1", "-1", "both")
 @options.opening
-@options.state
+@click.option(
+    "--state",
+    "states",
+    multiple=True,
+    metavar="STATE",
+    help="Limit state to which the records belong, such as SLC, if the site gives it. Repeatable with --set.  "
+    "[default: that of the verdict]",
+)
+@click.option(
+    "--set",
+    "sets",
+    multiple=True,
+    metavar="PLACE",
+    shell_complete=complete.files,
+    help="Records of the --state at the same place in the order: a folder or list that `rocking select` wrote, a file, "
+    "or a quoted pattern. Repeatable.",
+)
 @options.on_floor
 @options.plot("Plot the capacity curves")
 @click.option(
@@ -54,6 +91,8 @@ def command(
     file: str | Path,
     site: str,
     asked: GroundMotions,
+    states: tuple[str, ...],
+    sets: tuple[str, ...],
     sheet: Path | None,
     output: Output,
     in_full: bool,
@@ -69,9 +108,10 @@ def command(
     With --record (repeatable), the dynamic method is added: time histories on the capacity curve, with and without the
     confidence factor; with --polarity both, the worse of the two polarities governs. A record whose outcome is unknown,
     because a joint opens or slides that the model keeps closed, does not pass. A set of records belongs to one limit
-    state, given by --state, and is checked against it alone. If the site has a floor, ground motions are carried to
+    state, given by --state, and is checked against it alone. For several limit states, give each its own set, as
+    --state SLV --set PLACE --state SLC --set PLACE. If the site has a floor, ground motions are carried to
     it, unless --on-floor states that they are motions of the floor. Whether the records match the spectrum of the site
-    is not checked. --sheet writes the calculation sheet for submission: every formula with its
+    is not checked; the sheet draws both. --sheet writes the calculation sheet for submission: every formula with its
     numbers, in English or Italian.
 
     Without FILE, the command uses rocking.yaml of this folder, or else a block of 0.7 m x 2.8 m.
@@ -84,21 +124,23 @@ def command(
       rocking verify block.yaml --site site.yaml --sheet block.html --language it
       rocking verify block.yaml --site site.yaml --control 0.35,2.8
       rocking verify block.yaml --site site.yaml --record "records/*.AT2" --target-pga 0.24
+      rocking verify block.yaml --site site.yaml --state SLV --set slv --state SLC --set slc
     """
-    asked.check()
+    given = _given(asked, states, sets)
     from rocking_cli.io.files import keep_apart
     from rocking_cli.questions.verify.verb import verify
 
     if sheet is None:
         as_declared(question, *heads.HEAD_OPTIONS)
-    motions = asked.motions
-    read = [file, site, question["logo"], *(str(each.path) for each in motions.records)]
+    every = given if isinstance(given, dict) else {"": given}
+    read = [file, site, question["logo"], *(str(one.path) for each in every.values() for one in each.records)]
     keep_apart([("--plot", output.plot), ("--sheet", sheet)], read)
     every_step = terminal.asked("verbose")
     in_short = not (in_full or every_step)
     answer = verify(
-        file, site, motions=motions, polarity=asked.polarity, sheet=sheet, every_step=every_step,
-        in_short=in_short, origin=heads.command_line(ctx), watch=output.watch, **question,
+        file, site, motions=given, polarity=asked.polarity, state=states[0] if states and not sets else None,
+        sheet=sheet, every_step=every_step, in_short=in_short, origin=heads.command_line(ctx), watch=output.watch,
+        **question,
     )  # fmt: skip
     output.show(answer)
     if in_short and not output.as_json:

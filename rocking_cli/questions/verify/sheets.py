@@ -80,7 +80,7 @@ def sheet_for(
         of_site = File(str(given), original(given))
     else:
         of_site = File("site", json_text(given).encode())
-    records = {each.motion.name: file_of_motion(each) for each in motions}
+    records = {str(each.file or each.motion.name): file_of_motion(each) for each in motions}
     sources = SheetSources(origin.structure, of_site, records, versions(found.mechanism), origin.strengthened)
     return sheet(found, site, Language(language), title, sources)
 

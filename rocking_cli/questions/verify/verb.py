@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
-from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
+from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, each_of, signs_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.errors import InputError
+from rocking_cli.errors import InputError, Problem
 from rocking_cli.names import OPENING
 from rocking_cli.verification.results import Verification
 
@@ -22,13 +22,17 @@ if TYPE_CHECKING:
     from rocking_cli.processing.listed import Scaled
 
 
+MotionSet = Motion | Motions | Sequence[Motion]
+"""Ground motions of one limit state."""
+
+
 @takes_numbers
 def verify(
     structure: StructureLike,
     site: SiteLike,
     *,
     control: tuple[float, float] | tuple[float, float, str | None] | None = None,
-    motions: Motion | Motions | Sequence[Motion] = (),
+    motions: MotionSet | Mapping[str, MotionSet] = (),
     polarity: str | int = "1",
     state: str | None = None,
     on_floor: bool = False,
@@ -55,12 +59,14 @@ def verify(
         Fields of a site file, or the file.
     control : tuple, optional
         Control point x, y [m], and the body it is on; by default the centroid of the moving weights.
-    motions : GroundMotion, Pulse, str or Path, or a sequence of these
+    motions : GroundMotion, Pulse, str or Path, or a sequence of these; or a mapping of str to these
         Motions of the dynamic method: records that match the spectrum of the site. An unknown outcome does not pass.
+        A mapping has a set for each limit state, such as `{"SLV": "slv/set.yaml", "SLC": "slc/set.yaml"}`.
     polarity : {"1", "-1", "both"}
         Polarity of the motions: as given, reversed, or both, of which the worse governs.
     state : str, optional
-        Limit state to which the motions belong, such as `"SLC"`; by default SLV. They are checked against it alone.
+        Limit state to which a single set of motions belongs, such as `"SLC"`; by default SLV. A set is checked against
+        its limit state alone.
     on_floor : bool
         Whether the motions are those of the floor of the site; if not, ground motions are carried to it.
     opening : float
@@ -109,7 +115,8 @@ def verify(
     from rocking_cli.verification.results import Histories, control_at
     from rocking_cli.views.verification import table, view
 
-    signs, requested, known = signs_of(polarity), Motions.of(motions, options), site_of(site)
+    signs, known = signs_of(polarity), site_of(site)
+    requested = _sets(motions, state, options)
     if not requested and (state is not None or on_floor):
         raise InputError("`state` and `on_floor` describe records: give `motions`")
     if not requested and signs != (1,):
@@ -128,12 +135,16 @@ def verify(
     verification = study(ready, known, None if control is None else control_at(ready.mechanism, *control))
     chosen: list[Scaled] = []
     if requested:
-        chosen = requested.gather(ready.growth, watch)
+        sets: dict[str | None, list[Scaled]] = {}
+        for key, given in requested.items():
+            if isinstance(motions, Mapping):
+                watch.note(f"records of {key}:")
+            sets[key] = given.gather(ready.growth, watch)
+        chosen = [one for each in sets.values() for one in each]
         with watch.progress(len(chosen), "records") as advance:
-            scaled = [each.motion.scaled(each.factor) for each in chosen]
-            verification = with_histories(
-                verification, ready, known, Histories(scaled, signs, state, on_floor, advance)
-            )
+            for key, each in sets.items():
+                histories = Histories(each, signs, key, on_floor, advance, requested[key].refused(each))
+                verification = with_histories(verification, ready, known, histories)
     if sheet is not None:
         source = sheets.SheetOrigin.of(origin or "rocking_cli.verify(...)", ready)
         title = sheets.Head(project, place, author, logo).block(source, language)
@@ -141,6 +152,22 @@ def verify(
         sheets.write(Path(sheet), content, watch)
     shown = view(verification, known.site.name, every_step=every_step, in_short=in_short)
     return Answer("verification", verification, shown, partial(table, verification), partial(_figure, verification))
+
+
+def _sets(
+    given: MotionSet | Mapping[str, MotionSet], state: str | None, options: MotionArguments
+) -> dict[str | None, Motions]:  # fmt: skip
+    """Return the set of motions of each limit state, None for the default one; empty without motions."""
+    if not isinstance(given, Mapping):
+        motions = Motions.of(given, options)
+        return {state: motions} if motions else {}
+    if state is not None:
+        hint = "leave it out"
+        raise InputError(Problem("cannot be combined with motions of each limit state", field="`state`", hint=hint))
+    empty = [key for key, each in given.items() if not isinstance(each, Motions) and not each_of(each)]
+    if empty or not given:
+        raise InputError(Problem(f"has no ground motion for {empty[0] if empty else 'any state'}", field="`motions`"))
+    return {key: Motions.of(each, options) for key, each in given.items()}
 
 
 def _figure(found: Verification) -> Figure:

@@ -30,7 +30,7 @@ class SheetSources:
     structure, site : File
         The files of the structure and of the site.
     records : mapping of str to File or None
-        File of each ground motion; None for a pulse.
+        File of each ground motion, by its path; None for a pulse, by its name.
     versions : mapping of str to str
     strengthened : File, optional
         The file of the strengthened structure, if two are compared.

@@ -24,6 +24,7 @@ STRUCTURES = [
     *(EXAMPLES / f"{name}.yaml" for name in ("arch", "block", "assembly")),
     EXAMPLES / "masonry" / "wall_of_three.yaml",  # two directions that differ
 ]
+SETS = ("--state", "SLV", "--set", EXAMPLES / "accel.csv", "--state", "SLC", "--set", EXAMPLES / "accel_transverse.csv")
 RECORDS = ("--record", EXAMPLES / "accel.csv", "--record", EXAMPLES / "accel_transverse.csv", "--polarity", "both")
 WITHOUT_HISTORIES = "tied_facade"  # its file has no `rebound`
 
@@ -34,6 +35,7 @@ def cases():
             yield pytest.param(structure, site, (), id=f"{structure.stem}-{site.stem}")
         if structure.stem != WITHOUT_HISTORIES:
             yield pytest.param(structure, SITES[0], RECORDS, id=f"{structure.stem}-records")
+            yield pytest.param(structure, SITES[0], SETS, id=f"{structure.stem}-sets")
 
 
 def on_a_line(text):
@@ -66,6 +68,10 @@ def test_it_is_short_and_has_what_decides(structure, site, more, monkeypatch):
             for name, tie in side.get("ties", {}).items():
                 numbers = [f"{tie[f'force_{state}'] / 1e3:.6g}", f"{tie[f'elongation_{state}']:.6g}"]
                 assert any(row[:-1] == (*name.split(), f"d_{state}", *numbers) for row in words)
+        for state, at in side["dynamic"].items():
+            numbers = [at["capacity"], *(at["with_FC"][key] for key in ("mean", "largest_known"))]
+            cells = ("-" if each is None else f"{each:.4g}" for each in numbers)
+            assert (state, str(len(at["records"])), *cells, "too", "few") in words
     text = on_a_line("\n".join(lines))
     assert "have them checked before you rely on a verdict" in text
     whole = on_a_line(run(*asked, "--all").stdout)
@@ -100,7 +106,8 @@ def test_every_caution_and_remark_is_in_it(structure, site):
     assert len(whole) <= said.count("Caution")
 
 
-LEFT_OUT = {"line", "as_given"}
+IN_TABLES = {"dynamic_is", "holds", "holds_not", "few", "one"}  # of the time histories
+LEFT_OUT = {"line", "as_given", *IN_TABLES}
 
 
 def test_no_other_text_is_left_out_and_each_shortens_a_longer_one_that_exists():

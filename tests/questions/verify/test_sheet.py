@@ -762,9 +762,9 @@ def test_records_are_on_the_sheet_and_a_report_has_it_all(tmp_path):
     (tmp_path / "s.yaml").write_text(FACADE, encoding="utf-8")
     files = (tmp_path / "s.yaml", "--pulse", "sine:0.09g:0.5s")
     data = run_json("verify", *files, "--site", tmp_path / "site.yaml", "--sheet", tmp_path / "o.html")
-    (record,) = data["directions"]["positive"]["dynamic"]["records"]
+    (record,) = data["directions"]["positive"]["dynamic"]["SLV"]["records"]
     words = read(tmp_path / "o.html").words
-    assert f"sine:0.09g:0.5s{record['d_with_FC']:.6g}{record['d_without_FC']:.6g}" in words
+    assert f"sine:0.09g:0.5s1{record['d_with_FC']:.6g}{record['d_without_FC']:.6g}" in words
     found = run_json(
         "report", *files, "--verify", tmp_path / "site.yaml", "--neighbours", "5", "-o", tmp_path / "r.html"
     )

@@ -87,20 +87,20 @@ ALLOWED = {"SLV": 0.12, "SLC": 0.18}
 
 def seen(*pairs, d0=0.3, state="SLV"):
     records = [RecordPeak(f"r{k}", *pair) for k, pair in enumerate(pairs)]
-    return Dynamic(records, d0, {state: ALLOWED[state]}, 7)
+    return Dynamic(state, records, d0, ALLOWED[state], 7)
 
 
 class TestVerdicts:
     def test_the_mean_counts_and_no_record_may_pass(self):
         found = seen((0.10, 0.05), (0.13, 0.05))
         assert found.mean(confident=True) == pytest.approx(0.115)
-        assert found.holds("SLV", confident=True)
+        assert found.holds(confident=True)
         past = seen((0.10, 0.05), (0.30, 0.05))
         assert past.mean(confident=True) is None and past.passed(confident=True) == ["r1"]
-        assert not past.holds("SLV", confident=True) and past.holds("SLV", confident=False)
+        assert not past.holds(confident=True) and past.holds(confident=False)
         assert seen((None, 0.1)).passed(confident=True) == ["r0"]
-        assert not seen((0.15, 0.15)).holds("SLV", confident=True)
-        assert seen((0.15, 0.15), state="SLC").holds("SLC", confident=True)
+        assert not seen((0.15, 0.15)).holds(confident=True)
+        assert seen((0.15, 0.15), state="SLC").holds(confident=True)
 
     @pytest.mark.parametrize(
         ("pairs", "state", "FC", "said"),
@@ -131,19 +131,20 @@ class TestTheCommand:
         pulses = ("--pulse", "half_sine:0.15g:0.6s", "--pulse", "half_sine:0.1g:1s")
         data = run_json("verify", "b.yaml", "--site", "site.yaml", *pulses)
         for side in data["directions"].values():
-            found = side["dynamic"]
+            found = side["dynamic"]["SLV"]
             assert len(found["records"]) == 2 and found["wanted"] == 7
             peaks = [each["d_with_FC"] for each in found["records"]]
             assert found["with_FC"]["mean"] == pytest.approx(sum(peaks) / 2)
-            assert found["with_FC"]["holds"]["SLV"] == (found["with_FC"]["mean"] <= side["states"]["SLV"]["d"])
-        negative = data["directions"]["negative"]["dynamic"]["records"]  # a push to the right tips it to the left
+            assert found["with_FC"]["holds"] == (found["with_FC"]["mean"] <= side["states"]["SLV"]["d"])
+        # A push to the right tips it to the left.
+        negative = data["directions"]["negative"]["dynamic"]["SLV"]["records"]
         assert negative[0]["d_with_FC"] > negative[0]["d_without_FC"] > 0
 
     def test_histories_have_a_table_and_a_verdict(self):
         text = run(
             "verify", "b.yaml", "--site", "site.yaml", "--pulse", "sine:2g:1.5s", "--polarity", "both", "--all"
         ).stdout
-        assert "overturns" in text and "With FC: not satisfied." in text
+        assert "overturns" in text and "With FC, SLV: not satisfied." in text
 
     def test_a_polarity_needs_a_motion(self):
         assert "--polarity reverses" in run("verify", "--site", "site.yaml", "--polarity", "-1", code=2).stderr
@@ -157,7 +158,8 @@ SLC = {"ag": 0.26, "F0": 2.5, "TC": 0.42, "S": 1.2}
 
 def dynamics(site, *motions, **options):
     found = rk.verify(PARAPET, site, motions=motions, **options)
-    return [each.dynamic for each in found.directions.values()], found
+    (state,) = {state for each in found.directions.values() for state in each.dynamic}
+    return [each.dynamic[state] for each in found.directions.values()], found
 
 
 class TestWhereAndWhen:
@@ -172,7 +174,7 @@ class TestWhereAndWhen:
         """Against motions carried by `rk.on_floor`: what hardly moves on the ground overturns on the floor."""
         pulse = rk.parse_pulse("sine:0.24g:0.45s").sampled()
         below, _ = dynamics(ON_FLOOR, accel, pulse)
-        assert all(each.holds("SLV", confident=True) for each in below)
+        assert all(each.holds(confident=True) for each in below)
         assert max(each.peaks(confident=True)[0] for each in below) < 0.003
         place = f"T1=0.4,xi=0.05,z/H={6 / 9},n=3"
         wanted, _ = dynamics(ON_FLOOR, rk.on_floor(accel, place), rk.on_floor(pulse, place))
@@ -180,10 +182,10 @@ class TestWhereAndWhen:
         assert [each.peaks(confident=True) for each in above] == [each.peaks(confident=True) for each in wanted]
         assert min(each.peaks(confident=True)[0] for each in above) > 0.04
         assert [each.peaks(confident=True)[1] is None for each in above] == [True, False]
-        assert not above[0].holds("SLV", confident=True)
+        assert not above[0].holds(confident=True)
         said = " ".join(answer.sentences)
         assert "carried to the floor by the first mode of the building: T1=0.4,xi=0.05,z/H=0.66" in said
-        found = answer.to_dict()["directions"]["positive"]["dynamic"]
+        found = answer.to_dict()["directions"]["positive"]["dynamic"]["SLV"]
         assert found["motions"] == "carried_to_floor" and found["floor"].startswith("T1=0.4,xi=0.05,z/H=0.66")
 
     def test_motions_of_the_floor_are_taken_as_they_are(self, accel):
@@ -216,9 +218,8 @@ class TestWhereAndWhen:
         for state, found in (("SLV", {}), ("SLC", {"state": "SLC"})):
             sides, answer = dynamics({**ON_FLOOR, "SLC": SLC}, accel, **found)
             data = answer.to_dict()["directions"]["positive"]["dynamic"]
-            assert data["state"] == state and list(data["with_FC"]["holds"]) == [state]
             d = answer.directions[Direction.POSITIVE].states[state].d
-            assert sides[0].allowed == {state: d}
+            assert list(data) == [state] and data[state]["capacity"] == sides[0].allowed == d
             other = {"SLV": "SLC", "SLC": "SLV"}[state]
             said = [each for each in answer.sentences if "record" in each and "d0*" in each]
             assert said and not any(other in each for each in said)
@@ -234,11 +235,11 @@ class TestWhereAndWhen:
         (tmp_path / "b.yaml").write_text("mechanism: block\nwidth: 0.3\nheight: 1.2\n", encoding="utf-8")
         asked = ("verify", tmp_path / "b.yaml", "--site", tmp_path / "s.yaml")
         found = run_json(*asked, "--pulse", "sine:0.1g:0.3s", "--sheet", tmp_path / "o.html")
-        assert found["directions"]["positive"]["dynamic"]["motions"] == "carried_to_floor"
+        assert found["directions"]["positive"]["dynamic"]["SLV"]["motions"] == "carried_to_floor"
         page = (tmp_path / "o.html").read_text(encoding="utf-8")
         assert "carried to the floor by the first mode of the building: T1=0.4" in page and "verify no other" in page
         found = run_json(*asked, "--pulse", "sine:0.1g:0.3s", "--on-floor")
-        assert found["directions"]["positive"]["dynamic"]["motions"] == "of_floor"
+        assert found["directions"]["positive"]["dynamic"]["SLV"]["motions"] == "of_floor"
         assert "--state: SLC is not given by the site" in run(*asked, "--pulse", "sine:0.1g:0.3s", "--state", "SLC",
                                                             code=2).stderr  # fmt: skip
         assert "describe records" in run(*asked, "--on-floor", code=2).stderr

@@ -10,8 +10,8 @@ from math import isclose
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.codes.italian.ground import SiteGround
-from rocking_cli.codes.italian.results import ItalianVerification
-from rocking_cli.codes.italian.sheet import site, summary
+from rocking_cli.codes.italian.results import Dynamic, ItalianVerification
+from rocking_cli.codes.italian.sheet import dynamic, site, summary
 from rocking_cli.codes.italian.sheet.chain import named
 from rocking_cli.codes.italian.sheet.steps import PACKAGE, DirectionSteps, title
 from rocking_cli.codes.italian.site import ItalianSite, of_structure
@@ -48,7 +48,7 @@ def context(say: Language, verification: ItalianVerification, site_values: Itali
         "language": say, "verification": verification, "ground": ground, "site": site, "subjects": subjects,
         "title": partial(title, say), "named": partial(named, say), "figure": partial(_figure, say, ground),
         "is_same": partial(isclose, rel_tol=SAME_MULTIPLIER),
-        "has_histories": verification.deciding.dynamic is not None,
+        "dynamic": dynamic,
         "program": {
             "licence": metadata("rocking-cli")["License-Expression"], "python": platform.python_version(),
             "system": platform.platform(terse=True),
@@ -65,18 +65,25 @@ def _subject(say: Language, found: ItalianVerification, site_values: ItalianSite
     both = say("Both directions") if len(found.distinct) < len(found.directions) else ""
     of = say(OF_STRUCTURE[state])
     sides = [
-        DirectionSteps(ground, each, f"{both or say(DIRECTION_TITLES[each.direction])}{of}", say, state)
+        DirectionSteps(ground, each, f"{both or say(DIRECTION_TITLES[each.direction])}{of}", state)
         for each in found.distinct
     ]
     return {"state": state, "verification": found, "sides": sides, **summary.context(say, found, sides)}
 
 
-def _figure(say: Language, ground: SiteGround, kind: str, side: DirectionSteps | None = None) -> Callable[[], Figure]:
+def _figure(
+    say: Language, ground: SiteGround, kind: str, side: DirectionSteps | None = None, at: Dynamic | None = None
+) -> Callable[[], Figure]:
     """Return what draws a figure of a kind; it is imported only for a sheet that is written."""
 
     def drawn() -> Figure:
-        from rocking_cli.codes.italian.sheet import figures
+        from rocking_cli.codes.italian.sheet import dynamic_figures, figures
 
+        if at is not None:
+            if side is None:
+                label = say("Spectra of the records at {state}, 5 % damping", state=at.state)
+                return dynamic_figures.draw_spectra(say, at, ground, label)
+            return dynamic_figures.draw_history(say, side.found, at, at.drawn)
         if kind == "draw_hazard":
             assert ground.hazard is not None  # as the template draws it
             return figures.draw_hazard(say, ground, ground.hazard, say("Seismic hazard of the site, on rock"))

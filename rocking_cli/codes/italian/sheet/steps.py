@@ -17,13 +17,13 @@ from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified, LimitState
 from rocking_cli.codes.italian.rules import DAMAGE, FIRST_STATE, LINEAR, NONLINEAR, OF_STATE, RULES, Rule
 from rocking_cli.codes.italian.sheet import chain as chains
-from rocking_cli.codes.italian.sheet import dynamic, site, spectra
+from rocking_cli.codes.italian.sheet import site, spectra
 from rocking_cli.codes.italian.sheet.chain import Rows, Scale
 from rocking_cli.codes.italian.sheet.site import hazard_at, is_close
 from rocking_cli.core.hung.attached import Spot
 from rocking_cli.verification.results import Evaluated, Formula, Working
 from rocking_cli.views.sheet import template
-from rocking_cli.views.sheet.document import Sentence, workings
+from rocking_cli.views.sheet.document import workings
 from rocking_cli.views.sheet.language import Language, texts_of
 from rocking_cli.views.view import Table
 
@@ -150,8 +150,6 @@ class DirectionSteps:
         The verification in the direction.
     where : str
         Name of the direction, or of both, in the language of the sheet.
-    say : Language
-        The language.
     state : str
         "existing" or "strengthened" if two structures are compared; otherwise empty.
     """
@@ -159,7 +157,6 @@ class DirectionSteps:
     ground: SiteGround
     found: ItalianVerified
     where: str = ""
-    say: Language = ENGLISH
     state: str = ""
 
     @property
@@ -229,13 +226,6 @@ class DirectionSteps:
     def gravity(self) -> float:
         """Gravitational acceleration [m/s2]."""
         return self.curve.chain.mechanism.gravity
-
-    @property
-    def dynamic(self) -> list[Sentence | Table]:
-        """What the time histories give; empty without any."""
-        if self.found.dynamic is None:
-            return []
-        return list(dynamic.items(self.say, self.found.dynamic, self.curve.confidence))
 
     @property
     def start(self) -> list[Evaluated]:

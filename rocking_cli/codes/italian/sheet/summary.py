@@ -82,7 +82,8 @@ def verdicts(say: Language, where: str, each: ItalianVerified) -> Iterator[str]:
         values |= {"d": at.d, "demand": at.demand, "ratio": at.ratio, "T": at.T}
         why = Remark("why_damage" if by == damage else "why_nonlinear", values)
         key = "verdict_passes" if each.passes(state) else "verdict_fails"
-        yield say(key, where=where, state=state, zeta=counts.zeta, why=why)
+        by = say("{where}, static methods", where=where) if state in each.dynamic else where
+        yield say(key, where=by, state=state, zeta=counts.zeta, why=why)
     start = each.methods["SLD"]
     if start.zeta is not None:
         key = "verdict_passes" if start.passed else "verdict_fails"
