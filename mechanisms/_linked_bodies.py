@@ -8,16 +8,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from mechanisms._shapes import Member
+from mechanisms._shapes import Member, Shape
 from mechanisms.rigid_body import RigidBody
 from rocking_cli.core import (
     Body,
     Contact,
     Direction,
+    Guide,
+    Joint,
     LinkageMotion,
     Mechanism,
     Reals,
     RigidMotion,
+    Solid,
     geometry_error,
     rotation,
 )
@@ -32,6 +35,11 @@ class LinkedBodies(Mechanism):
     @abstractmethod
     def _members(self) -> Mapping[str, Member]:
         """The bodies by name, with the masses of the file, or relative ones."""
+
+    @property
+    @abstractmethod
+    def _shapes(self) -> Mapping[str, Shape]:
+        """The shapes of the bodies, by name."""
 
     @abstractmethod
     def _linkage(self, direction: Direction) -> LinkageMotion:
@@ -64,6 +72,11 @@ class LinkedBodies(Mechanism):
         total = sum(body.mass for body in bodies)
         return [replace(body, mass=body.mass / total, inertia=body.inertia / total) for body in bodies]
 
+    def solids(self) -> Mapping[str, Sequence[Solid]]:
+        if self.mass is not None:
+            return {}
+        return {name: shape.solids(self.density, self.depth) for name, shape in self._shapes.items()}
+
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
         if direction not in self.directions:  # a one-sided structure rests against its support
             return [rotation(np.asarray(phi, np.float64), 0j, 0.0) for _ in self._members]
@@ -72,6 +85,14 @@ class LinkedBodies(Mechanism):
 
     def limit(self, direction: Direction) -> float:
         return self._linkage(direction).limit
+
+    def guiding_joints(self, direction: Direction) -> Sequence[Joint]:
+        return [
+            Joint(each.name, each.at, each.bodies[::-1], slide=each.along)
+            if isinstance(each, Guide)
+            else Joint(each.name, each.at, each.bodies)
+            for each in self._linkage(direction).joints
+        ]
 
     def columns_alone(self) -> Sequence[Mechanism]:
         if not self.rocks_both_ways:

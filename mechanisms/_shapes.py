@@ -11,7 +11,18 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from mechanisms._polygons import fault_of, gap, lies_within, overlap, pierced, size_of
-from rocking_cli.core import Body, Outline, Vertex, annular_sector, disc, geometry_error, point, polygon, quantity
+from rocking_cli.core import (
+    Body,
+    Outline,
+    Solid,
+    Vertex,
+    annular_sector,
+    disc,
+    geometry_error,
+    point,
+    polygon,
+    quantity,
+)
 from rocking_cli.core.fields import Described
 from rocking_cli.core.kinematics import Points, area_of, distance, inside
 
@@ -110,6 +121,23 @@ class Shape(Described):
             body = replace(body, mass=self.mass, inertia=body.inertia * self.mass / body.mass)
         return Member(body, outlines, self.mass is not None or self._is_weighed(density_and_depth))
 
+    def solids(self, density: float | None, depth: float | None) -> list[Solid]:
+        """Return the uniform parts, with the density and depth of the structure unless the body has its own.
+
+        There are none if the body has a mass, or if a density or depth is not known.
+        """
+        density_and_depth = self.density or density, self.depth or depth
+        if self.mass is not None or self.masses is not None or not self._is_weighed(density_and_depth):
+            return []
+        own_density, own_depth = (each or 1.0 for each in density_and_depth)
+        if self.polygon is not None:
+            return [Solid.of_outline(self.corners, own_density, own_depth)]
+        if self.disc is not None:
+            return [Solid("disc", (self.disc.radius,), own_density, own_depth)]
+        pairs = [(part.density or own_density, part.depth or own_depth) for part in self._solids]
+        all_plates = plates(self.parts or [], [1.0] * len(pairs))
+        return [solid for plate, pair in zip(all_plates, pairs, strict=True) for solid in plate.solids(*pair)]
+
     def _plate(self, name: str, density_and_depth: Sequence[float | None]) -> tuple[Body, Sequence[Outline]]:
         density, depth = (each or 1.0 for each in density_and_depth)
         if self.polygon is not None:
@@ -183,6 +211,11 @@ class Plate:
         """Outline as one closed line, which includes the openings [m]."""
         closed: list[complex] = pierced(self.corners, self.holes).tolist()
         return closed
+
+    def solids(self, density: float, depth: float) -> list[Solid]:
+        """Return the part and its openings as plates of a density [kg/m3] and depth [m]."""
+        openings = [Solid.of_outline(hole.tolist(), density, depth, sign=-1) for hole in self.holes]
+        return [Solid.of_outline(self.corners.tolist(), density, depth), *openings]
 
     @property
     def pieces(self) -> list[tuple[int, Body]]:
@@ -273,6 +306,13 @@ class Fillet:
         sector = annular_sector("", per_area, 0.0, self.radius, start, start + turn)
         moved = Body("", sector.mass, sector.inertia, sector.centroid + self.centre)
         return [(-1, _weighed(kite, per_area)), (1, moved)]
+
+    def solids(self, density: float, depth: float) -> list[Solid]:
+        """Return what is cut off a plate of a density [kg/m3] and depth [m]: the kite, less the sector."""
+        kite = (self.corner, self.start, self.centre, self.end)
+        angle = abs(float(np.angle((self.end - self.centre) / (self.start - self.centre))))
+        sector = Solid("sector", (0.0, self.radius, angle), density, depth)
+        return [Solid.of_outline(kite, density, depth, sign=-1), sector]
 
     def rounded(self, outline: Outline) -> Outline:
         """Return an outline with the arc in place of the corner."""

@@ -61,6 +61,9 @@ class SingleBody(Mechanism):
         # A rolling body changes its contact point: only the sum of its forces is known.
         return () if self.rolls(direction) else (self._foot_joint(direction),)
 
+    def guiding_joints(self, direction: Direction) -> Sequence[Joint]:
+        return (self._foot_joint(direction),)
+
     def contacts(self, direction: Direction) -> Sequence[Contact]:
         foot = Contact((None, self.bodies()[0].name), (self.centre(direction),), friction=self.friction)
         return [replace(foot, roll=self.rolls(direction))]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from itertools import pairwise
 from math import ceil, degrees, floor, log10, pi, radians
@@ -26,6 +26,7 @@ from rocking_cli.core import (
     Reals,
     RigidMotion,
     Sketch,
+    Solid,
     annular_sector,
     four_bar,
     four_bar_limit,
@@ -120,6 +121,19 @@ class Arch(Mechanism):
             annular_sector(f"segment {k + 1}", density, inner, outer, springing - start, springing - end)
             for k, (start, end) in enumerate(pairwise(self._cuts))
         )
+
+    def volume(self) -> float:
+        """Return the volume between the outer hinges [m3], as the outlines are drawn with straight sides."""
+        return (self._cuts[-1] - self._cuts[0]) * self.radius * self.thickness * self.given_depth
+
+    def solids(self) -> Mapping[str, Sequence[Solid]]:
+        if self.density is None or self.mass is not None:
+            return {}
+        inner, outer = self.radius - self.thickness / 2, self.radius + self.thickness / 2
+        return {
+            f"segment {k}": [Solid("sector", (inner, outer, end - start), self.density, self.given_depth)]
+            for k, (start, end) in enumerate(pairwise(self._cuts), 1)
+        }
 
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
         hinges = self.hinges(direction)

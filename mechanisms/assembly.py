@@ -313,6 +313,10 @@ class Assembly(LinkedBodies):
 
     # Blocks, joints and loads
 
+    @property
+    def _shapes(self) -> Mapping[str, Shape]:
+        return self.blocks
+
     @cached_property
     def _members(self) -> Mapping[str, Member]:
         return {name: shape.member(name, self.density, self.depth) for name, shape in self.blocks.items()}

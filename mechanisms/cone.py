@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import atan2, pi
 from typing import ClassVar, Literal, Self
 
 from pydantic import model_validator
 
 from mechanisms._single_body import SingleBody
-from rocking_cli.core import Body, Direction, Length, Outline, geometry_error, length, quantity
+from rocking_cli.core import Body, Direction, Length, Outline, Solid, geometry_error, length, quantity
 
 SHELL_SCALE = 0.97  # size of the inner cone with which a thin shell is drawn
 
@@ -56,6 +56,12 @@ class Cone(SingleBody):
         if self.kind == "shell":
             return super().volume()
         return pi * self.base_radius**2 * self.height / 3 * (1 - (self.inner_ratio or 0.0) ** 3)
+
+    def solids(self) -> Mapping[str, Sequence[Solid]]:
+        if self.density is None or self.mass is not None:
+            return {}
+        sizes = (self.base_radius, self.height, self.inner_ratio or 0.0)
+        return {"cone": [Solid("cone", sizes, self.density)]}
 
     def feet(self) -> tuple[complex, complex]:
         return -self.base_radius + 0j, self.base_radius + 0j

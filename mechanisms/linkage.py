@@ -178,6 +178,10 @@ class Linkage(LinkedBodies):
         shapes = self._cracked.shapes
         return {name: shape.member(name, self.density, self.depth) for name, shape in shapes.items()}
 
+    @property
+    def _shapes(self) -> Mapping[str, Shape]:
+        return self._cracked.shapes
+
     # Motion
 
     @cached_property

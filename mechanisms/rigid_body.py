@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from math import asin, pi, radians
@@ -20,6 +20,7 @@ from rocking_cli.core import (
     Length,
     Outline,
     Sketch,
+    Solid,
     Vertex,
     geometry_error,
     length,
@@ -205,6 +206,18 @@ class RigidBody(SingleBody):
         if self._way != "polygon":
             return super().volume()
         return self.given_depth * sum(sign * piece.mass for sign, piece in self._pieces)
+
+    def solids(self) -> Mapping[str, Sequence[Solid]]:
+        if self.mass is not None or not self.has_mass:
+            return {}
+        keys = ("density", "depth")
+        density, depth = ([getattr(self, key)] if self.parts is None else self._of_parts(key) for key in keys)
+        solids: list[Solid] = []
+        for plate, rho, deep in zip(self._plates, density, depth, strict=True):
+            solids += plate.solids(rho or 0.0, deep or 0.0)
+            for cut in (cut for other, cut in self._fillets.values() if other is plate):
+                solids += cut.solids(rho or 0.0, deep or 0.0)
+        return {self._body.name: solids}
 
     def _of_parts(self, key: str) -> list[float | None]:
         """Return density or depth of every plate among the parts: its own, or else that of the body."""

@@ -23,6 +23,7 @@ from rocking_cli.core import (
     Reals,
     RigidMotion,
     Sketch,
+    Solid,
     box,
     geometry_error,
     length,
@@ -119,6 +120,17 @@ class SymmetricFrame(Mechanism):
     def volume(self) -> float:
         """Return the volume [m3] of columns with depth `depth`, and of a beam of the same density."""
         return self.given_depth * self.column_width * self.column_height * self.columns * (1 + self.mass_ratio)
+
+    def solids(self) -> Mapping[str, Sequence[Solid]]:
+        if self.density is None or self.mass is not None:
+            return {}
+        sizes = (self.column_width, self.column_height)
+        # The beam has the mass of so many columns.
+        counts = {"columns": self.columns, "beam": self.columns * self.mass_ratio}
+        return {
+            name: [Solid("rectangle", sizes, self.density, self.given_depth, count=count)]
+            for name, count in counts.items()
+        }
 
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
         foot = complex(direction * self.column_width / 2)

@@ -49,3 +49,4 @@ from rocking_cli.core.sketch import Sketch as Sketch
 from rocking_cli.core.sketch import disc as disc
 from rocking_cli.core.sketch import rectangle as rectangle
 from rocking_cli.core.sketch import three_digits as three_digits
+from rocking_cli.core.solids import Solid as Solid

@@ -18,6 +18,7 @@ from rocking_cli.core.hung.attached import Attached
 from rocking_cli.core.hung.attachments import RefusedFields
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion, area_of
 from rocking_cli.core.sketch import Sketch
+from rocking_cli.core.solids import Solid
 
 
 class Kinematics(Given, ABC):
@@ -103,6 +104,18 @@ class Kinematics(Given, ABC):
             area += sum(abs(area_of(shape)) for shape in shapes)
         return area * deep
 
+    def solids(self) -> Mapping[str, Sequence[Solid]]:
+        """Return the uniform parts of each body whose mass follows from its sizes and density, by name.
+
+        By default its outlines, as plates of the density and depth of the structure. A body without parts has its mass
+        from elsewhere. A mechanism that overrides `volume` gives its parts here, which are written out in calculations.
+        """
+        if self.density is None or self.depth is None or self.mass is not None:
+            return {}
+        sketch, density, depth = self.sketch(), self.density, self.depth
+        shapes = {body.name: body.shapes(sketch.outlines if sketch.uniform else {}) for body in self.bodies()}
+        return {name: [Solid.of_outline(shape, density, depth) for shape in each] for name, each in shapes.items()}
+
     def total_mass(self) -> float | None:
         """Return the given mass of the structure [kg]; None if not given, or if `bodies` have their own masses."""
         if self.mass is not None or self.density is None:
@@ -127,6 +140,13 @@ class Jointed(Kinematics):
     def joints(self, direction: Direction) -> Sequence[Joint]:
         """Return the joints between bodies and with the ground, for the check of time histories; by default none."""
         return ()
+
+    def guiding_joints(self, direction: Direction) -> Sequence[Joint]:
+        """Return the hinges and guides from which the motion follows; by default `joints`, empty if not known.
+
+        The line of a guide with two bodies turns with the first. A joint with one body is on the ground.
+        """
+        return self.joints(direction)
 
     def pieces(self, direction: Direction) -> Sequence[Piece]:
         """Return the rigid blocks between all joints, also those that stay closed; by default the bodies."""
