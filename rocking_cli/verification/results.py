@@ -30,8 +30,12 @@ checked; `ours`: an interpretation where the code leaves a choice; `plain`: mech
 MINUS = "−"
 MARK = re.compile(r"([_^])\[([^\[\]]*)\]")
 """A subscript or superscript: `d_[0]^[*]` has both."""
+SLOT = re.compile(r"{(\w+)(?::(\d+))?}")
+"""A slot for a number in a formula, with its number of digits if others than `DIGITS` are printed: `{T:9}`."""
 AND_SO_ON = re.compile(r"([^();]+?)( \+ |; )…")
 """Part of a formula that is repeated for each of several numbers: `({P} · {x} + …)`."""
+DIGITS = 6
+"""Significant digits of numbers in formulas and of results, where a formula does not ask for more."""
 PLAIN_CHARACTERS = {
     "λ": "lambda", "Σ": "sum", "√": "sqrt", "·": "*", "×": "*", "≥": ">=", "≤": "<=", "′": "'", "²": "2", "³": "3",
     "–": "-", MINUS: "-",
@@ -78,6 +82,8 @@ class Working:
         The limit state to which it belongs; empty if it belongs to none alone.
     section : str
         The part of the calculation in which it stands.
+    digits : int
+        Significant digits of the result, more where later lines subtract near numbers.
     """
 
     symbol: str
@@ -90,6 +96,7 @@ class Working:
     standing: Standing = "code"
     state: str = ""
     section: str = ""
+    digits: int = DIGITS
 
     def __post_init__(self) -> None:
         if self.standing == "code" and isinstance(self.clause, Clause) and self.clause.transcribed:
@@ -124,9 +131,9 @@ class Evaluated(NamedTuple):
     numbers: Mapping[str, Any]
 
 
-def as_written(value: float) -> str:
+def as_written(value: float, digits: int = DIGITS) -> str:
     """Return a number as it is written in a formula."""
-    return f"{value + 0.0:.6g}"
+    return f"{value + 0.0:.{digits}g}"
 
 
 @dataclass(frozen=True)
@@ -141,7 +148,8 @@ class Formula:
     text : str
         The right-hand side in symbols, with the same marks and slots.
     numbers : str
-        The right-hand side with a slot for each number; `{P} · {x} + …` is a sum over several.
+        The right-hand side with a slot for each number; `{P} · {x} + …` is a sum over several, and `{T:9}` is printed
+        with nine digits.
     unit : str
         Unit of the result.
     clause : str
@@ -150,6 +158,8 @@ class Formula:
         Meaning of the result, in a few words; for a code with a calculation sheet, the key of its texts.
     standing : {"code", "print", "ours", "plain"}
         How far the formula was checked, see `Standing`.
+    digits : int
+        Significant digits of the result.
     """
 
     symbol: str
@@ -159,13 +169,14 @@ class Formula:
     clause: str = ""
     meaning: str = field(default="", kw_only=True)
     standing: Standing = field(default="code", kw_only=True)
+    digits: int = field(default=DIGITS, kw_only=True)
 
     def working(
         self,
         value: float,
         names: Mapping[str, Any] | None = None,
         /,
-        write: Callable[[float], str] = as_written,
+        write: Callable[..., str] = as_written,
         marks: Callable[[str], str] = str,
         **numbers: Any,
     ) -> Working:
@@ -178,7 +189,7 @@ class Formula:
         names : mapping of str to str, optional
             Names for the slots of symbol, text, unit and meaning; `state` is the limit state of the line.
         write : callable
-            Function that writes a number.
+            Function that writes a number, with the number of its digits as second argument where a slot has one.
         marks : callable
             Function that writes a formula with the decimal marks of a language.
         **numbers
@@ -209,6 +220,7 @@ class Formula:
             self.clause,
             self.standing,
             names.get("state", ""),
+            digits=self.digits,
         )
 
     def line(self, value: float, names: Mapping[str, Any] | None = None, /, **numbers: Any) -> Evaluated:
@@ -216,22 +228,26 @@ class Formula:
         return Evaluated(self, value, names or {}, numbers)
 
 
-def put(numbers: str, values: Mapping[str, Any], write: Callable[[float], str]) -> str:
+def put(numbers: str, values: Mapping[str, Any], write: Callable[..., str]) -> str:
     """Fill the slots of a formula with numbers; negative ones and those with a power of ten in parentheses."""
 
-    def held(value: Any) -> str:
-        text = value if isinstance(value, str) else write(value)
-        return f"({text})" if not isinstance(value, str) and re.search(r"[-−^]", text) else text
+    def held(value: Any, digits: str | None) -> str:
+        if isinstance(value, str):
+            return value
+        text = write(value, int(digits)) if digits else write(value)
+        return f"({text})" if re.search(r"[-−^]", text) else text
+
+    def filled(piece: str, row: Mapping[str, Any]) -> str:
+        return SLOT.sub(lambda slot: held(row[slot[1]], slot[2]), piece)
 
     def repeated(match: re.Match[str]) -> str:
         piece, between = match[1].strip(), match[2]
-        lists = {name: values[name] for name in re.findall(r"{(\w+)}", piece)}
-        each = [piece.format(**{name: held(value) for name, value in zip(lists, row, strict=True)})
-                for row in zip(*lists.values(), strict=True)]  # fmt: skip
+        names = list(dict.fromkeys(name for name, _ in SLOT.findall(piece)))
+        rows = zip(*(values[name] for name in names), strict=True)
+        each = [filled(piece, dict(zip(names, row, strict=True))) for row in rows]
         return match[1][: len(match[1]) - len(match[1].lstrip())] + between.join(each)
 
-    single = {name: held(value) for name, value in values.items() if not isinstance(value, list | tuple)}
-    return AND_SO_ON.sub(repeated, numbers).format(**single)
+    return filled(AND_SO_ON.sub(repeated, numbers), values)
 
 
 def in_plain(text: str) -> str:

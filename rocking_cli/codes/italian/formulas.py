@@ -7,6 +7,7 @@ texts of the sheet; a copy has another one where uses differ.
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import product
 
 from rocking_cli.codes.italian import clauses
 from rocking_cli.codes.italian.rules import RULES
@@ -27,11 +28,13 @@ REFERENCE_LIFE = Formula("V_[R]", "V_[N] C_[U]", "{VN} · {CU}", "years", clause
 REFERENCE_LIFE_BOUND = replace(
     REFERENCE_LIFE, text="max(V_[N] C_[U]; 35)", numbers="max({VN} · {CU}; 35)", clause=clauses.MIN_REFERENCE_LIFE
 )
-RETURN_PERIOD = Formula("T_[R]", "−V_[R]/ln(1 − P)", "−{VR}/ln(1 − {P})", "years", clauses.RETURN_PERIOD, meaning="TR")
+RETURN_PERIOD = Formula(
+    "T_[R]", "−V_[R]/ln(1 − P)", "−{VR}/ln(1 − {P})", "years", clauses.RETURN_PERIOD, meaning="TR", digits=9
+)
 RETURN_PERIOD_BOUND = replace(RETURN_PERIOD, numbers="max({first}; min({last}; −{VR}/ln(1 − {P})))")
 RETURN_PERIOD_OF_ROW = Formula("T_[R]", unit="years", clause=clauses.HAZARD, meaning="TR_of_row", standing="ours")
 BETWEEN = Formula(
-    "r", "ln(T_[R]/T_[R,a])/ln(T_[R,b]/T_[R,a])", "ln({T}/{a})/ln({b}/{a})", clause=clauses.HAZARD, meaning="r"
+    "r", "ln(T_[R]/T_[R,a])/ln(T_[R,b]/T_[R,a])", "ln({T:9}/{a})/ln({b}/{a})", clause=clauses.HAZARD, meaning="r"
 )
 AG = Formula("a_[g]", "a_[g,a] (a_[g,b]/a_[g,a])^[r]", "{a} · ({b}/{a})^[{r}]", "g", clauses.HAZARD, meaning="rock_ag")
 F0 = Formula("F_[0]", "F_[0,a] (F_[0,b]/F_[0,a])^[r]", "{a} · ({b}/{a})^[{r}]", "", clauses.HAZARD, meaning="rock_F0")
@@ -76,7 +79,7 @@ S_E_LONG = Formula(
 )  # fmt: skip
 S_5 = Formula(
     "S_[5]({at})", "k (S_[a] + (S_[b] − S_[a]) (T − T_[a])/(T_[b] − T_[a]))",
-    "{k} · ({a} + ({b} − {a}) · ({T} − {Ta})/({Tb} − {Ta}))", "g", clauses.NONLINEAR, meaning="S_5",
+    "{k} · ({a} + ({b} − {a}) · ({T:9} − {Ta})/({Tb} − {Ta}))", "g", clauses.NONLINEAR, meaning="S_5",
 )  # fmt: skip
 ETA_T = Formula(
     "η({at})", "1 − (1 − η) T/T_[max]", "1 − (1 − {eta}) · {T}/{R}", "", clauses.NONLINEAR, meaning="eta_T",
@@ -154,12 +157,12 @@ P = Formula("P_[{k}]", "{P}", "{P} + …", "{unit}", clauses.ALPHA0, meaning="of
 PQ = Formula("PQ_[{k}]", "{P+Q}", "{P} + …", "{unit}", clauses.ALPHA0, meaning="of_block_PQ")
 G = Formula("{axis}_[G{k}]", "Σ (P+Q) {axis}/Σ (P+Q)", "({P} · {x} + …)/({P} + …)", "m", meaning="G", standing="plain")
 GP = Formula("x_[P{k}]", "Σ P x/Σ P", "({P} · {x} + …)/({P} + …)", "m", meaning="GP", standing="plain")
-PY = Formula("ΣPy′", "Σ P y′", "{P} · {y} + …", "{unit} m", clauses.ALPHA0, meaning="Py")
-HELD = Formula("L", "−Σ F r′ + Σ N L′", "{L} + …", "{unit} m", clauses.ALPHA0, meaning="L")
-V_M = Formula("V_[m]", unit="{unit} m", meaning="V_m", standing="plain")
-PQX = Formula("Σ(P+Q)x′", "Σ (P+Q) x′", "{P} · {x} + …", "{unit} m", clauses.ALPHA0, meaning="PQx")
-B_M = Formula("B_[m]", unit="{unit} m", meaning="B_m", standing="plain")
-ALPHA = Formula("{symbol}", "({over})/({under})", "({V} + …)/({B} + …)", "", clauses.ALPHA0, meaning="alpha")
+PY = Formula("ΣPy′", "Σ P y′", "{P} · {y} + …", "{unit} m", clauses.ALPHA0, meaning="Py", digits=9)
+HELD = Formula("L", "−Σ F r′ + Σ N L′", "{L} + …", "{unit} m", clauses.ALPHA0, meaning="L", digits=9)
+V_M = Formula("V_[m]", unit="{unit} m", meaning="V_m", standing="plain", digits=9)
+PQX = Formula("Σ(P+Q)x′", "Σ (P+Q) x′", "{P} · {x} + …", "{unit} m", clauses.ALPHA0, meaning="PQx", digits=9)
+B_M = Formula("B_[m]", unit="{unit} m", meaning="B_m", standing="plain", digits=9)
+ALPHA = Formula("{symbol}", "({over})/({under})", "({V:9} + …)/({B:9} + …)", "", clauses.ALPHA0, meaning="alpha")
 SUM_PQ = Formula("Σ(P+Q)", "Σ (P+Q)", "{P} + …", "{unit}", clauses.ALPHA0, meaning="PQ")
 PQXX = Formula("Σ(P+Q)x′^[2]", "Σ (P+Q) x′^[2]", "{P} · {x}^[2] + …", "{unit} m²", clauses.E_STAR, meaning="PQxx")
 E_STAR = Formula(
@@ -170,16 +173,101 @@ M_STAR = Formula(
     "M^[*]", "e^[*] Σ (P+Q)/g", "1000 · {e} · {PQ}/{g}", "kg", clauses.OUTSIDE, meaning="M", standing="ours"
 )
 
+# Masses by sizes
+RECTANGLE = Formula("M_[{k}]", "ρ b h L", "{rho} · {b} · {h} · {L}", "kg", meaning="mass_rectangle", standing="plain")
+SEVERAL = replace(RECTANGLE, text="n ρ b h L", numbers="{n} · {rho} · {b} · {h} · {L}", meaning="mass_several")
+AREA = Formula(
+    "A_[{k}]", "Σ (x_[i] y_[i+1] − x_[i+1] y_[i])/2", "({x:9} · {yn:9} − {xn:9} · {y:9} + …)/2", "m²",
+    meaning="area_of_polygon", standing="plain",
+)  # fmt: skip
+AREA_OF_MANY = replace(AREA, numbers="")
+PLATE = Formula("M_[{k}]", "ρ A L", "{rho} · {A} · {L}", "kg", meaning="mass_plate", standing="plain")
+SECTOR = Formula(
+    "M_[{k}]", "ρ (r_[e]^[2] − r_[i]^[2]) β/2 L", "{rho} · ({re:9}^[2] − {ri:9}^[2]) · {beta}/2 · {L}", "kg",
+    meaning="mass_sector", standing="plain",
+)  # fmt: skip
+DISC = Formula("M_[{k}]", "ρ π r^[2] L", "{rho} · π · {r}^[2] · {L}", "kg", meaning="mass_disc", standing="plain")
+CONE = Formula("M_[{k}]", "ρ π r^[2] h/3", "{rho} · π · {r}^[2] · {h}/3", "kg", meaning="mass_cone", standing="plain")
+HOLLOW_CONE = Formula(
+    "M_[{k}]", "ρ π r^[2] h/3 (1 − c^[3])", "{rho} · π · {r}^[2] · {h}/3 · (1 − {c:9}^[3])", "kg",
+    meaning="mass_hollow_cone", standing="plain",
+)  # fmt: skip
+SUM_OF_PARTS = Formula("M_[{k}]", "Σ M_[{k},i]", "{M:9} + …", "kg", meaning="mass_of_parts", standing="plain")
+SHARE_OF_MASS = Formula("M_[{k}]", "M s_[{k}]", "{M} · {share}", "kg", meaning="mass_share", standing="plain")
+MASS_GIVEN = Formula("M_[{k}]", unit="kg", meaning="mass_given", standing="plain")
+MASS_OF_MECHANISM = replace(MASS_GIVEN, meaning="mass_of_mechanism")
+
+# Instantaneous centres of rotation and rotations of the blocks, by the theorem of Aronhold and Kennedy. Of two lines, u
+# runs from a to b or from a in a given direction, v from c likewise; w is from a to c.
+_ENDS = {"u": ("a", "b"), "v": ("c", "d"), "w": ("a", "c")}
+
+
+def _of_lines(pattern: str, points: tuple[int, int]) -> tuple[str, str]:
+    """Return a formula in components such as ux in symbols and with slots, of lines through one or two points."""
+    symbols, numbers = pattern.replace("*", " "), pattern.replace("*", " · ")
+    for (line, (start, end)), axis in product(_ENDS.items(), "xy"):
+        symbol, slot = f"({axis}_[{{{end}}}] − {axis}_[{{{start}}}])", f"({{{end}{axis}:9}} − {{{start}{axis}:9}})"
+        if {"u": points[0], "v": points[1]}.get(line) == 1:
+            symbol, slot = f"{line}_[{axis}]", f"{{{line}{axis}:9}}"
+        symbols, numbers = symbols.replace(line + axis, symbol), numbers.replace(line + axis, slot)
+    return symbols, numbers
+
+
+PARALLEL = {
+    points: Formula("D", *_of_lines("ux*vy − uy*vx", points), meaning=meaning, standing="plain")
+    for points, meaning in {
+        (2, 2): "lines_parallel", (2, 1): "lines_parallel_along", (1, 1): "lines_parallel_both"
+    }.items()
+}  # fmt: skip
+SHARE = {
+    points: Formula(
+        "t", *_of_lines("(wx*vy − wy*vx)/(ux*vy − uy*vx)", points), meaning=meaning, standing="plain", digits=9
+    )
+    for points, meaning in {(2, 2): "lines_cross", (2, 1): "lines_cross_along", (1, 1): "lines_cross_both"}.items()
+}
+SHARE_LEVEL = Formula(
+    "t", "(y_[{c}] − y_[{a}])/(y_[{b}] − y_[{a}])", "({cy:9} − {ay:9})/({by:9} − {ay:9})", meaning="lines_cross_level",
+    standing="plain", digits=9,
+)  # fmt: skip
+CENTRE = {
+    2: Formula(
+        "{axis}_[{O}]", "{axis}_[{a}] + t ({axis}_[{b}] − {axis}_[{a}])", "{a:9} + {t:9} · ({b:9} − {a:9})", "m",
+        meaning="centre", standing="plain", digits=9,
+    ),
+    1: Formula(
+        "{axis}_[{O}]", "{axis}_[{a}] + t u_[{axis}]", "{a:9} + {t:9} · {u:9}", "m", meaning="centre",
+        standing="plain", digits=9,
+    ),
+}  # fmt: skip
+LEADS = Formula("θ′_[{k}]", meaning="leads", standing="plain")
+TURNS = Formula(
+    "θ′_[{k}]", "θ′_[{i}] ({axis}_[{C}] − {axis}_[{Oi}])/({axis}_[{C}] − {axis}_[{Ok}])",
+    "{t:9} · ({C:9} − {Oi:9})/({C:9} − {Ok:9})", meaning="turns", standing="plain", digits=9,
+)  # fmt: skip
+TURNS_ALIKE = Formula("θ′_[{k}]", "θ′_[{i}]", "{t:9}", meaning="turns_alike", standing="plain", digits=9)
+TRANSLATES = Formula("θ′_[{k}]", meaning="translates", standing="plain")
+X_TRANSLATES = Formula(
+    "x′_[{k}]", "θ′_[{i}] (y_[{C}] − y_[{Oi}])", "{t:9} · ({C:9} − {O:9})", "m", meaning="x_translates",
+    standing="plain",
+)  # fmt: skip
+Y_TRANSLATES = Formula(
+    "y′_[{k}]", "θ′_[{i}] (x_[{Oi}] − x_[{C}])", "{t:9} · ({O:9} − {C:9})", "m", meaning="y_translates",
+    standing="plain",
+)  # fmt: skip
+Y_TRANSLATES_BACK = replace(Y_TRANSLATES, text="θ′_[{i}] (x_[{C}] − x_[{Oi}])", numbers="{t:9} · ({C:9} − {O:9})")
+
 # The capacity curve
 A0 = Formula("a_[0]^[*]", "α_[0] g/(e^[*] FC)", "{alpha} · {g}/({e} · {FC})", "m/s²", clauses.A_STAR, meaning="a0")
 X_C = Formula("x_[C]′", "Σ (P+Q) x′/Σ (P+Q)", "{first}/{PQ}", "m", clauses.D, meaning="control_barycentre",
               standing="ours")  # fmt: skip
-X_C_TURNS = Formula("x_[C]′", "θ′ (y_[C] − y_[O])", "{turns} · ({y} − {O})", "m", clauses.D, meaning="control_point")
+X_C_TURNS = Formula(
+    "x_[C]′", "θ′ (y_[C] − y_[O])", "{turns} · ({y:9} − {O:9})", "m", clauses.D, meaning="control_point"
+)
 X_C_STRAIGHT = Formula("x_[C]′", "x′", "{x}", "m", clauses.D, meaning="control_point")
 PHI_0 = Formula("φ_[0]", "α(φ) = 0", "", "rad", clauses.D, meaning="phi_0")
 PHI = Formula("φ_[{state}]", "d(φ) = d_[{state}]", "", "rad", clauses.D, meaning="phi")
 D_C = Formula("d_[C]({at})", "Σ (P+Q) Δx/Σ (P+Q)", "({P} · {x} + …)/{PQ}", "m", clauses.D, meaning="d_C")
-D_C_POINT = Formula("d_[C]({at})", "|x_[C](φ) − x_[C](0)|", "{one} − {other}", "m", clauses.D, meaning="d_C")
+D_C_POINT = Formula("d_[C]({at})", "|x_[C](φ) − x_[C](0)|", "{one:9} − {other:9}", "m", clauses.D, meaning="d_C")
 D = Formula(
     "{symbol}", "d_[C] Σ (P+Q) x′^[2]/(x_[C]′ Σ (P+Q) x′)", "{d} · {second}/({x} · {first})", "m", clauses.D,
 )  # fmt: skip
@@ -218,5 +306,11 @@ CAPACITY_FOUND = Formula("{symbol}", "{demand}(a_[g]) = {capacity}", "", "g")
 LINEAR = Formula("a_[g,linear]", "q · a_[g,0]", "{q} · {a}", "g", clauses.LINEAR, meaning="a_g_method")
 ZETA = Formula("ζ_[E{more}]", "{symbol}/{asked}", "{a}/{b}", "", clauses.ZETA, meaning="zeta")
 LASTS = Formula(
-    "T_[R{more}]", "{demand}(T_[R]) = {capacity}", "", "years", clauses.RETURN_PERIOD, meaning="TR_capacity"
+    "T_[R{more}]",
+    "{demand}(T_[R]) = {capacity}",
+    "",
+    "years",
+    clauses.RETURN_PERIOD,
+    meaning="TR_capacity",
+    digits=9,
 )
