@@ -1,6 +1,7 @@
 """What the sheet says of a structure: its sizes and masses, and the centres of rotation of its blocks."""
 
 import re
+from dataclasses import replace
 from functools import cache
 from importlib.resources import files
 from math import cos, floor, log10, pi, radians, sin
@@ -36,7 +37,7 @@ bodies: {block: {mass: 10, centroid: [0.2, 1.0], inertia: 8}}
 positive:
   lead: block
   joints:
-    foot: {slide: block, at: [0.3, 0.0], along: [1.0, 1.0]}
+    "foot [|]": {slide: block, at: [0.3, 0.0], along: [1.0, 1.0]}
     side: {slide: block, at: [0.0, 0.5], along: [0.7, 0.5]}
 negative: none
 one_sided: positive
@@ -196,6 +197,7 @@ def masses_of(mechanism):
 class TestMasses:
     @pytest.mark.parametrize("name", NAMES)
     def test_lines_give_the_masses_of_all_bodies(self, name):
+        assert not any(line.formula is formulas.MASS_OF_MECHANISM for line in Composition(structure(name)).masses)
         bodies = enumerate(structure(name).weighed(), 1)
         assert masses_of(structure(name)) == {k: pytest.approx(body.mass, rel=1e-9) for k, body in bodies}
 
@@ -308,7 +310,7 @@ class TestCentres:
     def test_of_a_block_on_two_slopes_is_where_the_normals_cross(self):
         rest = ChainCentres(positions("on two slopes", Direction.POSITIVE)[0])
         assert rest.centre(1) == pytest.approx(complex(0.5, -0.2))
-        assert written(rest.lines[0])[0].formula.startswith("((x_[side] − x_[foot]) v_[y]")
+        assert written(rest.lines[0])[0].formula.startswith("((x_[side] − x_[foot (/)]) v_[y]")
 
     def test_a_rounded_foot_turns_about_its_contact(self):
         _, displaced, _ = (ChainCentres(each) for each in positions("rounded", Direction.POSITIVE))
@@ -317,12 +319,14 @@ class TestCentres:
         assert row.kind == "rolls" and row.at.imag == pytest.approx(50.0)
         assert row.at.real == pytest.approx(structure("rounded").pivot(Direction.POSITIVE).real + rolled)
 
-    def test_a_motion_that_is_not_that_of_the_joints_has_none(self):
+    @pytest.mark.parametrize("beside", [0.01, None])
+    def test_a_motion_that_is_not_that_of_the_joints_has_none(self, beside):
         class Elsewhere(Block):
             mechanism = "elsewhere"
 
             def guiding_joints(self, direction):
-                return [*super().guiding_joints(direction)][:0]
+                (joint,) = super().guiding_joints(direction)
+                return [] if beside is None else [replace(joint, point=joint.point + beside)]
 
         chain = Chain(Elsewhere(width=0.6, height=8.0), Direction.POSITIVE)
         centres = ChainCentres(DisplacedChain(ExactCurve(chain, chain.barycentre, 1.0), 0.0))

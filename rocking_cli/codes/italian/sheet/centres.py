@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import isclose
 from typing import Literal
 
 import numpy as np
@@ -20,8 +21,9 @@ from rocking_cli.core.reactions import parts
 from rocking_cli.verification.results import Line
 
 LEADING_ROTATIONS = (0.2, 0.5)  # shares of the limit at which the leading block has turned by phi
-SAME_TURN = 1e-7  # difference of rotations that count as one [rad]
+SAME_MOTION = 1e-7  # difference of rotations, and relative one of centres, that count as one
 LEVEL_NORMAL = 1e-12  # vertical part of a level normal, over its length
+OUTSIDE_MARKS = str.maketrans("'[]|", "′()/")  # signs of formulas and tables, in names that users give to joints
 
 JointKind = Literal["hinge", "rolls", "guide", "level"]
 
@@ -94,7 +96,7 @@ class ChainCentres:
         rises = 1j * joint.roll  # a rounded edge touches the ground below its centre, wherever that is
         carries = names[-1] if other or joint.is_guide else names[0]
         at = self._near(self._place(carries, joint.point + rises) - rises)
-        symbol = joint.letter.replace("'", "′").translate({ord("["): "(", ord("]"): ")"})
+        symbol = joint.letter.translate(OUTSIDE_MARKS)
         if joint.is_guide:
             turned = self._place(names[0], 1 + 0j) - self._place(names[0], 0j) if one else 1.0
             return JointRow(symbol, "guide", (one, other), at, 1j * joint.slide / abs(joint.slide) * turned)
@@ -138,7 +140,7 @@ class ChainCentres:
         motions = chain.mechanism.motion(phi, chain.direction)
         turned = {
             number for number, motion in zip(self._numbers.values(), motions, strict=True)
-            if number and np.abs(motion.psi + chain.direction * phi).max() < SAME_TURN
+            if number and np.abs(motion.psi + chain.direction * phi).max() < SAME_MOTION
         }  # fmt: skip
         return min(turned, default=None)
 
@@ -186,9 +188,16 @@ class ChainCentres:
         """Whether the centres and rotations of all blocks follow from the joints, and are those of the motion."""
         turns = {each.block: each.turns for each in self.rotations}
         return turns.keys() == {*self._blocks} and all(
-            abs(turns[k] - moved.turns) <= SAME_TURN * max(1.0, abs(moved.turns))
+            isclose(turns[k], moved.turns, rel_tol=SAME_MOTION, abs_tol=SAME_MOTION)
+            and self._is_at(self.centre(k), moved.centre)
             for k, moved in enumerate(self.position.blocks, 1)
         )
+
+    def _is_at(self, one: complex | None, other: complex | None) -> bool:
+        """Return whether two centres are the same, or both at infinity."""
+        if one is None or other is None:
+            return one is other
+        return abs(one - other) <= SAME_MOTION * max(abs(other), self._size)
 
     def centre(self, block: int) -> complex | None:
         """Return the centre about which a block rotates [m]; None if it translates. The block must be known."""

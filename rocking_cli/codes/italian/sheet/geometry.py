@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import ceil, isclose, log10
 from typing import Any
 from unicodedata import lookup
@@ -168,7 +169,7 @@ class Composition:
         """Return a point with rounding errors about zero removed [m]."""
         return cleared(at, max(abs(body.centroid) for body in self.mechanism.bodies()))
 
-    @property
+    @cached_property
     def _solids(self) -> Mapping[str, Sequence[Solid]]:
         """The uniform parts of each body, by name; none if the mass of a body does not follow from them."""
         solids, bodies = self.mechanism.solids(), self.mechanism.weighed()
