@@ -172,7 +172,7 @@ class _Writer:
         written = row.formula if not row.numbers else f"{row.formula} = {row.numbers}"
         joined = ": " if row.formula and not row.numbers else " = "
         work = f"{row.symbol}{joined}{written}" if written else row.symbol
-        result = f"{self.sheet.language.number(row.value)} {row.unit}".strip()
+        result = f"{self.sheet.language.number(row.value, row.digits)} {row.unit}".strip()
         return [[str(next(self.steps))], [row.meaning, work], [result], [f"{row.clause}{ORIGIN_MARKS[row.standing]}"]]
 
     def _table(

@@ -167,7 +167,7 @@ def items_of(found, given, language="en"):
                 yield [item.title, item.columns, *item.rows]
             for row in item.rows if isinstance(item, Steps) else ():
                 mark = f"{row.clause}{ORIGIN_MARKS[row.standing]}"
-                yield Step(row.symbol, row.formula, row.numbers, say.number(row.value), row.unit, mark)
+                yield Step(row.symbol, row.formula, row.numbers, say.number(row.value, row.digits), row.unit, mark)
         for each in part.parts:
             yield from of(each)
 
@@ -329,14 +329,17 @@ class Recomputed:
                     self.known["soil"] = value
                 if meaning == "topographic class":
                     self.known["S_T"] = {"T1": 1.0, "T2": 1.2}[value]
-        elif heads[0] == "weight":
+        elif heads[:2] == ["weight", "block"]:
             self.weights = [[number(each) for each in row[1:]] for row in rows]
             for _, _, _, M, w, h, P, PQ in self.weights:
                 assert pytest.approx(w * M * self.g(caption) / self.unit(heads), rel=2e-5) == P
                 assert pytest.approx(h * M * self.g(caption) / self.unit(heads), rel=2e-5) == PQ
         elif "Δx [m]" in heads:
             self.blocks = [[number(each) if each != "–" else None for each in row] for row in rows]
-            for _, _, _, y, x_P, turns, x_O, y_O, dx, dy in self.blocks:
+            for k, _, _, y, x_P, turns, x_O, y_O, dx, dy in self.blocks:
+                for symbol, value in ((f"θ′_[{k:g}]", turns), (f"x_[O{k:g}]", x_O), (f"y_[O{k:g}]", y_O)):
+                    if value is not None:  # the lines above the table, if it has any
+                        assert value == pytest.approx(self.known.pop(symbol, value), rel=1e-5, abs=1e-8), symbol
                 if turns:
                     sense = 1 if "(x_[O] − x_[P])" in caption else -1
                     assert dx == pytest.approx(turns * (y - y_O), abs=rounding_of(turns, y, y_O, dx))
@@ -371,7 +374,7 @@ class Recomputed:
         if each.symbol.startswith("a_[g,"):
             self.known["a_g of the method"] = value
 
-    OTHERS = ("x_[G", "y_[G", "x_[P", "P_[", "PQ_[", "r")
+    OTHERS = ("x_[G", "y_[G", "x_[P", "P_[", "PQ_[", "r", "M_[", "A_[", "t", "x_[O", "y_[O", "θ′_[", "x′_[", "y′_[")
     """Symbols whose results are checked against their numbers only."""
 
     def scale(self, each):

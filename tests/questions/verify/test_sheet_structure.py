@@ -8,7 +8,6 @@ from math import cos, floor, log10, pi, radians, sin
 
 import numpy as np
 import pytest
-from jinja2 import Environment, StrictUndefined
 
 from mechanisms.arch import Arch
 from mechanisms.block import Block
@@ -28,6 +27,8 @@ from rocking_cli.core.given import Given
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_file import load_structure, parse_structure
 from rocking_cli.verification.results import Formula
+from rocking_cli.views.sheet import template
+from rocking_cli.views.view import Table
 from tests.conftest import EXAMPLES
 from tests.questions.verify.test_sheet import CASES, arithmetic, items_of_case, number, steps_of
 
@@ -147,7 +148,7 @@ def positions(name, direction):
 def written(line, language="en"):
     """A line as it is printed: its numbers, result and meaning."""
     say = build.SHEET.language(language)
-    step = say.step(line.formula, line.value, {key: str(name) for key, name in line.names.items()}, **line.numbers)
+    step = say.written(line)
     return step, say.number(step.value, step.digits)
 
 
@@ -346,22 +347,10 @@ def test_every_formula_of_this_part_is_used():
 # Templates
 
 
-def rendered(name, template, language, **context):
+def parts_of_template(name, language, page, **context):
     say = build.SHEET.language(language)
-    environment = Environment(undefined=StrictUndefined, comment_start_string="<!--", comment_end_string="-->")
-    environment.filters["n"] = say.number
-
-    def steps(lines):
-        rows = [(*written(line, language), line) for line in lines]
-        return "\n".join(f"{step.symbol} {step.numbers} = {result} {step.meaning}" for step, result, _ in rows)
-
-    environment.globals.update(steps=steps, body=lambda each: say.body(structure(name).mechanism, each))
-    text = (files("rocking_cli.codes.italian") / "texts" / language / f"{template}.md").read_text(encoding="utf-8")
-    return environment.from_string(text).render(**context)
-
-
-def tables(text):
-    return [block.splitlines() for block in re.split(r"\n\s*\n", text) if block.strip().startswith("|:")]
+    context |= {"body": lambda each: say.body(structure(name).mechanism, each), "of": ""}
+    return template.parts(say, build.SHEET.package, page, context)
 
 
 @pytest.mark.parametrize(
@@ -370,13 +359,17 @@ def tables(text):
 def test_templates_have_whole_tables_and_the_same_numbers_in_both_languages(name):
     numbers = {}
     for language in ("en", "it"):
-        text = rendered(name, "geometry", language, structure=Composition(structure(name)))
-        for position in positions(name, structure(name).directions[0]):
-            text += "\n\n" + rendered(name, "centres", language, centres=ChainCentres(position), key="k")
-        for caption, heads, *rows in tables(text):
-            assert caption and rows
-            assert {row.count("|") for row in rows} == {heads.count("|")}, (caption, heads, rows[0])
-        numbers[language] = re.findall(r"\d+\.\d+", text.replace(",", "."))
+        composition, (rest, *_) = Composition(structure(name)), positions(name, structure(name).directions[0])
+        parts = [
+            *parts_of_template(name, language, "geometry", structure=composition),
+            *parts_of_template(name, language, "masses", structure=composition),
+            *parts_of_template(name, language, "centres", centres=ChainCentres(rest)),
+        ]
+        parts += [below for part in parts for below in part.parts]
+        tables = [item for part in parts for item in part.items if isinstance(item, Table)]
+        for each in tables:
+            assert each.title and each.rows and {len(row) for row in each.rows} == {len(each.columns)}, each
+        numbers[language] = re.findall(r"\d+\.\d+", repr([each.rows for each in tables]).replace(",", "."))
     assert numbers["en"] and numbers["it"] == numbers["en"]
 
 

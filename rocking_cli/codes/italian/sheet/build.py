@@ -13,6 +13,7 @@ from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import Dynamic, ItalianVerification
 from rocking_cli.codes.italian.sheet import dynamic, site, summary
 from rocking_cli.codes.italian.sheet.chain import named
+from rocking_cli.codes.italian.sheet.geometry import Composition
 from rocking_cli.codes.italian.sheet.steps import PACKAGE, DirectionSteps, title
 from rocking_cli.codes.italian.site import ItalianSite, of_structure
 from rocking_cli.codes.italian.site_demand import site_demand
@@ -68,7 +69,11 @@ def _subject(say: Language, found: ItalianVerification, site_values: ItalianSite
         DirectionSteps(ground, each, f"{both or say(DIRECTION_TITLES[each.direction])}{of}", state)
         for each in found.distinct
     ]
-    return {"state": state, "verification": found, "sides": sides, **summary.context(say, found, sides)}
+    return {
+        "state": state, "of": f"{state}-" if state else "", "verification": found, "sides": sides,
+        "structure": Composition(found.mechanism), "body": partial(say.body, found.mechanism.mechanism),
+        **summary.context(say, found, sides),
+    }  # fmt: skip
 
 
 def _figure(

@@ -18,7 +18,7 @@ from rocking_cli.core import Joint
 from rocking_cli.core.centres import GROUND, Centre, Centres, Locus, Pair
 from rocking_cli.core.hung.attached import Follow, Spot
 from rocking_cli.core.reactions import parts
-from rocking_cli.verification.results import Line
+from rocking_cli.verification.results import Evaluated
 
 LEADING_ROTATIONS = (0.2, 0.5)  # shares of the limit at which the leading block has turned by phi
 SAME_MOTION = 1e-7  # difference of rotations, and relative one of centres, that count as one
@@ -205,7 +205,7 @@ class ChainCentres:
         return None if centre.is_at_infinity else centre.at
 
     @property
-    def lines(self) -> Sequence[Line]:
+    def lines(self) -> Sequence[Evaluated]:
         """The lines from the joints to the centres and rotations; empty if these are not known."""
         if not self.is_known:
             return []
@@ -215,7 +215,7 @@ class ChainCentres:
         centres = [line for centre in self._centres.traced(pairs) if centre.by for line in _located(centre, self._near)]
         return [*centres, *(line for step in self.rotations for line in self._turned(step))]
 
-    def _turned(self, step: Rotation) -> Iterator[Line]:
+    def _turned(self, step: Rotation) -> Iterator[Evaluated]:
         """Yield the line for the rotation of a block, or for its translation."""
         if step.driver is None:
             yield F.LEADS.line(1.0, {"k": step.block})
@@ -263,7 +263,7 @@ def _points(locus: Locus) -> tuple[str, str]:
     return locus.through[0], locus.through[-1]
 
 
-def _located(centre: Centre, near: Callable[[complex], complex]) -> Iterator[Line]:
+def _located(centre: Centre, near: Callable[[complex], complex]) -> Iterator[Evaluated]:
     """Yield the lines to a centre in which two lines cross."""
     one, other = sorted(centre.by, key=lambda locus: -len(locus.through))
     if one.is_at_infinity or other.is_at_infinity:

@@ -21,7 +21,7 @@ from rocking_cli.core.hung.element import ConstantForce, SpringBed
 from rocking_cli.core.hung.steel import circle
 from rocking_cli.core.hung.ties import Tie
 from rocking_cli.core.kinematics import area_of
-from rocking_cli.verification.results import Formula, Line
+from rocking_cli.verification.results import Evaluated, Formula
 
 KILO = 1e3
 MEGA = 1e6
@@ -178,11 +178,11 @@ class Composition:
     # Masses
 
     @property
-    def masses(self) -> Sequence[Line]:
+    def masses(self) -> Sequence[Evaluated]:
         """The lines to the mass of each body, those of equal bodies once."""
         solids, whole = self._solids, sum(body.mass for body in self.mechanism.weighed())
         groups: list[tuple[Sequence[Solid], list[int]]] = []
-        lines: list[Line] = []
+        lines: list[Evaluated] = []
         for k, body in enumerate(self.mechanism.weighed(), 1):
             if not (parts := solids[body.name]):
                 lines.append(self._told(k, body, whole))
@@ -194,7 +194,7 @@ class Composition:
                 alike.append(k)
         return [*(line for parts, numbers in groups for line in _weighed(ranges(numbers), parts)), *lines]
 
-    def _told(self, k: int, body: Body, whole: float) -> Line:
+    def _told(self, k: int, body: Body, whole: float) -> Evaluated:
         """Return the line for a mass that does not follow from sizes."""
         mechanism = self.mechanism
         shared = mechanism.mass is not None or not mechanism.has_mass
@@ -356,7 +356,7 @@ def _numbered(k: str, parts: Sequence[Solid]) -> list[tuple[str, Solid]]:
     return [(k if len(parts) == 1 else f"{k},{i}", part) for i, part in enumerate(parts, 1)]
 
 
-def _weighed(k: str, parts: Sequence[Solid]) -> Iterator[Line]:
+def _weighed(k: str, parts: Sequence[Solid]) -> Iterator[Evaluated]:
     """Yield the lines from the sizes of the parts of a body to its mass."""
     for number, part in _numbered(k, parts):
         yield from _of_part(number, part)
@@ -365,7 +365,7 @@ def _weighed(k: str, parts: Sequence[Solid]) -> Iterator[Line]:
         yield F.SUM_OF_PARTS.line(sum(masses), {"k": k}, M=masses)
 
 
-def _of_part(k: str, part: Solid) -> Iterator[Line]:
+def _of_part(k: str, part: Solid) -> Iterator[Evaluated]:
     """Yield the lines from the sizes of a part to its mass, which is negative for a part that is taken out."""
     rho, names, sizes = part.sign * part.density, {"k": k}, part.sizes
     if part.kind == "polygon":

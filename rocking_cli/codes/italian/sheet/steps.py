@@ -18,6 +18,7 @@ from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified, Li
 from rocking_cli.codes.italian.rules import DAMAGE, FIRST_STATE, LINEAR, NONLINEAR, OF_STATE, RULES, Rule
 from rocking_cli.codes.italian.sheet import chain as chains
 from rocking_cli.codes.italian.sheet import site, spectra
+from rocking_cli.codes.italian.sheet.centres import ChainCentres
 from rocking_cli.codes.italian.sheet.chain import Rows, Scale
 from rocking_cli.codes.italian.sheet.site import hazard_at, is_close
 from rocking_cli.core.hung.attached import Spot
@@ -213,6 +214,10 @@ class DirectionSteps:
     def at_work(self, position: DisplacedChain) -> Rows:
         """Return a row for each block in a position."""
         return chains.at_work(position, self.scale)
+
+    def centres(self, position: DisplacedChain) -> ChainCentres:
+        """Return the centres of rotation of the blocks in a position, from the joints."""
+        return ChainCentres(position)
 
     def held(self, position: DisplacedChain) -> Rows:
         """Return a row for each force or tie in a position."""
