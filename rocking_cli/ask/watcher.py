@@ -50,6 +50,13 @@ class Watcher:
     def incomplete(self, text: str) -> None:
         """Take a sentence on what the answer lacks, such as motions that could not be simulated."""
 
+    def unwritten(self, error: RockingError) -> None:
+        """Take the error of a file that could not be written: raise, or return to go on to the answer, which is known.
+
+        A watcher that returns has to tell of the error beside the answer.
+        """
+        raise error
+
     def working(self, what: str) -> AbstractContextManager[None]:
         """Begin one piece of work that may take long, which `what` names."""
         return nullcontext()

@@ -20,6 +20,7 @@ class OnTerminal(Watcher):
 
     def __init__(self, *, as_json: bool = False) -> None:
         self.left_out = 0
+        self._unwritten: list[RockingError] = []
         self._as_json = as_json
 
     def note(self, text: str) -> None:
@@ -47,6 +48,10 @@ class OnTerminal(Watcher):
         terminal.error(text)
         self.left_out += 1
 
+    def unwritten(self, error: RockingError) -> None:
+        """Keep an error until the answer is shown."""
+        self._unwritten.append(error)
+
     def detail(self, text: str) -> None:
         """Print a detail, with --verbose."""
         terminal.detail(text)
@@ -62,6 +67,8 @@ class OnTerminal(Watcher):
         return terminal.progress(total, what, done=done, failed=failed)
 
     def end(self) -> None:
-        """End the command; with the exit code of an incomplete answer if anything was left out."""
+        """End the command; with the exit code of an incomplete answer if anything was left out or is unwritten."""
+        for error in self._unwritten:
+            self.leave_out(error)
         if self.left_out:
             click.get_current_context().exit(EXIT_INCOMPLETE)

@@ -28,6 +28,15 @@ def template(name: str, **filters: Callable[..., object]) -> Template:
     return environment.get_template(name)
 
 
+def svg(figure: Figure, salt: str, *, text_as: str = "none") -> str:
+    """Return a figure as the content of an SVG file, the same each time, with its text as text or as "path"."""
+    stream = StringIO()
+    with rc_context({"svg.fonttype": text_as, "svg.hashsalt": salt}):
+        unnamed = {"Date": None, "Creator": None, "Format": None, "Type": None}
+        style.save(figure, stream, format="svg", metadata=unnamed)
+    return stream.getvalue()
+
+
 def inline_svg(figure: Figure, prefix: str) -> Markup:
     """Return a figure as an svg element to put inside an HTML page.
 
@@ -38,11 +47,7 @@ def inline_svg(figure: Figure, prefix: str) -> Markup:
     prefix : str
         Prefix of every identifier, so that those of several figures on a page differ.
     """
-    stream = StringIO()
-    with rc_context({"svg.fonttype": "none", "svg.hashsalt": prefix}):  # keeps text as text, not as paths
-        unnamed = {"Date": None, "Creator": None, "Format": None, "Type": None}
-        style.save(figure, stream, format="svg", metadata=unnamed)
-    text = stream.getvalue()
+    text = svg(figure, prefix)
     text = text[text.index("<svg") :]
     # A style sheet would apply to the whole page, and the comments repeat every text.
     text = re.sub(r"<(metadata|style)\b.*?</\1>|\s*<!--.*?-->", "", text, flags=re.DOTALL)

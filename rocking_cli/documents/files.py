@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.io.browser import as_pdf, browser
+from rocking_cli.io.browser import as_pdf
 from rocking_cli.io.files import check_writable, write_whole
 
 
@@ -16,8 +16,6 @@ def check(file: Path, *suffixes: str) -> None:
         *others, last = suffixes
         raise InputError(Problem(f"give a file name that ends in {', '.join(others)} or {last}", str(file)))
     check_writable(file)
-    if suffix == ".pdf":
-        browser()
 
 
 def laid_out(page: str, suffix: str) -> bytes:

@@ -6,13 +6,23 @@ import base64
 from collections.abc import Sequence
 from io import BytesIO
 from itertools import count
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
-from rocking_cli.documents.sheet_page import ORIGIN_MARKS, SIGNATURE_FIELDS, figure_of, runs
+from rocking_cli.documents.mathematics import Node, Unreadable, formulas_of, pieces
+from rocking_cli.documents.sheet_page import (
+    ORIGIN_MARKS,
+    OWN_PAGES,
+    SIGNATURE_FIELDS,
+    TEXT_WIDTH,
+    figure_of,
+    printed_width,
+    runs,
+)  # fmt: skip
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.plotting import style
 from rocking_cli.text import printable
-from rocking_cli.verification.results import Working
+from rocking_cli.verification.results import MARK, Working
 from rocking_cli.views.sheet.document import Drawing, Item, Listing, Sheet, SheetPart, Steps
 from rocking_cli.views.view import Table
 
@@ -20,8 +30,11 @@ if TYPE_CHECKING:
     from docx.document import Document
     from docx.text.paragraph import Paragraph
 
-TEXT_WIDTH = 17.0  # cm of an A4 page, between margins of 2 cm
-TABLE_FONT_SIZE = 8.5  # pt
+CELL, FORMULA = "Cell", "Formula"
+FONT_SIZES = {CELL: 8, FORMULA: 10}  # pt of the styles of paragraphs in tables
+COUNT_WIDTH = 1.1  # cm of the column with the numbers of steps
+CELL_MARGIN = 3  # characters that are as wide as the margins of a cell
+MAX_COLUMN_LENGTH = 18  # characters of the text of a cell that its column is made wide for; a word is not broken
 LOGO_HEIGHT = 1.6  # cm
 SIGNATURE_LINES = 5  # empty lines of the place for a signature or a stamp
 PICTURE_PREFIXES = ("data:image/png;", "data:image/jpeg;")
@@ -76,7 +89,7 @@ class _Writer:
             self._logo(sheet.logo)
         self._text(self.document.add_heading(level=0), sheet.heading)
         self._text(self.document.add_paragraph(), sheet.subtitle)
-        self._table([[[name], [text]] for name, text in sheet.about.items()])
+        self._table([*sheet.about.items()])
         for k, each in enumerate(sheet.parts):
             self._part(each, 1)
             if k == 0:
@@ -85,12 +98,12 @@ class _Writer:
     def _sign_and_list(self) -> None:
         """Write the place for the signature, and the table of contents, which a word processor fills on request."""
         say = self.sheet.language
-        self._table([[[say(name), *[""] * SIGNATURE_LINES] for name in SIGNATURE_FIELDS]])
+        self._table([[say(name) + "\n" * SIGNATURE_LINES for name in SIGNATURE_FIELDS]])
         title = self.document.add_paragraph()
         title.paragraph_format.page_break_before = title.paragraph_format.keep_with_next = True
         self._text(title, say("Contents"), bold=True, size=14)
         self._field(
-            self.document.add_paragraph(), r'TOC \o "1-2" \h \z', "; ".join(each.heading for each in self.sheet.parts)
+            self.document.add_paragraph(), r'TOC \o "1-2" \h \z', "\n".join(each.heading for each in self.sheet.parts)
         )
 
     def _field(self, paragraph: Paragraph, code: str, until_filled: str) -> None:
@@ -101,12 +114,13 @@ class _Writer:
         field = OxmlElement("w:fldSimple")
         field.set(qn("w:instr"), code)
         field.set(qn("w:dirty"), "true")
-        run = paragraph.add_run(printable(until_filled))
+        run = paragraph.add_run("\n".join(map(printable, until_filled.split("\n"))))
         field.append(run._r)
         paragraph._p.append(field)
 
     def _page(self) -> None:
         """Set the page to A4, and the language of the text."""
+        from docx.enum.style import WD_STYLE_TYPE
         from docx.oxml.ns import qn
         from docx.shared import Cm, Pt
 
@@ -116,6 +130,9 @@ class _Writer:
         self._field(section.footer.paragraphs[0], "PAGE", "1")
         normal = self.document.styles["Normal"]
         normal.font.size = Pt(10)
+        for name, size in FONT_SIZES.items():
+            style: Any = self.document.styles.add_style(name, WD_STYLE_TYPE.PARAGRAPH)
+            style.font.size, style.paragraph_format.space_after = Pt(size), Pt(0)
         fonts = self.document.styles.element.find(f".//{qn('w:lang')}")
         if fonts is not None:
             fonts.set(qn("w:val"), {"en": "en-GB", "it": "it-IT"}[self.sheet.language.key])
@@ -135,7 +152,9 @@ class _Writer:
             raise InputError(Problem(f"the logo cannot be put into a .docx file: {error!r}", field="logo")) from None
 
     def _part(self, part: SheetPart, level: int) -> None:
-        self._text(self.document.add_heading(level=min(level, 9)), part.heading)
+        heading = self.document.add_heading(level=min(level, 9))
+        heading.paragraph_format.page_break_before = part.key in OWN_PAGES or None
+        self._text(heading, part.heading)
         for item in part.items:
             self._item(item)
         for each in part.parts:
@@ -148,14 +167,16 @@ class _Writer:
             caption = self.document.add_paragraph()
             caption.paragraph_format.keep_with_next = True
             self._text(caption, item.title)
-            self._table([[[each] for each in row] for row in (item.columns, *item.rows)], heads=True)
+            self._table([item.columns, *item.rows], heads=True)
         elif isinstance(item, Steps):
-            self._table([self._step(row) for row in item.rows], widths=(1.1, 10.1, 3.2, 2.6))
+            self._steps(item.rows)
         elif isinstance(item, Drawing):
             stream = BytesIO()
-            style.save(figure_of(item, self.sheet.language), stream, format="png")
+            figure = figure_of(item, self.sheet.language)
+            width = printed_width(figure)  # before it is drawn
+            style.save(figure, stream, format="png")
             stream.seek(0)
-            self.document.add_picture(stream, width=Cm(TEXT_WIDTH))
+            self.document.add_picture(stream, width=Cm(width))
             self.document.paragraphs[-1].paragraph_format.keep_with_next = True
             self._text(self.document.add_paragraph(), item.label)
         elif isinstance(item, Listing):
@@ -167,38 +188,55 @@ class _Writer:
         else:
             self._text(self.document.add_paragraph(), item.text, bold=item.answers, marked=item.is_open)
 
-    def _step(self, row: Working) -> list[list[str]]:
-        """Return the cells of a step: number, meaning and formula with numbers, result, clause."""
-        written = row.formula if not row.numbers else f"{row.formula} = {row.numbers}"
-        joined = ": " if row.formula and not row.numbers else " = "
-        work = f"{row.symbol}{joined}{written}" if written else row.symbol
-        result = f"{self.sheet.language.number(row.value, row.digits)} {row.unit}".strip()
-        return [[str(next(self.steps))], [row.meaning, work], [result], [f"{row.clause}{ORIGIN_MARKS[row.standing]}"]]
+    def _steps(self, rows: Sequence[Working]) -> None:
+        """Write steps as on a page: the meaning with its clause, and below it the formulas with their result."""
+        table = self._table([["", ""] for _ in rows], widths=(COUNT_WIDTH, TEXT_WIDTH - COUNT_WIDTH))
+        for row, cells in zip(rows, (each.cells for each in table.rows), strict=True):
+            self._text(cells[0].paragraphs[0], str(next(self.steps)))
+            what = cells[1].paragraphs[0]
+            what.paragraph_format.keep_with_next = True
+            self._text(what, f"{row.meaning} {row.clause}{ORIGIN_MARKS[row.standing]}".rstrip())
+            work, (formulas, gives) = cells[1].add_paragraph(style=FORMULA), formulas_of(row)
+            for sign, text in formulas:
+                self._text(work, f"{sign} ".lstrip())
+                self._formula(work, text)
+            self._text(work, f"{gives} ")
+            self._text(work, self.sheet.language.number(row.value, row.digits), bold=True)
+            self._text(work, f" {row.unit}" if row.unit else "")
 
-    def _table(
-        self, rows: Sequence[Sequence[Sequence[str]]], *, heads: bool = False, widths: Sequence[float] = ()
-    ) -> None:
-        """Write a table of cells with paragraphs; rows are not broken across pages, and headings and results bold."""
+    def _table(self, rows: Sequence[Sequence[str]], *, heads: bool = False, widths: Sequence[float] = ()) -> Any:
+        """Write a table; rows are not broken across pages, and the headings are bold and repeated on each page."""
         from docx.oxml import OxmlElement
-        from docx.shared import Cm, Pt
+        from docx.shared import Cm
 
-        table: Any = self.document.add_table(rows=0, cols=len(rows[0]), style="Table Grid")
-        table.autofit = not widths
-        for column, width in zip(table.columns, widths, strict=False):
+        widths = widths or _widths(rows)
+        table: Any = self.document.add_table(rows=0, cols=len(widths), style="Table Grid")
+        table.autofit = False
+        for column, width in zip(table.columns, widths, strict=True):
             column.width = Cm(width)
         for k, row in enumerate(rows):
-            cells = table.add_row().cells
-            table.rows[-1]._tr.get_or_add_trPr().append(OxmlElement("w:cantSplit"))
-            for n, (cell, texts) in enumerate(zip(cells, row, strict=True)):
-                for text in texts:
-                    paragraph = cell.paragraphs[0] if text is texts[0] else cell.add_paragraph()
-                    paragraph.paragraph_format.space_after = Pt(0)
-                    self._text(
-                        paragraph, text, bold=(heads and k == 0) or (bool(widths) and n == 2), size=TABLE_FONT_SIZE
-                    )
-                if widths:
-                    cell.width = Cm(widths[n])
-        self.document.add_paragraph()
+            new, is_head = table.add_row(), heads and k == 0
+            for name in ("cantSplit", "tblHeader") if is_head else ("cantSplit",):
+                new._tr.get_or_add_trPr().append(OxmlElement(f"w:{name}"))
+            for cell, text, width in zip(new.cells, row, widths, strict=True):
+                cell.width, paragraph = Cm(width), cell.paragraphs[0]
+                paragraph.style = CELL
+                paragraph.paragraph_format.keep_with_next = is_head or None
+                self._text(paragraph, text, bold=is_head)
+        self.document.add_paragraph(style=CELL)
+        return table
+
+    def _formula(self, paragraph: Paragraph, text: str) -> None:
+        """Write a formula as mathematics of the word processor, or what is no formula as text."""
+        try:
+            rows = pieces(printable(text))
+        except Unreadable:
+            self._text(paragraph, text)
+        else:
+            for row in rows:  # a line may be broken between two; a sign at the end of mathematics lacks what follows it
+                parts, end = (row.parts[:-1], row.parts[-1].text) if row.parts[-1].kind == "sign" else (row.parts, "")
+                paragraph._p.append(_math("oMath", *(each for part in parts for each in _elements(part))))
+                self._text(paragraph, f" {end} " if end else " ")
 
     def _text(
         self, paragraph: Paragraph, text: str, *, bold: bool = False, size: float | None = None, marked: bool = False
@@ -207,11 +245,55 @@ class _Writer:
         from docx.enum.text import WD_COLOR_INDEX
         from docx.shared import Pt
 
-        for piece, place in runs(text):
-            run = paragraph.add_run(printable(piece))
+        for piece, place in filter(itemgetter(0), runs(text)):
+            run = paragraph.add_run("\n".join(map(printable, piece.split("\n"))))
             run.bold = bold or None
             run.font.highlight_color = WD_COLOR_INDEX.YELLOW if marked else None
             if place:
                 setattr(run.font, {"sub": "subscript", "sup": "superscript"}[place], True)
             if size is not None:
                 run.font.size = Pt(size)
+
+
+def _widths(rows: Sequence[Sequence[str]]) -> list[float]:
+    """Return the widths of columns, in cm, by the lengths of their texts: a table is as wide as the page."""
+    lengths = [
+        max(max(min(len(MARK.sub(r"\2", text)), MAX_COLUMN_LENGTH), *map(len, text.split()), 4) for text in column)
+        for column in zip(*rows, strict=True)
+    ]
+    return [TEXT_WIDTH * (each + CELL_MARGIN) / (sum(lengths) + CELL_MARGIN * len(lengths)) for each in lengths]
+
+
+def _math(name: str, *children: Any, **values: str) -> Any:
+    """Return an element of Office Math with a value and its children."""
+    from docx.oxml import OxmlElement
+    from docx.oxml.ns import qn
+
+    element: Any = OxmlElement(f"m:{name}")
+    for key, value in values.items():
+        element.set(qn(f"m:{key}"), value)
+    element.extend(children)
+    return element
+
+
+def _elements(node: Node) -> list[Any]:
+    """Return the elements of Office Math of a piece of a formula."""
+    inside = [_elements(each) for each in node.parts]
+    if node.kind == "row":
+        return [each for part in inside for each in part]
+    if node.kind == "fraction":
+        return [_math("f", _math("num", *inside[0]), _math("den", *inside[1]))]
+    if node.kind == "root":
+        return [_math("rad", _math("radPr", _math("degHide", val="1")), _math("deg"), _math("e", *inside[0]))]
+    if node.kind == "fence":
+        signs = _math("dPr", _math("begChr", val=node.text[0]), _math("endChr", val=node.text[1]))
+        return [_math("d", signs, _math("e", *(each for part in inside for each in part)))]
+    if node.kind == "script":
+        names = [name for name, each in zip(("Sub", "Sup"), inside[1:], strict=True) if each]
+        scripts = [_math(name.lower(), *each) for name, each in zip(("Sub", "Sup"), inside[1:], strict=True) if each]
+        return [_math(f"s{''.join(names)}", _math("e", *inside[0]), *scripts)]
+    text = _math("t")
+    text.text = node.text
+    # Normal text is upright, and nothing in it is read as an operator, such as the star of a symbol.
+    is_normal = node.kind in ("word", "gap", "bracket")
+    return [_math("r", *([_math("rPr", _math("nor"))] if is_normal else []), text)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import count
 
 from markupsafe import Markup, escape
@@ -11,6 +11,7 @@ from matplotlib.text import Text
 
 from rocking_cli.core import Mechanism
 from rocking_cli.documents.figures import inline_svg, template
+from rocking_cli.documents.mathematics import BRACKETS, Node, Unreadable, formulas_of, pieces, width
 from rocking_cli.plotting.moving import asset
 from rocking_cli.plotting.structure import draw_structure
 from rocking_cli.studies.picture import picture
@@ -21,6 +22,11 @@ from rocking_cli.views.sheet.language import Language
 
 ORIGIN_MARKS = {"print": "", "transcription": "*", "code": "†", "ours": "‡", "plain": ""}
 """Marks beside formulas, by how far these were checked."""
+LEAVES = {"number": "mn", "letter": "mi", "word": "mi", "sign": "mo", "bracket": "mo"}
+SCREEN_WIDTH = 25  # characters of a formula that fit on any screen
+TEXT_WIDTH = 17.0  # cm of an A4 page, between margins of 2 cm
+OWN_PAGES = ("workings", "inputs")  # keys of the sections that begin a page
+MAX_FIGURE_HEIGHT = 11.0  # cm
 SIGNATURE_FIELDS = ("Place and date", "Name", "Signature", "Stamp")
 
 
@@ -51,7 +57,10 @@ def parts(sheet: Sheet, level: int = 2, *, alone: bool = False) -> Markup:
     def svg(item: Drawing) -> Markup:
         return inline_svg(figure_of(item, sheet.language), f"sheet-{next(pictures)}")
 
-    text = template("sheet_parts.html", formula=formula, svg=svg).render(
+    page = template(
+        "sheet_parts.html", formula=formula, math=math, is_wide=is_wide, formulas=formulas_of, svg=svg
+    )  # fmt: skip
+    text = page.render(
         sheet=sheet, say=sheet.language, level=level, step=lambda: next(steps), number=sheet.language.number,
         marks=ORIGIN_MARKS, alone=alone, signed=SIGNATURE_FIELDS,
     )  # fmt: skip
@@ -72,6 +81,12 @@ def figure_of(item: Drawing, say: Language) -> Figure:
     return figure
 
 
+def printed_width(figure: Figure) -> float:
+    """Return the width of a figure on paper, in cm: that of the text, or less if it would be too high."""
+    width, height = map(float, figure.get_size_inches())
+    return min(TEXT_WIDTH, MAX_FIGURE_HEIGHT * width / height)
+
+
 def runs(text: str) -> Iterator[tuple[str, str]]:
     """Yield the pieces of a text, each with its place: "sub", "sup" or neither."""
     end = 0
@@ -86,3 +101,51 @@ def formula(text: str) -> Markup:
     """Return a text with its sub- and superscripts as HTML."""
     pieces = (Markup(f"<{place}>{escape(text)}</{place}>") if place else escape(text) for text, place in runs(text))
     return Markup("").join(pieces)
+
+
+def math(text: str) -> Markup:
+    """Return a formula as MathML, which every current browser draws, or what is no formula as `formula` does."""
+    try:
+        rows = pieces(text)
+    except Unreadable:
+        return formula(text)
+    return Markup(" ").join(Markup(f'<math displaystyle="true">{_row(each.parts)}</math>') for each in rows)
+
+
+def is_wide(text: str) -> bool:
+    """Return whether a formula may be wider than a narrow screen, so that it is scrolled there."""
+    try:
+        return any(width(each) > SCREEN_WIDTH for each in pieces(text))
+    except Unreadable:
+        return False
+
+
+def _row(nodes: Sequence[Node]) -> Markup:
+    """Return the elements of a row; a sign that begins it, or follows another one, is that of a number."""
+    begins = (k == 0 or nodes[k - 1].kind == "sign" or nodes[k - 1].text in BRACKETS for k in range(len(nodes)))
+    return Markup("").join(_element(node, at_start) for node, at_start in zip(nodes, begins, strict=True))
+
+
+def _element(node: Node, at_start: bool = False) -> Markup:
+    """Return the element of MathML of a piece of a formula."""
+    if node.kind in LEAVES:
+        name, more = LEAVES[node.kind], ""
+        if node.kind == "bracket":
+            more = ' stretchy="false"'
+        elif node.kind == "sign" and at_start:
+            more = ' form="prefix"'
+        elif node.kind == "word" and len(node.text) == 1:
+            more = ' mathvariant="normal"'
+        return Markup(f"<{name}{more}>{escape(node.text)}</{name}>")
+    if node.kind == "gap":
+        return Markup('<mspace width="0.17em"/>')
+    if node.kind == "fence":
+        opening, closing = (Markup(f"<mo>{sign}</mo>") for sign in node.text)
+        return Markup(f"<mrow>{opening}{_row(node.parts)}{closing}</mrow>")
+    if node.kind == "script":
+        base, *scripts = node.parts
+        name = "m" + "".join(tag for tag, each in zip(("sub", "sup"), scripts, strict=True) if each.parts)
+        return Markup(f"<{name}>{''.join(map(_element, [base, *(each for each in scripts if each.parts)]))}</{name}>")
+    name = {"row": "mrow", "root": "msqrt", "fraction": "mfrac"}[node.kind]
+    inside = _row(node.parts) if node.kind == "row" else "".join(map(_element, node.parts))
+    return Markup(f"<{name}>{inside}</{name}>")

@@ -12,7 +12,7 @@ from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.errors import InputError
+from rocking_cli.errors import InputError, RockingError
 from rocking_cli.names import OPENING
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.view import heading
@@ -154,7 +154,11 @@ def report(
     with watch.progress(count_steps(chosen), "parts of the report") as advance:
         content = gather(ready, source.structure, chosen, signs, around=around, title=title, progress=advance)
     if out is not None:
-        watch.note(files.write(Path(out), files.laid_out(render(content, verified), Path(out).suffix.lower())))
+        page = render(content, verified)
+        try:
+            watch.note(files.write(Path(out), files.laid_out(page, Path(out).suffix.lower())))
+        except RockingError as error:
+            watch.unwritten(error)
     shown = view(content, verified.found if verified is not None else None)
     figure = drawn("plotting.structure.draw_structure", content.picture, heading(content.mechanism))
     return Answer("report", content, shown, partial(_columns, content), figure)

@@ -65,7 +65,7 @@ class SurveyOutput(Output):
 )
 @click.option(
     "--sheet-format", type=click.Choice(SHEET_FORMATS), default="html", show_default=True,
-    help="Format of the sheets (pdf needs a browser, docx an extra package).",
+    help="Format of the sheets (docx and pdf need an extra package; a browser does for pdf).",
 )  # fmt: skip
 @heads.language
 @heads.head

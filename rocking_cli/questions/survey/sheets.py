@@ -95,8 +95,9 @@ class SheetFolder:
         Raises
         ------
         InputError, Refused
-            If a file cannot be written; the list then has those that were.
+            If what makes the sheets is not there, or a file cannot be written; the list then has those that were.
         """
+        sheets.check_program(self.suffix)
         every: list[Surveyed | Bad] = sorted([*found.rows, *found.bad], key=lambda each: each.row)
         names = {
             each.row: name for each, name in zip(every, file_names([e.name for e in every], self.suffix), strict=True)

@@ -14,7 +14,7 @@ from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.names import OPENING
 from rocking_cli.questions.survey.view import DEFAULT_ROWS
 from rocking_cli.text import one_line
@@ -82,7 +82,7 @@ def survey(
     sheets : str or Path, optional
         Folder for the calculation sheets of the verifications, one for each structure.
     sheet_format : {"html", "docx", "pdf"}
-        Format of the sheets; "docx" needs an extra package, "pdf" a browser.
+        Format of the sheets; "docx" needs an extra package, "pdf" another one or a browser.
     language : {"en", "it"}
         Language of the sheets.
     project, place, author, logo : str, str, str, path, optional
@@ -157,7 +157,10 @@ def survey(
     if map is not None and result.rows:
         _write_map(Path(map), result, title(result), watch)
     if writer is not None and result.rows:
-        writer.write(result, entries, watch)
+        try:
+            writer.write(result, entries, watch)
+        except RockingError as error:
+            watch.unwritten(error)
     figure, files = (
         drawn("questions.survey.picture.draw_survey", result, title(result)),
         partial(blocks, result, "."),

@@ -37,7 +37,7 @@ sheet: options.Decorator = options.in_order(
     click.option(
         "--sheet", callback=options.output_path(".html", ".docx", ".pdf"), metavar="FILE.html",
         shell_complete=complete.files,
-        help="Write the calculation sheet (.html; .pdf needs a browser, .docx an extra package).",
+        help="Write the calculation sheet (.html; .docx and .pdf need an extra package; a browser does for .pdf).",
     ),
     language,
     head,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from datetime import UTC, datetime
+from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
@@ -11,6 +12,7 @@ from rocking_cli.ask.given import SiteLike, yaml_of
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.documents import files
 from rocking_cli.excitation.records.opening import STANDARD_INPUT, name_of, original
+from rocking_cli.io.browser import browser
 from rocking_cli.io.json_text import json_text
 from rocking_cli.processing.listed import Scaled
 from rocking_cli.structure import Structure
@@ -65,10 +67,16 @@ def check(file: Path, site: SiteFile, language: str) -> None:
     """Raise `InputError`, before any work, if a sheet cannot be written."""
     files.check(file, ".html", ".docx", ".pdf")
     sheet_of(site).language(language)
-    if file.suffix.lower() == ".docx":
+
+
+def check_program(suffix: str) -> None:
+    """Raise `InputError` if what makes sheets of a suffix is not there: a package, or for a PDF also a browser."""
+    if suffix == ".docx":
         from rocking_cli.documents.sheet_docx import check_package
 
         check_package()
+    elif suffix == ".pdf" and find_spec("typst") is None:
+        browser()
 
 
 def sheet_for(
@@ -91,6 +99,10 @@ def rendered(content: Sheet, suffix: str) -> bytes:
         from rocking_cli.documents.sheet_docx import render as render_docx
 
         return render_docx(content)
+    if suffix == ".pdf" and find_spec("typst") is not None:
+        from rocking_cli.documents.sheet_typst import render as render_typst
+
+        return render_typst(content)
     from rocking_cli.documents.sheet_page import render
 
     return files.laid_out(render(content), suffix)

@@ -12,7 +12,7 @@ from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, each_of, signs_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.names import OPENING
 from rocking_cli.verification.results import Verification
 
@@ -72,7 +72,7 @@ def verify(
     opening : float
         Largest opening of a joint up to which a history is valid, over D_cr.
     sheet : str or Path, optional
-        File for the calculation sheet: .html, .docx with an extra package, or .pdf with a browser.
+        File for the calculation sheet: .html, or .docx and .pdf with extra packages (a browser does for .pdf).
     language : {"en", "it"}
         Language of the sheet.
     project, place, author, logo : str, str, str, path, optional
@@ -149,7 +149,10 @@ def verify(
         source = sheets.SheetOrigin.of(origin or "rocking_cli.verify(...)", ready)
         title = sheets.Head(project, place, author, logo).block(source, language)
         content = sheets.sheet_for(verification, known, site, chosen, language, title, source)
-        sheets.write(Path(sheet), content, watch)
+        try:
+            sheets.write(Path(sheet), content, watch)
+        except RockingError as error:
+            watch.unwritten(error)
     shown = view(verification, known.site.name, every_step=every_step, in_short=in_short)
     return Answer("verification", verification, shown, partial(table, verification), partial(_figure, verification))
 

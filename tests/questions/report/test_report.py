@@ -302,14 +302,17 @@ def test_a_pdf_is_printed_on_numbered_pages_of_A4_by_a_browser(tmp_path):
 
 
 @pytest.mark.parametrize("call", ["command", "python"])
-def test_without_a_browser_it_is_said_before_any_work(call, tmp_path, monkeypatch):
+@pytest.mark.usefixtures("small_maps")
+def test_without_a_browser_the_result_is_printed_first(call, tmp_path, monkeypatch):
     monkeypatch.setenv("ROCKING_BROWSER", "no-such-browser")
     said = "there is no browser no-such-browser"
     if call == "command":
-        assert said in run("report", BLOCK, "-o", tmp_path / "r.pdf", code=2).stderr
+        result = run("report", BLOCK, "-o", tmp_path / "r.pdf", code=5)
+        assert said in result.stderr and result.stdout == run("report", BLOCK, "-o", tmp_path / "r.html").stdout
+        (tmp_path / "r.html").unlink()
     else:
         with pytest.raises(rk.InputError, match=said):
-            rk.report("none.yaml", out=tmp_path / "r.pdf")
+            rk.report(rk.Block(width=0.7, height=2.8), out=tmp_path / "r.pdf")
     assert list(tmp_path.iterdir()) == []
 
 

@@ -22,6 +22,7 @@ from rocking_cli.verification import Code
 from rocking_cli.verification.code import codes
 from tests.cli.test_cli import run, some
 from tests.core.test_ties_of_steel import facade
+from tests.questions.verify.printed import steps_of_page
 
 SITE = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
 ITALIAN = """mechanism;name;width [mm];height;# proprietario;# quota
@@ -404,8 +405,9 @@ class TestSheets:
         with Path("site.yaml").open("a") as stream:
             stream.write("element: {kind: cantilever, L: 1.0, t: 0.4, w: 18000, E: 1.2e9}\n")
         self.sheet()
-        text = re.sub(r"<[^>]+>", "", Path("sh/a.html").read_text("utf-8"))
-        assert "6.2 · 2/0.3 · 2" in " ".join(text.split()) and "0.102239 s" in text  # 6.2 (2/0.3) 2 1.236759e-3
+        steps = steps_of_page(Path("sh/a.html").read_text("utf-8"))
+        (period,) = (each for each in steps if each.numbers.startswith("(6.2·2)/(0.3)·2·√("))
+        assert (period.result, period.unit) == ("0.102239", "s")  # 6.2 (2/0.3) 2 1.236759e-3
 
     @pytest.mark.rest
     def test_sheets_of_an_earlier_survey_are_replaced_and_nothing_else(self):
@@ -466,6 +468,17 @@ class TestSheets:
         monkeypatch.setattr(survey_sheets, "write_whole", whole)
         rk.survey("s.csv", site="site.yaml", sheets="sh")
         assert len(list(Path("sh").iterdir())) == 4
+
+    def test_without_what_makes_sheets_the_survey_is_printed_and_it_is_said_once(self, monkeypatch):
+        self.table("a", "b")
+        monkeypatch.setattr(survey_sheets.sheets, "find_spec", lambda name: None)
+        monkeypatch.setattr("rocking_cli.io.browser.USUAL_PATHS", ())
+        monkeypatch.setenv("PATH", "")
+        result = self.sheet("--sheet-format", "pdf", code=5)
+        assert result.stderr.count("pip install 'rocking-cli[pdf]'") == 1
+        assert re.search("a.* satisfied", result.stdout) and not [*Path("sh").iterdir()]
+        with pytest.raises(InputError, match="none is found here"):
+            rk.survey("s.csv", site=SITE, sheets="sh", sheet_format="pdf")
 
     def test_what_has_no_sheet_is_refused(self):
         self.table("a")

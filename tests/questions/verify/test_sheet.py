@@ -2,6 +2,7 @@
 
 import calendar
 import hashlib
+import json
 import re
 import sys
 from functools import cache
@@ -9,12 +10,12 @@ from importlib.metadata import version
 from importlib.resources import files as files_of
 from math import cos, floor, log, log10, pi, sin, sqrt
 from string import Formatter
-from typing import NamedTuple
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+import rocking_cli as rk
 from mechanisms.symmetric_frame import MAX_CHECKED_COLUMNS
 from rocking_cli.codes.italian import Italian
 from rocking_cli.codes.italian.remarks import differences
@@ -24,6 +25,7 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.documents import sheet_docx, sheet_page
 from rocking_cli.documents.sheet_page import ORIGIN_MARKS, SIGNATURE_FIELDS
+from rocking_cli.errors import InputError
 from rocking_cli.io.yaml_file import parse
 from rocking_cli.studies.conclusion import Concluded
 from rocking_cli.studies.provenance import File, versions
@@ -40,6 +42,7 @@ from tests.browser import launch
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 from tests.questions.report.test_report import read
+from tests.questions.verify.printed import Step, same, steps_of_document, steps_of_page
 
 G = 9.80665
 SITE = "FC: 1.35\nag: 0.2\nF0: 2.5\nTC: 0.4\nS: 1.2\n"
@@ -129,17 +132,6 @@ REASONS = "elastic", "too_few", "too_few_and_past", "starts_first"  # see `LeftO
 ENDS = {*OF_CODES, *REASONS, "satisfied_at", "not_covered", "unproven", "past"}
 
 
-class Step(NamedTuple):
-    """A step as it is printed."""
-
-    symbol: str
-    formula: str
-    numbers: str
-    result: str
-    unit: str
-    mark: str
-
-
 def verified(structure, site, control=None):
     """The verification of a structure at a site, and the site."""
     mechanism = parse_structure(structure, "s.yaml", "test", Registry()) if isinstance(structure, str) else structure
@@ -181,14 +173,6 @@ def items_of_case(name, language="en", control=None):
 
 def steps_of(items):
     return [each for each in items if isinstance(each, Step)]
-
-
-def line(step):
-    """A step as it is written, and its result."""
-    solved = step.formula and not step.numbers
-    by = [":" if solved else "=", step.formula] if step.formula else []
-    by += ["=", step.numbers] if step.numbers else []
-    return " ".join([step.symbol, *by]), f"{step.result} {step.unit}".strip(), "⇒" if solved else "="
 
 
 def flat(text):
@@ -528,14 +512,23 @@ def test_a_number_that_is_changed_is_found():
 CASES_WRITTEN = [("facade", "en"), ("tied", "it"), ("two bodies on a floor", "en"), ("laden, on a hazard", "it")]
 
 
+def are_those(printed, items):
+    """Whether the steps that are printed are those of the items, one by one."""
+    pairs = zip(printed, steps_of(items), strict=True)
+    return all(
+        all(map(same, one[:3], other[:3])) and one[3:5] == other[3:5] and one.mark.endswith(other.mark)
+        for one, other in pairs
+    )
+
+
 @pytest.mark.parametrize(("name", "language"), CASES_WRITTEN)
 def test_a_page_has_every_step_and_table(name, language, written):
-    words = read(written(*CASES[name], ".html", "--language", language)).words
-    for each in items_of_case(name, language):
-        if isinstance(each, Step):
-            text, result, sign = line(each)
-            assert flat(f"{text} {sign} {result}") in words and each.mark in words
-        else:
+    out, items = written(*CASES[name], ".html", "--language", language), items_of_case(name, language)
+    printed = steps_of_page(out.read_text(encoding="utf-8"))
+    assert are_those(printed, items) and check_arithmetic(printed, comma=language == "it") > 40
+    words = read(out).words
+    for each in items:
+        if not isinstance(each, Step):
             cells = [each] if isinstance(each, str) else [each[0], *(cell for row in each[1:] for cell in row)]
             assert all(" ".join(flat(cell).split()) in words for cell in cells)
 
@@ -545,13 +538,9 @@ def test_a_page_has_every_step_and_table(name, language, written):
 def test_a_document_has_every_step_and_table(name, language, written):
     docx = pytest.importorskip("docx")
     out = docx.Document(str(written(*CASES[name], ".docx", "--language", language)))
+    printed, items = steps_of_document(out), items_of_case(name, language)
+    assert are_those(printed, items) and check_arithmetic(printed, comma=language == "it") > 40
     rows = [[cell.text for cell in row.cells] for table in out.tables for row in table.rows]
-    found = [row for row in rows if len(row) == 4 and row[0].isdigit() and "\n" in row[1]]
-    items = items_of_case(name, language)
-    assert len(found) == len(steps_of(items)) > 40
-    for row, each in zip(found, steps_of(items), strict=True):
-        text, result, _ = line(each)
-        assert row[1].endswith(flat(text.replace(" :", ":"))) and row[2:] == [flat(result), each.mark]
     assert all([*map(flat, row)] in rows for each in items if isinstance(each, list) for row in each[1:])
     places = {run.text for table in out.tables for cell in table.rows[0].cells for paragraph in cell.paragraphs
               for run in paragraph.runs if run.font.subscript}  # fmt: skip
@@ -631,8 +620,13 @@ class TestAskingForIt:
         (tmp_path / "s.yaml").write_text(FACADE, encoding="utf-8")
         return run("verify", tmp_path / "s.yaml", "--site", tmp_path / "site.yaml", *more, code=code)
 
+    @pytest.fixture
+    def no_typst(self, monkeypatch):
+        monkeypatch.setattr("rocking_cli.questions.verify.sheets.find_spec", lambda name: None)
+
     @pytest.mark.rest
-    def test_a_pdf_is_printed_by_a_browser(self, tmp_path):
+    @pytest.mark.usefixtures("no_typst")
+    def test_without_typst_a_browser_prints_a_pdf(self, tmp_path):
         found, driver = launch()  # skipped where there is none
         found.close()
         driver.stop()
@@ -644,18 +638,27 @@ class TestAskingForIt:
         assert content.rstrip().endswith(b"%%EOF")
         assert {each.name for each in tmp_path.iterdir()} == {"o.pdf", "s.yaml", "site.yaml"}
 
-    def test_without_a_browser_it_is_said_before_any_work(self, tmp_path, monkeypatch):
+    @pytest.mark.usefixtures("no_typst")
+    def test_without_what_makes_a_pdf_the_result_is_printed_and_then_said_what_to_install(self, tmp_path, monkeypatch):
         monkeypatch.setenv("PATH", str(tmp_path))
         monkeypatch.setattr("rocking_cli.io.browser.USUAL_PATHS", ())
-        result = self.asked(tmp_path, "--sheet", tmp_path / "o.pdf")
+        result = self.asked(tmp_path, "--sheet", tmp_path / "o.pdf", code=5)
         assert "none is found here" in result.stderr and "ROCKING_BROWSER" in result.stderr
+        assert "pip install 'rocking-cli[pdf]'" in result.stderr and ".html" in result.stderr
+        assert result.stdout == self.asked(tmp_path, code=0).stdout
+        data = self.asked(tmp_path, "--sheet", tmp_path / "o.pdf", "--json", code=5).stdout
+        assert json.loads(data) == json.loads(self.asked(tmp_path, "--json", code=0).stdout)
         monkeypatch.setenv("ROCKING_BROWSER", "no-such-browser")
-        assert "there is no browser no-such-browser" in self.asked(tmp_path, "--sheet", tmp_path / "o.pdf").stderr
+        result = self.asked(tmp_path, "--sheet", tmp_path / "o.pdf", code=5)
+        assert "there is no browser no-such-browser" in result.stderr
+        with pytest.raises(InputError, match="there is no browser"):
+            rk.verify(tmp_path / "s.yaml", tmp_path / "site.yaml", sheet=tmp_path / "o.pdf")
         assert not (tmp_path / "o.pdf").exists()
 
+    @pytest.mark.usefixtures("no_typst")
     def test_a_browser_that_does_not_print_is_said(self, tmp_path, monkeypatch):
         monkeypatch.setenv("ROCKING_BROWSER", "false")
-        result = self.asked(tmp_path, "--sheet", tmp_path / "o.pdf", code=1)
+        result = self.asked(tmp_path, "--sheet", tmp_path / "o.pdf", code=5)
         assert "did not print the page" in result.stderr
         assert not (tmp_path / "o.pdf").exists()
 
@@ -669,8 +672,8 @@ class TestAskingForIt:
 
     def test_without_the_package_it_says_what_to_install(self, tmp_path, monkeypatch):
         monkeypatch.setitem(sys.modules, "docx", None)
-        result = self.asked(tmp_path, "--sheet", tmp_path / "o.docx")
-        assert "pip install 'rocking-cli[docx]'" in result.stderr
+        result = self.asked(tmp_path, "--sheet", tmp_path / "o.docx", code=5)
+        assert "pip install 'rocking-cli[docx]'" in result.stderr and "not satisfied" in result.stdout
         assert not (tmp_path / "o.docx").exists()
 
     def test_head_files_and_versions(self, tmp_path):
@@ -772,9 +775,9 @@ def test_records_are_on_the_sheet_and_a_report_has_it_all(tmp_path):
         "report", *files, "--verify", tmp_path / "site.yaml", "--neighbours", "5", "-o", tmp_path / "r.html"
     )
     assert found["verification"]["directions"]["positive"]["a0_star"] == data["directions"]["positive"]["a0_star"]
-    words = read(tmp_path / "r.html").words
-    assert all(flat(line(each)[0]) in words for each in steps_of(items_of_case("facade")))
     text = (tmp_path / "r.html").read_text(encoding="utf-8")
+    printed = {each.numbers for each in steps_of_page(text)}
+    assert {each.numbers for each in steps_of_page((tmp_path / "o.html").read_text(encoding="utf-8"))} == printed
     assert "direction governs" not in text  # the two are alike but for their histories
     addresses = re.findall(r' id="([^"]+)"', re.sub(r"<svg.*?</svg>", "", text, flags=re.DOTALL))
     assert len(addresses) == len({*addresses})

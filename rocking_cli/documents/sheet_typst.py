@@ -1,0 +1,115 @@
+"""A calculation sheet as PDF, laid out by typst, which needs no browser and no fonts of the system."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Callable, Sequence
+from importlib.resources import files
+from itertools import count
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from rocking_cli.documents.figures import svg
+from rocking_cli.documents.mathematics import Unreadable, formulas_of, pieces
+from rocking_cli.documents.sheet_page import ORIGIN_MARKS, OWN_PAGES, SIGNATURE_FIELDS, figure_of, printed_width, runs
+from rocking_cli.errors import Refused
+from rocking_cli.text import printable
+from rocking_cli.verification.results import Working
+from rocking_cli.views.sheet.document import Drawing, Item, Listing, Sheet, SheetPart, Steps
+from rocking_cli.views.view import Table
+
+LAYOUT = "sheet.typ"
+
+
+def render(sheet: Sheet) -> bytes:
+    """Return the PDF of a calculation sheet.
+
+    Parameters
+    ----------
+    sheet : Sheet
+        The sheet.
+
+    Raises
+    ------
+    Refused
+        If typst cannot lay it out, such as for a logo that it cannot read.
+    """
+    import typst
+
+    with TemporaryDirectory(prefix="rocking-", ignore_cleanup_errors=True) as folder:
+        for name, content in _files(sheet).items():
+            (Path(folder) / name).write_bytes(content)
+        try:
+            return typst.compile(Path(folder) / LAYOUT, root=Path(folder), format="pdf")
+        except typst.TypstError as error:
+            raise Refused(f"the PDF could not be laid out: {printable(error.message)}") from None
+
+
+def _files(sheet: Sheet) -> dict[str, bytes]:
+    """Return the files that typst reads: the layout, the texts as JSON, and the pictures."""
+    pictures, steps = dict[str, bytes](), count(1)
+
+    def step(row: Working) -> dict[str, Any]:
+        formulas, gives = formulas_of(row)
+        return {
+            "count": str(next(steps)), "meaning": _runs(row.meaning),
+            "clause": printable(f"{row.clause}{ORIGIN_MARKS[row.standing]}"),
+            "formulas": [[sign, _formula(text)] for sign, text in formulas], "gives": gives,
+            "result": _runs(sheet.language.number(row.value, row.digits)), "unit": printable(row.unit),
+        }  # fmt: skip
+
+    def drawing(item: Drawing) -> dict[str, Any]:
+        figure, file = figure_of(item, sheet.language), f"{len(pictures)}.svg"
+        width = printed_width(figure)  # before it is drawn
+        pictures[file] = svg(figure, file, text_as="path").encode()
+        return {"kind": "drawing", "file": file, "width": width, "label": printable(item.label)}
+
+    def item(each: Item) -> dict[str, Any]:
+        if isinstance(each, Table):
+            rows = [[*map(_runs, row)] for row in each.rows]
+            return {"kind": "table", "title": _runs(each.title), "columns": [*map(_runs, each.columns)], "rows": rows,
+                    "numbers": [*each.numbers]}  # fmt: skip
+        if isinstance(each, Steps):
+            return {"kind": "steps", "rows": [*map(step, each.rows)]}
+        if isinstance(each, Drawing):
+            return drawing(each)
+        if isinstance(each, Listing):
+            return {"kind": "listing", "text": "\n".join(map(printable, each.text.split("\n")))}
+        marks = {"answers": each.answers, "fails": each.fails, "is_open": each.is_open}
+        return {"kind": "sentence", "runs": _runs(each.text), **marks}
+
+    say = sheet.language
+    content = {
+        "language": say.key, "heading": printable(sheet.heading), "subtitle": printable(sheet.subtitle),
+        "about": [[printable(name), printable(text)] for name, text in sheet.about.items()],
+        "signed": [*map(say, SIGNATURE_FIELDS)], "contents": say("Contents"), "logo-name": say("Logo"), "logo": None,
+        "parts": _parts(sheet.parts, item),
+    }  # fmt: skip
+    if sheet.logo:
+        kind, _, data = sheet.logo.partition(";base64,")
+        content["logo"] = name = f"logo.{kind.rpartition('/')[2].removesuffix('+xml')}"
+        pictures[name] = base64.b64decode(data)
+    layout = files("rocking_cli") / "documents" / "templates" / LAYOUT
+    return {LAYOUT: layout.read_bytes(), "sheet.json": json.dumps(content).encode(), **pictures}
+
+
+def _parts(parts: Sequence[SheetPart], item: Callable[[Item], dict[str, Any]]) -> list[dict[str, Any]]:
+    return [
+        {"own_page": each.key in OWN_PAGES, "heading": _runs(each.heading), "items": [*map(item, each.items)],
+         "parts": _parts(each.parts, item)}
+        for each in parts
+    ]  # fmt: skip
+
+
+def _runs(text: str) -> list[tuple[str, str]]:
+    return [*runs(printable(text))]
+
+
+def _formula(text: str) -> dict[str, Any]:
+    """Return a formula as trees, or what is no formula as text with sub- and superscripts."""
+    try:
+        return {"rows": pieces(printable(text))}
+    except Unreadable:
+        return {"rows": None, "runs": _runs(text)}
