@@ -172,10 +172,11 @@ def view(found: Verification, site: str | None = None, *, every_step: bool = Fal
         Whether to show only what is needed to judge the verdict, with remarks in short.
     """
     parts: list[Table | str] = []
-    for each in (found, found.strengthened):
-        if each is not None:
-            parts += _sentences(each, site)
-    if found.strengthened is not None:
+    if found.strengthened is None:
+        parts += _sentences(found, site)
+    else:
+        parts += _sentences(found, site, "Existing structure: ")
+        parts += _sentences(found.strengthened, site, "Strengthened structure: ")
         parts += showing(found).compared(found, found.strengthened)
     if found.strengthened is None or not in_short:
         parts += _in_short(found, shown(found)) if in_short else _in_full(found, shown(found))
@@ -191,12 +192,13 @@ def view(found: Verification, site: str | None = None, *, every_step: bool = Fal
     return View(lambda: data(found), [part for part in parts if part])
 
 
-def _sentences(found: Verification, site: str | None) -> list[str]:
-    """Return the conclusion in sentences: first the ties that do not count."""
+def _sentences(found: Verification, site: str | None, of: str = "") -> list[str]:
+    """Return the conclusion in sentences: first the ties that do not count; `of` begins each."""
     by = f"{heading(found.mechanism)}, by the {found.name} ({found.edition}){f', at {site}' if site else ''}"
     end = found.conclusion
     first, concluded = uncounted_ties(end), of_verification(found)
-    return [*first, " ".join(filter(None, [f"{by}.", *concluded[len(first) :], next_in_words(end)]))]
+    answer = " ".join(filter(None, [f"{by}.", *concluded[len(first) :], next_in_words(end)]))
+    return [f"{of}{each}" for each in (*first, answer)]
 
 
 def _workings(found: Verification, of: str = "") -> Iterator[tuple[Sequence[Working], str]]:

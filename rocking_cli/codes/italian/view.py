@@ -103,7 +103,10 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
         """Draw the capacity curves of each direction, with capacity and demand at each limit state."""
         from rocking_cli.codes.italian.sheet.figures import draw_capacity
 
-        return draw_capacity(TERMINAL, shown(found), heading(found.mechanism), f" ({headline(found.conclusion)})")
+        sides = shown(found)
+        if found.strengthened is not None:
+            sides |= {f"{where}, strengthened": each for where, each in shown(found.strengthened).items()}
+        return draw_capacity(TERMINAL, sides, heading(found.mechanism), f" ({headline(found.conclusion)})")
 
 
 def _capacity(each: ItalianVerified, where: str) -> Table:

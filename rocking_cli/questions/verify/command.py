@@ -53,6 +53,10 @@ def _given(asked: GroundMotions, states: tuple[str, ...], sets: tuple[str, ...])
     help=options.HELP["site"],
 )  # fmt: skip
 @click.option(
+    "--strengthened", type=click.Path(path_type=Path), metavar="FILE", shell_complete=complete.files,
+    help="The strengthened structure, to be verified too and compared with FILE.",
+)  # fmt: skip
+@click.option(
     "--control", type=Parsed("point", _point), metavar="X,Y[,BODY]",
     help="Control point, in m.  [default: centroid of the moving weights]",
 )  # fmt: skip
@@ -111,8 +115,9 @@ def command(
     state, given by --state, and is checked against it alone. For several limit states, give each its own set, as
     --state SLV --set PLACE --state SLC --set PLACE. If the site has a floor, ground motions are carried to
     it, unless --on-floor states that they are motions of the floor. Whether the records match the spectrum of the site
-    is not checked; the sheet draws both. --sheet writes the calculation sheet for submission: every formula with its
-    numbers, in English or Italian.
+    is not checked; the sheet draws both. With --strengthened, a second structure is verified too, and both are compared
+    side by side. --sheet writes the calculation sheet for submission: every formula with its numbers, in English or
+    Italian.
 
     Without FILE, the command uses rocking.yaml of this folder, or else a block of 0.7 m x 2.8 m.
 
@@ -123,6 +128,7 @@ def command(
       rocking verify block.yaml --site site.yaml
       rocking verify block.yaml --site site.yaml --sheet block.html --language it
       rocking verify block.yaml --site site.yaml --control 0.35,2.8
+      rocking verify block.yaml --strengthened tied.yaml --site site.yaml
       rocking verify block.yaml --site site.yaml --record "records/*.AT2" --target-pga 0.24
       rocking verify block.yaml --site site.yaml --state SLV --set slv --state SLC --set slc
     """
@@ -133,7 +139,8 @@ def command(
     if sheet is None:
         as_declared(question, *heads.HEAD_OPTIONS)
     every = given if isinstance(given, dict) else {"": given}
-    read = [file, site, question["logo"], *(str(one.path) for each in every.values() for one in each.records)]
+    records = [str(one.path) for each in every.values() for one in each.records]
+    read = [file, site, question["strengthened"], question["logo"], *records]
     keep_apart([("--plot", output.plot), ("--sheet", sheet)], read)
     every_step = terminal.asked("verbose")
     in_short = not (in_full or every_step)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking_cli.processing.listed import Scaled
+    from rocking_cli.structure import Structure
 
 
 MotionSet = Motion | Motions | Sequence[Motion]
@@ -31,6 +33,7 @@ def verify(
     structure: StructureLike,
     site: SiteLike,
     *,
+    strengthened: StructureLike | None = None,
     control: tuple[float, float] | tuple[float, float, str | None] | None = None,
     motions: MotionSet | Mapping[str, MotionSet] = (),
     polarity: str | int = "1",
@@ -57,6 +60,8 @@ def verify(
         The structure, or its YAML file.
     site : mapping, str or Path
         Fields of a site file, or the file.
+    strengthened : Mechanism, str or Path, optional
+        The strengthened structure, or its file: it is verified in the same way, and compared with `structure`.
     control : tuple, optional
         Control point x, y [m], and the body it is on; by default the centroid of the moving weights.
     motions : GroundMotion, Pulse, str or Path, or a sequence of these; or a mapping of str to these
@@ -132,21 +137,27 @@ def verify(
 
         sheets.check(Path(sheet), known, language)
     ready = structure_of(structure, watch, opening)
-    verification = study(ready, known, None if control is None else control_at(ready.mechanism, *control))
-    chosen: list[Scaled] = []
-    if requested:
-        sets: dict[str | None, list[Scaled]] = {}
-        for key, given in requested.items():
-            if isinstance(motions, Mapping):
-                watch.note(f"records of {key}:")
-            sets[key] = given.gather(ready.growth, watch)
-        chosen = [one for each in sets.values() for one in each]
-        with watch.progress(len(chosen), "records") as advance:
-            for key, each in sets.items():
-                histories = Histories(each, signs, key, on_floor, advance, requested[key].refused(each))
-                verification = with_histories(verification, ready, known, histories)
+    other = None if strengthened is None else structure_of(strengthened, watch, opening)
+    sets: dict[str | None, list[Scaled]] = {}
+    for key, given in requested.items():
+        if isinstance(motions, Mapping):
+            watch.note(f"records of {key}:")
+        sets[key] = given.gather(ready.growth, watch)
+    chosen = [one for each in sets.values() for one in each]
+
+    def verified(one: Structure, advance: Callable[[int], object]) -> Verification:
+        result = study(one, known, None if control is None else control_at(one.mechanism, *control))
+        for key, each in sets.items():
+            histories = Histories(each, signs, key, on_floor, advance, requested[key].refused(each))
+            result = with_histories(result, one, known, histories)
+        return result
+
+    with watch.progress(len(chosen) * (1 if other is None else 2), "records") as advance:
+        verification = verified(ready, advance)
+        if other is not None:
+            verification = replace(verification, strengthened=verified(other, advance))
     if sheet is not None:
-        source = sheets.SheetOrigin.of(origin or "rocking_cli.verify(...)", ready)
+        source = sheets.SheetOrigin.of(origin or "rocking_cli.verify(...)", ready, other)
         title = sheets.Head(project, place, author, logo).block(source, language)
         content = sheets.sheet_for(verification, known, site, chosen, language, title, source)
         try:

@@ -349,7 +349,7 @@ def test_every_formula_of_this_part_is_used():
 
 def parts_of_template(name, language, page, **context):
     say = build.SHEET.language(language)
-    context |= {"body": lambda each: say.body(structure(name).mechanism, each), "of": ""}
+    context |= {"body": lambda each: say.body(structure(name).mechanism, each), "of": "", "ending": ""}
     return template.parts(say, build.SHEET.package, page, context)
 
 

@@ -70,7 +70,7 @@ def _subject(say: Language, found: ItalianVerification, site_values: ItalianSite
         for each in found.distinct
     ]
     return {
-        "state": state, "of": f"{state}-" if state else "", "verification": found, "sides": sides,
+        "state": state, "ending": of, "of": f"{state}-" if state else "", "verification": found, "sides": sides,
         "structure": Composition(found.mechanism), "body": partial(say.body, found.mechanism.mechanism),
         **summary.context(say, found, sides),
     }  # fmt: skip
