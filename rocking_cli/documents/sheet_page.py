@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 from itertools import count
 
 from markupsafe import Markup, escape
@@ -73,11 +74,14 @@ def figure_of(item: Drawing, say: Language) -> Figure:
         return item.figure()
     mechanism = item.figure
     title = f"{mechanism.name}: {say.mechanism(mechanism.mechanism, mechanism.title)}"
-    figure = draw_structure(picture(mechanism), title)
+    translated = partial(say.recognised, "drawing")
+    figure = draw_structure(picture(mechanism).in_language(translated), title, say=translated)
+    for axes in figure.axes:
+        first, end, rest = axes.get_title().partition("\n")
+        axes.title.set_text(f"{translated(first)}{end}{rest}")
     for each in figure.findobj(Text):
         assert isinstance(each, Text)  # as selected above
-        first, *rest = each.get_text().split("\n")
-        each.set_text(say.formula("\n".join([say.texts.get(f"drawing {first}", first), *rest])))
+        each.set_text(say.formula(each.get_text()))
     return figure
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from math import degrees, floor, log10
 from textwrap import fill
@@ -42,7 +42,7 @@ STARTING_TEXT = "displaced as the mechanism starts, exaggerated"
 SENSE = {Direction.POSITIVE: "clockwise", Direction.NEGATIVE: "anticlockwise"}
 
 
-def draw_structure(picture: Picture, title: str, ratio: float | None = None) -> Figure:
+def draw_structure(picture: Picture, title: str, ratio: float | None = None, say: Callable[[str], str] = str) -> Figure:
     """Draw a structure displaced in the negative direction, at rest with its dimensions, and in the positive direction.
 
     A structure that rocks to one side only is displaced to that side alone.
@@ -56,6 +56,8 @@ def draw_structure(picture: Picture, title: str, ratio: float | None = None) -> 
     ratio : float, optional
         Rotation of the displaced structure over the critical one, or over the kinematic limit if there is none; by
         default a rotation that is well visible.
+    say : callable
+        Function that returns an English note in the language of the drawing.
 
     Returns
     -------
@@ -74,7 +76,7 @@ def draw_structure(picture: Picture, title: str, ratio: float | None = None) -> 
     orange: list[Line | Forces] = [*picture.sketch.lines, *picture.sketch.forces]
     named = [f"orange: {each.name}{_of(each)}" for each in orange if _is_at_rest(picture, each)]
     free = [] if None not in picture.phi_cr.values() else [NO_CRITICAL_TEXT if picture.start is None else STARTING_TEXT]
-    notes = fill("; ".join([*named, *picture.sketch.notes, *free]), MAX_NOTE_LINE)
+    notes = fill("; ".join(map(say, [*named, *picture.sketch.notes, *free])), MAX_NOTE_LINE)
     in_order = [sides.get(Direction.NEGATIVE), rest, sides.get(Direction.POSITIVE)]
     height = lay_out([each for each in in_order if each is not None], rest, HEADING_HEIGHT, foot)
     below = PANEL_GAP + NOTE_HEIGHT * (notes.count("\n") + bool(notes))

@@ -339,6 +339,13 @@ class Picture:
             by_direction[direction] = tuple(shades[links[part.name]] for part in self.parts)
         return by_direction
 
+    def in_language(self, say: Callable[[str], str]) -> Picture:
+        """Return a copy whose lengths, and loads that the user did not name, are named by a function of the English."""
+        given = {each.name for each in self.mechanism.loads or []}
+        lengths = [replace(each, symbol=say(each.symbol)) for each in self.sketch.lengths]
+        loads = (each if each.name in given else replace(each, name=say(each.name)) for each in self.loads)
+        return replace(self, sketch=replace(self.sketch, lengths=lengths), loads=tuple(loads))
+
     @cached_property
     def grouped(self) -> Picture:
         """Copy of the drawing with parts that move together joined into one part, if there are many parts."""

@@ -59,7 +59,10 @@ def of_verification(found: Verification, say: Language = ENGLISH, title: str | N
     if end.concluded is not Concluded.NOT_CHECKED:
         sentences.append(_governs(end, say, title or _method(found, end)))
     sentences += map(say, found.relied_on)
-    others = [each for each in end.left_out if each.what != "tie"]
+    others = [
+        each._replace(name=say.joint(found.mechanism.mechanism, each.name)) if each.what == "mechanism" else each
+        for each in end.left_out if each.what != "tie"
+    ]  # fmt: skip
     return uncounted_ties(end, say) + sentences + not_counted(others, say)
 
 

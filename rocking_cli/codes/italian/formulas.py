@@ -163,6 +163,7 @@ V_M = Formula("V_[m]", unit="{unit} m", meaning="V_m", standing="plain", digits=
 PQX = Formula("Σ(P+Q)x′", "Σ (P+Q) x′", "{P} · {x} + …", "{unit} m", clauses.ALPHA0, meaning="PQx", digits=9)
 B_M = Formula("B_[m]", unit="{unit} m", meaning="B_m", standing="plain", digits=9)
 ALPHA = Formula("{symbol}", "({over})/({under})", "({V:9} + …)/({B:9} + …)", "", clauses.ALPHA0, meaning="alpha")
+ALPHA_0 = replace(ALPHA, meaning="alpha_0")
 SUM_PQ = Formula("Σ(P+Q)", "Σ (P+Q)", "{P} + …", "{unit}", clauses.ALPHA0, meaning="PQ")
 PQXX = Formula("Σ(P+Q)x′^[2]", "Σ (P+Q) x′^[2]", "{P} · {x}^[2] + …", "{unit} m²", clauses.E_STAR, meaning="PQxx")
 E_STAR = Formula(
@@ -303,7 +304,7 @@ RHO = Formula("ρ_[{on}]", "d_[{state}]/S_[De](T_[{on}])", "{d}/{demand}", "", c
 CAPACITY = Formula("{symbol}", "a_[g] · {capacity}/{demand}", "{ag} · {c}/{d}", "g", meaning="a_g_method")
 START = replace(CAPACITY, meaning="a_g_start")
 CAPACITY_FOUND = Formula("{symbol}", "{demand}(a_[g]) = {capacity}", "", "g")
-LINEAR = Formula("a_[g,linear]", "q · a_[g,0]", "{q} · {a}", "g", clauses.LINEAR, meaning="a_g_method")
+LINEAR = Formula("a_[g,q]", "q · a_[g,0]", "{q} · {a}", "g", clauses.LINEAR, meaning="a_g_method")
 ZETA = Formula("ζ_[E{more}]", "{symbol}/{asked}", "{a}/{b}", "", clauses.ZETA, meaning="zeta")
 LASTS = Formula(
     "T_[R{more}]",

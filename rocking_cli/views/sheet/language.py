@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import date
 from functools import cached_property
@@ -19,6 +19,8 @@ WITH_COMMA = frozenset({"it"})
 """The languages that write 1.5 with a comma."""
 SIGNIFICANT_DIGITS = 6  # results recomputed from printed numbers agree to five digits
 ABSENT = "–"
+GROUND_NAME = "the ground"
+SENTENCE_END = re.compile(r"(?<=\.) (?=[A-Z])")
 
 
 def texts_of(package: str, key: str) -> Mapping[str, str]:
@@ -129,6 +131,10 @@ class Language:
         """Return a formula with the decimal marks of its constants, such as 1.68, as the language writes them."""
         return re.sub(r"(?<=\d)\.(?=\d)", ",", formula) if self.key in WITH_COMMA else formula
 
+    def items(self, text: str) -> str:
+        """Return items parted by commas, such as T1=0.4,n=3, with decimal marks as the language writes them."""
+        return self.formula(text.replace(",", "; ")) if self.key in WITH_COMMA else text
+
     def day(self, when: date) -> str:
         """Return a date in words."""
         return f"{when.day} {self(f'{when:%B}')} {when.year}"
@@ -139,11 +145,50 @@ class Language:
 
     def body(self, mechanism: str, name: str) -> str:
         """Return the name of a body of a mechanism in this language; names that the user chose stay as they are."""
-        return re.sub(r"^.+?(?= \d+$|$)", lambda word: self.texts.get(f"body_{mechanism} {word[0]}", word[0]), name)
+        return self.recognised(f"body_{mechanism}", name)
+
+    def joint(self, mechanism: str, label: str) -> str:
+        """Return the name of a joint of a mechanism in this language: its own, or that of the bodies it connects."""
+        if (translated := self.body(mechanism, label)) != label:
+            return translated
+        bodies = (self(each) if each == GROUND_NAME else self.body(mechanism, each) for each in label.split(" and "))
+        return f" {self('and')} ".join(bodies)
 
     def caution(self, key: str, text: str) -> str:
         """Return the caution about a mechanism in this language; the given text if there is no translation."""
         return self.texts.get(f"caution_{key}", plain(text))
+
+    def recognised(self, family: str, text: str) -> str:
+        """Return a text that a mechanism wrote in English, in this language; what is not recognised stays as it is.
+
+        Texts of a family are `FAMILY ENGLISH`, with slots for what varies; slots `name...` keep what is in them. Each
+        sentence is recognised alone; one that is not, is taken apart at semicolons, then at commas.
+        """
+        if len(sentences := SENTENCE_END.split(text)) > 1:
+            return " ".join(self.recognised(family, each) for each in sentences)
+        for pattern, translated in self._patterns(family):
+            if match := pattern.fullmatch(text):
+                parts = match.groupdict().items()
+                return translated.format(**{key: self._part(family, key, part) for key, part in parts})
+        for separator in ("; ", ", "):
+            if separator in text:
+                return separator.join(self.recognised(family, each) for each in text.split(separator))
+        return text if self.is_plain else plain(text)
+
+    def _part(self, family: str, key: str, part: str) -> str:
+        return plain(part) if key.startswith("name") else self.formula(self.recognised(family, part))
+
+    def _patterns(self, family: str) -> Iterator[tuple[re.Pattern[str], str]]:
+        for key, text in self.texts.items():
+            if key.startswith(f"{family} "):
+                pieces = Formatter().parse(key.removeprefix(f"{family} "))
+                slots = (re.escape(before) + _slot(slot) for before, slot, _, _ in pieces)
+                yield re.compile("".join(slots)), text
+
+
+def _slot(name: str | None) -> str:
+    """Return the pattern of a slot of a text: a name is not parted by semicolons and commas."""
+    return f"(?P<{name}>{'[^;,]' if name.startswith('name') else '.'}*?)" if name else ""
 
 
 def plain(text: str) -> str:

@@ -72,9 +72,10 @@ def parts(say: Language, package: str, name: str, context: Mapping[str, Any]) ->
     name : str
         Name of the template, without its ending.
     context : mapping of str to object
-        What the template may use, besides `n` (a number, with its digits), `say` (a text by its key), `steps` (lines of
-        a calculation), `rows` (of a table), `draw` (a figure, before its caption), `listing` (the text of a file),
-        `put` (a sentence or table) and `formulas` (each formula so far once, with its symbol and text).
+        What the template may use, besides `n` (a number, with its digits), `say` (a text by its key), `recognised` (a
+        text of a mechanism, after its family), `steps` (lines of a calculation), `rows` (of a table), `draw` (a figure,
+        before its caption), `listing` (the text of a file), `put` (a sentence or table) and `formulas` (each formula so
+        far once, with its symbol and text).
     """
     objects: list[Item] = []
     formulas: dict[tuple[str, str], Working] = {}
@@ -97,6 +98,7 @@ def parts(say: Language, package: str, name: str, context: Mapping[str, Any]) ->
         **context,
         n=lambda value, digits=SIGNIFICANT_DIGITS: _guarded(say.number(value, digits)),
         say=lambda key, **values: _guarded(say(key, **values)),
+        recognised=lambda family, text: _guarded(say.recognised(family, text)),
         steps=steps,
         rows=lambda table: Markup("\n".join(f"| {' | '.join(map(cell, row))} |" for row in table)),
         put=put,

@@ -162,7 +162,8 @@ def multiplier(position: DisplacedChain, scale: Scale, symbol: str) -> Iterator[
     largest = sum(abs(each.block.P) for each in blocks) * scale.length / abs(position.driven)
     value = 0.0 if abs(position.alpha) < MIN_SHARE * largest else position.alpha
     names = {"symbol": symbol, "over": " + ".join(over), "under": " + ".join(under)}
-    yield F.ALPHA.line(value, names, V=[*over.values()], B=[*under.values()])
+    formula = F.ALPHA_0 if position.phi == 0 else F.ALPHA
+    yield formula.line(value, names, V=[*over.values()], B=[*under.values()])
 
 
 def sums(chain: Chain, rest: DisplacedChain, scale: Scale) -> Iterator[Evaluated]:

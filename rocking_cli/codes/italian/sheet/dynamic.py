@@ -16,7 +16,7 @@ def items(say: Language, dynamic: Dynamic, FC: float) -> Iterator[Sentence | Tab
     """Yield the results of the dynamic method in a direction at a limit state, as sentences and a table."""
     state = dynamic.state
     yield Sentence(say("dynamic_is", d0=dynamic.d0, state=state))
-    yield Sentence(say(dynamic.motions.kind, floor=dynamic.motions.floor))
+    yield Sentence(say(dynamic.motions.kind, floor=say.items(dynamic.motions.floor or "")))
     yield _table(say, dynamic)
     for confident in SETS if FC != 1 else (True,):
         yield from map(Sentence, _said(say, dynamic, confident=confident))

@@ -376,7 +376,7 @@ class DirectionSteps:
     def _steps(self, name: str, method: ItalianMethod, comparison: MethodComparison, more: str = "") -> MethodSteps:
         spectrum = self.ground.spectrum(comparison.state)
         assert spectrum is not None and method.a_g is not None  # the site gives its limit state
-        symbol = f"a_[g,{_kind(name)}{more}]"
+        symbol = f"a_[g,{'nl' if name in RULE_OF_METHOD else 0}{more}]"
         names = {"symbol": symbol, "state": comparison.state, "asked": "a_[g]", "more": more}
         capacity = self._solved(F.CAPACITY, names, spectrum, comparison, method.a_g, method.clause)
         return self._with_period(name, method, comparison, capacity, [self._zeta(method, names)], more)
@@ -420,9 +420,9 @@ class DirectionSteps:
         names = {"symbol": "a_[g,0]", "state": comparison.state}
         capacity = self._solved(F.START, names, ground.of_activation, comparison, start, onset.clause)
         by_code = F.LINEAR if comparison.state == "SLD" else replace(F.LINEAR, standing="ours")
-        names = {"symbol": "a_[g,linear]", "asked": "a_[g,SLV]", "state": "SLV", "more": ""}
+        names = {"symbol": F.LINEAR.symbol, "asked": "a_[g,SLV]", "state": "SLV", "more": ""}
         zeta = [by_code.line(method.a_g, q=q, a=start), self._zeta(method, names)]
-        of_rock = MethodComparison(comparison.state, "a_[g,linear]", method.a_g, "a_[g]")
+        of_rock = MethodComparison(comparison.state, F.LINEAR.symbol, method.a_g, "a_[g]")
         return self._with_period(LINEAR, method, of_rock, capacity, zeta, damage=damage)
 
     def _checked(self, spectrum: DemandSpectrum, comparison: MethodComparison) -> Iterator[Evaluated]:

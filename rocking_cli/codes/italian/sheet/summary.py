@@ -41,7 +41,7 @@ def context(say: Language, verification: ItalianVerification, sides: Sequence[Di
     remarks = [*(each for side in sides for each in side.found.remarks), *verification.remarks]
     cautions = [each for each in remarks if isinstance(each, Remark) and each.key in CAUTIONS]
     general = say.caution(mechanism.mechanism, mechanism.caution) if mechanism.caution else ""
-    particular = say.caution(f"own_{mechanism.mechanism}", mechanism.own_caution()) if mechanism.own_caution() else ""
+    particular = say.recognised("caution", mechanism.own_caution())
     of_mechanism = [say("Caution: {text}", text=each) for each in (general, particular) if each]
     notes += [say(each) for each in remarks if each not in cautions]
     sentences = [Markup(each) for side in sides for each in verdicts(say, side.where, side.found)]

@@ -1,0 +1,231 @@
+"""The Italian sheet has no English word but those of the user, in its figures neither, and its numbers are Italian."""
+
+import platform
+import re
+from html import unescape
+from importlib.resources import files
+from itertools import chain
+from pathlib import Path
+
+import pytest
+import yaml
+from markupsafe import Markup
+from matplotlib.text import Text
+
+import rocking_cli as rk
+from rocking_cli.codes.italian.sheet import build
+from rocking_cli.core.registry import Registry
+from rocking_cli.core.structure_file import parse_structure
+from rocking_cli.documents import sheet_page
+from rocking_cli.views.sheet.language import texts_of
+from tests.conftest import EXAMPLES
+from tests.questions.verify.test_sheet import ARCH, CASES, FLOOR, SITE, SLC, TIED
+
+PACKAGES = "rocking_cli.codes.italian", "rocking_cli.views.sheet"
+FAMILIES = "drawing", "caution", "source", "version"
+OF_BOTH = """
+    ab all allegato area base bc cd circolare cli computer data de dm fc ferris file formula in kg km kn lc lin loi mpa
+    ntc per plugin python rad rocking sha slc sld slv software state tan tc tin validation δl δx π² s² t²
+"""
+"""Words of the English texts that Italian has too, symbols, and names."""
+FUNCTION_WORDS = """
+    an and are as at be been between beyond but by do does each for from given has have if into is it its made more most
+    no none not of off on one or out over than that the their them then there these they this those to under until was
+    were what when where which while with without
+"""
+STRUCTURES = sorted(
+    each for each in EXAMPLES.rglob("*.yaml")
+    if "plugin" not in each.parent.name and re.search("^mechanism:", each.read_text(encoding="utf-8"), re.MULTILINE)
+)  # fmt: skip
+SITES = {"hazard": (EXAMPLES / "verify" / "site.yaml").read_text(encoding="utf-8"), "floor": SITE + FLOOR + SLC}
+GROUND = (EXAMPLES / "verify" / "ground.yaml").read_text(encoding="utf-8")
+NOT_TEXT = (
+    r"\S+\.yaml",
+    r"\b[0-9a-f]{64}\b",
+    r"(?<=meccanismo )[a-z_]+(?= rocking-cli)",
+    "BSD-3-Clause",
+    ("Engineering Structures"),
+)
+"""Files and checksums, the key of a mechanism, a licence, and a journal."""
+NUMBER = re.compile(r"\d+[.,]\d+")
+NAMED = "blocks", "bodies", "ground", "parts", "joints"
+"""Fields with the names of the user as keys."""
+
+
+def words(text):
+    return {each.lower() for each in re.findall(r"[^\W\d_]{2,}", text)}
+
+
+def english_words():
+    """The words of the English texts, and of what mechanisms say of themselves, that are not also Italian."""
+    known = Registry()
+    own = [known[key] for key in known if known[key].__module__.startswith("mechanisms.")]
+    texts = [text for each in own for text in (each.title, each.caution, re.sub(r"[A-Z]\w+", "", each.source))]
+    for package in PACKAGES:
+        english, italian = (texts_of(package, key) for key in ("en", "it"))
+        texts += english.values()
+        texts += [re.sub(rf"^({'|'.join(FAMILIES)}|body_\w+) ", "", key) for key in italian if not key.isidentifier()]
+        pages = (each.read_text(encoding="utf-8") for each in (files(package) / "texts" / "en").iterdir())
+        texts += [re.sub(r"\{[{%].*?[%}]\}|<[^>]*>", "", page) for page in pages]
+    return (words(re.sub(r"`[^`]*`|\{[^}]*\}", "", " ".join([*texts, FUNCTION_WORDS])))) - words(OF_BOTH)
+
+
+ENGLISH = english_words()
+
+
+def names_of(data):
+    """The names that a user gave in a file."""
+    if isinstance(data, list):
+        return set(chain.from_iterable(map(names_of, data)))
+    if not isinstance(data, dict):
+        return set()
+    own = {str(data["name"])} if "name" in data else set()
+    for key in NAMED:
+        own |= {str(each) for each in data[key]} if isinstance(data.get(key), dict) else set()
+    return own.union(*map(names_of, data.values()))
+
+
+def rest_of(page, *sources):
+    """The text of a page without its listings, the names of the user, and commands and fields."""
+    text = re.sub(r"<(style|script|pre)\b.*?</\1>|<[^>]*>", " ", page, flags=re.DOTALL)
+    text = " ".join(re.sub(r"`[^`]*`", " ", unescape(text)).split())
+    for each in (platform.platform(terse=True), *NOT_TEXT):
+        text = re.sub(each, " ", text)
+    names = chain.from_iterable(names_of(yaml.safe_load(each)) for each in sources)
+    for name in sorted(names, key=len, reverse=True):
+        text = re.sub(rf"(?<!\w){re.escape(' '.join(name.split()))}(?!\w)", " ", text)
+    return text
+
+
+@pytest.fixture
+def text_of(tmp_path, monkeypatch):
+    """Returns the text of the Italian sheet of a structure, with the texts of its figures, which are not rendered."""
+
+    def texts(figure, _):
+        every = (each.get_text() for each in figure.findobj(Text) if each.get_visible())
+        return Markup(" ").join(map(Markup.escape, every))
+
+    monkeypatch.setattr(sheet_page, "inline_svg", texts)
+    monkeypatch.chdir(tmp_path)
+
+    def made(structure, site, **options):
+        if isinstance(structure, str):
+            Path("s.yaml").write_text(structure, encoding="utf-8")
+            structure = Path("s.yaml")
+        Path("t.yaml").write_text(site, encoding="utf-8")
+        rk.verify(structure, "t.yaml", sheet="o.html", language="it", **options)
+        names = yaml.safe_dump({"names": [{"name": each} for each in options.get("motions", ())]})
+        return rest_of(
+            (tmp_path / "o.html").read_text(encoding="utf-8"), structure.read_text(encoding="utf-8"), site, names
+        )
+
+    return made
+
+
+def check(text):
+    assert not {each: re.findall(rf".{{0,30}}{each}.{{0,30}}", text, re.IGNORECASE) for each in words(text) & ENGLISH}
+    assert len(text) > 5000
+    places = r"§\S+|\[C?\d[\d.]*\]|par\. [\d.]+|(rocking-cli|Python|numpy|scipy|matplotlib) [\d.]+\S*| su \S+\."
+    numbers = re.sub(places, " ", text)
+    assert not re.findall(r".{20}\d\.\d.{20}", numbers)
+    assert not [each for each in re.findall(r"· 10 −(\d+)", numbers) if int(each) > 8]  # by rounding alone
+    assert not re.search(r"\b(il|del|al|dal|nel|sul|fino al) (8|11)\d* ?[,%]", text)
+    assert not re.search(r"\bdondol|tirant|\bd[ia] SL[DVCO]", text)
+
+
+@pytest.mark.every(4)
+@pytest.mark.parametrize("name", CASES)
+def test_every_case_is_italian(name, text_of):
+    check(text_of(*CASES[name]))
+
+
+@pytest.mark.rest
+@pytest.mark.parametrize("site", SITES)
+@pytest.mark.parametrize("structure", STRUCTURES, ids=lambda path: f"{path.parent.name}-{path.stem}")
+def test_every_example_is_italian(structure, site, text_of):
+    check(text_of(structure, SITES[site]))
+
+
+SPANNING = "mechanism: spanning_wall\nname: w\nthickness: 0.3\nheight: 3\ndensity: 1800\ndepth: 1\noverburden: 5 kN\n"
+COLUMNS = "mechanism: symmetric_frame\nname: c\ncolumn_width: 0.5\ncolumn_height: 5\nmass_ratio: 2\n"
+ASSEMBLY = "mechanism: assembly\nname: m\ndensity: 2000\ndepth: 1\n"
+SOIL = "ground: {soil: {polygon: [[-3, -0.5], [5, -0.5], [5, 0], [-3, 0]]}%s}\n"
+LID = ", lid: {polygon: [[-2, 1.2], [2, 1.2], [2, 2], [-2, 2]]}"
+TALL = "{polygon: [[0, 0], [1.2, 0], [1.2, 4], [0, 4]]}"
+LOW = "{polygon: [[1.2, 0], [1.8, 0], [1.8, 1.5], [1.2, 1.5]]}"
+GRAIN = "{polygon: [[3, 0], [3.000001, 0], [3.000001, 0.00001], [3, 0.00001]]}"
+SQUAT = "{polygon: [[0, 0], [1, 0], [1, 1.2], [0, 1.2]]}"
+ODD = {
+    "hinge too low": SPANNING + "hinge: 0.5\n",
+    "hinge near the top": SPANNING.replace("5 kN", "1 N") + "hinge: 0.5\n",
+    "hinge not searched": SPANNING + "hinge: 0.6\nloads: [{name: a, mass: 5, at: [0, 1], body: lower block}]\n",
+    "crushing": SPANNING + "hinge: 0.6\ncrushing: {strength: 2000000}\n",
+    "columns": COLUMNS + "columns: 30\n",
+    "glued": f"{ASSEMBLY}{SOIL % ''}blocks: {{tower: {TALL}, side: {LOW}}}\n",
+    "arch with loads": ARCH + "density: 2000\ndepth: 1\nloads: [{name: a, mass: 5, at: [0, 10], body: segment 2}]\n",
+    "arch of many voussoirs": re.sub("voussoirs:.*", "voussoirs: 400", ARCH),
+    "elastic tie": TIED.replace("prestress: 9000", "prestress: 9"),
+}
+"""Structures with remarks, cautions and notes that no example has."""
+NOT_VERIFIED = {
+    "grain": f"{ASSEMBLY}{SOIL % ''}friction: 0.6\nblocks: {{tower: {TALL}, grain: {GRAIN}}}\n",
+    "confined": f"{ASSEMBLY}{SOIL % LID}friction: 0.4\nblocks: {{squat: {SQUAT}}}\n",
+}
+
+
+@pytest.mark.every(4)
+@pytest.mark.parametrize("name", ODD)
+def test_what_no_example_has_is_italian(name, text_of):
+    check(text_of(ODD[name], SITES["hazard"]))
+
+
+@pytest.mark.parametrize("name", NOT_VERIFIED)
+def test_cautions_are_italian_with_the_same_numbers(name):
+    text = NOT_VERIFIED[name]
+    caution = parse_structure(text, "s.yaml", "test", Registry()).own_caution()
+    translated = build.SHEET.language("it").recognised("caution", caution)
+    assert not words(re.sub(r"`[^`]*`", "", translated).replace("grain", "")) & ENGLISH
+    assert [each.replace(",", ".") for each in NUMBER.findall(translated)] == NUMBER.findall(caution)
+
+
+@pytest.mark.every(2)
+@pytest.mark.parametrize("site", [*SITES.values(), GROUND])
+def test_histories_are_italian(site, text_of):
+    check(text_of(EXAMPLES / "verify" / "tied_facade.yaml", site, motions=["sine:0.09g:0.5s", "ricker:2g:1s"]))
+
+
+@pytest.mark.parametrize("word", ["the", "Capacity", "at rest", "demand by direction"])
+def test_an_english_word_is_noticed(word, text_of):
+    with pytest.raises(AssertionError, match=word.split()[0].lower()):
+        check(f"{text_of(*CASES['facade'])} {word}.")
+
+
+def test_texts_of_mechanisms_are_recognised_whole_by_parts_and_otherwise_stay():
+    say = build.SHEET.language("it")
+    for family, text, translated in [
+        ("source", "DeJong and Dimitrakopoulos (2014), Eqs. 1-6; Housner (1963)",
+         "DeJong e Dimitrakopoulos (2014), eqq. 1-6; Housner (1963)"),
+        ("source", "Doe (2020), Section 5.2, corrected, my way", "Doe (2020), par. 5.2, corrette, my way"),
+        ("drawing", "orange: a line of thrust at uplift, 0.157 g (positive direction)",
+         "in arancione: una linea delle pressioni all'attivazione, 0,157 g (verso positivo)"),
+        ("caution", "My plugin is 0.5 wide, and more.", "My plugin is 0.5 wide, and more."),
+        ("body_arch", "segment 3", "concio 3"), ("body_linkage", "segment 3", "segment 3"),
+    ]:  # fmt: skip
+        assert say.recognised(family, text) == translated
+        assert build.SHEET.language("en").recognised(family, text) == text
+
+
+def test_each_recognised_text_is_one_that_a_mechanism_writes():
+    """Its words stand in the code."""
+    folders = files("mechanisms"), files("rocking_cli")
+    code = " ".join(each.read_text(encoding="utf-8") for folder in folders for each in folder.rglob("*.py"))
+    known = words(code)
+    keys = [
+        each
+        for package in PACKAGES
+        for each in texts_of(package, "it")
+        if each.startswith((*FAMILIES, "body_")) and " " in each
+    ]
+    assert len(keys) > 80
+    for key in keys:
+        assert not {each for each in words(key.partition(" ")[2]) if len(each) > 3 and each not in known}, key
