@@ -240,22 +240,22 @@ CENTRE = {
         standing="plain", digits=9,
     ),
 }  # fmt: skip
-LEADS = Formula("θ′_[{k}]", meaning="leads", standing="plain")
+LEADS = Formula("θ_[{k}]′", meaning="leads", standing="plain")
 TURNS = Formula(
-    "θ′_[{k}]", "θ′_[{i}] ({axis}_[{C}] − {axis}_[{Oi}])/({axis}_[{C}] − {axis}_[{Ok}])",
+    "θ_[{k}]′", "θ_[{i}]′ ({axis}_[{C}] − {axis}_[{Oi}])/({axis}_[{C}] − {axis}_[{Ok}])",
     "{t:9} · ({C:9} − {Oi:9})/({C:9} − {Ok:9})", meaning="turns", standing="plain", digits=9,
 )  # fmt: skip
-TURNS_ALIKE = Formula("θ′_[{k}]", "θ′_[{i}]", "{t:9}", meaning="turns_alike", standing="plain", digits=9)
-TRANSLATES = Formula("θ′_[{k}]", meaning="translates", standing="plain")
+TURNS_ALIKE = Formula("θ_[{k}]′", "θ_[{i}]′", "{t:9}", meaning="turns_alike", standing="plain", digits=9)
+TRANSLATES = Formula("θ_[{k}]′", meaning="translates", standing="plain")
 X_TRANSLATES = Formula(
-    "x′_[{k}]", "θ′_[{i}] (y_[{C}] − y_[{Oi}])", "{t:9} · ({C:9} − {O:9})", "m", meaning="x_translates",
+    "x_[{k}]′", "θ_[{i}]′ (y_[{C}] − y_[{Oi}])", "{t:9} · ({C:9} − {O:9})", "m", meaning="x_translates",
     standing="plain",
 )  # fmt: skip
 Y_TRANSLATES = Formula(
-    "y′_[{k}]", "θ′_[{i}] (x_[{Oi}] − x_[{C}])", "{t:9} · ({O:9} − {C:9})", "m", meaning="y_translates",
+    "y_[{k}]′", "θ_[{i}]′ (x_[{Oi}] − x_[{C}])", "{t:9} · ({O:9} − {C:9})", "m", meaning="y_translates",
     standing="plain",
 )  # fmt: skip
-Y_TRANSLATES_BACK = replace(Y_TRANSLATES, text="θ′_[{i}] (x_[{C}] − x_[{Oi}])", numbers="{t:9} · ({C:9} − {O:9})")
+Y_TRANSLATES_BACK = replace(Y_TRANSLATES, text="θ_[{i}]′ (x_[{C}] − x_[{Oi}])", numbers="{t:9} · ({C:9} − {O:9})")
 
 # The capacity curve
 A0 = Formula("a_[0]^[*]", "α_[0] g/(e^[*] FC)", "{alpha} · {g}/({e} · {FC})", "m/s²", clauses.A_STAR, meaning="a0")

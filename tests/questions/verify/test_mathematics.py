@@ -20,7 +20,7 @@ from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
 from tests.questions.verify.printed import formula_of, same, steps_of_document
 from tests.questions.verify.test_formulas import MORE
-from tests.questions.verify.test_sheet import CASES, FACADE, HEAVY, SITE, arithmetic, flat, verified
+from tests.questions.verify.test_sheet import CASES, FACADE, HEAVY, SITE, arithmetic, flat, parts_of, verified
 
 EVERY = {name: (*case, None) for name, case in CASES.items()} | MORE
 SVG = '<svg xmlns="http://www.w3.org/2000/svg"'
@@ -39,7 +39,7 @@ def formulas(name, language):
         for each in part.parts:
             yield from of(each)
 
-    parts = build.parts(build.SHEET.language(language), found, given)
+    parts = parts_of(found, given, language)
     return {(text, is_numbers) for part in parts for text, is_numbers in of(part) if text}
 
 
@@ -165,8 +165,8 @@ class TestPdf:
         assert not [each for each in signs if each not in normalize("NFKC", words)]  # italic letters as others
         found, given = verified(HEAVY, SITE)
         say = build.SHEET.language(language)
-        steps = [row for part in build.parts(say, found, given) for row in rows_of(part)]
-        assert len(steps) > 40 and all(flat(say.number(each.value)) in words for each in steps)
+        steps = [row for part in parts_of(found, given, language) for row in rows_of(part)]
+        assert len(steps) > 40 and all(flat(say.number(each.value, each.digits)) in words for each in steps)
 
     @pytest.mark.parametrize("name", ["logo.svg", "logo.png"])
     def test_hostile_names_and_a_logo_are_as_they_are(self, sheet_files, name, tmp_path):

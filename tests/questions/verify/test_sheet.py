@@ -320,7 +320,7 @@ class Recomputed:
         elif "Δx [m]" in heads:
             self.blocks = [[number(each) if each != "–" else None for each in row] for row in rows]
             for k, _, _, y, x_P, turns, x_O, y_O, dx, dy in self.blocks:
-                for symbol, value in ((f"θ′_[{k:g}]", turns), (f"x_[O{k:g}]", x_O), (f"y_[O{k:g}]", y_O)):
+                for symbol, value in ((f"θ_[{k:g}]′", turns), (f"x_[O{k:g}]", x_O), (f"y_[O{k:g}]", y_O)):
                     if value is not None:  # the lines above the table, if it has any
                         assert value == pytest.approx(self.known.pop(symbol, value), rel=1e-5, abs=1e-8), symbol
                 if turns:
@@ -357,7 +357,10 @@ class Recomputed:
         if each.symbol.startswith("a_[g,"):
             self.known["a_g of the method"] = value
 
-    OTHERS = ("x_[G", "y_[G", "x_[P", "P_[", "PQ_[", "r", "M_[", "A_[", "t", "x_[O", "y_[O", "θ′_[", "x′_[", "y′_[")
+    OTHERS = (
+        "x_[G", "y_[G", "x_[P", "P_[", "PQ_[", "r", "M_[", "A_[", "t", "x_[O", "y_[O", "θ_[",
+        *(f"{axis}_[{k}]′" for axis in "xy" for k in range(1, 10)),
+    )  # fmt: skip
     """Symbols whose results are checked against their numbers only."""
 
     def scale(self, each):

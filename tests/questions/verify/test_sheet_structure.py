@@ -287,7 +287,9 @@ class TestCentres:
     def test_a_block_that_translates_moves_as_its_lines_say(self, name):
         for direction in structure(name).directions:
             for position in positions(name, direction):
-                lines = [line for line in ChainCentres(position).lines if line.formula.symbol[:2] in ("x′", "y′")]
+                lines = [
+                    line for line in ChainCentres(position).lines if line.formula.symbol in ("x_[{k}]′", "y_[{k}]′")
+                ]
                 ways = {(line.formula.symbol[0], line.names["k"]): line.value for line in lines}
                 for k, moved in enumerate(position.blocks, 1):
                     if ("x", k) in ways:
