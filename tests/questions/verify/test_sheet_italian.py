@@ -24,7 +24,7 @@ from tests.questions.verify.test_sheet import ARCH, CASES, FLOOR, SITE, SLC, TIE
 PACKAGES = "rocking_cli.codes.italian", "rocking_cli.views.sheet"
 FAMILIES = "drawing", "caution", "source", "version"
 OF_BOTH = """
-    quadrature coordinate m² ij
+    quadrature coordinate m² ij scoreboard
     ab all allegato area base bc cd circolare cli computer data de dm fc ferris file formula in kg km kn lc lin loi mpa
     ntc per plugin python rad rocking sha slc sld slv software state tan tc tin validation δl δx π² s² t²
 """
@@ -43,9 +43,8 @@ GROUND = (EXAMPLES / "verify" / "ground.yaml").read_text(encoding="utf-8")
 NOT_TEXT = (
     re.escape(platform.platform(terse=True)), r"\S+\.yaml", r"\b[0-9a-f]{64}\b",
     r"(?<=meccanismo )[a-z_]+(?= rocking-cli)", "BSD-3-Clause", "Engineering Structures",
-    r"\((?:shell|solid|hollow|load|pivot)\)", r"(?<=\) )(?:shell|solid|hollow|load|pivot)\b",
 )  # fmt: skip
-"""The system, files and checksums, the key of a mechanism, a licence, a journal, and words that a file may give."""
+"""The system, files and checksums, the key of a mechanism, a licence, and a journal."""
 NUMBER = re.compile(r"\d+[.,]\d+")
 NAMED = "blocks", "bodies", "ground", "parts", "joints"
 """Fields with the names of the user as keys."""
