@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import json
 from collections.abc import Callable, Sequence
 from importlib.resources import files
 from itertools import count
@@ -15,6 +14,7 @@ from rocking_cli.documents.figures import svg
 from rocking_cli.documents.mathematics import Unreadable, formulas_of, pieces
 from rocking_cli.documents.sheet_page import ORIGIN_MARKS, OWN_PAGES, SIGNATURE_FIELDS, figure_of, printed_width, runs
 from rocking_cli.errors import Refused
+from rocking_cli.io.json_text import json_text
 from rocking_cli.text import printable
 from rocking_cli.verification.results import Working
 from rocking_cli.views.sheet.document import Drawing, Item, Listing, Sheet, SheetPart, Steps
@@ -92,7 +92,7 @@ def _files(sheet: Sheet) -> dict[str, bytes]:
         content["logo"] = name = f"logo.{kind.rpartition('/')[2].removesuffix('+xml')}"
         pictures[name] = base64.b64decode(data)
     layout = files("rocking_cli") / "documents" / "templates" / LAYOUT
-    return {LAYOUT: layout.read_bytes(), "sheet.json": json.dumps(content).encode(), **pictures}
+    return {LAYOUT: layout.read_bytes(), "sheet.json": json_text(content).encode(), **pictures}
 
 
 def _parts(parts: Sequence[SheetPart], item: Callable[[Item], dict[str, Any]]) -> list[dict[str, Any]]:

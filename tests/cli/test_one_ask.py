@@ -30,7 +30,7 @@ OF_THE_TERMINAL = {
     "version",
 }  # fmt: skip
 """Options that say where an answer goes, and in which form."""
-NAMED = {"records": "motions", "pulses": "motions"}
+NAMED = {"records": "motions", "pulses": "motions", "sets": "motions"}
 MOST = 40
 FLOOR = "T1=0.4,xi=0.05,z/H=0.67,gamma=1.29"
 

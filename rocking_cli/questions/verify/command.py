@@ -69,7 +69,7 @@ def _given(asked: GroundMotions, states: tuple[str, ...], sets: tuple[str, ...])
     "states",
     multiple=True,
     metavar="STATE",
-    help="Limit state to which the records belong, such as SLC, if the site gives it. Repeatable with --set.  "
+    help="Limit state to which the records belong, such as SLC, if the site gives it. Repeatable.  "
     "[default: that of the verdict]",
 )
 @click.option(
