@@ -71,8 +71,8 @@ class ChainBlock:
         Virtual displacement x' of the barycentre of P + Q, positive in the direction of rocking [m/rad].
     dy : float
         Virtual displacement y' of the barycentre of P, positive upwards [m/rad].
-    x_of_P : float
-        Horizontal coordinate of the barycentre of P at rest [m].
+    of_P : complex
+        Barycentre of P at rest [m].
     """
 
     bodies: Sequence[str]
@@ -81,7 +81,7 @@ class ChainBlock:
     at: complex
     dx: float
     dy: float
-    x_of_P: float
+    of_P: complex
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,8 +137,8 @@ class Chain:
         velocity = [complex(self._follow_at_rest(each.spot).dz[0]) for each in weights]
         dx = sum(share * v.real for share, v in zip(shares, velocity, strict=True)) / (sum(shares) or 1.0)
         dy = sum(each.carried * v.imag for each, v in zip(weights, velocity, strict=True)) / (P or 1.0)
-        x_of_P = sum(each.carried * each.spot.at.real for each in weights) / (P or 1.0)
-        return ChainBlock(names, P, PQ, complex(at), self.direction * dx, dy, x_of_P)
+        of_P = sum(each.carried * each.spot.at for each in weights) / (P or 1.0)
+        return ChainBlock(names, P, PQ, complex(at), self.direction * dx, dy, complex(of_P))
 
     @cached_property
     def _follow_at_rest(self) -> Follow:

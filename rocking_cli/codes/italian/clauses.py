@@ -28,7 +28,7 @@ PSI = Clause("§C7.2.3")
 AMPLIFICATION = _held("[C7.2.6], [C7.2.9]")
 # Hazard and spectra of the ground
 REFERENCE_LIFE, MIN_REFERENCE_LIFE = Clause("§2.4.3"), Clause("§C2.4.3")
-HAZARD, SOIL = Clause("§3.2"), Clause("§3.2.3")
+HAZARD, SOIL = Clause("§3.2, DM 14/01/2008 All. A"), Clause("§3.2.3")
 S = Clause("[3.2.3]")
 RETURN_PERIOD, SPECTRUM, DAMPING, TC, TB, TD = (_held(f"[3.2.{k}]") for k in (0, 2, 4, 5, 6, 7))
 DISPLACEMENT, DISPLACEMENT_LONG, DISPLACEMENT_GROUND = (_held(f"[3.2.{k}]") for k in (10, 11, 12))

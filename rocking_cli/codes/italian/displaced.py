@@ -40,6 +40,8 @@ class Moved:
     dx, dy : float
         Virtual displacements x' of the barycentre of P + Q, in the direction of rocking, and y' of that of P, upwards
         [m/rad].
+    angle : float
+        Rotation of the block from its position at rest, positive in the direction of rocking [rad].
     """
 
     block: ChainBlock
@@ -49,6 +51,7 @@ class Moved:
     centre: complex | None
     dx: float
     dy: float
+    angle: float
 
 
 @dataclass(frozen=True)
@@ -100,7 +103,8 @@ class DisplacedChain:
         lifted = sum(lifts) / (block.P or 1.0)  # y' of the barycentre of the carried weights
         turns = -s * spin.imag
         centre = None if abs(turns) < MIN_TURN else now - velocity / (1j * spin.imag)
-        return Moved(block, s * (now - block.at).real, now, turns, centre, s * velocity.real, lifted)
+        angle = -s * float(np.angle(complex(beside.z[0]) - now))
+        return Moved(block, s * (now - block.at).real, now, turns, centre, s * velocity.real, lifted, angle)
 
     @property
     def lifted(self) -> float:

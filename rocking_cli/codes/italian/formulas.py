@@ -44,7 +44,7 @@ TC_STAR = Formula(
 )  # fmt: skip
 ON_ROCK = (AG, F0, TC_STAR)
 SOIL = Formula(
-    "S_[S]", "{least} ≤ {first} − {second} F_[0] a_[g]/g ≤ {most}",
+    "S_[S]", "max({least}; min({most}; {first} − {second} F_[0] a_[g]/g))",
     "max({least}; min({most}; {first} − {second} · {F0} · {ag}))", clause=clauses.SOIL, meaning="S_S",
 )  # fmt: skip
 SOIL_A = Formula("S_[S]", "1", "1", clause=clauses.SOIL, meaning="S_S")
@@ -60,22 +60,22 @@ PEAK = Formula("a_[g] S", "a_[g] S g", "{ag} · {S} · {g}", "m/s²", clauses.SP
 PEAK_OF_TABLE = Formula("a_[g] S", "S_[e](0) g", "{a} · {g}", "m/s²", clauses.NONLINEAR, meaning="peak_of_table")
 
 # Spectra of acceleration
-ETA = Formula("η({xi})", "√(10/(5 + ξ)) ≥ 0.55", "max(√(10/(5 + {xi})); 0.55)", "", clauses.DAMPING, meaning="eta")
+ETA = Formula("η({xi})", "max(√(10/(5 + ξ)); 0.55)", "max(√(10/(5 + {xi})); 0.55)", "", clauses.DAMPING, meaning="eta")
 S_E_RISING = Formula(
     "S_[e]({at})", "a_[g] S g η F_[0] (T/T_[B] + (1 − T/T_[B])/(η F_[0]))",
     "{ag} · {S} · {g} · {eta} · {F0} · ({T}/{TB} + (1 − {T}/{TB})/({eta} · {F0}))", "m/s²", clauses.SPECTRUM,
-    meaning="S_e",
+    meaning="S_e_rising",
 )  # fmt: skip
 S_E_LEVEL = Formula(
-    "S_[e]({at})", "a_[g] S g η F_[0]", "{ag} · {S} · {g} · {eta} · {F0}", "m/s²", clauses.SPECTRUM, meaning="S_e"
+    "S_[e]({at})", "a_[g] S g η F_[0]", "{ag} · {S} · {g} · {eta} · {F0}", "m/s²", clauses.SPECTRUM, meaning="S_e_level"
 )
 S_E_FALLING = Formula(
     "S_[e]({at})", "a_[g] S g η F_[0] T_[C]/T", "{ag} · {S} · {g} · {eta} · {F0} · {TC}/{T}", "m/s²",
-    clauses.SPECTRUM, meaning="S_e",
+    clauses.SPECTRUM, meaning="S_e_falling",
 )  # fmt: skip
 S_E_LONG = Formula(
     "S_[e]({at})", "a_[g] S g η F_[0] T_[C] T_[D]/T^[2]",
-    "{ag} · {S} · {g} · {eta} · {F0} · {TC} · {TD}/{T}^[2]", "m/s²", clauses.SPECTRUM, meaning="S_e",
+    "{ag} · {S} · {g} · {eta} · {F0} · {TC} · {TD}/{T}^[2]", "m/s²", clauses.SPECTRUM, meaning="S_e_long",
 )  # fmt: skip
 S_5 = Formula(
     "S_[5]({at})", "k (S_[a] + (S_[b] − S_[a]) (T − T_[a])/(T_[b] − T_[a]))",
@@ -156,12 +156,12 @@ TIE = Formula("N", "min(N_[y]; N_[p]; N_[b])", "min({N}; …)", "kN", meaning="t
 P = Formula("P_[{k}]", "{P}", "{P} + …", "{unit}", clauses.ALPHA0, meaning="of_block_P")
 PQ = Formula("PQ_[{k}]", "{P+Q}", "{P} + …", "{unit}", clauses.ALPHA0, meaning="of_block_PQ")
 G = Formula("{axis}_[G{k}]", "Σ (P+Q) {axis}/Σ (P+Q)", "({P} · {x} + …)/({P} + …)", "m", meaning="G", standing="plain")
-GP = Formula("x_[P{k}]", "Σ P x/Σ P", "({P} · {x} + …)/({P} + …)", "m", meaning="GP", standing="plain")
-PY = Formula("ΣPy′", "Σ P y′", "{P} · {y} + …", "{unit} m", clauses.ALPHA0, meaning="Py", digits=9)
-HELD = Formula("L", "−Σ F r′ + Σ N L′", "{L} + …", "{unit} m", clauses.ALPHA0, meaning="L", digits=9)
-V_M = Formula("V_[m]", unit="{unit} m", meaning="V_m", standing="plain", digits=9)
-PQX = Formula("Σ(P+Q)x′", "Σ (P+Q) x′", "{P} · {x} + …", "{unit} m", clauses.ALPHA0, meaning="PQx", digits=9)
-B_M = Formula("B_[m]", unit="{unit} m", meaning="B_m", standing="plain", digits=9)
+GP = Formula("{axis}_[P{k}]", "Σ P {axis}/Σ P", "({P} · {x} + …)/({P} + …)", "m", meaning="GP", standing="plain")
+PY = Formula("ΣPy′{at}", "Σ P y′", "{P} · {y} + …", "{unit} m", clauses.ALPHA0, meaning="Py", digits=9)
+HELD = Formula("L{at}", "−Σ F r′ + Σ N L′", "{L:9} + …", "{unit} m", clauses.ALPHA0, meaning="L", digits=9)
+V_M = Formula("V_[m]{at}", unit="{unit} m", meaning="V_m", standing="plain", digits=9)
+PQX = Formula("Σ(P+Q)x′{at}", "Σ (P+Q) x′", "{P} · {x} + …", "{unit} m", clauses.ALPHA0, meaning="PQx", digits=9)
+B_M = Formula("B_[m]{at}", unit="{unit} m", meaning="B_m", standing="plain", digits=9)
 ALPHA = Formula("{symbol}", "({over})/({under})", "({V:9} + …)/({B:9} + …)", "", clauses.ALPHA0, meaning="alpha")
 ALPHA_0 = replace(ALPHA, meaning="alpha_0")
 SUM_PQ = Formula("Σ(P+Q)", "Σ (P+Q)", "{P} + …", "{unit}", clauses.ALPHA0, meaning="PQ")
@@ -274,6 +274,10 @@ D = Formula(
 )  # fmt: skip
 
 # Limit states
+SEAT = Formula("d_[a]", "Δx_[{name}] = {length} m", "", "m", clauses.LIMITS, meaning="d_a")
+SEAT_MOVED = Formula(
+    "Δx_[{name}]", "|x(φ_[{state}]) − x(0)|", "{one:9} − {other:9}", "m", meaning="seat_moved", standing="plain"
+)
 ALLOWED = Formula("d_[{state}]", "{share} d_[0]^[*]", "{share} · {d0}", "m", clauses.LIMITS, meaning="d_state")
 ALLOWED_LEAST = Formula(
     "d_[{state}]", "min({share} d_[0]^[*]; {ends})", "min({share} · {d0}; {d}; …)", "m", clauses.LIMITS,
@@ -311,7 +315,7 @@ LASTS = Formula(
     "{demand}(T_[R]) = {capacity}",
     "",
     "years",
-    clauses.RETURN_PERIOD,
     meaning="TR_capacity",
+    standing="plain",
     digits=9,
 )

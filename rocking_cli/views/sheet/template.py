@@ -57,7 +57,7 @@ def _filled_in(value: Any) -> Any:
 
 
 def _guarded(text: str) -> Markup:
-    return Markup(GUARD + " ".join(text.replace("|", BAR).split()))
+    return Markup(GUARD + re.sub(r"\s+", " ", text.replace("|", BAR)))
 
 
 def parts(say: Language, package: str, name: str, context: Mapping[str, Any]) -> list[SheetPart]:

@@ -140,6 +140,7 @@ class TestPdf:
     def needs_typst(self):
         pytest.importorskip("typst")
 
+    @pytest.mark.rest
     def test_it_is_a4_with_a_title_and_the_same_each_time(self, sheet_files, monkeypatch):
         language, written = sheet_files
         monkeypatch.setenv("PATH", "")  # no browser
@@ -168,6 +169,7 @@ class TestPdf:
         steps = [row for part in parts_of(found, given, language) for row in rows_of(part)]
         assert len(steps) > 40 and all(flat(say.number(each.value, each.digits)) in words for each in steps)
 
+    @pytest.mark.rest
     @pytest.mark.parametrize("name", ["logo.svg", "logo.png"])
     def test_hostile_names_and_a_logo_are_as_they_are(self, sheet_files, name, tmp_path):
         from PIL import Image
@@ -184,12 +186,14 @@ class TestPdf:
         words = " ".join(words_of(written(structure, ".pdf", "--logo", logo, "--project", HOSTILE)).split())
         assert words.count(r"#[]$_*\ </w:t>") > 2 and "<b>&amp; `x` @y //" in words
 
+    @pytest.mark.rest
     def test_a_logo_that_typst_cannot_read_is_said(self, sheet_files, tmp_path):
         _, written = sheet_files
         (tmp_path / "logo.svg").write_text(f'{SVG} width="0" height="0"/>')
         result = written(FACADE, ".pdf", "--logo", tmp_path / "logo.svg", code=5)
         assert "the PDF could not be laid out" in result.stderr and "facade" in result.stdout
 
+    @pytest.mark.rest
     def test_a_long_file_is_listed_over_pages(self, sheet_files, monkeypatch):
         _, written = sheet_files
         monkeypatch.setattr(
@@ -207,13 +211,14 @@ def rows_of(part):
         yield from rows_of(each)
 
 
-class TestDocument:
-    @pytest.fixture
-    def document(self, sheet_files):
-        docx = pytest.importorskip("docx")
-        structure = (EXAMPLES / "verify" / "tied_facade.yaml").read_text(encoding="utf-8")
-        return docx.Document(str(sheet_files[1](structure, ".docx")))
+@pytest.fixture(scope="module")
+def document(sheet_files):
+    docx = pytest.importorskip("docx")
+    structure = (EXAMPLES / "verify" / "tied_facade.yaml").read_text(encoding="utf-8")
+    return docx.Document(str(sheet_files[1](structure, ".docx")))
 
+
+class TestDocument:
     def test_columns_are_as_wide_as_their_cells_and_tables_as_the_text(self, document):
         section = document.sections[0]
         text_width = section.page_width - section.left_margin - section.right_margin
@@ -255,6 +260,7 @@ class TestDocument:
                 assert [child.tag.rpartition("}")[2] for child in each] == inside[name]
         assert seen > {*inside, "t", "r", "nor"}
 
+    @pytest.mark.rest
     def test_hostile_names_are_as_they_are(self, sheet_files):
         docx = pytest.importorskip("docx")
         _, written = sheet_files

@@ -302,7 +302,7 @@ class TestSheet:
         at = side_of(found).dynamic["SLC"]
         (row,) = (row for row in table.rows if row[0] == "SLC, time histories")
         mean = at.mean(confident=True)
-        assert row[1:3] == [f"{at.allowed:.4g}", f"{mean:.4g}"]
+        assert row[1:3] == [f"{at.allowed:.4g} m", f"{mean:.4g} m"]
         outcomes = {"strong": "not satisfied", "SLV": "satisfied", "few": "too few records", "weak": "satisfied"}
         assert row[5] == outcomes[place]
         assert row[4] == ("–" if place in ("few", "weak") else f"{at.allowed / mean:.4g}")

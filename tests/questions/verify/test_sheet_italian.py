@@ -24,7 +24,7 @@ from tests.questions.verify.test_sheet import ARCH, CASES, FLOOR, SITE, SLC, TIE
 PACKAGES = "rocking_cli.codes.italian", "rocking_cli.views.sheet"
 FAMILIES = "drawing", "caution", "source", "version"
 OF_BOTH = """
-    quadrature coordinate m² ij scoreboard
+    quadrature coordinate m² ij scoreboard cos sin
     ab all allegato area base bc cd circolare cli computer data de dm fc ferris file formula in kg km kn lc lin loi mpa
     ntc per plugin python rad rocking sha slc sld slv software state tan tc tin validation δl δx π² s² t²
 """

@@ -21,6 +21,7 @@ from tests.questions.verify.test_sheet import (
     CASES_WRITTEN,
     FACADE,
     SITE,
+    SLC,
     TABLE_OF_HAZARD,
     WALL,
     Step,
@@ -260,3 +261,54 @@ def test_a_document_has_the_figures_and_the_contents(tmp_path):
     assert in_order([each for each in HEADINGS["en"] if each != "Contents"], headings)
     highlighted = [each.text for each in document.paragraphs for run in each.runs if run.font.highlight_color]
     assert len(highlighted) == 2
+
+
+def test_what_it_would_be_without_ties_and_by_the_letter():
+    """A facade with a tie, and floors that slide: each column is a verification of its own structure."""
+    site = SITE + SLC
+    found, given = verified(TIED_FACADE, site)
+    (table,) = (
+        item for part in parts_of(found, given) for item in part.items
+        if isinstance(item, Table) and item.title.startswith("As calculated, and otherwise")
+    )  # fmt: skip
+    assert table.columns == ["", "as calculated", "without ties", "every P in P + Q"]
+    rows = {row[0]: row[1:] for row in table.rows}
+    bare, _ = verified(TIED_FACADE.partition("ties:")[0], site)
+    shares = "horizontal: 0.5, vertical: 0.333333, weight: 0.5"
+    literal, _ = verified(TIED_FACADE.replace("floor: sliding", shares), site)
+    for k, each in enumerate((found, bare, literal)):
+        side = each.deciding
+        assert number(rows["α_[0]"][k]) == pytest.approx(side.chain.alpha0, rel=5e-4)
+        for state, at in side.states.items():
+            assert number(rows[f"{state}: capacity d [m]"][k]) == pytest.approx(at.d, rel=5e-4)
+            assert number(rows[f"{state}: demand d [m]"][k]) == pytest.approx(at.demand, rel=5e-4)
+            assert rows[f"{state}: verification"][k] == ("satisfied" if side.passes(state) else "not satisfied")
+    assert number(rows["a_[0]^[*] [m/s²]"][2]) == pytest.approx(
+        found.deciding.a0 * found.deciding.chain.start_by_the_letter, rel=5e-4
+    )
+
+
+def test_a_seat_is_followed_to_the_displacement_at_which_it_is_lost():
+    items = items_of(*verified(TIED_FACADE, SITE))
+    steps = [each for each in items if isinstance(each, Step)]
+    (lost, *_) = (each for each in steps if each.symbol == "d_[a]")
+    assert lost.formula == "Δx_[roof] = 0.25 m" and not lost.numbers
+    (moved, *_) = (each for each in steps if each.symbol == "Δx_[roof]")
+    high, low = map(number, moved.numbers.split(" − "))
+    phi = number(next(each for each in steps if each.symbol == "φ_[SLV]").result)
+    assert (number(moved.result), low) == (pytest.approx(0.25, rel=1e-6), 0.0)  # the load is 8 m above the corner
+    assert high == pytest.approx(8 * np.sin(phi) + 0.3 * (1 - np.cos(phi)), rel=1e-5)
+
+
+@pytest.mark.parametrize(("name", "rows"), [
+    ("facade", {"support": "on the ground", "direction": "both", "compressive strength": "unlimited"}),
+    ("tied", {"support": "on the ground", "direction": "positive only", "ties": "act from rest on"}),
+    ("parapet on a floor", {"support": "a floor at z = 6 m of a building 9 m high"}),
+    ("on rock, by state", {"knowledge": "confidence factor FC = 1.2"}),
+])  # fmt: skip
+def test_assumptions_are_those_of_the_structure_and_its_site(name, rows):
+    part = next(each for each in parts_of(*verified(*CASES[name])) if each.key == "assumptions")
+    (table,) = (each for each in part.items if isinstance(each, Table))
+    printed = dict(table.rows)
+    assert all(printed[key].startswith(text) for key, text in rows.items())
+    assert ("ties" in printed) == (name == "tied")

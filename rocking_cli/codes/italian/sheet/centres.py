@@ -90,6 +90,11 @@ class ChainCentres:
         rows = [self._row(joint) for joint in joints]
         return [row for row in rows if row.blocks[0] != row.blocks[1]]
 
+    @property
+    def has_guides(self) -> bool:
+        """Whether any joint is a guide, which has a normal."""
+        return any(row.normal is not None for row in self.joints)
+
     def _row(self, joint: Joint) -> JointRow:
         names = joint.bodies if len(joint.bodies) > 1 else (None, *joint.bodies)
         one, other = (0 if name is None else self._numbers[name] for name in names)

@@ -83,19 +83,20 @@ def of_blocks(chain: Chain, scale: Scale) -> Iterator[Evaluated]:
             places = [scale.near(each.spot.at.real if axis == "x" else each.spot.at.imag) for each in weights]
             yield F.G.line(scale.near(at), {**names, "axis": axis}, P=inertial if block.PQ else carried, x=places)
         if block.P and block.P != block.PQ:
-            places = [scale.near(each.spot.at.real) for each in weights]
-            yield F.GP.line(scale.near(block.x_of_P), names, P=carried, x=places)
+            for axis, at in (("x", block.of_P.real), ("y", block.of_P.imag)):
+                places = [scale.near(each.spot.at.real if axis == "x" else each.spot.at.imag) for each in weights]
+                yield F.GP.line(scale.near(at), {**names, "axis": axis}, P=carried, x=places)
 
 
 def at_work(position: DisplacedChain, scale: Scale) -> Rows:
-    """Return a row for each block in a position: displacement, barycentres, rotation, centre, virtual displacements."""
+    """Return a row for each block in a position: its displacement, barycentres, motion and angle."""
     rows = []
     for k, each in enumerate(position.blocks, 1):
         lengths = [each.gone, each.at.real, each.at.imag, _x_of_P(position, each), each.dx, each.dy]
         gone, x_G, y_G, x_P, dx, dy = map(scale.near, lengths)
         turns = 0.0 if each.centre is None else each.turns
         centre = (None, None) if each.centre is None else map(scale.near, (each.centre.real, each.centre.imag))
-        rows.append([k, gone, x_G, y_G, x_P, turns, *centre, dx, dy])
+        rows.append([k, gone, x_G, y_G, x_P, turns, *centre, dx, dy, *([each.angle] if position.phi else [])])
     return rows
 
 
@@ -141,34 +142,41 @@ def _printed(position: DisplacedChain, scale: Scale, total: float, kind: str) ->
     return 0.0 if abs(value) < MIN_SHARE * scale.weight(largest) * scale.length else value
 
 
-def multiplier(position: DisplacedChain, scale: Scale, symbol: str) -> Iterator[Evaluated]:
-    """Yield the lines to alpha in a position."""
-    unit, blocks = {"unit": scale.unit}, position.blocks
-    over = {F.PY.text: _printed(position, scale, position.lifted, "P")}
-    under = {F.PQX.text: _printed(position, scale, position.driven, "PQ")}
+def multiplier(position: DisplacedChain, scale: Scale, at: str = "") -> Iterator[Evaluated]:
+    """Yield the lines to alpha in a position, of which `at` is the symbol in parentheses; at rest it has none."""
+    names, blocks = {"unit": scale.unit, "at": at}, position.blocks
     carried, inertial = ([scale.weight(getattr(each.block, key)) for each in blocks] for key in ("P", "PQ"))
-    yield F.PY.line(over[F.PY.text], unit, P=carried, y=[scale.near(each.dy) for each in blocks])
+    lifted, driven = (
+        _printed(position, scale, total, kind) for total, kind in ((position.lifted, "P"), (position.driven, "PQ"))
+    )
+    over = [F.PY.line(lifted, names, P=carried, y=[scale.near(each.dy) for each in blocks])]
     if position.held:
         works = [scale.work(each) for each in position.held]
-        over["L"] = sum(works)
-        yield F.HELD.line(over["L"], unit, L=works)
+        over.append(F.HELD.line(sum(works), names, L=works))
     if position.rest:
-        over["V_[m]"] = scale.weight(position.rest)
-        yield F.V_M.line(over["V_[m]"], unit)
-    yield F.PQX.line(under[F.PQX.text], unit, P=inertial, x=[scale.near(each.dx) for each in blocks])
+        over.append(F.V_M.line(scale.weight(position.rest), names))
+    under = [F.PQX.line(driven, names, P=inertial, x=[scale.near(each.dx) for each in blocks])]
     if position.more:
-        under["B_[m]"] = scale.weight(position.more)
-        yield F.B_M.line(under["B_[m]"], unit)
+        under.append(F.B_M.line(scale.weight(position.more), names))
+    yield from (*over, *under)
     largest = sum(abs(each.block.P) for each in blocks) * scale.length / abs(position.driven)
     value = 0.0 if abs(position.alpha) < MIN_SHARE * largest else position.alpha
-    names = {"symbol": symbol, "over": " + ".join(over), "under": " + ".join(under)}
-    formula = F.ALPHA_0 if position.phi == 0 else F.ALPHA
-    yield formula.line(value, names, V=[*over.values()], B=[*under.values()])
+    sides = {
+        key: " + ".join(f"{line.formula.symbol}".format(at=at) for line in lines)
+        for key, lines in (("over", over), ("under", under))
+    }
+    formula = F.ALPHA if at else F.ALPHA_0
+    yield formula.line(
+        value,
+        {"symbol": f"α{at or '_[0]'}", **sides},
+        V=[each.value for each in over],
+        B=[each.value for each in under],
+    )
 
 
 def sums(chain: Chain, rest: DisplacedChain, scale: Scale) -> Iterator[Evaluated]:
     """Yield the lines to alpha0, e* and M*."""
-    yield from multiplier(rest, scale, "α_[0]")
+    yield from multiplier(rest, scale)
     names, inertial = {"unit": scale.unit}, [scale.weight(each.block.PQ) for each in rest.blocks]
     first, total, second = (scale.weight(value) for value in (chain.first, chain.inertial, chain.second))
     yield F.SUM_PQ.line(total, names, P=inertial)

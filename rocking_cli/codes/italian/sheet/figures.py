@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import partial
 from math import pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,7 +16,7 @@ from rocking_cli.codes.italian.demand import REFERENCE_DAMPING
 from rocking_cli.codes.italian.displaced import DisplacedChain
 from rocking_cli.codes.italian.ground import Hazard, SiteGround
 from rocking_cli.codes.italian.results import ItalianVerified
-from rocking_cli.codes.italian.rules import FIRST_STATE, RULES
+from rocking_cli.codes.italian.rules import FIRST_STATE, RULES, STATES
 from rocking_cli.codes.italian.sheet.chain import Scale, named
 from rocking_cli.codes.italian.sheet.site import states
 from rocking_cli.core import Length
@@ -42,9 +42,10 @@ LABEL_BACKGROUND = {**dimensions.TEXT_BACKGROUND, "alpha": 0.8}
 
 
 class DrawnWeight(NamedTuple):
-    """A weight of the chain as it is drawn: name, point [m], centre of rotation [m], and P and P + Q [N]."""
+    """A weight as it is drawn: name, number of its block, point and centre of rotation [m], and P and P + Q [N]."""
 
     name: str
+    block: int
     at: complex
     centre: complex | None
     P: float
@@ -101,13 +102,14 @@ def _weights(say: Language, side: ItalianVerified, position: DisplacedChain) -> 
     key, chain = side.chain.mechanism.mechanism, side.chain
     if len(chain.weights) > MAX_WEIGHTS:
         return [
-            DrawnWeight(say("block {k}", k=k), each.at, each.centre, each.block.P, each.block.PQ)
+            DrawnWeight(say("block {k}", k=k), k, each.at, each.centre, each.block.P, each.block.PQ)
             for k, each in enumerate(position.blocks, 1)
         ]
-    centre = {name: each.centre for each in position.blocks for name in each.block.bodies}
+    of = {name: (k, each.centre) for k, each in enumerate(position.blocks, 1) for name in each.block.bodies}
+    blocks = [of[each.spot.body or ""] for each in chain.weights]
     return [
-        DrawnWeight(say.body(key, each.name), each.spot.at, centre[each.spot.body or ""], each.carried, each.inertial)
-        for each in chain.weights
+        DrawnWeight(say.body(key, each.name), k, each.spot.at, centre, each.carried, each.inertial)
+        for each, (k, centre) in zip(chain.weights, blocks, strict=True)
     ]
 
 
@@ -131,11 +133,13 @@ def _draw_weights(
     say: Language, axes: Axes, weights: Sequence[DrawnWeight], panel: Panel, labels: Labels, scale: Scale
 ) -> None:
     """Draw an arrow for each weight, with its number, name and size, and the centres of rotation."""
-    for centre in {each.centre for each in weights if each.centre is not None}:
+    numbers = {each.centre: each.block for each in weights if each.centre is not None}
+    for centre, number in numbers.items():
+        symbol = f"O{number}" if len(numbers) > 1 else "O"
         axes.plot(centre.real, centre.imag, marker="o", color=style.CURSOR, markersize=4.5, zorder=7)
         labels.keep_off([centre], MARK_COST)
-        labels.write("O", labels.around(centre, -1 - 1j, 0.05, style.size_of("O", style.LABEL)), fontsize=style.LABEL,
-                     color=style.CURSOR, zorder=7)  # fmt: skip
+        around = labels.around(centre, -1 - 1j, 0.05, style.size_of(symbol, style.LABEL))
+        labels.write(symbol, around, fontsize=style.LABEL, color=style.CURSOR, zorder=7)
     for k, each in enumerate(weights, 1):
         tip = each.at - 1j * ARROW_LENGTH / panel.scale
         look = {"arrowstyle": "-|>,head_width=0.2,head_length=0.45", "color": style.INK, "linewidth": style.BOLD}
@@ -177,6 +181,11 @@ def _name_held(
         labels.write(text, spots, fontsize=style.TICK, color=style.TIE["color"], zorder=8)
 
 
+def _look(state: str) -> dict[str, Any]:
+    """Return the look of a limit state, the same in all figures."""
+    return style.distinct(1 + [*(rule.state for rule in RULES), *STATES].index(state))
+
+
 def draw_capacity(
     say: Language, sides: Mapping[str, ItalianVerified], title: str, end: str = "", demand: SiteDemand | None = None
 ) -> Figure:
@@ -202,8 +211,8 @@ def draw_capacity(
         axes.plot([0, side.d0], [side.a0, 0], label=say("straight line"), **line)
         axes.set_xlim(0, 1.03 * max([side.d0, *(each.demand or 0.0 for each in side.states.values())]))
         tallest = max(side.exact.largest, side.a0)
-        for k, rule in enumerate(RULES, 1):
-            name, at, look = rule.state, side.states[rule.state], style.distinct(k)
+        for rule in RULES:
+            name, at, look = rule.state, side.states[rule.state], _look(rule.state)
             color, dashes = look["color"], look["linestyle"]
             mark = {"marker": look["marker"], "color": color, "linestyle": "none", "zorder": 5}
             axes.plot(at.d, at.a, label=say("capacity d_{state}", state=name), **mark)
@@ -247,10 +256,10 @@ def draw_hazard(say: Language, ground: SiteGround, hazard: Hazard, title: str) -
     for k, (axes, label) in enumerate(zip(panels, OF_HAZARD, strict=True)):
         axes.plot(TR, curves[k], color=style.FAINT, linewidth=style.MEDIUM)
         axes.plot(rows[0], rows[k + 1], "o", color=style.INK, markersize=3.5, label=say("rows of the hazard"))
-        for n, state in enumerate(states(ground), 1):
+        for state in states(ground):
             of_state, rock = ground.return_period(state), ground.on_rock(state)
             assert of_state is not None and rock is not None  # as the site gives a hazard
-            look = {**style.distinct(n), "linestyle": "none", "fillstyle": "none", "markersize": 8}
+            look = {**_look(state), "linestyle": "none", "fillstyle": "none", "markersize": 8}
             axes.plot(of_state, rock[k], label=state, **look)
         style.tidy(axes, say("return period T_R [years]") if axes is panels[-1] else "", label)
     panels[-1].set_xscale("log")

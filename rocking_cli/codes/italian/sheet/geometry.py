@@ -98,6 +98,8 @@ class LoadRow:
         Fx + i Fy of a force [kN].
     reverses : bool
         Whether the horizontal part of a force is always against the motion, as that of friction.
+    seat : float or None
+        Length of the seat of a load [m]; None if it has none.
     """
 
     name: str
@@ -110,6 +112,7 @@ class LoadRow:
     sideways: float = 1.0
     force: complex | None = None
     reverses: bool = False
+    seat: float | None = None
 
 
 @dataclass(frozen=True)
@@ -268,6 +271,7 @@ class Composition:
             if isinstance(attached, PointMass):
                 name, (body, at) = attached.name, attached.spot
                 values = self._weight(attached.mass) | {"carried": attached.weight, "sideways": attached.horizontal}
+                values["seat"] = next((load.seat for load in mechanism.loads or [] if load.name == name), None)
                 rows.append(LoadRow(name, body or "", at, **values))
             elif isinstance(attached, ConstantForce):
                 name, (body, at) = attached.name, attached.spot

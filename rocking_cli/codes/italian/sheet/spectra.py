@@ -37,7 +37,7 @@ class At:
 
 def corrected(at: At) -> Evaluated:
     """Return the step for the damping correction eta."""
-    return F.ETA.line(correction(at.damping), {"xi": at.xi}, xi=100 * at.damping)
+    return F.ETA.line(correction(at.damping), {"xi": at.xi, "percent": 100 * at.damping}, xi=100 * at.damping)
 
 
 def peaks(spectrum: DemandSpectrum, state: str) -> Iterator[Evaluated]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -74,6 +75,11 @@ class MethodComparison:
     capacity: float
     demand: str
     at: spectra.At | None = None
+
+
+def _subscript(name: str) -> str:
+    """Return a name of the user as a subscript, without the marks of formulas."""
+    return re.sub(r"[][|_^]", "", name)
 
 
 @dataclass(frozen=True)
@@ -242,7 +248,7 @@ class DirectionSteps:
     def to_end(self) -> list[Evaluated]:
         """Lines to d0* from the position in which the capacity vanishes."""
         names = {"at": "φ_[0]", "symbol": "d_[0]^[*]"}
-        return [*chains.multiplier(self.end, self.scale, "α(φ_[0])"), *self._moved(self.end, names, "d0")]
+        return [*chains.multiplier(self.end, self.scale, "(φ_[0])"), *self._moved(self.end, names, "d0")]
 
     @property
     def states(self) -> list[StateSteps]:
@@ -299,12 +305,28 @@ class DirectionSteps:
         broken = rule.at_breaks and self.curve.broken is not None and at.d == self.curve.broken
         phi = self.curve.torn if broken and self.curve.torn is not None else self.curve.rotation(at.d)
         position = DisplacedChain(self.curve, phi)
-        lines = [*self._moved(position, names, "d_again"), *chains.multiplier(position, self.scale, f"α(φ_[{s}])")]
+        lines = [*self._moved(position, names, "d_again"), *chains.multiplier(position, self.scale, f"(φ_[{s}])")]
         here = self.curve.acceleration_at(phi)
         lines.append(F.A_THERE.line(here, names, **self._accelerated(position.alpha)))
         lines += self._period_and_demand(rule, at, s, here)
-        to_position = [self._allowed(rule, at), F.PHI.line(phi, names)]
-        return StateSteps(s, position, to_position, lines, list(self._on_line(rule)))
+        to_position = [*self._seat(), self._allowed(rule, at), F.PHI.line(phi, names)]
+        return StateSteps(s, position, to_position, [*self._seat_at(phi, at, s), *lines], list(self._on_line(rule)))
+
+    def _seat(self) -> Iterator[Evaluated]:
+        """Yield the line to the displacement at which the first load loses its seat."""
+        if (seat := self.curve.seat) is not None:
+            yield F.SEAT.line(seat.d, {"name": _subscript(seat.load), "load": seat.load, "length": seat.length})
+
+    def _seat_at(self, phi: float, at: LimitState, state: str) -> Iterator[Evaluated]:
+        """Yield the displacement of the load whose seat limits a state, if it does."""
+        seat, chain = self.curve.seat, self.curve.chain
+        if seat is None or at.d != seat.d:
+            return
+        spot = next(mass.spot for mass in chain.mechanism.hung.masses if mass.name == seat.load)
+        x = [float(chain.mechanism.followed(np.array([each]), chain.direction)(spot).z[0].real) for each in (0.0, phi)]
+        low, high = map(self.scale.near, sorted(x))
+        names = {"name": _subscript(seat.load), "load": seat.load, "state": state}
+        yield F.SEAT_MOVED.line(abs(x[1] - x[0]), names, one=high, other=low)
 
     def _allowed(self, rule: Rule, at: LimitState) -> Evaluated:
         """Return the step for the displacement capacity at a limit state."""

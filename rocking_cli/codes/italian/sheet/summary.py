@@ -64,9 +64,14 @@ def _compared(verification: ItalianVerification) -> dict[str, Any] | None:
     return {"least": least.label, "ratio": ratio, "rest": rest}
 
 
+def both(existing: ItalianVerification, strengthened: ItalianVerification) -> dict[str, ItalianVerified]:
+    """Return the columns of the comparison of two structures: each in the direction that decides."""
+    return {"existing": existing.deciding, "strengthened": strengthened.deciding}
+
+
 def comparison(say: Language, existing: ItalianVerification, strengthened: ItalianVerification) -> list[Table]:
     """Return a table of the existing structure and the strengthened one, each in the direction that decides."""
-    return tables(say, PACKAGE, "comparison", {"existing": existing.deciding, "strengthened": strengthened.deciding})
+    return tables(say, PACKAGE, "comparison", {"columns": both(existing, strengthened)})
 
 
 def verdicts(say: Language, where: str, each: ItalianVerified) -> Iterator[str]:
