@@ -17,7 +17,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 # Names that other modules define, by module; `rooms` finds those of the questions. The stub beside this file,
 # `__init__.pyi`, is written from both by `make pages`.
