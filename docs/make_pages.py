@@ -1,4 +1,4 @@
-"""Write the generated parts of the pages, and the pictures, so that the pages show real output of the program.
+"""Write the generated parts of the pages, pictures and calculation sheets, so that they show what the program does.
 
     python docs/make_pages.py             # part of make docs
 
@@ -11,6 +11,7 @@ import shutil
 from pathlib import Path
 
 import make_reference
+import make_sheets
 from make_runs import Content, Run, keep, run, shown
 from parts import asked, renewed
 
@@ -68,15 +69,18 @@ def of_the_readme(name: str) -> str:
 def drawn(runs: dict[str, Run]) -> dict[str, Content]:
     """Return the content of every picture that is shown."""
     all_drawn = {name: content for each in runs.values() for name, content in each.pictures.items()}
+    all_drawn |= make_sheets.contents()
     wanted = {name for page in pages() for name in shown(page.read_text(encoding="utf-8"))}
     return {name: all_drawn[name] for name in sorted(wanted)}
 
 
 def main() -> None:
-    """Run all commands, and renew stale parts and pictures."""
+    """Run all commands, and renew stale parts, pictures and sheets."""
     shutil.rmtree(RUN, ignore_errors=True)
     RUN.mkdir(parents=True)
     runs = run(commands(), RUN)
+    make_sheets.main()
+    make_sheets.draw(RUN)
     keep(drawn(runs), RUN)
     for page in pages():
         text = page.read_text(encoding="utf-8")

@@ -1,5 +1,7 @@
 """Write `accel.csv` and `accel_transverse.csv`: the two components of a synthetic ground motion near a fault.
 
+Write also `verify/records.csv`, seven motions of shaking alone in one table, for the dynamic method of a code.
+
 The fault ruptures towards the site; the first component is across it, where the pulse is.
 
 It is the sum of two parts, in units of standard gravity:
@@ -9,10 +11,10 @@ It is the sum of two parts, in units of standard gravity:
 - random shaking between 0.4 and 12 Hz that rises fast and dies away slowly, which carries the high-frequency peaks.
 
 The sum is corrected so that the ground ends at rest, brought smoothly to zero at both ends, and scaled to a peak of
-0.55 g. The second component has other shaking, and half the pulse. This is not a record of any earthquake: use it to
-try the tool, not to design with.
+0.55 g. The second component has other shaking, and half the pulse. The seven motions have a peak of 0.2 g, and every
+second sample. None of this is a record of any earthquake: use it to try the tool, not to design with.
 
-    python make_accel.py [FILE [FILE]]
+    python make_accel.py [FILE [FILE [FILE]]]
 """
 
 from __future__ import annotations
@@ -31,6 +33,16 @@ DURATION = 12.0  # s
 PEAK = 0.55  # g, of the sum
 SEED = 20030613
 TRANSVERSE_PEAK, TRANSVERSE_PULSE, TRANSVERSE_SEED = 0.4, 0.4, 20030627  # of the second component
+SET_PEAK, SET_BAND, SET_STEP = 0.2, (0.3, 5.0), 2  # of the seven motions, in g, Hz and samples
+SET_SEEDS = (
+    20160836,
+    20160859,
+    20160864,
+    20160866,
+    20160871,
+    20160874,
+    20160876,
+)  # the ground ends about where it began
 
 PULSE_FREQUENCY = 1.0  # Hz
 PULSE_CYCLES = 2.0  # length of the bell, in periods
@@ -52,11 +64,11 @@ def pulse(time: Array) -> Array:
     return _with_unit_peak(np.where(inside, slope, 0.0))
 
 
-def noise(time: Array, seed: int) -> Array:
+def noise(time: Array, seed: int, band: tuple[float, float] = BAND) -> Array:
     """Band-limited noise under an envelope that peaks with the pulse, with a peak of one."""
     white = np.random.default_rng(seed).standard_normal(time.size)
     frequency = np.fft.rfftfreq(time.size, DT)
-    low, high = BAND
+    low, high = band
     # Gentle slopes on both sides of the band, so that the filter does not ring.
     gain = (frequency / low) ** 4 / (1 + (frequency / low) ** 4) / (1 + (frequency / high) ** 4)
     shaking = np.fft.irfft(np.fft.rfft(white) * gain, time.size)
@@ -72,11 +84,13 @@ def taper(time: Array) -> Array:
     return window
 
 
-def accelerogram(peak: float = PEAK, pulse_peak: float = PULSE_PEAK, seed: int = SEED) -> tuple[Array, Array]:
+def accelerogram(
+    peak: float = PEAK, pulse_peak: float = PULSE_PEAK, seed: int = SEED, band: tuple[float, float] = BAND
+) -> tuple[Array, Array]:
     """Return times [s] and accelerations [g], as they are printed to the file."""
     time = np.linspace(0, DURATION, round(DURATION / DT) + 1)
     window = taper(time)
-    acceleration = (pulse_peak * pulse(time) + NOISE_PEAK * noise(time, seed)) * window
+    acceleration = (pulse_peak * pulse(time) + NOISE_PEAK * noise(time, seed, band)) * window
     acceleration -= window * acceleration.sum() / window.sum()  # no velocity left at the end
     acceleration = peak * _with_unit_peak(acceleration)
     return np.round(time, 2), np.round(acceleration, 6) + 0.0  # + 0.0: no "-0.000000"
@@ -93,8 +107,21 @@ def write(path: Path, *of: Any) -> None:
     path.write_text("\n".join(["time_s,accel_g", *rows]) + "\n", encoding="utf-8", newline="\n")
 
 
+def write_set(path: Path) -> None:
+    """Write the seven motions as one table, with a column for each."""
+    motions = [accelerogram(SET_PEAK, 0.0, seed, SET_BAND) for seed in SET_SEEDS]
+    columns = [motions[0][0], *(acceleration for _, acceleration in motions)]
+    rows = [
+        f"{t:.2f}," + ",".join(f"{np.round(a, 5) + 0.0:.5f}" for a in at)
+        for t, *at in list(zip(*columns, strict=True))[::SET_STEP]
+    ]
+    heads = ["time_s", *(f"motion {k} [g]" for k in range(1, len(motions) + 1))]
+    path.write_text("\n".join([",".join(heads), *rows]) + "\n", encoding="utf-8", newline="\n")
+
+
 if __name__ == "__main__":
     here = Path(__file__)
     write(Path(sys.argv[1]) if len(sys.argv) > 1 else here.with_name("accel.csv"))
     transverse = Path(sys.argv[2]) if len(sys.argv) > 2 else here.with_name("accel_transverse.csv")
     write(transverse, TRANSVERSE_PEAK, TRANSVERSE_PULSE, TRANSVERSE_SEED)
+    write_set(Path(sys.argv[3]) if len(sys.argv) > 3 else here.parent / "verify" / "records.csv")

@@ -58,6 +58,8 @@ def inline_svg(figure: Figure, prefix: str) -> Markup:
 def _tag(tag: str, prefix: str) -> str:
     tag = re.sub(r'\bid="', f'id="{prefix}-', tag)
     tag = re.sub(r'(href="|url\()#', rf"\1#{prefix}-", tag)
+    # A hundredth of a point is not seen, and a line break of each point of a path is as long as a number.
+    tag = re.sub(r"(\.\d\d)\d+", r"\1", re.sub(r"\s+", " ", tag)) if tag.startswith("<path") else tag
     tag = re.sub(r"'?DejaVu Sans'?[^;\"]*", FONT_FAMILY, tag)
     # Screen readers take the description beside the picture.
     return tag.replace("<svg ", f"<svg {SVG_ATTRIBUTES} ", 1)

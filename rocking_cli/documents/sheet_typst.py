@@ -36,13 +36,25 @@ def render(sheet: Sheet) -> bytes:
     Refused
         If typst cannot lay it out, such as for a logo that it cannot read.
     """
+    document: bytes = _laid_out(sheet, format="pdf")
+    return document
+
+
+def page_pictures(sheet: Sheet, ppi: float) -> list[bytes]:
+    """Return the pages of the PDF of a calculation sheet as pictures, PNG, with a number of pixels per inch."""
+    pages: list[bytes] = _laid_out(sheet, format="png", ppi=ppi)
+    return pages
+
+
+def _laid_out(sheet: Sheet, **how: Any) -> Any:
+    """Return what typst makes of a sheet. Raises `Refused` if it cannot lay it out."""
     import typst
 
     with TemporaryDirectory(prefix="rocking-", ignore_cleanup_errors=True) as folder:
         for name, content in _files(sheet).items():
             (Path(folder) / name).write_bytes(content)
         try:
-            return typst.compile(Path(folder) / LAYOUT, root=Path(folder), format="pdf")
+            return typst.compile(Path(folder) / LAYOUT, root=Path(folder), **how)
         except typst.TypstError as error:
             raise Refused(f"the PDF could not be laid out: {printable(error.message)}") from None
 

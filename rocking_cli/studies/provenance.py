@@ -67,11 +67,12 @@ def file_of_motion(given: Scaled) -> File | None:
 
 
 def versions(mechanism: Mechanism) -> dict[str, str]:
-    """Return the versions of this package, of the mechanism's package, of Python and of the packages for computing."""
+    """Return the versions of this package, of the mechanism's, of the system, of Python and of what computes."""
     registry, name = Registry(), mechanism.mechanism
     return {
         "rocking-cli": version("rocking-cli"),
         f"mechanism {name}": registry.package_of(name) if name in registry else "not installed as a plugin",
+        "system": platform.platform(terse=True),
         "Python": platform.python_version(),
         **{package: version(package) for package in RECORDED_PACKAGES},
     }

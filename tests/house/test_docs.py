@@ -41,9 +41,8 @@ def made():
     """How the pages are made: make_pages, and the modules it uses."""
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(DOCS)
-        yield SimpleNamespace(
-            **{name: import_module(name) for name in ("make_pages", "make_reference", "make_runs", "parts")}
-        )
+        names = "make_pages", "make_reference", "make_runs", "make_sheets", "parts"
+        yield SimpleNamespace(**{name: import_module(name) for name in names})
 
 
 @pytest.fixture(scope="module")
@@ -68,6 +67,22 @@ def test_the_pictures_are_not_stale(made, runs):
     drawn = made.make_pages.drawn(runs)
     assert made.make_runs.stale(drawn) == [], "run make docs"
     assert {*drawn, "content.json"} == {file.name for file in (DOCS / "pictures").iterdir()}
+
+
+@pytest.mark.docs
+def test_the_calculation_sheets_are_not_stale(made):
+    every = made.make_sheets.pages()
+    assert made.make_sheets.stale(every) == [], "run make docs"
+    page = every["facade.html"]
+    others = {"facade.html": page.replace("1,67432", "1,76432"), "parapet.html": every["parapet.html"] + "<p>more</p>"}
+    assert made.make_sheets.stale({**every, **others}) == [*others]
+    assert made.make_sheets.stale({**every, "facade.html": page.replace("<p>", "<p class='other'>")}) == []
+
+
+@pytest.mark.docs
+def test_pages_of_a_sheet_are_drawn_the_same_each_time(made, tmp_path):
+    drawn = [made.make_sheets.page_pictures(made.make_sheets.made("parapet"), 20) for _ in range(2)]
+    assert drawn[0] == drawn[1] and all(each.startswith(b"\x89PNG") for each in drawn[0])
 
 
 @pytest.mark.docs

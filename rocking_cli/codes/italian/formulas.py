@@ -98,13 +98,13 @@ AMPLIFIED = Formula(
     "A", "1.1 ξ_[1]^[−1/2] η(ξ)", "1.1 · {eta}/√({xi})", "", clauses.AMPLIFICATION, meaning="A", standing="ours"
 )
 S_EZ_BELOW = Formula(
-    "{symbol}", "A S_[Z]/(1 + (A − 1) (1 − T/(a T_[1]))^[1.6])", "{A} · {S}/(1 + ({A} − 1) · (1 − {T}/{low})^[1.6])",
-    "m/s²", clauses.FLOOR_SPECTRUM, meaning="S_eZ",
+    "{symbol}", "A S_[Z]/(1 + (A − 1) (1 − T/(a T_[1]))^[1.6])",
+    "{A} · {S}/(1 + ({A} − 1) · (1 − {T}/(0.8 · {T1}))^[1.6])", "m/s²", clauses.FLOOR_SPECTRUM, meaning="S_eZ",
 )  # fmt: skip
 S_EZ_LEVEL = Formula("{symbol}", "A S_[Z]", "{A} · {S}", "m/s²", clauses.FLOOR_SPECTRUM, meaning="S_eZ")
 S_EZ_ABOVE = Formula(
-    "{symbol}", "A S_[Z]/(1 + (A − 1) (T/(b T_[1]) − 1)^[1.2])", "{A} · {S}/(1 + ({A} − 1) · ({T}/{high} − 1)^[1.2])",
-    "m/s²", clauses.FLOOR_SPECTRUM, meaning="S_eZ",
+    "{symbol}", "A S_[Z]/(1 + (A − 1) (T/(b T_[1]) − 1)^[1.2])",
+    "{A} · {S}/(1 + ({A} − 1) · ({T}/(1.1 · {T1}) − 1)^[1.2])", "m/s²", clauses.FLOOR_SPECTRUM, meaning="S_eZ",
 )  # fmt: skip
 S_EZ_BOUND = Formula(
     "S_[eZ]({at})", "max(S_[eZ,1]({at}); S_[e]({at}))", "max({own}; {under})", "m/s²", clauses.FLOOR_BOUND,
@@ -274,6 +274,7 @@ D = Formula(
 )  # fmt: skip
 
 # Limit states
+BROKEN = Formula("d_[t]", meaning="d_t", unit="m", standing="plain")
 SEAT = Formula("d_[a]", "Δx_[{name}] = {length} m", "", "m", clauses.LIMITS, meaning="d_a")
 SEAT_MOVED = Formula(
     "Δx_[{name}]", "|x(φ_[{state}]) − x(0)|", "{one:9} − {other:9}", "m", meaning="seat_moved", standing="plain"

@@ -31,12 +31,15 @@ def texts_of(package: str, key: str) -> Mapping[str, str]:
     return {name: " ".join(each.split()) for name, each in tomllib.loads(text).items()}
 
 
-class _WithComma(Formatter):
-    """The format of texts in which numbers have a decimal comma."""
+class _Printed(Formatter):
+    """The format of texts in which numbers are written as a language prints them."""
+
+    def __init__(self, say: Language) -> None:
+        self.say = say
 
     def format_field(self, value: Any, spec: str) -> str:
         text: str = super().format_field(value, spec)
-        return text.replace(".", ",") if isinstance(value, float) else text
+        return self.say.printed(text) if isinstance(value, float) else text
 
 
 class BodyName(NamedTuple):
@@ -85,7 +88,7 @@ class Language:
         translated = in_plain(translated) if self.is_plain else translated
         if not values:
             return translated
-        written = _WithComma() if self.key in WITH_COMMA else Formatter()
+        written = Formatter() if self.is_plain else _Printed(self)
         return written.format(translated, **{name: self._value(value) for name, value in values.items()})
 
     def _value(self, value: Any) -> Any:
@@ -102,7 +105,11 @@ class Language:
             return view.number(value, digits)
         if value is None or isnan(value):
             return ABSENT
-        mantissa, _, power = f"{value + 0.0:.{digits}g}".partition("e")
+        return self.printed(f"{value + 0.0:.{digits}g}")
+
+    def printed(self, number: str) -> str:
+        """Return a number that Python wrote, such as -1.2e-05, as the language prints it."""
+        mantissa, _, power = number.partition("e")
         text = self.formula(mantissa.replace("-", MINUS))
         return f"{text} · 10^[{str(int(power)).replace('-', MINUS)}]" if power else text
 

@@ -275,7 +275,7 @@ class Recomputed:
     """Steps by formulas of the test's own, from numbers printed above them; `known` are the last ones."""
 
     SOLVED = re.compile(
-        r"φ_|t$|a_\[g,|T_\[R(,lin)?\]$|V_\[m\]|B_\[m\]|d_\[a\]$"
+        r"φ_|d_\[[at]\]$|t$|a_\[g,|T_\[R(,lin)?\]$|V_\[m\]|B_\[m\]"
     )  # by trial, or as given: checked by what follows
 
     def __init__(self, items):

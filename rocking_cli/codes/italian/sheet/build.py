@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import platform
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
@@ -53,10 +52,7 @@ def context(say: Language, verification: ItalianVerification, site_values: Itali
         "title": partial(title, say), "named": partial(named, say), "figure": partial(_figure, say, ground),
         "is_same": partial(isclose, rel_tol=SAME_MULTIPLIER),
         "dynamic": dynamic,
-        "program": {
-            "licence": metadata("rocking-cli")["License-Expression"], "python": platform.python_version(),
-            "system": platform.platform(terse=True),
-        },
+        "licence": metadata("rocking-cli")["License-Expression"],
     }  # fmt: skip
 
 

@@ -137,7 +137,7 @@ def _alone(floor: FloorSpectrum, T: float, damping: float, symbol: str) -> Evalu
     """Return the step for S_eZ without the lower bound by the ground."""
     low, high = LEVEL_FROM * floor.T1, LEVEL_TO * floor.T1
     formula = F.S_EZ_BELOW if low > T else F.S_EZ_LEVEL if high >= T else F.S_EZ_ABOVE
-    values = {"A": floor.amplification(damping), "S": floor.peak, "T": T, "low": low, "high": high}
+    values = {"A": floor.amplification(damping), "S": floor.peak, "T": T, "T1": floor.T1}
     return formula.line(floor.alone(T, damping), {"symbol": symbol}, **values)
 
 

@@ -309,11 +309,13 @@ class DirectionSteps:
         here = self.curve.acceleration_at(phi)
         lines.append(F.A_THERE.line(here, names, **self._accelerated(position.alpha)))
         lines += self._period_and_demand(rule, at, s, here)
-        to_position = [*self._seat(), self._allowed(rule, at), F.PHI.line(phi, names)]
+        to_position = [*self._ends(rule), self._allowed(rule, at), F.PHI.line(phi, names)]
         return StateSteps(s, position, to_position, [*self._seat_at(phi, at, s), *lines], list(self._on_line(rule)))
 
-    def _seat(self) -> Iterator[Evaluated]:
-        """Yield the line to the displacement at which the first load loses its seat."""
+    def _ends(self, rule: Rule) -> Iterator[Evaluated]:
+        """Yield the lines to what else than a share of d0* ends the displacement capacity: a break, or a lost seat."""
+        if rule.at_breaks and self.curve.broken is not None:
+            yield F.BROKEN.line(self.curve.broken)
         if (seat := self.curve.seat) is not None:
             yield F.SEAT.line(seat.d, {"name": _subscript(seat.load), "load": seat.load, "length": seat.length})
 

@@ -1,0 +1,112 @@
+"""Writes the calculation sheets of examples/verify/sheets, and the pictures of pages of one of them.
+
+All in a sheet follows from the files in examples/, but for the day and the machine. These are given below, so that a
+sheet is stale only if the program prints something else. `make_pages.py` renews sheets and pictures.
+"""
+
+from __future__ import annotations
+
+import re
+import shlex
+from contextlib import chdir
+from datetime import date
+from importlib.metadata import version
+from pathlib import Path
+
+from make_runs import Content
+from parts import same
+
+import rocking_cli as rk
+from rocking_cli.ask.given import site_of
+from rocking_cli.documents.sheet_page import render
+from rocking_cli.documents.sheet_typst import page_pictures
+from rocking_cli.questions.verify.command import command
+from rocking_cli.studies.provenance import RECORDED_PACKAGES, File, TitleBlock
+from rocking_cli.views.sheet.build import SheetSources, sheet
+from rocking_cli.views.sheet.document import Sheet
+from rocking_cli.views.sheet.language import ABSENT, Language
+
+PROJECT = Path(__file__).resolve().parents[1]
+KEPT = PROJECT / "examples" / "verify" / "sheets"
+DAY = date(2026, 11, 26)
+MACHINE = {"system": "Linux, macOS, Windows", "Python": "3.11 ... 3.14", **dict.fromkeys(RECORDED_PACKAGES, ABSENT)}
+RECORDS = "examples/verify/records.csv"
+COMMANDS = {
+    "facade": "rocking verify examples/verify/tied_facade.yaml --site examples/verify/site.yaml --language it",
+    "parapet": "rocking verify examples/verify/parapet.yaml --site examples/verify/roof.yaml",
+    "arch_on_piers": "rocking verify examples/verify/arch_on_piers.yaml --site examples/verify/site.yaml",
+    "buttressed_arch": "rocking verify examples/masonry/buttressed_arch.yaml --site examples/verify/lowland.yaml"
+    " --state SLV --set examples/verify/slv.yaml --state SLC --set examples/verify/slc.yaml --language it",
+}
+PICTURED = "facade"
+PAGES = {"sheet_page_1.png": (1, "summary"), "sheet_page_2.png": (5, "figures"), "sheet_page_3.png": (11, "positive")}
+"""Of each picture the page that it shows, and the section of the sheet by whose words a stale one is known."""
+PPI = 110  # pixels per inch
+
+
+def made(name: str) -> Sheet:
+    """Return a sheet by the name of its file."""
+    call = f"{COMMANDS[name]} --sheet {name}.html"
+    with chdir(PROJECT):
+        asked = command.make_context("verify", shlex.split(call)[2:]).params
+        files = {key: File(asked[key], Path(asked[key]).read_bytes()) for key in ("file", "site")}
+        sets = dict(zip(asked["states"], asked["sets"], strict=True))
+        found = rk.verify(asked["file"], asked["site"], motions=sets or ()).result
+        records = {RECORDS: File(RECORDS, Path(RECORDS).read_bytes())} if sets else {}
+        ours = version("rocking-cli")
+        packages = {"rocking-cli": ours, f"mechanism {found.mechanism.mechanism}": f"rocking-cli {ours}", **MACHINE}
+        say = Language(asked["language"])
+        sources = SheetSources(files["file"], files["site"], records, packages)
+        return sheet(found, site_of(asked["site"]), say, TitleBlock(call, say.day(DAY)), sources)
+
+
+def pages() -> dict[str, str]:
+    """Return every sheet as a page, by the name of its file."""
+    return {f"{name}.html": render(made(name)) for name in COMMANDS}
+
+
+def stale(every: dict[str, str]) -> list[str]:
+    """Return the sheets that are missing, or whose words or numbers differ, and those that are none of these."""
+    there = {file.name: file.read_text(encoding="utf-8") for file in KEPT.iterdir()}
+    return [
+        name for name in sorted({*every, *there})
+        if name not in every or name not in there or not same(words(every[name]), words(there[name]))
+    ]  # fmt: skip
+
+
+def words(page: str) -> str:
+    """Return what a page says, in its text and in its pictures, whose lines depend on the fonts of the machine."""
+    body = page.partition("</style>")[2]
+    return re.sub(r"(?<=\d),(?=\d)", ".", " ".join(re.sub(r"<[^>]*>", " ", body).split()))
+
+
+def contents() -> dict[str, Content]:
+    """Return what each picture of a page shows: the words of a section of the kept sheet."""
+    page = (KEPT / f"{PICTURED}.html").read_text(encoding="utf-8")
+    sections = {
+        name: page.partition(f'<section id="{key}"')[2].partition("</section>")[0] for name, (_, key) in PAGES.items()
+    }
+    return {name: [[words(f"</style>{section}")]] for name, section in sections.items()}
+
+
+def draw(folder: Path) -> None:
+    """Draw the pages into a folder."""
+    pictures = page_pictures(made(PICTURED), PPI)
+    for name, (page, _) in PAGES.items():
+        (folder / name).write_bytes(pictures[page - 1])
+
+
+def main() -> None:
+    """Write the sheets that are stale."""
+    KEPT.mkdir(exist_ok=True)
+    every = pages()
+    for name in stale(every):
+        if name in every:
+            (KEPT / name).write_text(every[name], encoding="utf-8", newline="\n")
+        else:
+            (KEPT / name).unlink()
+        print(f"renewed examples/verify/sheets/{name}")
+
+
+if __name__ == "__main__":
+    main()
