@@ -158,7 +158,7 @@ PQ = Formula("PQ_[{k}]", "{P+Q}", "{P} + …", "{unit}", clauses.ALPHA0, meaning
 G = Formula("{axis}_[G{k}]", "Σ (P+Q) {axis}/Σ (P+Q)", "({P} · {x} + …)/({P} + …)", "m", meaning="G", standing="plain")
 GP = Formula("{axis}_[P{k}]", "Σ P {axis}/Σ P", "({P} · {x} + …)/({P} + …)", "m", meaning="GP", standing="plain")
 PY = Formula("ΣPy′{at}", "Σ P y′", "{P} · {y} + …", "{unit} m", clauses.ALPHA0, meaning="Py", digits=9)
-HELD = Formula("L{at}", "−Σ F r′ + Σ N L′", "{L:9} + …", "{unit} m", clauses.ALPHA0, meaning="L", digits=9)
+HELD = Formula("L{at}", "−Σ F r′ + Σ N L′", "{N:9} · {r:9} + …", "{unit} m", clauses.ALPHA0, meaning="L", digits=9)
 V_M = Formula("V_[m]{at}", unit="{unit} m", meaning="V_m", standing="plain", digits=9)
 PQX = Formula("Σ(P+Q)x′{at}", "Σ (P+Q) x′", "{P} · {x} + …", "{unit} m", clauses.ALPHA0, meaning="PQx", digits=9)
 B_M = Formula("B_[m]{at}", unit="{unit} m", meaning="B_m", standing="plain", digits=9)
@@ -175,8 +175,8 @@ M_STAR = Formula(
 )
 
 # Masses by sizes
-RECTANGLE = Formula("M_[{k}]", "ρ b h L", "{rho} · {b} · {h} · {L}", "kg", meaning="mass_rectangle", standing="plain")
-SEVERAL = replace(RECTANGLE, text="n ρ b h L", numbers="{n} · {rho} · {b} · {h} · {L}", meaning="mass_several")
+RECTANGLE = Formula("M_[{k}]", "ρ B H L", "{rho} · {b} · {h} · {L}", "kg", meaning="mass_rectangle", standing="plain")
+SEVERAL = replace(RECTANGLE, text="n ρ B H L", numbers="{n} · {rho} · {b} · {h} · {L}", meaning="mass_several")
 AREA = Formula(
     "A_[{k}]", "Σ (x_[i] y_[i+1] − x_[i+1] y_[i])/2", "({x:9} · {yn:9} − {xn:9} · {y:9} + …)/2", "m²",
     meaning="area_of_polygon", standing="plain",

@@ -101,7 +101,9 @@ def _variants(found: ItalianVerification, site_values: ItalianSite) -> dict[str,
     variants = {"as_calculated": found.deciding}
     for key, update in changes.items():
         with suppress(InputError, MechanismError):
-            variants[key] = verify(mechanism.model_copy(update=update), site_values).deciding
+            side = verify(mechanism.model_copy(update=update), site_values).deciding
+            if key != "by_letter" or side.chain.is_by_the_letter:  # weights among the fields of a mechanism stay
+                variants[key] = side
     return variants
 
 

@@ -152,7 +152,9 @@ def multiplier(position: DisplacedChain, scale: Scale, at: str = "") -> Iterator
     over = [F.PY.line(lifted, names, P=carried, y=[scale.near(each.dy) for each in blocks])]
     if position.held:
         works = [scale.work(each) for each in position.held]
-        over.append(F.HELD.line(sum(works), names, L=works))
+        forces = [scale.weight(each.force) for each in position.held]
+        arms = [work / force if force else 0.0 for work, force in zip(works, forces, strict=True)]
+        over.append(F.HELD.line(sum(works), names, N=forces, r=arms))
     if position.rest:
         over.append(F.V_M.line(scale.weight(position.rest), names))
     under = [F.PQX.line(driven, names, P=inertial, x=[scale.near(each.dx) for each in blocks])]

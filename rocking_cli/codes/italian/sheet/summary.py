@@ -27,7 +27,7 @@ METHOD_NAMES = {
     HISTORIES: "time histories",
 }  # fmt: skip
 """Names of the methods within a sentence, by their kind."""
-CAUTIONS = ("stretched", "wide", "same_mode")
+CAUTIONS = ("stretched", "wide", "same_mode", "letter")
 """Keys of the remarks that stand on the first page."""
 
 
