@@ -1,0 +1,851 @@
+"""The four calculation sheets of examples/verify, computed again from the HTML alone, by no code of the project.
+
+`faults` lists what does not agree on a page; a page with one other digit has some.
+"""
+
+import random
+import re
+import subprocess
+import sys
+from collections import defaultdict
+from dataclasses import replace
+from functools import cache
+from math import isclose, pi, sqrt
+from pathlib import Path
+
+import pytest
+import yaml
+
+from tests.oracle.ntc import DAMPING, EXCEEDED, PERIOD, SHARE, Chain, Floor, Site, Weight, eta, solve, with_ag
+from tests.oracle.sheets import (
+    Grid,
+    Heading,
+    Sentence,
+    Sheet,
+    Step,
+    Unknown,
+    number,
+    numbers_in,
+    unit_of_digit,
+    value_of,
+)
+
+PROJECT = Path(__file__).resolve().parents[2]
+FOLDER = PROJECT / "examples" / "verify" / "sheets"
+NAMES = ["arch_on_piers", "buttressed_arch", "facade", "parapet"]
+G = 9.80665
+# Numbers of the code and of units that stand in steps: shares, factors and bounds of formulas, probabilities, dampings
+# in per cent, those of tables for soils B and C, and 1000 from t to kg.
+CONSTANTS = [
+    0.4, 0.6, 1.68, 1.56, 35, 0.63, 0.1, 0.05, 4, 1.6, 10, 5, 8, 0.55, 0.025, 1.1, 0.8, 1.2, 1, 2, 3, G, 6.2, 1000,
+    1.4, 0.2, 1.7, 1.5, 1.05, 0.33,
+]  # fmt: skip
+SECTIONS = {
+    r"(Ground at|Azione sismica allo) SL": "ground",
+    r"Kinematic chain|Catena cinematica": "chain",
+    r"Capacity curve|Curva di capacità": "curve",
+    r"SL., .*(exact|esatta)": "exact",
+    r"SL., .*(straight|retta)": "line",
+    r"(Onset of rocking|Attivazione del meccanismo) a": "start",
+    r"Linear method|Metodo lineare": "linear",
+    r"(Nonlinear method|Metodo non lineare) al?t?l?o? SL.$": "nonlinear",
+    r"(Nonlinear method|Metodo non lineare) al?t?l?o? SL., ": "nonlinear line",
+    r"Dynamic method|Metodo dinamico": "dynamic",
+}
+OF_GROUND = re.compile(
+    r"(a_\[g\]S?|F_\[0\]|T_\[C\](\^\[\*\])?|S|S_\[S\]|C_\[C\]|T_\[[BD1]\]|T_\[R\]|ξ_\[1\]|S_\[Z\]|ψ|γ|S_\[e\]\(T_\[1\]\)"
+    r"|S_\[eZ?\]\(T_\[0\]\))$"
+)
+"""Symbols that have a value at each limit state."""
+
+
+def kind_of(heading):
+    return next((kind for pattern, kind in SECTIONS.items() if re.match(pattern, heading)), "")
+
+
+def state_of(text):
+    found = re.search(r"SL[ODVC]", text)
+    return found[0] if found else ""
+
+
+def close(value, printed, digit=5, least=0.0):
+    """Whether a value is the printed one, to one unit of a digit."""
+    return abs(value - printed) <= 1.001 * max(unit_of_digit(printed, digit), least) + 1e-12
+
+
+def quantity(text):
+    """A quantity of a structure file in kN and m, and in kN/m2."""
+    if not isinstance(text, str):
+        return float(text)
+    value, _, unit = text.partition(" ")
+    return float(value) * {"mm": 1e-3, "MPa": 1e3}.get(unit, 1.0)
+
+
+class Walk:
+    """One pass over a sheet, line by line, with the last value of each symbol.
+
+    `faults` are lines that do not agree with what is printed above, `results` the values by direction, section, limit
+    state and symbol.
+    """
+
+    def __init__(self, sheet):
+        self.faults = []
+        self.known = {"g": G, "a": 0.8, "b": 1.1, "κ": 6.2}
+        self.structure, self.site = (yaml.safe_load(each) for each in sheet.files)
+        self.given, self.ground, self.results = defaultdict(dict), defaultdict(dict), defaultdict(dict)
+        self.seen = set()
+        self.see([*CONSTANTS, *(each * scale for text in sheet.files for each in of_file(text) for scale in (1, 1e-3))])
+        self.of_listing()
+        self.direction, self.section, self.state, self.capacity = "", "", "", 0.0
+        self.weights, self.blocks, self.held, self.corners = [], [], [], {}
+        self.rest, self.tables, self.after, self.leads = {}, [], [], {}
+        self.also = []
+        read = {Heading: self.heading, Grid: self.grid, Step: self.step, Sentence: self.sentence}
+        for item in sheet.items:
+            if type(item) in read:
+                read[type(item)](item)
+
+    def see(self, values):
+        self.seen |= {f"{abs(value):.5g}" for value in values}
+
+    def is_seen(self, value):
+        return any(f"{value * (1 + off):.5g}" in self.seen for off in (0, 4e-6, -4e-6))
+
+    def of_listing(self):
+        """Sizes that formulas name and that only the files give."""
+        element, tie = self.site.get("element", {}), (self.structure.get("ties") or [{}])[0]
+        self.known |= {name: float(element[name]) for name in ("w", "E") if element}
+        self.sizes = {"b": self.structure.get("width"), "h": self.structure.get("height")}
+        self.sizes = {name: quantity(size) for name, size in self.sizes.items() if size}
+        if element:
+            self.known |= {"L": self.sizes["h"], "t": self.sizes["b"]}
+        if tie:
+            plate = tie["plate"]
+            sizes = {"n": tie["bars"], "d": tie["diameter"], "b": plate["width"], "h": plate["height"]}
+            sizes |= {"t": tie["wall"]["thickness"]}
+            self.tie = {name: quantity(size) for name, size in sizes.items()}
+
+    def fault(self, *what):
+        self.faults.append((self.direction, self.section, self.state, *what))
+
+    def heading(self, item):
+        if self.section == "ground":
+            self.ground[self.state] |= {name: value for name, value in self.known.items() if OF_GROUND.match(name)}
+            self.known[f"a_[g,{self.state}]"] = self.known["a_[g]"]
+        if item.level == 3:
+            self.direction = item.text
+        self.section, self.state = kind_of(item.text), state_of(item.text)
+        if self.section:
+            self.known |= {**self.given[self.state], **self.ground[self.state]}
+        if self.section == "ground":
+            self.known["P"] = EXCEEDED[self.state]
+
+    def sentence(self, item):
+        self.see(numbers_in(item.text))
+        if re.match(r"(Check, with the ground of SL|Controllo, con l'azione dello SL)", item.text):
+            self.known["a_[g]"] = self.capacity
+        if re.match(r"T_\[1\] (and|e) ξ_\[1\]", item.text):
+            self.known |= self.given["SLD"]
+
+    def grid(self, item):
+        self.tables.append((self.direction, self.section, self.state, item))
+        for row in item.rows:
+            for cell in row:
+                self.see(numbers_in(cell))
+        heads = item.heads
+        if heads[:2] in (["symbol", "quantity"], ["simbolo", "grandezza"]):
+            self.of_site(item)
+        elif heads[:2] in (["property", "of"], ["proprietà", "di"]):
+            for row in item.rows:
+                if row[2]:
+                    value = number(row[3]) * (1e3 if row[4] == "MPa" else 1)
+                    self.known.setdefault(row[2], value)
+                    self.see([value])
+        elif "M g [kN]" in heads:
+            self.loads = {}
+            for row in item.rows:
+                x, y, M, weight, *rest = map(number, row[2:])
+                length = quantity(self.structure["depth"]) if len(rest) == 3 else 1.0
+                if not close(M * G / 1e3, weight) or (len(rest) == 3 and not close(weight / length, rest[0])):
+                    self.fault("weight", row)
+                self.loads[x, y, M, *rest[-2:]] = row[0]
+        elif heads[-1] == "P + Q [kN]":
+            self.of_weights(item)
+        elif "Δx [m]" in heads:
+            self.of_blocks(item)
+        elif heads[0] in ("force or tie", "forza o catena"):
+            self.of_held(item)
+        elif heads[:2] in (["body", "corner"], ["corpo", "vertice"]):
+            self.of_corners(item)
+        elif heads[0] in ("joint", "vincolo"):
+            for symbol, _, _, x, y, *_ in item.rows:
+                self.known |= {f"x_[{symbol}]": number(x), f"y_[{symbol}]": number(y)}
+
+    def of_site(self, item):
+        for symbol, meaning, value, _ in item.rows:
+            if re.match(r"[\d−]", value):
+                where = self.given[state_of(meaning)] if state_of(meaning) else self.known
+                where[symbol] = number(value)
+                self.see([100 * number(value)] if symbol == "ξ_[1]" else [])
+            elif re.fullmatch(r"T[1-4]", value):
+                self.known["S_[T]"] = {"T1": 1.0, "T4": 1.4}.get(value, 1.2)
+
+    def of_weights(self, item):
+        self.weights = []
+        for name, block, *cells in item.rows:
+            x, y, M, w, h, P, PQ = map(number, cells)
+            self.weights.append({"name": name, "block": int(block), "x": x, "y": y, "P": P, "Q": PQ - P})
+            if not (close(w * M * G / 1e3, P) and close(h * M * G / 1e3, PQ) and (x, y, M, w, h) in self.loads):
+                self.fault("weight", name)
+
+    def of_blocks(self, item):
+        clockwise = "(x_[O] − x_[P])" in item.caption
+        self.blocks = []
+        for row in item.rows:
+            k, dx, x, y, x_P, turn, x_O, y_O, x1, y1 = (number(each) if each != "–" else None for each in row)
+            self.blocks.append({"k": int(k), "Δx": dx, "x′": x1, "y′": y1})
+            if turn is not None and turn != 0:
+                there = abs(turn) * 2e-5
+                rounding = there * max(abs(y), abs(y_O)), there * max(abs(x_P), abs(x_O))
+                if abs(turn * (y - y_O) - x1) > unit_of_digit(x1) + rounding[0]:
+                    self.fault("x′ of block", k)
+                if abs(turn * (x_O - x_P) * (1 if clockwise else -1) - y1) > unit_of_digit(y1) + rounding[1]:
+                    self.fault("y′ of block", k)
+                for name, value in ((f"θ_[{int(k)}]′", turn), (f"x_[O{int(k)}]", x_O), (f"y_[O{int(k)}]", y_O)):
+                    if name in self.known and self.section != "" and not close(self.known.pop(name), value):
+                        self.fault(name, "in the table")
+                for name, value in ((f"x_[G{int(k)}]", x), (f"y_[G{int(k)}]", y), (f"x_[P{int(k)}]", x_P)):
+                    if name in self.known and self.section == "chain" and not close(self.known[name], value):
+                        self.fault(name, "in the table")
+
+    def of_held(self, item):
+        self.held = []
+        for name, *cells in item.rows:
+            force, rate, work = map(number, cells)
+            is_tie = close(force * rate, work)
+            if not is_tie and not close(-force * rate, work):
+                self.fault("work of", name)
+            row = {"F": 0.0, "r′": 0.0, "N": 0.0, "L′": 0.0}
+            self.held.append(row | ({"N": force, "L′": rate} if is_tie else {"F": force, "r′": rate}))
+
+    def of_corners(self, item):
+        body = 0
+        for name, _, x, y in item.rows:
+            body = int(name) if name else body
+            self.corners.setdefault(body, []).append((number(x), number(y)))
+
+    def rows_of(self, symbol):
+        """What the sum of a step is over: weights of a block, forces and ties, corners, or blocks."""
+        if found := re.match(r"[xy]_\[[GP](\d+)\]$", symbol):
+            return [each for each in self.weights if each["block"] == int(found[1])]
+        if symbol == "L":
+            return self.held
+        if symbol.startswith("A_["):
+            corners = self.corners.get(int(symbol[3:-1]), [])
+            pairs = zip(corners, corners[1:] + corners[:1], strict=True)
+            return [{"x_[i]": a, "y_[i]": b, "x_[i+1]": c, "y_[i+1]": d} for (a, b), (c, d) in pairs]
+        forces = {
+            each["k"]: (self.known.get(f"P_[{each['k']}]"), self.known.get(f"PQ_[{each['k']}]")) for each in self.blocks
+        }
+        forces = {k: (PQ if P is None else P, PQ) for k, (P, PQ) in forces.items() if PQ is not None}
+        return [
+            each | {"P": forces[each["k"]][0], "Q": forces[each["k"]][1] - forces[each["k"]][0]}
+            for each in self.blocks
+            if each["k"] in forces
+        ]
+
+    def context(self, step):
+        """Symbols as they are meant in a step."""
+        symbol, known = step.symbol, dict(self.known)
+        known.pop(symbol, None)
+        if argument := re.search(r"\((T_\[[^\]]*\]|t)\)$", symbol):
+            known["T"] = known.get(argument[1])
+        if symbol.startswith("η("):
+            known["ξ"] = self.damping(symbol)
+        if symbol in ("S_[S]", "T_[D]"):
+            known["g"] = 1.0  # a_g is printed over g
+        if re.match(r"d_\[0\]\^\[\*\]$|d\(", symbol):
+            known |= self.rest | {
+                "d_[C]": next(value for name, value in reversed(known.items()) if name.startswith("d_[C]"))
+            }
+        if re.match(r"[xy]_\[[GP]\d", symbol):
+            known = {name: value for name, value in known.items() if not name.startswith("Σ")}
+        if symbol.startswith("M_["):
+            known |= {"L": quantity(self.structure["depth"]), **self.size_of(symbol)}
+        if symbol.startswith("P") and "Σ" not in step.formula:
+            block = int(re.search(r"\d+", symbol)[0])
+            for each in self.weights:
+                if each["block"] == block:
+                    known |= {f"P_[{each['name']}]": each["P"], f"(P+Q)_[{each['name']}]": each["P"] + each["Q"]}
+        if re.fullmatch(r"N_\[[ypb]\]", symbol):
+            known |= self.tie
+        if symbol.startswith("ζ"):
+            known |= {name: value for name, value in self.ground[self.state].items() if name == "a_[g]"}
+        if symbol == "d_[b]":
+            known["S_[eZ](T_[1])"] = known["A"] * known["S_[Z]"]
+        if {"T_[R,a]", "T_[R,b]", "a_[g,a]", "F_[0,a]"} & {*step.formula} or "T_[C,a]^[*]" in step.formula:
+            known |= self.hazard_rows()
+        return known
+
+    def damping(self, symbol):
+        if symbol == "η(ξ_[1])":
+            return 100 * self.known["ξ_[1]"]
+        return DAMPING[self.state] if self.section in ("exact", "line", "nonlinear", "nonlinear line") else 5.0
+
+    def size_of(self, symbol):
+        first = int(re.search(r"\d+", symbol)[0])
+        if self.sizes:
+            return self.sizes
+        if f"A_[{first}]" in self.known:
+            return {"A": self.known[f"A_[{first}]"]}
+        x, y = zip(*[*self.structure["blocks"].values()][first - 1]["polygon"], strict=True)
+        return {"b": max(x) - min(x), "h": max(y) - min(y)}
+
+    def hazard_rows(self):
+        rows, T = self.site["hazard"], self.known["T_[R]"]
+        k = max(1, next((k for k, row in enumerate(rows) if row[0] >= T), len(rows) - 1))
+        names = ("T_[R,{}]", "a_[g,{}]", "F_[0,{}]", "T_[C,{}]^[*]")
+        return {
+            name.format(end): row[i]
+            for end, row in zip("ab", rows[k - 1 : k + 1], strict=True)
+            for i, name in enumerate(names)
+        }
+
+    def step(self, item):
+        printed = number(item.result)
+        if item.numbers:
+            value, least = value_of(item.numbers), 0.0
+            if printed == 0 or abs(value - printed) > unit_of_digit(printed):
+                least = max(unit_of_digit(each) for each in addends(item.numbers))
+            if not close(value, printed, least=least if printed == 0 else 0.0):
+                self.fault(item.symbol, "numbers give", value, "and not", item.result)
+            for each in item.numbers:
+                if re.match(r"\d", each) and not self.is_seen(number(each)):
+                    self.fault(item.symbol, "nothing above has", each)
+            if missing := constants(item.formula) - constants(item.numbers):
+                self.fault(item.symbol, "has in symbols alone", missing)
+        if item.formula and item.relation == "=":
+            self.check_symbols(item, printed)
+        if item.symbol.startswith("θ") and not item.formula and printed != 1:
+            self.fault(item.symbol, "of the mechanism is not 1")
+        self.note(item, printed)
+
+    def check_symbols(self, item, printed):
+        try:
+            value = value_of(item.formula, self.context(item), self.rows_of(item.symbol))
+        except (Unknown, KeyError) as missing:
+            self.fault(item.symbol, "nothing above has a value of", missing)
+            return
+        if item.symbol == "M^[*]":
+            value *= 1000
+        terms = [abs(number(each)) for each in item.numbers if re.match(r"\d", each)] if "−" in item.numbers else []
+        least = (
+            2 * unit_of_digit(max(terms)) if item.symbol.startswith(("Σ", "α", "t", "x", "y", "θ")) and terms else 0.0
+        )
+        if not close(value, printed, least=max(least, 2 * unit_of_digit(printed))):
+            self.fault(item.symbol, "symbols give", value, "and not", item.result)
+
+    def note(self, item, printed):
+        symbol = item.symbol
+        self.see([printed])
+        if symbol.startswith("θ") and not item.formula and self.section == "chain":
+            self.leads[self.direction] = int(re.search(r"\d+", symbol)[0])
+        if item.relation == ":":
+            self.after.append((self.direction, self.section, self.state, item))
+        elif self.after and self.after[-1][:3] == (self.direction, self.section, self.state):
+            self.found_by_trial(item, printed)
+        self.known.pop(symbol, None)
+        self.known[symbol] = printed
+        if symbol.startswith("η("):
+            self.known["η"] = printed
+        if symbol == "T_[R,lin]":
+            self.known["T_[R]"] = printed
+        if symbol.startswith("a_[g,"):
+            self.capacity = printed
+        if symbol.startswith("Σ") and self.section == "chain":
+            self.rest[symbol] = printed
+        own = self.results[self.direction, self.section, self.state]
+        own[f"{symbol} again" if symbol in own else symbol] = printed
+
+    def found_by_trial(self, item, printed):
+        """A value that was found by trial gives, in the steps below, what was asked for."""
+        trial = self.after[-1][-1]
+        cut = trial.formula.index("=")
+        left, right = "".join(trial.formula[:cut]), "".join(trial.formula[cut + 1 :])
+        wanted = 0.0 if right == "0" else self.known.get(right)
+        left = re.sub(r"\((T_\[R\]|a_\[g\]|φ)\)$", "", left)
+        if item.symbol != left and not (left in ("α", "d") and item.symbol.startswith(f"{left}(φ")):
+            return
+        if wanted is None or not close(printed, wanted, least=1e-6 if wanted == 0 else 0.0):
+            self.fault(trial.symbol, "is found by trial, but gives", item.result, "and not", wanted)
+        self.after.pop()
+
+
+def constants(formula):
+    """The numbers of a formula but 1 and 2, which powers, roots and conjugates have."""
+    return {number(each) for each in formula if re.match(r"\d", each)} - {1.0, 2.0}
+
+
+def of_file(text):
+    """All numbers of a file."""
+    return [float(each) for each in re.findall(r"(?<![\w.])\d+(?:\.\d+)?(?:e[+-]?\d+)?", text)]
+
+
+def addends(formula):
+    """The values of the addends of a sum."""
+    found, depth = [[]], 0
+    for token in formula:
+        depth += (token == "(") - (token == ")")
+        if token in "+−" and depth == 0:
+            found.append([])
+        else:
+            found[-1].append(token)
+    return [value_of(each) for each in found if each]
+
+
+# By the formulas of the code, from the files that a sheet lists.
+
+
+def weights_of(walk):
+    """The weights of the first chain, from the tables of weights of a direction."""
+    return [
+        Weight(each["block"], complex(each["x"], each["y"]), each["P"], each["P"] + each["Q"]) for each in walk.weights
+    ]
+
+
+def of_block(given, s):
+    """The chain of a block, from its file alone: kN, m."""
+    width, height, depth = (quantity(given[key]) for key in ("width", "height", "depth"))
+    own = quantity(given["density"]) * width * height * depth
+    weights = [Weight(1, 0.5j * height, own, own)]
+    for load in given.get("loads", []):
+        P, slides = quantity(load["mass"]) * depth, load.get("floor") == "sliding"
+        weights.append(Weight(1, complex(*load["at"]), 0.5 * P if slides else P, 0.0 if slides else P))
+    ties = given.get("ties", [])
+    return Chain(s, weights, [complex(s * width / 2, 0)], [1], tie_of(ties[0]) if ties else None)
+
+
+def tie_of(tie):
+    """Where a tie is fixed, where it meets the block, and its strength: yield, punching or bearing."""
+    wall, plate = tie["wall"], tie["plate"]
+    d, t, b, h = (quantity(each) for each in (tie["diameter"], wall["thickness"], plate["width"], plate["height"]))
+    steel = 1e3 * float(tie["steel"].removeprefix("S"))
+    strengths = (
+        tie["bars"] * pi * d**2 / 4 * steel,
+        tie["bars"] * 2 * t * (b + h + 2 * t) * quantity(wall["shear"]),
+        tie["bars"] * b * h * quantity(wall["compression"]),
+    )
+    return complex(*tie["from"]["ground"]), complex(*tie["to"]["at"]), min(strengths)
+
+
+def of_blocks(walk, direction, s):
+    """The chain of an arch on its supports, from the printed tables of weights and joints."""
+    tables = [each for where, *_, each in walk.tables if where == direction]
+    weights = next(grid for grid in tables if grid.heads[-1] == "P + Q [kN]")
+    joints = next(grid for grid in tables if grid.heads[0] in ("joint", "vincolo"))
+    points = {
+        frozenset(map(int, pair.split(", "))): complex(number(x), number(y)) for _, _, pair, x, y, *_ in joints.rows
+    }
+    on_ground = [next(iter(pair - {0})) for pair in points if 0 in pair]
+    # The first block is that whose rotation is that of the mechanism.
+    first = walk.leads[direction]
+    last = next(k for k in on_ground if k != first)
+    (middle,) = {k for pair in points for k in pair} - {0, first, last}
+    hinges = [points[frozenset(pair)] for pair in ((0, first), (first, middle), (middle, last), (last, 0))]
+    moving = [
+        Weight(int(block), complex(number(x), number(y)), number(P), number(PQ))
+        for _, block, x, y, _, _, _, P, PQ in weights.rows
+    ]
+    return Chain(s, moving, hinges, [first, middle, last])
+
+
+def lost_seat(given, chain):
+    """The displacement at which a load has moved sideways off its seat; None if none does before the end."""
+    ends = []
+    for load in given.get("loads", []):
+        at, seat = complex(*load["at"]), quantity(load.get("seat", 1e9))
+        moved = lambda phi, at=at: abs((chain.moved(1, at, phi) - at).real)  # noqa: E731
+        if moved(chain.end) > seat:
+            ends.append(chain.d(solve(lambda phi, moved=moved, seat=seat: moved(phi) - seat, 0.0, chain.end)))
+    return min(ends, default=None)
+
+
+def expected(walk, chain, seat):
+    """Every result of a direction by section, limit state and symbol."""
+    site, found = Site(walk.site), {}
+    PQ, first, second = chain.sums
+    a0, d0, own = chain.alpha(0.0) * G / (chain.e_star * site.FC), chain.d(chain.end), own_period(walk)
+    found["chain", ""] = {
+        "α_[0]": chain.alpha(0.0), "Σ(P+Q)": PQ, "Σ(P+Q)x′": first, "Σ(P+Q)x′^(2)": second, "e^[*]": chain.e_star,
+        "M^[*]": 1000 * chain.e_star * PQ / G,
+        **{f"θ_[{k}]′": chain.turned(k) for k in chain.blocks},
+    }  # fmt: skip
+    found["curve", ""] = {"a_[0]^[*]": a0, "φ_[0]": chain.end, "d_[0]^[*]": d0, "x_[C]′": first / PQ}
+    demands = {state: site.at(state) for state in ("SLD", "SLV", "SLC")}
+    for state, demand in demands.items():
+        found["ground", state] = of_ground(site, state, demand, own)
+        found["start", state] = of_start(demand, a0, own)
+    for state in SHARE:
+        demand, d = demands[state], min(SHARE[state] * d0, d0 if seat is None else seat)
+        phi = solve(lambda each, d=d: chain.d(each) - d, 0.0, chain.end)
+        for section, end, a in (
+            ("exact", "", chain.alpha(phi) * G / (chain.e_star * site.FC)), ("line", ",lin", a0 * (1 - d / d0)),
+        ):  # fmt: skip
+            at = a if own is None else min(a, 4 * pi**2 * d / own**2)
+            T = PERIOD[state] * pi * sqrt(d / at)
+            S_De = demand.S_De(T, DAMPING[state])
+            found[section, state] = {
+                f"a_[{state}{end}]^[*]": a, f"T_[{state}{end}]": T, f"S_[De](T_[{state}{end}])": S_De,
+                f"ρ_[{state}{end}]": d / S_De, "η(ξ)": eta(DAMPING[state]),
+                **({f"a_[{state}{end}]": at} if own is not None else {}),
+            }  # fmt: skip
+            capacity = solve(
+                lambda ag, T=T, d=d, of=demand, xi=DAMPING[state]: with_ag(of, ag).S_De(T, xi) - d, 1e-4, 3
+            )
+            method = "nonlinear" if section == "exact" else "nonlinear line"
+            found[method, state] = {f"a_[g,nl{end}]": capacity, f"ζ_[E{end}]": capacity / demand.ag}
+            asked = lambda of, T=T, d=d, xi=DAMPING[state]: of.S_De(T, xi) - d  # noqa: E731
+            found[method, state] |= lasting(site, state, asked, f"T_[R{end}]")
+        found["exact", state] |= {f"d_[{state}]": d, f"φ_[{state}]": phi, f"α(φ_[{state}])": chain.alpha(phi)}
+        found["exact", state] |= {} if seat is None else {"d_[a]": seat}
+    for state in found:
+        if state[0] == "start":
+            found[state] |= lasting(site, state[1], lambda of: of.start(own) - a0, "T_[R]")
+    linear = demands["SLD"].ag * a0 / demands["SLD"].start(own) * walk.site.get("q", 2.0)
+    found["linear", "SLD"] = {"a_[g,q]": linear, "ζ_[E]": linear / demands["SLV"].ag}
+    return found
+
+
+def own_period(walk):
+    """T_0 of an element by its size [C8.7.1.7]."""
+    if not (element := walk.site.get("element")):
+        return None
+    L, t = walk.sizes["h"], walk.sizes["b"]
+    return 6.2 * L / t * L * sqrt(float(element["w"]) / (float(element["E"]) * G))
+
+
+def of_ground(site, state, demand, own):
+    ground = demand.ground if isinstance(demand, Floor) else demand
+    found = {"S": ground.S, "T_[C]": ground.TC, "T_[B]": ground.TB, "T_[D]": ground.TD, "a_[g]S": ground.peak}
+    if "hazard" in site.given:
+        found |= {"V_[R]": site.life, "T_[R]": site.period(state), "a_[g]": ground.ag, "F_[0]": ground.F0}
+        found |= {"T_[R] again": row[0]} if (row := site.row_of(state)) else {}
+    if isinstance(demand, Floor):
+        found |= {"S_[Z]": demand.peak, "T_[0]": own, "S_[eZ](T_[0])": demand.start(own)}
+    return found
+
+
+def of_start(demand, a0, own):
+    capacity = demand.ag * a0 / demand.start(own)
+    return {"a_[g,0]": capacity, "ζ_[E]": capacity / demand.ag}
+
+
+def lasting(site, state, excess, symbol):
+    """The return period at which the demand equals a capacity, if a table of a hazard has it."""
+    if "hazard" not in site.given:
+        return {}
+    first, last = site.given["hazard"][0][0], site.given["hazard"][-1][0]
+    at = lambda T: excess(site.at(state, site.on_rock(T)))  # noqa: E731
+    if at(first) > 0 or at(last) < 0:
+        return {}
+    return {symbol: solve(at, first, last)}
+
+
+def faults_of_code(walk):
+    """Results that are not those of the formulas of the code from the files."""
+    faults = []
+    for direction in dict.fromkeys(each[0] for each in walk.results if each[1] == "chain"):
+        s = -1 if re.match(r"Negative|Verso negativo", direction) else 1
+        chain = of_block(walk.structure, s) if walk.sizes else of_blocks(walk, direction, s)
+        seat = lost_seat(walk.structure, chain) if walk.sizes else None
+        faults += faults_of_tables(walk, direction, chain)
+        by_letter = replace(chain, weights=[each._replace(PQ=max(each.P, each.PQ)) for each in chain.weights])
+        alpha, site = by_letter.alpha(0.0), Site(walk.site)
+        walk.also += [alpha, alpha * G / (by_letter.e_star * site.FC)]
+        walk.also += [*map(site.period, EXCEEDED)] if "hazard" in walk.site else []
+        for (section, state), values in expected(walk, chain, seat).items():
+            own = next(found for key, found in walk.results.items() if key[1:] == (section, state) and (
+                section == "ground" or key[0] == direction))  # fmt: skip
+            for symbol, value in values.items():
+                if symbol not in own and value is not None:
+                    faults.append((direction, section, state, symbol, "is not printed"))
+                elif value is not None and not close(value, own[symbol], least=2 * unit_of_digit(own[symbol])):
+                    faults.append((direction, section, state, symbol, own[symbol], "by the code", value))
+    return faults
+
+
+def faults_of_tables(walk, direction, chain):
+    """Places of blocks, joints and ties at each rotation that are not those of the chain."""
+    faults, phi = [], 0.0
+    for where, section, state, grid in walk.tables:
+        if where != direction:
+            continue
+        if turned := re.search(r"φ = (\S+) rad", grid.caption):
+            phi = number(turned[1])
+        if "Δx [m]" in grid.heads:
+            rows = [
+                (f"block {row[0]}", [*map(number, row[1:5])], centres(chain, int(row[0]), phi)) for row in grid.rows
+            ]
+        elif grid.heads[0] in ("joint", "vincolo"):
+            wanted = zip(grid.rows, hinges_at(grid, chain, phi), strict=True)
+            rows = [(f"joint {row[0]}", [*map(number, row[3:5])], (at.real, at.imag)) for row, at in wanted]
+        elif chain.tie and grid.heads[-1] == "ΔL/L [%]":
+            fixed, at, force = chain.tie
+            rest, now = abs(at - fixed), abs(chain.moved(1, at, phi) - fixed)
+            values = [*map(number, grid.rows[0][2:])]
+            rows = [("tie", values, (force, now - rest, 100 * (now - rest) / rest))]
+        else:
+            continue
+        for name, printed, values in rows:
+            digits = [5] * len(printed) if name != "tie" else [5, 5, 3]
+            size = max(map(abs, printed))
+            for one, value, digit in zip(printed, values, digits, strict=True):
+                if not close(value, one, digit, least=2e-6 * size):
+                    faults.append((direction, section, state, name, one, "by the chain", value))
+    return faults
+
+
+def centres(chain, block, phi):
+    """Δx, x_G, y_G and x_P of a block at a rotation."""
+    own = [each for each in chain.weights if each.block == block]
+    now, rest = ([(chain.moved(block, each.at, turn), each) for each in own] for turn in (phi, 0.0))
+    G_now, G_rest, P_now = barycentre(now, "PQ"), barycentre(rest, "PQ"), barycentre(now, "P")
+    return chain.s * (G_now - G_rest).real, G_now.real, G_now.imag, P_now.real
+
+
+def barycentre(places, share):
+    weights = [getattr(each, share) for _, each in places]
+    return sum(weight * at for weight, (at, _) in zip(weights, places, strict=True)) / sum(weights)
+
+
+def hinges_at(grid, chain, phi):
+    """Where the joints of a table are at a rotation."""
+    if len(chain.hinges) == 1:
+        return chain.hinges
+    a, b, c, d = chain.hinges
+    first, middle, last = chain.blocks
+    places = {
+        frozenset((0, first)): a, frozenset((first, middle)): chain.moved(first, b, phi),
+        frozenset((middle, last)): chain.moved(last, c, phi), frozenset((last, 0)): d,
+    }  # fmt: skip
+    return [places[frozenset(map(int, row[2].split(", ")))] for row in grid.rows]
+
+
+# What is said: the tables and sentences of the verdict, and those of the time histories.
+
+
+def is_satisfied(text):
+    return not re.search(r"not satisfied|non (è )?soddisfatta|unknown|non nota|non è not", text)
+
+
+def is_printed(cell, value):
+    """Whether a cell has a value, to its digits but at most four; None is a dash."""
+    cell = cell.removesuffix(" g")
+    if value is None or cell == "–":
+        return value is None and cell == "–"
+    return isclose(number(cell), value, rel_tol=1e-9) or abs(number(cell) - value) <= 0.51 * unit_of_digit(value, 4)
+
+
+def directions_of(walk):
+    return list(dict.fromkeys(each[0] for each in walk.results if each[1] == "chain"))
+
+
+def records_of(walk):
+    """The tables of records by direction and limit state."""
+    heads = ("record", "accelerogramma")
+    tables = (each for each in walk.tables if each[1] == "dynamic" and each[-1].heads[0] in heads)
+    return {(direction, state): grid for direction, _, state, grid in tables}
+
+
+def peaks(grid, column):
+    """The peaks of the records of a table by name; None is unknown."""
+    cells = {row[0]: row[column] for row in grid.rows[:-3]}
+    return {name: None if re.search(r"unknown|non noto", cell) else number(cell) for name, cell in cells.items()}
+
+
+def mean(found):
+    values = list(found.values())
+    return None if None in values else sum(values) / len(values)
+
+
+def faults_of_records(walk, sheet):
+    """Means, largest peaks, capacities and sentences that are not those of the peaks of the records."""
+    faults, sentences = [], [each.text for each in sheet.items if isinstance(each, Sentence)]
+    said = [each for each in sentences if re.match(r"(With|Without|Con|Senza) FC, SL", each)]
+    for (direction, state), grid in records_of(walk).items():
+        capacity = walk.results[direction, "exact", state][f"d_[{state}]"]
+        for column in (2, 3):
+            found = peaks(grid, column)
+            known = [each for each in found.values() if each is not None]
+            wanted = mean(found), max(known), capacity
+            for row, value in zip(grid.rows[-3:], wanted, strict=True):
+                if (value is None) != (row[column] == "–") or (
+                    value is not None and not close(value, number(row[column]))
+                ):
+                    faults.append((direction, state, row, value))
+            text = said.pop(0)
+            unknown = [name for name, each in found.items() if each is None]
+            if is_satisfied(text) != (not unknown and wanted[0] <= capacity) or not all(
+                name in text for name in unknown
+            ):
+                faults.append((direction, state, text))
+            if any(name in text for name in found.keys() - set(unknown)):
+                faults.append((direction, state, text))
+    return faults + [("no table has", each) for each in said]
+
+
+def row_of_state(walk, direction, row):
+    """The values of a row of the table of limit states, whether it is satisfied, and its ratio."""
+    state, of = state_of(row[0]), lambda section: walk.results[direction, section, state_of(row[0])]
+    start = of("start")
+    if state == "SLD":
+        ratio = start["ζ_[E]"]
+        return [start["a_[g,0]"], walk.ground[state]["a_[g]"], None, ratio, ratio], ratio >= 1, ratio
+    exact = of("exact")
+    if "," in row[0]:  # time histories
+        found = mean(peaks(records_of(walk)[direction, state], 2))
+        ratio = None if found is None else exact[f"d_[{state}]"] / found
+        return [exact[f"d_[{state}]"], found, None, ratio, None], ratio is not None and ratio >= 1, ratio
+    ratio, zeta = exact[f"ρ_[{state}]"], max(start["ζ_[E]"], of("nonlinear")["ζ_[E]"])
+    values = [exact[f"d_[{state}]"], exact[f"S_[De](T_[{state}])"], exact[f"T_[{state}]"], ratio, zeta]
+    return values, ratio >= 1 or start["ζ_[E]"] >= 1, ratio
+
+
+def row_of_method(walk, direction, row):
+    """The values of a row of the table of methods, and its return period."""
+    state, linear = state_of(row[0]), "linear" in row[0].lower() and "nonlinear" not in row[0].lower()
+    linear = linear and "non lineare" not in row[0]
+    section = "linear" if linear else kind_of(row[0])
+    state = "SLD" if linear else state
+    exact = walk.results[direction, section, state]
+    line = walk.results.get((direction, f"{section} line", state), exact)
+    capacity = next(name for name in ("a_[g,q]", "a_[g,nl]", "a_[g,0]") if name in exact)
+    of_line = line.get(f"{capacity[:-1]},lin]", exact[capacity])
+    asked = walk.ground["SLV" if linear else state].get("a_[g]", walk.given["SLV" if linear else state].get("a_[g]"))
+    return [exact[capacity], of_line, asked, exact["ζ_[E]"]], exact.get("T_[R]")
+
+
+def lasts(cell, period):
+    """Whether a cell has a return period in whole years, or says that it is beyond the table; a clause is none."""
+    if not re.match(r"[<>\d]", cell):
+        return period is None
+    return period is None if cell[0] in "<>" else period is not None and abs(number(cell) - period) <= 0.51
+
+
+def faults_of_verdict(walk, sheet):
+    """Rows and sentences of a verdict that are not those of the results."""
+    faults, passed, ratios = [], [], []
+    for item in (each for each in sheet.items if isinstance(each, Grid) and ": " in each.caption):
+        direction = item.caption.partition(": ")[0]
+        for row in item.rows if item.heads[0] in ("limit state", "stato limite") else ():
+            values, holds, ratio = row_of_state(walk, direction, row)
+            cells = [*row[1:5], row[7]]
+            wrong = [pair for pair in zip(cells, values, strict=True) if not is_printed(*pair)]
+            if wrong or is_satisfied(row[5]) != holds:
+                faults.append((direction, row, wrong, holds))
+            passed.append(holds)
+            ratios.append(ratio)
+        for row in item.rows if item.heads[0] in ("method", "metodo") else ():
+            values, period = row_of_method(walk, direction, row)
+            wrong = [pair for pair in zip(row[1:5], values, strict=True) if not is_printed(*pair)]
+            if wrong or not lasts(row[5], period):
+                faults.append((direction, row, wrong, period))
+    (answer,) = [each.text for each in sheet.items if isinstance(each, Sentence) and "answer" in each.kind]
+    least = "" if None in ratios else f" {min(ratios):.3g}".replace(".", "[.,]") + r"(\.|\s|$)"
+    if is_satisfied(answer.partition(".")[0]) != all(passed) or not re.search(least, answer):
+        faults.append(("the answer", answer, passed, ratios))
+    return faults + faults_of_sentences(walk, sheet)
+
+
+def faults_of_sentences(walk, sheet):
+    """Verdicts that do not follow from their ratios, and numbers of four digits or more that no line has."""
+    faults = []
+    seen = {
+        f"{value:.4g}" for values in (walk.also, *(each.values() for each in walk.results.values())) for value in values
+    }
+    cells = [
+        cell
+        for each in sheet.items
+        if isinstance(each, Grid) and "%" not in each.caption
+        for row in each.rows
+        for cell in row
+    ]
+    seen |= {f"{value:.4g}" for cell in cells for value in numbers_in(cell)} | {f"{each:.4g}" for each in CONSTANTS}
+    for each in sheet.items:
+        if (
+            isinstance(each, Step)
+            and each.symbol.startswith("ρ")
+            and is_satisfied(each.what) != (number(each.result) >= 1)
+        ):
+            faults.append((each.symbol, each.what))
+        if not isinstance(each, Sentence):
+            continue
+        for text in re.findall(r"(?<![\w.,§])\d+[.,]\d+(?: · 10\^\[[−\d]+\])?", each.text):
+            if len(re.sub(r"\D", "", text.partition(" ")[0]).lstrip("0")) > 3 and f"{number(text):.4g}" not in seen:
+                faults.append((text, each.text))
+        if found := re.match(
+            r"(?P<direction>[^,]*?), (?:[^,]*, )?(?P<state>SL.): (the verification|la verifica)", each.text
+        ):
+            state, zeta = found["state"], number(re.search(r"ζ_\[E\] = (\d+[.,]?\d*)", each.text)[1])
+            if is_satisfied(each.text.partition(".")[0]) != (zeta >= 1):
+                faults.append((state, each.text))
+    return faults
+
+
+@cache
+def page_of(name):
+    return (FOLDER / f"{name}.html").read_text(encoding="utf-8")
+
+
+def faults(page):
+    """Everything on a page that does not agree with what is printed on it."""
+    sheet = Sheet.read(page)
+    walk = Walk(sheet)
+    left = [each[-1] for each in walk.after if each[-1].symbol not in ("d_[a]", "d_[t]")]
+    found = [*walk.faults, *(("found by trial and not checked", each) for each in left)]
+    return [*found, *faults_of_code(walk), *faults_of_records(walk, sheet), *faults_of_verdict(walk, sheet)]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_line_of_a_sheet_follows_from_what_is_printed_and_from_the_code(name):
+    steps = [each for each in Sheet.read(page_of(name)).items if isinstance(each, Step)]
+    assert len(steps) > 190 and sum(bool(each.formula and each.numbers) for each in steps) > 170
+    assert faults(page_of(name)) == []
+
+
+PLACES = re.compile(
+    r'(?<=<mn>)[\d.,]+(?=</mn>)|(?<=<strong class="result">)[−\d.,]+|(?<=<td class="number">)[−\d.,]+(?= g</td>|</td>)'
+)
+"""Numbers in steps and tables."""
+
+
+def mutated(page, pick):
+    """A page with another digit among the first four of a number of its verdict or workings, and what was changed."""
+    parts = re.split(r'(?=<section id="(?:input|figures|workings|standing)")', page)
+    chosen = pick.choice(
+        [k for k, part in enumerate(parts) if re.search('id="(summary|remarks|workings)"', part[:900]) or k == 0]
+    )
+    found = [each for each in PLACES.finditer(parts[chosen]) if len(re.sub(r"\D", "", each[0]).lstrip("0")) > 3]
+    place = pick.choice(found)
+    digits = [
+        each.start() for each in re.finditer(r"\d", place[0]) if re.search("[1-9]", place[0][: each.start() + 1])
+    ][:4]
+    at = place.start() + pick.choice(digits)
+    old = parts[chosen][at]
+    new = pick.choice([each for each in "123456789" if each != old])
+    parts[chosen] = parts[chosen][:at] + new + parts[chosen][at + 1 :]
+    return "".join(parts), f"{place[0]}: {old} is {new}: {parts[chosen][at - 300 : at + 30]}"
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_another_digit_is_found(seed):
+    pick = random.Random(seed)
+    page, what = mutated(page_of(NAMES[seed % len(NAMES)]), pick)
+    assert faults(page), what
+
+
+def test_nothing_of_the_project_is_used():
+    """Nor by what is imported: `tests` and `tests.oracle` are."""
+    called = "import sys, tests.oracle.test_sheets_by_hand; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", called], cwd=PROJECT, capture_output=True, text=True, check=True)
+    assert not {each.partition(".")[0] for each in done.stdout.split()} & {"rocking_cli", "mechanisms"}
