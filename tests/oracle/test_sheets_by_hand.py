@@ -164,7 +164,7 @@ class Walk:
         elif "M g [kN]" in heads:
             self.loads = {}
             for row in item.rows:
-                x, y, M, weight, *rest = map(number, row[2:])
+                x, y, M, weight, *rest = map(number, row[2:-1])  # but the seat
                 length = quantity(self.structure["depth"]) if len(rest) == 3 else 1.0
                 if not close(M * G / 1e3, weight) or (len(rest) == 3 and not close(weight / length, rest[0])):
                     self.fault("weight", row)
@@ -202,7 +202,7 @@ class Walk:
         clockwise = "(x_[O] − x_[P])" in item.caption
         self.blocks = []
         for row in item.rows:
-            k, dx, x, y, x_P, turn, x_O, y_O, x1, y1 = (number(each) if each != "–" else None for each in row)
+            k, dx, x, y, x_P, turn, x_O, y_O, x1, y1, *_ = (number(each) if each != "–" else None for each in row)
             self.blocks.append({"k": int(k), "Δx": dx, "x′": x1, "y′": y1})
             if turn is not None and turn != 0:
                 there = abs(turn) * 2e-5
@@ -238,7 +238,7 @@ class Walk:
         """What the sum of a step is over: weights of a block, forces and ties, corners, or blocks."""
         if found := re.match(r"[xy]_\[[GP](\d+)\]$", symbol):
             return [each for each in self.weights if each["block"] == int(found[1])]
-        if symbol == "L":
+        if re.match(r"L(\(|$)", symbol):
             return self.held
         if symbol.startswith("A_["):
             corners = self.corners.get(int(symbol[3:-1]), [])
@@ -257,7 +257,8 @@ class Walk:
     def context(self, step):
         """Symbols as they are meant in a step."""
         symbol, known = step.symbol, dict(self.known)
-        known.pop(symbol, None)
+        for name in (symbol, re.sub(r"\(φ_\[\w+\]\)$", "", symbol)):  # a sum of a position is not that at rest
+            known.pop(name, None)
         if argument := re.search(r"\((T_\[[^\]]*\]|t)\)$", symbol):
             known["T"] = known.get(argument[1])
         if symbol.startswith("η("):
@@ -271,7 +272,9 @@ class Walk:
         if re.match(r"[xy]_\[[GP]\d", symbol):
             known = {name: value for name, value in known.items() if not name.startswith("Σ")}
         if symbol.startswith("M_["):
-            known |= {"L": quantity(self.structure["depth"]), **self.size_of(symbol)}
+            sizes = self.size_of(symbol)
+            known |= {"L": quantity(self.structure["depth"]), **sizes}
+            known |= {"B": sizes["b"], "H": sizes["h"]} if "b" in sizes else {}
         if symbol.startswith("P") and "Σ" not in step.formula:
             block = int(re.search(r"\d+", symbol)[0])
             for each in self.weights:
@@ -324,7 +327,11 @@ class Walk:
                     self.fault(item.symbol, "nothing above has", each)
             if missing := constants(item.formula) - constants(item.numbers):
                 self.fault(item.symbol, "has in symbols alone", missing)
-        if item.formula and item.relation == "=":
+        if item.symbol.startswith("Δx_["):
+            loads = {each["name"]: each for each in self.structure["loads"]}
+            if not close(printed, quantity(loads[item.symbol[4:-1]]["seat"])):
+                self.fault(item.symbol, "is not the seat of the load")
+        elif item.formula and item.relation == "=":
             self.check_symbols(item, printed)
         if item.symbol.startswith("θ") and not item.formula and printed != 1:
             self.fault(item.symbol, "of the mechanism is not 1")
@@ -559,6 +566,7 @@ def faults_of_code(walk):
         chain = of_block(walk.structure, s) if walk.sizes else of_blocks(walk, direction, s)
         seat = lost_seat(walk.structure, chain) if walk.sizes else None
         faults += faults_of_tables(walk, direction, chain)
+        faults += faults_of_variants(walk, chain) if walk.sizes else []
         by_letter = replace(chain, weights=[each._replace(PQ=max(each.P, each.PQ)) for each in chain.weights])
         alpha, site = by_letter.alpha(0.0), Site(walk.site)
         walk.also += [alpha, alpha * G / (by_letter.e_star * site.FC)]
@@ -571,6 +579,41 @@ def faults_of_code(walk):
                     faults.append((direction, section, state, symbol, "is not printed"))
                 elif value is not None and not close(value, own[symbol], least=2 * unit_of_digit(own[symbol])):
                     faults.append((direction, section, state, symbol, own[symbol], "by the code", value))
+    return faults
+
+
+def faults_of_variants(walk, chain):
+    """Cells of the table of variants that are not those of the chain without its tie, or with every P in P + Q."""
+    letter = replace(chain, weights=[each._replace(PQ=max(each.P, each.PQ)) for each in chain.weights])
+    variants = {
+        r"as calculated|come calcolato": chain, r"without ties|senza catene": replace(chain, tie=None),
+        r"every P in|ogni P in": letter,
+    }  # fmt: skip
+    faults = []
+    for *_, grid in walk.tables:
+        if not re.match(r"As calculated, and|Come calcolato e", grid.caption):
+            continue
+        for k, head in enumerate(grid.heads[1:], 1):
+            own = next(each for pattern, each in variants.items() if re.match(pattern, head))
+            found = expected(walk, own, lost_seat(walk.structure, own))
+            for row in grid.rows:
+                name, _, what = row[0].partition(": ")
+                zeta = found.get(("start", name), {}).get("ζ_[E]")
+                if name == "SLV" or name == "SLC":
+                    exact = found["exact", name]
+                    zeta = max(zeta, found["nonlinear", name]["ζ_[E]"])
+                    if what[:4] in ("capa", "dema", "doma"):
+                        value = exact[f"d_[{name}]"] if what[:4] == "capa" else exact[f"S_[De](T_[{name}])"]
+                        faults += [] if is_printed(row[k], value) else [(head, row, value)]
+                        continue
+                if what.startswith("verif"):
+                    faults += [] if is_satisfied(row[k]) == (zeta >= 1) else [(head, row, zeta)]
+                elif what:
+                    faults += [] if is_printed(row[k], zeta) else [(head, row, zeta)]
+                else:
+                    symbol = name.partition(" [")[0]
+                    value = {**found["chain", ""], **found["curve", ""]}[symbol]
+                    faults += [] if is_printed(row[k], value) else [(head, row, value)]
     return faults
 
 
@@ -640,7 +683,7 @@ def is_satisfied(text):
 
 def is_printed(cell, value):
     """Whether a cell has a value, to its digits but at most four; None is a dash."""
-    cell = cell.removesuffix(" g")
+    cell = cell.removesuffix(" g").removesuffix(" m")
     if value is None or cell == "–":
         return value is None and cell == "–"
     return isclose(number(cell), value, rel_tol=1e-9) or abs(number(cell) - value) <= 0.51 * unit_of_digit(value, 4)
