@@ -6,9 +6,11 @@ Clauses that begin with C are of Circolare 7/2019, the others of NTC 2018: see `
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from math import pi, sqrt
+from typing import Any
 
 from rocking_cli.codes.italian import clauses, remarks
 from rocking_cli.codes.italian.capacity import CapacityCurve, ExactCurve, StraightCurve, with_elastic_branch
@@ -21,6 +23,7 @@ from rocking_cli.codes.italian.rules import DAMAGE, FIRST_STATE, LINEAR, NONLINE
 from rocking_cli.codes.italian.sheet.steps import workings_of_direction, workings_of_site
 from rocking_cli.codes.italian.site import ItalianSite, of_structure
 from rocking_cli.core import Direction, Mechanism
+from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.studies.conclusion import LeftOut
 from rocking_cli.verification.results import Control, Later, Remark
 
@@ -124,6 +127,7 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
     return ItalianVerification(
         taken, KEY, NAME, EDITION, directions,
         workings=Later(partial(workings_of_site, ground)),
+        variants=partial(_variants, taken, site),
         relies_on=remarks.relied_on(directions.values()),
         remarks=[*notes, *remarks.of_site(ground, list(directions.values()))],
         left_out=[
@@ -131,6 +135,34 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
             for tie in otherwise
         ],
     )  # fmt: skip
+
+
+def _variants(mechanism: Mechanism, site: ItalianSite) -> dict[str, ItalianVerified]:
+    """Return the direction that decides, without the ties, and by the letter of the code with every P in P + Q.
+
+    A variant that does not stand, or has no capacity, is left out.
+    """
+    changes = dict[str, dict[str, Any]]()
+    if mechanism.ties:
+        changes["without_ties"] = {"ties": None}
+    shares = {
+        each.name: {
+            "floor": None, "weight": each.weight, "vertical": each.vertical,
+            "horizontal": max(each.weight, each.horizontal),
+        }
+        for each in mechanism.hung.masses if each.weight > each.horizontal
+    }  # fmt: skip
+    if shares:
+        changes["by_letter"] = {
+            "loads": [load.model_copy(update=shares.get(load.name, {})) for load in mechanism.loads or []]
+        }
+    variants = {}
+    for key, update in changes.items():
+        with suppress(InputError, MechanismError):
+            side = verify(mechanism.model_copy(update=update), site).deciding
+            if key != "by_letter" or side.chain.is_by_the_letter:  # weights among the fields of a mechanism stay
+                variants[key] = side
+    return variants
 
 
 def _verified(

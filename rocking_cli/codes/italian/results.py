@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf, isclose
 from typing import TYPE_CHECKING
@@ -336,9 +336,16 @@ class ItalianVerified(frame.Verified):
 
 @dataclass(frozen=True, eq=False)
 class ItalianVerification(frame.Verification):
-    """Verification of a structure by the Italian code."""
+    """Verification of a structure by the Italian code.
+
+    Parameters
+    ----------
+    variants : callable
+        Returns the direction that decides without the ties, and with every P in P + Q, by key; empty without either.
+    """
 
     directions: Mapping[Direction, ItalianVerified]
+    variants: Callable[[], Mapping[str, ItalianVerified]] = field(default=dict, kw_only=True)
 
     @property
     def first(self) -> str:

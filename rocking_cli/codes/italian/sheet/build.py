@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
 from functools import partial
 from importlib.metadata import metadata
 from math import isclose
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.codes.italian.ground import SiteGround
-from rocking_cli.codes.italian.results import Dynamic, ItalianVerification, ItalianVerified
+from rocking_cli.codes.italian.results import Dynamic, ItalianVerification
 from rocking_cli.codes.italian.sheet import dynamic, site, summary
 from rocking_cli.codes.italian.sheet.chain import named
 from rocking_cli.codes.italian.sheet.geometry import Composition
@@ -18,7 +17,6 @@ from rocking_cli.codes.italian.sheet.steps import PACKAGE, DirectionSteps, title
 from rocking_cli.codes.italian.site import ItalianSite, of_structure
 from rocking_cli.codes.italian.site_demand import site_demand
 from rocking_cli.core import Direction
-from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.views.sheet.build import SheetOfCode
 from rocking_cli.views.sheet.language import Language
 
@@ -70,41 +68,11 @@ def _subject(say: Language, found: ItalianVerification, site_values: ItalianSite
     ]
     return {
         "state": state, "ending": of, "of": f"{state}-" if state else "", "verification": found, "sides": sides,
-        "variants": _variants(found, site_values),
+        "variants": {"as_calculated": found.deciding, **found.variants()},
         "has_seats": any(load.seat for load in found.mechanism.loads or []),
         "structure": Composition(found.mechanism), "body": partial(say.body, found.mechanism.mechanism),
         **summary.context(say, found, sides),
     }  # fmt: skip
-
-
-def _variants(found: ItalianVerification, site_values: ItalianSite) -> dict[str, ItalianVerified]:
-    """Return the direction that decides: as calculated, without the ties, and by the letter with every P in P + Q.
-
-    A variant that does not stand, or has no capacity, is left out.
-    """
-    from rocking_cli.codes.italian.method import verify
-
-    mechanism, changes = found.mechanism, dict[str, dict[str, Any]]()
-    if mechanism.ties:
-        changes["without_ties"] = {"ties": None}
-    if not found.deciding.chain.is_by_the_letter:
-        shares = {
-            each.name: {
-                "floor": None, "weight": each.weight, "vertical": each.vertical,
-                "horizontal": max(each.weight, each.horizontal),
-            }
-            for each in mechanism.hung.masses
-        }  # fmt: skip
-        changes["by_letter"] = {
-            "loads": [load.model_copy(update=shares.get(load.name, {})) for load in mechanism.loads or []]
-        }
-    variants = {"as_calculated": found.deciding}
-    for key, update in changes.items():
-        with suppress(InputError, MechanismError):
-            side = verify(mechanism.model_copy(update=update), site_values).deciding
-            if key != "by_letter" or side.chain.is_by_the_letter:  # weights among the fields of a mechanism stay
-                variants[key] = side
-    return variants
 
 
 def _figure(
