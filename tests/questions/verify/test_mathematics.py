@@ -218,6 +218,7 @@ def document(sheet_files):
     return docx.Document(str(sheet_files[1](structure, ".docx")))
 
 
+@pytest.mark.rest
 class TestDocument:
     def test_columns_are_as_wide_as_their_cells_and_tables_as_the_text(self, document):
         section = document.sections[0]

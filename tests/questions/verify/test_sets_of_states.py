@@ -274,6 +274,7 @@ class TestSheet:
             assert level.any() and sa[level] == pytest.approx(ag * 1.2 * 2.5, rel=1e-9)
             assert sa[periods > 0.4][0] == pytest.approx(ag * 1.2 * 2.5 * 0.4 / periods[periods > 0.4][0], rel=1e-9)
 
+    @pytest.mark.every(2)
     @pytest.mark.parametrize(("language", "heads"), [
         ("en", ["Dynamic method at SLV", "Dynamic method at SLC", "Records of the dynamic method", "scale factor"]),
         ("it", ["Metodo dinamico allo SLV", "Metodo dinamico allo SLC", "Accelerogrammi del metodo dinamico",

@@ -537,7 +537,7 @@ def test_a_page_has_every_step_and_table(name, language, written):
             assert all(" ".join(flat(cell).split()) in words for cell in cells)
 
 
-@pytest.mark.every(2)
+@pytest.mark.rest
 @pytest.mark.parametrize(("name", "language"), CASES_WRITTEN)
 def test_a_document_has_every_step_and_table(name, language, written):
     docx = pytest.importorskip("docx")
@@ -643,6 +643,7 @@ class TestAskingForIt:
         assert {each.name for each in tmp_path.iterdir()} == {"o.pdf", "s.yaml", "site.yaml"}
 
     @pytest.mark.usefixtures("no_typst")
+    @pytest.mark.rest
     def test_without_what_makes_a_pdf_the_result_is_printed_and_then_said_what_to_install(self, tmp_path, monkeypatch):
         monkeypatch.setenv("PATH", str(tmp_path))
         monkeypatch.setattr("rocking_cli.io.browser.USUAL_PATHS", ())
@@ -746,7 +747,7 @@ def test_every_text_has_a_user():
     files = [each for folder in ("rocking_cli", "mechanisms") for each in files_of(folder).rglob("*")
              if each.suffix in (".py", ".html", ".md")]  # fmt: skip
     written = "".join(each.read_text(encoding="utf-8") for each in files)
-    assert not [key for key in keys - families if not re.search(rf"""["']{re.escape(key)}["']""", written)]
+    assert not [key for key in keys - families if f'"{key}"' not in written and f"'{key}'" not in written]
 
 
 @pytest.mark.parametrize("language", ["en", "it"])

@@ -146,6 +146,7 @@ class TestElsewhere:
 
     FORMS = (ROCK, {"FC": "LC2", "soil": "C", "topography": "T2", **STATES}, ROUNDED)
 
+    @pytest.mark.every(3)
     @pytest.mark.parametrize("site", FORMS)
     def test_survey_design_and_both_sheets(self, site, tmp_path):
         (row,) = rk.survey([BLOCK], site=site).to_dict()["rows"]
