@@ -1,7 +1,7 @@
 """Writes the calculation sheets of examples/verify/sheets, and the pictures of pages of one of them.
 
-All in a sheet follows from the files in examples/, but for the day and the machine. These are given below, so that a
-sheet is stale only if the program prints something else. `make_pages.py` renews sheets and pictures.
+All in a sheet follows from the files in examples/, but for the day, the release and the machine. These are given below,
+so that a sheet is stale only if the program prints something else. `make_pages.py` renews sheets and pictures.
 """
 
 from __future__ import annotations
@@ -10,11 +10,11 @@ import re
 import shlex
 from contextlib import chdir
 from datetime import date
-from importlib.metadata import version
+from math import isclose
 from pathlib import Path
 
 from make_runs import Content
-from parts import same
+from parts import NUMBER
 
 import rocking_cli as rk
 from rocking_cli.ask.given import site_of
@@ -28,7 +28,7 @@ from rocking_cli.views.sheet.language import ABSENT, Language
 
 PROJECT = Path(__file__).resolve().parents[1]
 KEPT = PROJECT / "examples" / "verify" / "sheets"
-DAY = date(2026, 11, 26)
+DAY, RELEASE = date(2026, 11, 26), "X.Y.Z"
 MACHINE = {"system": "Linux, macOS, Windows", "Python": "3.11 ... 3.14", **dict.fromkeys(RECORDED_PACKAGES, ABSENT)}
 RECORDS = "examples/verify/records.csv"
 COMMANDS = {
@@ -41,6 +41,7 @@ COMMANDS = {
 PICTURED = "facade"
 PAGES = {"sheet_page_1.png": (1, "summary"), "sheet_page_2.png": (5, "figures"), "sheet_page_3.png": (11, "positive")}
 """Of each picture the page that it shows, and the section of the sheet by whose words a stale one is known."""
+ROUNDING = 2e-5  # of a number with six digits, on another machine
 PPI = 110  # pixels per inch
 
 
@@ -53,8 +54,8 @@ def made(name: str) -> Sheet:
         sets = dict(zip(asked["states"], asked["sets"], strict=True))
         found = rk.verify(asked["file"], asked["site"], motions=sets or ()).result
         records = {RECORDS: File(RECORDS, Path(RECORDS).read_bytes())} if sets else {}
-        ours = version("rocking-cli")
-        packages = {"rocking-cli": ours, f"mechanism {found.mechanism.mechanism}": f"rocking-cli {ours}", **MACHINE}
+        own = f"mechanism {found.mechanism.mechanism}"
+        packages = {"rocking-cli": RELEASE, own: f"rocking-cli {RELEASE}", **MACHINE}
         say = Language(asked["language"])
         sources = SheetSources(files["file"], files["site"], records, packages)
         return sheet(found, site_of(asked["site"]), say, TitleBlock(call, say.day(DAY)), sources)
@@ -70,8 +71,17 @@ def stale(every: dict[str, str]) -> list[str]:
     there = {file.name: file.read_text(encoding="utf-8") for file in KEPT.iterdir()}
     return [
         name for name in sorted({*every, *there})
-        if name not in every or name not in there or not same(words(every[name]), words(there[name]))
+        if name not in every or name not in there or not same(every[name], there[name])
     ]  # fmt: skip
+
+
+def same(one: str, other: str) -> bool:
+    """Return whether two pages say the same, with numbers that are equal but for rounding."""
+    texts = [words(each) for each in (one, other)]
+    found, kept = ([float(each.replace(",", "")) for each in NUMBER.findall(text)] for text in texts)
+    return NUMBER.sub("0", texts[0]) == NUMBER.sub("0", texts[1]) and all(
+        isclose(*pair, rel_tol=ROUNDING) for pair in zip(found, kept, strict=True)
+    )
 
 
 def words(page: str) -> str:

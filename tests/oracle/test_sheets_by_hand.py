@@ -155,14 +155,23 @@ class Walk:
         heads = item.heads
         if heads[:2] in (["symbol", "quantity"], ["simbolo", "grandezza"]):
             self.of_site(item)
+        elif heads[-1].endswith("A [m²]"):
+            self.bodies = item.rows
         elif heads[:2] in (["property", "of"], ["proprietà", "di"]):
             for row in item.rows:
                 if row[2]:
                     value = number(row[3]) * (1e3 if row[4] == "MPa" else 1)
                     self.known.setdefault(row[2], value)
                     self.see([value])
+        elif "A [m²]" in heads:
+            self.of_ties(item)
         elif "M g [kN]" in heads:
             self.loads = {}
+            for (_, _, *body), row in zip(self.bodies, item.rows, strict=False):
+                x, y, area = map(number, body)
+                mass = area * self.known["ρ"] * quantity(self.structure["depth"])
+                if [x, y] != [*map(number, row[2:4])] or not close(mass, number(row[4])):
+                    self.fault("body", row)
             for row in item.rows:
                 x, y, M, weight, *rest = map(number, row[2:-1])  # but the seat
                 length = quantity(self.structure["depth"]) if len(rest) == 3 else 1.0
@@ -217,6 +226,14 @@ class Walk:
                 for name, value in ((f"x_[G{int(k)}]", x), (f"y_[G{int(k)}]", y), (f"x_[P{int(k)}]", x_P)):
                     if name in self.known and self.section == "chain" and not close(self.known[name], value):
                         self.fault(name, "in the table")
+
+    def of_ties(self, item):
+        for row, tie in zip(item.rows, self.structure["ties"], strict=True):
+            fixed, at, force = tie_of(tie)
+            area = tie["bars"] * pi * quantity(tie["diameter"]) ** 2 / 4
+            for cell, value in zip(row[2:], (force, area, 0.0, abs(at - fixed)), strict=True):
+                if not close(value, number(cell)):
+                    self.fault("tie", row)
 
     def of_held(self, item):
         self.held = []

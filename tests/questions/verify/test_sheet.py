@@ -581,6 +581,13 @@ def test_italian_has_the_same_numbers_with_a_comma():
     assert not any(re.search(r"\d\.\d", each.numbers + each.formula + each.result) for each in steps_of(italian))
 
 
+def test_sentences_write_numbers_as_tables_do():
+    values = {"name": "roof", "length": 0.25, "d": -4.99e-5, "limited": "d"}
+    said = {language: build.SHEET.language(language)("seat", **values) for language in ("en", "it")}
+    assert "0.25 m at d = −4.99 · 10^[−5] m" in said["en"] and "0,25 m a d = −4,99 · 10^[−5] m" in said["it"]
+    assert "0.25 m at d = -4.99e-05 m" in steps.TERMINAL("seat", **values)
+
+
 def test_what_is_printed_is_what_the_command_finds():
     found = {}
     for each in steps_of(items_of_case("facade")):

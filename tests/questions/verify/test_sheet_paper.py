@@ -5,12 +5,14 @@ from math import pi, sqrt
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.sheet import build, figures
 from rocking_cli.codes.italian.site import of_structure
 from rocking_cli.codes.italian.site_demand import site_demand
 from rocking_cli.core import Direction
+from rocking_cli.documents.figures import inline_svg, svg
 from rocking_cli.questions.selfcheck.study import CHECKS
 from rocking_cli.views.sheet.document import Steps
 from rocking_cli.views.view import Table
@@ -312,3 +314,14 @@ def test_assumptions_are_those_of_the_structure_and_its_site(name, rows):
     printed = dict(table.rows)
     assert all(printed[key].startswith(text) for key, text in rows.items())
     assert ("ties" in printed) == (name == "tied")
+
+
+def test_pictures_of_a_page_have_the_digits_that_are_seen():
+    figure = Figure()
+    figure.subplots().plot(np.linspace(0, 1, 50), np.sin(np.linspace(0, 9, 50)))
+    lines, whole = (re.findall(r'<path[^>]* d="([^"]*)"', text) for text in (inline_svg(figure, "a"), svg(figure, "a")))
+    assert len(lines) == len(whole) > 3
+    for line, other in zip(lines, whole, strict=True):
+        assert "\n" not in line and not re.search(r"\.\d{3}", line)
+        values = (np.array(re.findall(r"[-\d.]+", each), dtype=float) for each in (line, other))
+        assert np.allclose(*values, atol=0.011)
