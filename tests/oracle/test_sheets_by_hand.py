@@ -163,7 +163,7 @@ class Walk:
                     value = number(row[3]) * (1e3 if row[4] == "MPa" else 1)
                     self.known.setdefault(row[2], value)
                     self.see([value])
-        elif "A [m²]" in heads:
+        elif "k [kN/m]" in heads:
             self.of_ties(item)
         elif "M g [kN]" in heads:
             self.loads = {}
@@ -231,7 +231,7 @@ class Walk:
         for row, tie in zip(item.rows, self.structure["ties"], strict=True):
             fixed, at, force = tie_of(tie)
             area = tie["bars"] * pi * quantity(tie["diameter"]) ** 2 / 4
-            for cell, value in zip(row[2:], (force, area, 0.0, abs(at - fixed)), strict=True):
+            for cell, value in zip((row[2], row[3], row[5]), (force, area, abs(at - fixed)), strict=True):
                 if not close(value, number(cell)):
                     self.fault("tie", row)
 
