@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from importlib import import_module
 from importlib.metadata import metadata
 from math import isclose
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import Dynamic, ItalianVerification
@@ -47,7 +48,7 @@ def context(say: Language, verification: ItalianVerification, site_values: Itali
     return {
         "language": say, "verification": verification, "ground": ground, "site": site, "subjects": subjects,
         "both": None if strengthened is None else summary.both(verification, strengthened),
-        "title": partial(title, say), "named": partial(named, say), "figure": partial(_figure, say, ground),
+        "title": partial(title, say), "named": partial(named, say), "figures": SheetFigures(say, ground),
         "is_same": partial(isclose, rel_tol=SAME_MULTIPLIER),
         "dynamic": dynamic,
         "licence": metadata("rocking-cli")["License-Expression"],
@@ -75,31 +76,50 @@ def _subject(say: Language, found: ItalianVerification, site_values: ItalianSite
     }  # fmt: skip
 
 
-def _figure(
-    say: Language, ground: SiteGround, kind: str, side: DirectionSteps | None = None, at: Dynamic | None = None
-) -> Callable[[], Figure]:
-    """Return what draws a figure of a kind; it is imported only for a sheet that is written."""
+class SheetFigures(NamedTuple):
+    """What draws the figures of a sheet, in a language, for a site."""
 
-    def drawn() -> Figure:
-        from rocking_cli.codes.italian.sheet import dynamic_figures, figures
+    say: Language
+    ground: SiteGround
 
-        if at is not None:
-            if side is None:
-                label = say("Spectra of the records at {state}, 5 % damping", state=at.state)
-                return dynamic_figures.draw_spectra(say, at, ground, label)
-            return dynamic_figures.draw_history(say, side.found, at, at.drawn)
-        if kind == "draw_hazard":
-            assert ground.hazard is not None  # as the template draws it
-            return figures.draw_hazard(say, ground, ground.hazard, say("Seismic hazard of the site, on rock"))
-        demand = site_demand(ground.site)
-        if side is None:
-            return figures.draw_site(say, demand, say("Elastic spectra of the site, 5 % damping"))
-        if kind == "draw_chain":
-            return figures.draw_chain(say, side.found)
-        heading = say("{name}: capacity and demand", name=side.found.chain.mechanism.name)
-        return figures.draw_capacity(say, {side.where: side.found}, heading, demand=demand)
+    def chain(self, side: DirectionSteps) -> Callable[[], Figure]:
+        """Return what draws the weights, forces and arms of a direction."""
+        return _drawn("figures", "draw_chain", self.say, side.found)
 
-    return drawn
+    def capacity(self, side: DirectionSteps) -> Callable[[], Figure]:
+        """Return what draws the capacity curve of a direction with the demand."""
+        heading = self.say("{name}: capacity and demand", name=side.found.chain.mechanism.name)
+        sides, demand = {side.where: side.found}, site_demand(self.ground.site)
+        return _drawn("figures", "draw_capacity", self.say, sides, heading, demand=demand)
+
+    def hazard(self) -> Callable[[], Figure]:
+        """Return what draws the hazard of the site."""
+        heading = self.say("Seismic hazard of the site, on rock")
+        return _drawn("figures", "draw_hazard", self.say, self.ground, self.ground.hazard, heading)
+
+    def site(self) -> Callable[[], Figure]:
+        """Return what draws the spectra of the site."""
+        heading = self.say("Elastic spectra of the site, 5 % damping")
+        return _drawn("figures", "draw_site", self.say, site_demand(self.ground.site), heading)
+
+    def history(self, side: DirectionSteps, at: Dynamic) -> Callable[[], Figure]:
+        """Return what draws one history of a direction at a limit state."""
+        return _drawn("dynamic_figures", "draw_history", self.say, side.found, at, at.drawn)
+
+    def records(self, at: Dynamic) -> Callable[[], Figure]:
+        """Return what draws the spectra of the records of a limit state."""
+        heading = self.say("Spectra of the records at {state}, 5 % damping", state=at.state)
+        return _drawn("dynamic_figures", "draw_spectra", self.say, at, self.ground, heading)
+
+
+def _drawn(module: str, function: str, *args: Any, **named: Any) -> Callable[[], Figure]:
+    """Return what draws a figure; its module is imported only for a sheet that is written."""
+
+    def draw() -> Figure:
+        figure: Figure = getattr(import_module(f"{__package__}.{module}"), function)(*args, **named)
+        return figure
+
+    return draw
 
 
 SHEET = SheetOfCode(PACKAGE, context)

@@ -22,9 +22,9 @@ SHORTEST_PERIOD, LONGEST_PERIOD, PERIOD_COUNT = 0.05, 4.0, 80  # s, s, and numbe
 MAX_OPAQUE_LINES = 12  # with more records, their lines are transparent
 
 
-def draw_history(say: Language, side: ItalianVerified, dynamic: Dynamic, record: RecordPeak | None) -> Figure:
+def draw_history(say: Language, side: ItalianVerified, dynamic: Dynamic, record: RecordPeak) -> Figure:
     """Draw the history with FC under a record in a direction, its peak, the displacement capacity and d0*."""
-    assert record is not None and record.history is not None and record.with_confidence is not None  # a known peak
+    assert record.history is not None and record.with_confidence is not None  # the record has a known peak
     t, d = displacement_history(side.exact, side.direction, record.history)
     figure, axes = style.one_panel(3.2, f"{dynamic.state}, FC = {side.exact.confidence:g}")
     style.draw_samples(axes, d, float(t[1]), color=style.INK, linewidth=style.MEDIUM, label="d")
