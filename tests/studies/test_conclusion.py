@@ -203,7 +203,7 @@ def surfaces(folder, structure, states, pulses):
         (folder / sheet).unlink(missing_ok=True)
         said = outcome_of("verify", *asked, "--sheet", sheet, "--language", name[:2].lower())
         page = text_of((folder / sheet).read_text(encoding="utf-8")) if (folder / sheet).exists() else said
-        start = re.search("Not counted: bar|Non è messo|The verification|La verifica|The site does", page)
+        start = re.search("Not counted: bar|Catene non considerate|The verification|La verifica|The site does", page)
         found[name] = page[start.start() : start.start() + 330] if start else page
     found["text"] = " ".join(said.split("Site")[0].split())
     data = outcome_of("verify", *asked, "--json")

@@ -357,7 +357,7 @@ class Recomputed:
             self.known["a_g of the method"] = value
 
     OTHERS = (
-        "x_[G", "y_[G", "x_[P", "P_[", "PQ_[", "r", "M_[", "A_[", "t", "x_[O", "y_[O", "θ_[", "Δx_[",
+        "x_[G", "y_[G", "x_[P", "y_[P", "P_[", "PQ_[", "r", "M_[", "A_[", "t", "x_[O", "y_[O", "θ_[", "Δx_[",
         *(f"{axis}_[{k}]′" for axis in "xy" for k in range(1, 10)),
     )  # fmt: skip
     """Symbols whose results are checked against their numbers only."""
