@@ -171,7 +171,7 @@ NOT_VERIFIED = {
 }
 
 
-@pytest.mark.every(4)
+@pytest.mark.rest
 @pytest.mark.parametrize("name", ODD)
 def test_what_no_example_has_is_italian(name, text_of):
     check(text_of(ODD[name], SITES["hazard"]))
