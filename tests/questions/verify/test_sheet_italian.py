@@ -4,7 +4,7 @@ import platform
 import re
 from html import unescape
 from importlib.resources import files
-from itertools import chain
+from itertools import chain, cycle
 from pathlib import Path
 
 import pytest
@@ -138,9 +138,13 @@ def test_every_case_is_italian(name, text_of):
 
 
 @pytest.mark.rest
-@pytest.mark.parametrize("site", SITES)
-@pytest.mark.parametrize("structure", STRUCTURES, ids=lambda path: f"{path.parent.name}-{path.stem}")
+@pytest.mark.parametrize(
+    ("structure", "site"),
+    [*zip(STRUCTURES, cycle(SITES))],
+    ids=[f"{each.parent.name}-{each.stem}" for each in STRUCTURES],
+)
 def test_every_example_is_italian(structure, site, text_of):
+    """On the ground and on a floor in turn."""
     check(text_of(structure, SITES[site]))
 
 
