@@ -10,6 +10,7 @@ from math import pi
 import numpy as np
 
 from rocking_cli.codes.italian.chain import Chain
+from rocking_cli.codes.italian.rules import Rule
 from rocking_cli.core import Mechanism
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.hung.attached import Spot
@@ -20,6 +21,8 @@ from rocking_cli.verification.results import Control
 
 STEPS_PER_CURVE = 256  # a curve is checked to be a function at these points only
 MAX_HALVINGS = 200
+SHARE, BREAK, SEAT = "share", "break", "seat"
+"""What may end the displacement capacity: the share of d0*, a break of the curve, or a lost seat."""
 
 
 def root(rises: Callable[[float], float], low: float, high: float) -> float:
@@ -144,8 +147,8 @@ class ExactCurve:
 
     @cached_property
     def _rotations(self) -> dict[float, float]:
-        """Rotations computed so far, by displacement, as all views need the same few."""
-        return {}
+        """Rotations computed so far, by displacement, as all views need the same few; that of a break to begin with."""
+        return {} if self.broken is None or self.torn is None else {self.broken: self.torn}
 
     @cached_property
     def a0(self) -> float:
@@ -159,8 +162,6 @@ class ExactCurve:
 
     def acceleration(self, d: float) -> float:
         """Return a* at a displacement [m/s2]; at the displacement of a break the value before it."""
-        if self.broken is not None and d == self.broken and self.torn is not None:
-            return self.acceleration_at(self.torn)
         return self.acceleration_at(self.rotation(d))
 
     @cached_property
@@ -226,6 +227,16 @@ class StraightCurve:
 
 
 CapacityCurve = ExactCurve | StraightCurve
+
+
+def ends(curve: CapacityCurve, rule: Rule) -> dict[str, float]:
+    """Return the displacements at which the capacity may end at a limit state, by what ends it; the least does [m]."""
+    lost = {SHARE: rule.share * curve.d0}
+    if rule.at_breaks and curve.broken is not None:
+        lost[BREAK] = curve.broken
+    if curve.seat is not None:
+        lost[SEAT] = curve.seat.d
+    return lost
 
 
 def with_elastic_branch(a: float, d: float, T0: float | None) -> float:

@@ -10,10 +10,11 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from math import pi, sqrt
+from operator import itemgetter
 from typing import Any
 
 from rocking_cli.codes.italian import clauses, remarks
-from rocking_cli.codes.italian.capacity import CapacityCurve, ExactCurve, StraightCurve, with_elastic_branch
+from rocking_cli.codes.italian.capacity import CapacityCurve, ExactCurve, StraightCurve, ends, with_elastic_branch
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.demand import REFERENCE_DAMPING, DemandSpectrum
 from rocking_cli.codes.italian.displaced import elastic, lasting
@@ -41,15 +42,11 @@ class _Case:
     def state(self, rule: Rule) -> LimitState:
         """Return capacity and demand in displacement at a limit state [§C8.7.1.2.1.6, C8.7.1.10-12]."""
         site, curve = self.ground.site, self.curve
-        d = rule.share * curve.d0
-        if rule.at_breaks and curve.broken is not None:
-            d = min(d, curve.broken)
-        if curve.seat is not None:
-            d = min(d, curve.seat.d)
+        by, d = min(ends(curve, rule).items(), key=itemgetter(1))
         a = with_elastic_branch(curve.acceleration(d), d, site.own_period)
         T = rule.factor * pi * sqrt(d / a)
         spectrum = self.ground.verified(rule.state)
-        return LimitState(d, a, T, None if spectrum is None else spectrum.displacement(T, rule.damping))
+        return LimitState(d, by, a, T, None if spectrum is None else spectrum.displacement(T, rule.damping))
 
     def method(
         self, title: str, clause: str, state: str, demand: Callable[[DemandSpectrum], float], capacity: float
@@ -127,7 +124,7 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
     return ItalianVerification(
         taken, KEY, NAME, EDITION, directions,
         workings=Later(partial(workings_of_site, ground)),
-        variants=partial(_variants, taken, site),
+        variants=partial(_variants, taken, site, control),
         relies_on=remarks.relied_on(directions.values()),
         remarks=[*notes, *remarks.of_site(ground, list(directions.values()))],
         left_out=[
@@ -137,7 +134,7 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
     )  # fmt: skip
 
 
-def _variants(mechanism: Mechanism, site: ItalianSite) -> dict[str, ItalianVerified]:
+def _variants(mechanism: Mechanism, site: ItalianSite, control: Control | None) -> dict[str, ItalianVerified]:
     """Return the direction that decides, without the ties, and by the letter of the code with every P in P + Q.
 
     A variant that does not stand, or has no capacity, is left out.
@@ -159,7 +156,7 @@ def _variants(mechanism: Mechanism, site: ItalianSite) -> dict[str, ItalianVerif
     variants = {}
     for key, update in changes.items():
         with suppress(InputError, MechanismError):
-            side = verify(mechanism.model_copy(update=update), site).deciding
+            side = verify(mechanism.model_copy(update=update), site, control).deciding
             if key != "by_letter" or side.chain.is_by_the_letter:  # weights among the fields of a mechanism stay
                 variants[key] = side
     return variants

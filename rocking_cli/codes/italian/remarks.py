@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from math import isclose
 
-from rocking_cli.codes.italian.capacity import ExactCurve
+from rocking_cli.codes.italian.capacity import BREAK, SEAT, ExactCurve
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.demand import FloorSpectrum, GroundSpectrum
 from rocking_cli.codes.italian.displaced import (
@@ -212,14 +212,14 @@ def _of_break(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remar
         return []
     d = curve.displacement_at(curve.torn)
     remarks: list[Remark] = [Remark.of("torn", d=d)]
-    if curve.broken is not None and states["SLV"].d == curve.broken:
+    if states["SLV"].by == BREAK:
         remarks.append(Remark.of("ends"))
     return remarks
 
 
 def _of_seat(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark]:
     seat = curve.seat
-    limited = [state for state, at in states.items() if seat is not None and at.d == seat.d]
+    limited = [state for state, at in states.items() if at.by == SEAT]
     if seat is None or not limited:
         return []
     return [Remark.of("seat", name=seat.load, length=seat.length, d=seat.d, limited=_capacities(limited))]

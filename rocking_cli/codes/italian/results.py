@@ -30,13 +30,14 @@ class LimitState:
 
     Parameters
     ----------
-    d, a, T : float
-        Displacement capacity [m], acceleration of the curve there [m/s2], and the period of both [s].
+    d, by, a, T : float, str, float, float
+        Displacement capacity [m], what ends it (`ends`), acceleration of the curve there [m/s2], period of both [s].
     demand : float or None
         Displacement demand of the site [m]; None if the site file does not give this limit state.
     """
 
     d: float
+    by: str
     a: float
     T: float
     demand: float | None

@@ -265,19 +265,20 @@ def test_a_document_has_the_figures_and_the_contents(tmp_path):
     assert len(highlighted) == 2
 
 
-def test_what_it_would_be_without_ties_and_by_the_letter():
+@pytest.mark.parametrize("control", [None, (0.3, 8.0, "block")])
+def test_what_it_would_be_without_ties_and_by_the_letter(control):
     """A facade with a tie, and floors that slide: each column is a verification of its own structure."""
     site = SITE + SLC
-    found, given = verified(TIED_FACADE, site)
+    found, given = verified(TIED_FACADE, site, control)
     (table,) = (
         item for part in parts_of(found, given) for item in part.items
         if isinstance(item, Table) and item.title.startswith("As calculated, and otherwise")
     )  # fmt: skip
     assert table.columns == ["", "as calculated", "without ties", "every P in P + Q"]
     rows = {row[0]: row[1:] for row in table.rows}
-    bare, _ = verified(TIED_FACADE.partition("ties:")[0], site)
+    bare, _ = verified(TIED_FACADE.partition("ties:")[0], site, control)
     shares = "horizontal: 0.5, vertical: 0.333333, weight: 0.5"
-    literal, _ = verified(TIED_FACADE.replace("floor: sliding", shares), site)
+    literal, _ = verified(TIED_FACADE.replace("floor: sliding", shares), site, control)
     for k, each in enumerate((found, bare, literal)):
         side = each.deciding
         assert number(rows["α_[0]"][k]) == pytest.approx(side.chain.alpha0, rel=5e-4)

@@ -11,7 +11,7 @@ import numpy as np
 from markupsafe import Markup
 
 from rocking_cli.codes.italian import formulas as F
-from rocking_cli.codes.italian.capacity import ExactCurve, StraightCurve
+from rocking_cli.codes.italian.capacity import BREAK, SEAT, ExactCurve, StraightCurve, ends
 from rocking_cli.codes.italian.demand import REFERENCE_DAMPING, DemandSpectrum, FloorSpectrum, GroundSpectrum
 from rocking_cli.codes.italian.displaced import DisplacedChain, pulls
 from rocking_cli.codes.italian.ground import SiteGround
@@ -33,6 +33,7 @@ LINE_SUBSCRIPT = "lin"  # subscript of quantities on the straight line
 PACKAGE = "rocking_cli.codes.italian"
 ENGLISH = Language("en", texts_of(PACKAGE, "en"))
 TERMINAL = replace(ENGLISH, is_plain=True)
+OF_END = {BREAK: F.BROKEN, SEAT: F.SEAT}
 STATE_OF_METHOD = {key: state for state, pair in OF_STATE.items() for key in pair} | {LINEAR: FIRST_STATE, "SLD": "SLD"}
 RULE_OF_METHOD = {OF_STATE[rule.state][1]: rule for rule in RULES}
 TITLES = {
@@ -273,7 +274,7 @@ class DirectionSteps:
         if control.body is None:
             return F.X_C.line(dx, first=scale.weight(chain.first), PQ=scale.weight(chain.inertial))
         names = {"body": control.body, "x": control.at.real, "y": control.at.imag}
-        moved = next(each for each in DisplacedChain(self.curve, 0.0).blocks if control.body in each.block.bodies)
+        moved = next(each for each in self.rest.blocks if control.body in each.block.bodies)
         if moved.centre is None:
             return F.X_C_STRAIGHT.line(dx, names, x=moved.dx)
         return F.X_C_TURNS.line(dx, names, turns=moved.turns, y=control.at.imag, O=scale.near(moved.centre.imag))
@@ -302,8 +303,7 @@ class DirectionSteps:
     def _state(self, rule: Rule) -> StateSteps:
         s, at = rule.state, self.found.states[rule.state]
         names = {"state": s, "on": s, "at": f"φ_[{s}]", "symbol": f"d(φ_[{s}])"}
-        broken = rule.at_breaks and self.curve.broken is not None and at.d == self.curve.broken
-        phi = self.curve.torn if broken and self.curve.torn is not None else self.curve.rotation(at.d)
+        phi = self.curve.rotation(at.d)
         position = DisplacedChain(self.curve, phi)
         lines = [*self._moved(position, names, "d_again"), *chains.multiplier(position, self.scale, f"(φ_[{s}])")]
         here = self.curve.acceleration_at(phi)
@@ -313,16 +313,17 @@ class DirectionSteps:
         return StateSteps(s, position, to_position, [*self._seat_at(phi, at, s), *lines], list(self._on_line(rule)))
 
     def _ends(self, rule: Rule) -> Iterator[Evaluated]:
-        """Yield the lines to what else than a share of d0* ends the displacement capacity: a break, or a lost seat."""
-        if rule.at_breaks and self.curve.broken is not None:
-            yield F.BROKEN.line(self.curve.broken)
-        if (seat := self.curve.seat) is not None:
+        """Yield the lines to what may end the displacement capacity besides a share of d0*: a break, or a lost seat."""
+        others, seat = ends(self.curve, rule), self.curve.seat
+        if BREAK in others:
+            yield F.BROKEN.line(others[BREAK])
+        if seat is not None:
             yield F.SEAT.line(seat.d, {"name": _subscript(seat.load), "load": seat.load, "length": seat.length})
 
     def _seat_at(self, phi: float, at: LimitState, state: str) -> Iterator[Evaluated]:
         """Yield the displacement of the load whose seat limits a state, if it does."""
         seat, chain = self.curve.seat, self.curve.chain
-        if seat is None or at.d != seat.d:
+        if seat is None or at.by != SEAT:
             return
         spot = next(mass.spot for mass in chain.mechanism.hung.masses if mass.name == seat.load)
         x = [float(chain.mechanism.followed(np.array([each]), chain.direction)(spot).z[0].real) for each in (0.0, phi)]
@@ -332,12 +333,10 @@ class DirectionSteps:
 
     def _allowed(self, rule: Rule, at: LimitState) -> Evaluated:
         """Return the step for the displacement capacity at a limit state."""
-        curve = self.curve
-        ends = {"t": curve.broken if rule.at_breaks else None, "a": curve.seat.d if curve.seat is not None else None}
-        known = {f"d_[{name}]": d for name, d in ends.items() if d is not None}
-        names = {"state": rule.state, "share": f"{rule.share:g}", "ends": "; ".join(known)}
-        formula = F.ALLOWED_LEAST if known else F.ALLOWED
-        return formula.line(at.d, names, share=rule.share, d0=curve.d0, d=[*known.values()])
+        others = {OF_END[by].symbol: d for by, d in ends(self.curve, rule).items() if by in OF_END}
+        names = {"state": rule.state, "share": f"{rule.share:g}", "ends": "; ".join(others)}
+        formula = F.ALLOWED_LEAST if others else F.ALLOWED
+        return formula.line(at.d, names, share=rule.share, d0=self.curve.d0, d=[*others.values()])
 
     def _period_and_demand(self, rule: Rule, at: LimitState, name: str, a: float) -> Iterator[Evaluated]:
         """Yield the steps for T, S_De and the ratio; `a` is a* of the curve that `name` denotes [m/s2]."""
