@@ -39,7 +39,7 @@ COMMANDS = {
     " --state SLV --set examples/verify/slv.yaml --state SLC --set examples/verify/slc.yaml --language it",
 }
 PICTURED = "facade"
-PAGES = {"sheet_page_1.png": (1, "summary"), "sheet_page_2.png": (5, "figures"), "sheet_page_3.png": (11, "positive")}
+PAGES = {"sheet_page_1.png": (1, "summary"), "sheet_page_2.png": (5, "figures"), "sheet_page_3.png": (12, "positive")}
 """Of each picture the page that it shows, and the section of the sheet by whose words a stale one is known."""
 ROUNDING = 2e-5  # of a number with six digits, on another machine
 PPI = 110  # pixels per inch
@@ -91,12 +91,12 @@ def words(page: str) -> str:
 
 
 def contents() -> dict[str, Content]:
-    """Return what each picture of a page shows: the words of a section of the kept sheet."""
+    """Return what each picture of a page shows: its number, and the words of a section of the kept sheet."""
     page = (KEPT / f"{PICTURED}.html").read_text(encoding="utf-8")
     sections = {
         name: page.partition(f'<section id="{key}"')[2].partition("</section>")[0] for name, (_, key) in PAGES.items()
     }
-    return {name: [[words(f"</style>{section}")]] for name, section in sections.items()}
+    return {name: [[f"page {PAGES[name][0]}", words(f"</style>{section}")]] for name, section in sections.items()}
 
 
 def draw(folder: Path) -> None:

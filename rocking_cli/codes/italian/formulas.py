@@ -308,7 +308,7 @@ RHO = Formula("ρ_[{on}]", "d_[{state}]/S_[De](T_[{on}])", "{d}/{demand}", "", c
 # Methods
 CAPACITY = Formula("{symbol}", "a_[g] · {capacity}/{demand}", "{ag} · {c}/{d}", "g", meaning="a_g_method")
 START = replace(CAPACITY, meaning="a_g_start")
-CAPACITY_FOUND = Formula("{symbol}", "{demand}(a_[g]) = {capacity}", "", "g")
+CAPACITY_FOUND = Formula("{symbol}", "{demand}(a_[g]) = {capacity}", "", "g", standing="ours")
 LINEAR = Formula("a_[g,q]", "q · a_[g,0]", "{q} · {a}", "g", clauses.LINEAR, meaning="a_g_method")
 ZETA = Formula("ζ_[E{more}]", "{symbol}/{asked}", "{a}/{b}", "", clauses.ZETA, meaning="zeta")
 LASTS = Formula(

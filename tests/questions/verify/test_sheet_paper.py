@@ -39,20 +39,21 @@ TIED_FACADE = (EXAMPLES / "verify" / "tied_facade.yaml").read_text(encoding="utf
 LINKAGE = (EXAMPLES / "linkage.yaml").read_text(encoding="utf-8")
 HEADINGS = {
     "en": [
-        "Summary", "Contents", "Methods and remarks", "Input", "Capacity and demand",
+        "Summary", "Contents", "Methods and remarks", "Assumptions", "Structure, capacity and demand",
         "Calculation by a program (NTC 2018, §10.2.1)",
         "Kind of analysis", "Origin and features of the program", "Reliability and validation of the program",
         "Presentation of the results", "General information on the calculation",
-        "Reasoned judgement of the acceptability of the results",
+        "Reasoned judgement of the acceptability of the results", "Input", "Loads and ties", "Site data",
         "Appendix A: workings", "How to read it", "Site", "Ground at SLV", "Positive direction (clockwise)",
         "Kinematic chain, at rest", "Appendix B: files and versions", "Structure file", "Site file",
     ],
     "it": [
-        "Sintesi", "Indice", "Metodi e osservazioni", "Dati", "Capacità e domanda",
+        "Sintesi", "Indice", "Metodi e osservazioni", "Ipotesi di calcolo", "Struttura, capacità e domanda",
         "Calcolo mediante codice (NTC 2018, §10.2.1)",
         "Tipo di analisi svolta", "Origine e caratteristiche dei codici di calcolo",
         "Affidabilità e validazione dei codici utilizzati", "Modalità di presentazione dei risultati",
         "Informazioni generali sull'elaborazione", "Giudizio motivato di accettabilità dei risultati",
+        "Dati", "Carichi e catene", "Dati del sito",
         "Appendice A: sviluppo dei calcoli", "Come leggere la relazione", "Sito",
         "Azione sismica allo SLV", "Verso positivo (orario)", "Catena cinematica, a riposo",
         "Appendice B: file e versioni", "File della struttura", "File del sito",
