@@ -20,6 +20,7 @@ WITH_COMMA = frozenset({"it"})
 SIGNIFICANT_DIGITS = 6  # results recomputed from printed numbers agree to five digits
 ABSENT = "–"
 GROUND_NAME = "the ground"
+OUTSIDE_SIGNS = str.maketrans("'[]|", "′()/")
 SENTENCE_END = re.compile(r"(?<=\.) (?=[A-Z])")
 
 
@@ -129,7 +130,7 @@ class Language:
         """Return the name of a body, several joined by plus signs, or a remark, in this language; else the value."""
         if isinstance(value, BodyName):
             text = self.body(value.mechanism, value.name)
-            return f"{value.symbol}_[{re.sub(r'[][]', '', text)}]" if value.symbol else text
+            return f"{value.symbol}_[{as_subscript(text)}]" if value.symbol else text
         if isinstance(value, list):
             return " + ".join(map(self.name, value))
         return self(value) if isinstance(value, Remark) else value
@@ -196,6 +197,11 @@ class Language:
 def _slot(name: str | None) -> str:
     """Return the pattern of a slot of a text: a name is not parted by semicolons and commas."""
     return f"(?P<{name}>{'[^;,]' if name.startswith('name') else '.'}*?)" if name else ""
+
+
+def as_subscript(name: str) -> str:
+    """Return a name that users gave, without the signs of formulas and tables, so that it may be a subscript."""
+    return name.translate(OUTSIDE_SIGNS)
 
 
 def plain(text: str) -> str:

@@ -19,11 +19,11 @@ from rocking_cli.core.centres import GROUND, Centre, Centres, Locus, Pair
 from rocking_cli.core.hung.attached import Follow, Spot
 from rocking_cli.core.reactions import parts
 from rocking_cli.verification.results import Evaluated
+from rocking_cli.views.sheet.language import as_subscript
 
 LEADING_ROTATIONS = (0.2, 0.5)  # shares of the limit at which the leading block has turned by phi
 SAME_MOTION = 1e-7  # difference of rotations, and relative one of centres, that count as one
 LEVEL_NORMAL = 1e-12  # vertical part of a level normal, over its length
-OUTSIDE_MARKS = str.maketrans("'[]|", "′()/")  # signs of formulas and tables, in names that users give to joints
 
 JointKind = Literal["hinge", "rolls", "guide", "level"]
 
@@ -101,7 +101,7 @@ class ChainCentres:
         rises = 1j * joint.roll  # a rounded edge touches the ground below its centre, wherever that is
         carries = names[-1] if other or joint.is_guide else names[0]
         at = self._near(self._place(carries, joint.point + rises) - rises)
-        symbol = joint.letter.translate(OUTSIDE_MARKS)
+        symbol = as_subscript(joint.letter)
         if joint.is_guide:
             turned = self._place(names[0], 1 + 0j) - self._place(names[0], 0j) if one else 1.0
             return JointRow(symbol, "guide", (one, other), at, 1j * joint.slide / abs(joint.slide) * turned)

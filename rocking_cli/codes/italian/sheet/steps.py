@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -26,7 +25,7 @@ from rocking_cli.core.hung.attached import Spot
 from rocking_cli.verification.results import Evaluated, Formula, Working
 from rocking_cli.views.sheet import template
 from rocking_cli.views.sheet.document import workings
-from rocking_cli.views.sheet.language import Language, texts_of
+from rocking_cli.views.sheet.language import Language, as_subscript, texts_of
 from rocking_cli.views.view import Table
 
 LINE_SUBSCRIPT = "lin"  # subscript of quantities on the straight line
@@ -76,11 +75,6 @@ class MethodComparison:
     capacity: float
     demand: str
     at: spectra.At | None = None
-
-
-def _subscript(name: str) -> str:
-    """Return a name of the user as a subscript, without the marks of formulas."""
-    return re.sub(r"[][|_^]", "", name)
 
 
 @dataclass(frozen=True)
@@ -318,7 +312,7 @@ class DirectionSteps:
         if BREAK in others:
             yield F.BROKEN.line(others[BREAK])
         if seat is not None:
-            yield F.SEAT.line(seat.d, {"name": _subscript(seat.load), "load": seat.load, "length": seat.length})
+            yield F.SEAT.line(seat.d, {"name": as_subscript(seat.load), "load": seat.load, "length": seat.length})
 
     def _seat_at(self, phi: float, at: LimitState, state: str) -> Iterator[Evaluated]:
         """Yield the displacement of the load whose seat limits a state, if it does."""
@@ -328,7 +322,7 @@ class DirectionSteps:
         spot = next(mass.spot for mass in chain.mechanism.hung.masses if mass.name == seat.load)
         x = [float(chain.mechanism.followed(np.array([each]), chain.direction)(spot).z[0].real) for each in (0.0, phi)]
         low, high = map(self.scale.near, sorted(x))
-        names = {"name": _subscript(seat.load), "load": seat.load, "state": state}
+        names = {"name": as_subscript(seat.load), "load": seat.load, "state": state}
         yield F.SEAT_MOVED.line(abs(x[1] - x[0]), names, one=high, other=low)
 
     def _allowed(self, rule: Rule, at: LimitState) -> Evaluated:
