@@ -156,7 +156,7 @@ class Formula:
         The clause of the code.
     meaning : str
         Meaning of the result, in a few words; for a code with a calculation sheet, the key of its texts.
-    standing : {"code", "print", "ours", "plain"}
+    standing : {"print", "transcription", "code", "ours", "plain"}
         How far the formula was checked, see `Standing`.
     digits : int
         Significant digits of the result.

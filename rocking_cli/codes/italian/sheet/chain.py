@@ -164,7 +164,7 @@ def multiplier(position: DisplacedChain, scale: Scale, at: str = "") -> Iterator
     largest = sum(abs(each.block.P) for each in blocks) * scale.length / abs(position.driven)
     value = 0.0 if abs(position.alpha) < MIN_SHARE * largest else position.alpha
     sides = {
-        key: " + ".join(f"{line.formula.symbol}".format(at=at) for line in lines)
+        key: " + ".join(line.formula.symbol.format(at=at) for line in lines)
         for key, lines in (("over", over), ("under", under))
     }
     formula = F.ALPHA if at else F.ALPHA_0
