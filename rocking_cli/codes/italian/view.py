@@ -20,7 +20,7 @@ from rocking_cli.codes.italian.sheet import dynamic
 from rocking_cli.codes.italian.sheet.steps import STATE_OF_METHOD, TERMINAL, ties
 from rocking_cli.codes.italian.sheet.summary import METHOD_NAMES, comparison, methods, verdicts
 from rocking_cli.studies.conclusion import Concluded
-from rocking_cli.verification.results import in_plain
+from rocking_cli.verification.results import Verification, in_plain
 from rocking_cli.views.column import Column, frame_of, of
 from rocking_cli.views.conclusion import digits_beside_one, headline
 from rocking_cli.views.sheet.document import Sentence
@@ -100,13 +100,25 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
         return frame_of(COLUMNS, rows_of(found))
 
     def draw(self, found: ItalianVerification) -> Figure:
-        """Draw the capacity curves of each direction, with capacity and demand at each limit state."""
+        """Draw the capacity curves of each direction, with capacity and demand at each limit state.
+
+        The conclusion stands above the direction that decides it.
+        """
         from rocking_cli.codes.italian.sheet.figures import draw_capacity
 
-        sides = shown(found)
+        title, structures = heading(found.mechanism), dict[str, Verification]({"": found})
         if found.strengthened is not None:
-            sides |= {f"{where}, strengthened": each for where, each in shown(found.strengthened).items()}
-        return draw_capacity(TERMINAL, sides, heading(found.mechanism), f" ({headline(found.conclusion)})")
+            title, structures = (
+                found.mechanism.name or title,
+                {", existing": found, ", strengthened": found.strengthened},
+            )
+        sides, ends = dict[str, ItalianVerified](), dict[str, str]()
+        for state, one in structures.items():
+            for where, each in shown(one).items():
+                sides[where + state] = each
+                if each is one.deciding or len(one.distinct) == 1:
+                    ends[where + state] = f" ({headline(one.conclusion)})"
+        return draw_capacity(TERMINAL, sides, title, ends)
 
 
 def _capacity(each: ItalianVerified, where: str) -> Table:

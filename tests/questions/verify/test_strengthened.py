@@ -85,6 +85,25 @@ def test_in_python_and_as_a_frame():
     assert answer.plot() is not None
 
 
+def test_each_conclusion_stands_above_the_curve_that_decides_it(files):
+    site = yaml.safe_load(SITE + SLC)
+    alone, tied = (parse_structure(text, "s.yaml", "test", Registry()) for text in (HEAVY, STRONG))
+    titles = [axes.get_title("left") for axes in rk.verify(alone, site, strengthened=tied).plot().axes]
+    assert titles == [
+        "facade, positive direction, existing, FC = 1.35 (SLD not satisfied)",
+        "facade, positive direction, strengthened, FC = 1.35 (satisfied)",
+    ]
+    leaning = FACADE + "density: 1800\ndepth: 5\nloads: [{name: roof, mass: 6 t, at: [0.2, 8]}]\n"
+    titles = [
+        axes.get_title("left")
+        for axes in rk.verify(parse_structure(leaning, "s.yaml", "test", Registry()), site).plot().axes
+    ]
+    assert titles == [
+        "facade: free-standing rectangular block, positive direction, FC = 1.35 (SLD not satisfied)",
+        "facade: free-standing rectangular block, negative direction, FC = 1.35",
+    ]
+
+
 def test_a_file_that_is_not_there_is_named(files):
     said = run("verify", "old.yaml", "--strengthened", "none.yaml", "--site", "site.yaml", code=2).stderr
     assert "none.yaml" in said and "Traceback" not in said

@@ -187,8 +187,9 @@ def _look(state: str) -> dict[str, Any]:
 
 
 def draw_capacity(
-    say: Language, sides: Mapping[str, ItalianVerified], title: str, end: str = "", demand: SiteDemand | None = None
-) -> Figure:
+    say: Language, sides: Mapping[str, ItalianVerified], title: str, ends: Mapping[str, str] | None = None,
+    demand: SiteDemand | None = None,
+) -> Figure:  # fmt: skip
     """Draw the capacity curve of each direction, with capacity and demand at each limit state.
 
     Parameters
@@ -197,8 +198,10 @@ def draw_capacity(
         Language of titles, axes and legends.
     sides : mapping of str to ItalianVerified
         Each direction by its name.
-    title, end : str
-        Title of each panel, before and after its direction and FC.
+    title : str
+        Title of each panel, before its direction and FC.
+    ends : mapping of str to str, optional
+        What stands after them, by the name of the direction.
     demand : SiteDemand, optional
         Spectra of the site to draw into the same axes, with the line of the period of the first limit state.
     """
@@ -236,7 +239,7 @@ def draw_capacity(
         axes.set_ylim(0, 1.08 * tallest)
         axes.set_ylabel(say("acceleration a* [m/s2]" if demand is None else "acceleration a*, S_e [m/s²]"),
                         fontsize=style.LABEL)  # fmt: skip
-        style.heading(axes, f"{title}, {where.lower()}, FC = {side.exact.confidence:g}{end}")
+        style.heading(axes, f"{title}, {where.lower()}, FC = {side.exact.confidence:g}{(ends or {}).get(where, '')}")
         style.tidy(axes)
         if demand is None:
             axes.legend(**style.LEGEND)
