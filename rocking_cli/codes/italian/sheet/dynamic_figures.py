@@ -19,6 +19,7 @@ from rocking_cli.processing.oscillator import response_spectrum
 from rocking_cli.views.sheet.language import Language
 
 SHORTEST_PERIOD, LONGEST_PERIOD, PERIOD_COUNT = 0.05, 4.0, 80  # s, s, and number: of the spectra of records
+SMALL_SHARE = 0.05  # share of the displacement capacity up to which a peak would not be seen beside it
 MAX_OPAQUE_LINES = 12  # with more records, their lines are transparent
 
 
@@ -33,9 +34,10 @@ def draw_history(say: Language, side: ItalianVerified, dynamic: Dynamic, record:
     limits = {"capacity d_{state}": dynamic.allowed, "limit d_0*": dynamic.d0}
     for k, (label, limit) in enumerate(limits.items(), 1):
         look = {key: value for key, value in style.distinct(k).items() if key in ("color", "linestyle", "linewidth")}
-        axes.axhline(limit, label=say(label, state=dynamic.state), **look)
+        axes.axhline(limit, label=f"{say(label, state=dynamic.state)} = {say.number(limit, 4)} m", **look)
     axes.set_xlim(0.0, float(t[-1]))
-    axes.set_ylim(0.0, 1.08 * max(dynamic.d0, record.with_confidence))
+    highest = dynamic.d0 if record.with_confidence > SMALL_SHARE * dynamic.allowed else 0.0
+    axes.set_ylim(0.0, 1.08 * max(highest, record.with_confidence) or None)
     style.tidy(axes, say("time t [s]"), "d [m]")
     style.legend_below(figure, axes.get_legend_handles_labels()[0], 4)
     return in_language(say, figure)
