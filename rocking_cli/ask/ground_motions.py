@@ -323,8 +323,8 @@ def introduce(what: str, one: Scaled, watch: Watcher) -> None:
         watch.note(f"pulse: {read} {pulse.duration:.4g} s{scaled}{done(motion)}")
         return
     watch.note(
-        f"{what}: {motion.name} ({motion.format}), {ground.npts} points, dt = {ground.dt:.6g} s, in {motion.unit}, "
-        f"PGA = {ground.pga_g:.4g} g{scaled}{done(motion)}"
+        f"{what}: {motion.name} ({motion.format}), {ground.npts} points, dt = {ground.dt:.6g} s, "
+        f"in {motion.source_unit}, PGA = {ground.pga_g:.4g} g{scaled}{done(motion)}"
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, InitVar, dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.units import KINDS
+from rocking_cli.units import UnitError, read
 
 STANDARD_GRAVITY = 9.80665  # m/s2
 MOST_SAMPLES = 20_000_000  # more than a day at 200 samples a second
@@ -68,7 +68,7 @@ class Origin(NamedTuple):
 NOT_SAID = Origin()
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class GroundMotion:
     """A ground acceleration history, positive to the right.
 
@@ -79,10 +79,12 @@ class GroundMotion:
     dt : float
         Interval between samples [s], > 0.
     acceleration : ndarray, shape (npts,)
-        Ground acceleration [m/s2] at t = 0, dt, 2 dt, ...; the motion keeps a read-only copy.
+        Ground acceleration at t = 0, dt, 2 dt, ..., in `unit`; the motion keeps a read-only copy in m/s2.
     unit : str
-        Unit of the acceleration in the file of a record, for information only. Samples in another unit are not
-        converted: of an array, the unit can only be m/s2.
+        Unit in which the acceleration is given, such as "g", "cm/s2" or "gal"; m/s2 by default. That of the motion is
+        always m/s2.
+    source_unit : str
+        Unit of the source, such as that of a record's file, for information only: `unit` by default.
     format : str
         Source of the motion: a record format, or `"array"`.
     vertical : GroundMotion, optional
@@ -104,14 +106,22 @@ class GroundMotion:
     Raises
     ------
     InputError
-        If there are fewer than two samples, a sample or dt is not finite, dt is not positive, or `every` is below 1; or
-        if an array has another unit than m/s2.
+        If there are fewer than two samples, a sample or dt is not finite, dt is not positive, `every` is below 1, or
+        `unit` is no unit of acceleration.
+
+    Examples
+    --------
+    >>> from rocking_cli import GroundMotion
+    >>> GroundMotion("mine", 0.01, [0.0, 0.3, -0.1], unit="g")
+    <GroundMotion mine: 3 samples, dt = 0.01 s, 0.02 s, PGA = 0.3 g>
     """
 
     name: str
     dt: float
     acceleration: Reals
-    unit: str = "m/s2"
+    _: KW_ONLY
+    unit: InitVar[str] = "m/s2"
+    source_unit: str = ""
     format: str = ARRAY
     vertical: GroundMotion | None = None
     points: NDArray[np.intp] | None = None
@@ -121,24 +131,33 @@ class GroundMotion:
     ground: GroundMotion | None = None
     origin: Origin = NOT_SAID
 
-    def __post_init__(self) -> None:
+    def __post_init__(self, unit: str) -> None:
         samples = _own(self.acceleration, np.float64)
+        if unit != "m/s2":
+            try:
+                samples = _own(samples * read(f"1 {unit}", "m/s2"), np.float64)
+            except UnitError as error:
+                hint = "give one of acceleration, such as g, m/s2, cm/s2 or gal"
+                raise InputError(Problem(error.message, self.name, field="`unit`", hint=hint)) from None
+        if not self.source_unit:
+            object.__setattr__(self, "source_unit", unit)
         if samples.ndim != 1 or samples.size < 2:
             raise InputError(f"{self.name}: a ground motion needs at least two samples, this has {samples.size}")
         if not np.isfinite(samples).all():
             raise InputError(f"{self.name}: sample {int(np.flatnonzero(~np.isfinite(samples))[0]) + 1} is not a number")
         if not (np.isfinite(self.dt) and self.dt > 0):
             raise InputError(f"{self.name}: the sample interval must be positive, got {self.dt} s")
-        if self.format == ARRAY and self.unit != "m/s2":
-            size = KINDS["acceleration"].get(self.unit)
-            hint = f"multiply the samples by {size}" if size else "give the samples in m/s2"
-            message = f"must be m/s2 for an array, got {self.unit!r}"
-            raise InputError(Problem(message, self.name, field="`unit`", hint=f"{hint}, and leave `unit` out"))
         if self.every < 1:
             raise InputError(f"{self.name}: a history keeps one of at least 1 sample, got {self.every}")
         object.__setattr__(self, "acceleration", samples)
         if self.points is not None:
             object.__setattr__(self, "points", _own(self.points, np.intp))
+
+    def __repr__(self) -> str:
+        floor = "" if self.ground is None else ", of a floor"
+        vertical = "" if self.vertical is None else ", with a vertical component"
+        size = f"{self.npts} samples, dt = {self.dt:.4g} s, {self.duration:.4g} s, PGA = {self.pga_g:.4g} g"
+        return f"<GroundMotion {self.name}: {size}{floor}{vertical}>"
 
     @property
     def npts(self) -> int:

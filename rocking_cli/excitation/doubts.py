@@ -92,7 +92,7 @@ def _sampling(motion: GroundMotion, measured: Measures) -> list[Doubt]:
 def _size(motion: GroundMotion, measured: Measures) -> list[Doubt]:
     if PLAUSIBLE_PGA[0] <= measured.pga <= PLAUSIBLE_PGA[1]:
         return []
-    text = f"a PGA of {measured.pga:.3g} g is unusual for a ground motion: is the unit really {motion.unit}?"
+    text = f"a PGA of {measured.pga:.3g} g is unusual for a ground motion: is the unit really {motion.source_unit}?"
     return [Doubt("pga", measured.pga, text)]
 
 

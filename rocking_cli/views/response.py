@@ -76,7 +76,7 @@ def _motion_data(motion: GroundMotion) -> dict[str, Any]:
         "name": motion.name,
         "npts": motion.npts,
         "dt": motion.dt,
-        "unit": motion.unit,
+        "unit": motion.source_unit,
         "pga": motion.of_ground.pga_g,
         "format": motion.format,
         **processing.data(motion),

@@ -391,7 +391,7 @@ def test_a_peak_is_compared_to_the_digits_of_its_header(tmp_path):
 def test_the_unit_and_its_code_must_agree_in_cosmos(tmp_path):
     found = refused(cosmos(unit="m/sec2(04)"), tmp_path)
     assert "the unit is m/s2, but its code (04) stands for cm/s2" in found.message
-    assert motion_of(cosmos(unit="g(02)"), tmp_path).unit == "g"
+    assert motion_of(cosmos(unit="g(02)"), tmp_path).source_unit == "g"
 
 
 def test_the_histories_of_a_channel_have_one_interval(tmp_path):

@@ -46,7 +46,7 @@ class TestDerivatives:
         motion = read_record(moved, quantity="displacement")
         assert motion.acceleration == pytest.approx(ACC, abs=2e-3 * np.abs(ACC).max())
         assert motion.processing == ("from displacement",)
-        assert motion.unit == "mm"
+        assert motion.source_unit == "mm"
         back = motion.displacement
         assert back == pytest.approx(U, abs=0.01 * A)
 

@@ -205,7 +205,7 @@ class TestDoubts:
 
     @pytest.mark.parametrize("pga", [0.001, 5.0])
     def test_an_odd_pga(self, pga):
-        motion = GroundMotion("odd", 0.01, clean() / np.abs(clean()).max() * pga * G, unit="gal", format="text")
+        motion = GroundMotion("odd", 0.01, clean() / np.abs(clean()).max() * pga * G, source_unit="gal", format="text")
         (found,) = doubts(motion, measure(motion))
         assert found.kind == "pga" and found.value == pytest.approx(pga) and "really gal" in found.text
 

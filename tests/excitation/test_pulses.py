@@ -152,7 +152,7 @@ class TestEvery:
             bend = np.abs(np.diff(pulse.acceleration(motion.dt * np.arange(motion.npts)), 2)).max()
             # A chord is off by an eighth of it, samples by a twelfth, and by half of that more beside a peak.
             assert bend / 20 <= off <= bend / 6
-        assert (motion.format, motion.name, motion.unit) == ("pulse", str(pulse), "g")
+        assert (motion.format, motion.name, motion.source_unit) == ("pulse", str(pulse), "g")
 
     @each
     def test_the_usual_samples_are_fine_enough(self, pulse):

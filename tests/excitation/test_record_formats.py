@@ -75,7 +75,7 @@ def columns(values, form: str, per_line: int, margin: str = "", after: str = "")
 )
 def test_real_records(name, channel, form, unit, npts, dt, pga, peak):
     motion = read_record(record(name), channel=channel)
-    assert (motion.format, motion.unit, motion.npts) == (form, unit, npts)
+    assert (motion.format, motion.source_unit, motion.npts) == (form, unit, npts)
     assert motion.dt == pytest.approx(dt, rel=1e-9)
     largest = 100 * motion.acceleration[np.argmax(np.abs(motion.acceleration))]
     assert abs(largest) == pytest.approx(pga, rel=2e-4, abs=6e-4)
@@ -99,7 +99,7 @@ def test_the_peak_of_a_real_record_is_when_its_header_says(name, seconds):
 def test_the_real_usc_record_is_the_same_straight_lines():
     path = record("formats/017m30lw.s0a")
     motion = read_record(path)
-    assert (motion.format, motion.unit, motion.dt, motion.npts) == ("USC V1", "g/10", 0.001, 34717)
+    assert (motion.format, motion.source_unit, motion.dt, motion.npts) == ("USC V1", "g/10", 0.001, 34717)
     rows = path.read_text().split("\n")[27:]
     pairs = np.array([float(cell) for row in rows for cell in re.findall(".{7}", row[1:])]).reshape(-1, 2)
     assert len(pairs) == 8095
@@ -271,7 +271,7 @@ def test_made_files_are_read(name, newline, tmp_path):
     motion = read_record(path)
     expected = (VALUES - VALUES.mean() if name == "knet" else VALUES) * size
     np.testing.assert_allclose(motion.acceleration, expected, rtol=1e-12, atol=1e-9)
-    assert (motion.name, motion.unit, motion.format) == ("record.dat", unit, load_readers()[name].TITLE)
+    assert (motion.name, motion.source_unit, motion.format) == ("record.dat", unit, load_readers()[name].TITLE)
     assert motion.dt == pytest.approx(dt, rel=1e-12)
     assert motion.remarks == ()
 
@@ -440,7 +440,7 @@ def test_cosmos_says_the_same_in_several_ways(said, unit, write):
     content = re.sub(r" *11 +acceleration pts.*", f"  {said}", cosmos())
     motion = read_record(write(content))
     np.testing.assert_allclose(motion.acceleration, VALUES * UNITS[unit], rtol=1e-15)
-    assert (motion.unit, motion.dt) == (unit, 0.01)
+    assert (motion.source_unit, motion.dt) == (unit, 0.01)
 
 
 def test_cosmos_with_velocities_below_the_accelerations(write):
@@ -484,7 +484,7 @@ def test_csmip_v1_at_a_constant_interval(evenly, write):
     assert claims(content) == ["csmip_v1"]  # though a corrected record may have such a line, too
     motion = read_record(write(content), channel="up")
     np.testing.assert_allclose(motion.acceleration, 0.2 * VALUES * G, rtol=1e-12)
-    assert (motion.dt, motion.unit, motion.format) == (pytest.approx(0.005), "g", "CSMIP V1")
+    assert (motion.dt, motion.source_unit, motion.format) == (pytest.approx(0.005), "g", "CSMIP V1")
 
 
 def test_csmip_v1_says_the_width_of_its_values(write):

@@ -88,7 +88,7 @@ def test_two_columns(write, rows):
     motion = read_record(write(rows), units="m/s2")
     assert accelerations(motion) == [0.1, -0.2, 0.3]
     assert motion.dt == pytest.approx(0.01, rel=1e-12)
-    assert (motion.name, motion.unit, motion.format) == ("record.txt", "m/s2", "text")
+    assert (motion.name, motion.source_unit, motion.format) == ("record.txt", "m/s2", "text")
 
 
 @pytest.mark.parametrize("rows", ["0.1\n-0.2\n0.3", "0.1,\n-0.2,\n0.3,\n", "  .1\n -.2\n\n  .3\n"])
@@ -113,7 +113,7 @@ def test_one_column_takes_the_interval_from_the_user(write, rows):
 def test_units_are_converted_to_si(write, unit, factor):
     motion = read_record(write("0,1\n0.01,-2\n"), units=unit)
     np.testing.assert_allclose(motion.acceleration, [factor, -2 * factor], rtol=1e-15)
-    assert motion.unit == unit
+    assert motion.source_unit == unit
 
 
 @pytest.mark.parametrize("name", ["record.AT2", "record.json", "record", "record.png"])
@@ -128,7 +128,7 @@ def test_encodings(write, bom, encoding):
     content = "station é\ntime [s];a [m/s²]\r\n0.0;1\r\n0.5;2\r\n".encode(encoding)
     motion = read_record(write((bom if encoding == "utf-8" else b"") + content))
     assert accelerations(motion) == [1, 2]
-    assert motion.unit == "m/s2"
+    assert motion.source_unit == "m/s2"
 
 
 @UNTIMED
@@ -221,7 +221,7 @@ def test_spellings(spelling, name):
 )
 def test_unit_from_the_header(write, header, unit):
     motion = read_record(write(f"{header}\n0.0,1\n0.5,2\n"))
-    assert motion.unit == unit
+    assert motion.source_unit == unit
     assert motion.npts == 2
 
 
@@ -258,8 +258,8 @@ def test_unknown_unit_of_the_user(write):
 
 
 def test_header_and_user_may_agree(write):
-    assert read_record(write("t,accel_g\n0,1\n0.5,2\n"), units="g").unit == "g"
-    assert read_record(write("t,a [cm/s2]\n0,1\n0.5,2\n"), units="gal").unit == "cm/s2"
+    assert read_record(write("t,accel_g\n0,1\n0.5,2\n"), units="g").source_unit == "g"
+    assert read_record(write("t,a [cm/s2]\n0,1\n0.5,2\n"), units="gal").source_unit == "cm/s2"
 
 
 def test_two_units_in_a_header_are_not_guessed_between(write):
@@ -269,7 +269,7 @@ def test_two_units_in_a_header_are_not_guessed_between(write):
     assert "m/s2" in found.message
     assert found.line == 2
     assert "`units`" in found.hint
-    assert read_record(path, units="g").unit == "g"
+    assert read_record(path, units="g").source_unit == "g"
     assert "`units` says cm/s2" in problem(path, units="cm/s2").message
 
 
@@ -496,7 +496,7 @@ def test_peer(write, per_line, newline):
     path = write(at2(VALUES, per_line=per_line).replace("\n", newline), "RSN1.AT2")
     motion = read_record(path)
     np.testing.assert_allclose(motion.acceleration, np.array(VALUES) * G, rtol=1e-12)
-    assert (motion.dt, motion.name, motion.unit, motion.format) == (0.01, "RSN1.AT2", "g", "PEER AT2")
+    assert (motion.dt, motion.name, motion.source_unit, motion.format) == (0.01, "RSN1.AT2", "g", "PEER AT2")
 
 
 @pytest.mark.parametrize(
@@ -515,7 +515,7 @@ def test_peer(write, per_line, newline):
 def test_peer_headers(write, header):
     motion = read_record(write(header + "  .1000000E+00  -.2000000E+00   .3000000E+00\n"))
     np.testing.assert_allclose(motion.acceleration, [0.1 * G, -0.2 * G, 0.3 * G], rtol=1e-15)
-    assert (motion.dt, motion.unit, motion.format) == (0.005, "g", "PEER AT2")
+    assert (motion.dt, motion.source_unit, motion.format) == (0.005, "g", "PEER AT2")
 
 
 @pytest.mark.parametrize("header", ["{npts:6d}  {dt}    NPTS, DT\n", "NPTS= {npts:6d}, DT= {dt} SEC,\n"])
@@ -566,13 +566,13 @@ def test_round_trip_of_values_run_together(tmp_path_factory, values, per_line):
     ],
 )
 def test_unit_of_peer(write, line, unit):
-    assert read_record(write(at2(VALUES, units=line + "\n"))).unit == unit
+    assert read_record(write(at2(VALUES, units=line + "\n"))).source_unit == unit
 
 
 def test_unit_missing_or_contradicted_in_peer(write):
     path = write(at2(VALUES, units="\n"))
     assert "`units`" in problem(path).hint
-    assert read_record(path, units="gal").unit == "gal"
+    assert read_record(path, units="gal").source_unit == "gal"
     found = problem(write(at2(VALUES)), units="m/s2")
     assert "the unit is g, but `units` says m/s2" in found.message
     assert found.line == 3
@@ -596,7 +596,7 @@ def test_comments_in_peer_are_passed_over(write):
 def test_text_with_a_peer_header_in_comments_is_text(write):
     content = "".join(f"# {line}\n" for line in at2([], npts=2).splitlines()) + "0,1\n0.01,2\n"
     motion = read_record(write(content))
-    assert (motion.format, motion.npts, motion.unit) == ("text", 2, "g")
+    assert (motion.format, motion.npts, motion.source_unit) == ("text", 2, "g")
 
 
 # --- real records, and the example ----------------------------------------------------------------------------------
@@ -615,7 +615,7 @@ def test_text_with_a_peer_header_in_comments_is_text(write):
 )
 def test_real_records(name, options, npts, dt, pga, form):
     motion = read_record(record(name), **options)
-    assert (motion.name, motion.npts, motion.format, motion.unit) == (name, npts, form, "g")
+    assert (motion.name, motion.npts, motion.format, motion.source_unit) == (name, npts, form, "g")
     assert motion.dt == pytest.approx(dt, rel=1e-9)
     assert motion.pga_g == pytest.approx(pga, abs=0.0005)
 
@@ -636,7 +636,7 @@ def test_the_example_is_what_its_script_makes(make_accel, tmp_path):
 
 def test_the_example_is_a_plausible_near_fault_motion(make_accel):
     motion = read_record(EXAMPLES / "accel.csv")
-    assert (motion.npts, motion.unit, motion.format) == (1201, "g", "text")
+    assert (motion.npts, motion.source_unit, motion.format) == (1201, "g", "text")
     assert motion.dt == pytest.approx(0.01)
     assert 0.5 <= motion.pga_g <= 0.6
     assert motion.acceleration[0] == motion.acceleration[-1] == 0
@@ -665,7 +665,7 @@ def test_a_column_is_chosen_by_place_or_name(write, channel, unit, values):
     motion = read_record(write(TABLE), channel=channel)
     size = G if unit == "g" else 1.0
     np.testing.assert_allclose(motion.acceleration, size * np.array(values), rtol=1e-15)
-    assert (motion.unit, motion.dt) == (unit, pytest.approx(0.01))
+    assert (motion.source_unit, motion.dt) == (unit, pytest.approx(0.01))
     assert motion.name == f"record.txt channel {'ax [g]' if unit == 'g' else 'ay [m/s2]'}"
 
 
@@ -702,8 +702,8 @@ def test_tables_of_any_width(write, columns, mark, labelled):
 
 def test_two_rows_of_labels(write):
     path = write("t,north,east\ns,g,cm/s2\n0,1,2\n0.1,2,3\n")
-    assert read_record(path, channel="north").unit == "g"
-    assert read_record(path, channel="east").unit == "cm/s2"
+    assert read_record(path, channel="north").source_unit == "g"
+    assert read_record(path, channel="east").source_unit == "cm/s2"
     assert "'ms'" in problem(write("time,north,east\nms,g,g\n0,1,2\n5,2,3\n"), channel="1").message
     assert "'ms'" in problem(write("time,north\nms,g\n0,1\n5,2\n")).message
 
@@ -794,7 +794,7 @@ def test_the_table_of_a_laboratory_is_read():
 @pytest.mark.parametrize("content", ["Zeit;a [m/s²]\r\n0,0;1,5\r\n0,5;2\r\n", "t,accel [m/s2]\n0.0,1.5\n0.5,2\n"])
 def test_utf_16(write, encoding, content):
     motion = read_record(write(content.encode(encoding)))
-    assert (accelerations(motion), motion.unit) == ([1.5, 2], "m/s2")
+    assert (accelerations(motion), motion.source_unit) == ([1.5, 2], "m/s2")
 
 
 @pytest.mark.parametrize("content", [b"t,accel_g\n0,1\n0.1,2\n\0\0\0\0", b"t,accel_g\0\0\n0,1\0\n0.1,2\0\0\n"])
@@ -839,7 +839,7 @@ def test_of_an_archive_of_several_one_is_chosen(write):
     assert read_record(path, channel="a.csv").name == "records.zip channel a.csv"
     for asked in ("2:ay", "b.csv:2", "B/b.csv:AY"):
         assert read_record(path, channel=asked).name == "records.zip channel b/b.csv:ay [m/s2]"
-        assert read_record(path, channel=asked).unit == "m/s2"
+        assert read_record(path, channel=asked).source_unit == "m/s2"
     assert "no file '4'" in problem(path, channel="4").message
     assert "2 columns" in problems(path, channel="b.csv")[0].message
 

@@ -77,7 +77,7 @@ def test_sac(made, byteorder, dt):
     path = made("SAC", ("HNE", VALUES), dt=dt, byteorder=byteorder)
     motion = read_record(path, units="g")
     np.testing.assert_array_equal(motion.acceleration, VALUES.astype(float) * G)
-    assert (motion.name, motion.dt, motion.unit, motion.format) == ("record.dat", dt, "g", "SAC")
+    assert (motion.name, motion.dt, motion.source_unit, motion.format) == ("record.dat", dt, "g", "SAC")
 
 
 def test_sac_of_version_7_has_a_footer(made):
@@ -93,7 +93,7 @@ def test_miniseed(made, byteorder, encoding):
     values = VALUES.astype({"FLOAT32": "f4", "FLOAT64": "f8"}.get(encoding, "i4"))
     motion = read_record(made("MSEED", ("HNE", values), encoding=encoding, byteorder=byteorder), units="cm/s2")
     np.testing.assert_allclose(motion.acceleration, values.astype(float) * 0.01, rtol=1e-15)
-    assert (motion.dt, motion.unit, motion.format) == (0.005, "cm/s2", "miniSEED")
+    assert (motion.dt, motion.source_unit, motion.format) == (0.005, "cm/s2", "miniSEED")
 
 
 @pytest.mark.parametrize("name", ["record.txt", "record.sac", "record.mseed", "record.AT2"])

@@ -150,7 +150,7 @@ class Pulse(ABC):
         steps = every * int(np.ceil(self.span * per_period / every - 1e-9))
         curve = self.shape(np.linspace(0.0, self.span, steps + 1))
         samples = self.amplitude * _with_its_impulse(curve)
-        return GroundMotion(str(self), self.duration / steps, samples, "g", "pulse", every=every)
+        return GroundMotion(str(self), self.duration / steps, samples, source_unit="g", format="pulse", every=every)
 
     @property
     def specification(self) -> str:

@@ -98,7 +98,9 @@ def read_measured(
         raise InputError(*map(_short, error.problems)) from None
     if gain is not None:
         processing = (*motion.processing, f"gain {gain}")
-        motion = replace(motion, acceleration=gain.size * motion.acceleration, unit=gain.text, processing=processing)
+        motion = replace(
+            motion, acceleration=gain.size * motion.acceleration, source_unit=gain.text, processing=processing
+        )
     if Path(file).name == name:
         return motion, wanted.quantity
     # A motion from an archive is named after the archive; its file counts as a channel.

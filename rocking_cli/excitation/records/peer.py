@@ -77,7 +77,9 @@ def read(
     # Only in files with the title of the database is the second line known to be the origin.
     origin = of_peer(lines[1]) if len(lines) > 1 and _SIGNATURE.match(lines[0]) else NOT_SAID
     name = Path(file).name
-    return GroundMotion(name, header.dt, values * UNITS[unit], unit, TITLE, remarks=remarks, origin=origin)
+    return GroundMotion(
+        name, header.dt, values * UNITS[unit], source_unit=unit, format=TITLE, remarks=remarks, origin=origin
+    )
 
 
 def _header(file: str, lines: Sequence[str]) -> _PeerHeader:

@@ -90,7 +90,9 @@ def read(
         remarks = (Doubt("count", float(stated), missing), *remarks)
     acceleration = in_si(np.array(values, dtype=np.float64), unit)
     origin = of_info(info)
-    return GroundMotion(Path(file).name, float(interval), acceleration, unit, TITLE, remarks=remarks, origin=origin)
+    return GroundMotion(
+        Path(file).name, float(interval), acceleration, source_unit=unit, format=TITLE, remarks=remarks, origin=origin
+    )
 
 
 def _whole(digits: str) -> int | float:

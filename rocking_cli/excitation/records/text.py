@@ -112,7 +112,7 @@ def read(
     )
     if uneven is not None:
         remarks = (*remarks, uneven)
-    return GroundMotion(name, dt, values * size, unit, "text", remarks=remarks)
+    return GroundMotion(name, dt, values * size, source_unit=unit, format="text", remarks=remarks)
 
 
 def _no_interval(file: str, wanted: Wanted, columns: int) -> Problem:

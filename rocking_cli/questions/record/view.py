@@ -61,7 +61,7 @@ AS_READ: tuple[Column[Examined], ...] = (
     Column("name", of("motion.name")),
     Column("format", of("motion.format"), head="format", form=_folded),
     Column("channel", _channel, head="channel"),
-    Column("unit", of("motion.unit"), head="unit in the file"),
+    Column("unit", of("motion.source_unit"), head="unit in the file"),
     Column("origin", lambda record: record.motion.origin._asdict()),
     only_shown("earthquake", lambda record: record.motion.origin.event or None, _folded),
     only_shown("station", lambda record: record.motion.origin.station or None, _folded),

@@ -335,7 +335,7 @@ def _measures(result: MotionResult) -> dict[str, Any]:
         "file": result.file,
         "rows": [
             ["format", motion.format, ""],
-            ["unit in the file", motion.unit, ""],
+            ["unit in the file", motion.source_unit, ""],
             ["samples", f"{motion.npts}", "1"],
             ["sampling interval", _number(motion.dt), "s"],
             ["scale factor", _number(given.factor, 6), "1"],
