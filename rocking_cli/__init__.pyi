@@ -77,10 +77,10 @@ from rocking_cli.questions.pulse.verb import pulse as pulse
 from rocking_cli.questions.record.verb import record as record
 from rocking_cli.questions.record.verb import response_spectrum as response_spectrum
 from rocking_cli.questions.report.verb import report as report
+from rocking_cli.questions.respond.each_verb import respond_each as respond_each
 from rocking_cli.questions.respond.motion_verbs import correct as correct
 from rocking_cli.questions.respond.motion_verbs import on_floor as on_floor
 from rocking_cli.questions.respond.motion_verbs import respond_around as respond_around
-from rocking_cli.questions.respond.motion_verbs import respond_each as respond_each
 from rocking_cli.questions.respond.verb import respond as respond
 from rocking_cli.questions.score.verb import score as score
 from rocking_cli.questions.select.verb import select as select

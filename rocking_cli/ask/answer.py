@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.json_text import json_text
+from rocking_cli.text import numbered
 from rocking_cli.views.view import Table, View
 
 if TYPE_CHECKING:
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
 R = TypeVar("R")
 K = TypeVar("K")
 V = TypeVar("V")
+_NO_NAME = re.compile(r"[^\w.]+")  # what is not in the name of a column
 MAX_REPR_LENGTH = 100  # characters of the text that `repr` shows
 
 
@@ -86,7 +89,9 @@ class Answer(Generic[R]):
         return plain
 
     def to_frame(self) -> pandas.DataFrame:
-        """Return the result as a frame of pandas, which must be installed.
+        """Return the result as a frame of pandas, which must be installed; `attrs["units"]` has the units of columns.
+
+        Columns are those of `--out`, their names without units and blanks.
 
         Raises
         ------
@@ -145,12 +150,36 @@ _DRAWING = RLock()
 """Lock around drawing and writing of plots, as matplotlib is not safe for threads."""
 
 
+def parted(columns: Columns) -> tuple[dict[str, Any], dict[str, str]]:
+    """Return columns by names without units and blanks, and the unit of each that has one.
+
+    Examples
+    --------
+    >>> parted({"phi/phi_cr": [0.5], "t [s]": [1.0], "known to [s]": [2.0]})
+    ({'phi_over_phi_cr': [0.5], 't': [1.0], 'known_to': [2.0]}, {'t': 's', 'known_to': 's'})
+    """
+    named: dict[str, Any] = {}
+    units: dict[str, str] = {}
+    for head, values in columns.items():
+        words, _, unit = head.removesuffix("]").rpartition(" [") if head.endswith("]") else (head, "", "")
+        name = numbered(_NO_NAME.sub("_", words.replace("/", " over ")).strip("_"), "", named)
+        named[name] = values
+        if unit:
+            units[name] = unit
+    return named, units
+
+
 def _frame(columns: Callable[[], Columns]) -> pandas.DataFrame:
     if find_spec("pandas") is None:
         raise InputError(Problem("a frame requires the package pandas", hint="pip install pandas"))
     from pandas import DataFrame
 
-    return DataFrame(dict(columns()))
+    named, units = parted(columns())
+    frame = DataFrame(named)
+    numbers = list(frame.select_dtypes("floating"))
+    frame[numbers] += 0.0  # turns -0 into 0
+    frame.attrs["units"] = units
+    return frame
 
 
 def _write(figure: Figure, path: Path) -> None:

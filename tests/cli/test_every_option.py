@@ -81,7 +81,8 @@ CALLS = {
     ),
     "respond_each": (
         {"structures": WEAK, "motions": STRONG},
-        {"structures": [BLOCK, OTHER], "motions": PULSE, "models": "linear2", "scales": [0.5], "opening": 0.0},
+        {"structures": [BLOCK, OTHER], "motions": PULSE, "models": "linear2", "scales": [0.5], "opening": 0.0,
+         "polarities": [1, -1], "restitutions": [0.8], "histories": True, "out": "o.csv"},
     ),
     "respond_around": (
         {"structure": BLOCK, "one": RECORD, "other": RECORD, "models": "nonlinear"},

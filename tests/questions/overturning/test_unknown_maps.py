@@ -84,7 +84,7 @@ class TestArrays:
         answer = rk.respond_each(FILE, ACCEL, models="nonlinear", scales=[0.1, 2.0])
         assert answer["nonlinear"].share() == (0.0, 0.5)
         np.testing.assert_array_equal(answer["nonlinear"].overturned.ravel(), [0.0, np.nan])
-        np.testing.assert_array_equal(answer.to_frame()["nonlinear overturned"], [0.0, np.nan])
+        np.testing.assert_array_equal(answer.to_frame()["overturned"], [0.0, np.nan])
         assert np.ravel(answer.to_dict()["nonlinear"]["overturned"]).tolist() == [False, None]
 
 
