@@ -18,11 +18,14 @@ import numpy as np
 from by_solve_ivp import BySolveIvp
 from numba import njit
 
-from rocking_cli import GroundMotion, Model, Runs, build_models, load_structure, read_record, respond_many
+from rocking_cli import GroundMotion, load_structure, read_record
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics import kernels as at
+from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.deck import lay_out, run_deck
 from rocking_cli.dynamics.history import RTOL, follow
+from rocking_cli.dynamics.model import Model
+from rocking_cli.structure import build_models
 
 PROJECT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(PROJECT / "scripts"))

@@ -7,6 +7,7 @@ import re
 import time
 from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
+from pkgutil import resolve_name
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from rocking_cli.ask.watcher import Watcher
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.model import MODELS
 from rocking_cli.plugins.rooms import names
+from rocking_cli.structure import build_models
 from rocking_cli.views.view import View
 from tests.cli.test_cli import run_json
 from tests.cli.test_every_option import CALLS, RECORD, SITE
@@ -59,6 +61,15 @@ def test_what_is_not_there_is_no_attribute():
     with pytest.raises(AttributeError, match="has no attribute 'Steeple'"):
         _ = rk.Steeple
     assert not hasattr(rk, "_own")
+
+
+@pytest.mark.parametrize("name", rk._MOVED)
+def test_a_name_that_is_gone_says_what_to_use(name):
+    with pytest.raises(AttributeError, match=rf"^rocking_cli has no {name}: use ") as caught:
+        getattr(rk, name)
+    places = [word for word in re.findall(r"[\w.]+", str(caught.value).partition(": use ")[2]) if "." in word]
+    assert places and all(callable(resolve_name(re.sub(r"^rk\b", "rocking_cli", place))) for place in places)
+    assert name not in dir(rk)
 
 
 @pytest.mark.parametrize(
@@ -217,7 +228,7 @@ FRAMES = {
         "width [m]; peak_ratio; unknown; holds",
         {"width [m]": lambda _, data: data["scan"]["values"], "peak_ratio": lambda answer, _: answer.metric},
     ),
-    "equivalent": (
+    "equivalent_pulses": (
         "p t; block t [s]; block phi/phi_cr; weak t [s]; weak phi/phi_cr; linear block phi/phi_cr",
         {"p t": lambda answer, _: answer.members[0].block.p * answer.members[0].history.time},
     ),
@@ -314,7 +325,7 @@ def test_every_frame_has_its_columns_and_the_numbers_of_its_answer(tmp_path, mon
 @pytest.mark.parametrize(
     "verb",
     ["collapse", "equiv", "draw", "record", "respond", "spectrum", "overturning_map", "overturning_curves", "margin",
-     "verify", "error", "equivalent"],
+     "verify", "error", "equivalent_pulses"],
 )  # fmt: skip
 def test_an_answer_shows_itself(verb, tmp_path):
     answer = getattr(rk, verb)(**QUESTIONS[verb])
@@ -449,7 +460,9 @@ VERBS = [
     for name in sorted(set(names().values()))
     if ">>>" in (PROJECT / f"{name.replace('.', '/')}.py").read_text(encoding="utf-8")
 ]
-MODULES = ("", *VERBS, ".ask.watcher", ".dynamics.batch", ".dynamics.exact", ".names", ".units", ".views.column")
+MODULES = (
+    "", *VERBS, ".ask.watcher", ".dynamics.batch", ".dynamics.exact", ".names", ".structure", ".units", ".views.column",
+)  # fmt: skip
 
 
 @pytest.mark.every(2)
@@ -485,7 +498,7 @@ def test_factors_in_several_dimensions_are_refused(scales):
     ("ask", "said"),
     [
         (lambda block: rk.equiv({"mechanism": "block"}), "structure must be a mechanism or a YAML file, got a dict"),
-        (lambda block: rk.respond(rk.build_models(block)[0], ACCEL), "structure must be a mechanism or a YAML file"),
+        (lambda block: rk.respond(build_models(block)[0], ACCEL), "structure must be a mechanism or a YAML file"),
         (lambda block: rk.respond(block, np.zeros(9)), "`dt` is missing: samples in an array"),
         (lambda block: rk.spectrum(block, ACCEL, count=-1), "count must be a whole number of at least 1, got -1"),
         (lambda block: rk.spectrum(block, ACCEL, count=0), "count must be a whole number of at least 1, got 0"),

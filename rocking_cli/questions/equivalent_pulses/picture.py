@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.plotting import style
-from rocking_cli.questions.equivalent.study import EquivalentResponses
+from rocking_cli.questions.equivalent_pulses.study import EquivalentResponses
 
 CUT_RATIO = 1.5  # phi/phi_cr at which a curve that overturns is cut off, with a cross
 SHOWN_AFTER_PULSE = 8.0  # p times the duration that is shown
