@@ -91,7 +91,7 @@ class Answer(Generic[R]):
     def to_frame(self) -> pandas.DataFrame:
         """Return the result as a frame of pandas, which must be installed; `attrs["units"]` has the units of columns.
 
-        Columns are those of `--out`, their names without units and blanks.
+        Columns are those of the tables that are written, their names without units and blanks.
 
         Raises
         ------

@@ -34,11 +34,11 @@ OUTCOMES = (names.NO_UPLIFT, names.ROCKS, names.STILL_ROCKING, names.OVERTURNS, 
 """Categories of the column `outcome`."""
 HISTORIES_PER_TASK = 16
 MOST_VALUES = 200_000_000  # rotations in all histories: 1.6 GB
-ALIKE = 1e-9  # relative difference up to which the restitution of both directions is one
+MAX_ETA_DIFFERENCE = 1e-9  # relative difference up to which the restitution of both directions is one
 
 
 @dataclass(frozen=True, eq=False)
-class Grid:
+class RunGrid:
     """What is combined with what: an axis each, in the order of the fields; an axis that is None is not there.
 
     Parameters
@@ -135,52 +135,52 @@ class Grid:
         return rotations.reshape(*self.shape, -1)
 
 
-def columns(grid: Grid, outcomes: Mapping[ModelName, Outcomes]) -> Columns:
+def columns(grid: RunGrid, outcomes: Mapping[ModelName, Outcomes]) -> Columns:
     """Return a row for each run of each model: what was combined, how strong the motion was, and what came of it."""
     place = dict(zip(grid.axes, np.indices(grid.shape).reshape(len(grid.shape), -1), strict=True))
     table: dict[str, Any] = {name: grid.axes[name][place[name]] for name in ("structure", "motion", "scale")}
     table["polarity"] = grid.runs.polarity
-    own = np.array([_common(each.etas) for each in grid.structures])[place["structure"]]
-    table["eta"] = np.where(np.isnan(grid.runs.eta), own, grid.runs.eta)
+    of_structure = np.array([_common(each.etas) for each in grid.structures])[place["structure"]]
+    table["eta"] = np.where(np.isnan(grid.runs.eta), of_structure, grid.runs.eta)
     measured = [measure(each.of_ground) for each in grid.motions]
     for name, peaks in (("pga_g [g]", [each.pga for each in measured]), ("pgv [m/s]", [each.pgv for each in measured])):
         table[name] = np.abs(table["scale"]) * np.array(peaks)[place["motion"]]
     parts = [
-        table | {"model": np.full(grid.count, model, dtype=object)} | _found(grid, found)
-        for model, found in outcomes.items()
+        table | {"model": np.full(grid.count, model, dtype=object)} | _outcome_columns(grid, outcome)
+        for model, outcome in outcomes.items()
     ]
     heads = ["structure", "model", *(each for each in parts[0] if each not in ("structure", "model"))]
     return {head: np.concatenate([part[head] for part in parts]) for head in heads}
 
 
-def _found(grid: Grid, found: Outcomes) -> dict[str, Any]:
-    hidden = found.fell | found.failed
-    peaks = np.where(hidden, np.nan, np.maximum(found.peak_positive, found.peak_negative))
-    moved = np.stack(list(_displacements(grid, found)))
+def _outcome_columns(grid: RunGrid, outcome: Outcomes) -> dict[str, Any]:
+    hidden = outcome.fell | outcome.failed
+    peaks = np.where(hidden, np.nan, np.maximum(outcome.peak_positive, outcome.peak_negative))
+    moved = np.stack(list(_displacements(grid, outcome)))
     values: dict[str, Any] = {
-        "outcome": _words(found),
-        "overturned": found.overturned,
-        "unknown": found.unknown,
-        "peak_ratio": found.peak_ratio,
+        "outcome": _words(outcome),
+        "overturned": outcome.overturned,
+        "unknown": outcome.unknown,
+        "peak_ratio": outcome.peak_ratio,
         "peak_rotation [rad]": peaks,
         "peak_displacement [m]": np.where(hidden, np.nan, moved),
-        "impact_count": found.impact_count,
-        "uplift_time [s]": found.uplift_time,
-        "overturning_time [s]": found.overturning_time,
-        "end_time [s]": found.end_time,
-        "known_to [s]": found.known_to,
-        "peak_ratio_at_least": found.lower_bound,
-        "opening": found.opening,
+        "impact_count": outcome.impact_count,
+        "uplift_time [s]": outcome.uplift_time,
+        "overturning_time [s]": outcome.overturning_time,
+        "end_time [s]": outcome.end_time,
+        "known_to [s]": outcome.known_to,
+        "peak_ratio_at_least": outcome.lower_bound,
+        "opening": outcome.opening,
     }
     return {name: np.ravel(each) for name, each in values.items()}
 
 
-def _displacements(grid: Grid, found: Outcomes) -> Iterator[Reals]:
+def _displacements(grid: RunGrid, outcome: Outcomes) -> Iterator[Reals]:
     """Yield the peak displacements of each structure [m]: of the centroid of all that moves, horizontal."""
     for k, structure in enumerate(grid.structures):
         mechanism = structure.mechanism
         by_side = [
-            _moved(mechanism, direction, (found.peak_positive if direction > 0 else found.peak_negative)[k])
+            _moved(mechanism, direction, (outcome.peak_positive if direction > 0 else outcome.peak_negative)[k])
             for direction in mechanism.directions
         ]
         yield np.max(by_side, axis=0)
@@ -192,16 +192,16 @@ def _moved(mechanism: Mechanism, direction: Any, peaks: Reals) -> Reals:
     return np.where(np.isfinite(moved), moved, np.nan).reshape(peaks.shape)
 
 
-def _words(found: Outcomes) -> NDArray[Any]:
+def _words(outcome: Outcomes) -> NDArray[Any]:
     """Return the outcomes in words, in the order of precedence of `names.outcome`."""
-    reasons = [found.failed, found.unknown, found.fell, found.still_rocking, found.lifted]
+    reasons = [outcome.failed, outcome.unknown, outcome.fell, outcome.still_rocking, outcome.lifted]
     words = [FAILED, names.UNKNOWN, names.OVERTURNS, names.STILL_ROCKING, names.ROCKS]
     return np.select(reasons, [np.array(word, dtype=object) for word in words], np.array(names.NO_UPLIFT, dtype=object))
 
 
 def _common(etas: tuple[float, float]) -> float:
     """Return the restitution of both directions; NaN if they differ."""
-    return etas[0] if isclose(*etas, rel_tol=ALIKE) else nan
+    return etas[0] if isclose(*etas, rel_tol=MAX_ETA_DIFFERENCE) else nan
 
 
 def _distinct(given: Sequence[str]) -> NDArray[Any]:

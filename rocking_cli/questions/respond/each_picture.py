@@ -13,7 +13,7 @@ from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.plotting import style
-from rocking_cli.questions.respond.each import Grid, columns
+from rocking_cli.questions.respond.each import RunGrid, columns
 from rocking_cli.text import did_you_mean
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ WIDEST_SPREAD = 20.0  # ratio of the largest and the smallest positive value fro
 MARK_SIZE = 18.0  # pt2
 
 
-def draw_each(grid: Grid, outcomes: Mapping[ModelName, Outcomes], x: str = "pga_g", y: str = "peak_ratio") -> Figure:
+def draw_each(grid: RunGrid, outcomes: Mapping[ModelName, Outcomes], x: str = "pga_g", y: str = "peak_ratio") -> Figure:
     """Plot a column of the frame against another, a mark for each run of the first model, a colour for each structure.
 
     Runs that overturn, and have no peak, are crosses above the plane; runs of unknown outcome are open, at the peak
@@ -39,7 +39,7 @@ def draw_each(grid: Grid, outcomes: Mapping[ModelName, Outcomes], x: str = "pga_
 
     Parameters
     ----------
-    grid : Grid
+    grid : RunGrid
         What was combined.
     outcomes : mapping of str to Outcome
         The outcomes by model.

@@ -24,7 +24,7 @@ from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcomes
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.names import OPENING
 from rocking_cli.processing.reading_options import ReadingArguments
-from rocking_cli.questions.respond.each import OUTCOMES, Grid, columns
+from rocking_cli.questions.respond.each import OUTCOMES, RunGrid, columns
 from rocking_cli.views.view import View
 
 if TYPE_CHECKING:
@@ -37,17 +37,17 @@ MEASURES = ("pga_g", "pgv")
 
 @dataclass(frozen=True, eq=False, repr=False)
 class EachAnswer(MappingAnswer[ModelName, Outcomes]):
-    """Outcomes by model, as arrays over structures, motions, scales and the further axes that were asked for.
+    """Outcomes by model, as arrays over structures, motions, scales and the further axes that are given.
 
     Parameters
     ----------
-    grid : Grid
+    grid : RunGrid
         What was combined; `grid.axes` has the values along each axis, by its name.
     rotation : mapping of str to ndarray
         Signed rotations in time [rad] by model, of the shape of the outcomes and the times; empty without `histories`.
     """
 
-    grid: Grid = field(kw_only=True)
+    grid: RunGrid = field(kw_only=True)
     rotation: Mapping[ModelName, Reals] = field(kw_only=True)
 
     @property
@@ -74,7 +74,7 @@ class EachAnswer(MappingAnswer[ModelName, Outcomes]):
         return frame
 
     def to_xarray(self) -> xarray.Dataset:
-        """Return the columns of the frame as labelled arrays, with `rotation` in time if `histories` were asked for.
+        """Return the columns of the frame as labelled arrays, with `rotation` in time if there are `histories`.
 
         Returns
         -------
@@ -197,7 +197,7 @@ def respond_each(
     if models is None and any(len(each.default_models) < len(MODELS) for each in ready):
         chosen = ("nonlinear",)
     shaking = Motions.of(motions, options).gather(max(each.growth for each in ready), watch)
-    grid = Grid(
+    grid = RunGrid(
         ready,
         [one.motion if one.factor == 1 else one.motion.scaled(one.factor) for one in shaking],
         _axis("scales", scales),
@@ -242,7 +242,7 @@ def _sentence(model: ModelName, found: Outcomes) -> str:
     return many + (f", and the outcome of {int(found.unknown.sum())} is unknown." if found.unknown.any() else ".")
 
 
-def _kept(grid: Grid) -> str:
+def _kept(grid: RunGrid) -> str:
     return f"Their rotations are kept at {grid.time.size:,} times, until {grid.time[-1]:.4g} s."
 
 
