@@ -25,8 +25,7 @@ def draw_equivalent(found: EquivalentResponses, title: str) -> Figure:
     title : str
         Heading.
     """
-    figure = style.new_figure(5.8)
-    above, below = figure.subplots(2, 1, height_ratios=[1, 1.8])
+    figure, ((above,), (below,)) = style.panels(5.8, 2, height_ratios=[1, 1.8])
     style.heading(above, title)
     for k, each in enumerate(found.members):
         t = np.linspace(0.0, each.pulse.duration, 400)
