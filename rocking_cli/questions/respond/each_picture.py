@@ -31,7 +31,7 @@ WIDEST_SPREAD = 20.0  # ratio of the largest and the smallest positive value fro
 MARK_SIZE = 18.0  # pt2
 
 
-def draw_each(grid: RunGrid, outcomes: Mapping[ModelName, Outcomes], x: str = "pga_g", y: str = "peak_ratio") -> Figure:
+def draw_each(grid: RunGrid, outcomes: Mapping[ModelName, Outcomes], x: str, y: str) -> Figure:
     """Plot a column of the frame against another, a mark for each run of the first model, a colour for each structure.
 
     Runs that overturn, and have no peak, are crosses above the plane; runs of unknown outcome are open, at the peak

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking_cli.arrays import Reals
-from rocking_cli.ask.answer import MappingAnswer, drawn, parted
+from rocking_cli.ask.answer import MappingAnswer, parted
 from rocking_cli.ask.given import StructureLike, models_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, Motions, each_of
 from rocking_cli.ask.numbers import takes_numbers
@@ -30,6 +30,7 @@ from rocking_cli.views.view import View
 if TYPE_CHECKING:
     import pandas
     import xarray
+    from matplotlib.figure import Figure
 
 MEASURES = ("pga_g", "pgv")
 """Columns of a row that depend on motion and scale alone."""
@@ -38,6 +39,8 @@ MEASURES = ("pga_g", "pgv")
 @dataclass(frozen=True, eq=False, repr=False)
 class EachAnswer(MappingAnswer[ModelName, Outcomes]):
     """Outcomes by model, as arrays over structures, motions, scales and the further axes that are given.
+
+    `plot(x="pga_g", y="peak_ratio")` plots a column of the frame against another.
 
     Parameters
     ----------
@@ -214,12 +217,20 @@ def respond_each(
         outcomes,
         View(partial(_data, outcomes), [_sentence(chosen[0], outcomes[chosen[0]]), _kept(grid) if histories else ""]),
         partial(columns, grid, outcomes),
-        drawn("questions.respond.each_picture.draw_each", grid, outcomes),
+        partial(_figure, grid, outcomes),
         grid=grid,
         rotation=rotation,
     )
     write_files(answer, out, None, watch)
     return answer
+
+
+def _figure(
+    grid: RunGrid, outcomes: Mapping[ModelName, Outcomes], *, x: str = "pga_g", y: str = "peak_ratio"
+) -> Figure:
+    from rocking_cli.questions.respond.each_picture import draw_each
+
+    return draw_each(grid, outcomes, x, y)
 
 
 def _axis(name: str, given: ArrayLike) -> Reals:
