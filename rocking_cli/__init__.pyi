@@ -59,6 +59,7 @@ from rocking_cli.questions.draw.verb import draw as draw
 from rocking_cli.questions.equiv.verb import equiv as equiv
 from rocking_cli.questions.equivalent_pulses.verb import equivalent_pulses as equivalent_pulses
 from rocking_cli.questions.error.verb import error as error
+from rocking_cli.questions.fragility.own_data import fit_fragility as fit_fragility
 from rocking_cli.questions.fragility.results import results as results
 from rocking_cli.questions.fragility.verb import fragility as fragility
 from rocking_cli.questions.margin.verb import margin as margin

@@ -25,6 +25,7 @@ from rocking_cli.questions.fragility.observed import Observations
 from rocking_cli.questions.fragility.plan import Plan
 from rocking_cli.questions.fragility.store import Store
 from rocking_cli.questions.fragility.tally import Cells, Counted, Onset, Tally, count, intensities
+from rocking_cli.studies.fit import Estimate
 
 MAX_UNKNOWN_SHARE = 0.02  # share of unknown runs above which a second curve counts them the other way
 
@@ -116,6 +117,16 @@ class Fragility(_FittedTwice):
     def total(self) -> int:
         """Number of runs, or of capacities, that were fitted."""
         return self.curve.runs
+
+    @property
+    def median(self) -> Estimate | None:
+        """Intensity of probability one half, with its interval; None without a curve."""
+        return self.curve.median
+
+    @property
+    def dispersion(self) -> Estimate | None:
+        """Standard deviation of the logarithm of the capacity, with its interval; None as for `FragilityCurve`."""
+        return self.curve.dispersion
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,8 +24,11 @@ from rocking_cli.studies.fit import (
     totals,
 )
 
-Kind = Literal["lognormal", "logistic", "step", "none"]
-LINKS: dict[Kind, Link] = {"lognormal": "probit", "logistic": "logit"}
+Kind = Literal["lognormal", "logit", "logistic", "step", "none"]
+LINKS: dict[Kind, Link] = {"lognormal": "probit", "logit": "logit", "logistic": "logit"}
+CHOICE: tuple[Kind, ...] = ("lognormal", "logistic")  # kinds from which a study chooses
+# Standard deviation of the logarithm of the capacity times the slope, of the kinds that are fitted in ln x.
+DEVIATIONS: dict[Kind, float] = {"lognormal": 1.0, "logit": float(np.pi / np.sqrt(3))}
 MIN_P_VALUE = 0.05  # least p-value of a curve that is not rejected
 MAX_DISPERSION = 5.0  # dispersion above which the limit state does not depend on the measure: exp(5) is 150
 LIKELIHOOD_TOLERANCE = 1e-6  # smaller differences of log-likelihoods are rounding
@@ -87,9 +90,9 @@ class FragilityCurve(FittedToRuns):
     Parameters
     ----------
     kind : str
-        `lognormal`: P = Phi(ln(x/median)/dispersion), fitted in 1 and ln x. `logistic`: P = 1/(1 + exp(-(x - median)
-        /scale)), fitted in 1 and x. `step`: no run exceeds up to one intensity, all exceed from another one on. `none`:
-        no curve.
+        `lognormal`: P = Phi(ln(x/median)/dispersion), fitted in 1 and ln x. `logit`: P = 1/(1 + (median/x)^b), fitted
+        in 1 and ln x; its dispersion is pi/(sqrt(3) b). `logistic`: P = 1/(1 + exp(-(x - median)/scale)), fitted in 1
+        and x. `step`: no run exceeds up to one intensity, all exceed from another one on. `none`: no curve.
     step : Estimate or None
         Intensity at which the step is placed, and the interval in which it lies.
     goodness : Goodness or None
@@ -140,9 +143,9 @@ class FragilityCurve(FittedToRuns):
 
     @property
     def dispersion(self) -> Estimate | None:
-        """Standard deviation of the logarithm of the capacity; None unless the curve is lognormal, or above 5."""
-        inverse = self._inverse_slope() if self.kind == "lognormal" else None
-        return inverse if inverse is None or inverse.value <= MAX_DISPERSION else None
+        """Standard deviation of the logarithm of the capacity; None unless it is fitted in ln x, or above 5."""
+        spread = self._inverse_slope(DEVIATIONS[self.kind]) if self.kind in DEVIATIONS else None
+        return spread if spread is None or spread.value <= MAX_DISPERSION else None
 
     @property
     def scale(self) -> Estimate | None:
@@ -154,10 +157,10 @@ class FragilityCurve(FittedToRuns):
         """Whether the upper confidence limit of the median is infinite: the band then covers nearly everything."""
         return self.fit is not None and self._median is not None and not np.isfinite(self._median.high)
 
-    def _inverse_slope(self) -> Estimate:
+    def _inverse_slope(self, times: float = 1.0) -> Estimate:
         assert self.fit is not None
         slope = self.fit.intervals[1]
-        return Estimate(1 / slope.value, 1 / slope.high, 1 / slope.low if slope.low > 0 else np.inf)
+        return Estimate(times / slope.value, times / slope.high, times / slope.low if slope.low > 0 else np.inf)
 
     def probability(self, x: Reals) -> Reals:
         """Return the probability of exceedance at intensities of any shape; NaN if there is no curve."""
@@ -206,7 +209,7 @@ class FragilityCurve(FittedToRuns):
         return _design(self.kind, x.ravel())
 
 
-def fit_curve(observations: Observations, *, confidence: float = 0.95) -> FragilityCurve:
+def fit_curve(observations: Observations, *, confidence: float = 0.95, only: Kind | None = None) -> FragilityCurve:
     """Fit a fragility curve to runs at any intensities: a cloud, or stripes.
 
     Parameters
@@ -215,6 +218,8 @@ def fit_curve(observations: Observations, *, confidence: float = 0.95) -> Fragil
         The runs.
     confidence : float
         Confidence level of the intervals and the band.
+    only : {"lognormal", "logit", "logistic"}, optional
+        The kind of curve to fit, without a choice between lognormal and logistic.
 
     Returns
     -------
@@ -236,15 +241,19 @@ def fit_curve(observations: Observations, *, confidence: float = 0.95) -> Fragil
         return replace(bare, why=few)
     curves: dict[Kind, FragilityCurve] = {}
     refused: dict[Kind, str] = {}
-    for kind, link in LINKS.items():
+    kinds = CHOICE if only is None else (only,)
+    for kind in kinds:
         design = _design(kind, seen.x)
-        fit = fit_outcomes(link, design, seen.counts, seen.exceeding, confidence)
+        fit = fit_outcomes(LINKS[kind], design, seen.counts, seen.exceeding, confidence)
         if isinstance(fit, str):
             refused[kind] = fit
         else:
             goodness = goodness_of_runs(fit, design, seen)
             curves[kind] = replace(bare, kind=kind, fit=fit, goodness=goodness)
-    kind, why = _choice(curves) if "lognormal" in curves else ("none", refused["lognormal"])
+    if kinds[0] in refused:
+        kind, why = "none", refused[kinds[0]]
+    else:
+        kind, why = _choice(curves) if only is None else _alone(curves[only])
     aic = {kind: curve.fit.aic for kind, curve in curves.items() if curve.fit is not None}
     return replace(curves.get(kind, bare), why=why, aic=aic)
 
@@ -365,6 +374,11 @@ def _choice(curves: dict[Kind, FragilityCurve]) -> tuple[Kind, str]:
     assert lognormal.goodness is not None
     why = f"the lognormal is rejected (p = {lognormal.goodness.p_value:.2g}) and logistic is likelier"
     return "logistic", f"{why}; {_tested(logistic)}"
+
+
+def _alone(curve: FragilityCurve) -> tuple[Kind, str]:
+    """Return the kind of the only curve that was fitted, or `none`, and a sentence on it."""
+    return (curve.kind, _tested(curve)) if _slope(curve) > 0 else ("none", _DECREASING)
 
 
 def _slope(curve: FragilityCurve) -> float:

@@ -20,6 +20,7 @@ from rocking_cli.plotting import style
 from rocking_cli.questions.fragility.assess import Bivariate, Fragility
 from rocking_cli.questions.fragility.curves import FragilityCurve, Surface
 from rocking_cli.questions.fragility.observed import Observations
+from rocking_cli.questions.fragility.own_fit import FittedFragility
 from rocking_cli.questions.fragility.quantiles import MIN_RECORDS
 
 Reals = NDArray[np.float64]
@@ -129,6 +130,11 @@ def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str) -> Figur
     handles += [Line2D([], [], linestyle="none", label=_lines(each)) for each in (marks, *_remarks(drawn))]
     style.legend_below(figure, handles, 1, handlelength=4, alignment="left")
     return figure
+
+
+def draw_own(found: FittedFragility) -> Figure:
+    """Plot a curve of data of one's own with its robust band, and the observed shares."""
+    return draw_curves([LabelledCurve.of(f"{found.limit}", found.robustly)], style.plain(found.measure), "")
 
 
 def _remarks(drawn: Sequence[LabelledCurve]) -> list[str]:

@@ -39,7 +39,7 @@ def curve_blocks(curves: Sequence[Fragility]) -> Iterator[Mapping[str, Sequence[
     if not drawn:
         yield {**{name: np.array([], dtype=str) for name in TEXT_COLUMNS}, **{name: np.array([]) for name in COLUMNS}}
     for each in drawn:
-        x, share = _intensities(each), each.share
+        x, share = points(each), each.share
         words = (each.structure, f"{each.limit}", each.measure, parse_measure(each.measure).unit, each.curve.kind)
         unknown = np.full(x.size, np.nan if share is None else share)
         one, other = (_fit(estimate.curve, x) for estimate in (each, each.lower or each))
@@ -54,8 +54,8 @@ def _fit(curve: FragilityCurve, x: NDArray[np.float64]) -> list[NDArray[np.float
     return [*(np.full(x.size, value) for value in same), curve.probability(x), *curve.band(x)]
 
 
-def _intensities(found: Fragility) -> NDArray[np.float64]:
-    """Return the intensities of a curve's rows, with the ends of the interval of a step, and both sides of it."""
+def points(found: Fragility) -> NDArray[np.float64]:
+    """Return the intensities of the rows of a curve, with the ends of the interval of a step, and both sides of it."""
     least, most = float(found.seen.x.min()), float(found.seen.x.max())
     between = np.geomspace if most > MIN_LOG_RATIO * least else np.linspace
     x: NDArray[np.float64] = between(least, most, CURVE_POINTS)

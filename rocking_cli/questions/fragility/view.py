@@ -211,10 +211,10 @@ def _curves(structure: str, measure: str, curves: Sequence[Fragility], definitio
     yield ""
     yield table_of(f"{structure}, over {label(measure)}", columns, shown)
     for name, each in shown:
-        yield f"{name}: {each.curve.why}.{_senseless(each.curve)}{_cut_in_words(each)}{_in_years(each.rate)}"
-    yield from _undecided(curves, capacities=definition.method == "ida")
-    yield from _left_out(measure, curves[0].left_out)
-    yield from _warnings([each.curve for _, each in shown])
+        yield f"{name}: {each.curve.why}.{senseless(each.curve)}{_cut_in_words(each)}{_in_years(each.rate)}"
+    yield from undecided(curves, capacities=definition.method == "ida")
+    yield from without_logarithm(measure, curves[0].left_out)
+    yield from warnings_of([each.curve for _, each in shown])
 
 
 def _surfaces(
@@ -228,9 +228,9 @@ def _surfaces(
     yield table_of(f"{structure}: P = Phi(c0 + c1 ln({one}) + c2 ln({other}))", columns, shown)
     for name, each in shown:
         yield f"{name}: {each.surface.why}."
-    yield from _undecided(surfaces, capacities=False)
-    yield from _left_out(" or ".join(measures), surfaces[0].left_out)
-    yield from _warnings([each.surface for _, each in shown])
+    yield from undecided(surfaces, capacities=False)
+    yield from without_logarithm(" or ".join(measures), surfaces[0].left_out)
+    yield from warnings_of([each.surface for _, each in shown])
 
 
 def edges(found: Sequence[Fitted]) -> Iterator[tuple[str, Fitted]]:
@@ -244,7 +244,7 @@ def edges(found: Sequence[Fitted]) -> Iterator[tuple[str, Fitted]]:
             yield name, each
 
 
-def _undecided(found: Sequence[Fragility | Bivariate], *, capacities: bool) -> Iterator[str]:
+def undecided(found: Sequence[Fragility | Bivariate], *, capacities: bool) -> Iterator[str]:
     """Yield sentences on how many runs or capacities may or may not exceed a limit state, and how they count."""
     for each in found:
         if not each.unknown:
@@ -292,7 +292,7 @@ def _unchecked_in_words(outcomes: Sequence[UnknownRuns]) -> list[str]:
     ]
 
 
-def _left_out(measure: str, runs: int) -> Iterator[str]:
+def without_logarithm(measure: str, runs: int) -> Iterator[str]:
     """Yield a sentence on the number of runs that are left out of a fit over a measure."""
     if runs:
         yield (
@@ -301,17 +301,17 @@ def _left_out(measure: str, runs: int) -> Iterator[str]:
         )
 
 
-def _warnings(fitted: Sequence[FragilityCurve | Surface]) -> Iterator[str]:
+def warnings_of(fitted: Sequence[FragilityCurve | Surface]) -> Iterator[str]:
     """Yield each warning of some fits once; they are shown with the numbers that they concern."""
     for warning in dict.fromkeys(each.warning for each in fitted if each.warning):
         yield f"Warning: {warning}."
 
 
-def _senseless(curve: FragilityCurve) -> str:
+def senseless(curve: FragilityCurve) -> str:
     """Say that a dispersion is not shown because it is too large; empty if it is not."""
-    from rocking_cli.questions.fragility.curves import MAX_DISPERSION
+    from rocking_cli.questions.fragility.curves import DEVIATIONS, MAX_DISPERSION
 
-    if curve.kind != "lognormal" or curve.dispersion is not None:
+    if curve.kind not in DEVIATIONS or curve.dispersion is not None:
         return ""
     return f" Its dispersion is above {MAX_DISPERSION:g}: this limit state does not depend on the measure."
 

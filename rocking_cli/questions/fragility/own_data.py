@@ -1,0 +1,166 @@
+"""`rk.fit_fragility`: fit a fragility curve to data of one's own."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING, Literal, get_args
+
+import numpy as np
+
+from rocking_cli.arrays import Integers, Reals
+from rocking_cli.ask.answer import Answer, drawn
+from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.questions.fragility.own_fit import FittedFragility, fit_known
+from rocking_cli.text import one_line
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from rocking_cli.io.tables import Columns
+
+Form = Literal["lognormal", "logit"]
+"""Curve that is fitted to data of one's own."""
+
+
+@takes_numbers
+def fit_fragility(
+    intensity: ArrayLike,
+    exceeded: ArrayLike,
+    *,
+    clusters: Sequence[Hashable] | None = None,
+    curve: Form = "lognormal",
+    confidence: float = 0.9,
+    label: str = "intensity",
+) -> Answer[FittedFragility]:
+    """Fit a fragility curve to data of one's own: runs of any program, tests, or observed damage.
+
+    Parameters
+    ----------
+    intensity : array_like, shape (n,)
+        Intensity of each run, in any unit. Runs whose intensity is not above zero, or NaN, have no logarithm and are
+        left out.
+    exceeded : array_like, shape (n,)
+        Whether each run exceeds the limit state: 1 or True, 0 or False; NaN if that is unknown. Unknown runs are
+        counted as exceeding in the fit, and as not exceeding in its `lower`: more than 2 % of them make a band.
+    clusters : sequence, shape (n,), optional
+        What runs have in common, such as the names of their records or sites: runs of one cluster are not independent.
+        By default each run is independent of the others.
+    curve : {"lognormal", "logit"}
+        P = Phi(ln(x/median)/dispersion), or P = 1/(1 + (median/x)^b) with b = pi/(sqrt(3) dispersion), logistic in
+        ln x.
+    confidence : float
+        Confidence level of intervals and bands: 0.9 for those from 5 to 95 %.
+    label : str
+        Name of the intensity with its unit, such as "PGA [g]", for the plot and the frame.
+
+    Returns
+    -------
+    Answer of FittedFragility
+        Its `median` and `dispersion` (the standard deviation of the logarithm of the capacity) have a `value`, and
+        `low` and `high`, the interval by the likelihood; None if there is no such number. `interval` and
+        `robust_interval` have the intervals of both, by their names. `curve.probability(x)` and `curve.band(x)` are
+        the curve and its band at any intensity, `robust.band(x)` the robust band, which the plot has. `curve.kind` is
+        `step` if the outcomes are separated and `none` if no curve can be fitted: `sentences` say why, and what else
+        there is to doubt. `to_frame()` has the points of the curve with both bands.
+
+    Raises
+    ------
+    InputError
+        If the arrays are not numbers of one length, or no run has an intensity above zero.
+
+    Notes
+    -----
+    Maximum likelihood of a binomial outcome, as for the curves of a study; docs/fragility.md explains the fit, its
+    intervals and its test.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> pga = [0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65]
+    >>> fell = [0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 1, 1]
+    >>> fit = rk.fit_fragility(pga, fell)
+    >>> round(fit.median.value, 3), round(fit.dispersion.value, 3)
+    (0.422, 0.414)
+    """
+    x, known = _numbers("intensity", intensity), _numbers("exceeded", exceeded)
+    label = one_line(str(label))
+    _check(x, known, curve, confidence)
+    record = np.arange(x.size) if clusters is None else _codes(clusters, x.size)
+    there = x > 0
+    if not there.any():
+        raise InputError(Problem("has no value above zero, so that none has a logarithm", field="`intensity`"))
+    found = fit_known(x[there], known[there], record[there], curve, confidence, label)
+    return _answer(replace(found, left_out=int((~there).sum())), label)
+
+
+def _numbers(name: str, values: ArrayLike) -> Reals:
+    """Return an argument as an array of numbers, shape (n,)."""
+    try:
+        numbers = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        hint = "give true or false, 1 or 0, and NaN for unknown" if name == "exceeded" else None
+        raise InputError(Problem("must be an array of numbers", field=f"`{name}`", hint=hint)) from None
+    if numbers.ndim != 1:
+        raise InputError(Problem(f"must have one dimension, has {numbers.ndim}", field=f"`{name}`"))
+    return numbers
+
+
+def _check(x: Reals, known: Reals, curve: str, confidence: float) -> None:
+    """Raise `InputError` with every problem of the arguments."""
+    problems = []
+    if x.size != known.size:
+        what = f"must have one value for each intensity: there are {known.size} and {x.size}"
+        problems.append(Problem(what, field="`exceeded`"))
+    if np.isinf(x).any():
+        problems.append(Problem("must be finite", field=f"`intensity[{int(np.isinf(x).argmax())}]`"))
+    wrong = ~(np.isnan(known) | (known == 0) | (known == 1))
+    if wrong.any():
+        k = int(wrong.argmax())
+        hint = "a share of several runs is as many entries"
+        problems.append(Problem(f"must be 1, 0 or NaN, got {known[k]:g}", field=f"`exceeded[{k}]`", hint=hint))
+    if curve not in get_args(Form):
+        problems.append(Problem(f"must be {' or '.join(get_args(Form))}, got {curve!r}", field="`curve`"))
+    if not 0.5 < confidence < 1:
+        problems.append(Problem(f"must be between 0.5 and 1, got {confidence:g}", field="`confidence`"))
+    if problems:
+        raise InputError(*problems)
+
+
+def _codes(clusters: Sequence[Hashable], count: int) -> Integers:
+    """Return the number of the cluster of each run."""
+    try:
+        names = list(clusters)
+        numbers = {name: k for k, name in enumerate(dict.fromkeys(names))}
+    except TypeError:
+        hint = "give a name or a number for each run"
+        raise InputError(Problem("must be a sequence of names", field="`clusters`", hint=hint)) from None
+    if len(names) != count:
+        what = f"must have one name for each intensity: there are {len(names)} and {count}"
+        raise InputError(Problem(what, field="`clusters`"))
+    missing = [k for k, name in enumerate(names) if name is None or name != name]
+    if missing:
+        hint = "give a run that shares nothing a name of its own"
+        raise InputError(Problem("is missing", field=f"`clusters[{missing[0]}]`", hint=hint))
+    return np.array([numbers[name] for name in names], dtype=np.int64)
+
+
+def _answer(found: FittedFragility, label: str) -> Answer[FittedFragility]:
+    from rocking_cli.questions.fragility.own_view import view
+
+    figure = drawn("questions.fragility.picture.draw_own", found)
+    return Answer("fit_fragility", found, view(found), partial(_columns, found, label), figure)
+
+
+def _columns(found: FittedFragility, label: str) -> Columns:
+    """Return the points of the curve, with both bands; columns of the lower edge are those of the curve without one."""
+    from rocking_cli.questions.fragility.table import points
+
+    x, columns = points(found), {}
+    for prefix, each in (("", found), ("lower_", found.lower or found)):
+        columns[f"{prefix}probability"] = each.curve.probability(x)
+        for name, curve in (("", each.curve), ("robust_", each.robust)):
+            columns[f"{prefix}{name}low"], columns[f"{prefix}{name}high"] = curve.band(x)
+    return {label: x, **columns}
