@@ -178,9 +178,19 @@ CALLS = {
     ),
     "demand": ({"site": SITE}, {"site": NTC | {"soil": "D"}, "damping": 0.1}),
     "fragility": (
-        {"study": STUDY, "store": "in.db", "jobs": 1},
+        {**STUDY, "store": "in.db", "jobs": 1},
         {"study": "gone.yaml", "store": "b.db", "check": True, "scheduler": "odd", "restart": True,
-         "rank_measures": True, "quantiles": True, "nrml": "n.xml"},
+         "rank_measures": True, "quantiles": True, "nrml": "n.xml", "records": RECORD,
+         "structures": [STUDY["structures"][0] | {"name": "odd"}], "method": "ida",
+         "levels": STUDY["levels"] | {"most": 3}, "polarities": [-1], "eta": [0.8], "samples": 9,
+         "sampling": "random", "seed": 3, "model": "linear2", "opening": 0.1, "limit_states": [0.5],
+         "measures": ["PGV"], "bivariate": [["PGA", "PGV"]], "confidence": 0.8, "floor": "T1=0.4,z=6m,H=9m,n=3",
+         "name": "odd", "hazard": {"points": [[0.1, 0.01], [1, 0.0001]]}, "processing": ["lowpass 5"]},
+    ),
+    "fit_fragility": (
+        {"intensity": np.arange(1, 41), "exceeded": np.arange(40) + 9 * np.sin(np.arange(40)) > 20},
+        {"intensity": np.arange(2, 42), "exceeded": np.arange(40) > 20, "clusters": np.arange(40) // 4,
+         "curve": "logit", "confidence": 0.8, "label": "odd"},
     ),
     "report": (
         {"structure": BLOCK, "motions": RECORD, "neighbours": 2},
@@ -190,7 +200,7 @@ CALLS = {
     ),
 }  # fmt: skip
 """A question of each verb, and an odd value of each of its arguments."""
-LONG = "report", "verify", "calibrate", "survey"
+LONG = "report", "verify", "calibrate", "survey", "fragility"
 """Verbs whose questions take longer: they are asked with the rest."""
 OF_A_KNOWN_MOTION = {"structure": OTHER, "motion": "sine:0.3g:0.2s"}, {"contact": True, "tail": 0.05, "rtol": 1e-5}
 """Arguments of `respond` that change nothing where friction is given, or where the outcome is unknown."""

@@ -252,10 +252,14 @@ FRAMES = {
         {"mean Sa [g]": lambda _, data: data["spectrum"]["mean"]},
     ),
     "fragility": (
-        "run; structure; sample; record; level; polarity; eta; scale; PGA [g]; PGV [m/s]; PGA/(g lambda); "
-        "p PGV/(g lambda); outcome; fell_to; phi/phi_cr; phi positive [rad]; phi negative [rad]; uplift [s]; "
-        "overturning [s]; known to [s]; phi/phi_cr at least; opening/D_cr",
-        {"run": lambda _, data: range(data["runs"])},
+        "structure; limit_state; measure; unit; kind; median; dispersion; scale; x; probability; low; high; unknown; "
+        "lower_median; lower_dispersion; lower_scale; lower_probability; lower_low; lower_high",
+        {"median": lambda answer, data: [data["curves"][0]["median"]["value"]] * len(answer.to_frame())},
+    ),
+    "fit_fragility": (
+        "intensity; probability; low; high; robust_low; robust_high; lower_probability; lower_low; lower_high; "
+        "lower_robust_low; lower_robust_high",
+        {"probability": lambda answer, _: answer.curve.probability(answer.to_frame()["intensity"])},
     ),
     "score": (
         "line; structure; record; cluster; share; unknown; overturned; doubtful; pgv; error",

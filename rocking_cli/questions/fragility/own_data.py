@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 Form = Literal["lognormal", "logit"]
 """Curve that is fitted to data of one's own."""
+COLUMNS = ("probability", "low", "high", "robust_low", "robust_high")
+"""Columns of the frame, for the curve and, after `lower_`, for its lower edge."""
 
 
 @takes_numbers
@@ -83,17 +85,17 @@ def fit_fragility(
     >>> fell = [0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 1, 1]
     >>> fit = rk.fit_fragility(pga, fell)
     >>> round(fit.median.value, 3), round(fit.dispersion.value, 3)
-    (0.422, 0.414)
+    (0.406, 0.443)
     """
     x, known = _numbers("intensity", intensity), _numbers("exceeded", exceeded)
     label = one_line(str(label))
-    _check(x, known, curve, confidence)
+    _check(x, known, curve, confidence, label)
     record = np.arange(x.size) if clusters is None else _codes(clusters, x.size)
     there = x > 0
     if not there.any():
         raise InputError(Problem("has no value above zero, so that none has a logarithm", field="`intensity`"))
-    found = fit_known(x[there], known[there], record[there], curve, confidence, label)
-    return _answer(replace(found, left_out=int((~there).sum())), label)
+    fitted = fit_known(x[there], known[there], record[there], curve, confidence, label)
+    return _answer(replace(fitted, left_out=int((~there).sum())), label)
 
 
 def _numbers(name: str, values: ArrayLike) -> Reals:
@@ -108,7 +110,7 @@ def _numbers(name: str, values: ArrayLike) -> Reals:
     return numbers
 
 
-def _check(x: Reals, known: Reals, curve: str, confidence: float) -> None:
+def _check(x: Reals, known: Reals, curve: str, confidence: float, label: str) -> None:
     """Raise `InputError` with every problem of the arguments."""
     problems = []
     if x.size != known.size:
@@ -125,6 +127,8 @@ def _check(x: Reals, known: Reals, curve: str, confidence: float) -> None:
         problems.append(Problem(f"must be {' or '.join(get_args(Form))}, got {curve!r}", field="`curve`"))
     if not 0.5 < confidence < 1:
         problems.append(Problem(f"must be between 0.5 and 1, got {confidence:g}", field="`confidence`"))
+    if label.removeprefix("lower_") in COLUMNS:
+        problems.append(Problem(f"must not be {label}, which is another column of the frame", field="`label`"))
     if problems:
         raise InputError(*problems)
 
@@ -158,9 +162,9 @@ def _columns(found: FittedFragility, label: str) -> Columns:
     """Return the points of the curve, with both bands; columns of the lower edge are those of the curve without one."""
     from rocking_cli.questions.fragility.table import points
 
-    x, columns = points(found), {}
+    x = points(found)
+    columns: dict[str, Reals] = {}
     for prefix, each in (("", found), ("lower_", found.lower or found)):
-        columns[f"{prefix}probability"] = each.curve.probability(x)
-        for name, curve in (("", each.curve), ("robust_", each.robust)):
-            columns[f"{prefix}{name}low"], columns[f"{prefix}{name}high"] = curve.band(x)
+        numbers = each.curve.probability(x), *each.curve.band(x), *each.robust.band(x)
+        columns |= {f"{prefix}{name}": values for name, values in zip(COLUMNS, numbers, strict=True)}
     return {label: x, **columns}

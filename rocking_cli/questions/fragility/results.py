@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -15,26 +15,32 @@ from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.questions.fragility.assess import Bivariate, Fragility, UnknownRuns
-from rocking_cli.questions.fragility.definition import Definition
+from rocking_cli.questions.fragility.definition import Definition, Limit
 from rocking_cli.questions.fragility.plan import Plan
 from rocking_cli.questions.fragility.quantiles import Quantiles
 from rocking_cli.questions.fragility.ranking import Ranking
 from rocking_cli.questions.fragility.store import Store
 
 if TYPE_CHECKING:
+    import pandas
     from matplotlib.figure import Figure
 
     from rocking_cli.io.tables import Columns
+
+CurveKey = tuple[str, Limit, str]
+"""Structure, limit state and measure of a curve."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class StudyAnswer(Answer[list[Fragility]]):
     """Fragility curves of a study, and what else its store holds.
 
+    `to_frame()` has the points of all curves, one below the other, and `runs()` the runs.
+
     Parameters
     ----------
     store : Path
-        The store.
+        The store; a temporary file, which lasts as long as the answer, of a study without a file and a store.
     plan : Plan
         Structures, samples, records and levels.
     definition : Definition
@@ -59,6 +65,62 @@ class StudyAnswer(Answer[list[Fragility]]):
     rankings: list[Ranking] = field(kw_only=True)
     failed: int = field(kw_only=True)
     complete: bool = field(kw_only=True)
+
+    @property
+    def curves(self) -> Curves:
+        """The curves by limit state, or by structure, limit state and measure; see `Curves`."""
+        return Curves(self.result)
+
+    def runs(self) -> pandas.DataFrame:
+        """Return the finished runs, a row for each, with the intensity measures of the study. Raises as `to_frame`."""
+        return self.frames["runs"]
+
+    def run_blocks(self) -> Iterator[Columns]:
+        """Yield the runs as columns, read from the store in blocks of rows, as there may be very many."""
+        return _blocks(self.store)
+
+
+class UnknownCurve(InputError, KeyError):
+    """A key of `Curves` that stands for none of them, or for several; also a `KeyError`."""
+
+    __str__ = Exception.__str__  # that of `KeyError` would quote the message
+
+
+class Curves(Mapping[Limit | CurveKey, Fragility]):
+    """The curves of a study.
+
+    Keys are limit states, such as "overturning", 0.5 or "25 mm", if all curves are of one structure and one measure.
+    Otherwise they are tuples of structure, limit state and measure, such as ("pedestal", "overturning", "PGA"); a limit
+    state alone may stand for a curve if there is one curve of it. A tuple stands for its curve in either case.
+
+    Parameters
+    ----------
+    curves : iterable of Fragility
+        The curves: `median` and `dispersion` are their numbers, `curve` the fit with its band, and `lower` the fit in
+        which runs of unknown outcome do not exceed, None if there are none.
+    """
+
+    def __init__(self, curves: Iterable[Fragility]) -> None:
+        self._curves = {(each.structure, each.limit, each.measure): each for each in curves}
+        self._short = len({(structure, measure) for structure, _, measure in self._curves}) == 1
+
+    def __getitem__(self, key: Limit | CurveKey) -> Fragility:
+        """Return a curve. Raises `UnknownCurve`, an `InputError` that is also a `KeyError`."""
+        meant = [each for known, each in self._curves.items() if key in (known, known[1])]
+        if len(meant) == 1:
+            return meant[0]
+        what = f"stands for {len(meant)} curves" if meant else "is not a curve of this study"
+        hint = f"the curves are {', '.join(map(repr, self))}" if self._curves else "it has no curves"
+        raise UnknownCurve(Problem(what, field=f"{key!r}", hint=hint))
+
+    def __iter__(self) -> Iterator[Limit | CurveKey]:
+        return (limit if self._short else (structure, limit, measure) for structure, limit, measure in self._curves)
+
+    def __len__(self) -> int:
+        return len(self._curves)
+
+    def __repr__(self) -> str:
+        return f"<curves: {', '.join(map(repr, self))}>"
 
 
 @takes_numbers
@@ -89,9 +151,10 @@ def results(
     Returns
     -------
     StudyAnswer
-        One curve per structure, limit state and measure; `frames["curves"]` has their points. If the outcome of some
-        runs is unknown, as a joint opens that the model keeps closed, these exceed the limit in the fit and do not in
-        its `lower`.
+        One curve per structure, limit state and measure. `curves` has them by limit state, such as
+        `curves["overturning"].median`, or if there are several structures or measures by structure, limit state and
+        measure. `to_frame()` has their points and `runs()` the runs. If the outcome of some runs is unknown, as a joint
+        opens that the model keeps closed, these exceed the limit in the fit and do not in its `lower`.
 
     Raises
     ------
@@ -121,10 +184,9 @@ def results(
         "fragility",
         fits,
         shown,
-        partial(_columns, place),
+        partial(_curve_columns, fits),
         partial(_figure, definition, fits),
-        partial(_blocks, place),
-        {"curves": partial(_curve_columns, fits)},
+        tables={"runs": partial(_columns, place)},
         store=place,
         plan=plan,
         definition=definition,

@@ -15,6 +15,7 @@ from rocking_cli.excitation.measures import measure
 from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD, parse_pulse
 from rocking_cli.excitation.pulses.base import SAMPLING
 from rocking_cli.processing.reading import Reading
+from rocking_cli.processing.steps import process
 from rocking_cli.questions.fragility.definition import RecordEntry
 
 MAX_SAMPLES_IN_MEMORY = 32_000_000  # samples of all records: a quarter of a gigabyte
@@ -36,6 +37,8 @@ class Source:
         The name without the set.
     path, vertical : Path, optional
         The files of the record and of its vertical component.
+    motion : GroundMotion, optional
+        The motion itself, if it was given in Python.
     """
 
     name: str
@@ -44,9 +47,19 @@ class Source:
     file: str
     path: Path | None = None
     vertical: Path | None = None
+    motion: GroundMotion | None = None
+
+    @property
+    def is_simple(self) -> bool:
+        """Whether it is a horizontal motion of the ground, without a vertical component and not on a floor."""
+        made = self.motion is not None and (self.motion.vertical is not None or self.motion.ground is not None)
+        return self.vertical is None and self.reading.floor is None and not made
 
     def checksum(self) -> str:
-        """Return the SHA-256 of its files, or of the pulse and its sampling. Raises `InputError` without a file."""
+        """Return the SHA-256 of its files, or of its samples, or of the pulse and its sampling.
+
+        Raises `InputError` without a file.
+        """
         digest = hashlib.sha256()
         other = Path(self.reading.other) if self.reading.other is not None else None
         for path in (self.path, self.vertical, other):
@@ -57,7 +70,11 @@ class Source:
                     digest.update(hashlib.file_digest(file, "sha256").digest())
             except OSError as error:
                 raise InputError(Problem(f"cannot be read: {error.strerror or error}", str(path))) from None
-        if self.path is None:
+        if self.motion is not None:
+            for each in _parts(self.motion):
+                digest.update(f"{each.dt!r} {each.npts} ".encode())
+                digest.update(each.acceleration.astype("<f8").tobytes())
+        elif self.path is None:
             assert self.entry.pulse is not None
             pulse = parse_pulse(self.entry.pulse).specification
             digest.update(f"{pulse}, {COARSE_POINTS_PER_PERIOD} a period: {SAMPLING}".encode())
@@ -65,6 +82,8 @@ class Source:
 
     def read(self) -> GroundMotion:
         """Read the motion, unscaled. Raises `InputError` if it cannot be read."""
+        if self.motion is not None:
+            return self.reading.on_floor(process(self.motion, self.reading.steps))
         if self.path is None:
             assert self.entry.pulse is not None
             return self.reading.on_floor(parse_pulse(self.entry.pulse).sampled(COARSE_POINTS_PER_PERIOD))
@@ -72,6 +91,12 @@ class Source:
         if self.vertical is not None:
             motion = replace(motion, vertical=self.reading.vertical(self.vertical))
         return motion
+
+
+def _parts(motion: GroundMotion) -> list[GroundMotion]:
+    """Return a motion with its vertical component and the motion of the ground below, as far as it has them."""
+    below = [each for each in (motion.vertical, motion.ground) if each is not None]
+    return [motion, *(part for each in below for part in _parts(each))]
 
 
 @dataclass(frozen=True)
@@ -116,7 +141,7 @@ def examine(source: Source) -> tuple[Record, GroundMotion | None]:
     if measured.pga == 0:
         return Record(source.name, checksum, reason=f"{source.name}: zero throughout: there is nothing to scale"), None
     # Only records are checked: a pulse is exactly what its formula gives.
-    doubtful = len(doubts(motion.of_ground, measured)) if source.path is not None else 0
+    doubtful = len(doubts(motion.of_ground, measured)) if source.entry.pulse is None else 0
     record = Record(source.name, checksum, None, motion.dt, motion.npts, measured.pga, measured.pgv, doubtful)
     return record, motion
 

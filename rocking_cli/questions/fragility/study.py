@@ -5,18 +5,20 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import nan
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from pydantic import ValidationError
 
+from rocking_cli.ask.ground_motions import pulse_in, type_in_words
 from rocking_cli.core import Mechanism
 from rocking_cli.core.structure_file import load_structure
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
-from rocking_cli.excitation.pulses import parse_pulse
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.pulses import Pulse, parse_pulse
 from rocking_cli.excitation.records.opening import matching_files
 from rocking_cli.io.field_problems import by_meaning, say
 from rocking_cli.io.json_text import json_text
@@ -43,9 +45,11 @@ from rocking_cli.questions.fragility.distributions import draw
 from rocking_cli.questions.fragility.hazard_curve import HazardCurve, read_hazard
 from rocking_cli.questions.fragility.plan import Sets
 from rocking_cli.questions.fragility.sources import Source
-from rocking_cli.text import did_you_mean, one_line
+from rocking_cli.text import did_you_mean, numbered, one_line
 
 RESTITUTION = "restitution"
+OF_MOTIONS = frozenset({"processing", "factor", "floor", "weight", "level", "event", "station"})
+"""Items of a record's entry that do not describe a file."""
 
 
 @dataclass(frozen=True)
@@ -168,8 +172,8 @@ def load_study(given: str | Path | Mapping[str, Any], name: str = "study") -> St
     Parameters
     ----------
     given : str, Path or mapping
-        The study file, or its fields, in which structures may be mechanisms; the files that it names are relative to
-        its folder, or to the present one.
+        The study file, or its fields, in which structures may be mechanisms and records ground motions or pulses; the
+        files that it names are relative to its folder, or to the present one.
     name : str
         Name of a study given by its fields, if these have none; one in a file is named after it.
 
@@ -180,7 +184,7 @@ def load_study(given: str | Path | Mapping[str, Any], name: str = "study") -> St
     MechanismError
         If a mechanism's plugin cannot be used.
     """
-    made: dict[str, Mechanism] = {}
+    made = Made()
     if isinstance(given, Mapping):
         path = Path("study")
         document = Document("study", "study", [], _plain(given, made))
@@ -190,21 +194,29 @@ def load_study(given: str | Path | Mapping[str, Any], name: str = "study") -> St
         document = parse(read_text(path, "study"), str(path), "study", HINT)
 
     def load(file: str) -> Mechanism:
-        return made[file] if file in made else load_structure(path.parent / file)
+        return made.structures[file] if file in made.structures else load_structure(path.parent / file)
 
     definition = definition_of(document, load)
     entries = usable_entries(document, "structures", StructureEntry)
     structures = [_structure(document, ("structures", k), path.parent, entry, load) for k, entry in entries]
     common = usable_part(Common, {key: document.data[key] for key in Common.model_fields if key in document.data})
+    motions = made.named_motions()
     sources = [
         source
         for k, entry in usable_entries(document, "records", RecordEntry)
-        for source in _sources(document, ("records", k), path.parent, entry, common or Common())
+        for source in (
+            _made_source(document, ("records", k), entry, common or Common(), motions[entry.file])
+            if entry.file in motions
+            else _sources(document, ("records", k), path.parent, entry, common or Common())
+        )
     ]
     sources = _apart(sources)
-    places = [source.path.resolve().as_posix() if source.path else source.file for source in sources]
-    unlike = [_in_words(place, source.entry) for place, source in zip(places, sources, strict=True)]
+    read = [source for source in sources if source.motion is None]
+    places = [source.path.resolve().as_posix() if source.path else source.file for source in read]
+    unlike = [_in_words(place, source.entry) for place, source in zip(places, read, strict=True)]
     _refuse_repeated(document, "records", unlike)
+    in_memory = {source.name for source in sources if source.motion is not None}  # as a file may be called, too
+    _refuse_repeated(document, "records", [source.name for source in sources if source.name in in_memory])
     _refuse_repeated(document, "structures", [each.name or "" for each in structures if each is not None])
     if checks_sliding(document.data):
         for (_, entry), structure in zip(entries, structures, strict=True):
@@ -224,30 +236,79 @@ def load_study(given: str | Path | Mapping[str, Any], name: str = "study") -> St
     return Study(definition.name or one_line(name), definition, known, tuple(samples), tuple(sources), hazard)
 
 
-def _plain(given: Mapping[str, Any], made: dict[str, Mechanism]) -> dict[str, Any]:
-    """Return a study made in Python as plain data, and put its mechanisms aside by the names that stand for them."""
+@dataclass(frozen=True)
+class Made:
+    """Mechanisms and ground motions of a study made in Python, by the names that stand for their files."""
+
+    structures: dict[str, Mechanism] = field(default_factory=dict)
+    motions: dict[str, GroundMotion] = field(default_factory=dict)
+
+    def named_motions(self) -> dict[str, GroundMotion]:
+        """Return the motions, with a number in the names of those that are called as others before them."""
+        named: dict[str, GroundMotion] = {}
+        for motion in self.motions.values():
+            name = one_line(motion.name)
+            name = name if name not in named else numbered(name, "", named)
+            named[name] = replace(motion, name=name)
+        return dict(zip(self.motions, named.values(), strict=True))
+
+
+def _plain(given: Mapping[str, Any], made: Made) -> dict[str, Any]:
+    """Return a study made in Python as plain data, and put aside its mechanisms and motions."""
 
     def plain(each: Any) -> Any:
         if isinstance(each, Mechanism):
-            made[name := f"structure {len(made) + 1}"] = each
-            return name
+            return _stand_in(made.structures, "structure", each)
+        if isinstance(each, GroundMotion):
+            return _stand_in(made.motions, "motion", each)
+        if isinstance(each, Pulse):
+            return each.specification
         if isinstance(each, Mapping):
             return {key: plain(value) for key, value in each.items()}
         if isinstance(each, list | tuple):
             return [plain(value) for value in each]
-        return str(each) if isinstance(each, Path) else each
+        if isinstance(each, Path):
+            return str(each)
+        if each is None or isinstance(each, str | int | float) or hasattr(each, "tolist"):
+            return each
+        raise InputError(Problem(f"cannot hold {type_in_words(each)}", "study", hint=HINT))
 
     def named(each: Any) -> Any:
         entry = {"file": each} if isinstance(each, Mechanism) else each
         of = entry.get("file") if isinstance(entry, Mapping) else None
         return {"name": of.name or of.mechanism, **entry} if isinstance(of, Mechanism) else entry
 
-    structures = given.get("structures")
-    given = (
-        {**given, "structures": [named(each) for each in structures]} if isinstance(structures, list | tuple) else given
-    )
+    def shaking(each: Any) -> Any:
+        is_pulse = isinstance(each, Pulse) or (isinstance(each, str) and pulse_in(each) is not None)
+        return {"pulse": each} if is_pulse else each
+
+    for field_, entry in (("structures", named), ("records", shaking)):
+        if isinstance(entries := given.get(field_), list | tuple):
+            given = {**given, field_: [entry(each) for each in entries]}
     data: dict[str, Any] = json.loads(json_text(plain(given)))
     return data
+
+
+T = TypeVar("T")
+
+
+def _stand_in(made: dict[str, T], kind: str, each: T) -> str:
+    """Return the name that stands for the file of an object, the same for the same object."""
+    name = next((name for name, known in made.items() if known is each), f"<{kind} {len(made) + 1}>")
+    made[name] = each
+    return name
+
+
+def _made_source(
+    document: Document, place: Place, entry: RecordEntry, common: Common, motion: GroundMotion
+) -> list[Source]:  # fmt: skip
+    """Return a ground motion of Python, whose entry can have everything but what describes a file."""
+    if set(as_written(entry)) - OF_MOTIONS:
+        what = "units, dt, channel, vertical and the like describe a file, and this is a ground motion"
+        document.problems.append(document.at(place, what))
+        return []
+    reading = entry.reading(Path(), common.reading)
+    return [Source(_at_level(motion.name, entry), entry, reading, motion.name, motion=motion)]
 
 
 def _structure(

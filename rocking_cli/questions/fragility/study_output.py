@@ -34,8 +34,7 @@ def show_study(answer: StudyAnswer, shown: StudyOutput, watch: OnTerminal) -> No
     from rocking_cli.questions.fragility.results import curve_blocks, write_nrml
 
     if shown.out is not None:
-        assert answer.blocks is not None
-        write_table(shown.out, answer.blocks())
+        write_table(shown.out, answer.run_blocks())
     if shown.curves is not None:
         write_table(shown.curves, curve_blocks(answer, watch))
     if shown.plot is not None:

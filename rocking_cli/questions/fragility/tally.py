@@ -517,7 +517,7 @@ def accelerations(study: Study, plan: Plan) -> dict[str, Pair]:
 
     Empty if a motion has a vertical component or is that of a floor: its horizontal PGA then does not decide.
     """
-    if any(source.vertical is not None or source.reading.floor is not None for source in study.sources):
+    if not all(source.is_simple for source in study.sources):
         return {}
     ranges: dict[str, Pair] = {}
     for sample, trial in zip(study.samples, plan.trials, strict=True):

@@ -2,29 +2,60 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, Literal
+from weakref import finalize
 
 from rocking_cli.ask.answer import Answer, no_plot
 from rocking_cli.ask.given import note_remarks, warn_of
+from rocking_cli.ask.ground_motions import each_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.errors import InputError
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.views.view import View
 
 if TYPE_CHECKING:
+    from rocking_cli.core import Mechanism
+    from rocking_cli.excitation.base import GroundMotion
+    from rocking_cli.excitation.pulses import Pulse
     from rocking_cli.questions.fragility.plan import Plan
     from rocking_cli.questions.fragility.study import Study
     from rocking_cli.questions.fragility.workers import Workers
+
+    Structures = Mechanism | str | Path | Mapping[str, Any] | Sequence[Mechanism | str | Path | Mapping[str, Any]]
+    Shaking = GroundMotion | Pulse | str | Path | Mapping[str, Any]
+    Records = Shaking | Sequence[Shaking]
 
 MAX_NAMED_PROBLEMS = 10  # bad records or samples that a message names
 
 
 @takes_numbers
 def fragility(
-    study: str | Path | Mapping[str, Any],
+    study: str | Path | Mapping[str, Any] | None = None,
     *,
+    structures: Structures | None = None,
+    records: Records | None = None,
+    method: Literal["cloud", "stripes", "ida"] | None = None,
+    levels: Mapping[str, Any] | None = None,
+    polarities: Sequence[int] | None = None,
+    eta: Sequence[float] | None = None,
+    samples: int | None = None,
+    sampling: Literal["random", "latin hypercube"] | None = None,
+    seed: int | None = None,
+    model: Literal["nonlinear", "linear1", "linear2"] | None = None,
+    opening: float | None = None,
+    limit_states: Sequence[str | float] | None = None,
+    measures: Sequence[str] | None = None,
+    bivariate: Sequence[Sequence[str]] | None = None,
+    confidence: float | None = None,
+    hazard: Mapping[str, Any] | None = None,
+    processing: Sequence[str | Mapping[str, Any]] | None = None,
+    floor: str | Mapping[str, Any] | None = None,
+    name: str | None = None,
     store: str | Path | None = None,
     check: bool = False,
     jobs: int | None = None,
@@ -39,11 +70,45 @@ def fragility(
 
     Parameters
     ----------
-    study : str, Path or mapping
-        YAML file of the study, or its fields in Python, in which a mechanism may stand for the file of a structure;
-        docs/fragility.md lists the fields.
+    study : str, Path or mapping, optional
+        YAML file of the study, or its fields in Python; docs/fragility.md lists them. Give this, or the fields
+        themselves as the arguments that follow.
+    structures : Mechanism, str, Path or mapping, or a list of these
+        Structures or their files; or entries with a structure or a file as `file`, and `name` and `vary`.
+    records : GroundMotion, Pulse, str, Path or mapping, or a list of these
+        Ground motions, files of records or patterns of them, and pulses such as "sine:1g:0.8s"; or entries with a
+        motion or a file as `file`, and its `weight`, `level`, `processing` and so on.
+    method : {"cloud", "stripes", "ida"}
+        How records and intensities are combined.
+    levels : mapping
+        Intensities to which every record is scaled: `measure`, and `values` or `least`, `most` and `count`.
+    polarities : sequence of int
+        [1], or [1, -1] to run reversed records as well.
+    eta : sequence of float
+        Coefficients of restitution, instead of those of the structures.
+    samples, seed : int
+        Number of structures to draw from the distributions in `vary`, and seed of the random numbers.
+    sampling : {"latin hypercube", "random"}
+        How they are drawn.
+    model : {"nonlinear", "linear1", "linear2"}
+        Equation of motion.
+    opening : float
+        Largest opening of a joint over D_cr up to which a run holds.
+    limit_states : sequence of str or float
+        "uplift", "sliding", "overturning", ratios phi/phi_cr, and displacements of the top such as "25 mm".
+    measures, bivariate : sequence of str, sequence of pairs of str
+        Intensity measures of the curves, and of the surfaces.
+    confidence : float
+        Confidence level of intervals and bands.
+    hazard : mapping
+        `measure`, and `file` or `points` of intensity and annual rate.
+    processing, floor : sequence, str or mapping
+        Corrections of every record, and the floor on which the structures stand.
+    name : str
+        Name of the study.
     store : str or Path, optional
-        File in which the runs are stored; by default next to the study file, or study.db in this folder.
+        File in which the runs are stored; by default next to the study file. Without a study file and a store, the
+        runs last as long as the answer, and those of a study that is interrupted are lost.
     check : bool
         Whether only to show what would be run; arguments on the runs and their curves are then refused.
     jobs : int, optional
@@ -64,9 +129,9 @@ def fragility(
     Returns
     -------
     StudyAnswer, or Answer of Plan
-        One per curve: structure, limit state, measure and fit, as from `results`. If the outcome of some runs is
-        unknown, as a joint opens that the model keeps closed, these exceed the limit in the fit and do not in its
-        `lower`. With `check`, the plan of the study.
+        One per curve: structure, limit state, measure and fit, as from `results`, with `curves`, `to_frame()` and
+        `runs()`. If the outcome of some runs is unknown, as a joint opens that the model keeps closed, these exceed the
+        limit in the fit and do not in its `lower`. With `check`, the plan of the study.
 
     Raises
     ------
@@ -79,19 +144,46 @@ def fragility(
     -----
     The runs are those of `respond`, Eq. 8 or 16 of DeJong and Dimitrakopoulos (2014); docs/fragility.md explains how
     the curves are fitted.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> pulses = [f"{shape}:1g:{period}s" for shape in ("sine", "ricker") for period in (0.6, 0.8, 1.0, 1.2)]
+    >>> answer = rk.fragility(
+    ...     structures=rk.Block(name="pedestal", width=0.7, height=2.8),
+    ...     records=pulses,
+    ...     method="stripes",
+    ...     levels={"measure": "PGA", "least": 0.1, "most": 1.5, "count": 8},
+    ... )
+    >>> round(answer.curves["overturning"].median.value, 2), len(answer.runs())
+    (0.59, 64)
     """
     from rocking_cli.questions.fragility.results import results
     from rocking_cli.questions.fragility.study import load_study
     from rocking_cli.questions.fragility.tally import held
 
+    fields: dict[str, Any] = {
+        "structures": structures, "records": records, "method": method, "levels": levels, "polarities": polarities,
+        "eta": eta, "samples": samples, "sampling": sampling, "seed": seed, "model": model, "opening": opening,
+        "limit_states": limit_states, "measures": measures, "bivariate": bivariate, "confidence": confidence,
+        "hazard": hazard, "processing": processing, "floor": floor, "name": name,
+    }  # fmt: skip
+    fields = {key: value for key, value in fields.items() if value is not None}
+    fields |= {key: each_of(fields[key]) for key in ("structures", "records") if key in fields}
+    if study is not None:
+        refuse_idle("beside a study: put them into it", **dict.fromkeys(fields, True))
+    elif not fields:
+        raise InputError(Problem("is missing", field="`study`", hint="give a study, or `structures`, `records` ..."))
+    given = fields if study is None else study
     if check:
         refuse_idle(
             "with `check`, which runs nothing", jobs=jobs is not None, scheduler=scheduler, restart=restart,
             rank_measures=rank_measures, quantiles=quantiles, nrml=nrml is not None,
         )  # fmt: skip
-    file = Path("study") if isinstance(study, Mapping) else Path(study)
-    loaded = load_study(study, Path(store or file).stem)
-    place = Path(store) if store is not None else file.with_suffix(".db")
+    file = None if isinstance(given, Mapping) else Path(given)
+    if store is None and file is None:
+        refuse_idle("without a store or a study file", restart=restart)
+    loaded = load_study(given, Path(store or "study").stem)
     for mechanism in loaded.structures:
         note_remarks(mechanism, watch)
     # Varied properties may differ much from the file, so the first sample is checked.
@@ -101,8 +193,21 @@ def fragility(
         watch.warn(sentence)
     if check:
         return _planned(loaded, watch)
-    _bring_up_to_date(loaded, place, workers_of(jobs, scheduler), watch, restart=restart, rank_measures=rank_measures)
-    return results(place, quantiles=quantiles, rank_measures=rank_measures, nrml=nrml, watch=watch)
+    with ExitStack() as stack:
+        if store is not None:
+            place = Path(store)
+        elif file is not None:
+            place = file.with_suffix(".db")
+        else:
+            folder = TemporaryDirectory(prefix="rocking-", ignore_cleanup_errors=True)
+            place = Path(stack.enter_context(folder)) / "study.db"
+        workers = workers_of(jobs, scheduler)
+        _bring_up_to_date(loaded, place, workers, watch, restart=restart, rank_measures=rank_measures)
+        answer = results(place, quantiles=quantiles, rank_measures=rank_measures, nrml=nrml, watch=watch)
+        if store is None and file is None:
+            answer = replace(answer, view=View(answer.to_dict() | {"store": None}, answer.view.parts))
+        finalize(answer, stack.pop_all().close)  # a temporary store lasts as long as the answer
+    return answer
 
 
 def workers_of(jobs: int | None, scheduler: str | None) -> AbstractContextManager[Workers]:

@@ -166,6 +166,7 @@ GOOD = [0.1, 0.2, 0.3, 0.4], [0, 1, 0, 1]
         (GOOD, {"clusters": [[1], [2], [3], [4]]}, "`clusters` must be a sequence of names"),
         (GOOD, {"curve": "probit"}, "`curve` must be lognormal or logit, got 'probit'"),
         (GOOD, {"confidence": 95}, "`confidence` must be between 0.5 and 1, got 95"),
+        (GOOD, {"label": "lower_high"}, "`label` must not be lower_high, which is another column of the frame"),
         (GOOD, {"cluster": "abcd"}, "`cluster` is not an argument"),
     ],
 )

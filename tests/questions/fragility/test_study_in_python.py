@@ -1,0 +1,206 @@
+"""A study of Python without a file: its motions in memory, its runs kept with its answer, its curves by limit."""
+
+import gc
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rocking_cli as rk
+from tests.conftest import EXAMPLES
+
+ACCEL = EXAMPLES / "accel.csv"
+TIME = 0.01 * np.arange(300)
+PULSES = [f"{shape}:1g:{period}s" for shape in ("sine", "ricker", "mavroeidis") for period in (0.6, 0.9, 1.3)]
+LEVELS = {"measure": "PGA", "least": 0.2, "most": 1.6, "count": 6}
+
+
+def shaken(name="mine", size=3.0, **more):
+    return rk.GroundMotion(name, 0.01, size * np.sin(2 * np.pi * TIME / 0.8) * np.exp(-TIME), **more)
+
+
+def block(name="pillar", width=0.6):
+    return rk.Block(name=name, width=width, height=2.6, restitution=0.9)
+
+
+def study(records, structures=None, **more):
+    structures = block() if structures is None else structures
+    return rk.fragility(structures=structures, records=records, method="stripes", levels=LEVELS, **more)
+
+
+@pytest.fixture(scope="module")
+def answer():
+    return study(PULSES, limit_states=["uplift", 0.5, "25 mm", "overturning"])
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """The folder of temporary files."""
+    (tmp_path / "temporary").mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "temporary"))
+    return tmp_path / "temporary"
+
+
+class TestTheRuns:
+    def test_they_last_as_long_as_the_answer_and_leave_nothing_behind(self, folder):
+        first, second = study(PULSES[:2]), study(PULSES[2:])
+        assert first.store.parent.parent == folder and first.store != second.store
+        assert (len(first.runs()), len(second.runs())) == (12, 42)
+        assert [each.name for each in Path().iterdir()] == [folder.name]
+        copy = pickle.loads(pickle.dumps(first))
+        runs, points, data = first.runs(), first.to_frame(), first.to_dict()
+        del first
+        gc.collect()
+        assert list(folder.iterdir()) == [second.store.parent]
+        assert copy.runs().equals(runs) and copy.to_frame().equals(points) and copy.to_dict() == data
+        assert data["store"] is None and list(copy.curves) == ["uplift", "overturning"] and copy.plot()
+
+    def test_a_study_that_fails_leaves_nothing_behind(self, folder, monkeypatch):
+        monkeypatch.setattr("rocking_cli.questions.fragility.assess.counted", lambda *given: 1 / 0)
+        with pytest.raises(ZeroDivisionError):
+            study(PULSES[:2])
+        assert not list(folder.iterdir())
+
+    def test_a_store_keeps_them(self):
+        first = study([shaken(), *PULSES[:1]], store="kept.db")
+        assert rk.results("kept.db").runs().equals(first.runs()) and first.to_dict()["store"].endswith("kept.db")
+        assert study([shaken(), *PULSES[:1]], store="kept.db", limit_states=[0.3]).result[0].limit == 0.3
+        with pytest.raises(rk.InputError, match="the record mine has changed"):
+            study([shaken(size=3.01), *PULSES[:1]], store="kept.db")
+        with pytest.raises(rk.InputError, match="the record mine has changed"):
+            study([shaken(vertical=shaken("up")), *PULSES[:1]], store="kept.db")
+
+    def test_a_study_file_keeps_its_store_beside_it(self):
+        Path("pulses.yaml").write_text(
+            f"structures: [{EXAMPLES / 'block.yaml'}]\nrecords: [{{pulse: 'sine:1g:0.8s'}}]\nmethod: cloud\n",
+            encoding="utf-8",
+        )
+        assert rk.fragility("pulses.yaml").store == Path("pulses.db")
+        assert Path("pulses.db").exists()
+
+    def test_those_of_a_motion_are_its_responses(self):
+        runs = study(shaken()).runs()
+        for scale, ratio in zip(runs["scale"], runs["phi/phi_cr"], strict=True):
+            history = rk.respond(block(), shaken(), scale=scale, models="nonlinear", neighbours=0)["nonlinear"]
+            assert ratio == pytest.approx(history.peak_ratio, rel=1e-6, nan_ok=True)
+        assert runs["phi/phi_cr"].notna().any() and (runs["outcome"] == "overturns").any()
+
+    @pytest.mark.parametrize(
+        "how",
+        [
+            {"processing": ["lowpass 8"], "factor": 1.5, "weight": 2.0},
+            pytest.param({}, marks=pytest.mark.rest),
+            pytest.param({"floor": "T1=0.4,xi=0.05,z=6m,H=9m,n=3"}, marks=pytest.mark.rest),
+        ],
+    )
+    def test_those_of_a_motion_are_those_of_its_file(self, how):
+        of_file, of_motion = (
+            study([{"file": each, **how}, *PULSES[:3]], processing=["lowpass 12"], measures=["PGA", "Sa(0.5)"])
+            for each in (ACCEL, rk.read_record(ACCEL))
+        )
+        assert of_motion.runs().drop(columns="record").equals(of_file.runs().drop(columns="record"))
+        assert of_motion.to_frame().equals(of_file.to_frame())
+
+    @pytest.mark.parametrize("part", ["vertical", "ground"])
+    def test_uplift_is_not_a_step_at_lambda_if_pga_does_not_decide(self, part):
+        motion = shaken(**{part: shaken("other", 2.5)})
+        assert study([shaken()]).curves["uplift"].curve.median.value == pytest.approx(block().width / 2.6)
+        uplift = study([motion]).curves["uplift"].curve
+        assert uplift.step is None or uplift.step.low < uplift.step.high
+
+
+class TestTheArguments:
+    def test_motions_of_one_name_are_told_apart(self):
+        runs = study([shaken(), shaken(size=2.0), shaken("mine"), rk.parse_pulse("sine:1g:0.7s")]).runs()
+        assert list(dict.fromkeys(runs["record"])) == ["mine", "mine-2", "mine-3", "sine:1g:0.7s"]
+
+    def test_names_of_any_kind_are_shown_in_one_line(self):
+        found = study([shaken("a\n\x1b[1m$\\x$" * 20)], limit_states=["overturning"])
+        assert "\\n" in found.runs()["record"][0] and "\x1b" not in found.runs()["record"][0]
+        assert found.plot()
+
+    def test_entries_may_have_motions_with_sets_and_weights(self):
+        motion = shaken()
+        records = [{"file": motion, "level": 0.2}, {"file": motion, "level": 1.6, "weight": 3.0}, {"file": shaken("b")}]
+        found = study(records)
+        assert dict(found.runs()["record"].value_counts()) == {"b": 6, "mine at 0.2": 1, "mine at 1.6": 1}
+        assert len(set(found.plan.of_sets.one)) == 2  # both sets have the same record
+
+    @pytest.mark.parametrize(
+        ("given", "message"),
+        [
+            ({}, "`study` is missing"),
+            ({"study": "x.yaml", "seed": 3, "name": "n"}, "`seed` and `name` have no effect beside a study"),
+            ({"records": [], "structures": []}, "structures must have at least 1 entry"),
+            ({"records": PULSES[:1], "structures": block()}, "method is missing"),
+            ({"restart": True, "records": PULSES[:1]}, "`restart` has no effect without a store or a study file"),
+            ({"records": [object()], "structures": 3}, "study: cannot hold an object"),
+            ({"records": ["sine:bad"], "structures": "no.yaml"}, "malformed pulse 'sine:bad'"),
+            (
+                {"records": ["gone.csv"], "structures": "no.yaml"},
+                r"structures\[1\]: no.yaml: no such file(.|\n)*gone.csv",
+            ),
+            ({"records": [MINE := shaken(), MINE], "structures": block()}, "records: two of them are called mine"),
+            ({"records": [shaken("accel.csv"), "accel.csv"]}, "records: two of them are called accel.csv"),
+            ({"records": [{"file": shaken(), "units": "g"}]}, r"records\[1\]: units, dt, channel, .* this is a ground"),
+            ({"records": [shaken(size=0.0)], "structures": block(), "method": "cloud"}, "mine: zero throughout"),
+            ({"records": PULSES, "samples": "3"}, "`samples` must be a number, got the text '3'"),
+            ({"recrods": PULSES}, r"`recrods` is not an argument\n  did you mean records\?"),
+        ],
+        ids=lambda value: "" if isinstance(value, dict) else value[:30],
+    )
+    def test_what_is_wrong_is_named(self, given, message):
+        Path("accel.csv").write_bytes(ACCEL.read_bytes())
+        with pytest.raises(rk.InputError, match=message):
+            rk.fragility(**given)
+
+    def test_check_shows_the_plan(self, folder):
+        plan = study([shaken(), *PULSES], check=True)
+        assert plan.total == 60 and not list(folder.iterdir())
+
+
+class TestTheCurves:
+    def test_by_limit_state_for_one_structure_and_measure(self, answer):
+        assert list(answer.curves) == ["uplift", 0.5, "25 mm", "overturning"]
+        for each in answer.result:
+            assert answer.curves[each.limit] is each and answer.curves["pillar", each.limit, "PGA"] is each
+            assert answer.curves[each.limit].median == each.curve.median
+            assert answer.curves[each.limit].dispersion == each.curve.dispersion
+        assert "sliding" not in answer.curves and answer.curves.get(0.7) is None
+        with pytest.raises(KeyError) as raised:
+            answer.curves["overturn"]
+        assert isinstance(raised.value, rk.InputError)
+        assert str(raised.value) == (
+            "'overturn' is not a curve of this study\n  the curves are 'uplift', 0.5, '25 mm', 'overturning'"
+        )
+
+    def test_by_all_three_for_several(self):
+        found = study(PULSES[:3], [block("a"), block("b", 0.8)], limit_states=["overturning"], measures=["PGA", "PGV"])
+        assert list(found.curves)[:2] == [("a", "overturning", "PGA"), ("a", "overturning", "PGV")]
+        assert [found.curves[key] for key in found.curves] == found.result
+        with pytest.raises(rk.InputError, match=r"'overturning' stands for 4 curves\n  the curves are \('a', 'overt"):
+            found.curves["overturning"]
+
+    def test_the_frame_has_their_points(self, answer):
+        frame = answer.to_frame()
+        assert list(dict.fromkeys(zip(frame.structure, frame.limit_state, strict=True))) == [
+            ("pillar", "uplift"), ("pillar", "0.5"), ("pillar", "25 mm"), ("pillar", "overturning")
+        ]  # fmt: skip
+        for limit, each in answer.curves.items():
+            rows = frame[frame.limit_state == f"{limit}"]
+            assert rows.x.is_monotonic_increasing and (rows.x.min(), rows.x.max()) == pytest.approx((0.2, 1.6))
+            np.testing.assert_array_equal(rows.probability, each.curve.probability(rows.x))
+            np.testing.assert_array_equal(rows[["low", "high"]].T, each.curve.band(rows.x))
+            np.testing.assert_array_equal(rows.lower_probability, rows.probability)
+            assert set(rows["median"]) == {each.median.value}
+
+    def test_the_runs_fitted_anew_give_them_again(self, answer):
+        runs, each = answer.runs(), answer.curves["overturning"]
+        fell = runs["outcome"] == "overturns"
+        again = rk.fit_fragility(runs["PGA [g]"], fell, clusters=runs["record"], confidence=0.95)
+        own = each.curve.own  # before it is cut by the curve of uplift
+        assert again.curve.kind == own.kind == "lognormal"
+        assert again.median.value == pytest.approx(own.median.value)
+        assert again.robust_interval["median"] == pytest.approx((own.median.low, own.median.high))
+        assert again.robust_interval["dispersion"] == pytest.approx((own.dispersion.low, own.dispersion.high))
