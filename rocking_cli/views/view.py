@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from math import degrees, isnan
 from typing import TYPE_CHECKING, Any
 
+from rocking_cli.short_repr import short_repr
+
 if TYPE_CHECKING:
     from rocking_cli.core import Mechanism
 
@@ -14,6 +16,7 @@ ABSENT = "-"
 MAX_DETAILED_MOTIONS = 3  # motions or records with lines of their own; more are listed in a table
 
 
+@short_repr
 @dataclass(frozen=True)
 class Table:
     """A table of rows under headings.
@@ -36,6 +39,7 @@ class Table:
     numbers: Collection[int] = ()
 
 
+@short_repr
 @dataclass(frozen=True)
 class View:
     """One result as plain data, and as tables and sentences.

@@ -16,6 +16,7 @@ from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD, parse_pulse
 from rocking_cli.excitation.pulses.base import SAMPLING
 from rocking_cli.processing.reading import Reading
 from rocking_cli.questions.fragility.definition import RecordEntry
+from rocking_cli.short_repr import short_repr
 
 MAX_SAMPLES_IN_MEMORY = 32_000_000  # samples of all records: a quarter of a gigabyte
 
@@ -74,6 +75,7 @@ class Source:
         return motion
 
 
+@short_repr
 @dataclass(frozen=True)
 class Record:
     """A ground motion of a study as its store keeps it: checksum, peaks and sampling.
