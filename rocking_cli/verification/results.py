@@ -57,7 +57,6 @@ class Clause(str):
         return clause
 
 
-@short_repr
 @dataclass(frozen=True)
 class Working:
     """A line of a calculation.

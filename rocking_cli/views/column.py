@@ -103,9 +103,8 @@ def data_of(columns: Iterable[Column[R]], row: R) -> dict[str, Any]:
     {'name': 'wall', 'p': 4}
     >>> frame_of([name, p, first], ["wall", "arch"])
     {'name': ['wall', 'arch'], 'p [rad/s]': [4, 4]}
-    >>> table = table_of("Structures", [name, p, first], ["wall"])
-    >>> table.columns, table.rows, table.numbers
-    (['', 'p', 'starts with'], [['wall', '4', 'w']], [1, 2])
+    >>> table_of("Structures", [name, p, first], ["wall"])
+    Table(title='Structures', columns=['', 'p', 'starts with'], rows=[['wall', '4', 'w']], numbers=[1, 2])
     >>> table_across("Structures", [p, first], ["one", "two"], ["wall", "arch"]).rows
     [['p', '4', '4', 'rad/s'], ['starts with', 'w', 'a', '']]
     """

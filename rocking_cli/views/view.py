@@ -16,7 +16,6 @@ ABSENT = "-"
 MAX_DETAILED_MOTIONS = 3  # motions or records with lines of their own; more are listed in a table
 
 
-@short_repr
 @dataclass(frozen=True)
 class Table:
     """A table of rows under headings.

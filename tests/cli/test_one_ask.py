@@ -210,7 +210,7 @@ def test_what_is_no_argument_is_told_what_it_may_be(verb, word, value, said):
 
 
 def test_a_word_for_a_field_of_the_structure_is_an_argument_where_there_is_one():
-    assert rk.pulse(a=3.0, omega=4.0, eta=0.5).to_dict()["responses"]
+    assert rk.pulse(a=3.0, omega=4.0, eta=0.5).result
     with pytest.raises(rk.InputError, match=r"structure.replace\(restitution=0.9\)"):
         rk.respond(EXAMPLES / "block.yaml", "sine:0.3g:0.5s", eta=0.9)
 
