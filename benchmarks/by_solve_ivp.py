@@ -7,8 +7,9 @@ from collections.abc import Callable
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from rocking_cli import GroundMotion, Model
+from rocking_cli import GroundMotion
 from rocking_cli.dynamics import kernels as at
+from rocking_cli.dynamics.model import Model
 
 
 def impact(t: float, y: list[float]) -> float:

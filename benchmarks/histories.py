@@ -11,18 +11,24 @@ import os
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from statistics import median
+from typing import Any
 
 import numpy as np
 from by_solve_ivp import BySolveIvp
 from numba import njit
 
-from rocking_cli import GroundMotion, Model, Runs, build_models, load_structure, read_record, respond_many
+from rocking_cli import GroundMotion, load_structure, read_record, respond_each
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics import kernels as at
-from rocking_cli.dynamics.deck import lay_out, run_deck
+from rocking_cli.dynamics.batch import HISTORIES_PER_TASK, Runs, respond_many
+from rocking_cli.dynamics.deck import MAX_IMPACTS, lay_out, run_deck
 from rocking_cli.dynamics.history import RTOL, follow
+from rocking_cli.dynamics.model import Model
+from rocking_cli.dynamics.parallel import in_parts
+from rocking_cli.structure import build_models
 
 PROJECT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(PROJECT / "scripts"))
@@ -193,6 +199,32 @@ def batches(motion: GroundMotion, models: dict[str, list[Model]]) -> None:
     )  # fmt: skip
 
 
+def bulk(motion: GroundMotion) -> None:
+    """`respond_each` against the kernel alone, which has its rows ready: what Python adds to many runs."""
+    block, scales, etas = Registry()["block"](width=0.7, height=2.8), np.linspace(0.2, 0.9, BATCH // 4), [0.85, 0.9]
+    (model,) = build_models(block, ("nonlinear",))
+    rows = np.zeros((BATCH, at.RUN_COLUMNS))
+    rows[:, at.FACTOR] = np.repeat(scales, 4) * np.tile([1, 1, -1, -1], scales.size)
+    rows[:, at.V_FACTOR] = abs(rows[:, at.FACTOR])
+    rows[:, [at.SIZE, at.SLENDER]] = 1.0
+    rows[:, at.ETA_POSITIVE] = rows[:, at.ETA_NEGATIVE] = np.tile(etas, BATCH // 2)
+
+    def kernel() -> None:
+        run = partial(run_deck, lay_out([model], [motion]), rtol=RTOL, most_impacts=MAX_IMPACTS)
+        in_parts(partial(run, rows, np.empty((BATCH, at.MARKS))), BATCH, HISTORIES_PER_TASK, None, None)
+
+    def verb() -> Any:
+        return respond_each(block, motion, models="nonlinear", scales=scales, polarities=[1, -1], restitutions=etas)
+
+    answer = verb()
+    alone, whole, frame = seconds(kernel, 3), seconds(verb, 3), seconds(answer.to_frame, 3)
+    table(
+        "Many runs: scales, polarities and restitutions on the block",
+        ["runs", "kernel s", "respond_each / kernel", "to_frame / kernel"],
+        [[f"{BATCH:,}", f"{alone:.2f}", f"{whole / alone:.3f}", f"{frame / alone:.3f}"]],
+    )
+
+
 def length() -> None:
     """Cost of a sample of a noise that keeps a large block rocking, short and long."""
     structure = Registry()["block"](width=44.8, height=179.2, restitution=0.8)  # so large that it does not overturn
@@ -225,6 +257,7 @@ def main() -> None:
     against_solvers(motion, models)
     tolerance(models)
     batches(motion, models)
+    bulk(motion)
     length()
     against_pybullet(motion, models)
 

@@ -14,9 +14,11 @@ from statistics import median
 
 import numpy as np
 
-from rocking_cli import Runs, build_models, load_structure, read_record, respond_many
+from rocking_cli import load_structure, read_record
 from rocking_cli.core import both_statics
+from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.joints import joints_of
+from rocking_cli.structure import build_models
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 CASES = ("block", "wall", "frame", "arch", "masonry/portal", "masonry/buttressed_arch")

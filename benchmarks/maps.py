@@ -17,7 +17,8 @@ from statistics import median
 
 import numpy as np
 
-from rocking_cli import Runs, load_structure, respond_many
+from rocking_cli import load_structure
+from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import linear_model
 from rocking_cli.questions.overturning.study import overturning_map
 from rocking_cli.structure import Structure

@@ -80,8 +80,10 @@ def speeds() -> list[list[str]]:
     """Rows of how fast the ways run a kernel: medians of ratios of runs that follow each other."""
     import numpy as np
 
-    from rocking_cli import Runs, build_models, load_structure, read_record, respond_many
+    from rocking_cli import load_structure, read_record
     from rocking_cli.dynamics import ways
+    from rocking_cli.dynamics.batch import Runs, respond_many
+    from rocking_cli.structure import build_models
 
     motion = read_record(PROJECT / "examples" / "accel.csv")
     models = [

@@ -25,8 +25,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import ScalarFormatter
 from numpy.typing import NDArray
 
-from rocking_cli import Mechanism, Registry, equivalent_block
-from rocking_cli.core import Direction
+from rocking_cli import Mechanism, Registry
+from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.dynamics.history import History, follow
 from rocking_cli.errors import MechanismError
 from rocking_cli.excitation.base import STANDARD_GRAVITY

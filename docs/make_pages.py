@@ -15,6 +15,7 @@ import make_sheets
 from make_runs import Content, Run, keep, run, shown
 from parts import asked, renewed
 
+import rocking_cli
 from rocking_cli import Registry, verification
 
 DOCS = Path(__file__).resolve().parent
@@ -26,7 +27,7 @@ RUNS = ("run", "draw")  # the kinds of parts that are made by a command, with an
 
 def pages() -> list[Path]:
     """Return the README and all pages, the tutorial first: it writes the file that others use."""
-    folders = ("", "mechanisms/", "walls/", "masonry/")
+    folders = ("", "api/", "mechanisms/", "walls/", "masonry/")
     found = [*(page for folder in folders for page in DOCS.glob(f"{folder}*.md")), PROJECT / "README.md"]
     return sorted(found, key=lambda page: (page.name != "tutorial.md", page))
 
@@ -56,7 +57,9 @@ def made(kind: str, what: str, runs: dict[str, Run]) -> str:
     if kind == "verification":
         return make_reference.helpers(what, verification)
     if kind == "names":
-        return make_reference.public_names(what)
+        return make_reference.helpers(what, rocking_cli)
+    if kind == "index":
+        return make_reference.index(what)
     return {"options": make_reference.command_line, "formulas": make_reference.standing_of_formulas}[kind]()
 
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 from enum import Enum
 from inspect import Parameter, cleandoc, getdoc, isclass, signature
 from pathlib import Path
+from pkgutil import resolve_name
 from textwrap import dedent, indent
 from types import ModuleType
-from typing import Any
+from typing import Any, is_typeddict
 
 import click
+from parts import asked
 from pydantic import BaseModel
 
 import rocking_cli
@@ -19,6 +21,7 @@ from rocking_cli.cli.main import main
 from rocking_cli.verification import Code
 from rocking_cli.views.mechanisms import fields
 
+API = Path(__file__).resolve().parent / "api"
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 
 
@@ -105,52 +108,68 @@ def table_of_fields(cls: Any) -> str:
     return "\n".join(rows) + f"\n\nand {common}, see [what is common to all](../mechanisms.md)."
 
 
-def public_names(names: str) -> str:
-    """Return signature and first sentence of names of `rocking_cli`."""
-    rows = ["| name | what it is |", "|---|---|"]
-    for name in names.split():
-        each = getattr(rocking_cli, name)
-        called = "" if isclass(each) else f"({', '.join(signature(each).parameters)})"
-        first = " ".join((getdoc(each) or "").split("\n\n")[0].split())
-        rows.append(f"| `{name}{called}` | {plain(first).replace('|', chr(92) + '|')} |")
-    return "\n".join(rows)
+def names_of(page: str) -> list[str]:
+    """Return the names that a page of the Python reference documents, those of other modules with their modules."""
+    parts = asked((API / f"{page}.md").read_text(encoding="utf-8"))
+    return [name for kind, what in parts if kind == "names" for name in what.split()]
+
+
+def index(pages: str) -> str:
+    """Return tables of all names of pages of the Python reference, each of which leads to its text."""
+    lines = []
+    for page in pages.split():
+        title = (API / f"{page}.md").read_text(encoding="utf-8").partition("\n")[0].removeprefix("# ")
+        lines += ["", f"## [{title}](api/{page}.md)", "", "| name | what it is |", "|---|---|"]
+        for name in names_of(page):
+            first = plain(summary(resolve_name(f"rocking_cli.{name}"))).replace("|", "\\|")
+            lines.append(f"| [`{name.rpartition('.')[2]}`](api/{page}.md#rocking_cli.{name}) | {first} |")
+    return "\n".join(lines)
+
+
+def summary(each: Any) -> str:
+    """Return the first sentence of a docstring."""
+    return " ".join((getdoc(each) or "").split("\n\n")[0].split())
 
 
 def helpers(names: str, module: ModuleType = core) -> str:
-    """Return signature and first sentence of names of `rocking_cli.core`, or a module, for authors of plugins.
+    """Return signature and first sentence of names of `rocking_cli.core`, or a module.
 
     With a dot, a method that `Mechanism` has: `.bodies`.
     """
     lines = []
     for name in names.split():
-        each = getattr(core.Mechanism if name.startswith(".") else module, name.lstrip("."))
-        first = " ".join((getdoc(each) or "").split("\n\n")[0].split())
-        lines.append(f"- `{called(name.lstrip('.'), each)}`: {plain(first)}")
+        each = getattr(core.Mechanism, name[1:]) if name[0] == "." else resolve_name(f"{module.__name__}.{name}")
+        lines.append(f"- `{called(name.lstrip('.'), each)}`: {plain(summary(each))}")
     return "\n".join(lines)
 
 
 def called(name: str, each: Any) -> str:
-    """Return the signature of a function or a class, with types and defaults of its arguments."""
+    """Return a function or a class as it is called, with types and defaults of its arguments."""
     if isclass(each) and issubclass(each, Enum):
         return ", ".join(f"{name}.{member}" for member in each.__members__)
-    is_called = callable(each) and not getattr(each, "_is_protocol", False)  # a property is not
-    if not is_called or (isclass(each) and issubclass(each, BaseModel | Code | Exception)):
-        return name
+    taken, returned = typed(each)
+    return f"{name}{taken}{returned and f' -> {returned}'}"
+
+
+def typed(each: Any) -> tuple[str, str]:
+    """Return the arguments of a function or a class in brackets, and what a function returns; empty for a property."""
+    is_called = callable(each) and not getattr(each, "_is_protocol", False) and not is_typeddict(each)
+    if not is_called or (isclass(each) and issubclass(each, BaseModel | Code | Enum | Exception)):
+        return "", ""
     found = signature(each)
-    taken = [argument(one) for one in found.parameters.values() if one.name != "self"]
-    for k, one in enumerate(found.parameters.values()):
-        if one.kind is Parameter.KEYWORD_ONLY:
-            taken.insert(k, "*")
-            break
-    returned = "" if isclass(each) else f" -> {kind(found.return_annotation)}"
-    return f"{name}({', '.join(taken)}){returned}"
+    given = [one for one in found.parameters.values() if one.name != "self"]
+    kinds = [one.kind for one in given]
+    taken = [argument(one) for one in given]
+    if Parameter.KEYWORD_ONLY in kinds and Parameter.VAR_POSITIONAL not in kinds:
+        taken.insert(kinds.index(Parameter.KEYWORD_ONLY), "*")
+    return f"({', '.join(taken)})", "" if isclass(each) else kind(found.return_annotation)
 
 
 def argument(one: Parameter) -> str:
     """An argument as it is written where a function is defined."""
     stars = {Parameter.VAR_POSITIONAL: "*", Parameter.VAR_KEYWORD: "**"}.get(one.kind, "")
-    without = "" if one.default is Parameter.empty else f" = {one.default!r}".replace("<factory>", "...")
-    return f"{stars}{one.name}: {kind(one.annotation)}{without}"
+    default = "..." if repr(one.default).startswith("<") else repr(one.default)
+    return f"{stars}{one.name}: {kind(one.annotation)}{'' if one.default is Parameter.empty else f' = {default}'}"
 
 
 def kind(annotation: Any) -> str:
@@ -177,13 +196,12 @@ def equivalent_blocks(names: str) -> str:
 
 def docstrings(names: str) -> str:
     """Return the full documentation of names, for Sphinx."""
-    kinds = {
-        name: "exception" if isclass(each) and issubclass(each, Exception) else "class" if isclass(each) else "function"
-        for name in names.split()
-        for each in [getattr(rocking_cli, name)]
-    }
-    directives = [f".. auto{kind}:: {name}" + "\n   :members:" * (kind == "class") for name, kind in kinds.items()]
-    return "\n".join(["```{eval-rst}", ".. currentmodule:: rocking_cli", "", *directives, "```", ""])
+    lines = ["```{eval-rst}"]
+    for name in (f"rocking_cli.{each}" for each in names.split()):
+        each = resolve_name(name)
+        kind = "function" if not isclass(each) else "exception" if issubclass(each, Exception) else "class"
+        lines += [f".. auto{kind}:: {name}", "   :members:" * (kind == "class")]
+    return "\n".join([*lines, "```", ""])
 
 
 SAMPLES = {

@@ -18,19 +18,10 @@ from typing import Any
 import numpy as np
 
 from mechanisms._arch_collapse import least_thickness
-from rocking_cli import (
-    Direction,
-    GroundMotion,
-    Mechanism,
-    Registry,
-    closed_form,
-    equivalent_block,
-    exact_pulse,
-    load_structure,
-    measure,
-    respond,
-)
+from rocking_cli import Direction, GroundMotion, Mechanism, Registry, closed_form, load_structure, measure, respond
+from rocking_cli.core import equivalent_block
 from rocking_cli.core.reactions import reactions
+from rocking_cli.dynamics.exact import exact_pulse
 from rocking_cli.questions.error.study import linearisation
 
 DOCS = Path(__file__).resolve().parent

@@ -6,7 +6,7 @@ Examples
 --------
 >>> import rocking_cli as rk
 >>> block = rk.Block(width=1.0, height=4.0)
->>> round(rk.equivalent_block(block).positive.lambda_, 6)
+>>> round(rk.equiv(block).positive.lambda_, 6)
 0.25
 >>> rk.respond(block, "sine:0.2g:0.8s")["nonlinear"].words
 'does not uplift'
@@ -24,13 +24,10 @@ __version__ = "0.2.0"
 _HOME = {
     "ask.answer": ["Answer", "MappingAnswer"],
     "ask.several": ["Answers"],
-    "core": ["Body", "Direction", "Equivalence", "EquivalentBlock", "Mechanism", "RigidMotion", "equivalent_block"],
+    "core": ["Body", "Direction", "Equivalence", "EquivalentBlock", "Mechanism", "RigidMotion"],
     "core.registry": ["Registry"],
-    "dynamics.batch": ["Runs", "respond_many"],
-    "dynamics.exact": ["ExactResponse", "closed_form", "exact_pulse", "exact_response"],
-    "dynamics.exact_batch": ["exact_many"],
+    "dynamics.exact": ["ExactResponse", "closed_form"],
     "dynamics.history": ["History"],
-    "dynamics.model": ["Model"],
     "dynamics.outcome": ["Outcome"],
     "errors": ["DoubtWarning", "InputError", "MechanismError", "Problem", "RockingError", "SolverError"],
     "core.equivalence": ["NoEquivalentBlock"],
@@ -43,10 +40,21 @@ _HOME = {
     "processing.floor": ["Floor"],
     "processing.intensity": ["Measure", "MotionMeasure", "RelativeMeasure", "RunMeasure", "parse_measure"],
     "processing.oscillator": ["ResponseSpectrum"],
-    "structure": ["build_models"],
     "core.structure_file": ["load_structure"],
 }
 _MODULES = {name: module for module, names in _HOME.items() for name in names}
+_MOVED = {
+    "Model": "rocking_cli.dynamics.model.Model",
+    "Runs": "rk.respond_each, or rocking_cli.dynamics.batch.Runs",
+    "build_models": "rk.respond, or rocking_cli.structure.build_models",
+    "equivalent": "rk.equivalent_pulses",
+    "equivalent_block": "rk.equiv, or rocking_cli.core.equivalent_block",
+    "exact_many": "rk.overturning_map, or rocking_cli.dynamics.exact_batch.exact_many",
+    "exact_pulse": "rk.pulse, or rocking_cli.dynamics.exact.exact_pulse",
+    "exact_response": "rk.pulse, or rocking_cli.dynamics.exact.exact_response",
+    "respond_many": "rk.respond_each, or rocking_cli.dynamics.batch.respond_many",
+}
+"""Names that are gone from here, each with what to use."""
 
 
 def _own_mechanisms() -> dict[str, str]:
@@ -77,6 +85,8 @@ def __getattr__(name: str) -> Any:
         classes := _own_mechanisms()
     ):  # other names may be modules that are being imported
         return __getattr__("mechanisms")[classes[name]]
+    if name in _MOVED:
+        raise AttributeError(f"{__name__} has no {name}: use {_MOVED[name]}")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 

@@ -21,19 +21,12 @@ from rocking_cli.core import Equivalence as Equivalence
 from rocking_cli.core import EquivalentBlock as EquivalentBlock
 from rocking_cli.core import Mechanism as Mechanism
 from rocking_cli.core import RigidMotion as RigidMotion
-from rocking_cli.core import equivalent_block as equivalent_block
 from rocking_cli.core.equivalence import NoEquivalentBlock as NoEquivalentBlock
 from rocking_cli.core.registry import Registry as Registry
 from rocking_cli.core.structure_file import load_structure as load_structure
-from rocking_cli.dynamics.batch import Runs as Runs
-from rocking_cli.dynamics.batch import respond_many as respond_many
 from rocking_cli.dynamics.exact import ExactResponse as ExactResponse
 from rocking_cli.dynamics.exact import closed_form as closed_form
-from rocking_cli.dynamics.exact import exact_pulse as exact_pulse
-from rocking_cli.dynamics.exact import exact_response as exact_response
-from rocking_cli.dynamics.exact_batch import exact_many as exact_many
 from rocking_cli.dynamics.history import History as History
-from rocking_cli.dynamics.model import Model as Model
 from rocking_cli.dynamics.outcome import Outcome as Outcome
 from rocking_cli.errors import DoubtWarning as DoubtWarning
 from rocking_cli.errors import InputError as InputError
@@ -64,7 +57,7 @@ from rocking_cli.questions.demand.verb import demand as demand
 from rocking_cli.questions.design.verb import design as design
 from rocking_cli.questions.draw.verb import draw as draw
 from rocking_cli.questions.equiv.verb import equiv as equiv
-from rocking_cli.questions.equivalent.verb import equivalent as equivalent
+from rocking_cli.questions.equivalent_pulses.verb import equivalent_pulses as equivalent_pulses
 from rocking_cli.questions.error.verb import error as error
 from rocking_cli.questions.fragility.results import results as results
 from rocking_cli.questions.fragility.verb import fragility as fragility
@@ -77,10 +70,10 @@ from rocking_cli.questions.pulse.verb import pulse as pulse
 from rocking_cli.questions.record.verb import record as record
 from rocking_cli.questions.record.verb import response_spectrum as response_spectrum
 from rocking_cli.questions.report.verb import report as report
+from rocking_cli.questions.respond.each_verb import respond_each as respond_each
 from rocking_cli.questions.respond.motion_verbs import correct as correct
 from rocking_cli.questions.respond.motion_verbs import on_floor as on_floor
 from rocking_cli.questions.respond.motion_verbs import respond_around as respond_around
-from rocking_cli.questions.respond.motion_verbs import respond_each as respond_each
 from rocking_cli.questions.respond.verb import respond as respond
 from rocking_cli.questions.score.verb import score as score
 from rocking_cli.questions.select.verb import select as select
@@ -88,7 +81,6 @@ from rocking_cli.questions.selfcheck.verb import selfcheck as selfcheck
 from rocking_cli.questions.spectrum.verb import spectrum as spectrum
 from rocking_cli.questions.survey.verb import survey as survey
 from rocking_cli.questions.verify.verb import verify as verify
-from rocking_cli.structure import build_models as build_models
 
 __version__: str
 mechanisms: Registry

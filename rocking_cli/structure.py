@@ -57,7 +57,35 @@ def with_restitution(mechanism: Mechanism, eta: float) -> Mechanism:
 def build_models(
     mechanism: Mechanism, names: Sequence[ModelName] = MODELS, *, opening: float = OPENING
 ) -> list[Model]:  # fmt: skip
-    """Build models of a mechanism, see `Structure`. Raises `InputError` or `MechanismError`."""
+    """Build the models of a mechanism: its equations of motion as arrays, for `respond_many`.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The structure.
+    names : sequence of {"nonlinear", "linear1", "linear2"}
+        Which models.
+    opening : float
+        Largest opening of a joint up to which a history is valid, over D_cr.
+
+    Returns
+    -------
+    list of Model
+        One for each name.
+
+    Raises
+    ------
+    InputError
+        If `opening` is out of range.
+    MechanismError
+        If the structure has no critical rotation or no uplift acceleration.
+
+    Examples
+    --------
+    >>> from rocking_cli import Registry
+    >>> [each.name for each in build_models(Registry()["block"](width=0.7, height=2.8), ("nonlinear", "linear2"))]
+    ['nonlinear', 'linear2']
+    """
     return Structure(mechanism, opening=opening).models(names)
 
 

@@ -76,7 +76,7 @@ ONCE = (
     "overturning examples/block.yaml --json",
     "overturning examples/masonry/buttressed_arch.yaml --json",
     "overturning --compare examples/block.yaml examples/frame.yaml examples/wall.yaml --json",
-    "equivalent examples/block.yaml examples/frame.yaml --ag 0.6g --period 0.5 --json",
+    "equivalent_pulses examples/block.yaml examples/frame.yaml --ag 0.6g --period 0.5 --json",
     f"spectrum examples/block.yaml {ACCEL} --slenderness 0.2,0.3 --json",
     f"spectrum examples/masonry/portal.yaml {ACCEL} --json",
     "fragility examples/study/pedestal.yaml --restart --json",

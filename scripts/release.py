@@ -31,7 +31,7 @@ def commands(readme: str) -> list[list[str]]:
 
 def script(readme: str) -> str:
     """The lines of Python that the README shows."""
-    (found,) = re.findall(r"^    from rocking_cli .*\n(?:(?:    .*)?\n)*", readme, re.M)
+    (found,) = re.findall(r"^    import rocking_cli .*\n(?:(?:    .*)?\n)*", readme, re.M)
     return re.sub(r"^    ", "", found, flags=re.M)
 
 

@@ -22,7 +22,7 @@ ROUNDED = [
     for folder, names in {
         "io": ("json_text",),
         "mechanisms": ("assembly", "assembly_limit", "linkage"),
-        "questions/equivalent": ("equivalent",),
+        "questions/equivalent_pulses": ("equivalent_pulses",),
         "questions/fragility": (
             "distributions", "fragility_curves", "fragility_pictures", "hazard", "observed", "study_file", "study_runs",
         ),

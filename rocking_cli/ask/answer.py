@@ -3,30 +3,35 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from html import escape
 from importlib.util import find_spec
+from inspect import Parameter, signature
 from pathlib import Path
 from pkgutil import resolve_name
 from threading import RLock
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.json_text import json_text
+from rocking_cli.text import numbered
 from rocking_cli.views.column import table_of, text_columns
 from rocking_cli.views.view import Table, View, number
 
 if TYPE_CHECKING:
     import pandas
-    from matplotlib.figure import Figure
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure, SubFigure
 
     from rocking_cli.io.tables import Columns
 
 R = TypeVar("R")
 K = TypeVar("K")
 V = TypeVar("V")
+_NO_NAME = re.compile(r"[^\w.]+")  # what is not in the name of a column
 MAX_REPR_LENGTH = 100  # characters of the text that `repr` shows
 SHOWN_ROWS = 5  # at either end of a result that has no table of its own
 
@@ -46,7 +51,7 @@ class Answer(Generic[R]):
     columns : callable
         Returns the result as columns by name.
     figure : callable
-        Returns the plot of the result.
+        Returns the plot of the result. Keyword-only arguments that are not given yet are arguments of `plot` too.
     blocks : callable, optional
         Returns the columns in blocks of rows, one after the other, if there may be very many.
     tables : mapping of str to callable
@@ -57,7 +62,7 @@ class Answer(Generic[R]):
     result: R
     view: View
     columns: Callable[[], Columns]
-    figure: Callable[[], Figure]
+    figure: Callable[..., Figure]
     blocks: Callable[[], Iterable[Columns]] | None = None
     tables: Mapping[str, Callable[[], Columns]] = field(default_factory=dict)
 
@@ -88,7 +93,9 @@ class Answer(Generic[R]):
         return plain
 
     def to_frame(self) -> pandas.DataFrame:
-        """Return the result as a frame of pandas, which must be installed.
+        """Return the result as a frame of pandas, which must be installed; `attrs["units"]` has the units of columns.
+
+        Columns are those of the tables that are written, their names without units and blanks.
 
         Raises
         ------
@@ -102,24 +109,59 @@ class Answer(Generic[R]):
         """Further tables of the result as frames, by name. Raises as `to_frame`."""
         return {name: _frame(each) for name, each in self.tables.items()}
 
-    def plot(self, file: str | Path | None = None) -> Figure:
-        """Plot the result.
+    def plot(
+        self,
+        file: str | Path | None = None,
+        *,
+        ax: Axes | None = None,
+        figure: Figure | SubFigure | None = None,
+        **asked: Any,
+    ) -> Figure:
+        """Plot the result, in a figure of its own or in one of yours.
 
         Parameters
         ----------
         file : str or Path, optional
-            File to write the plot to as well: .png, .svg or .pdf.
+            File to write the whole figure to as well: .png, .svg or .pdf.
+        ax : matplotlib.axes.Axes, optional
+            Axes to draw in, if the plot has one panel. What they hold stays.
+        figure : matplotlib.figure.Figure or SubFigure, optional
+            Figure without axes to draw in, whose size stays. Drawings of structures are made larger or smaller as a
+            whole.
+        **asked
+            What to plot, where an answer lets you choose.
 
         Returns
         -------
         matplotlib.figure.Figure
-            Figure to change, or to show in a notebook.
+            Figure to change, or to show in a notebook: that of `ax` or `figure` if one is given.
+
+        Raises
+        ------
+        InputError
+            If there is no plot; if it has several panels and `ax` is given; if `ax` has another projection than the
+            plot, or `figure` has axes; if an argument is unknown, or the file cannot be written.
+
+        Notes
+        -----
+        Room for labels and legends is made by the layout of your figure: give it `layout="constrained"`.
+
+        Examples
+        --------
+        >>> import matplotlib.pyplot as plt
+        >>> import rocking_cli as rk
+        >>> block = rk.Block(name="pedestal", width=0.7, height=2.8)
+        >>> figure, (left, right) = plt.subplots(1, 2, layout="constrained")
+        >>> rk.spectrum(block, "sine:0.4g:0.8s", count=4).plot(ax=left) is figure
+        True
         """
+        _check_asked(self.figure, asked)
+        path = None if file is None else _picture_file(Path(file))
         with _DRAWING:
-            figure = self.figure()
-            if file is not None:
-                _write(figure, Path(file))
-        return figure
+            drawn = self.figure(**asked) if ax is None and figure is None else _draw_in(ax, figure, self.figure, asked)
+            if path is not None:
+                _write(drawn, path)
+        return drawn
 
     def __repr__(self) -> str:
         sentence = " ".join(self.sentences)
@@ -150,21 +192,91 @@ _DRAWING = RLock()
 """Lock around drawing and writing of plots, as matplotlib is not safe for threads."""
 
 
+def parted(columns: Columns) -> tuple[dict[str, Any], dict[str, str]]:
+    """Return columns by names without units and blanks, and the unit of each that has one.
+
+    Examples
+    --------
+    >>> parted({"phi/phi_cr": [0.5], "t [s]": [1.0], "known to [s]": [2.0]})
+    ({'phi_over_phi_cr': [0.5], 't': [1.0], 'known_to': [2.0]}, {'t': 's', 'known_to': 's'})
+    """
+    named: dict[str, Any] = {}
+    units: dict[str, str] = {}
+    for head, values in columns.items():
+        words, _, unit = head.removesuffix("]").rpartition(" [") if head.endswith("]") else (head, "", "")
+        name = numbered(_NO_NAME.sub("_", words.replace("/", " over ")).strip("_"), "", named)
+        named[name] = values
+        if unit:
+            units[name] = unit
+    return named, units
+
+
 def _frame(columns: Callable[[], Columns]) -> pandas.DataFrame:
     if find_spec("pandas") is None:
         raise InputError(Problem("a frame requires the package pandas", hint="pip install pandas"))
     from pandas import DataFrame
 
-    return DataFrame(dict(columns()))
+    named, units = parted(columns())
+    frame = DataFrame(named)
+    numbers = list(frame.select_dtypes("floating"))
+    frame[numbers] += 0.0  # turns -0 into 0
+    frame.attrs["units"] = units
+    return frame
 
 
-def _write(figure: Figure, path: Path) -> None:
-    from rocking_cli.io.files import check_writable, write_whole
-    from rocking_cli.plotting.style import save
+def _check_asked(figure: Callable[..., Figure], asked: Mapping[str, Any]) -> None:
+    """Raise `InputError` if a plot does not take an argument."""
+    if not asked:
+        return
+    given = figure.keywords if isinstance(figure, partial) else {}
+    free = [each for each in signature(figure).parameters.values() if each.name not in given]
+    known = [each.name for each in free if each.kind is Parameter.KEYWORD_ONLY]
+    hint = f"it takes {', '.join(('file', 'ax', 'figure', *known))}"
+    unknown = [each for each in asked if each not in known]
+    if unknown:
+        raise InputError(*(Problem("is not an argument of this plot", field=each, hint=hint) for each in unknown))
+
+
+def _draw_in(
+    ax: Axes | None, figure: Figure | SubFigure | None, draw: Callable[..., Figure], asked: Mapping[str, Any]
+) -> Figure:
+    """Draw a plot in axes or a figure of the user, and return the whole figure."""
+    from matplotlib.axes import Axes
+    from matplotlib.figure import FigureBase
+
+    from rocking_cli.plotting.style import drawing_in
+
+    if ax is not None and figure is not None:
+        raise InputError(Problem("cannot be combined with `figure`", field="`ax`"))
+    target = figure if ax is None else ax
+    if not isinstance(target, FigureBase if ax is None else Axes):
+        field, kind = ("`figure`", "a Figure or SubFigure") if ax is None else ("`ax`", "an Axes")
+        raise InputError(Problem(f"must be {kind} of matplotlib, got {type(target).__name__}", field=field))
+    if figure is not None and figure.axes:
+        hint = "give `ax` to draw in one of them, or an empty figure or part of one"
+        raise InputError(Problem("has axes already", field="`figure`", hint=hint))
+    whole = cast("Figure", target.get_figure(root=True))
+    with drawing_in(target):
+        drawn = draw(**asked)
+    if drawn.get_figure(root=True) is not whole:
+        raise InputError(Problem("this plot makes a figure of its own", hint="plot it without `ax` and `figure`"))
+    return whole
+
+
+def _picture_file(path: Path) -> Path:
+    """Return the path of a picture; raise `InputError` if it has another ending or cannot be written."""
+    from rocking_cli.io.files import check_writable
 
     if path.suffix.lower() not in (".png", ".svg", ".pdf"):
         raise InputError(Problem("give a file name that ends in .png, .svg or .pdf", str(path)))
     check_writable(path)
+    return path
+
+
+def _write(figure: Figure, path: Path) -> None:
+    from rocking_cli.io.files import write_whole
+    from rocking_cli.plotting.style import save
+
     write_whole(path, lambda stream: save(figure, stream, format=path.suffix[1:].lower()))
 
 

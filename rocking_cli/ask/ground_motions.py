@@ -9,6 +9,9 @@ from pathlib import Path
 from textwrap import shorten
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem, renamed
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
@@ -19,15 +22,15 @@ from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.records.opening import allow_again, matching_files
 from rocking_cli.processing.listed import LIST_FILE, Listed, Scaled, is_list
 from rocking_cli.processing.reading import Reading, reading_of
-from rocking_cli.processing.reading_options import SCALING
+from rocking_cli.processing.reading_options import READING, SCALING
 from rocking_cli.processing.reading_options import MotionArguments as MotionArguments
 from rocking_cli.processing.reading_options import ReadingArguments as ReadingArguments
 from rocking_cli.processing.steps import Resample, process
 from rocking_cli.views.processing import in_words
 from rocking_cli.views.view import MAX_DETAILED_MOTIONS
 
-Motion = GroundMotion | Pulse | Scaled | str | Path
-"""Ground motion or pulse, file of a record, or pulse as text such as `sine:0.6g:0.8s`."""
+Motion = GroundMotion | Pulse | Scaled | str | Path | NDArray[Any]
+"""Ground motion or pulse, file of a record, pulse as text such as `sine:0.6g:0.8s`, or samples in an array."""
 MAX_PGA, MAX_PGV = 1e3, 1e4  # g and m/s: larger than in any ground motion, and too long to simulate
 Source = GroundMotion | Scaled | Pulse | Listed | InputError
 """Source of a motion: an object, a single file of a pattern or list, or the reason why there is no file."""
@@ -78,7 +81,9 @@ class Motions:
             raise InputError("`scale`, `target_pga` and `target_pgv` cannot be combined: give one of them")
         sources: dict[object, Source] = {}
         for one in each_of(given):
-            if isinstance(one, GroundMotion | Scaled):
+            if isinstance(one, np.ndarray):
+                sources |= {id(each): each for each in _of_array(one, options)}
+            elif isinstance(one, GroundMotion | Scaled):
                 sources[id(one)] = one
             elif (pulse := pulse_in(one)) is not None:
                 sources[pulse] = pulse
@@ -258,10 +263,19 @@ def pulse_in(given: Motion) -> Pulse | None:
     if isinstance(given, str) and given.partition(":")[0] in PulseShapes() and not Path(given).exists():
         return parse_pulse(given)
     if not isinstance(given, str | Path):
-        hint = "make one with rk.GroundMotion(name, dt, acceleration), the acceleration in m/s2"
+        hint = 'make one of samples: rk.GroundMotion("mine", 0.01, samples, unit="g")'
         what = f"must be a ground motion, a pulse or a file, got {type_in_words(given)}"
         raise InputError(Problem(what, field="motion", hint=hint))
     return None
+
+
+def _of_array(samples: NDArray[Any], options: Mapping[str, Any]) -> list[GroundMotion]:
+    """Return the motions in the rows of an array, with the interval and the unit of the options."""
+    if options.get("dt") is None:
+        hint = "give it, and `units` if they are not in m/s2: dt=0.01, units='g'"
+        raise InputError(Problem("is missing: samples in an array need their interval", field="`dt`", hint=hint))
+    dt, unit = READING["dt"].parse(options["dt"]), options.get("units") or "m/s2"
+    return [GroundMotion(f"motion {k}", dt, row, unit=unit) for k, row in enumerate(np.atleast_2d(samples), 1)]
 
 
 def motion_of(given: Motion) -> GroundMotion:

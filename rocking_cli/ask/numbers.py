@@ -44,7 +44,8 @@ def takes_numbers(verb: Callable[P, R]) -> Callable[P, R]:
     def checked(*given: P.args, **options: P.kwargs) -> R:
         for name, value in options.items():
             if name not in names and name not in loose:
-                scaled = "the motions of this question are not scaled" if more and name in SCALING else None
+                unscaled = more and name in SCALING and f"{name}s" not in names
+                scaled = "the motions of this question are not scaled" if unscaled else None
                 hint = scaled or _instead_of(name, value, [*names, *loose], (*given, *options.values()))
                 raise InputError(Problem("is not an argument", field=f"`{name}`", hint=hint))
         for name, value in (*zip(names, given, strict=False), *options.items()):

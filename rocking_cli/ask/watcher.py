@@ -29,6 +29,9 @@ class Watcher:
     ...         print("left out:", error)
     """
 
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}()"  # as it stands in the signature of a verb
+
     def note(self, text: str) -> None:
         """Take a note, such as which record was read."""
 

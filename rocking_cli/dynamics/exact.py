@@ -91,7 +91,9 @@ def exact_response(
 
     Examples
     --------
-    >>> from rocking_cli import Registry, equivalent_block, exact_response
+    >>> from rocking_cli import Registry
+    >>> from rocking_cli.core import equivalent_block
+    >>> from rocking_cli.dynamics.exact import exact_response
     >>> from rocking_cli.excitation.pulses import parse_pulse
     >>> block = Registry()["block"](width=0.7, height=2.8)
     >>> answer = exact_response(equivalent_block(block), parse_pulse("sine:0.4g:0.5s"), kappa=2, gravity=block.gravity)

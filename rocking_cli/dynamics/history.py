@@ -157,6 +157,8 @@ def follow(
         raise SolverError(
             f"the {model.name} time history could not be simulated past t = {end:.6g} s: the steps became too small"
         )
+    for samples_of in (phi, rate):
+        samples_of += 0.0  # turns -0 into 0
     if outcome.unknown[0]:  # samples after `known_to` are not valid
         until = float(outcome.known_to[0])
         beyond = np.arange(samples) * dt > until

@@ -107,7 +107,7 @@ class GroundMotion:
     ------
     InputError
         If there are fewer than two samples, a sample or dt is not finite, dt is not positive, `every` is below 1, or
-        `unit` is no unit of acceleration.
+        `unit` is not that of an acceleration.
 
     Examples
     --------

@@ -37,7 +37,7 @@ def json_text(data: Any, *, sort_keys: bool = False, compact: bool = False) -> s
 def _plain(data: Any) -> Any:
     """Return data with Python's own types, and None for numbers that are not finite."""
     if isinstance(data, float):
-        return float(data) if isfinite(data) else None
+        return float(data) + 0.0 if isfinite(data) else None  # + 0.0 turns -0 into 0
     if hasattr(data, "tolist"):  # arrays are recognised without importing numpy, which is slow
         return _plain(data.tolist())
     if isinstance(data, Mapping):

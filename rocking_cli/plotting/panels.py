@@ -3,16 +3,91 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any, cast
 
+import numpy as np
+from matplotlib.artist import Artist, getp, setp
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.text import Annotation
 
 from rocking_cli.plotting import style
 
 PANEL_GAP = 0.12  # inches between panels and to the edge
 MAX_PANEL_HEIGHT = 3.6  # inches
 MIN_STACKING_GAIN = 1.4  # factor of enlargement from which panels are placed above one another
+
+
+@dataclass
+class Page:
+    """A page of fixed proportions in a figure, on which places are in inches.
+
+    Parameters
+    ----------
+    figure : Figure
+        The figure.
+    size : complex
+        Width and height of the figure [inches].
+    corner : complex
+        Place of the lower left corner of the page in the figure [inches].
+    times : float
+        Enlargement of the page in the figure.
+    """
+
+    figure: Figure
+    size: complex
+    corner: complex = 0j
+    times: float = 1.0
+    _drawn: list[Artist] = field(default_factory=list)
+
+    @classmethod
+    def new(cls, height: float, panels: int) -> Page:
+        """Return a page of the common width and a height [inches] in a new figure, or in the middle of the user's.
+
+        Raises
+        ------
+        InputError
+            If the user gave axes and there are several panels.
+        """
+        page, target = complex(style.PAGE_WIDTH, height), style.given()
+        if target is None:
+            return cls(Figure(figsize=(style.PAGE_WIDTH, height), dpi=style.DPI), page)
+        if isinstance(target, Axes):
+            raise style.several(panels)
+        size = style.inches(target)
+        times = min(size.real / page.real, size.imag / page.imag)
+        return cls(cast("Figure", target), size, (size - times * page) / 2, times)
+
+    def share(self, place: complex) -> tuple[float, float]:
+        """Return a place on the page [inches] as shares of width and height of the figure."""
+        at = self.corner + self.times * place
+        return at.real / self.size.real, at.imag / self.size.imag
+
+    def add_axes(self, corner: complex, size: complex) -> Axes:
+        """Return new axes on the page, by their lower left corner and their size [inches]."""
+        width, height = (self.times * size).real / self.size.real, (self.times * size).imag / self.size.imag
+        axes = self.figure.add_axes((*self.share(corner), width, height))
+        self._drawn.append(axes)
+        return axes
+
+    def text(self, place: complex, text: str, **look: Any) -> None:
+        """Write at a place on the page [inches]."""
+        self._drawn.append(self.figure.text(*self.share(place), text, **look))
+
+    def finished(self) -> Figure:
+        """Return the figure, with letters and lines enlarged as the page, and shapes that stay if it is resized."""
+        if style.given() is None:
+            return self.figure
+        parts = [part for drawn in self._drawn for part in drawn.findobj()]
+        arrows = [part.arrow_patch for part in parts if isinstance(part, Annotation) and part.arrow_patch is not None]
+        for part in (*parts, *arrows):
+            if isinstance(part, Axes):
+                part.set_aspect("equal")
+            for size in ("fontsize", "linewidth", "markersize", "markeredgewidth"):
+                if hasattr(part, f"set_{size}"):
+                    setp(part, size, np.multiply(self.times, getp(part, size)))
+        return self.figure
 
 
 @dataclass
@@ -49,11 +124,9 @@ class Panel:
         """Distance from the lower edge of the panel up to the level y = 0 [inches]."""
         return self.around[2] - self.low.imag * self.scale
 
-    def axes(self, figure: Figure) -> Axes:
-        """Return axes without a frame at the position of the panel, in m."""
-        width, height = figure.get_size_inches()
-        x, y, size = self.corner.real, self.corner.imag, self.inches
-        axes = figure.add_axes((x / width, y / height, size.real / width, size.imag / height))
+    def axes(self, page: Page) -> Axes:
+        """Return axes without a frame at the position of the panel on a page, in m."""
+        axes = page.add_axes(self.corner, self.inches)
         left, right, below, above = (each / self.scale for each in self.around)
         axes.set_xlim(self.low.real - left, self.high.real + right)
         axes.set_ylim(self.low.imag - below, self.high.imag + above)

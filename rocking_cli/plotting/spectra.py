@@ -38,8 +38,7 @@ def draw_spectra_of_site(
     others = [state for state in states if state != first]
     looks = {state: style.family(k) for k, state in enumerate([first, *others])}
     looks[first]["linewidth"] = BOLDEST
-    figure = style.new_figure(5.6)
-    panels = figure.subplots(2, len(supports), squeeze=False, sharey="row")
+    figure, panels = style.panels(5.6, 2, len(supports), sharey="row")
     for (quantity, label), row in zip(QUANTITIES, panels, strict=True):
         for support, axes in zip(supports, row, strict=True):
             for state, spectra in states.items():
@@ -52,7 +51,7 @@ def draw_spectra_of_site(
             if has_floor:
                 axes.set_title(say(SUPPORTS[support]), fontsize=style.LABEL, loc="left")
         row[0].set_ylim(bottom=0.0)
-    figure.suptitle(style.plain(style.fitted(title)), fontsize=style.TITLE, x=0.01, ha="left", color=style.INK)
+    style.heading_of_all(figure, title)
     figure.align_ylabels()
     style.legend_below(figure, panels[0, 0].get_lines(), len(states), handlelength=3.0)
     return figure

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from rocking_cli.core import Angle, Direction, Forces, Length, Line, three_digits
 from rocking_cli.plotting import dimensions, hung, style
 from rocking_cli.plotting.labels import EDGE_COST, MARK_COST, Labels, mathematics
-from rocking_cli.plotting.panels import PANEL_GAP, Panel, lay_out
+from rocking_cli.plotting.panels import PANEL_GAP, Page, Panel, lay_out
 from rocking_cli.studies.picture import MAX_SEPARATE_PARTS, DrawnHinge, DrawnPart, Picture, box_around
 
 Points = NDArray[np.complex128]
@@ -32,7 +32,6 @@ HATCH_DEPTH = 0.08  # inches; depth of the hatching of the ground
 MAX_SCALE_LENGTH = 0.8  # inches
 MAX_PANEL_LINE = 40  # characters of a line under a panel
 MAX_NOTE_LINE = 125  # characters
-POINTS_PER_INCH = 72
 MAX_STROKE_LENGTH, MAX_STROKE_SHARE = 0.3, 0.8  # longest stroke of a force: inches, and share of a block's smaller side
 # Smaller forces than this share of the largest are not drawn, and the largest has a stroke of this weight [pt].
 MIN_FORCE_SHARE, MAX_STROKE_WEIGHT = 0.003, 2.4
@@ -80,30 +79,30 @@ def draw_structure(picture: Picture, title: str, ratio: float | None = None, say
     in_order = [sides.get(Direction.NEGATIVE), rest, sides.get(Direction.POSITIVE)]
     height = lay_out([each for each in in_order if each is not None], rest, HEADING_HEIGHT, foot)
     below = PANEL_GAP + NOTE_HEIGHT * (notes.count("\n") + bool(notes))
-    figure = Figure(figsize=(style.PAGE_WIDTH, below + height + TITLE_HEIGHT), dpi=style.DPI)
+    height = below + height + TITLE_HEIGHT
+    page = Page.new(height, len(in_order) - in_order.count(None))
     for panel in (rest, *sides.values()):
         panel.corner += 1j * below
-    width, height = figure.get_size_inches()
     for text, x, y, place, size in (
         (style.fitted(title), PANEL_GAP, height - 0.09, "top", style.TITLE),
         (notes, PANEL_GAP, 0.07, "bottom", style.SMALL),
     ):
-        figure.text(x / width, y / height, text, va=place, fontsize=size, color=style.INK, parse_math=False)
+        page.text(complex(x, y), text, va=place, fontsize=size, color=style.INK, parse_math=False)
 
-    _draw_rest(rest.axes(figure), picture, rest, (low, high), rows, inside)
+    _draw_rest(rest.axes(page), picture, rest, (low, high), rows, inside)
     for direction, panel in sides.items():
-        axes = panel.axes(figure)
+        axes = panel.axes(page)
         axes.set_title(_head(picture, direction, ratios[direction]), fontsize=style.LABEL, color=style.INK)
         _draw_displaced(axes, picture, panel, direction, turned[direction])
         half = max((style.size_of(line, style.LABEL).real / 2 for line in words[direction].split("\n")), default=0.0)
         middle = min(
             max(panel.corner.real + panel.inches.real / 2, PANEL_GAP + half), style.PAGE_WIDTH - PANEL_GAP - half
         )
-        figure.text(
-            middle / width, (panel.corner.imag - SCALE_HEIGHT) / height, words[direction],
+        page.text(
+            complex(middle, panel.corner.imag - SCALE_HEIGHT), words[direction],
             ha="center", va="top", fontsize=style.LABEL, color=style.MEASURE,
         )  # fmt: skip
-    return figure
+    return page.finished()
 
 
 def _draw_rest(
@@ -240,7 +239,8 @@ def weight(picture: Picture, scale: float) -> float:
     """Return the width of the lines around parts [pt] at a scale [inches per m]; thinner for many small blocks."""
     if sum(len(part.outlines) for part in picture.parts) <= MAX_SEPARATE_PARTS:
         return style.MEDIUM
-    return min(style.MEDIUM, max(style.HAIR, LINE_WEIGHT_SHARE * _smaller_side(picture) * scale * POINTS_PER_INCH))
+    share = LINE_WEIGHT_SHARE * _smaller_side(picture) * scale * style.POINTS_PER_INCH
+    return min(style.MEDIUM, max(style.HAIR, share))
 
 
 def draw_parts(axes: Axes, picture: Picture, rotation: float, line: float) -> None:

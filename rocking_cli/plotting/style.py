@@ -2,29 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import cache
 from textwrap import shorten
-from typing import IO, Any
+from typing import IO, Any, NamedTuple, cast
 from warnings import catch_warnings, filterwarnings
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import RendererAgg
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 from matplotlib.font_manager import FontProperties
-from matplotlib.text import Text
+from matplotlib.layout_engine import ConstrainedLayoutEngine, TightLayoutEngine
+from matplotlib.legend import Legend
+from matplotlib.text import Annotation, Text
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, PercentFormatter
+from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
 from rocking_cli import names
+from rocking_cli.errors import InputError, Problem
 from rocking_cli.text import printable
 
 PAGE_WIDTH = 7.2  # inches of text
 DPI = 150
+POINTS_PER_INCH = 72
 MAX_SIDE_MARGIN = 0.9  # inches at the sides of a panel
 MAX_HEADING_LENGTH = 120  # characters
+LEAST_LEFT = 0.3  # share of the height of a panel that a legend below it is taken to leave
 INK, FAINT, SHADE, GRID = "#222222", "#9a9a9a", "#eeeeee", "#dddddd"
 TITLE, LABEL, TICK, SMALL, TINY = 10, 9, 8, 7, 5  # sizes of type [pt]
 HAIR, THIN, CURVE, MEDIUM, BOLD = 0.4, 0.6, 0.7, 1.0, 1.6  # weights of line [pt]
@@ -108,10 +117,106 @@ def new_figure(height: float) -> Figure:
     return Figure(figsize=(PAGE_WIDTH, height), dpi=DPI, layout="constrained")
 
 
+Target = Axes | Figure | SubFigure
+
+
+class _Given(NamedTuple):
+    """What the user gave to draw in, and the legends that are below its panels."""
+
+    target: Target
+    below: list[Legend]
+
+
+_given: ContextVar[_Given | None] = ContextVar("given", default=None)
+
+
+@contextmanager
+def drawing_in(target: Target) -> Iterator[None]:
+    """Have a picture drawn in axes or in an empty figure of the user, not in one of its own.
+
+    At the end, words that are too wide there are broken into lines. A figure without a layout is laid out once.
+    """
+    below: list[Legend] = []
+    token, before = _given.set(_Given(target, below)), set(target.findobj(Annotation))
+    try:
+        yield
+        panels = [target] if isinstance(target, Axes) else target.axes
+        left = 1 - sum(key.get_window_extent().height for key in below) / target.bbox.height
+        for axes in panels:
+            _break_lines(axes, before, max(left, LEAST_LEFT))
+        for key in below:
+            if isinstance(key.parent, Axes):
+                _put_below(key, key.parent)
+        if isinstance(target, Figure) and _layout(target) is None and any(each.get_subplotspec() for each in panels):
+            ConstrainedLayoutEngine().execute(target)
+    finally:
+        _given.reset(token)
+
+
+def given() -> Target | None:
+    """Return the axes or the figure of the user in which a picture is drawn; None if it makes a figure of its own."""
+    context = _given.get()
+    return None if context is None else context.target
+
+
+def inches(of: Target) -> complex:
+    """Return width and height of axes or a figure [inches]."""
+    root = cast("Figure", of.get_figure(root=True))
+    return complex(of.bbox.width, of.bbox.height) / root.dpi
+
+
+def several(count: int) -> InputError:
+    """Return the error that a plot has several panels, where the user gave axes."""
+    hint = "give `figure`: a figure of matplotlib, or a part of one, such as `figure.subfigures(1, 2)[0]`"
+    return InputError(Problem(f"is for plots of one panel, and this plot has {count}", field="`ax`", hint=hint))
+
+
+def panels(
+    height: float, rows: int = 1, columns: int = 1, *, projection: str = "rectilinear", **how: Any
+) -> tuple[Figure, NDArray[Any]]:
+    """Return a figure, new or of the user, and its panels.
+
+    Parameters
+    ----------
+    height : float
+        Height of a new figure [inches].
+    rows, columns : int
+        Number of panels.
+    projection : str
+        Projection of the panels.
+    **how
+        Further options of `Figure.subplots`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure; it is a SubFigure if the user gave one.
+    ndarray of Axes, shape (rows, columns)
+        The panels, or the axes of the user.
+
+    Raises
+    ------
+    InputError
+        If the user gave axes that the panels do not fit.
+    """
+    target = given()
+    if isinstance(target, Axes):
+        if rows * columns > 1:
+            raise several(rows * columns)
+        if target.name != projection:
+            hint = f'`figure.add_subplot(projection="{projection}")`'
+            raise InputError(
+                Problem(f"must have the projection {projection}, not {target.name}", field="`ax`", hint=hint)
+            )
+        return cast("Figure", target.figure), np.array([[target]])
+    figure = new_figure(height) if target is None else cast("Figure", target)
+    how = {"subplot_kw": {"projection": projection}, **how}
+    return figure, figure.subplots(rows, columns, squeeze=False, **how)
+
+
 def one_panel(height: float, title: str) -> tuple[Figure, Axes]:
-    """Return a new figure of this height [in], and its only panel under a heading."""
-    figure = new_figure(height)
-    axes = figure.subplots()
+    """Return a figure, of this height [in] if it is new, and its only panel under a heading."""
+    figure, ((axes,),) = panels(height)
     heading(axes, title)
     return figure, axes
 
@@ -142,9 +247,32 @@ def fitted(text: str, width: float = PAGE_WIDTH - 0.3, points: float = TITLE) ->
     return short
 
 
+def folded(text: str, width: float, points: float, indent: str = "") -> str:
+    """Break a text into lines that fit a width [inches] where they can; mathematics between dollars stays whole."""
+    lines: list[str] = []
+    for word in re.findall(r"(?:\\\$|\$[^$]*\$|[^ \n])+", text):
+        longer = f"{lines[-1]} {word}" if lines else word
+        if lines and size_of(longer, points).real > width:
+            lines.append(indent + word)
+        else:
+            lines[-1:] = [longer]
+    return "\n".join(lines)
+
+
 def heading(axes: Axes, text: str) -> None:
     """Write the title of a plot above its first panel; dollars in names are plain characters."""
-    axes.set_title(fitted(text, PAGE_WIDTH - MAX_SIDE_MARGIN), loc="left", fontsize=TITLE, color=INK, parse_math=False)
+    text = fitted(text, PAGE_WIDTH - MAX_SIDE_MARGIN)
+    if given() is not None:
+        text = folded(plain(text), inches(axes).real, TITLE).replace(r"\$", "$")
+    axes.set_title(text, loc="left", fontsize=TITLE, color=INK, parse_math=False)
+
+
+def heading_of_all(figure: Figure, text: str) -> None:
+    """Write the title of a plot above all its panels."""
+    text = plain(fitted(text))
+    if given() is not None:
+        text = folded(text, 0.97 * inches(figure).real, TITLE)
+    figure.suptitle(text, fontsize=TITLE, x=0.01, ha="left", color=INK)
 
 
 def over(ends_at_limit: Sequence[bool], *, math: bool = False) -> str:
@@ -221,9 +349,55 @@ def in_percent(axis: Axis) -> None:
 
 
 def legend_below(figure: Figure, handles: Sequence[Any] | None = None, ncols: int = 2, **look: Any) -> None:
-    """Draw the legend of a figure below its panels."""
-    keys = {} if handles is None else {"handles": handles}
-    figure.legend(**keys, loc="outside lower center", ncols=ncols, fontsize=TICK, frameon=False, **look)
+    """Draw the legend of a figure below its panels; in a figure of the user where no layout makes room, in a panel."""
+    context, below = _given.get(), {"fontsize": TICK, "frameon": False, **look}
+    if context is None:
+        keys = {} if handles is None else {"handles": handles}
+        figure.legend(**keys, loc="outside lower center", ncols=ncols, **below)
+        return
+    target = context.target
+    panels = [target] if isinstance(target, Axes) else target.axes
+    lowest, layout = min(panels, key=lambda axes: axes.bbox.y0), _layout(target)
+    handles = [each for axes in panels for each in axes.get_legend_handles_labels()[0]] if handles is None else handles
+    outside = isinstance(target, Figure) and layout is None
+    outside |= not isinstance(target, Axes) and isinstance(layout, ConstrainedLayoutEngine)
+    room = inches(target if outside else lowest).real
+    beside = (look.get("handlelength", 2.0) + 3.5) * TICK / POINTS_PER_INCH  # room of handle and gaps in a column
+    labels = [str(each.get_label()) for each in handles]
+    widest = max((size_of(line, TICK).real for each in labels for line in each.split("\n")), default=0.0)
+    ncols = max(1, min(ncols, int(room / (widest + beside))))
+    if widest + beside > room:
+        labels = [folded(each, room - beside, TICK, "    ") for each in labels]
+    if outside:
+        context.below.append(target.legend(handles, labels, loc="outside lower center", ncols=ncols, **below))
+    elif layout is not None:
+        context.below.append(lowest.legend(handles, labels, loc="upper center", ncols=ncols, **below))
+    else:
+        lowest.legend(handles, labels, loc="best", **LEGEND, **look)
+
+
+def _layout(target: Target) -> ConstrainedLayoutEngine | TightLayoutEngine | None:
+    """Return what makes room for words in the figure of the user, if anything does."""
+    engine = cast("Figure", target.get_figure(root=True)).get_layout_engine()
+    return engine if isinstance(engine, ConstrainedLayoutEngine | TightLayoutEngine) else None
+
+
+def _put_below(key: Legend, axes: Axes) -> None:
+    """Put the legend of axes below the words of their horizontal axis."""
+    root, words = cast("Figure", axes.get_figure(root=True)), axes.xaxis.get_tightbbox()
+    depth = max(axes.bbox.y0 - words.y0, 0.0) / root.dpi if words is not None else 0.0
+    key.set_bbox_to_anchor((0.5, 0.0), axes.transAxes + ScaledTranslation(0, -depth, root.dpi_scale_trans))
+
+
+def _break_lines(axes: Axes, before: set[Any], left: float) -> None:
+    """Break labels, and notes that are new, into lines that fit a panel; a legend leaves a share of its height."""
+    size = inches(axes)
+    new = [each for each in axes.texts if isinstance(each, Annotation) and each not in before]
+    notes = [(each, size.real) for each in new if each.xycoords == "axes fraction"]
+    for each, room in ((axes.xaxis.label, size.real), (axes.yaxis.label, left * size.imag), *notes):
+        escape: Callable[[str], str] = str if each.get_parse_math() else plain
+        text = folded(escape(each.get_text()), room, float(each.get_fontsize()))
+        each.set_text(text if each.get_parse_math() else text.replace(r"\$", "$"))
 
 
 def tidy(axes: Axes, x: str = "", y: str = "") -> None:

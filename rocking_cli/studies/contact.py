@@ -79,7 +79,7 @@ class ContactDemand:
     Parameters
     ----------
     friction_needed : float
-        The largest |T|/N of any joint while the structure rocks, where N is above 1 % of its value as rocking starts.
+        The largest `|T|/N` of any joint while the structure rocks, where N is above 1 % of its value as rocking starts.
     joint : str
         The joint that requires it; empty if the joints are not known, so that forces are sums over the whole structure.
     time : float
@@ -95,7 +95,7 @@ class ContactDemand:
         The smallest normal force N of any joint while the structure rocks [N], per unit mass if it has no masses; of
         all joints together if `whole` or `shared`.
     impact_friction : float
-        The largest ratio |dP_x|/dP_y of horizontal to vertical impulse of any impact; NaN if the impulses are not
+        The largest ratio `|dP_x|/dP_y` of horizontal to vertical impulse of any impact; NaN if the impulses are not
         known, see `rocking_cli.core.reactions.impulses`.
     lost : float
         The first time at which a joint would have to pull, an impact would throw a joint apart, or no weight is left on

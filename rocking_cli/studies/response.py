@@ -20,14 +20,14 @@ from rocking_cli.studies.engines import respond
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
 
 Histories = Mapping[ModelName, History]
-Runs = Mapping[int, Histories]
+ByPolarity = Mapping[int, Histories]
 """Histories under each requested polarity, 1 or -1."""
 
 # Word that requests the best-fitting pulse.
 BEST_PULSE = "best"
 
 
-def concluded(runs: Runs, neighbours: Mapping[int, Neighbours], motion: str = "") -> Conclusion:
+def concluded(runs: ByPolarity, neighbours: Mapping[int, Neighbours], motion: str = "") -> Conclusion:
     """Return the conclusion on a structure under one motion: that of the worse polarity, by the best model.
 
     Parameters
@@ -42,7 +42,7 @@ def concluded(runs: Runs, neighbours: Mapping[int, Neighbours], motion: str = ""
     return _together(_of_each(runs, neighbours, motion))
 
 
-def _of_each(runs: Runs, neighbours: Mapping[int, Neighbours], motion: str) -> dict[int, Conclusion]:
+def _of_each(runs: ByPolarity, neighbours: Mapping[int, Neighbours], motion: str) -> dict[int, Conclusion]:
     best: ModelName = "nonlinear" if "nonlinear" in next(iter(runs.values())) else next(iter(next(iter(runs.values()))))
     return {sign: _of_run(run[best], neighbours.get(sign), motion, sign) for sign, run in runs.items()}
 
@@ -130,7 +130,7 @@ class Response(Mapping[ModelName, History]):
 
     given: Scaled | None
     first: GroundMotion | None
-    runs: Runs
+    runs: ByPolarity
     neighbours: Mapping[int, Neighbours]
     contacts: Mapping[int, ContactDemand]
     fit: PulseFit | None = None
@@ -196,7 +196,7 @@ def response_of(
         if question.around.count
     }
 
-    def checked(runs: Runs, under: Mapping[int, GroundMotion | None]) -> dict[int, ContactDemand]:
+    def checked(runs: ByPolarity, under: Mapping[int, GroundMotion | None]) -> dict[int, ContactDemand]:
         return {sign: contacts.check(run["nonlinear"], under[sign]) for sign, run in runs.items() if "nonlinear" in run}
 
     to_pulse = None

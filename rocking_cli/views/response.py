@@ -21,7 +21,7 @@ from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.structure import Structure
 from rocking_cli.studies.movements import Movements, PointPeak, TiePeak, Watched
-from rocking_cli.studies.response import Histories, Question, Response, Runs
+from rocking_cli.studies.response import ByPolarity, Histories, Question, Response
 from rocking_cli.views import processing
 from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
@@ -322,7 +322,7 @@ def view(
     return View({**data, "notes": [*doubts, *notes, *caution]}, sentences)
 
 
-def apart(watched: Watched, runs: Runs) -> Iterator[str]:
+def apart(watched: Watched, runs: ByPolarity) -> Iterator[str]:
     """Warn if blocks of crossing walls have slid out of one another."""
     interlock = watched.mechanism.interlock
     every = [run for histories in runs.values() for run in histories.values()]

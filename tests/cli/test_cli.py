@@ -341,7 +341,7 @@ class TestRespond:
         ("command", "suffix"),
         [
             (("respond", "--record", ACCEL, "--out"), "csv"),
-            (("equivalent", FRAME, "--ag", "1g", "--period", "1", "--out"), "csv"),
+            (("equivalent_pulses", FRAME, "--ag", "1g", "--period", "1", "--out"), "csv"),
             (("draw", "--plot"), "png"),
             (("report", "--out"), "html"),
             (("verify", "--site", EXAMPLES / "verify" / "site.yaml", "--sheet"), "html"),

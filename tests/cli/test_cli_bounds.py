@@ -44,7 +44,7 @@ def test_a_motion_that_is_none_is_refused_everywhere(command, options, said):
         ("overturning", BLOCK, "--ag", "0.1g:1e300g"),
         ("spectrum", BLOCK, "--pulse", PULSE, "--sizes", "1e-300:1e300"),
         ("spectrum", BLOCK, "--pulse", PULSE, "--jobs", "100000000"),
-        ("equivalent", BLOCK, BLOCK, "--ag", "1e300g", "--period", "1"),
+        ("equivalent_pulses", BLOCK, BLOCK, "--ag", "1e300g", "--period", "1"),
     ],
 )
 def test_ranges_have_bounds(arguments):
@@ -82,7 +82,7 @@ def test_where_kinematics_give_no_restitution_file_and_field_are_named(command, 
 
 @pytest.mark.parametrize(
     "command",
-    [("spectrum", "--pulse", PULSE, "--sizes", "1:3:3"), ("equivalent", "--ag", "0.6g", "--period", "0.5")],
+    [("spectrum", "--pulse", PULSE, "--sizes", "1:3:3"), ("equivalent_pulses", "--ag", "0.6g", "--period", "0.5")],
 )
 def test_one_bad_structure_of_several_is_reported_and_the_others_are_used(command):
     wall = str(EXAMPLES / "wall.yaml")
@@ -93,7 +93,7 @@ def test_one_bad_structure_of_several_is_reported_and_the_others_are_used(comman
 
 def test_the_first_structure_of_equivalent_must_be_there():
     asked = ("--ag", "0.6g", "--period", "0.5")
-    assert "no.yaml: no such file" in run("equivalent", "no.yaml", BLOCK, BLOCK, *asked, code=2).stderr
+    assert "no.yaml: no such file" in run("equivalent_pulses", "no.yaml", BLOCK, BLOCK, *asked, code=2).stderr
 
 
 class TestWritten:

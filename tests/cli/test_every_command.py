@@ -189,7 +189,7 @@ HISTORIES = {
     "spectrum A N --record R --sizes 2.4:2.5:2 --plot p.svg --out out.csv": (
         lambda found: [each["unknown"] for each in found["spectra"]] == [[1, 1, 1]] * 2
     ),
-    "equivalent A N --ag 2g --period 0.4 --plot p.svg": (
+    "equivalent_pulses A N --ag 2g --period 0.4 --plot p.svg": (
         lambda found: [each["unknown"] for each in found["structures"]] == [True, True]
     ),
     "fragility study.yaml --jobs 1 --quantiles --plot pictures": lambda found: (

@@ -81,7 +81,8 @@ CALLS = {
     ),
     "respond_each": (
         {"structures": WEAK, "motions": STRONG},
-        {"structures": [BLOCK, OTHER], "motions": PULSE, "models": "linear2", "scales": [0.5], "opening": 0.0},
+        {"structures": [BLOCK, OTHER], "motions": PULSE, "models": "linear2", "scales": [0.5], "opening": 0.0,
+         "polarities": [1, -1], "restitutions": [0.8], "histories": True, "out": "o.csv"},
     ),
     "respond_around": (
         {"structure": BLOCK, "one": RECORD, "other": RECORD, "models": "nonlinear"},
@@ -139,7 +140,7 @@ CALLS = {
         {"structure": BLOCK, "vary": "height=2m:3m", "until": "overturned < 0.4", "motions": PULSE, "polarity": "1",
          "site": SITE, "points": 4, "opening": 1.0} | AROUND,
     ),
-    "equivalent": (
+    "equivalent_pulses": (
         {"structures": [BLOCK, WEAK], "ag": 0.6, "period": 0.5},
         {"structures": [BLOCK, OTHER], "pulse": "sine:0.4g:0.7s", "ag": 0.5, "period": 0.7, "shape": "cosine",
          "polarity": -1, "kappa": 1, "eta": 0.7, "opening": 0.0},
@@ -227,7 +228,8 @@ IDLE = [
     ("fragility", {"study": STUDY, "store": "c.db", "check": True},
      {"jobs": 2, "scheduler": "tcp://odd:1", "restart": True, "rank_measures": True, "quantiles": True,
       "nrml": "n.xml"}),
-    ("equivalent", {"structures": [BLOCK, OTHER], "pulse": PULSE}, {"ag": 0.4, "period": 0.4, "shape": "cosine"}),
+    ("equivalent_pulses", {"structures": [BLOCK, OTHER], "pulse": PULSE},
+     {"ag": 0.4, "period": 0.4, "shape": "cosine"}),
 ]  # fmt: skip
 """A question, and arguments that have no effect on it."""
 
@@ -359,7 +361,7 @@ COMMAND_LINES = {
     "pulse": f"{BLOCK_FILE} --ag 0.3g --period 0.5",
     "overturning": f"{BLOCK_FILE}",
     "spectrum": UNDER,
-    "equivalent": f"{BLOCK_FILE} {BLOCK_FILE} --ag 0.5g --period 0.6",
+    "equivalent_pulses": f"{BLOCK_FILE} {BLOCK_FILE} --ag 0.5g --period 0.6",
     "fragility": "study.yaml",
     "results": "study.db",
     "report": UNDER,

@@ -291,7 +291,7 @@ class TestStandardStreams:
             ("respond", BLOCK, "--pulse", "sine:0.5g:1s", "--neighbours", "0"),
             ("spectrum", BLOCK, "--pulse", "sine:0.5g:1s", "--sizes", "2:3:2"),
             ("overturning", BLOCK, "--points", "6"),
-            ("equivalent", BLOCK, str(EXAMPLES / "wall.yaml"), "--ag", "0.6g", "--period", "0.8"),
+            ("equivalent_pulses", BLOCK, str(EXAMPLES / "wall.yaml"), "--ag", "0.6g", "--period", "0.8"),
         ],
         ids=lambda command: command[0],
     )

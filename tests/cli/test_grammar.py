@@ -42,7 +42,7 @@ def data(*arguments):
         (("spectrum", BLOCK, "--record", ACCEL, "--sizes", "1:2:3"), "--fractiles", ["0.1,0.9", "10%,90%"]),
         (("spectrum", "--record", ACCEL, "--slenderness", "0.2"), "--sizes", ["1:2:3", "1s:2s:3", "1000ms:2s:3"]),
         (("overturning", BLOCK, *FEW), "--period", ["0.2:4", "0.2s:4s", "200ms:4s"]),
-        (("equivalent", BLOCK, FRAME, "--ag", "0.6g"), "--period", ["0.5", "500ms", "2Hz"]),
+        (("equivalent_pulses", BLOCK, FRAME, "--ag", "0.6g"), "--period", ["0.5", "500ms", "2Hz"]),
     ],
 )
 def test_the_same_quantity_in_any_spelling_gives_the_same(command, option, alike):

@@ -276,7 +276,10 @@ def test_the_law_of_the_guide_is_this_one():
             ("calibrate", "--free", EXAMPLES / "calibrate" / "trace.csv"),
             "no trace of free rocking can be fitted: cable yields",
         ),
-        (("equivalent", EXAMPLES / "block.yaml", "--ag", "1g", "--period", "0.5"), "wall: the linear models do not"),
+        (
+            ("equivalent_pulses", EXAMPLES / "block.yaml", "--ag", "1g", "--period", "0.5"),
+            "wall: the linear models do not",
+        ),
     ],
     ids=lambda value: value[0] if isinstance(value, tuple) else "",
 )

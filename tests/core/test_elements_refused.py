@@ -45,7 +45,7 @@ ASKED = {
     "spectrum": ["tied.yaml", *PULSE, "--model", "nonlinear", "--sizes", "3.2:3.6:2", "--out", "spectrum.csv"],
     "fragility": ["alone.yaml", "--jobs", 2],
     "pulse": ["tied.yaml", "--ag", "0.6g", "--period", 0.6],
-    "equivalent": ["tied.yaml", "bare.yaml", "--ag", "2g", "--period", 0.4],
+    "equivalent_pulses": ["tied.yaml", "bare.yaml", "--ag", "2g", "--period", 0.4],
 }
 
 

@@ -6,12 +6,12 @@ from math import atan
 import numpy as np
 import pytest
 
-from rocking_cli import build_models, equivalent_block, load_structure
-from rocking_cli.core import Direction, NoEquivalentBlock
+from rocking_cli import load_structure
+from rocking_cli.core import Direction, NoEquivalentBlock, equivalent_block
 from rocking_cli.core.equivalence import both_statics, impulse_velocity
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.history import follow
-from rocking_cli.structure import Structure
+from rocking_cli.structure import Structure, build_models
 from tests.mechanisms.test_walls_oracle import G, printed
 from tests.oracle import simulate
 from tests.twins import Twin, shaking, twin

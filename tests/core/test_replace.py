@@ -30,8 +30,8 @@ def test_a_replaced_field_gives_the_structure_of_a_file_with_it(file, tmp_path, 
 
 def test_nothing_is_left_of_what_was_derived_before():
     one = rk.Block(width=0.7, height=2.8)
-    assert rk.equivalent_block(one).positive.lambda_ == pytest.approx(0.25)
-    assert rk.equivalent_block(one.replace(height=3.5)).positive.lambda_ == pytest.approx(0.2)
+    assert rk.equiv(one).positive.lambda_ == pytest.approx(0.25)
+    assert rk.equiv(one.replace(height=3.5)).positive.lambda_ == pytest.approx(0.2)
     laden = one.replace(mass=900.0, loads=[{"name": "floor", "mass": "12 kN", "at": [0.0, 2.0]}])
     assert "12 kN is a weight" in laden.remarks[0] and not laden.replace(loads=None).remarks
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from rocking_cli import build_models, respond_many
 from rocking_cli.core import Direction
-from rocking_cli.dynamics.batch import Runs
+from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.tables import tabulate
+from rocking_cli.structure import build_models
 from tests.core.test_loads_and_ties import ON, bar, free
 from tests.oracle import simulate
 from tests.twins import shaking, twin

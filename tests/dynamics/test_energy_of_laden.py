@@ -5,10 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rocking_cli import GroundMotion, Registry, build_models
+from rocking_cli import GroundMotion, Registry
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.dynamics.history import follow
 from rocking_cli.errors import FieldError
+from rocking_cli.structure import build_models
 
 shares = st.floats(0, 1)
 across, up = st.floats(-0.5, 0.5), st.floats(0.0, 5.0)

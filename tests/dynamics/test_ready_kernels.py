@@ -17,9 +17,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rocking_cli import GroundMotion, Runs, respond_many
+from rocking_cli import GroundMotion
 from rocking_cli.core.structure_file import load_structure
 from rocking_cli.dynamics import calling, pulse_motion, shipped, ways
+from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.calling import FUNCTIONS, HISTORIES, PULSES, SETS, TIED
 from rocking_cli.dynamics.exact_batch import exact_many
 from rocking_cli.dynamics.history import follow

@@ -5,8 +5,9 @@ import pytest
 import yaml
 
 import rocking_cli as rk
-from rocking_cli import GroundMotion, Runs, respond_many
+from rocking_cli import GroundMotion
 from rocking_cli.core import Direction
+from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.resting import first_failure, resting
 from rocking_cli.structure import build_models
 from tests.cli.test_cli import run, run_json

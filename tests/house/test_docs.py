@@ -8,6 +8,7 @@ import re
 from enum import Enum
 from importlib import import_module
 from inspect import getdoc, isclass, isfunction, signature
+from pkgutil import resolve_name
 from types import ModuleType, SimpleNamespace
 
 import numpy as np
@@ -18,16 +19,19 @@ from rocking_cli import Registry, core
 from rocking_cli.core import Angle, Length, Line, box
 from rocking_cli.core.answers import Jointed, Kinematics
 from rocking_cli.core.released import released
+from rocking_cli.dynamics.model import Model
 from rocking_cli.plugins.rooms import commands
+from rocking_cli.plugins.rooms import names as verbs
 from rocking_cli.processing.intensity import IntensityMeasures
 from rocking_cli.questions.collapse.view import data
+from rocking_cli.questions.margin.study import Margin
 from rocking_cli.testing import contract
 from rocking_cli.views.mechanisms import fields
 from tests.conftest import PROJECT
 
 DOCS = PROJECT / "docs"
 OWN = [PROJECT / "README.md", PROJECT / "CONTRIBUTING.md"]
-FOLDERS = ("", "mechanisms/", "walls/", "masonry/")
+FOLDERS = ("", "api/", "mechanisms/", "walls/", "masonry/")
 PAGES = sorted([*OWN, *(page for folder in FOLDERS for page in DOCS.glob(f"{folder}*.md"))])
 MECHANISMS = [name for name in Registry() if Registry().package_of(name).startswith("rocking-cli ")]
 
@@ -110,8 +114,8 @@ def test_the_pictures_are_small():
 def test_every_kind_of_picture_is_in_the_gallery(made):
     drawing = {what.split()[1] for kind, what in made.parts.asked(text_of("gallery.md"))}
     assert drawing == {
-        "draw", "collapse", "error", "record", "respond", "animate", "margin", "overturning", "equivalent", "spectrum",
-        "fragility", "docs/make_figures.py", "report", "select",
+        "draw", "collapse", "error", "record", "respond", "animate", "margin", "overturning", "equivalent_pulses",
+        "spectrum", "fragility", "docs/make_figures.py", "report", "select",
     }  # fmt: skip
 
 
@@ -182,20 +186,71 @@ def test_every_page_is_in_the_contents():
     assert all(f"({page.name})" in text_of("index.md") for page in DOCS.glob("*.md") if page.name not in parts)
 
 
-def test_every_public_name_is_documented():
-    parts = re.findall(r"^<!-- names: (.+?) -->$", text_of("api.md"), re.M)
-    documented = [name for part in parts for name in part.split()]
-    assert len(set(documented)) == len(documented)
-    assert set(documented) == set(rocking_cli.__all__) - {"__version__", "mechanisms"}
+@pytest.fixture(scope="module")
+def documented(made):
+    """What the pages of the Python reference document, by the names there."""
+    pages = [page.stem for page in (DOCS / "api").glob("*.md")]
+    listed = [name for page in pages for name in made.make_reference.names_of(page)]
+    assert len(set(listed)) == len(listed)
+    assert sorted(pages) == sorted(re.search(r"^<!-- index: (.+) -->$", text_of("api.md"), re.M)[1].split())
+    return {name: resolve_name(f"rocking_cli.{name}") for name in listed}
 
 
-def test_the_reference_of_names_reads_as_it_stands_and_is_whole_on_the_site(made):
+def test_every_public_name_is_documented(documented):
+    assert {name for name in documented if "." not in name} == set(rocking_cli.__all__) - {"__version__", "mechanisms"}
+    assert all(getdoc(each) for each in documented.values())
+
+
+NOT_SHOWN = {
+    "Counts", "Numbers",  # of an `Outcome`, where these are variables
+    "Path",  # of the standard library
+    "Spreadsheet",  # in which a table of structures stands
+}  # fmt: skip
+"""Names of classes of the package that the fields of a result name, and that no page of the reference needs."""
+
+
+def test_every_class_that_a_verb_returns_is_documented_and_so_is_what_it_holds(made, documented):
+    """Classes have names of their own, so a word of an annotation is a class; a docstring names what `Any` does not."""
+    files = (PROJECT / "rocking_cli").rglob("*.py")
+    own = {name for file in files for name in re.findall(r"^class (\w+)", file.read_text("utf-8"), re.M)} - NOT_SHOWN
+    typed = made.make_reference.typed
+    texts = {name.rpartition(".")[2]: each for name, each in documented.items()}
+    missing = []
+    for verb in (getattr(rocking_cli, name) for name in verbs()):
+        said = getdoc(verb).partition("Returns\n-------\n")[2].partition("\n")[0]
+        returned = own & {*re.findall(r"\w+", f"{typed(verb)[1]} {said}")}
+        assert returned - {"Answer", "Answers", "MappingAnswer"}, verb
+        missing += [(verb.__name__, name) for name in returned - {*texts}]
+        for name in returned & {*texts}:
+            derived = (getattr(texts[name], each) for each in dir(texts[name]) if not each.startswith("_"))
+            types = [each.fget.__annotations__["return"] for each in derived if isinstance(each, property)]
+            held = own & {*re.findall(r"\w+", " ".join([typed(texts[name])[0], *types]))}
+            missing += [(name, each) for each in held - {*texts}]
+    assert not missing
+
+
+def test_a_name_is_called_with_the_types_and_defaults_of_its_arguments(made):
+    called = made.make_reference.called
+    assert called("turned", rocking_cli.turned) == (
+        "turned(one: GroundMotion, other: GroundMotion, azimuth: float) -> GroundMotion"
+    )
+    assert ", *, ag: float | None = None, period" in called("pulse", rocking_cli.pulse)
+    assert called("first", Margin.first) == "first(level: float, *, unknown: bool = False) -> float | None"
+    assert "held: Reals = ..., ends_at_limit: tuple[bool, bool] = (False, False), " in called("Model", Model)
+    assert called("Mechanism", core.Mechanism) == "Mechanism"
+
+
+def test_the_reference_of_names_reads_as_it_stands_and_is_whole_on_the_site(made, documented):
     page = text_of("api.md")
     assert "eval-rst" not in page and "autofunction" not in page
-    for name in set(rocking_cli.__all__) - {"__version__", "mechanisms"}:
-        assert re.search(rf"^\| `{name}[`(]", page, re.M), name
-    directives = made.make_reference.docstrings("respond Answer InputError")
-    for line in (".. autofunction:: respond", ".. autoclass:: Answer\n   :members:", ".. autoexception:: InputError"):
+    for name in documented:
+        assert re.search(rf"^\| \[`{name.rpartition('.')[2]}`\]\(api/\w+\.md#rocking_cli\.{name}\) \| \S", page, re.M)
+    directives = made.make_reference.docstrings("respond ask.answer.Answer InputError")
+    for line in (
+        ".. autofunction:: rocking_cli.respond",
+        ".. autoclass:: rocking_cli.ask.answer.Answer\n   :members:",
+        ".. autoexception:: rocking_cli.InputError",
+    ):
         assert line in directives
 
 

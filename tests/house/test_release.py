@@ -48,7 +48,7 @@ class TestScript:
 
     def test_the_python_that_the_readme_shows_is_run(self, release):
         compile(release.script(README), "README.md", "exec")
-        assert "print(respond_many(" in release.script(README)
+        assert "rk.respond_each(" in release.script(README)
 
     def test_a_command_that_fails_ends_it(self, release, tmp_path):
         assert release.run([sys.executable, "-c", "print(1)"], tmp_path, tmp_path / "said") == "1\n"

@@ -10,7 +10,11 @@ import numpy as np
 import pytest
 
 import rocking_cli as rk
+from rocking_cli.core import equivalent_block
+from rocking_cli.dynamics.batch import Runs
+from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.short_repr import short_repr
+from rocking_cli.structure import build_models
 from tests.conftest import EXAMPLES
 
 
@@ -138,14 +142,14 @@ def test_a_structure_is_a_call_unless_it_is_long():
 
 def test_what_python_users_hold_is_a_line():
     block, motion = rk.Block(width=0.7, height=2.8), rk.read_record(EXAMPLES / "accel.csv")
-    phi, both, pulse = np.linspace(0.0, 0.2, 5), rk.equivalent_block(block), rk.parse_pulse("sine:0.4g:0.8s")
+    phi, both, pulse = np.linspace(0.0, 0.2, 5), equivalent_block(block), rk.parse_pulse("sine:0.4g:0.8s")
     for each in (
-        block, motion, pulse, both, both.positive, rk.build_models(block)[0], rk.mechanisms, rk.Runs.every(2, 3),
+        block, motion, pulse, both, both.positive, build_models(block)[0], rk.mechanisms, Runs.every(2, 3),
         block.bodies()[0], block.motion(phi, rk.Direction.POSITIVE)[0], block.coefficients(phi, rk.Direction.POSITIVE),
         block.sketch(), block.contacts(rk.Direction.POSITIVE), rk.measure(motion), rk.parse_measure("Sa(0.5s)"),
-        rk.closed_form(3.0, 2.0, 0.9), rk.exact_response(both, pulse, kappa=2, gravity=9.81),
+        rk.closed_form(3.0, 2.0, 0.9), exact_response(both, pulse, kappa=2, gravity=9.81),
     ):  # fmt: skip
         assert len(repr(each)) <= 200 and "array(" not in repr(each)
         assert repr(pickle.loads(pickle.dumps(each))) == repr(each)
     assert repr(both.positive).startswith("<EquivalentBlock: p = 2.2576 rad/s, phi_cr = 0.24498 rad, lambda_ = 0.25, ")
-    assert both == rk.equivalent_block(block)
+    assert both == equivalent_block(block)

@@ -7,7 +7,8 @@ import pytest
 from scipy.integrate import simpson
 from scipy.signal import lsim
 
-from rocking_cli import equivalent_block, load_structure
+from rocking_cli import load_structure
+from rocking_cli.core import equivalent_block
 from rocking_cli.errors import InputError, PluginError
 from rocking_cli.excitation.base import STANDARD_GRAVITY as G
 from rocking_cli.excitation.base import GroundMotion

@@ -6,8 +6,9 @@ from statistics import NormalDist
 import numpy as np
 import pytest
 
-from rocking_cli import GroundMotion, Registry, build_models
+from rocking_cli import GroundMotion, Registry
 from rocking_cli.errors import InputError
+from rocking_cli.structure import build_models
 from rocking_cli.studies.neighbours import Neighbourhood, neighbours
 from rocking_cli.views.neighbours import deviations
 

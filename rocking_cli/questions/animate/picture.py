@@ -29,7 +29,7 @@ from PIL import Image, ImageDraw, ImageFont
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.plotting import hung, style
 from rocking_cli.plotting.moving import as_script, asset, ground_chart, moving, ratio_chart
-from rocking_cli.plotting.panels import Panel
+from rocking_cli.plotting.panels import Page, Panel
 from rocking_cli.plotting.structure import colour, draw_ground, draw_scale, weight
 from rocking_cli.studies.film import Film
 from rocking_cli.text import printable
@@ -130,7 +130,7 @@ class _Stage:
             PANEL_GAP / style.PAGE_WIDTH, 1 - 0.1 / tall, style.fitted(title), va="top",
             fontsize=style.TITLE, color=style.INK, parse_math=False,
         )  # fmt: skip
-        axes = panel.axes(figure)
+        axes = panel.axes(Page(figure, complex(style.PAGE_WIDTH, tall)))
         draw_ground(axes, film.picture, panel)
         draw_scale(axes, panel)
         lower = figure.add_axes(

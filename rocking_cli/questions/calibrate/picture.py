@@ -21,8 +21,7 @@ def draw_trace(found: TraceFit, name: str) -> Figure:
     name : str
         Name of the structure.
     """
-    figure = style.new_figure(5.6)
-    axes, below = figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1))
+    figure, ((axes,), (below,)) = style.panels(5.6, 2, sharex=True, height_ratios=(2.2, 1))
     style.heading(axes, f"{name}: free rocking, eta = {found.eta.value:.4f}, scatter {found.scatter:.2g}")
     times, degrees = found.trace.times, np.degrees
     start, end = found.part

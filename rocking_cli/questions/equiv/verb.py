@@ -37,7 +37,7 @@ def equiv(
     Returns
     -------
     Answer of Equivalence or None
-        `positive` and `negative` are the blocks; see `equivalent_block`. None if no single block is equivalent; its
+        `positive` and `negative` are the blocks, see `Equivalence`. None if no single block is equivalent; its
         sentences and `to_dict` give the reason. For a sequence of structures, `Answers` with one for each, by its name.
 
     Raises

@@ -35,8 +35,7 @@ def draw_linearisation(curves: Sequence[Linearisation], asked: Sequence[Linearis
     matplotlib.figure.Figure
     """
     bold = preferred(asked) or 2  # if both are equally good, kappa 2, which is exact at uplift
-    figure = style.new_figure(2.9 * len(curves) + 0.3)
-    panels = figure.subplots(len(curves), 2, squeeze=False, sharey="col")
+    figure, panels = style.panels(2.9 * len(curves) + 0.3, len(curves), 2, sharey="col")
     for (left, right), curve, marks in zip(panels, curves, asked, strict=True):
         _line(left, curve.amplitude, curve.period_ratio, "either kappa", style.LINES["nonlinear"])
         _dots(left, marks.amplitude, marks.period_ratio)
@@ -67,7 +66,7 @@ def draw_linearisation(curves: Sequence[Linearisation], asked: Sequence[Linearis
             axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
             style.in_percent(axes.yaxis)
             style.tidy(axes, x, y)
-    figure.suptitle(style.plain(style.fitted(title)), fontsize=style.TITLE, x=0.01, ha="left", color=style.INK)
+    style.heading_of_all(figure, title)
     return figure
 
 

@@ -88,7 +88,8 @@ class Rate:
     Parameters
     ----------
     rate : float
-        The integral of P(x) |d rate(x)| over the hazard curve; beyond its last point, P keeps its value there [1/year].
+        The integral of `P(x) |d rate(x)|` over the hazard curve; beyond its last point, P keeps its value there
+        [1/year].
     low, high : float
         The rates with the confidence limits of the curve in place of the curve: at least as wide as the confidence
         level asks, because all points reach their limit at once. The hazard curve counts as exact [1/year].

@@ -40,8 +40,7 @@ def draw_quantiles(found: Quantiles, label: str) -> Figure:
         Lines with marks, over a shade: runs that rock without overturning. Black lines: all runs; they end in the band
         of overturning, or of unknown outcome.
     """
-    figure = style.new_figure(5.2)
-    above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1.3))
+    figure, ((above,), (below,)) = style.panels(5.2, 2, sharex=True, height_ratios=(3, 1.3))
     style.heading(above, f"{found.structure}: peak rotation")
     x = np.array([each.x for each in found.groups])
     handles = _peaks(above, x, found) + _shares(below, x, found)

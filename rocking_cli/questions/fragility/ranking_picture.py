@@ -24,8 +24,7 @@ def draw_ranking(ranking: Ranking) -> Figure:
     matplotlib.figure.Figure
     """
     measures = ranking.measures
-    figure = style.new_figure(1.4 + 0.26 * len(measures))
-    panels = figure.subplots(1, 1 + bool(ranking.against), sharey=True, squeeze=False)[0]
+    figure, (panels,) = style.panels(1.4 + 0.26 * len(measures), 1, 1 + bool(ranking.against), sharey=True)
     filled = " (filled: residuals show no trend)" if ranking.against else ""
     style.heading(panels[0], f"{ranking.structure}: which measure predicts best{filled}")
     places = np.arange(len(measures))

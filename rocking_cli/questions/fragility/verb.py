@@ -63,7 +63,7 @@ def fragility(
 
     Returns
     -------
-    Answer of list of Fragility
+    StudyAnswer, or Answer of Plan
         One per curve: structure, limit state, measure and fit, as from `results`. If the outcome of some runs is
         unknown, as a joint opens that the model keeps closed, these exceed the limit in the fit and do not in its
         `lower`. With `check`, the plan of the study.

@@ -59,7 +59,7 @@ def pulse(
 
     Returns
     -------
-    MappingAnswer
+    MappingAnswer of SampledHistory, ExactResponse or ClosedForm
         For a structure, by polarity, 1 or -1, the responses of the models "linear1", "linear2" and "nonlinear". For the
         linear block, the "exact" solution, and the "closed_form" if the shape is a sine.
 

@@ -38,8 +38,8 @@ def draw_record(motion: GroundMotion, measures: Measures) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    figure = style.new_figure(7.0)
-    panels = figure.subplots(4, 1, sharex=True)
+    figure, every = style.panels(7.0, 4, sharex=True)
+    panels = every[:, 0]
     style.heading(panels[0], motion.name)
     peaks = f"PGA {measures.pga:.3g} g", f"PGV {measures.pgv:.3g} m/s", f"PGD {measures.pgd:.3g} m"
     for axes, (label, values), peak in zip(panels, _quantities(motion), peaks, strict=False):
@@ -95,8 +95,8 @@ def draw_before_and_after(before: GroundMotion, after: GroundMotion, shift: floa
     -------
     matplotlib.figure.Figure
     """
-    figure = style.new_figure(9.2)
-    panels = figure.subplots(4, 1, height_ratios=[1, 1, 1, 1.3])
+    figure, every = style.panels(9.2, 4, height_ratios=[1, 1, 1, 1.3])
+    panels = every[:, 0]
     style.heading(panels[0], after.name)
     for axes, (label, old), (_, new) in zip(panels, _quantities(before), _quantities(after), strict=False):
         style.draw_samples(axes, old, before.dt, label="as read", **BEFORE_STYLE)
@@ -141,8 +141,7 @@ def draw_pulses(motion: GroundMotion, fits: Sequence[PulseFit], end: float) -> F
     -------
     matplotlib.figure.Figure
     """
-    figure = style.new_figure(4.8)
-    above, below = figure.subplots(2, 1, sharex=True)
+    figure, ((above,), (below,)) = style.panels(4.8, 2, sharex=True)
     style.heading(above, motion.name)
     for axes, values in ((above, motion.acceleration / STANDARD_GRAVITY), (below, motion.velocity)):
         style.draw_samples(axes, values, motion.dt, color=style.RECORD_COLOUR, linewidth=style.CURVE)

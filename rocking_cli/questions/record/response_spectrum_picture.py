@@ -25,8 +25,8 @@ def draw_response_spectra(spectra: Mapping[str, ResponseSpectrum]) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    figure = style.new_figure(6.6)
-    panels = figure.subplots(3, 1, sharex=True)
+    figure, every = style.panels(6.6, 3, sharex=True)
+    panels = every[:, 0]
     first = next(iter(spectra.values()))
     names = list(spectra)
     title = names[0] if len(names) == 1 else f"{len(names)} motions"

@@ -34,8 +34,7 @@ def draw_azimuths(found: AzimuthResponses, title: str, free: Sequence[bool]) -> 
     -------
     matplotlib.figure.Figure
     """
-    figure = style.new_figure(6.4)
-    axes: Any = figure.add_subplot(projection="polar")
+    figure, ((axes,),) = style.panels(6.4, projection="polar")
     axes.set_theta_zero_location("N")
     axes.set_theta_direction(-1)
     style.heading(axes, title)

@@ -7,32 +7,25 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
-from rocking_cli.ask.answer import Answer, MappingAnswer, drawn, no_plot
+from rocking_cli.ask.answer import Answer, drawn
 from rocking_cli.ask.given import StructureLike, doubts_of, models_of, structure_of
-from rocking_cli.ask.ground_motions import Motion, Motions, each_of, introduce, motion_of, warn_about
+from rocking_cli.ask.ground_motions import Motion, Motions, introduce, motion_of, warn_about
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import RTOL
-from rocking_cli.dynamics.model import MODELS, ModelName
-from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcomes
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.measures import measure
-from rocking_cli.names import OPENING
 from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.listed import Scaled
 from rocking_cli.processing.steps import Step, parse_steps, process
 from rocking_cli.questions.respond.azimuths import AzimuthResponses
 from rocking_cli.structure import Structure
 from rocking_cli.studies.release import Release
-from rocking_cli.views.view import View, heading
+from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
-    from rocking_cli.io.tables import Columns
+    pass
 
 
 def correct(motion: Motion, *steps: Step | str | Mapping[str, Any]) -> GroundMotion:
@@ -189,111 +182,3 @@ def all_directions(
     if factor != 1:
         watch.note(f"scaled by {factor:.6g}: PGA = {abs(factor) * one.of_ground.pga_g:.4g} g at 0 degrees")
     return respond_around(structure, one, other, scale=factor, **question)
-
-
-@takes_numbers
-def respond_each(
-    structures: StructureLike | Sequence[StructureLike],
-    motions: Motion | Sequence[Motion],
-    *,
-    models: str | Sequence[str] | None = None,
-    scales: ArrayLike = 1.0,
-    threads: int | None = None,
-    opening: float = OPENING,
-    watch: Watcher = SILENT,
-) -> MappingAnswer[ModelName, Outcomes]:
-    """Compute the outcome of every structure under every motion with every scale factor.
-
-    Parameters
-    ----------
-    structures, motions
-        One or several, as for `respond`.
-    models : str or sequence of str, optional
-        Models "nonlinear", "linear1" or "linear2"; all by default.
-    scales : array_like
-        Scale factors on the motions; negative ones reverse them.
-    threads : int, optional
-        Number of time histories at a time; by default, one for each processor.
-    opening : float
-        Largest opening of a joint up to which a history is valid, over D_cr.
-    watch : Watcher
-        Told what is doubtful about the structures.
-
-    Returns
-    -------
-    MappingAnswer of str to Outcome
-        Arrays of shape (structures, motions, scales), by model; `failed` marks motions that could not be simulated, and
-        `unknown` those whose outcome is unknown from `known_to` on: their `overturned` is NaN, and `share()` gives the
-        lowest and the highest share of the motions that overturn.
-
-    Raises
-    ------
-    InputError
-        If a value is out of range, or a file cannot be used.
-    MechanismError
-        If the structure has no critical rotation or no uplift acceleration.
-
-    Notes
-    -----
-    Every time history is identical, bit for bit, to that of `respond`: Eqs. 8 and 16 of DeJong and Dimitrakopoulos
-    (2014).
-
-    Examples
-    --------
-    >>> import rocking_cli as rk
-    >>> blocks = [rk.Block(width=0.7, height=2.8), rk.Block(width=0.5, height=2.8)]
-    >>> answer = rk.respond_each(blocks, "sine:0.4g:0.8s", models="nonlinear", scales=[0.5, 1.0])
-    >>> answer["nonlinear"].overturned.tolist()
-    [[[0.0, 1.0]], [[0.0, 1.0]]]
-    >>> answer["nonlinear"].share()
-    (0.5, 0.5)
-    """
-    ready = [structure_of(each, watch, opening) for each in each_of(structures)]
-    shaking = [motion_of(each) for each in each_of(motions)]
-    factors = np.atleast_1d(np.asarray(scales, dtype=np.float64))
-    if factors.ndim > 1:
-        raise InputError(
-            Problem(f"must be one factor or a list of them, got an array of shape {factors.shape}", field="scales")
-        )
-    shape = len(ready), len(shaking), factors.size
-    chosen = models_of(models)
-    if models is None and any(len(each.default_models) < len(MODELS) for each in ready):
-        chosen = ("nonlinear",)
-    outcomes: dict[ModelName, Outcomes] = {}
-    for name in chosen:
-        runs = Runs.every(len(ready), len(shaking), scales=factors.tolist())
-        many = respond_many([each.model(name) for each in ready], shaking, runs, threads=threads)
-        outcomes[name] = many.by_field(lambda values: values.reshape(shape))
-
-    def columns() -> Columns:
-        places = [axis.ravel() for axis in np.indices(shape)]
-        table: dict[str, Any] = {
-            "structure": [ready[k].name for k in places[0]],
-            "motion": [shaking[k].name for k in places[1]],
-            "scale": factors[places[2]],
-        }
-        for name, outcome in outcomes.items():
-            for column in ("overturned", "peak_ratio", "uplift_time", "overturning_time", "impact_count"):
-                table[f"{name} {column}"] = getattr(outcome, column).ravel()
-            if outcome.unknown.any():
-                table |= {f"{name} {column}": getattr(outcome, column).ravel() for column in ("unknown", "known_to")}
-        return table
-
-    first = outcomes[chosen[0]]
-    sentence = f"By the {chosen[0]} model {int(first.fell.sum())} of {first.fell.size} motions overturn"
-    sentence += f", and the outcome of {int(first.unknown.sum())} is unknown." if first.unknown.any() else "."
-    data: dict[str, Any] = {}
-    for name, each in outcomes.items():
-        data[name] = {"overturned": _with_gaps(each.fell, each.unknown | each.failed)}
-        data[name] |= {column: getattr(each, column) for column in OUTCOME_FIELDS}
-        if name == "nonlinear" and np.isnan(each.opening).any():
-            data[name]["unknown"] = _with_gaps(each.unknown, np.isnan(each.opening) & ~each.unknown)
-    figure = no_plot("many responses have no plot of their own: plot a spectrum, a map or a margin")
-    return MappingAnswer("responses", outcomes, View(data, [sentence]), columns, figure)
-
-
-def _with_gaps(values: NDArray[np.bool_], missing: NDArray[np.bool_]) -> Any:
-    """Return values as nested lists, with None where they are missing."""
-    objects = values.astype(object)
-    objects[missing] = None
-    return objects.tolist()

@@ -81,9 +81,10 @@ def draw_history(
     shaken, rubs = motion is not None, bool(contacts)
     tied = watched is not None and bool(watched.ties)
     each_has = [1.8, 1.0] if tied else [1.8]
-    figure = style.new_figure(1.4 * shaken + (3.4 + 1.9 * tied) * len(responses) + 1.7 * rubs)
+    height = 1.4 * shaken + (3.4 + 1.9 * tied) * len(responses) + 1.7 * rubs
     ratios = [1.0] * shaken + each_has * len(responses) + [0.9] * rubs
-    panels = list(figure.subplots(len(ratios), 1, sharex=True, squeeze=False, height_ratios=ratios)[:, 0])
+    figure, every = style.panels(height, len(ratios), sharex=True, height_ratios=ratios)
+    panels = list(every[:, 0])
     style.heading(panels[0], title)
     runs = [run for each in responses.values() for run in each.values()]
     end = max(MIN_TIME_AXIS, *(1.1 * run.end_time if run.fell else float(run.time[-1]) for run in runs))
@@ -113,7 +114,7 @@ def draw_history(
         _hatch_unknown(panels[-1], max(list(until.values())[: len(contacts)]), end)
     panels[-1].set_xlim(0.0, end)
     panels[-1].set_xlabel("time [s]", fontsize=style.LABEL)
-    figure.align_ylabels()
+    figure.align_ylabels(panels)  # not those of others in a figure of the user
     return figure
 
 

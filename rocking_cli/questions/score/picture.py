@@ -30,8 +30,7 @@ def draw_reliability(found: Scored) -> Figure:
     bins = [each for each in found.bins if each.tests]
     if not bins:
         raise InputError("a reliability diagram needs tests with an observed outcome, which none of these have")
-    figure = style.new_figure(6.2)
-    axes, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
+    figure, ((axes,), (below,)) = style.panels(6.2, 2, sharex=True, height_ratios=(3, 1))
     tests = len(found.observed)
     style.heading(axes, f"Stated and observed shares of overturning: {tests} tests in {found.clusters} clusters")
     axes.plot([0, 1], [0, 1], color=style.FAINT, linewidth=style.MEDIUM, linestyle="--", label="stated = observed")

@@ -45,8 +45,8 @@ def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title:
     """
     many = len(spectra[0].peak_ratio) > 1
     low, high = min(fractiles), max(fractiles)
-    figure = style.new_figure(6.4 if many else 4.8)
-    panels = figure.subplots(1 + many, 1, sharex=True, squeeze=False, height_ratios=[2.4, 1][: 1 + many])[:, 0]
+    figure, every = style.panels(6.4 if many else 4.8, 1 + many, sharex=True, height_ratios=[2.4, 1][: 1 + many])
+    panels = every[:, 0]
     style.heading(panels[0], title)
     medians = [each.fractile(0.5) for each in spectra]
     falls = [np.isinf(median) & each.fractile_overturns(0.5) for each, median in zip(spectra, medians, strict=True)]

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rocking_cli.questions.survey.structure_table import StructureTable
     from rocking_cli.questions.survey.study import Survey, SurveyEntry
 
-Table = str | Path | Mapping[str, Sequence[Any]]
+TableLike = str | Path | Mapping[str, Sequence[Any]]
 """CSV file, or columns by their headings."""
 MIN_ROWS_FOR_PROCESSES, MIN_ROWS_FOR_PROCESSES_WITH_MOTION = 10_000, 1_000  # rows from which processes pay
 MAX_LISTED_DOUBTS = 3  # doubts about sizes that are printed
@@ -31,7 +31,7 @@ MAX_LISTED_DOUBTS = 3  # doubts about sizes that are printed
 
 @takes_numbers
 def survey(
-    structures: Table | StructureTable | Sequence[StructureLike],
+    structures: TableLike | StructureTable | Sequence[StructureLike],
     motions: Motion | Motions | Sequence[Motion] = (),
     *,
     polarity: str | int = "1",

@@ -14,7 +14,8 @@ from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.core.structure_file import load_structure
 from rocking_cli.excitation.records import read_record
 from rocking_cli.plotting import style
-from rocking_cli.plotting.structure import LINE_WEIGHT_SHARE, MIN_FORCE_SHARE, POINTS_PER_INCH, draw_structure, weight
+from rocking_cli.plotting.structure import LINE_WEIGHT_SHARE, MIN_FORCE_SHARE, draw_structure, weight
+from rocking_cli.plotting.style import POINTS_PER_INCH
 from rocking_cli.questions.animate.picture import animation_page
 from rocking_cli.questions.collapse.study import collapses
 from rocking_cli.questions.collapse.view import data, view

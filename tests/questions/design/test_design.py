@@ -12,7 +12,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.questions.design.metrics import METRICS, Excitation, Metric
 from rocking_cli.questions.design.study import Aim, Span, design
 from rocking_cli.questions.design.view import answer
-from rocking_cli.structure import Structure
+from rocking_cli.structure import Structure, build_models
 from rocking_cli.studies.neighbours import Neighbourhood, neighbours
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
@@ -84,7 +84,7 @@ class TestMetrics:
     def test_of_two_directions_the_weaker_counts(self):
         load = {"name": "bust", "mass": 300.0, "at": [0.2, 2.0]}
         block = rk.Block(width=0.6, height=2.0, mass=900.0, loads=[load])
-        both = rk.equivalent_block(block)
+        both = rk.equiv(block)
         for name, worse in (("lambda", min), ("phi_cr", min), ("p", max)):
             key = "lambda_" if name == "lambda" else name
             sides = [getattr(each, key) for each in (both.positive, both.negative)]
@@ -149,7 +149,7 @@ class TestShares:
         peaks = rk.design(BLOCK, "width=0.3:1.2", "peak_ratio < 0.5", self.SINE, neighbours=20, points=7)
         block = rk.load_structure(BLOCK)
         for width, share, peak in zip(found.values, found.metric, peaks.metric, strict=True):
-            model = rk.build_models(block.model_copy(update={"width": float(width)}), ("nonlinear",))[0]
+            model = build_models(block.model_copy(update={"width": float(width)}), ("nonlinear",))[0]
             near = neighbours(model, motion, around)
             assert share == near.overturned and peak == near.peak_ratio[1]
 

@@ -178,7 +178,7 @@ def test_loads_move_the_control_point():
     load = {"name": "a", "mass": 500.0, "at": [0.0, 2.4], "horizontal": 0.5}
     block = rk.Block(**BLOCK, loads=[load])
     found = rk.design(block, "gravity=9.80665:9.9", "peak_displacement < 1", PULSE, **AROUND)
-    phi = median(block) * rk.equivalent_block(block).positive.phi_cr
+    phi = median(block) * rk.equiv(block).positive.phi_cr
     height = (2000 * 1.2 + 250 * 2.4) / 2250
     assert found.metric[0] == pytest.approx(0.3 * (1 - cos(phi)) + height * sin(phi), rel=1e-6)
 

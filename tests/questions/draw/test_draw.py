@@ -25,7 +25,7 @@ from rocking_cli.core import Angle, Body, Direction, Hinge, Length, Mechanism, S
 from rocking_cli.core.structure_file import load_structure
 from rocking_cli.plotting import dimensions, style
 from rocking_cli.plotting.labels import Labels, mathematics
-from rocking_cli.plotting.panels import Panel
+from rocking_cli.plotting.panels import Page, Panel
 from rocking_cli.plotting.structure import colour, draw_structure
 from rocking_cli.studies.picture import ASSUMED_NOTE, NODES_PER_SIDE, picture
 from tests.cli.test_cli import run, run_json
@@ -358,7 +358,7 @@ class TestFigure:
         """A label of a length alone in a panel: none of the points of the line is under it."""
         figure = Figure(figsize=(4, 4))
         panel = Panel(0j, 1 + 1j, (0.5, 0.5, 0.5, 0.5), scale=3.0)
-        axes = panel.axes(figure)
+        axes = panel.axes(Page(figure, 4 + 4j))
         labels = Labels(axes, panel)
         dimensions.draw_inside(axes, [Length("R", 0.1 + 0.2j, 0.5 + 0.9j)], [], panel, labels)
         (text,) = (each for each in axes.texts if each.get_text())

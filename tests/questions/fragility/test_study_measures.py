@@ -7,7 +7,8 @@ from contextlib import closing
 import numpy as np
 import pytest
 
-from rocking_cli import equivalent_block, parse_pulse, read_record
+from rocking_cli import parse_pulse, read_record
+from rocking_cli.core import equivalent_block
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.processing.intensity.built_in import SpectralAcceleration

@@ -15,7 +15,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from rocking_cli import GroundMotion, equivalent_block, exact_response, load_structure, parse_pulse, respond
+from rocking_cli import GroundMotion, load_structure, parse_pulse, respond
+from rocking_cli.core import equivalent_block
+from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.processing.intensity import Reference, parse_measure

@@ -20,9 +20,9 @@ from rocking_cli.plotting import style
 from rocking_cli.plotting.moving import ratio_chart
 from rocking_cli.processing.listed import Scaled
 from rocking_cli.questions.animate.picture import animation_page
-from rocking_cli.questions.equivalent.picture import draw_equivalent
-from rocking_cli.questions.equivalent.study import equivalent
-from rocking_cli.questions.equivalent.view import judge
+from rocking_cli.questions.equivalent_pulses.picture import draw_equivalent
+from rocking_cli.questions.equivalent_pulses.study import equivalent_pulses
+from rocking_cli.questions.equivalent_pulses.view import judge
 from rocking_cli.questions.overturning.picture import draw_comparison, draw_map
 from rocking_cli.questions.overturning.study import FALLS, Comparison, Region, compare, overturning_map
 from rocking_cli.questions.overturning.view import NO_JOINTS, comparison_view, map_table, map_view
@@ -84,7 +84,7 @@ class TestArrays:
         answer = rk.respond_each(FILE, ACCEL, models="nonlinear", scales=[0.1, 2.0])
         assert answer["nonlinear"].share() == (0.0, 0.5)
         np.testing.assert_array_equal(answer["nonlinear"].overturned.ravel(), [0.0, np.nan])
-        np.testing.assert_array_equal(answer.to_frame()["nonlinear overturned"], [0.0, np.nan])
+        np.testing.assert_array_equal(answer.to_frame()["overturned"], [0.0, np.nan])
         assert np.ravel(answer.to_dict()["nonlinear"]["overturned"]).tolist() == [False, None]
 
 
@@ -300,7 +300,7 @@ class TestPulses:
     def test_equivalent_structures_of_which_one_is_unknown(self):
         others = [load_structure(EXAMPLES / f"{name}.yaml") for name in ("block", "frame")]
         pulse = parse_pulse("sine:0.75g:0.6s")
-        found = equivalent([Structure(each) for each in (PORTAL, *others)], pulse)
+        found = equivalent_pulses([Structure(each) for each in (PORTAL, *others)], pulse)
         assert np.isnan(found.spread) and np.isnan(found.relative_spread)
         first, *rest = judge(found)
         assert "portal is unknown after 0.497 s" in first and "the other 2" in rest[0]

@@ -15,6 +15,7 @@ from rocking_cli.questions.score.picture import draw_reliability
 from rocking_cli.questions.score.study import Stated, distance_from_uniform, fitted_shares, scored
 from rocking_cli.questions.score.table import ObservedTest, parse_columns, read_tests
 from rocking_cli.questions.score.view import view
+from rocking_cli.structure import build_models
 from rocking_cli.studies.neighbours import Neighbourhood, simulate_neighbours
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES, SHARED, rows_of
@@ -279,7 +280,7 @@ def test_scales_of_amplitude_and_time_are_those_of_a_pulse():
 
 def test_the_simple_rules_are_pga_over_lambda_g_and_pgv_over_the_step():
     block = rk.load_structure(BLOCK)
-    (blocks,) = [rk.equivalent_block(block)]
+    blocks = rk.equiv(block)
     step, uplift = blocks.positive.v_imp, blocks.positive.lambda_
     amplitudes = [0.98 * uplift, 1.02 * uplift]
     given = {
@@ -305,7 +306,7 @@ def test_peaks_are_ranked_among_the_neighbours():
     assert near.overturned == 0 and not found.scores
     assert found.distance == pytest.approx(distance_from_uniform(np.array([found.ranks[k].rank for k in (0, 1, 3)])))
     assert found.distance != pytest.approx(distance_from_uniform(np.array([each.rank for each in found.ranks])))
-    model = rk.build_models(rk.load_structure(BLOCK), ("nonlinear",))[0]
+    model = build_models(rk.load_structure(BLOCK), ("nonlinear",))[0]
     runs = simulate_neighbours(model, rk.parse_pulse("sine:0.3g:0.8s").sampled(), Neighbourhood(50).drawn(model))
     peaks = np.maximum(runs.peak_positive, runs.peak_negative)
     assert 0 < (peaks == 0).mean() == pytest.approx(2 * found.ranks[0].rank)

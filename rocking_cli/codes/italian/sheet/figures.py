@@ -22,7 +22,7 @@ from rocking_cli.codes.italian.sheet.site import states
 from rocking_cli.core import Length
 from rocking_cli.plotting import dimensions, hung, style
 from rocking_cli.plotting.labels import MARK_COST, Labels
-from rocking_cli.plotting.panels import PANEL_GAP, Panel, lay_out
+from rocking_cli.plotting.panels import PANEL_GAP, Page, Panel, lay_out
 from rocking_cli.plotting.spectra import draw_spectra_of_site
 from rocking_cli.plotting.structure import draw_ground, draw_parts, labels_of, weight
 from rocking_cli.studies.picture import Picture, box_around, picture
@@ -54,13 +54,15 @@ class DrawnWeight(NamedTuple):
 
 def in_language(say: Language, figure: Figure) -> Figure:
     """Return a figure whose numbers have the decimal marks of a language, and whose labels stay text in an SVG."""
-    for each in figure.findobj(Text):
+    drawn = within if isinstance(within := style.given(), Axes) else figure
+    for each in drawn.findobj(Text):
         assert isinstance(each, Text)  # as selected above
         each.set_text(say.formula(each.get_text()))
         if each.get_path_effects():  # a halo turns text into outlines: a background does without
             each.set_path_effects([])
             each.set_bbox(LABEL_BACKGROUND)
-    for axis in (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)):
+    panels = [drawn] if isinstance(drawn, Axes) else drawn.axes
+    for axis in (axis for axes in panels for axis in (axes.xaxis, axes.yaxis)):
         axis.set_major_formatter(lambda value, _: say.formula(f"{value:g}"))
     return figure
 
@@ -79,8 +81,8 @@ def draw_chain(say: Language, side: ItalianVerified) -> Figure:
     around = np.maximum(dimensions.room(rows, low, high), hung.margins(drawing)).tolist()
     panel = Panel(low, high, (around[0] + 1.2, around[1] + 1.2, max(around[2], ARROW_LENGTH), around[3] + 0.1))
     height = lay_out([panel], panel, TITLE_HEIGHT, FOOT_HEIGHT)
-    figure = Figure(figsize=(style.PAGE_WIDTH, height), dpi=style.DPI)
-    axes = panel.axes(figure)
+    page = Page.new(height, 1)
+    axes = panel.axes(page)
     draw_ground(axes, drawing, panel)
     labels = labels_of(axes, drawing, panel, 0.0)
     draw_parts(axes, drawing, 0.0, weight(drawing, panel.scale))
@@ -90,11 +92,11 @@ def draw_chain(say: Language, side: ItalianVerified) -> Figure:
     _name_held(say, drawing, position, panel, labels, Scale.of(side.chain))
     title = say("{name}: weights, forces and arms at rest, {way} direction", name=side.chain.mechanism.name,
                 way=say(side.direction.label))  # fmt: skip
-    figure.text(
+    page.figure.text(
         PANEL_GAP / style.PAGE_WIDTH, 1 - 0.09 / height, style.fitted(title), va="top", fontsize=style.TITLE,
         color=style.INK, parse_math=False,
     )  # fmt: skip
-    return in_language(say, figure)
+    return in_language(say, page.figure)
 
 
 def _weights(say: Language, side: ItalianVerified, position: DisplacedChain) -> list[DrawnWeight]:
@@ -205,8 +207,8 @@ def draw_capacity(
     demand : SiteDemand, optional
         Spectra of the site to draw into the same axes, with the line of the period of the first limit state.
     """
-    figure = style.new_figure((3.4 if demand is None else 4.2) * len(sides))
-    every = figure.subplots(len(sides), 1, squeeze=False)[:, 0]
+    figure, panels = style.panels((3.4 if demand is None else 4.2) * len(sides), len(sides))
+    every = panels[:, 0]
     for axes, (where, side) in zip(every, sides.items(), strict=True):
         d, a = side.exact.points()
         axes.plot(d, a, color=style.INK, linewidth=style.BOLD, label=say("exact curve"))
@@ -252,8 +254,8 @@ def draw_capacity(
 
 def draw_hazard(say: Language, ground: SiteGround, hazard: Hazard, title: str) -> Figure:
     """Draw the parameters of the ground on rock over the return period: rows of the hazard, and the limit states."""
-    figure = style.new_figure(4.6)
-    panels = figure.subplots(len(OF_HAZARD), 1, sharex=True)
+    figure, every = style.panels(4.6, len(OF_HAZARD), sharex=True)
+    panels = every[:, 0]
     TR = np.geomspace(hazard.first, hazard.last, PERIODS_PER_SPECTRUM)
     rows, curves = np.array(hazard.table).T, np.array([hazard.parameters(each) for each in TR.tolist()]).T
     for k, (axes, label) in enumerate(zip(panels, OF_HAZARD, strict=True)):

@@ -127,7 +127,7 @@ class EquivalentResponses:
         return int(self.direction) * history.ratio
 
 
-def equivalent(
+def equivalent_pulses(
     structures: Sequence[Structure],
     pulse: Pulse,
     *,

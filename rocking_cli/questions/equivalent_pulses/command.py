@@ -1,4 +1,4 @@
-"""`rocking equivalent`: find the pulses to which several structures are equally vulnerable."""
+"""`rocking equivalent_pulses`: find the pulses to which several structures are equally vulnerable."""
 
 from __future__ import annotations
 
@@ -55,11 +55,11 @@ def command(files: tuple[str, ...], output: Output, **question: Any) -> None:
 
     \b
     Example:
-      rocking equivalent block.yaml frame.yaml wall.yaml --ag 0.6g --period 0.8 --plot equivalent.png
+      rocking equivalent_pulses block.yaml frame.yaml wall.yaml --ag 0.6g --period 0.8 --plot equivalent.png
 
     Source: DeJong and Dimitrakopoulos (2014), Section 6.2 and Fig. 15.
     """
-    from rocking_cli.questions.equivalent.verb import equivalent
+    from rocking_cli.questions.equivalent_pulses.verb import equivalent_pulses
 
     output.keep_apart(*files)
-    output.show(equivalent(files, watch=output.watch, **question))
+    output.show(equivalent_pulses(files, watch=output.watch, **question))

@@ -9,7 +9,7 @@ from math import isnan
 from rocking_cli import names
 from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.verdict import NEAR_OVERTURNING
-from rocking_cli.questions.equivalent.study import EquivalentResponses, PulsedStructure
+from rocking_cli.questions.equivalent_pulses.study import EquivalentResponses, PulsedStructure
 from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
 from rocking_cli.views.response import known_data
 from rocking_cli.views.verdict import unchecked, why_unknown

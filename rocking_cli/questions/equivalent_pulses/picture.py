@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.plotting import style
-from rocking_cli.questions.equivalent.study import EquivalentResponses
+from rocking_cli.questions.equivalent_pulses.study import EquivalentResponses
 
 CUT_RATIO = 1.5  # phi/phi_cr at which a curve that overturns is cut off, with a cross
 SHOWN_AFTER_PULSE = 8.0  # p times the duration that is shown
@@ -25,8 +25,7 @@ def draw_equivalent(found: EquivalentResponses, title: str) -> Figure:
     title : str
         Heading.
     """
-    figure = style.new_figure(5.8)
-    above, below = figure.subplots(2, 1, height_ratios=[1, 1.8])
+    figure, ((above,), (below,)) = style.panels(5.8, 2, height_ratios=[1, 1.8])
     style.heading(above, title)
     for k, each in enumerate(found.members):
         t = np.linspace(0.0, each.pulse.duration, 400)

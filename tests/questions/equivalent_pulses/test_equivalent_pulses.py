@@ -14,9 +14,9 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.names import OPENING
-from rocking_cli.questions.equivalent import study
-from rocking_cli.questions.equivalent.picture import draw_equivalent
-from rocking_cli.questions.equivalent.view import judge
+from rocking_cli.questions.equivalent_pulses import study
+from rocking_cli.questions.equivalent_pulses.picture import draw_equivalent
+from rocking_cli.questions.equivalent_pulses.view import judge
 from rocking_cli.structure import Structure
 from tests.cli.test_cli import run as command
 from tests.conftest import EXAMPLES, rows_of
@@ -27,12 +27,12 @@ PULSE = parse_pulse("sine:0.6g:0.5s")
 
 
 def equivalent(mechanisms, *given, opening=OPENING, **more):
-    return study.equivalent([Structure(each, opening=opening) for each in mechanisms], *given, **more)
+    return study.equivalent_pulses([Structure(each, opening=opening) for each in mechanisms], *given, **more)
 
 
 SMALL, LARGE = Block(name="small", width=0.7, height=2.8), Block(name="large", width=7.0, height=28.0)
 BLOCK, WALL, ARCH, FRAME = (str(EXAMPLES / f"{name}.yaml") for name in ("block", "wall", "arch", "frame"))
-run = partial(command, "equivalent")
+run = partial(command, "equivalent_pulses")
 
 
 def test_similar_blocks_do_the_same_over_p_t():

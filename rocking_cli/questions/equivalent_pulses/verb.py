@@ -1,4 +1,4 @@
-"""`rk.equivalent`: find the pulses to which several structures are equally vulnerable."""
+"""`rk.equivalent_pulses`: find the pulses to which several structures are equally vulnerable."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from rocking_cli.excitation.pulses import Pulse, parse_pulse
 from rocking_cli.names import OPENING
 
 if TYPE_CHECKING:
-    from rocking_cli.questions.equivalent.study import EquivalentResponses
+    from rocking_cli.questions.equivalent_pulses.study import EquivalentResponses
 
 
 @takes_numbers
-def equivalent(
+def equivalent_pulses(
     structures: Sequence[StructureLike],
     pulse: Pulse | str | None = None,
     *,
@@ -77,11 +77,11 @@ def equivalent(
     --------
     >>> import rocking_cli as rk
     >>> blocks = [rk.Block(width=0.7, height=2.8), rk.Block(width=1.0, height=4.0, restitution=0.9)]
-    >>> round(rk.equivalent(blocks, ag=0.6, period=0.5).a, 3)
+    >>> round(rk.equivalent_pulses(blocks, ag=0.6, period=0.5).a, 3)
     2.4
     """
-    from rocking_cli.questions.equivalent import study
-    from rocking_cli.questions.equivalent import view as views
+    from rocking_cli.questions.equivalent_pulses import study
+    from rocking_cli.questions.equivalent_pulses import view as views
 
     if len(structures) < 2:
         raise InputError("give at least two structures: the pulse is for the first, the others get equivalent pulses")
@@ -99,7 +99,7 @@ def equivalent(
     first = structure_of(structures[0], watch, opening)
     ready = structures_of([first, *structures[1:]], watch, opening, least=2)
     scaling: Literal[1, 2] = 1 if str(kappa) == "1" else 2
-    result = study.equivalent(ready, pulse, polarity=int(polarity), kappa=scaling, eta=eta)
+    result = study.equivalent_pulses(ready, pulse, polarity=int(polarity), kappa=scaling, eta=eta)
     warn_misleading(ready, watch)
-    figure = drawn("questions.equivalent.picture.draw_equivalent", result, views.title(result))
+    figure = drawn("questions.equivalent_pulses.picture.draw_equivalent", result, views.title(result))
     return Answer("equivalent pulses", result, views.view(result), partial(views.table, result), figure)

@@ -1,3 +1,0 @@
-"""`equivalent`: the equivalent pulses of several structures."""
-
-PLACE = 180

@@ -1,0 +1,213 @@
+"""Every structure under every motion with every factor, polarity and restitution: outcomes, and rotations in time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property, partial
+from math import isclose, nan, prod
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli import names
+from rocking_cli.arrays import Reals
+from rocking_cli.core import Mechanism
+from rocking_cli.dynamics.batch import Runs, respond_many
+from rocking_cli.dynamics.history import TAIL_SECONDS, follow
+from rocking_cli.dynamics.model import ModelName
+from rocking_cli.dynamics.outcome import Outcomes
+from rocking_cli.dynamics.parallel import in_parts
+from rocking_cli.errors import InputError, Problem, SolverError
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.measures import measure
+from rocking_cli.short_repr import short_repr
+from rocking_cli.structure import Structure
+from rocking_cli.studies.movements import centroid_moved, largest_on_the_way
+from rocking_cli.text import numbered
+
+if TYPE_CHECKING:
+    from rocking_cli.io.tables import Columns
+
+FAILED = "failed"
+OUTCOMES = (names.NO_UPLIFT, names.ROCKS, names.STILL_ROCKING, names.OVERTURNS, names.UNKNOWN, FAILED)
+"""Categories of the column `outcome`."""
+HISTORIES_PER_TASK = 16
+MOST_VALUES = 200_000_000  # rotations in all histories: 1.6 GB
+MAX_ETA_DIFFERENCE = 1e-9  # relative difference up to which the restitution of both directions is one
+
+
+@short_repr
+@dataclass(frozen=True, eq=False)
+class RunGrid:
+    """What is combined with what: an axis each, in the order of the fields; an axis that is None is not there.
+
+    Parameters
+    ----------
+    structures : sequence of Structure
+        The structures.
+    motions : sequence of GroundMotion
+        The ground motions, before scaling.
+    scales : ndarray
+        Factors on the motions; negative ones reverse them.
+    polarities : ndarray of int, optional
+        1 as given, -1 reversed.
+    restitutions : ndarray, optional
+        Ratios of the rotation rates after and before an impact; NaN for that of the structure.
+    """
+
+    structures: Sequence[Structure]
+    motions: Sequence[GroundMotion]
+    scales: Reals
+    polarities: NDArray[np.int64] | None = None
+    restitutions: Reals | None = None
+
+    @cached_property
+    def axes(self) -> dict[str, NDArray[Any]]:
+        """The values along each axis, by its name; those of structures and motions are distinct names."""
+        axes: dict[str, NDArray[Any] | None] = {
+            "structure": _distinct([each.name for each in self.structures]),
+            "motion": _distinct([each.name for each in self.motions]),
+            "scale": self.scales,
+            "polarity": self.polarities,
+            "restitution": self.restitutions,
+        }
+        return {name: values for name, values in axes.items() if values is not None}
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of values along each axis."""
+        return tuple(values.size for values in self.axes.values())
+
+    @property
+    def count(self) -> int:
+        """Number of runs of each model."""
+        return prod(self.shape)
+
+    @cached_property
+    def runs(self) -> Runs:
+        """The runs of one model, in the order of the axes, the last one changing fastest."""
+        return Runs.every(
+            len(self.structures),
+            len(self.motions),
+            scales=self.scales.tolist(),
+            polarities=(1,) if self.polarities is None else self.polarities.tolist(),
+            etas=(nan,) if self.restitutions is None else self.restitutions.tolist(),
+        )
+
+    def outcomes(self, model: ModelName, threads: int | None, progress: Callable[[int], None]) -> Outcomes:
+        """Return the outcomes of all runs of a model, as arrays of the shape of the grid. Raises as `respond_many`."""
+        models = [each.model(model) for each in self.structures]
+        many = respond_many(models, self.motions, self.runs, threads=threads, progress=progress)
+        return many.by_field(lambda values: values.reshape(self.shape))
+
+    @cached_property
+    def time(self) -> Reals:
+        """Times of the rotations [s]: at the smallest interval of the motions, to ten seconds after the longest."""
+        dt = min(each.every * each.dt for each in self.motions)
+        return np.arange(0.0, max(each.duration for each in self.motions) + TAIL_SECONDS, dt)
+
+    def check_memory(self) -> None:
+        """Raise `InputError` if all rotations would not fit in memory."""
+        if self.count * self.time.size > MOST_VALUES:
+            what = f"{self.count:,} histories of {self.time.size:,} samples do not fit in memory"
+            hint = "ask for fewer at a time, or without `histories`: outcomes and peaks need none"
+            raise InputError(Problem(what, field="`histories`", hint=hint))
+
+    def rotations(self, model: ModelName, threads: int | None, progress: Callable[[int], None]) -> Reals:
+        """Return the signed rotations of all runs of a model at `time` [rad], of the shape of the grid and the times.
+
+        They are linear between the samples of each motion, zero after a structure has come to rest, and NaN after it
+        overturns, after its motion becomes unknown, and where it could not be simulated.
+        """
+        models, runs = [each.model(model) for each in self.structures], self.runs
+        rotations = np.full((self.count, self.time.size), np.nan)
+
+        def work(first: int, stop: int) -> None:
+            for k in range(first, stop):
+                motion = self.motions[runs.record[k]].scaled(float(runs.scale[k] * runs.polarity[k]))
+                try:
+                    run = follow(models[runs.model[k]], motion, eta=float(runs.eta[k]))
+                except SolverError:
+                    continue
+                rotations[k] = np.interp(self.time, run.time, run.phi, right=0.0 if run.at_rest else nan)
+
+        in_parts(work, self.count, HISTORIES_PER_TASK, threads, progress)
+        return rotations.reshape(*self.shape, -1)
+
+
+def columns(grid: RunGrid, outcomes: Mapping[ModelName, Outcomes]) -> Columns:
+    """Return a row for each run of each model: what was combined, how strong the motion was, and what came of it."""
+    place = dict(zip(grid.axes, np.indices(grid.shape).reshape(len(grid.shape), -1), strict=True))
+    table: dict[str, Any] = {name: grid.axes[name][place[name]] for name in ("structure", "motion", "scale")}
+    table["polarity"] = grid.runs.polarity
+    of_structure = np.array([_common(each.etas) for each in grid.structures])[place["structure"]]
+    table["eta"] = np.where(np.isnan(grid.runs.eta), of_structure, grid.runs.eta)
+    measured = [measure(each.of_ground) for each in grid.motions]
+    for name, peaks in (("pga_g [g]", [each.pga for each in measured]), ("pgv [m/s]", [each.pgv for each in measured])):
+        table[name] = np.abs(table["scale"]) * np.array(peaks)[place["motion"]]
+    parts = [
+        table | {"model": np.full(grid.count, model, dtype=object)} | _outcome_columns(grid, outcome)
+        for model, outcome in outcomes.items()
+    ]
+    heads = ["structure", "model", *(each for each in parts[0] if each not in ("structure", "model"))]
+    return {head: np.concatenate([part[head] for part in parts]) for head in heads}
+
+
+def _outcome_columns(grid: RunGrid, outcome: Outcomes) -> dict[str, Any]:
+    hidden = outcome.fell | outcome.failed
+    peaks = np.where(hidden, np.nan, np.maximum(outcome.peak_positive, outcome.peak_negative))
+    moved = np.stack(list(_displacements(grid, outcome)))
+    values: dict[str, Any] = {
+        "outcome": _words(outcome),
+        "overturned": outcome.overturned,
+        "unknown": outcome.unknown,
+        "peak_ratio": outcome.peak_ratio,
+        "peak_rotation [rad]": peaks,
+        "peak_displacement [m]": np.where(hidden, np.nan, moved),
+        "impact_count": outcome.impact_count,
+        "uplift_time [s]": outcome.uplift_time,
+        "overturning_time [s]": outcome.overturning_time,
+        "end_time [s]": outcome.end_time,
+        "known_to [s]": outcome.known_to,
+        "peak_ratio_at_least": outcome.lower_bound,
+        "opening": outcome.opening,
+    }
+    return {name: np.ravel(each) for name, each in values.items()}
+
+
+def _displacements(grid: RunGrid, outcome: Outcomes) -> Iterator[Reals]:
+    """Yield the peak displacements of each structure [m]: of the centroid of all that moves, horizontal."""
+    for k, structure in enumerate(grid.structures):
+        mechanism = structure.mechanism
+        by_side = [
+            _moved(mechanism, direction, (outcome.peak_positive if direction > 0 else outcome.peak_negative)[k])
+            for direction in mechanism.directions
+        ]
+        yield np.max(by_side, axis=0)
+
+
+def _moved(mechanism: Mechanism, direction: Any, peaks: Reals) -> Reals:
+    inside = np.where(peaks < mechanism.limit(direction), peaks, np.inf)  # a linear model may pass the limit
+    moved = largest_on_the_way(partial(centroid_moved, mechanism), inside.ravel(), direction)
+    return np.where(np.isfinite(moved), moved, np.nan).reshape(peaks.shape)
+
+
+def _words(outcome: Outcomes) -> NDArray[Any]:
+    """Return the outcomes in words, in the order of precedence of `names.outcome`."""
+    reasons = [outcome.failed, outcome.unknown, outcome.fell, outcome.still_rocking, outcome.lifted]
+    words = [FAILED, names.UNKNOWN, names.OVERTURNS, names.STILL_ROCKING, names.ROCKS]
+    return np.select(reasons, [np.array(word, dtype=object) for word in words], np.array(names.NO_UPLIFT, dtype=object))
+
+
+def _common(etas: tuple[float, float]) -> float:
+    """Return the restitution of both directions; NaN if they differ."""
+    return etas[0] if isclose(*etas, rel_tol=MAX_ETA_DIFFERENCE) else nan
+
+
+def _distinct(given: Sequence[str]) -> NDArray[Any]:
+    distinct: list[str] = []
+    for name in given:
+        distinct.append(numbered(name, "", distinct))
+    return np.array(distinct, dtype=object)

@@ -1,0 +1,94 @@
+"""A quantity of many runs against another, such as the peak rotation against the PGA."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking_cli import names
+from rocking_cli.ask.answer import parted
+from rocking_cli.dynamics.model import ModelName
+from rocking_cli.dynamics.outcome import Outcomes
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.plotting import style
+from rocking_cli.questions.respond.each import RunGrid, columns
+from rocking_cli.text import did_you_mean
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+LABELS = {
+    "pga_g": "PGA [g]",
+    "pgv": "PGV [m/s]",
+    "scale": "scale factor of the motion",
+    "eta": r"restitution $\eta$",
+    "peak_ratio": r"peak $|\varphi|/\varphi_{cr}$",
+}
+BAND = 0.08  # height of the band of runs without a value, over that of the plane
+WIDEST_SPREAD = 20.0  # ratio of the largest and the smallest positive value from which an axis is logarithmic
+MARK_SIZE = 18.0  # pt2
+
+
+def draw_each(grid: RunGrid, outcomes: Mapping[ModelName, Outcomes], x: str, y: str) -> Figure:
+    """Plot a column of the frame against another, a mark for each run of the first model, a colour for each structure.
+
+    Runs that overturn, and have no peak, are crosses above the plane; runs of unknown outcome are open, at the peak
+    until their model ceases to hold.
+
+    Parameters
+    ----------
+    grid : RunGrid
+        What was combined.
+    outcomes : mapping of str to Outcome
+        The outcomes by model.
+    x, y : str
+        Columns of numbers.
+
+    Raises
+    ------
+    InputError
+        If there is no such column of numbers.
+    """
+    model = next(iter(outcomes))
+    values, units = parted(columns(grid, {model: outcomes[model]}))
+    numbers = [name for name, each in values.items() if each.dtype != object]
+    for argument, asked in (("x", x), ("y", y)):
+        if asked not in numbers:
+            what = f"must be a column of numbers, got {asked!r}"
+            raise InputError(Problem(what, field=f"`{argument}`", hint=did_you_mean(asked, numbers)))
+    figure, axes = style.one_panel(4.4, f"{grid.count:,} runs, {model} model")
+    across, up = (np.asarray(values[each], dtype=np.float64) for each in (x, y))
+    fell, unknown = (values["outcome"] == each for each in (names.OVERTURNS, names.UNKNOWN))
+    top = 1.05 * float(np.nanmax(up, initial=0.0)) or 1.0
+    above = fell & np.isnan(up)
+    for k, name in enumerate(grid.axes["structure"]):
+        mine, look = values["structure"] == name, style.distinct(k)
+        dots: dict[str, Any] = {"s": MARK_SIZE, "color": look["color"], "marker": look["marker"], "linewidth": 0.8}
+        known = mine & ~unknown & ~above
+        axes.scatter(across[known], up[known], label=style.plain(str(name)), **dots)
+        open_look = dots | {"color": "none", "edgecolor": look["color"]}
+        axes.scatter(across[mine & unknown], up[mine & unknown], **open_look)
+        high = np.full(int((mine & above).sum()), top * (1 + BAND * (0.25 + 0.5 * _share(k, grid.shape[0]))))
+        axes.scatter(across[mine & above], high, **dots | {"marker": "x"})
+    style.tidy(axes, _label(x, units), _label(y, units))
+    if above.any():
+        axes.axhline(top, color=style.FAINT, linewidth=style.THIN)
+        axes.scatter([], [], marker="x", color=style.INK, s=MARK_SIZE, label=f"above the line: {names.OVERTURNS}")
+        axes.set_ylim(top=top * (1 + BAND))
+    if unknown.any():
+        axes.scatter([], [], s=MARK_SIZE, color="none", edgecolor=style.INK, label=f"open: {names.UNKNOWN}, until then")
+    positive = across[across > 0]
+    if positive.size == across.size and positive.max() > WIDEST_SPREAD * positive.min():
+        axes.set_xscale("log")
+    style.legend_below(figure)
+    return figure
+
+
+def _share(k: int, count: int) -> float:
+    return k / (count - 1) if count > 1 else 0.5
+
+
+def _label(name: str, units: Mapping[str, str]) -> str:
+    return LABELS.get(name) or name.replace("_", " ") + (f" [{units[name]}]" if name in units else "")

@@ -1,0 +1,155 @@
+"""`respond_each`: frames, labelled arrays and rotations against single responses, which share no code of the grid."""
+
+from math import atan, hypot, nan, sin
+
+import numpy as np
+import pytest
+
+import rocking_cli as rk
+from rocking_cli.questions.respond import each
+from tests.conftest import EXAMPLES
+
+ACCEL = str(EXAMPLES / "accel.csv")
+SCALES, POLARITIES, RESTITUTIONS = [0.5, 1.0, 4.0], [1, -1], [nan, 0.8]
+
+
+def block(**fields):
+    return rk.Block(**{"name": "tall", "width": 0.7, "height": 2.8} | fields)
+
+
+@pytest.fixture(scope="module")
+def answer():
+    return rk.respond_each(
+        [block(), block(name="low", height=2.0, friction=0.2)],
+        [ACCEL, "sine:0.6g:0.8s"],
+        models=["nonlinear", "linear1"],
+        scales=SCALES,
+        polarities=POLARITIES,
+        restitutions=RESTITUTIONS,
+        histories=True,
+    )
+
+
+def test_each_row_is_the_response_that_it_names(answer):
+    frame = answer.to_frame()
+    assert len(frame) == 2 * 2 * 2 * 3 * 2 * 2
+    assert list(frame["outcome"].cat.categories) == list(each.OUTCOMES) and len(set(frame["outcome"])) >= 3
+    for row in frame.iloc[::7].itertuples():
+        given = {} if row.Index % 2 == 0 else {"restitution": 0.8}
+        body = block(**given) if row.structure == "tall" else block(name="low", height=2.0, friction=0.2, **given)
+        motion = ACCEL if row.motion == "accel.csv" else row.motion
+        one = rk.respond(body, motion, scale=row.scale, polarity=row.polarity, models=row.model)
+        run = one[row.model]
+        assert (row.outcome, row.impact_count) == (run.words, run.impact_count)
+        assert row.eta == pytest.approx(
+            given.get("restitution", 1 - 1.5 * sin(atan(0.7 / body.height)) ** 2), rel=1e-12
+        )
+        known = np.nan if run.overturned is None else float(run.overturned)
+        np.testing.assert_equal(
+            [row.overturned, row.peak_ratio, row.uplift_time, row.known_to, row.peak_ratio_at_least],
+            [known, run.peak_ratio, run.uplift_time, run.known_to, run.lower_bound],
+        )
+        shaken = rk.read_record(ACCEL) if row.motion == "accel.csv" else rk.parse_pulse(row.motion).sampled()
+        assert row.pga_g == pytest.approx(row.scale * shaken.pga_g, rel=1e-12)
+        assert row.pgv == pytest.approx(row.scale * abs(shaken.velocity).max(), rel=1e-3)
+        if not run.fell:
+            assert row.peak_rotation == max(run.peak_positive, run.peak_negative)
+            alpha, R = atan(0.7 / body.height), hypot(0.35, body.height / 2)
+            if row.peak_rotation < 1:  # the centroid of a block turns about its corner
+                moved = R * (sin(alpha) - sin(alpha - row.peak_rotation))
+                assert row.peak_displacement == pytest.approx(moved, rel=1e-12, abs=1e-15)
+        else:
+            assert np.isnan(row.peak_rotation) and np.isnan(row.peak_displacement)
+    assert {"rad", "m", "m/s", "s", "g"} == set(frame.attrs["units"].values())
+
+
+def test_rotations_are_those_of_single_responses(answer):
+    rotation = answer.rotation["nonlinear"]
+    assert rotation.shape == (*answer["nonlinear"].peak_ratio.shape, answer.time.size)
+    for place in ((0, 0, 1, 0, 0), (0, 0, 1, 1, 0), (0, 0, 2, 0, 0), (1, 0, 0, 0, 1)):
+        k, _, scale, sign, eta = place
+        body = block(**({"restitution": 0.8} if eta else {}))
+        body = body if k == 0 else block(name="low", height=2.0, friction=0.2, restitution=0.8)
+        run = rk.respond(body, ACCEL, scale=SCALES[scale], polarity=POLARITIES[sign])["nonlinear"]
+        at = np.interp(run.time, answer.time, rotation[place])
+        turned = np.isfinite(run.phi) & np.isfinite(at)
+        assert turned.sum() > 300
+        np.testing.assert_allclose(at[turned], run.phi[turned], atol=2e-3 * np.nanmax(abs(run.phi)))
+    coarse = rk.respond_each(block(), ACCEL, models="nonlinear", histories=True)  # on the samples of the record itself
+    alone = rk.respond(block(), ACCEL)["nonlinear"]
+    np.testing.assert_array_equal(coarse.rotation["nonlinear"][0, 0, 0][: alone.time.size], alone.phi)
+    assert not coarse.rotation["nonlinear"][0, 0, 0][alone.time.size :].any()
+
+
+def test_labelled_arrays_are_the_frame(answer):
+    pytest.importorskip("xarray")
+    arrays, frame = answer.to_xarray(), answer.to_frame()
+    assert arrays["peak_ratio"].dims == ("model", "structure", "motion", "scale", "polarity", "restitution")
+    assert arrays["pga_g"].dims == ("motion", "scale") and arrays["pgv"].attrs["units"] == "m/s"
+    row = frame[
+        (frame.model == "linear1") & (frame.structure == "low") & (frame.motion == "accel.csv")
+        & (frame.scale == 1.0) & (frame.polarity == -1) & (frame.eta == 0.8)
+    ].iloc[0]  # fmt: skip
+    at = arrays.sel(model="linear1", structure="low", motion="accel.csv", scale=1.0, polarity=-1, restitution=0.8)
+    assert (at.peak_ratio, at.uplift_time, at.outcome, at.pga_g) == (
+        row.peak_ratio, row.uplift_time, row.outcome, row.pga_g,
+    )  # fmt: skip
+    assert at.rotation.dims == ("time",) and abs(at.rotation).max() == pytest.approx(row.peak_rotation, rel=1e-2)
+
+
+def test_samples_files_and_patterns_are_motions(tmp_path):
+    shaking = np.stack([0.5 * np.sin(np.arange(300) / 10), 0.3 * np.cos(np.arange(300) / 9)])
+    many = rk.respond_each(block(), shaking, dt=0.01, units="g", models="nonlinear")
+    made = [rk.GroundMotion(f"motion {k}", 0.01, row * 9.80665) for k, row in enumerate(shaking, 1)]
+    same = rk.respond_each(block(), made, models="nonlinear")
+    assert list(many.grid.axes["motion"]) == ["motion 1", "motion 2"]
+    np.testing.assert_array_equal(many["nonlinear"].peak_ratio, same["nonlinear"].peak_ratio)
+    assert (
+        rk.respond(block(), shaking[0], dt="10 ms", units="g")["nonlinear"].peak_ratio
+        == many["nonlinear"].peak_ratio[0, 0, 0]
+    )
+    for name in ("a.csv", "b.csv"):
+        (tmp_path / name).write_bytes((EXAMPLES / "accel.csv").read_bytes())
+    found = rk.respond_each([block(), block()], str(tmp_path / "*.csv"), models="nonlinear", out=tmp_path / "o.parquet")
+    assert list(found.grid.axes["motion"]) == ["a.csv", "b.csv"]
+    assert list(found.grid.axes["structure"]) == ["tall", "tall-2"]
+    read = pytest.importorskip("pandas").read_parquet(tmp_path / "o.parquet")
+    assert read["peak_ratio"].tolist() == found.to_frame()["peak_ratio"].tolist()
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"polarities": [0]}, "`polarities` must be 1 or -1, got 0"),
+        ({"polarities": []}, "`polarities` must be one number or a list"),
+        ({"restitutions": [1.5]}, r"eta must be in \(0, 1\], got 1.5"),
+        ({"scales": [nan]}, "scale must be finite"),
+        ({"motions": np.ones(50)}, r"`dt` is missing(?s:.*)units='g'"),
+        ({"motions": np.ones((2, 2, 2)), "dt": 0.01}, "at least two samples|one-dimensional|rows"),
+        ({"motions": np.ones(50), "dt": 0.01, "units": "furlong"}, "not a unit of acceleration"),
+        ({"motions": np.full(50, nan), "dt": 0.01}, "sample 1 is not a number"),
+        ({"histories": True, "scales": np.linspace(1, 2, 200_000)}, "200,000 histories of .* do not fit in memory"),
+        ({"out": "runs.txt", "scale": 2.0}, "`scale` is not an argument"),
+    ],
+)
+def test_what_cannot_be_combined_is_said(given, said):
+    with pytest.raises(rk.InputError, match=said):
+        rk.respond_each(block(), **{"motions": "sine:0.4g:0.8s", "models": "nonlinear"} | given)
+
+
+def test_a_plot_is_of_any_two_columns(answer):
+    def drawn(**asked):
+        return answer.figure(**asked).axes[0]
+
+    axes = drawn()
+    frame = answer.to_frame().query("model == 'nonlinear'")
+    marks = sum(len(each.get_offsets()) for each in axes.collections)
+    assert marks == len(frame)  # the crosses of those that overturn, and open marks of those unknown, too
+    fell = (frame["outcome"] == "overturns") & frame["peak_ratio"].isna()
+    crosses = [y for each in axes.collections for _, y in each.get_offsets() if y > frame["peak_ratio"].max()]
+    assert len(crosses) == fell.sum() > 0
+    assert drawn(x="pgv", y="peak_displacement").get_xlabel() == "PGV [m/s]"
+    with pytest.raises(
+        rk.InputError, match="`y` must be a column of numbers, got 'peak_ration'\n  did you mean peak_ratio"
+    ):
+        drawn(y="peak_ration")
