@@ -216,7 +216,7 @@ class Given(Described):
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
     @final
-    def replace(self, **fields: Any) -> Self:
+    def replace(self, /, **fields: Any) -> Self:
         """Return a new structure with other values of some fields; all other fields are kept.
 
         Parameters
@@ -240,7 +240,7 @@ class Given(Described):
         with _of_arguments(type(self)):
             return self.model_copy(update=fields)
 
-    def __replace__(self, **fields: Any) -> Self:
+    def __replace__(self, /, **fields: Any) -> Self:
         return self.replace(**fields)
 
     @final

@@ -84,6 +84,7 @@ def test_python_replaces_fields_too():
         ({"rebound": 0.5}, "rebound requires one_sided"),
         ({"loads": [{"name": "a", "mass": 1.0}]}, "loads[1].at is missing"),
         ({"\x1b[31m": 1}, r"\x1b[31m is not a field of block"),
+        ({"self": 1}, "self is not a field of block"),
     ],
 )
 def test_wrong_fields_are_an_input_error(fields, words):
