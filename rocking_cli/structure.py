@@ -33,6 +33,7 @@ from rocking_cli.io.field_problems import (
 )
 from rocking_cli.io.yaml_file import Place
 from rocking_cli.names import OPENING
+from rocking_cli.short_repr import short_repr
 from rocking_cli.text import cut, did_you_mean
 
 MAX_OPENING = 1000.0  # bound on the largest opening over D_cr; with wider openings every outcome is known
@@ -94,6 +95,7 @@ def check_opening(opening: float) -> None:
         raise InputError(Problem(f"must be from 0 to {MAX_OPENING:g}, got {opening:g}", field="`opening`"))
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Structure:
     """A structure, with all that is derived from its mechanism, computed when first requested.

@@ -18,7 +18,8 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.json_text import json_text
 from rocking_cli.text import numbered
-from rocking_cli.views.view import Table, View
+from rocking_cli.views.column import table_of, text_columns
+from rocking_cli.views.view import Table, View, number
 
 if TYPE_CHECKING:
     import pandas
@@ -32,6 +33,7 @@ K = TypeVar("K")
 V = TypeVar("V")
 _NO_NAME = re.compile(r"[^\w.]+")  # what is not in the name of a column
 MAX_REPR_LENGTH = 100  # characters of the text that `repr` shows
+SHOWN_ROWS = 5  # at either end of a result that has no table of its own
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -167,7 +169,10 @@ class Answer(Generic[R]):
         return f"<{self.question}: {text}>"
 
     def _repr_html_(self) -> str:
-        return "\n".join(_html(part) for part in self.view.parts if part)
+        parts = [part for part in self.view.parts if part]
+        if not any(isinstance(part, Table) for part in parts) and len(columns := self.columns()) > 1:
+            parts.append(_ends_of(columns))
+        return "\n".join(map(_html, parts))
 
 
 class MappingAnswer(Answer[Mapping[K, V]], Mapping[K, V]):
@@ -296,6 +301,16 @@ def _refuse(why: str, hint: str | None) -> Figure:
 
 def _kept(columns: Columns) -> Columns:
     return columns
+
+
+def _ends_of(columns: Columns) -> Table:
+    """Return the first and the last rows of columns as a table."""
+
+    def cells(column: Any) -> list[str]:
+        ends = column if len(column) <= 2 * SHOWN_ROWS else [*column[:SHOWN_ROWS], "...", *column[-SHOWN_ROWS:]]
+        return [number(each, 5) if isinstance(each, float) else str(each) for each in ends]
+
+    return table_of("", text_columns(*columns), list(zip(*map(cells, columns.values()), strict=True)))
 
 
 def _html(part: Table | str) -> str:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from difflib import get_close_matches
 from functools import wraps
 from typing import ParamSpec, TypeVar
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.processing.reading_options import READING, SCALING
-from rocking_cli.text import did_you_mean
+from rocking_cli.text import cut, did_you_mean
 from rocking_cli.units import UnitError, number_of
 
 P = ParamSpec("P")
@@ -18,6 +19,13 @@ UNITS = {
     "vertical_dt": "s", "tail": "s", "period": "s", "band": "s", "sizes": "s", "ag": "g", "top": "g",
 }  # fmt: skip
 """Units of arguments that are quantities."""
+MIN_LIKENESS = 0.8  # of a word and the name of a field that it means
+MEANT = {
+    "record": ("motion", "motions"), "records": ("motions", "motion"), "pulse": ("motion", "motions"),
+    "mechanism": ("structure", "structures"), "mechanisms": ("structures", "structure"), "factor": ("scale", "scales"),
+    "factors": ("scales", "scale"), "pga": ("target_pga",), "pgv": ("target_pgv",),
+}  # fmt: skip
+"""Other words for arguments, and those that they may mean."""
 
 
 def takes_numbers(verb: Callable[P, R]) -> Callable[P, R]:
@@ -34,20 +42,50 @@ def takes_numbers(verb: Callable[P, R]) -> Callable[P, R]:
 
     @wraps(verb)
     def checked(*given: P.args, **options: P.kwargs) -> R:
-        for name in options:
+        for name, value in options.items():
             if name not in names and name not in loose:
-                scaled = "the motions of this question are not scaled" if more and name in SCALING else None
-                raise InputError(
-                    Problem(
-                        "is not an argument", field=f"`{name}`", hint=scaled or did_you_mean(name, [*names, *loose])
-                    )
-                )
+                unscaled = more and name in SCALING and f"{name}s" not in names
+                scaled = "the motions of this question are not scaled" if unscaled else None
+                hint = scaled or _instead_of(name, value, [*names, *loose], (*given, *options.values()))
+                raise InputError(Problem("is not an argument", field=f"`{name}`", hint=hint))
         for name, value in (*zip(names, given, strict=False), *options.items()):
             if name in meant and (text := _text(value)) is not None:
                 raise InputError(_problem(name, meant[name], text))
         return verb(*given, **options)
 
     return checked
+
+
+def _instead_of(name: str, value: object, known: list[str], given: Sequence[object]) -> str | None:
+    """Return a hint for a name that is no argument: the argument or the field of the structure that is meant.
+
+    Parameters
+    ----------
+    name, value
+        What was given.
+    known : list of str
+        The names of all arguments.
+    given : sequence
+        The values of all arguments, with the structures whose fields may be meant.
+    """
+    if meant := next((each for each in MEANT.get(name, ()) if each in known), None):
+        return f"did you mean {meant}?"
+    if not {"structure", "structures"} & set(known):
+        return did_you_mean(name, known)
+    from rocking_cli.core import Mechanism
+    from rocking_cli.io.field_problems import by_meaning
+
+    each_given = [each for value in given for each in (value if isinstance(value, list | tuple) else [value])]
+    cls = next((type(each) for each in each_given if isinstance(each, Mechanism)), Mechanism)
+    fields = cls.model_fields
+    if name in cls.refused and name not in fields:
+        return str(Problem(cls.refused[name], field=name))
+    word = cls.meanings.get(name, name)
+    field = next(iter(get_close_matches(word, [*known, *fields], n=1, cutoff=MIN_LIKENESS)), None)
+    if field not in fields:
+        return by_meaning(name, fields) or did_you_mean(name, known)
+    new = cut(repr(value)) if isinstance(value, int | float | str) else "..."
+    return f"{field} is a field of the structure: structure.replace({field}={new})"
 
 
 def _text(value: object) -> str | None:

@@ -19,6 +19,7 @@ from rocking_cli.core.hung.attachments import RefusedFields
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion, area_of
 from rocking_cli.core.sketch import Sketch
 from rocking_cli.core.solids import Solid
+from rocking_cli.short_repr import short_repr
 
 
 class Kinematics(Given, ABC):
@@ -204,6 +205,7 @@ class CollapseHinge:
     joint: str = ""
 
 
+@short_repr
 @dataclass(frozen=True)
 class CollapseMechanism:
     """Weakest mechanism of one direction.

@@ -8,7 +8,10 @@ from math import inf
 
 import numpy as np
 
+from rocking_cli.short_repr import short_repr
 
+
+@short_repr
 @dataclass(frozen=True)
 class Body:
     """One rigid body of a mechanism.

@@ -15,10 +15,12 @@ import numpy as np
 from rocking_cli.core.bodies import Body
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.errors import MechanismError, StructureError
+from rocking_cli.short_repr import short_repr
 
 MAX_JUMP = 1e-5  # largest unexplained change of a coefficient between two rotations, over its size
 
 
+@short_repr
 @dataclass(frozen=True)
 class Coefficients:
     """Coefficients of the equation of motion over an array of rotations, each an ndarray of shape (n,).

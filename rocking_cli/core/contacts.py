@@ -8,6 +8,7 @@ from typing import Literal
 
 from rocking_cli.core.bodies import Body
 from rocking_cli.core.sketch import Hinge
+from rocking_cli.short_repr import short_repr
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,7 @@ MASONRY_FRICTION = 0.6
 Held = Literal["slide", "level", "fixed"]
 
 
+@short_repr
 @dataclass(frozen=True)
 class Contact:
     """A contact, or another joint, in one direction of rocking.

@@ -15,6 +15,7 @@ from rocking_cli.core.kinematics import Direction
 from rocking_cli.core.mechanism import Mechanism
 from rocking_cli.errors import PluginError, RockingError, StructureError
 from rocking_cli.plugins.errors import plugin_error
+from rocking_cli.short_repr import short_repr
 
 EQUAL_DIRECTIONS = 1e-9  # relative difference of parameters that count as equal in both directions
 
@@ -23,6 +24,7 @@ class NoEquivalentBlock(StructureError):
     """Error: the structure stands and rocks, but no single block is equivalent to it."""
 
 
+@short_repr
 @dataclass(frozen=True)
 class EquivalentBlock:
     """Parameters of the equivalent block in one direction of rocking.
@@ -68,6 +70,7 @@ class EquivalentBlock:
         return {key.rstrip("_"): value for key, value in asdict(self).items()}
 
 
+@short_repr
 @dataclass(frozen=True)
 class Equivalence:
     """Equivalent blocks of both directions; of a structure that rocks to one side only, the same block twice."""

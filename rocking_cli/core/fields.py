@@ -19,6 +19,7 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import InitErrorDetails, PydanticCustomError, PydanticKnownError
 
+from rocking_cli.short_repr import MAX_LENGTH, line_of
 from rocking_cli.text import cut, is_one_line
 from rocking_cli.units import STANDARD_GRAVITY, UnitError, mass_of_weight, read, split
 
@@ -169,6 +170,12 @@ class Described(BaseModel):
     def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:
         """Yield the fields that were given, without those at their defaults."""
         return ((key, getattr(self, key)) for key in type(self).model_fields if key in self.model_fields_set)
+
+    def __repr__(self) -> str:
+        whole = super().__repr__()
+        return whole if len(whole) <= MAX_LENGTH else line_of(self)
+
+    __str__ = __repr__
 
     def enlarged(self, factor: float) -> Self:
         """Return a copy for a structure of another size: fields in m, m2, m3 or kg m2 are multiplied, others stay.

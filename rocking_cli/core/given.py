@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Self, final
+from typing import Annotated, Any, ClassVar, Literal, Never, Self, final
 
 from pydantic import Field, SerializeAsAny, ValidationError, model_validator
 
@@ -14,7 +15,7 @@ from rocking_cli.core.hung.attachments import RefusedFields
 from rocking_cli.core.hung.element import Interlock, Load
 from rocking_cli.core.hung.ties import Tie
 from rocking_cli.core.kinematics import Direction
-from rocking_cli.errors import FieldError
+from rocking_cli.errors import FieldError, Problem
 from rocking_cli.plugins.errors import blame
 
 KINEMATIC = "kinematic"
@@ -77,19 +78,49 @@ class Uncertainty(Described):
     )
 
 
+@contextmanager
+def _of_arguments(cls: type[Given]) -> Iterator[None]:
+    """Raise a validation error of fields that are given in Python as `FieldError`."""
+    try:
+        yield
+    except ValidationError as error:
+        from rocking_cli.io.field_problems import of_arguments
+
+        raise FieldError(*of_arguments(cls, error.errors(include_url=False), cls.mechanism)) from None
+
+
+def _fields_by_name(cls: type[Given]) -> Problem:
+    """Return the problem of fields that are given without their names: which names there are, required ones first."""
+    from rocking_cli.io.field_problems import spellings, unit_at
+
+    required, others = list[str](), list[str]()
+    for key, info in sorted(cls.model_fields.items(), key=lambda each: each[0] in Given.model_fields):  # own ones first
+        name = spellings(key, info)[0]
+        unit = unit_at(cls, (name,))
+        (required if info.is_required() else others).append(f"{name} [{unit}]" if unit else name)
+    names = "; also ".join(", ".join(each) for each in (required, others) if each)
+    example = ", ".join(f"{each.partition(' ')[0]}=..." for each in required)
+    return Problem(f"takes its fields by name: {names}", field=cls.__name__, hint=f"such as {cls.__name__}({example})")
+
+
 class Given(Described):
     """Fields that every structure may have beside those of its mechanism, and properties that follow from them."""
 
     refused: ClassVar[Mapping[str, str]] = {
         "dampers": "a damper is not in this version: leave it out",
         "inerters": "an inerter is not in this version: leave it out",
+        "damping": "has no meaning: a structure that rocks loses energy at its impacts, by its field `restitution`",
         "opening": "is a limit of time histories, not of the structure: leave it out, give `opening` to the analysis",
     }
+    meanings: ClassVar[Mapping[str, str]] = {"eta": "restitution", "g": "gravity", "mu": "friction"}
+    """Symbols of fields, by which they are not read but found."""
     mechanism: ClassVar[str]
     """The name of the mechanism, that of its entry point."""
 
     _weights: ClassVar[Sequence[str]] = ()
     """Remarks on weights that were read as masses; a structure made by `from_fields` has its own remarks."""
+    _folder: ClassVar[Path | None] = None
+    """Folder of the files that fields name; a structure made by `from_fields` has its own."""
 
     name: Name | None = Field(None, description="what to call the structure")
     gravity: float = Field(
@@ -174,23 +205,54 @@ class Given(Described):
             raise geometry_error(("crushing", "depth"), "is missing: give the length of the pivot out of plane")
         return self
 
-    def __init__(self, /, **fields: Any) -> None:
-        try:
+    def __init__(self, /, *by_place: Never, **fields: Any) -> None:
+        if by_place:
+            raise FieldError(_fields_by_name(type(self)))
+        with _of_arguments(type(self)):
             super().__init__(**fields)
             self._hold_together()
-        except ValidationError as error:
-            from rocking_cli.io.field_problems import of_arguments
-
-            raise FieldError(*of_arguments(type(self), error.errors(include_url=False), type(self).mechanism)) from None
 
     # With this mark, Pydantic validates files and copies without calling `__init__`.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
     @final
+    def replace(self, /, **fields: Any) -> Self:
+        """Return a new structure with other values of some fields; all other fields are kept.
+
+        Parameters
+        ----------
+        **fields
+            Values by field, as where a structure is made: numbers in SI units, or texts with units; None for a field
+            that is no longer given.
+
+        Raises
+        ------
+        InputError
+            If they are not valid fields of this mechanism, or do not fit together with those that are kept.
+
+        Examples
+        --------
+        >>> import rocking_cli as rk
+        >>> block = rk.Block(name="pillar", width=0.7, height=2.8)
+        >>> block.replace(height="3 m", restitution=0.9)
+        Block(name='pillar', restitution=0.9, width=0.7, height=3.0)
+        """
+        with _of_arguments(type(self)):
+            return self.model_copy(update=fields)
+
+    def __replace__(self, /, **fields: Any) -> Self:
+        return self.replace(**fields)
+
+    @final
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """Return a copy with some fields changed, validated again, without values derived from the old fields."""
-        kept, changed = {key: getattr(self, key) for key in self.model_fields_set}, update or {}
-        copy = type(self).from_fields({**kept, **changed})
+        """Return a copy as `replace` does, but raise `pydantic.ValidationError`."""
+        changed, fields = update or {}, type(self).model_fields
+        kept = {key: getattr(self, key) for key in self.model_fields_set if key not in changed}
+        if not changed.keys() <= fields.keys():  # perhaps other spellings of fields
+            from rocking_cli.io.field_problems import spellings
+
+            kept = {key: value for key, value in kept.items() if changed.keys().isdisjoint(spellings(key, fields[key]))}
+        copy = type(self).from_fields({**kept, **changed}, self._folder)
         if set(changed) <= {"name"}:
             vars(copy)["_weights"] = self._weights
         return copy
@@ -217,10 +279,16 @@ class Given(Described):
         with blame(f"the mechanism {cls.mechanism} failed on these fields", cls.__module__, but=ValidationError):
             context: dict[str, Any] = {"folder": folder, "weights": []}
             structure = cls.model_validate(dict(fields), context=context)
-            # Kept like a cached property: it is no field, and does not count where structures are compared.
-            vars(structure)["_weights"] = list(dict.fromkeys(context["weights"]))
+            # Kept like cached properties: they are no fields, and do not count where structures are compared.
+            vars(structure).update(_weights=list(dict.fromkeys(context["weights"])), _folder=folder)
             structure._hold_together()
             return structure
+
+    def __eq__(self, other: object) -> bool:
+        """Compare the fields alone: what is derived from them may be arrays."""
+        if type(self) is not type(other):
+            return NotImplemented
+        return all(getattr(self, key) == getattr(other, key) for key in type(self).model_fields)
 
     def _hold_together(self) -> None:
         """Raise `ValidationError` with the fields that do not fit together; here, none."""

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.arrays import Points as Points
 from rocking_cli.arrays import Reals as Reals
+from rocking_cli.short_repr import short_repr
 
 
 class Direction(IntEnum):
@@ -42,6 +43,7 @@ class Direction(IntEnum):
         return Direction(-self)
 
 
+@short_repr
 @dataclass(frozen=True)
 class RigidMotion:
     """Motion of one rigid body, or of the link of which it is a part, over an array of rotations phi.

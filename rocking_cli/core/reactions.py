@@ -19,6 +19,7 @@ from rocking_cli.core.hung.attachments import followed
 from rocking_cli.core.kinematics import Direction, Points, Reals, RigidMotion
 from rocking_cli.core.mechanism import Mechanism
 from rocking_cli.core.released import Pieces
+from rocking_cli.short_repr import short_repr
 
 COMPARED_ROTATIONS = (0.21, 0.47)  # rotations at which motions are compared, over the kinematic limit
 EQUAL_MOTION = 1e-9  # largest difference of two motions that count as equal, over the largest displacement
@@ -28,6 +29,7 @@ WHOLE_JOINT = Joint("", 0j, ())
 """Stands for all joints together if the force at each is not known."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Reactions:
     """Forces [N] or impulses at the joints, at n states of motion.

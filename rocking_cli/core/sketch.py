@@ -12,6 +12,7 @@ from math import degrees, floor, log10
 import numpy as np
 
 from rocking_cli.core.kinematics import Direction
+from rocking_cli.short_repr import short_repr
 
 Outline = Sequence[complex]
 """A closed polygon; the last corner need not repeat the first."""
@@ -112,6 +113,7 @@ class Forces:
     direction: Direction | None = None
 
 
+@short_repr
 @dataclass(frozen=True)
 class Sketch:
     """What a mechanism adds to its drawing.

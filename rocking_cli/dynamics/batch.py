@@ -18,6 +18,7 @@ from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.short_repr import short_repr
 
 # Impacts after the record: one ends the current motion, two end an excursion to either side; later motion decays.
 DECISIVE_IMPACTS = 3
@@ -25,6 +26,7 @@ RESTITUTION_ROUNDING = 1e-9  # relative excess over the bound that is allowed, a
 HISTORIES_PER_TASK = 256  # some 50 ms of work; handing it to a thread takes 20 us
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Runs:
     """Time histories to run, one for each entry of the arrays; `of` and `every` make them.

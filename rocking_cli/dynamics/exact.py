@@ -15,6 +15,7 @@ from rocking_cli.dynamics import pulse_motion
 from rocking_cli.dynamics.outcome import UNCHECKED_FIELDS, Outcome
 from rocking_cli.dynamics.pulse_motion import COLUMNS, Side
 from rocking_cli.errors import InputError, SolverError
+from rocking_cli.short_repr import short_repr
 
 if TYPE_CHECKING:  # avoid importing numpy, which only structures and pulses need
     from rocking_cli.core import Equivalence
@@ -27,6 +28,7 @@ MAX_INPUT = 1e6  # largest a, omega and 1/omega
 MAX_EXPONENT = 690.0  # a larger exponential, times omega^2, overflows
 
 
+@short_repr
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ExactResponse(Outcome[bool, int, float]):
     """Response of an equivalent block to a pulse by its linear equation of motion, to rounding error; see `Outcome`.
@@ -172,6 +174,7 @@ def solve(sides: tuple[Side, Side], segments: pulse_motion.Rows, polarity: int =
     )
 
 
+@short_repr
 @dataclass(frozen=True)
 class ClosedForm:
     """Results of Eqs. 41-42 if their conditions hold, and otherwise the reason why they do not.

@@ -18,6 +18,7 @@ from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcome
 from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.short_repr import short_repr
 
 FINEST_RTOL = 1e-14  # a smaller tolerance is below rounding, so that no step is accepted
 RTOL = 1e-9  # local error of a step by the lower order of the pair; peaks are then accurate to 1e-11
@@ -28,6 +29,7 @@ MIN_COLUMN_ETA = 1e-3  # lower bound on the restitution of a single column, whic
 MIN_IMPACT_RATE = 0.02  # least rate of a counted impact, over that of the strongest one; weaker impacts are chatter
 
 
+@short_repr
 @dataclass(frozen=True, eq=False, kw_only=True)
 class History(Outcome[bool, int, float]):
     """Time history of one model of a structure: its outcome, see `Outcome`, and its samples.

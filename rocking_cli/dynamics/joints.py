@@ -32,6 +32,7 @@ from rocking_cli.dynamics.modes import modes
 from rocking_cli.dynamics.resting import EarlyMechanism, Rest, resting
 from rocking_cli.dynamics.tables import DirectionTable
 from rocking_cli.names import OPENING
+from rocking_cli.short_repr import short_repr
 from rocking_cli.text import in_short
 
 FORCE_CELLS = 32  # cells of the forces from rest to phi_cr
@@ -49,6 +50,7 @@ MAX_LISTED_NAMES = 4  # names listed in a message: enough for the hinges of a fr
 PLACE_KINDS = (("foot", "feet"), ("hinge", "hinges"), ("closed joint", "closed joints"))
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class JointTables:
     """Joints of a structure, as arrays of the kernel.
@@ -126,6 +128,7 @@ class JointTables:
     at_rest: bool = True
 
 
+@short_repr
 @dataclass(frozen=True)
 class JointCheck:
     """State of a structure's joints during one history; each joint is checked as if it alone could open.

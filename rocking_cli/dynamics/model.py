@@ -34,6 +34,7 @@ from rocking_cli.dynamics.kernels import (
 from rocking_cli.dynamics.tables import DirectionTable, tabulate
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.names import OPENING
+from rocking_cli.short_repr import short_repr
 
 ModelName = Literal["nonlinear", "linear1", "linear2"]
 MODELS: tuple[ModelName, ...] = ("nonlinear", "linear1", "linear2")
@@ -52,6 +53,7 @@ class Scatter(NamedTuple):
     slenderness: float
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Model:
     """One equation of motion of a structure, as arrays of the kernel, which takes any number of models at once.

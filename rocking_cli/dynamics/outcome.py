@@ -8,6 +8,7 @@ from math import nan
 from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 from rocking_cli import names
+from rocking_cli.short_repr import short_repr
 
 if TYPE_CHECKING:  # avoid importing numpy, which a single exact motion does not need
     import numpy as np
@@ -18,6 +19,7 @@ Counts = TypeVar("Counts")
 Numbers = TypeVar("Numbers")
 
 
+@short_repr
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Outcome(Generic[Flags, Counts, Numbers]):
     """Outcome of a motion, each field a number; or of many, each field an ndarray of one shape.

@@ -16,6 +16,7 @@ from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.core import Direction, Mechanism, both_statics
 from rocking_cli.core.coefficients import check_continuous
 from rocking_cli.core.equivalence import Statics
+from rocking_cli.short_repr import short_repr
 
 CRITICAL_CELLS = 512  # cells up to phi_cr; coefficients are then accurate to 1e-12, those of short links to 1e-10
 MIN_CELLS, MAX_CELLS = 2048, 16384  # bounds on the number of cells from rest to the kinematic limit
@@ -23,6 +24,7 @@ MAX_CORNER_CELLS = 65536  # largest number of cells that put a corner of the for
 LIMIT_SHARE = 0.999  # end of the table over the kinematic limit, where a locking linkage has infinite inertia
 
 
+@short_repr
 @dataclass(frozen=True)
 class DirectionTable:
     """Tables of the coefficients of one direction.

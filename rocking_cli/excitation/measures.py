@@ -13,10 +13,12 @@ import numpy as np
 from rocking_cli.arrays import Bools, Reals
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion, from_zero
+from rocking_cli.short_repr import short_repr
 
 SIGNIFICANT_SHARES = (0.05, 0.95)  # Arias intensity at the start and end of the significant duration
 
 
+@short_repr
 @dataclass(frozen=True)
 class Measures:
     """Intensity measures of a ground motion.
@@ -24,7 +26,7 @@ class Measures:
     Parameters
     ----------
     pga, mean, rms : float
-        Peak, mean and root-mean-square acceleration, in units of standard gravity.
+        Peak, mean and root-mean-square acceleration [standard gravity].
     pgv, final_velocity : float
         Peak velocity, and velocity at the last sample [m/s].
     pgd, final_displacement : float

@@ -18,7 +18,7 @@ from typing import ClassVar, TypeVar
 
 from rocking_cli.errors import InputError, MechanismError, PluginWarning
 from rocking_cli.plugins.errors import blame
-from rocking_cli.text import did_you_mean
+from rocking_cli.text import did_you_mean, in_short
 
 T = TypeVar("T")
 
@@ -124,6 +124,9 @@ class Plugins(Mapping[str, T]):
             claims = " and ".join(f"{package_of(each)} ({each.value})" for each in (point, *others))
             raise MechanismError(f"{self.kind} {name} is claimed by two packages, {claims}: uninstall one of them")
         return self.accept(load(point), point)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {in_short(list(self))}>"
 
     def meant(self, name: str) -> str | None:
         """Return a hint on what an unknown name means."""

@@ -12,6 +12,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.origins import name
 from rocking_cli.processing.reading import Reading
 from rocking_cli.processing.steps import Factor
+from rocking_cli.short_repr import short_repr
 
 if TYPE_CHECKING:  # pydantic is slow to import, and only lists need it
     from rocking_cli.excitation.pulses import Pulse
@@ -63,6 +64,7 @@ def is_list(path: Path) -> bool:
     return path.suffix.lower() in LIST_SUFFIXES
 
 
+@short_repr
 class Scaled(NamedTuple):
     """A ground motion as read, its scale factor, and its pulse, or its record and how that was read."""
 

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.short_repr import short_repr
 
 SAMPLES_PER_PERIOD = 24  # samples; cubics between them have an error below 1e-5 of the peak
 MAX_PARTS = 64  # parts of a sampling interval; an oscillator this much faster than the record follows it
@@ -30,6 +31,7 @@ DAMPING = 0.05
 SHORTEST_PERIOD, LONGEST_PERIOD, PERIOD_COUNT = 0.02, 10.0, 200  # s, s, and number: default of a spectrum
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class ResponseSpectrum:
     """Largest responses of linear oscillators to a ground motion.

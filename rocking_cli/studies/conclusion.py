@@ -8,6 +8,8 @@ from enum import StrEnum
 from math import isclose
 from typing import NamedTuple, Self, TypeVar
 
+from rocking_cli.short_repr import short_repr
+
 LEAST_SHARE = 0.1  # share of overturning neighbours that defines the `ratio` of a margin
 SAME_RATIO = 1e-6  # relative difference below which two conclusions are equally severe
 K = TypeVar("K")
@@ -93,6 +95,7 @@ class NeighbourShare(NamedTuple):
     of: int
 
 
+@short_repr
 @dataclass(frozen=True, kw_only=True)
 class Conclusion:
     """Conclusion of a study of one structure.
@@ -157,6 +160,7 @@ class Conclusion:
         return steps
 
 
+@short_repr
 class Concluding(dict[K, V]):
     """Results by their keys, with their common conclusion.
 

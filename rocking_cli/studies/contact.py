@@ -22,6 +22,7 @@ from rocking_cli.core.reactions import Reactions, at_uplift, impulses, parts, re
 from rocking_cli.core.released import Undetermined, released
 from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.short_repr import short_repr
 
 Places = NDArray[np.intp]
 MIN_BEARING_SHARE = 0.01  # share of N at uplift below which a joint needs no friction
@@ -70,6 +71,7 @@ class SupportDemand(NamedTuple):
     least: float
 
 
+@short_repr
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ContactDemand:
     """Forces and friction that a history requires of the contacts; NaN if undefined, as for a structure at rest.
@@ -113,8 +115,10 @@ class ContactDemand:
         The joint at which this happens.
     crushing : CrushingDemand or None
         Use of the strength of the contacts; None if no strength is given.
-    times, demand : ndarray, shape (n,)
-        Times [s], and the coefficient of friction required then; 0 at rest. An impact has two values at one time.
+    times : ndarray, shape (n,)
+        Times [s], of which an impact has two that are equal.
+    demand : ndarray, shape (n,)
+        Coefficient of friction required then; 0 at rest.
     opens : float or None
         The first time at which a joint that the mechanism keeps closed would open [s]; NaN: at none of the times that
         were checked; None: not known, as for all structures that did not search for their mechanism.

@@ -11,11 +11,13 @@ from rocking_cli.core.fields import geometry_error
 from rocking_cli.errors import Problem
 from rocking_cli.io.field_problems import place_of, problems
 from rocking_cli.io.yaml_file import Document, Place, spell
+from rocking_cli.short_repr import short_repr
 
 Sound = Callable[..., bool]
 """Function that returns whether the value at a path of keys, within a part of the file, is valid by itself."""
 
 
+@short_repr
 class Part(BaseModel):
     """A part of a study file, or of a site file."""
 

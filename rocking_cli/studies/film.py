@@ -13,12 +13,14 @@ from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.picture import Picture, box_around
 
 SECONDS_BEFORE, SECONDS_AFTER = 1.0, 1.5  # s shown before the first uplift and after the end of the motion
 BOX_ROTATIONS = 25  # rotations sampled for the box around the motion
 
 
+@short_repr
 @dataclass(frozen=True)
 class Film:
     """Motion of a structure under a ground motion, for an animation.

@@ -13,6 +13,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from rocking_cli.arrays import Bools, Integers, Reals
+from rocking_cli.short_repr import short_repr
 
 Link = Literal["probit", "logit"]
 
@@ -206,6 +207,7 @@ class Estimate:
     high: float
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Fit:
     """Maximum-likelihood estimate of a curve: the probability of exceedance is a function of eta = X c.
@@ -270,6 +272,7 @@ class Fit:
         return cumulative(self.link, eta - reach), cumulative(self.link, eta + reach)
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Counts:
     """Number of runs by record and by observation (such as "exceeds at an intensity"), each an ndarray of one length.

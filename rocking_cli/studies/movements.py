@@ -17,6 +17,7 @@ from rocking_cli.core.hung.element import INTERLOCK_NAME as INTERLOCK
 from rocking_cli.core.hung.element import ConstantForce, Element, Stretched
 from rocking_cli.core.reactions import parts
 from rocking_cli.dynamics.history import History
+from rocking_cli.short_repr import short_repr
 
 PATH_ROTATIONS = 257  # rotations between rest and a peak, sampled for the largest displacement
 ROUNDING_SHARE = 1e-13  # share of the distance from the origin below which a displacement is zero
@@ -45,6 +46,7 @@ class TiePeak:
     elongation: float
 
 
+@short_repr
 @dataclass(frozen=True)
 class Movements:
     """Peak movements in a history: of points, of ties, and at impacts.

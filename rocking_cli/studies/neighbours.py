@@ -21,6 +21,7 @@ from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError, Problem, SolverError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.names import peaks_over
+from rocking_cli.short_repr import short_repr
 
 FRACTILES = (0.16, 0.50, 0.84)
 MIN_AGREEMENT = 0.9  # share of neighbours with the outcome of the history; below it the outcome is sensitive
@@ -133,6 +134,7 @@ def _below(uniform: Reals, mean: float, deviation: float, upper: float) -> Reals
     return np.clip(mean + deviation * _normal(uniform * share), LEAST_ETA, upper)
 
 
+@short_repr
 @dataclass(frozen=True)
 class Neighbours:
     """Outcomes of the neighbours of a motion.

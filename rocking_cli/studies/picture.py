@@ -31,6 +31,7 @@ from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.mechanism import extent
 from rocking_cli.errors import RockingError, StructureError
 from rocking_cli.plugins.errors import plugin_error
+from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.hung import Carried, End, Strand, carried, strands, walls
 
 NODES_PER_SIDE = 60  # linear interpolation in the table of positions has an error of 1e-4 of the size
@@ -48,6 +49,7 @@ ASSUMED_NOTE = (
 )
 
 
+@short_repr
 @dataclass(frozen=True)
 class DrawnPart:
     """A body as it is drawn; or one of the equal copies for which a body stands.
@@ -90,6 +92,7 @@ class DrawnHinge:
     slide: complex = 0j
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Start:
     """Initial motion of mechanisms without a rocking model: bodies move straight on, with phi from 0 to 1.
@@ -125,6 +128,7 @@ class Start:
         ]
 
 
+@short_repr
 @dataclass(frozen=True)
 class Picture:
     """A structure to be drawn; see `picture`.

@@ -11,10 +11,12 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
 from rocking_cli.excitation.records.opening import name_of, original
 from rocking_cli.processing.listed import Scaled
+from rocking_cli.short_repr import short_repr
 
 RECORDED_PACKAGES = ("numpy", "scipy", "matplotlib")
 
 
+@short_repr
 @dataclass(frozen=True)
 class File:
     """An input file as the user gave it: its name and its content, with a checksum of the content."""
@@ -33,6 +35,7 @@ class File:
         return self.content.decode("utf-8", errors="replace")
 
 
+@short_repr
 @dataclass(frozen=True)
 class TitleBlock:
     """Heading of a report: the project, its place and author, and how and when the report was made.

@@ -12,6 +12,7 @@ from rocking_cli.dynamics.verdict import Agreement, agreements, remedy
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulse_fit import FITTED, PulseFit, fit_pulses
 from rocking_cli.processing.listed import Scaled
+from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare, NextStep, are_alike, worst
 from rocking_cli.studies.contact import ContactDemand, Contacts
@@ -106,6 +107,7 @@ class Question:
     release_is_angle: bool = False
 
 
+@short_repr
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Response(Mapping[ModelName, History]):
     """Response of a structure to one ground motion: histories by model, those of the first polarity if there are two.

@@ -17,12 +17,14 @@ from rocking_cli.dynamics.model import Model, ModelName, linear_model
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD, Pulse, parse_pulse
+from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 
 Progress = Callable[[int], None]
 SAME_AMPLITUDE = 1e-9  # relative difference below which both directions uplift together
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class PulsedModel:
     """A model of a structure, with the quantities that make pulses dimensionless.

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple, Protocol
 
+from rocking_cli.short_repr import short_repr
 from rocking_cli.verification.results import Remark
 
 
@@ -42,6 +43,7 @@ class DemandParameter(NamedTuple):
     meaning: str
 
 
+@short_repr
 @dataclass(frozen=True)
 class StateDemand:
     """Demand of a site at a limit state.
@@ -88,6 +90,7 @@ class DemandTable(NamedTuple):
     rows: Sequence[Sequence[float]]
 
 
+@short_repr
 @dataclass(frozen=True)
 class SiteDemand:
     """Demand of a site at the limit states that it gives.

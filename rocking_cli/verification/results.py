@@ -19,6 +19,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.listed import Scaled
+from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.conclusion import Concluded, Conclusion, LeftOut, worst
 
 Standing = Literal["print", "transcription", "code", "ours", "plain"]
@@ -329,6 +330,7 @@ def governing(methods: Mapping[str, Method]) -> str:
     return min(methods, key=lambda key: inf if (ratio := methods[key].ratio) is None or isnan(ratio) else ratio)
 
 
+@short_repr
 class Remark(NamedTuple):
     """A remark on a result, which a view says in a language.
 
@@ -349,6 +351,7 @@ class Remark(NamedTuple):
         return cls(key, values)
 
 
+@short_repr
 class Requirement(NamedTuple):
     """What a code requires of a direction at one limit state.
 
@@ -382,6 +385,7 @@ class Requirement(NamedTuple):
         return cls(state, method, ratio, known[passed])
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Verified:
     """Result of a verification in one direction of rocking.
@@ -451,6 +455,7 @@ def _are_close(one: float | None, other: float | None) -> bool:
     return one == other if one is None or other is None else isclose(one, other, rel_tol=SAME_RATIO)
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Verification:
     """Verification of a structure by a code.
@@ -593,6 +598,7 @@ class MotionPlace:
     floor: str | None = None
 
 
+@short_repr
 @dataclass(frozen=True)
 class Histories:
     """The time histories that are requested for a verification.

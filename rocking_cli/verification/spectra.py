@@ -9,12 +9,14 @@ import numpy as np
 
 from rocking_cli.arrays import Reals
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.short_repr import short_repr
 from rocking_cli.verification.demand import SiteDemand, StateDemand, SupportSpectrum
 
 FINE_STEP, COARSE_STEP = 0.01, 0.05  # s, below and above the longest period for which codes give accelerations
 LONGEST_FINE_PERIOD = 4.0  # s
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class StateSpectra:
     """Spectra at a limit state, over the periods of `spectra_at_states`; NaN beyond their end.

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from math import degrees, isnan
 from typing import TYPE_CHECKING, Any
 
+from rocking_cli.short_repr import short_repr
+
 if TYPE_CHECKING:
     from rocking_cli.core import Mechanism
 
@@ -36,6 +38,7 @@ class Table:
     numbers: Collection[int] = ()
 
 
+@short_repr
 @dataclass(frozen=True)
 class View:
     """One result as plain data, and as tables and sentences.

@@ -165,6 +165,56 @@ def test_an_option_of_a_record_that_is_wrong_is_named(option, said):
     assert said in str(refused.value)
 
 
+FIELD = "{0} is a field of the structure: structure.replace({0}={1})"
+
+
+@pytest.mark.parametrize(
+    ("verb", "word", "value", "said"),
+    [
+        ("respond", "eta", 0.9, FIELD.format("restitution", 0.9)),
+        ("respond", "restitution", 0.9, FIELD.format("restitution", 0.9)),
+        ("respond", "restitutoin", "0.9", FIELD.format("restitution", "'0.9'")),
+        ("margin", "mu", 0.4, FIELD.format("friction", 0.4)),
+        ("equiv", "g", 3.7, FIELD.format("gravity", 3.7)),
+        ("spectrum", "name", "pillar", FIELD.format("name", "'pillar'")),
+        ("respond", "width", 0.8, FIELD.format("width", 0.8)),
+        ("respond_each", "heigth", 3, FIELD.format("height", 3)),
+        ("design", "ties", [{}], FIELD.format("ties", "...")),
+        ("respond", "thickness", 0.8, "its thickness is given by width"),
+        ("respond", "damping", 0.05, "damping has no meaning: a structure that rocks loses energy at its impacts"),
+        ("respond", "dampers", [], "dampers: a damper is not in this version"),
+        ("respond", "polarities", "both", "did you mean polarity?"),
+        ("respond", "model", "nonlinear", "did you mean models?"),
+        ("animate", "models", "nonlinear", "did you mean model?"),
+        ("respond", "record", "a.csv", "did you mean motion?"),
+        ("margin", "record", "a.csv", "did you mean motions?"),
+        ("respond", "motions", ["a.csv"], "did you mean motion?"),
+        ("margin", "motion", "a.csv", "did you mean motions?"),
+        ("respond", "scales", [1, 2], "did you mean scale?"),
+        ("respond_each", "scale", 2, "did you mean scales?"),
+        ("respond", "unit", "g", "did you mean units?"),
+        ("respond", "mechanism", None, "did you mean structure?"),
+        ("equiv", "structure", None, "did you mean structures?"),
+        ("respond", "pga", 0.3, "did you mean target_pga?"),
+        ("respond", "nieghbours", 9, "did you mean neighbours?"),
+        ("respond", "zzz", 1, "known: amplitude_deviation, azimuth,"),
+        ("select", "eta", 0.9, "known: "),
+    ],
+)
+def test_what_is_no_argument_is_told_what_it_may_be(verb, word, value, said):
+    block = rk.Block(width=0.7, height=2.8)
+    for given in (block, [block]) if verb != "select" else ("a.csv",):
+        with pytest.raises(rk.InputError) as refused:
+            getattr(rk, verb)(given, **{word: value})
+        assert str(refused.value).startswith(f"`{word}` is not an argument\n  {said}")
+
+
+def test_a_word_for_a_field_of_the_structure_is_an_argument_where_there_is_one():
+    assert rk.pulse(a=3.0, omega=4.0, eta=0.5).result
+    with pytest.raises(rk.InputError, match=r"structure.replace\(restitution=0.9\)"):
+        rk.respond(EXAMPLES / "block.yaml", "sine:0.3g:0.5s", eta=0.9)
+
+
 def test_of_a_trace_or_a_table_an_option_without_effect_is_refused(monkeypatch):
     block, trace = EXAMPLES / "calibrate" / "block.yaml", EXAMPLES / "calibrate" / "trace.csv"
     for given in ({"highpass": 0.1}, {"neighbours": 40}, {"points": 9}, {"slenderness": (0.8, 1.2)}, {"floor": FLOOR}):

@@ -5,6 +5,7 @@ import json
 import pickle
 import re
 import time
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
 from pkgutil import resolve_name
@@ -322,6 +323,29 @@ def test_every_frame_has_its_columns_and_the_numbers_of_its_answer(tmp_path, mon
                 np.testing.assert_allclose(
                     frame[head].astype(float), np.array(expected, float), rtol=1e-12, err_msg=verb
                 )
+        assert "<table>" in answer._repr_html_() or verb == "draw"
+        long = {type(each).__name__: line for each in held(answer) if unfit(line := repr(each))}
+        assert not long, verb
+
+
+def unfit(line):
+    return len(line) > 200 or line.count("\n") > 11 or "array(" in line
+
+
+def held(answer):
+    """The answer and its result, what these have as fields and properties, and the entries of all."""
+    found = [*entries(answer), *entries(answer.result)]
+    for each in list(found):
+        properties = [name for name, of in vars(type(each)).items() if isinstance(of, property)]
+        fields = (*getattr(each, "__dict__", ()), *getattr(each, "_fields", ()))
+        found += [one for name in (*properties, *fields) for one in entries(getattr(each, name))]
+    ours = {id(each): each for each in found if type(each).__module__.startswith(("rocking_cli", "mechanisms"))}
+    return list(ours.values())
+
+
+def entries(value):
+    inner = value.values() if isinstance(value, Mapping) else value if type(value) in (list, tuple) else ()
+    return [value, *(one for each in inner for one in entries(each))]
 
 
 @pytest.mark.every(4)
@@ -465,7 +489,8 @@ VERBS = [
     if ">>>" in (PROJECT / f"{name.replace('.', '/')}.py").read_text(encoding="utf-8")
 ]
 MODULES = (
-    "", *VERBS, ".ask.watcher", ".dynamics.batch", ".dynamics.exact", ".names", ".structure", ".units", ".views.column",
+    "", *VERBS, ".ask.watcher", ".core.given", ".dynamics.batch", ".dynamics.exact", ".names", ".short_repr",
+    ".structure", ".units", ".views.column",
 )  # fmt: skip
 
 

@@ -17,6 +17,7 @@ from rocking_cli.core.hung.attached import Spot
 from rocking_cli.core.hung.element import INTERLOCK_NAME as INTERLOCK
 from rocking_cli.core.kinematics import Reals
 from rocking_cli.errors import InputError, Problem, StructureError
+from rocking_cli.short_repr import short_repr
 from rocking_cli.verification.results import Control
 
 STEPS_PER_CURVE = 256  # a curve is checked to be a function at these points only
@@ -44,6 +45,7 @@ class Seat:
     d: float
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class ExactCurve:
     """Capacity curve a*(d) computed from the exact motion of the mechanism.
@@ -212,6 +214,7 @@ class ExactCurve:
         return self.chain.displacement(phi, self.control), np.array([self.acceleration_at(float(x)) for x in phi])
 
 
+@short_repr
 @dataclass(frozen=True)
 class StraightCurve:
     """Capacity curve a*(d) as a straight line from a0* [m/s2] at rest to zero at d0* [m]."""

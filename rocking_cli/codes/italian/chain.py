@@ -14,6 +14,7 @@ from rocking_cli.core.hung.attached import Attached, Follow, PointMass, Spot
 from rocking_cli.core.kinematics import Reals
 from rocking_cli.core.reactions import parts
 from rocking_cli.errors import InputError
+from rocking_cli.short_repr import short_repr
 from rocking_cli.verification.results import Control
 
 MIN_SIDEWAYS_SHARE = 1e-9  # share of the largest virtual displacement from which a control point moves sideways
@@ -84,6 +85,7 @@ class ChainBlock:
     of_P: complex
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Chain:
     """The moving blocks of a structure in one direction of rocking.

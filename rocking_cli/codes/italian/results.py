@@ -11,6 +11,7 @@ from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.rules import OF_STATE
 from rocking_cli.core import Direction
+from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.conclusion import SEVERITY, Concluded, Conclusion, LeftOut, worst
 from rocking_cli.verification import results as frame
 from rocking_cli.verification.results import CAPACITY_TOLERANCE, MotionPlace, Requirement
@@ -53,6 +54,7 @@ class LimitState:
         return None if self.ratio is None else self.ratio >= 1 - CAPACITY_TOLERANCE
 
 
+@short_repr
 @dataclass(frozen=True)
 class ItalianMethod(frame.Method):
     """Capacity of the structure by one method of verification, as ground acceleration on rock [g].
@@ -123,6 +125,7 @@ class RecordPeak:
         return self.known_to_with_confidence if confident else self.known_to_without
 
 
+@short_repr
 @dataclass(frozen=True)
 class Dynamic:
     """Results of the time histories in one direction, under the set of records of one limit state.
@@ -219,6 +222,7 @@ class Dynamic:
         return mean is not None and mean <= self.allowed
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class ItalianVerified(frame.Verified):
     """Result in one direction of rocking by the Italian code, in addition to that of every code.
@@ -335,6 +339,7 @@ class ItalianVerified(frame.Verified):
         return not (self.dynamic or other.dynamic) and all(isclose(a, b, rel_tol=SAME_RATIO) for a, b in pairs)
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class ItalianVerification(frame.Verification):
     """Verification of a structure by the Italian code.

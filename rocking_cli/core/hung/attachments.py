@@ -16,6 +16,7 @@ from rocking_cli.core.hung.element import Interlock, Load
 from rocking_cli.core.hung.ties import Tie
 from rocking_cli.core.kinematics import Points, RigidMotion, distance, inside
 from rocking_cli.core.sketch import Outline
+from rocking_cli.short_repr import short_repr
 from rocking_cli.text import did_you_mean
 
 OUTSIDE_DISTANCE = 1e-6  # largest distance at which a point counts as on a body, over the size of the body
@@ -54,6 +55,7 @@ def as_validation_error(refused: Sequence[RefusedFields], title: str) -> Validat
     )
 
 
+@short_repr
 @dataclass(frozen=True)
 class Carrier:
     """Bodies of a mechanism to which loads and ties may be attached.

@@ -14,8 +14,10 @@ from rocking_cli.core.hung.attachments import Loc
 from rocking_cli.core.hung.element import NO_ANSWER, ConstantForce, Element, Question, Stretched
 from rocking_cli.core.kinematics import Direction, Reals
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.short_repr import short_repr
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Hung:
     """Loads, forces and ties of a structure, and the friction of its crossing walls.

@@ -19,6 +19,7 @@ from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.names import OPENING
 from rocking_cli.processing.listed import Scaled
+from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours
 from rocking_cli.views.view import heading
@@ -31,6 +32,7 @@ MAX_FRAMES = 3000
 FRAMES_PER_SECOND = 20.0
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Animation:
     """A motion of a structure that was animated.

@@ -13,6 +13,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.questions.score.study import in_time, surprise
 from rocking_cli.questions.score.table import ObservedTest
+from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Draws, Neighbourhood, simulate_neighbours
 
@@ -20,6 +21,7 @@ REGION_PROBABILITY = 0.9  # probability of the joint region, by the likelihood r
 EDGE_DROP = -float(np.log(1 - REGION_PROBABILITY))  # drop of the log-likelihood at its edge (chi-square, 2 degrees)
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class JointRegion:
     """Likelihood of the outcomes of tests over slenderness and restitution.

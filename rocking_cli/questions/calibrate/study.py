@@ -28,6 +28,7 @@ from rocking_cli.questions.calibrate.free_rocking import (
     quarter_cycles,
 )
 from rocking_cli.questions.calibrate.trace import Trace
+from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 
 MIN_IMPACTS = 3
@@ -67,6 +68,7 @@ class Estimated(NamedTuple):
     deviation: float
 
 
+@short_repr
 class Pooled(NamedTuple):
     """Mean and scatter of the restitutions of impacts.
 
@@ -91,6 +93,7 @@ class Pooled(NamedTuple):
     interval: tuple[float, float]
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class TraceFit:
     """Restitution of a structure, fitted to a trace of free rocking.

@@ -11,6 +11,7 @@ import numpy as np
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Spreadsheet, read_sheet, unit_in
+from rocking_cli.short_repr import short_repr
 from rocking_cli.text import cut, one_line
 from rocking_cli.units import UnitError, read, units_of
 
@@ -18,6 +19,7 @@ TIME_NAMES, ANGLE_NAMES = ("time", "t"), ("angle", "rotation", "theta", "phi", "
 MAX_SHOWN_CELLS = 20  # unreadable cells that an error message names
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Trace:
     """Angle of a structure over time, as measured; cells without an angle are left out.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.short_repr import short_repr
 from rocking_cli.verification.check import code_of
 from rocking_cli.verification.check import demand as demand_of
 from rocking_cli.verification.code import SiteFile
@@ -14,6 +15,7 @@ from rocking_cli.verification.demand import SiteDemand
 from rocking_cli.verification.spectra import StateSpectra, spectra_at_states
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class SpectraOfSite:
     """Elastic spectra of a site at the limit states that it gives.

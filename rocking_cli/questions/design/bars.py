@@ -11,6 +11,7 @@ from rocking_cli.core.hung.element import Spring
 from rocking_cli.core.hung.steel import BAR_DIAMETERS, STEELS, SteelName, TieStrength, circle, tie_strength
 from rocking_cli.core.hung.ties import Tie
 from rocking_cli.io.dotted import words
+from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 
 MAX_BARS = 4  # largest number of bars proposed for a tie that does not give it
@@ -26,6 +27,7 @@ class Bars(NamedTuple):
     strength: TieStrength
 
 
+@short_repr
 @dataclass(frozen=True)
 class SteelAnswer:
     """The force that a tie needs, and bars that give it.

@@ -16,6 +16,7 @@ from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.plugins.errors import blame
 from rocking_cli.plugins.registry import leave_out
+from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import LeftOut
 from rocking_cli.studies.movements import centroid_moved, drifts, largest_on_the_way, largest_tie_force
@@ -54,6 +55,7 @@ class Excitation:
         return [neighbours(model, motion.scaled(sign), self.around) for motion in self.motions for sign in signs]
 
 
+@short_repr
 @dataclass(frozen=True)
 class Metric:
     """A quantity of a structure that can be limited.

@@ -15,6 +15,7 @@ from rocking_cli.errors import InputError, MechanismError, Problem, SolverError
 from rocking_cli.names import percent
 from rocking_cli.questions.design.bars import SteelAnswer, steel_answer
 from rocking_cli.questions.design.metrics import Excitation, Metric, metric, relied_on, taken_otherwise
+from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Concluded, Conclusion, LeftOut
 from rocking_cli.studies.neighbours import Neighbours
@@ -32,6 +33,7 @@ TREND_TOLERANCE = 1e-9  # relative size of steps against the trend that rounding
 _AIM = re.compile(r"\s*([A-Za-z]\w*)\s*(<=|>=|<|>)\s*(\S.*?)\s*")
 
 
+@short_repr
 @dataclass(frozen=True)
 class Aim:
     """A requirement on a metric, such as `lambda >= 0.2`.
@@ -141,6 +143,7 @@ class NotBuilt:
     reason: str
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Design:
     """The values of a field at which a requirement is met.

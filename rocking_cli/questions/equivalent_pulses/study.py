@@ -18,6 +18,7 @@ from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import Pulse
+from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies import engines
 from rocking_cli.studies.under_pulses import check_eta, uplift, weakest_direction
@@ -26,6 +27,7 @@ SIMULATED_AFTER_PULSE = 12.0  # p times the duration that is simulated
 MAX_PULSE_PERIODS = 1000  # periods simulated after the pulse, which may be far shorter than the motion
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class PulsedStructure:
     """One structure under its own pulse, among structures that are compared.
@@ -63,6 +65,7 @@ class PulsedStructure:
         return self.pulse.amplitude / STANDARD_GRAVITY
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class EquivalentResponses:
     """Responses of structures to pulses of the same dimensionless amplitude a and frequency omega.

@@ -18,6 +18,7 @@ from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, equivalent_block
 from rocking_cli.core.advice import Grade, grade, preferred_kappa
 from rocking_cli.errors import InputError, SolverError
+from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 
 NODES_TOLERANCE = 1e-10  # relative change at which doubling the nodes stops
@@ -31,6 +32,7 @@ MIN_RATIO_DISTANCE = 1e-6  # distance of phi/phi_cr from 0 and from 1 that energ
 MAX_STRENGTH = 1e6  # largest acceleration over the uplift acceleration
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Linearisation:
     """Ratios of the equivalent block's values to the mechanism's in one direction; a ratio of 1 is no error.
@@ -43,9 +45,10 @@ class Linearisation:
         The equivalent block of this direction.
     amplitude : ndarray, shape (n,)
         Amplitude phi/phi_cr of the free motion.
-    period, period_ratio : ndarray, shape (n,)
-        Period of the mechanism [s], four times its quarter in this direction, and the ratio of the block's period to it
-        [Eq. 24].
+    period : ndarray, shape (n,)
+        Period of the mechanism [s], four times its quarter in this direction.
+    period_ratio : ndarray, shape (n,)
+        Ratio of the block's period to that of the mechanism [Eq. 24].
     uplift_ratio1, uplift_ratio2 : float
         Uplift acceleration of the block with kappa1 and kappa2 over the mechanism's; the second ratio is 1.
     acceleration : ndarray, shape (m,)

@@ -25,6 +25,7 @@ from rocking_cli.questions.fragility.observed import Observations
 from rocking_cli.questions.fragility.plan import Plan
 from rocking_cli.questions.fragility.store import Store
 from rocking_cli.questions.fragility.tally import Cells, Counted, Onset, Tally, count, intensities
+from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.fit import Estimate
 
 MAX_UNKNOWN_SHARE = 0.02  # share of unknown runs above which a second curve counts them the other way
@@ -82,6 +83,7 @@ class _FittedTwice:
         return self.share is not None and self.share > MAX_UNKNOWN_SHARE
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Fragility(_FittedTwice):
     """Fragility of one structure for one limit state, as a function of one intensity measure.
@@ -129,6 +131,7 @@ class Fragility(_FittedTwice):
         return self.curve.dispersion
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Bivariate(_FittedTwice):
     """Fragility of one structure for one limit state, as a function of two measures; other fields as in `Fragility`.

@@ -11,6 +11,7 @@ import numpy as np
 from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.questions.fragility.goodness import Goodness, goodness_of_brackets, goodness_of_runs
 from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE, Observations, few_records, one_of_each
+from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.fit import (
     Counts,
     Estimate,
@@ -83,6 +84,7 @@ class FittedToRuns:
         return few_records(self.records) if self.fit is not None else ""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class FragilityCurve(FittedToRuns):
     """A fragility curve, or the reason why none could be fitted; other fields as in `FittedToRuns`.
@@ -446,6 +448,7 @@ MAX_P_VALUE_TO_ADD = 0.05  # p-value below which a second measure improves the f
 MAX_PARALLEL_DISTANCE = 1e-4  # 1 - |correlation| up to which two measures count as one
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Surface(FittedToRuns):
     """Probability of exceedance as a function of two intensities, P = Phi(c0 + c1 ln x1 + c2 ln x2); `lognormal`.

@@ -8,12 +8,14 @@ import numpy as np
 
 from rocking_cli.arrays import Integers, Reals
 from rocking_cli.questions.fragility.observed import Observations
+from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.fit import MAX_ETA, Brackets, Counts, Fit, cumulative, density, standardised, totals
 
 MIN_EXPECTED = 2.0 - 1e-6  # expected records on either side in a group or cell: two, less rounding
 BY_RECORD = ", corrected for repeated records"
 
 
+@short_repr
 @dataclass(frozen=True)
 class Goodness:
     """Result of a goodness-of-fit test of a curve.

@@ -13,6 +13,7 @@ import numpy as np
 from rocking_cli.arrays import Reals
 from rocking_cli.questions.fragility.curves import FragilityCurve
 from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE
+from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.points_file import read_points
 
 NODES_PER_PIECE = 16  # nodes of Gauss's rule in a piece
@@ -20,6 +21,7 @@ PIECE_WIDTH = 0.05  # width of a piece in ln x: a curve of dispersion 0.02 is st
 REFERENCE_LIFE = 50.0  # years
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class HazardCurve:
     """Annual rate at which an intensity is exceeded at a site: straight lines in log-log between points.

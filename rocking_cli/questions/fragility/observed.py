@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from rocking_cli.arrays import Bools, Integers, Reals
+from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.fit import Counts, totals
 
 # Relative difference of equal intensities: far above rounding, far below a change of shaking.
@@ -20,6 +21,7 @@ MIN_RELIABLE_RECORDS = 20  # with fewer, the coverage of intervals may differ fr
 MEASURED_COVERAGE = {5: (89, 100), 10: (90, 98)}
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Observations:
     """Number of runs that exceed a limit state, by record and intensity; `of` counts them.

@@ -18,12 +18,14 @@ from rocking_cli.dynamics.model import ModelName
 from rocking_cli.processing.intensity import Measure, Reference, RunMeasure, parse_measure
 from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE
 from rocking_cli.questions.fragility.sources import KeptMotions, Record
+from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.fragility.quantities import PGA, PGV, SCALE
 from rocking_cli.studies.under_pulses import uplift
 
 EVERY_LEVEL = -1
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Sets:
     """The levels at which the records of a study are run; each field is an ndarray with an entry for each record.
@@ -107,6 +109,7 @@ class Value(NamedTuple):
     value: float | None
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Measured:
     """Values measured for a study, by name; NaN where there is none.
@@ -173,6 +176,7 @@ def _there(values: Reals) -> Iterator[tuple[Any, float]]:
     return zip((tuple(place) for place in places), values[~np.isnan(values)].tolist(), strict=True)
 
 
+@short_repr
 @dataclass(frozen=True)
 class Trial:
     """One sample of a structure in a study, with its parameters.
@@ -220,6 +224,7 @@ def weaker_block(equivalence: Equivalence, model: ModelName) -> EquivalentBlock:
     return min((equivalence.positive, equivalence.negative), key=lambda each: uplift(each, model))
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Plan:
     """All runs of a study, numbered with the polarity changing fastest, then level, restitution, record and sample.

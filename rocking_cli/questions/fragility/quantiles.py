@@ -20,6 +20,7 @@ from rocking_cli.questions.fragility.observed import Observations
 from rocking_cli.questions.fragility.plan import Plan
 from rocking_cli.questions.fragility.store import Store
 from rocking_cli.questions.fragility.tally import UNKNOWN_PEAK, Tally, endings_of, samples_of
+from rocking_cli.short_repr import short_repr
 
 QUANTILES = (0.16, 0.5, 0.84)
 MIN_RECORDS = (names.MIN_MOTIONS, names.MIN_MOTIONS_OF_MEDIAN, names.MIN_MOTIONS)
@@ -27,6 +28,7 @@ MIN_RECORDS = (names.MIN_MOTIONS, names.MIN_MOTIONS_OF_MEDIAN, names.MIN_MOTIONS
 COUNT_TOLERANCE = 1e-9  # difference of numbers of runs that counts as rounding
 
 
+@short_repr
 @dataclass(frozen=True)
 class Group:
     """The runs of one intensity, or of a tenth by intensity.
@@ -66,6 +68,7 @@ class Group:
     doubtful: tuple[bool, ...] = (False,) * len(QUANTILES)
 
 
+@short_repr
 @dataclass(frozen=True)
 class Quantiles:
     """Quantiles of the peak rotation of one structure, as a function of one measure.

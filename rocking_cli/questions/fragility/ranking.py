@@ -19,6 +19,7 @@ from rocking_cli.questions.fragility.definition import Definition, Limit
 from rocking_cli.questions.fragility.plan import ORIGIN, V_IMP, Plan
 from rocking_cli.questions.fragility.store import STANDS, Store
 from rocking_cli.questions.fragility.tally import samples_of
+from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.fragility.quantities import PGA, PGV
 
 MIN_P_VALUE = 0.05  # least p-value of residuals without a trend
@@ -29,6 +30,7 @@ MIN_RUNS = 3  # least number of runs, and of records
 RATIO_TOLERANCE = 1e-9  # variation of ln of a ratio: measures whose ratio varies less count as one
 
 
+@short_repr
 @dataclass(frozen=True)
 class Ranked:
     """Quality of one measure as a predictor of the peak rotation of one structure.
@@ -70,6 +72,7 @@ class Ranked:
         return min(known) >= MIN_P_VALUE if known else None
 
 
+@short_repr
 @dataclass(frozen=True)
 class Ranking:
     """The ranked measures of one structure.

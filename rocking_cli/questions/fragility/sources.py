@@ -17,6 +17,7 @@ from rocking_cli.excitation.pulses.base import SAMPLING
 from rocking_cli.processing.reading import Reading
 from rocking_cli.processing.steps import process
 from rocking_cli.questions.fragility.definition import RecordEntry
+from rocking_cli.short_repr import short_repr
 
 MAX_SAMPLES_IN_MEMORY = 32_000_000  # samples of all records: a quarter of a gigabyte
 
@@ -99,6 +100,7 @@ def _parts(motion: GroundMotion) -> list[GroundMotion]:
     return [motion, *(part for each in below for part in _parts(each))]
 
 
+@short_repr
 @dataclass(frozen=True)
 class Record:
     """A ground motion of a study as its store keeps it: checksum, peaks and sampling.

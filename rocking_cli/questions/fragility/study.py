@@ -45,6 +45,7 @@ from rocking_cli.questions.fragility.distributions import draw
 from rocking_cli.questions.fragility.hazard_curve import HazardCurve, read_hazard
 from rocking_cli.questions.fragility.plan import Sets
 from rocking_cli.questions.fragility.sources import Source
+from rocking_cli.short_repr import short_repr
 from rocking_cli.text import did_you_mean, numbered, one_line
 
 RESTITUTION = "restitution"
@@ -84,6 +85,7 @@ class Sample:
         return self.drawn.get(RESTITUTION, nan)
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Study:
     """A study ready to run.

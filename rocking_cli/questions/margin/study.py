@@ -16,6 +16,7 @@ from rocking_cli.arrays import Reals
 from rocking_cli.dynamics.model import Model
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import LEAST_SHARE, Conclusion, NeighbourShare
 from rocking_cli.studies.engines import respond
@@ -27,6 +28,7 @@ FACTOR_TOLERANCE = 1e-9  # relative difference of equal factors
 FACTORS: Reals = np.geomspace(0.2, 5.0, 60)
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Margin:
     """The share of neighbours that overturn, as a function of the scale factor on a ground motion.

@@ -19,6 +19,7 @@ from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import Pulse
+from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.under_pulses import Progress, PulsedModel, outcomes
 
 SCAN_AMPLITUDES = 200  # amplitudes simulated together, as overturning has islands below amplitudes that do not overturn
@@ -56,6 +57,7 @@ class Region(IntEnum):
 FALLS = Region.AFTER_IMPACT, Region.WITHOUT_IMPACT
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class OverturningMap:
     """Outcomes of a structure in a plane of pulses: rows of one amplitude, columns of one period.
@@ -201,6 +203,7 @@ def _check_range(structure: PulsedModel, periods: Reals, a: float) -> None:
         raise InputError(f"{structure.name}: a = a_g/(g lambda) up to {a:.4g}: it must be at most {MAX_PARAMETER:g}")
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Comparison:
     """The least pulse amplitude that overturns each of several structures, at each period.
@@ -387,6 +390,7 @@ def count_scans(structures: Sequence[PulsedModel], periods: int, polarities: Seq
     return sum(count_histories([each], scans * (1 + each.may_open), polarities) for each in structures)
 
 
+@short_repr
 @dataclass(frozen=True)
 class Boundary:
     """A boundary in the plane of omega and a.

@@ -13,6 +13,7 @@ from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import Pulse
+from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Concluding
 from rocking_cli.studies.engines import follow
@@ -78,6 +79,7 @@ MIN_SAMPLES_PER_PERIOD, MAX_SAMPLES_PER_PERIOD = 1000, 32_000
 PEAK_TOLERANCE = 1e-6
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class SampledHistory:
     """A history under a sampled pulse.

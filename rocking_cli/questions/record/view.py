@@ -10,6 +10,7 @@ from textwrap import wrap
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rocking_cli.questions.record import response_spectrum_view as spectra
+from rocking_cli.short_repr import short_repr
 from rocking_cli.views import processing
 from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
 from rocking_cli.views.view import ABSENT, Table, number
@@ -27,6 +28,7 @@ LABELS_WIDTH = 26  # characters that labels and units take in a table
 COLUMN_GAP = 3  # blanks between columns
 
 
+@short_repr
 class Examined(NamedTuple):
     """A record as read, its scale factor, and measures, doubts, p dt and pulses of the scaled record.
 

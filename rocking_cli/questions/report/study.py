@@ -22,6 +22,7 @@ from rocking_cli.processing.listed import Scaled
 from rocking_cli.questions.error.study import Linearisation, compare
 from rocking_cli.questions.margin.study import SHARE_LEVELS, Margin, margin
 from rocking_cli.questions.overturning.study import OverturningMap, Region, overturning_map
+from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Conclusion, worst
 from rocking_cli.studies.engines import respond
@@ -41,6 +42,7 @@ MAP_OMEGAS, MIN_MAP_TOP = (1.0, 10.0), 10.0  # omega_g/p of a map, and least a_g
 MAP_HEADROOM = 1.15  # factor by which a map extends beyond a mark
 
 
+@short_repr
 @dataclass(frozen=True, eq=False, kw_only=True)
 class MotionResult(Response):
     """A ground motion and the response of the structure to it, and to its best pulse, with all that a report shows.
@@ -113,6 +115,7 @@ class MotionResult(Response):
         return self.runs[self.polarity]
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class PulseMap:
     """Overturning map of one pulse shape, with the pulses of the ground motions marked on it.
@@ -129,6 +132,7 @@ class PulseMap:
     marks: tuple[tuple[str, PulseFit], ...]
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Assessment:
     """All results that a report shows.

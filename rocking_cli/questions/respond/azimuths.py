@@ -15,11 +15,13 @@ from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import SolverError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.reading import turned
+from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 
 AZIMUTH_STEP = 2  # degrees between two directions
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class AzimuthResponses:
     """Responses of a structure to a pair of horizontal components, in all directions.

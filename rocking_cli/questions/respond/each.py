@@ -22,6 +22,7 @@ from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.errors import InputError, Problem, SolverError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.measures import measure
+from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.movements import centroid_moved, largest_on_the_way
 from rocking_cli.text import numbered
@@ -37,6 +38,7 @@ MOST_VALUES = 200_000_000  # rotations in all histories: 1.6 GB
 MAX_ETA_DIFFERENCE = 1e-9  # relative difference up to which the restitution of both directions is one
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class RunGrid:
     """What is combined with what: an axis each, in the order of the fields; an axis that is None is not there.

@@ -22,6 +22,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.measures import measure
 from rocking_cli.processing.steps import parse_step, process
 from rocking_cli.questions.score.table import OWN_PREDICTORS, ObservedTest
+from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.fit import Counts, fit_outcomes
 from rocking_cli.studies.neighbours import Neighbourhood, simulate_neighbours
@@ -43,6 +44,7 @@ class ScoreEstimate(NamedTuple):
     high: float
 
 
+@short_repr
 class RuleScore(NamedTuple):
     """Scores of one rule that states shares of overturning.
 
@@ -324,6 +326,7 @@ class PeakRank(NamedTuple):
     censored: bool
 
 
+@short_repr
 @dataclass(frozen=True)
 class Stated:
     """Predictions for one test.
@@ -374,6 +377,7 @@ class Stated:
         return self.unknown / self.count if self.count else None
 
 
+@short_repr
 @dataclass(frozen=True)
 class Scored:
     """Stated shares of tests, and their scores.

@@ -11,6 +11,7 @@ from typing import Any
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Row, Spreadsheet, read_sheet, unit_in
+from rocking_cli.short_repr import short_repr
 from rocking_cli.text import cut, did_you_mean, one_line
 from rocking_cli.units import UnitError, read, units_of
 
@@ -32,6 +33,7 @@ UNITS = {"peak": "rad", "pgv": "m/s"}
 """Units of the columns of quantities."""
 
 
+@short_repr
 @dataclass(frozen=True)
 class ObservedTest:
     """One test: a structure under one motion, and what was observed.

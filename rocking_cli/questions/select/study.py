@@ -20,6 +20,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.oscillator import DAMPING, response_spectrum
 from rocking_cli.questions.select import subsets
 from rocking_cli.questions.select.target_spectrum import TargetSpectrum
+from rocking_cli.short_repr import short_repr
 
 MEAN_LIMITS = (0.9, 1.3)  # NTC 2018, 3.2.3.6; EN 1998-1:2004, 3.2.3.1.2(4)c, has only the lower one
 FACTOR_LIMITS = (0.2, 5.0)
@@ -84,6 +85,7 @@ class SetRequirements:
             raise InputError(Problem(f"it is one of {', '.join(ONE_PER)}, got {self.one_per}", field="`one_per`"))
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Candidates:
     """Records to choose from, and their spectra.
@@ -106,6 +108,7 @@ class Candidates:
     spectra: Reals
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class RecordSet:
     """The best set of records that was found, whether or not it fits.

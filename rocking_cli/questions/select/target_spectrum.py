@@ -14,6 +14,7 @@ from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.records.record_units import CHOICES, UNITS, canonical, header_units
+from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.points_file import read_points, separator_in
 from rocking_cli.text import did_you_mean
 from rocking_cli.verification.check import demand
@@ -27,6 +28,7 @@ _BRACKETS = re.compile(r"[\[(]\s*([^\])]*?)\s*[\])]")
 _BARE_G = re.compile(r"(?:^|[\s_,/])g\s*$", re.IGNORECASE)
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class TargetSpectrum:
     """Pseudo-accelerations as a function of period, linear between the points as in the tables of codes.

@@ -13,6 +13,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.questions.select.study import RecordSet
 from rocking_cli.questions.select.subsets import SEARCH_STARTS
 from rocking_cli.questions.select.target_spectrum import TargetSpectrum
+from rocking_cli.short_repr import short_repr
 from rocking_cli.text import cut
 from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_of
 from rocking_cli.views.view import Table, View
@@ -22,6 +23,7 @@ MAX_LISTED_RECORDS = 5  # left-out records that a sentence names
 MAX_LISTED_SPANS = 4  # ranges of periods that a sentence names
 
 
+@short_repr
 @dataclass(frozen=True)
 class ShownSet:
     """A selected set of records, its target, and the files of the candidates.

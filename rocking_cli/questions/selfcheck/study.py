@@ -10,6 +10,7 @@ from math import isfinite
 from time import monotonic
 
 from rocking_cli.errors import RockingError
+from rocking_cli.short_repr import short_repr
 from rocking_cli.text import seen
 
 NO_KERNEL = ("blocks", "joints", "filters", "records", "records_by_obspy", "units", "kernels")
@@ -20,6 +21,7 @@ class NotRun(Exception):
     """Reason why a check cannot be run on this machine, though nothing is wrong: an extra that is not installed."""
 
 
+@short_repr
 @dataclass(frozen=True)
 class Check:
     """A check of the installation.
@@ -56,6 +58,7 @@ class Check:
         return Checked(self, deviation, error, monotonic() - began)
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Checked:
     """Result of a check of the installation.
@@ -99,6 +102,7 @@ class Checked:
         return "the deviation exceeds the limit"
 
 
+@short_repr
 @dataclass(frozen=True)
 class SelfCheck:
     """Results of all checks of the installation.

@@ -26,6 +26,7 @@ from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.io.field_problems import of_arguments
 from rocking_cli.names import MIN_MOTIONS, OPENING
+from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure, with_restitution
 from rocking_cli.studies.under_pulses import Progress, PulsedModel, parse_shape, pulsed_model, uplift
 
@@ -35,6 +36,7 @@ BLOCK_PERIODS = (1.0, 10.0)  # range of 2 pi/p of blocks [s]: R from 0.19 to 19 
 SIZES_PER_CALL = 50  # the tables of all of them are in memory at once
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class SpectrumShape:
     """The structure of a spectrum, or a block of given slenderness, to be scaled to other sizes.
@@ -150,6 +152,7 @@ def usual_sizes(shapes: Sequence[SpectrumShape]) -> tuple[float, float]:
     return (min(periods) / MAX_SCALE**0.5, max(periods) * MAX_SCALE**0.5) if periods else BLOCK_PERIODS
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Spectrum:
     """Responses of a shape at several sizes to ground motions.

@@ -14,6 +14,7 @@ from rocking_cli.names import MIN_MOTIONS, NO_UPLIFT, OVERTURNS, ROCKS, UNKNOWN
 from rocking_cli.processing.listed import Scaled
 from rocking_cli.questions.overturning.view import FROM_KINEMATICS, NO_JOINTS, numbers, spaced
 from rocking_cli.questions.spectrum.study import Spectrum
+from rocking_cli.short_repr import short_repr
 from rocking_cli.views import processing
 from rocking_cli.views.column import Column, only_shown, rounded, table_of
 from rocking_cli.views.verdict import unchecked
@@ -27,6 +28,7 @@ MAX_LISTED_FAILURES = 3  # histories that could not be simulated
 INVALID_REASON = "a joint opens or slides so far that the model no longer holds"
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class ShownSpectra:
     """Spectra, their ground motions, the fractiles to show (0.5 among them), and the polarity as given."""

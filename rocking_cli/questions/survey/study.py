@@ -20,6 +20,7 @@ from rocking_cli.errors import InputError, Problem, RockingError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.io.spreadsheet import Spreadsheet
 from rocking_cli.names import OPENING
+from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure, check_opening
 from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.verification.check import code_of, of_each, row_numbers, verify
@@ -85,6 +86,7 @@ class Under:
         return self.overturned + (self.unknown or 0.0)
 
 
+@short_repr
 @dataclass(frozen=True)
 class Surveyed:
     """A structure of a survey, with its results in the direction in which it uplifts first.
@@ -208,6 +210,7 @@ ORDERS: Mapping[str, Order] = {"lambda": _by_lambda, "response": _by_response, "
 """Sort keys of rankings: the structure with the smaller key is the more vulnerable."""
 
 
+@short_repr
 @dataclass(frozen=True)
 class Survey:
     """The structures of a survey, the most vulnerable first.
