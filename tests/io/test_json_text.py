@@ -49,8 +49,8 @@ def test_terminal_and_pages_use_it(capsys):
 
 
 def test_finite_data_are_written_as_json_does():
-    data = {"b": [1, 2.5, -0.0, 1e300], "a": {"c": None, "ü": "x"}}
-    assert json_text(data) == json.dumps(data)
+    data = {"b": [1, 2.5, 0.0, 1e300], "a": {"c": None, "ü": "x"}}
+    assert json_text(data) == json_text(data | {"b": [1, 2.5, -0.0, 1e300]}) == json.dumps(data)
     assert json_text(data, sort_keys=True, compact=True) == json.dumps(data, sort_keys=True, separators=(",", ":"))
 
 

@@ -81,10 +81,10 @@ class TestTheRuns:
 
     def test_those_of_a_motion_are_its_responses(self):
         runs = study(shaken()).runs()
-        for scale, ratio in zip(runs["scale"], runs["phi/phi_cr"], strict=True):
+        for scale, ratio in zip(runs["scale"], runs["phi_over_phi_cr"], strict=True):
             history = rk.respond(block(), shaken(), scale=scale, models="nonlinear", neighbours=0)["nonlinear"]
             assert ratio == pytest.approx(history.peak_ratio, rel=1e-6, nan_ok=True)
-        assert runs["phi/phi_cr"].notna().any() and (runs["outcome"] == "overturns").any()
+        assert runs["phi_over_phi_cr"].notna().any() and (runs["outcome"] == "overturns").any()
 
     @pytest.mark.parametrize(
         "how",
@@ -198,7 +198,7 @@ class TestTheCurves:
     def test_the_runs_fitted_anew_give_them_again(self, answer):
         runs, each = answer.runs(), answer.curves["overturning"]
         fell = runs["outcome"] == "overturns"
-        again = rk.fit_fragility(runs["PGA [g]"], fell, clusters=runs["record"], confidence=0.95)
+        again = rk.fit_fragility(runs["PGA"], fell, clusters=runs["record"], confidence=0.95)
         own = each.curve.own  # before it is cut by the curve of uplift
         assert again.curve.kind == own.kind == "lognormal"
         assert again.median.value == pytest.approx(own.median.value)

@@ -132,7 +132,7 @@ class TestTables:
         written = list(cells("o.csv")[0])
         assert written[written.index("caution") + 1 :] == heads
         stored = parquet.read_table("o.parquet").to_pydict()
-        assert list(stored) == written == list(rk.survey("t.csv").to_frame())
+        assert list(stored) == written == list(rk.survey("t.csv").columns())
         assert stored["height"] == ["2 m", "1,45", "1,10"] and stored["name"][1] == "=Torre"  # as they stood
         data = json.loads(run("survey", "t.csv", "--json").stdout)["rows"]
         assert data[2]["cells"] == {
