@@ -11,11 +11,13 @@ from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.questions.fragility.assess import Fragility
 from rocking_cli.questions.fragility.curves import FragilityCurve, Kind, fit_curve
 from rocking_cli.questions.fragility.observed import Observations
+from rocking_cli.short_repr import short_repr
 
 EXCEEDANCE = "exceedance"  # name of the limit state, which only the data's owner knows
 Ends = tuple[float, float]
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class FittedFragility(Fragility):
     """A fragility curve of data of one's own; other fields as in `Fragility`.
