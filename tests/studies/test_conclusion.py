@@ -118,6 +118,7 @@ def test_what_does_not_count_is_not_shown_as_if_it_failed(pillar):
     assert "Onset of rocking at SLV" in said and "Onset of rocking at SLC" not in said
 
 
+@pytest.mark.rest
 def test_an_elastic_tie_is_named_in_the_conclusion(pillar, tmp_path):
     asked = pillar("all pass")
     bar = {"name": "bar", "path": [{"ground": [4.0, 2.0]}, {"at": [0.25, 2.0]}], "stiffness": 1e7}
@@ -222,7 +223,7 @@ def unchanged(tmp_path_factory):
         return surfaces(folder, {}, FURTHER["all pass"], ())
 
 
-@pytest.mark.every(6)
+@pytest.mark.every(20)
 @pytest.mark.parametrize("change", CHANGES)
 def test_a_change_of_the_result_changes_every_surface(unchanged, tmp_path, change):
     """Whatever changes the conclusion is seen in text, data, both sheets, survey and report."""
@@ -431,6 +432,7 @@ def test_motions_that_could_not_be_used_are_not_counted_silently(tmp_path):
     assert "Not counted: 1 of 2 motions (bad.csv), which could not be used." in " ".join(said.split())
 
 
+@pytest.mark.rest
 def test_a_report_does_not_call_a_constant_force_elastic_and_repeats_cautions_of_its_verification(tmp_path, pillar):
     pillar("all pass")
     bar = {"name": "bar", "path": [{"ground": [4.0, 2.0]}, {"at": [0.25, 2.0]}], "stiffness": 0, "prestress": 500.0}

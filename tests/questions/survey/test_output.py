@@ -373,6 +373,7 @@ class TestSheets:
         lines = ["mechanism,name,width,height", *(f'block,"{name}",{width},2' for name in names)]
         Path("s.csv").write_text("\n".join(lines), encoding="utf-8")
 
+    @pytest.mark.rest
     def test_each_row_has_the_sheet_of_verify(self):
         Path("s.csv").write_text(
             "mechanism,name,width,height\nblock,../thin,0.3,2\nblock,bad,-1,2\nblock,thick,0.5,2\n"
@@ -435,6 +436,7 @@ class TestSheets:
         assert "this file is in the folder of the sheets, and rocking did not write it, or not as it is now" in said
         assert {each.name: each.read_bytes() for each in Path("sh").iterdir()} == before and not Path("o.csv").exists()
 
+    @pytest.mark.rest
     def test_an_error_in_one_row_does_not_stop_the_others(self, monkeypatch):
         self.table("a", "b", "c")
         whole = survey_sheets.sheets.rendered

@@ -142,6 +142,7 @@ def marked():
             vars(formula).update(kept[name])
 
 
+@pytest.mark.rest
 def test_a_formula_that_is_changed_is_changed_in_every_printout(used):
     where, _ = used
     assert where.keys() == EVERY.keys(), "no case uses the others"
