@@ -62,7 +62,7 @@ class SupportDemand(NamedTuple):
     way : complex
         Unit vector x + iy along which its force acts.
     most, least : float
-        Largest and smallest force along `way` [N], per unit mass if the structure has no masses.
+        Largest and smallest force along `way`, in N, or in N/kg if the structure has no masses.
     """
 
     support: str
@@ -88,11 +88,11 @@ class ContactDemand:
         The longest continuous time for which more than `friction` is required [s]; if `friction` is not given, the time
         around the peak for which more than 90 % of `friction_needed` is required.
     base_shear : float
-        The largest horizontal force of the ground on the structure while it rocks, in either sense [N], per unit mass
+        The largest horizontal force of the ground on the structure while it rocks, in either sense, in N, or in N/kg
         if the structure has no masses. Impacts are left out: the impulse at an impact is not part of it. Forces of
         guides that hold the structure sideways are left out too; bodies that do not move count as ground.
     least_normal : float
-        The smallest normal force N of any joint while the structure rocks [N], per unit mass if it has no masses; of
+        The smallest normal force N of any joint while the structure rocks, in N, or in N/kg if it has no masses; of
         all joints together if `whole` or `shared`.
     impact_friction : float
         The largest ratio `|dP_x|/dP_y` of horizontal to vertical impulse of any impact; NaN if the impulses are not

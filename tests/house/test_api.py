@@ -442,7 +442,12 @@ def test_a_mechanism_stands_for_the_file_of_an_entry(tmp_path):
 
 def test_the_page_on_python_does_what_it_shows(maker, tmp_path):
     assert maker("make_python").run(tmp_path) == 0
-    assert {path.name for path in tmp_path.glob("*.png")} == {"scatter.png", "response.png", "spectrum.png", "fragility.png"}
+    assert {path.name for path in tmp_path.glob("*.png")} == {
+        "scatter.png",
+        "response.png",
+        "spectrum.png",
+        "fragility.png",
+    }
 
 
 @pytest.mark.types

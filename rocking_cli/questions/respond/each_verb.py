@@ -62,7 +62,7 @@ class EachAnswer(MappingAnswer[ModelName, Outcomes]):
         """Return a row for each structure, model, motion, scale, polarity and restitution.
 
         `frame.attrs["units"]` has the units. `outcome` is a category, `overturned` is 1, 0, or NaN where it is not
-        known. `pga_g` and `pgv` are those of the scaled ground motion; `peak_displacement` is that of the centroid of
+        known, which means of pandas leave out: see `share` of the outcomes. `pga_g` and `pgv` are those of the scaled ground motion; `peak_displacement` is that of the centroid of
         all that moves. Of a motion of unknown outcome, peaks are those until `known_to`.
 
         Raises
