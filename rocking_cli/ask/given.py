@@ -25,7 +25,7 @@ from rocking_cli.io.yaml_file import decoded, read_text
 from rocking_cli.names import OPENING
 from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Neighbourhood
-from rocking_cli.text import one_line
+from rocking_cli.text import numbered, one_line
 from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
@@ -117,7 +117,7 @@ def _what_blocks_take(count: int) -> str:
 def structures_of(
     given: Sequence[StructureLike], watch: Watcher = SILENT, opening: float = OPENING, *, least: int = 1
 ) -> list[Structure]:
-    """Open several structures; those that cannot be used are left out. The name of a file tells equal names apart.
+    """Open several structures; those that cannot be used are left out. Files or numbers tell equal names apart.
 
     Raises
     ------
@@ -135,10 +135,14 @@ def structures_of(
         raise next((error for error in errors if isinstance(error, MechanismError)), joined(errors))
     for refused in errors:
         watch.leave_out(refused)
-    names = [structure.name for structure in ready]
+    names, used = [structure.name for structure in ready], list[str]()
     for k, structure in enumerate(ready):
-        if names.count(structure.name) > 1 and structure.file is not None:
-            name = f"{structure.name} ({one_line(Path(structure.file).name)})"
+        name = structure.name
+        if names.count(name) > 1 and structure.file is not None:
+            name = f"{name} ({one_line(Path(structure.file).name)})"
+        name = numbered(name, "", used)
+        used.append(name)
+        if name != structure.name:
             ready[k] = structure.of(structure.mechanism.model_copy(update={"name": name}))
     return ready
 

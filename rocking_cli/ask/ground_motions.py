@@ -271,10 +271,18 @@ def pulse_in(given: Motion) -> Pulse | None:
 
 def _of_array(samples: NDArray[Any], options: Mapping[str, Any]) -> list[GroundMotion]:
     """Return the motions in the rows of an array, with the interval and the unit of the options."""
-    if options.get("dt") is None:
-        hint = "give it, and `units` if they are not in m/s2: dt=0.01, units='g'"
-        raise InputError(Problem("is missing: samples in an array need their interval", field="`dt`", hint=hint))
-    dt, unit = READING["dt"].parse(options["dt"]), options.get("units") or "m/s2"
+    for name, what in (("dt", "interval"), ("units", "unit")):
+        if options.get(name) is None:
+            hint = "give both, such as dt=0.01, units='g' or units='m/s2'"
+            raise InputError(
+                Problem(f"is missing: samples in an array need their {what}", field=f"`{name}`", hint=hint)
+            )
+    if samples.ndim > 1 and len(samples) > samples.shape[1]:
+        what = f"would be {len(samples):,} motions of {samples.shape[1]} samples"
+        raise InputError(
+            Problem(what, field="motions", hint="a row of an array is a motion: transpose it, `samples.T`")
+        )
+    dt, unit = READING["dt"].parse(options["dt"]), options["units"]
     return [GroundMotion(f"motion {k}", dt, row, unit=unit) for k, row in enumerate(np.atleast_2d(samples), 1)]
 
 

@@ -23,7 +23,8 @@ MIN_LIKENESS = 0.8  # of a word and the name of a field that it means
 MEANT = {
     "record": ("motion", "motions"), "records": ("motions", "motion"), "pulse": ("motion", "motions"),
     "mechanism": ("structure", "structures"), "mechanisms": ("structures", "structure"), "factor": ("scale", "scales"),
-    "factors": ("scales", "scale"), "pga": ("target_pga",), "pgv": ("target_pgv",),
+    "factors": ("scales", "scale"), "pga": ("target_pga",), "pgv": ("target_pgv",), "eta": ("restitutions",),
+    "restitution": ("restitutions",),
 }  # fmt: skip
 """Other words for arguments, and those that they may mean."""
 

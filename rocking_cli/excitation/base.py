@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, InitVar, dataclass, replace
+from math import isfinite
+from numbers import Real
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -145,8 +147,8 @@ class GroundMotion:
             raise InputError(f"{self.name}: a ground motion needs at least two samples, this has {samples.size}")
         if not np.isfinite(samples).all():
             raise InputError(f"{self.name}: sample {int(np.flatnonzero(~np.isfinite(samples))[0]) + 1} is not a number")
-        if not (np.isfinite(self.dt) and self.dt > 0):
-            raise InputError(f"{self.name}: the sample interval must be positive, got {self.dt} s")
+        if not (isinstance(self.dt, Real) and isfinite(self.dt) and self.dt > 0):
+            raise InputError(f"{self.name}: the sample interval must be a positive number of seconds, got {self.dt!r}")
         if self.every < 1:
             raise InputError(f"{self.name}: a history keeps one of at least 1 sample, got {self.every}")
         object.__setattr__(self, "acceleration", samples)

@@ -96,11 +96,12 @@ _MARKS = ("o", "s", "^", "D", "v", "P")
 
 
 def distinct(k: int) -> dict[str, Any]:
-    """Return the style of curve number k of several."""
+    """Return the style of curve number k of several; from the seventh on, a colour has another dash and mark."""
+    again = k + k // len(_HUES)
     return {
         "color": _HUES[k % len(_HUES)],
-        "linestyle": _DASHES[k % len(_DASHES)],
-        "marker": _MARKS[k % len(_MARKS)],
+        "linestyle": _DASHES[again % len(_DASHES)],
+        "marker": _MARKS[again % len(_MARKS)],
         "markersize": 4.5,
         "linewidth": 1.5,
     }

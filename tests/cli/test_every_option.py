@@ -82,7 +82,7 @@ CALLS = {
     "respond_each": (
         {"structures": WEAK, "motions": STRONG},
         {"structures": [BLOCK, OTHER], "motions": PULSE, "models": "linear2", "scales": [0.5], "opening": 0.0,
-         "polarities": [1, -1], "restitutions": [0.8], "histories": True, "out": "o.csv"},
+         "polarities": [1, -1], "restitutions": [0.8], "histories": True, "out": "o.csv", "target_pga": 0.3},
     ),
     "respond_around": (
         {"structure": BLOCK, "one": RECORD, "other": RECORD, "models": "nonlinear"},

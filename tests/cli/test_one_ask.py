@@ -275,3 +275,14 @@ def test_a_watcher_decides_whether_one_bad_record_ends_an_answer():
     patient = Patient()
     answer = rk.margin(block, motions, neighbours=2, watch=patient)
     assert list(answer) == ["sine:0.3g:0.8s"] and patient.heard == ["nowhere.csv: no such file\n  check the path"]
+
+
+def test_structures_of_one_name_are_told_apart_everywhere():
+    walls = [rk.Wall(thickness=0.3, height=height) for height in (2.0, 3.0, 4.0)]
+    found = rk.equiv(walls)
+    assert list(found) == ["wall", "wall-2", "wall-3"]
+    assert [each.positive.lambda_ for each in found.values()] == pytest.approx([0.6, 0.4, 0.3], rel=1e-9)
+    assert len(found.to_frame()) == 3 * len(rk.equiv(walls[0]).to_frame())
+    curves = rk.overturning_curves(walls[:2], points=3, period=(0.5, 1.0)).to_frame()
+    assert {"wall", "wall_2"} <= set(curves) and (curves["wall"] != curves["wall_2"]).all()
+    assert list(rk.respond_each(walls[:2], "sine:0.3g:0.5s").grid.axes["structure"]) == ["wall", "wall-2"]

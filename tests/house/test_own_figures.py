@@ -275,3 +275,8 @@ def test_names_with_dollars_are_broken_as_they_are():
     drawn(axes.figure)
     words = re.sub(r"\s+", " ", axes.get_legend().get_texts()[0].get_text())
     assert r"costs \$5 and \$6" in words
+
+
+def test_thirty_curves_have_thirty_looks():
+    looks = {tuple(style.distinct(k)[each] for each in ("color", "linestyle", "marker")) for k in range(30)}
+    assert len(looks) == 30 and style.distinct(0) != style.distinct(6)

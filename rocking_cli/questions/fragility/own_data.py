@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
 from rocking_cli.arrays import Integers, Reals
-from rocking_cli.ask.answer import Answer, drawn
+from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.questions.fragility.own_fit import FittedFragility, fit_known
+from rocking_cli.questions.fragility.own_fit import EXCEEDANCE, FittedFragility, fit_known
 from rocking_cli.text import one_line
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
     from rocking_cli.io.tables import Columns
@@ -66,7 +67,8 @@ def fit_fragility(
         `robust_interval` have the intervals of both, by their names. `curve.probability(x)` and `curve.band(x)` are
         the curve and its band at any intensity, `robust.band(x)` the robust band, which the plot has. `curve.kind` is
         `step` if the outcomes are separated and `none` if no curve can be fitted: `sentences` say why, and what else
-        there is to doubt. `to_frame()` has the points of the curve with both bands.
+        there is to doubt. `to_frame()` has the points of the curve with both bands. `plot(name="wall",
+        beside={"block": other})` draws several fits in one plot.
 
     Raises
     ------
@@ -87,6 +89,7 @@ def fit_fragility(
     >>> round(fit.median.value, 3), round(fit.dispersion.value, 3)
     (0.406, 0.443)
     """
+    _check_index(intensity, exceeded, clusters)
     x, known = _numbers("intensity", intensity), _numbers("exceeded", exceeded)
     label = one_line(str(label))
     _check(x, known, curve, confidence, label)
@@ -96,6 +99,14 @@ def fit_fragility(
         raise InputError(Problem("has no value above zero, so that none has a logarithm", field="`intensity`"))
     fitted = fit_known(x[there], known[there], record[there], curve, confidence, label)
     return _answer(replace(fitted, left_out=int((~there).sum())), label)
+
+
+def _check_index(*given: Any) -> None:
+    """Raise `InputError` if columns of frames are not of the same rows in the same order: they are taken by place."""
+    indices = [each.index for each in given if hasattr(each, "index") and hasattr(each.index, "equals")]
+    if any(not each.equals(indices[0]) for each in indices[1:]):
+        hint = "take both from one frame, or give arrays"
+        raise InputError(Problem("has other rows than the intensity, or another order", field="`exceeded`", hint=hint))
 
 
 def _numbers(name: str, values: ArrayLike) -> Reals:
@@ -154,8 +165,15 @@ def _codes(clusters: Sequence[Hashable], count: int) -> Integers:
 def _answer(found: FittedFragility, label: str) -> Answer[FittedFragility]:
     from rocking_cli.questions.fragility.own_view import view
 
-    figure = drawn("questions.fragility.picture.draw_own", found)
-    return Answer("fit_fragility", found, view(found), partial(_columns, found, label), figure)
+    return Answer("fit_fragility", found, view(found), partial(_columns, found, label), partial(_figure, found))
+
+
+def _figure(
+    found: FittedFragility, *, name: str = EXCEEDANCE, beside: Mapping[str, Answer[FittedFragility]] | None = None
+) -> Figure:
+    from rocking_cli.questions.fragility.picture import draw_own
+
+    return draw_own({name: found} | {name: each.result for name, each in (beside or {}).items()})
 
 
 def _columns(found: FittedFragility, label: str) -> Columns:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from rocking_cli.names import UNKNOWN
 from rocking_cli.questions.fragility.curves import FragilityCurve
 from rocking_cli.questions.fragility.own_fit import EXCEEDANCE, FittedFragility
 from rocking_cli.questions.fragility.view import (
@@ -48,12 +49,14 @@ def _rows(edge: str, each: FittedFragility) -> Iterator[Named]:
 
 def _in_short(found: FittedFragility) -> str:
     """Return the curve in one line, with its robust interval if there is one."""
-    best = found.robustly.curve
-    counts = f"{best.exceedances} of {best.runs} runs exceed"
+    best, unknown = found.robustly.curve, found.unknown or 0
+    counts = f"{best.exceedances - unknown} of {best.runs} runs exceed"
+    counts += f", and of {unknown} it is {UNKNOWN}" if unknown else ""
     if best.fit is None or best.median is None:
         return f"no curve; {counts}" if best.kind == "none" else f"step at {_number(best, 'median')}; {counts}"
     spread = f", dispersion {_number(best, 'dispersion')}" if best.dispersion is not None else ""
-    return f"{best.kind}, median {_number(best, 'median')}{spread}; {counts}"
+    intervals = f"{100 * best.confidence:g} % {'likelihood' if found.robust.fit is None else 'robust'} intervals"
+    return f"{best.kind}, median {_number(best, 'median')}{spread}, {intervals}; {counts}"
 
 
 def _number(curve: FragilityCurve, name: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from textwrap import wrap
 from typing import Any
@@ -132,9 +132,10 @@ def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str) -> Figur
     return figure
 
 
-def draw_own(found: FittedFragility) -> Figure:
-    """Plot a curve of data of one's own with its robust band, and the observed shares."""
-    return draw_curves([LabelledCurve.of(f"{found.limit}", found.robustly)], style.plain(found.measure), "")
+def draw_own(found: Mapping[str, FittedFragility]) -> Figure:
+    """Plot curves of data of one's own, by their names, with their robust bands and the observed shares."""
+    curves = [LabelledCurve.of(style.plain(name), each.robustly) for name, each in found.items()]
+    return draw_curves(curves, style.plain(next(iter(found.values())).measure), "")
 
 
 def _remarks(drawn: Sequence[LabelledCurve]) -> list[str]:

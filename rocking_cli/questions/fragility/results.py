@@ -14,6 +14,7 @@ from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.names import OVERTURNS
 from rocking_cli.questions.fragility.assess import Bivariate, Fragility, UnknownRuns
 from rocking_cli.questions.fragility.definition import Definition, Limit
 from rocking_cli.questions.fragility.plan import Plan
@@ -72,8 +73,13 @@ class StudyAnswer(Answer[list[Fragility]]):
         return Curves(self.result)
 
     def runs(self) -> pandas.DataFrame:
-        """Return the finished runs, a row for each, with the intensity measures of the study. Raises as `to_frame`."""
-        return self.frames["runs"]
+        """Return the finished runs, a row for each, with the intensity measures of the study. Raises as `to_frame`.
+
+        The peak of a run that overturns is infinite, so that no comparison or quantile takes it for safe.
+        """
+        frame = self.frames["runs"]
+        frame.loc[frame["outcome"] == OVERTURNS, "phi_over_phi_cr"] = np.inf
+        return frame
 
     def run_blocks(self) -> Iterator[Columns]:
         """Yield the runs as columns, read from the store in blocks of rows, as there may be very many."""

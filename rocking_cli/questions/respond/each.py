@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from math import isclose, nan, prod
 from typing import TYPE_CHECKING, Any
@@ -21,11 +21,10 @@ from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.errors import InputError, Problem, SolverError
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.measures import measure
+from rocking_cli.excitation.measures import Measures, measure
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.movements import centroid_moved, largest_on_the_way
-from rocking_cli.text import numbered
 
 if TYPE_CHECKING:
     from rocking_cli.io.tables import Columns
@@ -50,11 +49,13 @@ class RunGrid:
     motions : sequence of GroundMotion
         The ground motions, before scaling.
     scales : ndarray
-        Factors on the motions; negative ones reverse them.
+        Factors on the motions; negative ones reverse them. With `of_pga`, the PGA of each motion after scaling [g].
     polarities : ndarray of int, optional
         1 as given, -1 reversed.
     restitutions : ndarray, optional
         Ratios of the rotation rates after and before an impact; NaN for that of the structure.
+    of_pga : bool
+        Whether motions are scaled to peaks, not by factors.
     """
 
     structures: Sequence[Structure]
@@ -62,14 +63,15 @@ class RunGrid:
     scales: Reals
     polarities: NDArray[np.int64] | None = None
     restitutions: Reals | None = None
+    of_pga: bool = False
 
     @cached_property
     def axes(self) -> dict[str, NDArray[Any]]:
-        """The values along each axis, by its name; those of structures and motions are distinct names."""
+        """The values along each axis, by its name."""
         axes: dict[str, NDArray[Any] | None] = {
-            "structure": _distinct([each.name for each in self.structures]),
-            "motion": _distinct([each.name for each in self.motions]),
-            "scale": self.scales,
+            "structure": np.array([each.name for each in self.structures], dtype=object),
+            "motion": np.array([each.name for each in self.motions], dtype=object),
+            "target_pga" if self.of_pga else "scale": self.scales,
             "polarity": self.polarities,
             "restitution": self.restitutions,
         }
@@ -88,13 +90,21 @@ class RunGrid:
     @cached_property
     def runs(self) -> Runs:
         """The runs of one model, in the order of the axes, the last one changing fastest."""
-        return Runs.every(
+        runs = Runs.every(
             len(self.structures),
             len(self.motions),
             scales=self.scales.tolist(),
             polarities=(1,) if self.polarities is None else self.polarities.tolist(),
             etas=(nan,) if self.restitutions is None else self.restitutions.tolist(),
         )
+        if not self.of_pga:
+            return runs
+        return replace(runs, scale=runs.scale / np.array([each.pga for each in self.measured])[runs.record])
+
+    @cached_property
+    def measured(self) -> list[Measures]:
+        """Measures of the ground motions, before scaling."""
+        return [measure(each.of_ground) for each in self.motions]
 
     def outcomes(self, model: ModelName, threads: int | None, progress: Callable[[int], None]) -> Outcomes:
         """Return the outcomes of all runs of a model, as arrays of the shape of the grid. Raises as `respond_many`."""
@@ -140,12 +150,15 @@ class RunGrid:
 def columns(grid: RunGrid, outcomes: Mapping[ModelName, Outcomes]) -> Columns:
     """Return a row for each run of each model: what was combined, how strong the motion was, and what came of it."""
     place = dict(zip(grid.axes, np.indices(grid.shape).reshape(len(grid.shape), -1), strict=True))
-    table: dict[str, Any] = {name: grid.axes[name][place[name]] for name in ("structure", "motion", "scale")}
+    table: dict[str, Any] = {name: grid.axes[name][place[name]] for name in ("structure", "motion")}
+    table["scale"] = grid.runs.scale
     table["polarity"] = grid.runs.polarity
     of_structure = np.array([_common(each.etas) for each in grid.structures])[place["structure"]]
     table["eta"] = np.where(np.isnan(grid.runs.eta), of_structure, grid.runs.eta)
-    measured = [measure(each.of_ground) for each in grid.motions]
-    for name, peaks in (("pga_g [g]", [each.pga for each in measured]), ("pgv [m/s]", [each.pgv for each in measured])):
+    of_motions = {
+        "pga_g [g]": [each.pga for each in grid.measured], "pgv [m/s]": [each.pgv for each in grid.measured]
+    }  # fmt: skip
+    for name, peaks in of_motions.items():
         table[name] = np.abs(table["scale"]) * np.array(peaks)[place["motion"]]
     parts = [
         table | {"model": np.full(grid.count, model, dtype=object)} | _outcome_columns(grid, outcome)
@@ -156,16 +169,19 @@ def columns(grid: RunGrid, outcomes: Mapping[ModelName, Outcomes]) -> Columns:
 
 
 def _outcome_columns(grid: RunGrid, outcome: Outcomes) -> dict[str, Any]:
-    hidden = outcome.fell | outcome.failed
-    peaks = np.where(hidden, np.nan, np.maximum(outcome.peak_positive, outcome.peak_negative))
-    moved = np.stack(list(_displacements(grid, outcome)))
+    peaks = {
+        "peak_ratio": outcome.peak_ratio,
+        "peak_rotation [rad]": np.maximum(outcome.peak_positive, outcome.peak_negative),
+        "peak_displacement [m]": np.stack(list(_displacements(grid, outcome))),
+    }
     values: dict[str, Any] = {
         "outcome": _words(outcome),
         "overturned": outcome.overturned,
         "unknown": outcome.unknown,
-        "peak_ratio": outcome.peak_ratio,
-        "peak_rotation [rad]": peaks,
-        "peak_displacement [m]": np.where(hidden, np.nan, moved),
+        # Infinite, so that no comparison or quantile of peaks takes what overturns for safe.
+        **{
+            name: np.where(outcome.fell, np.inf, np.where(outcome.failed, np.nan, each)) for name, each in peaks.items()
+        },
         "impact_count": outcome.impact_count,
         "uplift_time [s]": outcome.uplift_time,
         "overturning_time [s]": outcome.overturning_time,
@@ -204,10 +220,3 @@ def _words(outcome: Outcomes) -> NDArray[Any]:
 def _common(etas: tuple[float, float]) -> float:
     """Return the restitution of both directions; NaN if they differ."""
     return etas[0] if isclose(*etas, rel_tol=MAX_ETA_DIFFERENCE) else nan
-
-
-def _distinct(given: Sequence[str]) -> NDArray[Any]:
-    distinct: list[str] = []
-    for name in given:
-        distinct.append(numbered(name, "", distinct))
-    return np.array(distinct, dtype=object)

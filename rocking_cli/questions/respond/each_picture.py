@@ -32,10 +32,10 @@ MARK_SIZE = 18.0  # pt2
 
 
 def draw_each(grid: RunGrid, outcomes: Mapping[ModelName, Outcomes], x: str, y: str) -> Figure:
-    """Plot a column of the frame against another, a mark for each run of the first model, a colour for each structure.
+    """Plot a column of the frame against another, with a mark for each run of the first model.
 
-    Runs that overturn, and have no peak, are crosses above the plane; runs of unknown outcome are open, at the peak
-    until their model ceases to hold.
+    Runs that overturn, whose peaks are infinite, are crosses above the plane; runs of unknown outcome are open, at the
+    peak until their model ceases to hold.
 
     Parameters
     ----------
@@ -60,9 +60,9 @@ def draw_each(grid: RunGrid, outcomes: Mapping[ModelName, Outcomes], x: str, y: 
             raise InputError(Problem(what, field=f"`{argument}`", hint=did_you_mean(asked, numbers)))
     figure, axes = style.one_panel(4.4, f"{grid.count:,} runs, {model} model")
     across, up = (np.asarray(values[each], dtype=np.float64) for each in (x, y))
-    fell, unknown = (values["outcome"] == each for each in (names.OVERTURNS, names.UNKNOWN))
-    top = 1.05 * float(np.nanmax(up, initial=0.0)) or 1.0
-    above = fell & np.isnan(up)
+    unknown = values["outcome"] == names.UNKNOWN
+    above = np.isinf(up)
+    top = 1.05 * float(np.nanmax(up[~above], initial=0.0)) or 1.0
     for k, name in enumerate(grid.axes["structure"]):
         mine, look = values["structure"] == name, style.distinct(k)
         dots: dict[str, Any] = {"s": MARK_SIZE, "color": look["color"], "marker": look["marker"], "linewidth": 0.8}

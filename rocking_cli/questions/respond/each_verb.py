@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking_cli.arrays import Reals
 from rocking_cli.ask.answer import MappingAnswer, parted
-from rocking_cli.ask.given import StructureLike, models_of, structure_of
-from rocking_cli.ask.ground_motions import Motion, Motions, each_of
+from rocking_cli.ask.given import StructureLike, models_of, structures_of
+from rocking_cli.ask.ground_motions import Motion, Motions, each_of, type_in_words
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.several import write_files
 from rocking_cli.ask.watcher import SILENT, Watcher
@@ -24,7 +24,7 @@ from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcomes
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.names import OPENING
 from rocking_cli.processing.reading_options import ReadingArguments
-from rocking_cli.questions.respond.each import OUTCOMES, RunGrid, columns
+from rocking_cli.questions.respond.each import FAILED, OUTCOMES, RunGrid, columns
 from rocking_cli.views.view import View
 
 if TYPE_CHECKING:
@@ -53,6 +53,25 @@ class EachAnswer(MappingAnswer[ModelName, Outcomes]):
     grid: RunGrid = field(kw_only=True)
     rotation: Mapping[ModelName, Reals] = field(kw_only=True)
 
+    def share(self) -> tuple[float, float]:
+        """Return the lowest and the highest share of the runs of the first model that overturn, see `Outcome.share`."""
+        return next(iter(self.values())).share()
+
+    def exceeds(self, ratio: float) -> Reals:
+        """Return for each row of the frame whether the peak rotation exceeds a share of the critical rotation.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            1, 0, or NaN where that is not known: a run of unknown outcome is known to exceed a ratio that it passed
+            before any joint opened or slid. It is what `fit_fragility` takes.
+        """
+        rows: dict[str, Any] = dict(self.columns())
+        exceeds = np.where(rows["peak_ratio"] > ratio, 1.0, 0.0)
+        doubtful = np.where(rows["peak_ratio_at_least"] > ratio, 1.0, np.nan)
+        exceeds = np.where(rows["unknown"], doubtful, exceeds)
+        return np.where(rows["outcome"] == FAILED, np.nan, exceeds)
+
     @property
     def time(self) -> Reals:
         """Times of the rotations [s]."""
@@ -62,8 +81,9 @@ class EachAnswer(MappingAnswer[ModelName, Outcomes]):
         """Return a row for each structure, model, motion, scale, polarity and restitution.
 
         `frame.attrs["units"]` has the units. `outcome` is a category, `overturned` is 1, 0, or NaN where it is not
-        known, which means of pandas leave out: see `share` of the outcomes. `pga_g` and `pgv` are those of the scaled ground motion; `peak_displacement` is that of the centroid of
-        all that moves. Of a motion of unknown outcome, peaks are those until `known_to`.
+        known, which means of pandas leave out: see `share`. `pga_g` and `pgv` are those of the scaled ground motion;
+        `peak_displacement` is that of the centroid of all that moves. Peaks are infinite if the structure overturns,
+        and those until `known_to` if the outcome is unknown: `exceeds` counts both.
 
         Raises
         ------
@@ -121,7 +141,8 @@ def respond_each(
     motions: Motion | Sequence[Motion],
     *,
     models: str | Sequence[str] | None = None,
-    scales: ArrayLike = 1.0,
+    scales: ArrayLike | None = None,
+    target_pga: ArrayLike | None = None,
     polarities: Sequence[int] | None = None,
     restitutions: Sequence[float] | Reals | None = None,
     histories: bool = False,
@@ -143,7 +164,9 @@ def respond_each(
     models : str or sequence of str, optional
         Models "nonlinear", "linear1" or "linear2"; by default all, or the nonlinear one alone if the others mislead.
     scales : array_like
-        Scale factors on the motions; negative ones reverse them.
+        Scale factors on the motions, 1 by default; negative ones reverse them.
+    target_pga : array_like, optional
+        In place of `scales`: peak ground accelerations to which each motion is scaled [g], the third axis then.
     polarities : sequence of int, optional
         Polarities 1 and -1, as a further axis; by default, motions are as given.
     restitutions : array_like, optional
@@ -195,17 +218,24 @@ def respond_each(
 
     if out is not None:
         check_table(Path(out))
-    ready = [structure_of(each, watch, opening) for each in each_of(structures)]
+    if scales is not None and target_pga is not None:
+        raise InputError("`scales` and `target_pga` cannot be combined: give one of them")
+    if not (given := each_of(structures)):
+        raise InputError(Problem("is empty: give at least one structure", field="`structures`"))
+    ready = structures_of(given, watch, opening)
     chosen = models_of(models)
     if models is None and any(len(each.default_models) < len(MODELS) for each in ready):
         chosen = ("nonlinear",)
     shaking = Motions.of(motions, options).gather(max(each.growth for each in ready), watch)
+    if target_pga is not None and (still := [one.motion.name for one in shaking if one.motion.of_ground.pga_g == 0]):
+        raise InputError(Problem("is zero throughout and cannot be scaled to a peak", still[0]))
     grid = RunGrid(
         ready,
         [one.motion if one.factor == 1 else one.motion.scaled(one.factor) for one in shaking],
-        _axis("scales", scales),
+        _axis("scales", 1.0 if scales is None else scales) if target_pga is None else _axis("target_pga", target_pga),
         None if polarities is None else _signs(polarities),
         None if restitutions is None else _axis("restitutions", restitutions),
+        target_pga is not None,
     )
     if histories:
         grid.check_memory()
@@ -234,7 +264,10 @@ def _figure(
 
 
 def _axis(name: str, given: ArrayLike) -> Reals:
-    values = np.atleast_1d(np.asarray(given, dtype=np.float64))
+    try:
+        values = np.atleast_1d(np.asarray(given, dtype=np.float64))
+    except (TypeError, ValueError):
+        raise InputError(Problem(f"must be numbers, got {type_in_words(given)}", field=f"`{name}`")) from None
     if values.ndim > 1 or not values.size:
         what = f"must be one number or a list of them, got an array of shape {values.shape}"
         raise InputError(Problem(what, field=f"`{name}`"))
@@ -249,7 +282,7 @@ def _signs(given: ArrayLike) -> NDArray[np.int64]:
 
 
 def _sentence(model: ModelName, found: Outcomes) -> str:
-    many = f"By the {model} model {int(found.fell.sum())} of {found.fell.size} motions overturn"
+    many = f"By the {model} model {int(found.fell.sum())} of {found.fell.size} runs overturn"
     return many + (f", and the outcome of {int(found.unknown.sum())} is unknown." if found.unknown.any() else ".")
 
 

@@ -105,6 +105,9 @@ def test_unknown_runs_are_counted_both_ways():
     assert fit.median == upper.median and fit.lower.median == lower.median and fit.median.value < lower.median.value
     assert fit.lower.robust_interval == lower.robust_interval
     assert (fit.unknown, fit.is_band) == (5, True)
+    assert fit.sentences[0].endswith(
+        f"90 % robust intervals; {int(np.nansum(known))} of 150 runs exceed, and of 5 it is unknown."
+    )
     assert any("whether 5 of 150 runs (3.3 %) exceed the limit is unknown; the result is the band" in each
                for each in fit.sentences)  # fmt: skip
     assert (fit.to_frame()["lower_probability"] < fit.to_frame()["probability"]).all()
@@ -173,6 +176,24 @@ GOOD = [0.1, 0.2, 0.3, 0.4], [0, 1, 0, 1]
 def test_a_wrong_argument_is_named(given, options, message):
     with pytest.raises(rk.InputError, match=message):
         rk.fit_fragility(*given, **options)
+
+
+def test_columns_of_frames_are_of_the_same_rows():
+    pandas = pytest.importorskip("pandas")
+    x, exceeded = (pandas.Series(each) for each in cloud(6))
+    assert rk.fit_fragility(x, exceeded).median == rk.fit_fragility(x.to_numpy(), exceeded).median
+    for other in (x.sort_values(), x.iloc[::-1]):
+        with pytest.raises(rk.InputError, match="has other rows than the intensity, or another order"):
+            rk.fit_fragility(other, exceeded)
+
+
+def test_several_fits_are_drawn_in_one_plot():
+    fits = [rk.fit_fragility(*cloud(seed)) for seed in (4, 6)]
+    figure = fits[0].plot(name="slender", beside={"stocky": fits[1]})
+    said = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert said[0].startswith("slender") and said[1].startswith("stocky")
+    colours = {line.get_color() for line in figure.axes[0].lines if len(line.get_xdata()) > 50}
+    assert len(colours) == 2
 
 
 def test_an_answer_of_any_name_is_kept_and_drawn(tmp_path):

@@ -47,7 +47,7 @@ def test_each_row_is_the_response_that_it_names(answer):
         known = np.nan if run.overturned is None else float(run.overturned)
         np.testing.assert_equal(
             [row.overturned, row.peak_ratio, row.uplift_time, row.known_to, row.peak_ratio_at_least],
-            [known, run.peak_ratio, run.uplift_time, run.known_to, run.lower_bound],
+            [known, np.inf if run.fell else run.peak_ratio, run.uplift_time, run.known_to, run.lower_bound],
         )
         shaken = rk.read_record(ACCEL) if row.motion == "accel.csv" else rk.parse_pulse(row.motion).sampled()
         assert row.pga_g == pytest.approx(row.scale * shaken.pga_g, rel=1e-12)
@@ -59,7 +59,7 @@ def test_each_row_is_the_response_that_it_names(answer):
                 moved = R * (sin(alpha) - sin(alpha - row.peak_rotation))
                 assert row.peak_displacement == pytest.approx(moved, rel=1e-12, abs=1e-15)
         else:
-            assert np.isnan(row.peak_rotation) and np.isnan(row.peak_displacement)
+            assert row.peak_rotation == row.peak_displacement == np.inf
     assert {"rad", "m", "m/s", "s", "g"} == set(frame.attrs["units"].values())
 
 
@@ -81,6 +81,30 @@ def test_rotations_are_those_of_single_responses(answer):
     assert not coarse.rotation["nonlinear"][0, 0, 0][alone.time.size :].any()
 
 
+def test_what_exceeds_a_ratio_is_known_only_as_far_as_the_model_holds(answer):
+    frame, counts = answer.to_frame(), {}
+    for row, exceeds in zip(frame.itertuples(), answer.exceeds(0.3), strict=True):
+        if row.outcome == "overturns":
+            wanted = 1.0
+        elif row.outcome == "unknown":
+            wanted = 1.0 if row.peak_ratio_at_least > 0.3 else np.nan
+        else:
+            wanted = float(row.peak_ratio > 0.3)
+        np.testing.assert_equal(exceeds, wanted)
+        counts[row.outcome, str(wanted)] = 1
+    assert {("overturns", "1.0"), ("unknown", "nan"), ("rocks", "0.0"), ("rocks", "1.0")} <= set(counts)
+
+
+def test_motions_are_scaled_to_a_peak_each():
+    motions = [ACCEL, "ricker:1g:0.8s"]
+    runs = rk.respond_each(block(), motions, models="nonlinear", target_pga=[0.4, 0.8], polarities=[1, -1])
+    frame = runs.to_frame()
+    np.testing.assert_allclose(frame["pga_g"], [0.4, 0.4, 0.8, 0.8] * 2, rtol=1e-12)
+    assert list(runs.grid.axes) == ["structure", "motion", "target_pga", "polarity"]
+    alone = rk.respond(block(), ACCEL, target_pga=0.4, polarity=-1, models="nonlinear")["nonlinear"]
+    assert 0 < runs["nonlinear"].peak_ratio[0, 0, 0, 1] == pytest.approx(alone.peak_ratio, rel=1e-6)
+
+
 def test_labelled_arrays_are_the_frame(answer):
     pytest.importorskip("xarray")
     arrays, frame = answer.to_xarray(), answer.to_frame()
@@ -100,6 +124,7 @@ def test_labelled_arrays_are_the_frame(answer):
 def test_samples_files_and_patterns_are_motions(tmp_path):
     shaking = np.stack([0.5 * np.sin(np.arange(300) / 10), 0.3 * np.cos(np.arange(300) / 9)])
     many = rk.respond_each(block(), shaking, dt=0.01, units="g", models="nonlinear")
+    assert many.share() == many["nonlinear"].share()
     made = [rk.GroundMotion(f"motion {k}", 0.01, row * 9.80665) for k, row in enumerate(shaking, 1)]
     same = rk.respond_each(block(), made, models="nonlinear")
     assert list(many.grid.axes["motion"]) == ["motion 1", "motion 2"]
@@ -125,16 +150,29 @@ def test_samples_files_and_patterns_are_motions(tmp_path):
         ({"restitutions": [1.5]}, r"eta must be in \(0, 1\], got 1.5"),
         ({"scales": [nan]}, "scale must be finite"),
         ({"motions": np.ones(50)}, r"`dt` is missing(?s:.*)units='g'"),
-        ({"motions": np.ones((2, 2, 2)), "dt": 0.01}, "at least two samples|one-dimensional|rows"),
+        ({"motions": np.ones(50), "dt": 0.01}, "`units` is missing"),
+        ({"motions": np.ones((2, 2, 2)), "dt": 0.01, "units": "g"}, "a ground motion needs at least two samples"),
+        (
+            {"motions": np.ones((1000, 2)), "dt": 0.01, "units": "g"},
+            "would be 1,000 motions of 2 samples(?s:.*)samples.T",
+        ),
         ({"motions": np.ones(50), "dt": 0.01, "units": "furlong"}, "not a unit of acceleration"),
-        ({"motions": np.full(50, nan), "dt": 0.01}, "sample 1 is not a number"),
+        ({"motions": np.full(50, nan), "dt": 0.01, "units": "g"}, "sample 1 is not a number"),
+        ({"structures": []}, "`structures` is empty"),
+        ({"scales": (each for each in (1, 2))}, "`scales` must be numbers, got a generator"),
+        ({"scales": 2.0, "target_pga": 0.5}, "`scales` and `target_pga` cannot be combined"),
+        (
+            {"motions": np.zeros(50), "dt": 0.01, "units": "g", "target_pga": 0.5},
+            "zero throughout and cannot be scaled",
+        ),
+        ({"eta": 0.9}, "`eta` is not an argument\n  did you mean restitutions"),
         ({"histories": True, "scales": np.linspace(1, 2, 200_000)}, "200,000 histories of .* do not fit in memory"),
         ({"out": "runs.txt", "scale": 2.0}, "`scale` is not an argument"),
     ],
 )
 def test_what_cannot_be_combined_is_said(given, said):
     with pytest.raises(rk.InputError, match=said):
-        rk.respond_each(block(), **{"motions": "sine:0.4g:0.8s", "models": "nonlinear"} | given)
+        rk.respond_each(**{"structures": block(), "motions": "sine:0.4g:0.8s", "models": "nonlinear"} | given)
 
 
 def test_a_plot_is_of_any_two_columns(answer):
@@ -145,8 +183,9 @@ def test_a_plot_is_of_any_two_columns(answer):
     frame = answer.to_frame().query("model == 'nonlinear'")
     marks = sum(len(each.get_offsets()) for each in axes.collections)
     assert marks == len(frame)  # the crosses of those that overturn, and open marks of those unknown, too
-    fell = (frame["outcome"] == "overturns") & frame["peak_ratio"].isna()
-    crosses = [y for each in axes.collections for _, y in each.get_offsets() if y > frame["peak_ratio"].max()]
+    fell = frame["outcome"] == "overturns"
+    highest = frame["peak_ratio"][~fell].max()
+    crosses = [y for each in axes.collections for _, y in each.get_offsets() if y > highest]
     assert len(crosses) == fell.sum() > 0
     assert drawn(x="pgv", y="peak_displacement").get_xlabel() == "PGV [m/s]"
     with pytest.raises(
