@@ -156,6 +156,10 @@ class Answer(Generic[R]):
         True
         """
         _check_asked(self.figure, asked)
+        if file is not None and not isinstance(file, str | Path):
+            raise InputError(
+                Problem(f"must be a path, got {type(file).__name__}", field="`file`", hint="axes are `ax=`")
+            )
         path = None if file is None else _picture_file(Path(file))
         with _DRAWING:
             drawn = self.figure(**asked) if ax is None and figure is None else _draw_in(ax, figure, self.figure, asked)
@@ -203,8 +207,8 @@ def parted(columns: Columns) -> tuple[dict[str, Any], dict[str, str]]:
     named: dict[str, Any] = {}
     units: dict[str, str] = {}
     for head, values in columns.items():
-        words, _, unit = head.removesuffix("]").rpartition(" [") if head.endswith("]") else (head, "", "")
-        name = numbered(_NO_NAME.sub("_", words.replace("/", " over ")).strip("_"), "", named)
+        words, _, unit = head[:-1].rpartition(" [") if " [" in head and head.endswith("]") else (head, "", "")
+        name = numbered(_NO_NAME.sub("_", words.replace("/", " over ")).strip("_") or "column", "", named)
         named[name] = values
         if unit:
             units[name] = unit

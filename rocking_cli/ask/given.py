@@ -217,8 +217,8 @@ def doubts_of(mechanism: Mechanism) -> list[str]:
 def models_of(given: str | Sequence[str] | None) -> tuple[ModelName, ...]:
     """Return the models of these names, or all models for None. Raises `InputError` for an unknown name."""
     chosen = MODELS if given is None else (given,) if isinstance(given, str) else tuple(given)
-    if unknown := [name for name in chosen if name not in MODELS]:
-        raise InputError(f"models must be of {', '.join(MODELS)}, got {', '.join(unknown)}")
+    if not chosen or (unknown := [name for name in chosen if name not in MODELS]):
+        raise InputError(f"models must be of {', '.join(MODELS)}, got {', '.join(unknown) if chosen else 'none'}")
     return chosen  # type: ignore[return-value]
 
 

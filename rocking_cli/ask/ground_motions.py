@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from textwrap import shorten
@@ -93,6 +93,8 @@ class Motions:
                         sources.setdefault((listed.path, listed.folder, repr(listed.entry)), listed)
                 except InputError as error:
                     sources[id(error)] = error
+        if any(isinstance(one, np.ndarray) for one in each_of(given)) and not _have_files(sources.values()):
+            options = {name: each for name, each in options.items() if name not in ("dt", "units")}  # of the array
         return cls(tuple(sources.values()), reading_of(options, usual).check(), **scaling)
 
     def __bool__(self) -> bool:
@@ -240,10 +242,17 @@ class Motions:
         """Raise `InputError` if an argument has no effect; unit and interval also apply to a vertical component."""
         of_both = ("units", "dt") if with_vertical else ()
         extra = [name for name in self.reading.options if name not in (*of_both, "floor")]
-        extra += [step.name for step in self.reading.steps]
-        if extra and not self.has_records:
+        what = "record" if not self.has_records else "" if _have_files(self.sources) else "file"
+        if what == "record":
+            extra += [step.name for step in self.reading.steps]
+        if extra and what:
             verb = "describes" if len(extra) == 1 else "describe"
-            raise InputError(f"{' and '.join(f'`{name}`' for name in extra)} {verb} a record, and no record is given")
+            raise InputError(f"{' and '.join(f'`{name}`' for name in extra)} {verb} a {what}, and no {what} is given")
+
+
+def _have_files(sources: Iterable[Source]) -> bool:
+    """Return whether a source is a file, or was read before."""
+    return any(isinstance(each, Listed | Scaled | InputError) for each in sources)
 
 
 def unprocessed(motion: Scaled) -> GroundMotion | None:

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.text import one_line
 from rocking_cli.units import UnitError, read
 
 STANDARD_GRAVITY = 9.80665  # m/s2
@@ -134,7 +135,9 @@ class GroundMotion:
     origin: Origin = NOT_SAID
 
     def __post_init__(self, unit: str) -> None:
-        samples = _own(self.acceleration, np.float64)
+        if np.iscomplexobj(self.acceleration):
+            raise InputError(Problem("must be real numbers", self.name, field="`acceleration`"))
+        samples = _own(np.ma.filled(self.acceleration, np.nan), np.float64)
         if unit != "m/s2":
             try:
                 samples = _own(samples * read(f"1 {unit}", "m/s2"), np.float64)
@@ -159,7 +162,7 @@ class GroundMotion:
         floor = "" if self.ground is None else ", of a floor"
         vertical = "" if self.vertical is None else ", with a vertical component"
         size = f"{self.npts} samples, dt = {self.dt:.4g} s, {self.duration:.4g} s, PGA = {self.pga_g:.4g} g"
-        return f"<GroundMotion {self.name}: {size}{floor}{vertical}>"
+        return f"<GroundMotion {one_line(self.name)}: {size}{floor}{vertical}>"
 
     @property
     def npts(self) -> int:

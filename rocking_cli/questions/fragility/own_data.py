@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 
 from rocking_cli.arrays import Integers, Reals
-from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.answer import Answer, parted
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.questions.fragility.own_fit import EXCEEDANCE, FittedFragility, fit_known
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 Form = Literal["lognormal", "logit"]
 """Curve that is fitted to data of one's own."""
+MISSING = ("NAType", "NaTType")  # of pandas, which has no truth value for its own comparison
 COLUMNS = ("probability", "low", "high", "robust_low", "robust_high")
 """Columns of the frame, for the curve and, after `lower_`, for its lower edge."""
 
@@ -112,7 +113,7 @@ def _check_index(*given: Any) -> None:
 def _numbers(name: str, values: ArrayLike) -> Reals:
     """Return an argument as an array of numbers, shape (n,)."""
     try:
-        numbers = np.asarray(values, dtype=np.float64)
+        numbers = np.asarray(np.ma.filled(np.ma.asarray(values, dtype=np.float64), np.nan))
     except (TypeError, ValueError):
         hint = "give true or false, 1 or 0, and NaN for unknown" if name == "exceeded" else None
         raise InputError(Problem("must be an array of numbers", field=f"`{name}`", hint=hint)) from None
@@ -138,8 +139,9 @@ def _check(x: Reals, known: Reals, curve: str, confidence: float, label: str) ->
         problems.append(Problem(f"must be {' or '.join(get_args(Form))}, got {curve!r}", field="`curve`"))
     if not 0.5 < confidence < 1:
         problems.append(Problem(f"must be between 0.5 and 1, got {confidence:g}", field="`confidence`"))
-    if label.removeprefix("lower_") in COLUMNS:
-        problems.append(Problem(f"must not be {label}, which is another column of the frame", field="`label`"))
+    (name,) = parted({label: x})[0]
+    if name.removeprefix("lower_") in COLUMNS:
+        problems.append(Problem(f"must not be {label!r}, the name of another column of the frame", field="`label`"))
     if problems:
         raise InputError(*problems)
 
@@ -155,7 +157,7 @@ def _codes(clusters: Sequence[Hashable], count: int) -> Integers:
     if len(names) != count:
         what = f"must have one name for each intensity: there are {len(names)} and {count}"
         raise InputError(Problem(what, field="`clusters`"))
-    missing = [k for k, name in enumerate(names) if name is None or name != name]
+    missing = [k for k, name in enumerate(names) if name is None or type(name).__name__ in MISSING or name != name]
     if missing:
         hint = "give a run that shares nothing a name of its own"
         raise InputError(Problem("is missing", field=f"`clusters[{missing[0]}]`", hint=hint))

@@ -36,7 +36,8 @@ def view(found: FittedFragility) -> View:
     parts += undecided([found], capacities=False)
     parts += without_logarithm(found.measure, found.left_out)
     parts += warnings_of([found.curve])
-    return View(_data(found), parts)
+    # What a study has in common is a record; here it may be anything.
+    return View(_data(found), [each.replace("record", "cluster") if isinstance(each, str) else each for each in parts])
 
 
 def _rows(edge: str, each: FittedFragility) -> Iterator[Named]:

@@ -83,7 +83,7 @@ class StudyAnswer(Answer[list[Fragility]]):
 
     def run_blocks(self) -> Iterator[Columns]:
         """Yield the runs as columns, read from the store in blocks of rows, as there may be very many."""
-        return _blocks(self.store)
+        yield from _blocks(self.store)  # which holds on to the answer, and with it to a store in memory
 
 
 class UnknownCurve(InputError, KeyError):

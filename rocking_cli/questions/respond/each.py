@@ -16,7 +16,7 @@ from rocking_cli.arrays import Reals
 from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import TAIL_SECONDS, follow
-from rocking_cli.dynamics.model import ModelName
+from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.errors import InputError, Problem, SolverError
@@ -106,10 +106,34 @@ class RunGrid:
         """Measures of the ground motions, before scaling."""
         return [measure(each.of_ground) for each in self.motions]
 
+    @cached_property
+    def _other(self) -> dict[tuple[int, float], Structure]:
+        """The structures with each restitution; raises `InputError` if one would add energy at an impact."""
+        etas = [] if self.restitutions is None else self.restitutions[~np.isnan(self.restitutions)].tolist()
+        return {(k, eta): each.with_eta(eta) for k, each in enumerate(self.structures) for eta in etas}
+
+    def prepared(self, name: ModelName) -> tuple[list[Model], Runs]:
+        """Return the models of all structures and their runs.
+
+        A structure on three or more columns has a model of its own for each restitution, which is that of its columns
+        too. Raises as `respond_many`.
+        """
+        models, place, eta = (
+            [each.model(name) for each in self.structures],
+            self.runs.model.copy(),
+            self.runs.eta.copy(),
+        )
+        for (k, value), structure in self._other.items():
+            if models[k].columns:
+                mine = (self.runs.model == k) & (self.runs.eta == value)
+                place[mine], eta[mine] = len(models), nan
+                models.append(structure.model(name))
+        return models, replace(self.runs, model=place, eta=eta)
+
     def outcomes(self, model: ModelName, threads: int | None, progress: Callable[[int], None]) -> Outcomes:
         """Return the outcomes of all runs of a model, as arrays of the shape of the grid. Raises as `respond_many`."""
-        models = [each.model(model) for each in self.structures]
-        many = respond_many(models, self.motions, self.runs, threads=threads, progress=progress)
+        models, runs = self.prepared(model)
+        many = respond_many(models, self.motions, runs, threads=threads, progress=progress)
         return many.by_field(lambda values: values.reshape(self.shape))
 
     @cached_property
@@ -131,7 +155,7 @@ class RunGrid:
         They are linear between the samples of each motion, zero after a structure has come to rest, and NaN after it
         overturns, after its motion becomes unknown, and where it could not be simulated.
         """
-        models, runs = [each.model(model) for each in self.structures], self.runs
+        models, runs = self.prepared(model)
         rotations = np.full((self.count, self.time.size), np.nan)
 
         def work(first: int, stop: int) -> None:

@@ -24,7 +24,6 @@ LABELS = {
     "pgv": "PGV [m/s]",
     "scale": "scale factor of the motion",
     "eta": r"restitution $\eta$",
-    "peak_ratio": r"peak $|\varphi|/\varphi_{cr}$",
 }
 BAND = 0.08  # height of the band of runs without a value, over that of the plane
 WIDEST_SPREAD = 20.0  # ratio of the largest and the smallest positive value from which an axis is logarithmic
@@ -72,7 +71,9 @@ def draw_each(grid: RunGrid, outcomes: Mapping[ModelName, Outcomes], x: str, y: 
         axes.scatter(across[mine & unknown], up[mine & unknown], **open_look)
         high = np.full(int((mine & above).sum()), top * (1 + BAND * (0.25 + 0.5 * _share(k, grid.shape[0]))))
         axes.scatter(across[mine & above], high, **dots | {"marker": "x"})
-    style.tidy(axes, _label(x, units), _label(y, units))
+    peaks = style.over([side.phi_cr is None for each in grid.structures for side in each.statics], math=True)
+    labels = LABELS | {"peak_ratio": f"peak {peaks}"}
+    style.tidy(axes, *(labels.get(each) or _label(each, units) for each in (x, y)))
     if above.any():
         axes.axhline(top, color=style.FAINT, linewidth=style.THIN)
         axes.scatter([], [], marker="x", color=style.INK, s=MARK_SIZE, label=f"above the line: {names.OVERTURNS}")
@@ -91,4 +92,4 @@ def _share(k: int, count: int) -> float:
 
 
 def _label(name: str, units: Mapping[str, str]) -> str:
-    return LABELS.get(name) or name.replace("_", " ") + (f" [{units[name]}]" if name in units else "")
+    return name.replace("_", " ") + (f" [{units[name]}]" if name in units else "")

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from rocking_cli.arrays import Reals
 from rocking_cli.ask.answer import MappingAnswer, parted
 from rocking_cli.ask.given import StructureLike, models_of, structures_of
-from rocking_cli.ask.ground_motions import Motion, Motions, each_of, type_in_words
+from rocking_cli.ask.ground_motions import MAX_PGA, Motion, Motions, each_of, type_in_words
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.several import write_files
 from rocking_cli.ask.watcher import SILENT, Watcher
@@ -237,6 +237,10 @@ def respond_each(
         None if restitutions is None else _axis("restitutions", restitutions),
         target_pga is not None,
     )
+    peaks = abs(grid.runs.scale) * np.array([each.pga for each in grid.measured])[grid.runs.record]
+    if (pga := float(peaks.max())) > MAX_PGA:
+        what = f"up to {pga:.4g} g is not plausible for a ground motion"
+        raise InputError(Problem(what, field="`scales`", hint=f"at most {MAX_PGA:g} g: check unit and factors"))
     if histories:
         grid.check_memory()
     with watch.progress(grid.count * len(chosen) * (1 + histories), "runs") as advance:

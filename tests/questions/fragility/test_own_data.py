@@ -138,8 +138,8 @@ N = np.arange(1, 41)
         (N, (N > 37) + (N == 12), None, "lognormal", "Only 4 of 40 runs exceed: with fewer than 10 the median is"),
         (N, (N > 3) & (N != 12), None, "lognormal", "Only 4 of 40 runs do not exceed"),
         (N, (N > 8) & (N < 30), None, "lognormal", "Do not rely on this curve: the goodness-of-fit test rejects"),
-        (N, (N - 9 * np.sin(N)) > 20, N // 21, "lognormal", "There is no robust interval: the 40 runs are of 2 rec"),
-        (N[:12], (N - 4 * np.sin(N))[:12] > 6, None, "lognormal", "Warning: only 12 distinct records"),
+        (N, (N - 9 * np.sin(N)) > 20, N // 21, "lognormal", "There is no robust interval: the 40 runs are of 2 clu"),
+        (N[:12], (N - 4 * np.sin(N))[:12] > 6, None, "lognormal", "Warning: only 12 distinct clusters"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_trusted_is_said(x, exceeded, clusters, kind, sentence):
@@ -169,7 +169,8 @@ GOOD = [0.1, 0.2, 0.3, 0.4], [0, 1, 0, 1]
         (GOOD, {"clusters": [[1], [2], [3], [4]]}, "`clusters` must be a sequence of names"),
         (GOOD, {"curve": "probit"}, "`curve` must be lognormal or logit, got 'probit'"),
         (GOOD, {"confidence": 95}, "`confidence` must be between 0.5 and 1, got 95"),
-        (GOOD, {"label": "lower_high"}, "`label` must not be lower_high, which is another column of the frame"),
+        (GOOD, {"label": "lower_high"}, "`label` must not be 'lower_high', the name of another column"),
+        (GOOD, {"label": "lower high [g]"}, "`label` must not be 'lower high .g.', the name of another column"),
         (GOOD, {"cluster": "abcd"}, "`cluster` is not an argument"),
     ],
 )

@@ -105,6 +105,19 @@ def test_motions_are_scaled_to_a_peak_each():
     assert 0 < runs["nonlinear"].peak_ratio[0, 0, 0, 1] == pytest.approx(alone.peak_ratio, rel=1e-6)
 
 
+def test_columns_under_a_beam_have_the_restitution_that_is_given():
+    frame = rk.load_structure(EXAMPLES / "symmetric_frame.yaml")
+    asked = {"models": "nonlinear", "histories": True}
+    many = rk.respond_each(frame, "ricker:0.6g:1.2s", scales=[0.8], restitutions=[nan, 0.85], **asked)
+    for k, structure in enumerate((frame, frame.replace(restitution=0.85))):
+        alone = rk.respond(structure, "ricker:0.6g:1.2s", scale=0.8, models="nonlinear")["nonlinear"]
+        assert many["nonlinear"].peak_ratio[0, 0, 0, k] == alone.peak_ratio
+        assert many["nonlinear"].unknown[0, 0, 0, k] == alone.unknown
+        assert np.nanmax(abs(many.rotation["nonlinear"][0, 0, 0, k])) == pytest.approx(
+            np.nanmax(abs(alone.phi)), rel=0.01
+        )
+
+
 def test_labelled_arrays_are_the_frame(answer):
     pytest.importorskip("xarray")
     arrays, frame = answer.to_xarray(), answer.to_frame()
@@ -147,7 +160,22 @@ def test_samples_files_and_patterns_are_motions(tmp_path):
     [
         ({"polarities": [0]}, "`polarities` must be 1 or -1, got 0"),
         ({"polarities": []}, "`polarities` must be one number or a list"),
-        ({"restitutions": [1.5]}, r"eta must be in \(0, 1\], got 1.5"),
+        ({"restitutions": [1.5]}, "restitution: tall: .* at most 1.*got 1.5"),
+        (
+            {"structures": str(EXAMPLES / "linkage.yaml"), "restitutions": [0.7, 0.9]},
+            "must be at most 0.775781, got 0.9",
+        ),
+        ({"structures": str(EXAMPLES / "verify" / "facade.yaml"), "restitutions": [1.0]}, "rebound: facade: "),
+        ({"scales": [1e5]}, "up to 4e.04 g is not plausible"),
+        (
+            {"motions": np.ones(50), "dt": 0.01, "units": "g", "quantity": "velocity"},
+            "`quantity` describes a file, and",
+        ),
+        (
+            {"motions": rk.GroundMotion("m", 0.01, np.ones(50)), "dt": 0.02},
+            "`dt` describes a file, and no file is given",
+        ),
+        ({"models": []}, "models must be of nonlinear, linear1, linear2, got none"),
         ({"scales": [nan]}, "scale must be finite"),
         ({"motions": np.ones(50)}, r"`dt` is missing(?s:.*)units='g'"),
         ({"motions": np.ones(50), "dt": 0.01}, "`units` is missing"),
