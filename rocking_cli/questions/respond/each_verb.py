@@ -226,7 +226,10 @@ def respond_each(
     chosen = models_of(models)
     if models is None and any(len(each.default_models) < len(MODELS) for each in ready):
         chosen = ("nonlinear",)
-    shaking = Motions.of(motions, options).gather(max(each.growth for each in ready), watch)
+    sources = Motions.of(motions, options)
+    if (twice := len(each_of(motions)) - sources.count) > 0:
+        watch.warn(f"{twice} of the motions given is one given before: it is used once")
+    shaking = sources.gather(max(each.growth for each in ready), watch)
     if target_pga is not None and (still := [one.motion.name for one in shaking if one.motion.of_ground.pga_g == 0]):
         raise InputError(Problem("is zero throughout and cannot be scaled to a peak", still[0]))
     grid = RunGrid(

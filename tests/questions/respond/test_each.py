@@ -203,6 +203,16 @@ def test_what_cannot_be_combined_is_said(given, said):
         rk.respond_each(**{"structures": block(), "motions": "sine:0.4g:0.8s", "models": "nonlinear"} | given)
 
 
+def test_a_motion_that_is_given_twice_is_used_once_and_said():
+    quake = rk.read_record(ACCEL)
+    with pytest.warns(rk.DoubtWarning, match="1 of the motions given is one given before: it is used once"):
+        assert rk.respond_each(block(), [quake, quake, "sine:0.3g:1s"], models="nonlinear")["nonlinear"].fell.shape == (
+            1,
+            2,
+            1,
+        )
+
+
 def test_a_plot_is_of_any_two_columns(answer):
     def drawn(**asked):
         return answer.figure(**asked).axes[0]
