@@ -228,7 +228,7 @@ def respond_each(
         chosen = ("nonlinear",)
     sources = Motions.of(motions, options)
     if (twice := len(each_of(motions)) - sources.count) > 0:
-        watch.warn(f"{twice} of the motions given is one given before: it is used once")
+        watch.warn(f"a motion that is given twice is used once: {twice} left out")
     shaking = sources.gather(max(each.growth for each in ready), watch)
     if target_pga is not None and (still := [one.motion.name for one in shaking if one.motion.of_ground.pga_g == 0]):
         raise InputError(Problem("is zero throughout and cannot be scaled to a peak", still[0]))

@@ -205,7 +205,7 @@ def test_what_cannot_be_combined_is_said(given, said):
 
 def test_a_motion_that_is_given_twice_is_used_once_and_said():
     quake = rk.read_record(ACCEL)
-    with pytest.warns(rk.DoubtWarning, match="1 of the motions given is one given before: it is used once"):
+    with pytest.warns(rk.DoubtWarning, match="a motion that is given twice is used once: 1 left out"):
         assert rk.respond_each(block(), [quake, quake, "sine:0.3g:1s"], models="nonlinear")["nonlinear"].fell.shape == (
             1,
             2,
