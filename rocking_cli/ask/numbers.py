@@ -99,7 +99,7 @@ def _text(value: object) -> str | None:
 def _problem(name: str, annotation: str, text: str) -> Problem:
     single = "tuple" not in annotation and "Sequence" not in annotation
     unit = UNITS.get(name, "")
-    example: object = "(low, high)" if "tuple" in annotation else "[0.1, 0.2]" if not single else "a number"
+    example: object = "(low, high)" if "tuple" in annotation else "numbers such as [1, 2]" if not single else "a number"
     if single and (number := _number(text, unit)) is not None:
         example = f"{number:g}"
     what = "a number" if single else "two numbers" if "tuple" in annotation else "numbers"

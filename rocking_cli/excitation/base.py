@@ -84,8 +84,8 @@ class GroundMotion:
     acceleration : ndarray, shape (npts,)
         Ground acceleration at t = 0, dt, 2 dt, ..., in `unit`; the motion keeps a read-only copy in m/s2.
     unit : str
-        Unit in which the acceleration is given, such as "g", "cm/s2" or "gal"; m/s2 by default. That of the motion is
-        always m/s2.
+        Unit in which the acceleration is given, such as "g", "cm/s2" or "gal"; m/s2 by default. The motion itself is
+        always in m/s2.
     source_unit : str
         Unit of the source, such as that of a record's file, for information only: `unit` by default.
     format : str
@@ -109,8 +109,8 @@ class GroundMotion:
     Raises
     ------
     InputError
-        If there are fewer than two samples, a sample or dt is not finite, dt is not positive, `every` is below 1, or
-        `unit` is not that of an acceleration.
+        If there are fewer than two samples, they are complex or have several dimensions, a sample or dt is not finite,
+        dt is not positive, `every` is below 1, or `unit` is not that of an acceleration.
 
     Examples
     --------
@@ -146,7 +146,9 @@ class GroundMotion:
                 raise InputError(Problem(error.message, self.name, field="`unit`", hint=hint)) from None
         if not self.source_unit:
             object.__setattr__(self, "source_unit", unit)
-        if samples.ndim != 1 or samples.size < 2:
+        if samples.ndim != 1:
+            raise InputError(f"{self.name}: samples must have one dimension, got an array of shape {samples.shape}")
+        if samples.size < 2:
             raise InputError(f"{self.name}: a ground motion needs at least two samples, this has {samples.size}")
         if not np.isfinite(samples).all():
             raise InputError(f"{self.name}: sample {int(np.flatnonzero(~np.isfinite(samples))[0]) + 1} is not a number")

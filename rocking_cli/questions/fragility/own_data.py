@@ -1,4 +1,4 @@
-"""`rk.fit_fragility`: fit a fragility curve to data of one's own."""
+"""`rk.fit_fragility`: fit a fragility curve to your own data."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def fit_fragility(
     confidence: float = 0.9,
     label: str = "intensity",
 ) -> Answer[FittedFragility]:
-    """Fit a fragility curve to data of one's own: runs of any program, tests, or observed damage.
+    """Fit a fragility curve to your own data: runs of any program, tests, or observed damage.
 
     Parameters
     ----------
@@ -106,8 +106,9 @@ def _check_index(*given: Any) -> None:
     """Raise `InputError` if columns of frames are not of the same rows in the same order: they are taken by place."""
     indices = [each.index for each in given if hasattr(each, "index") and hasattr(each.index, "equals")]
     if any(not each.equals(indices[0]) for each in indices[1:]):
-        hint = "take both from one frame, or give arrays"
-        raise InputError(Problem("has other rows than the intensity, or another order", field="`exceeded`", hint=hint))
+        hint = "take all of them from one frame, or give arrays"
+        what = "`intensity`, `exceeded` and `clusters` have different rows, or rows in a different order"
+        raise InputError(Problem(what, hint=hint))
 
 
 def _numbers(name: str, values: ArrayLike) -> Reals:
@@ -133,7 +134,7 @@ def _check(x: Reals, known: Reals, curve: str, confidence: float, label: str) ->
     wrong = ~(np.isnan(known) | (known == 0) | (known == 1))
     if wrong.any():
         k = int(wrong.argmax())
-        hint = "a share of several runs is as many entries"
+        hint = "for a share of several runs, give one entry per run"
         problems.append(Problem(f"must be 1, 0 or NaN, got {known[k]:g}", field=f"`exceeded[{k}]`", hint=hint))
     if curve not in get_args(Form):
         problems.append(Problem(f"must be {' or '.join(get_args(Form))}, got {curve!r}", field="`curve`"))
@@ -159,7 +160,7 @@ def _codes(clusters: Sequence[Hashable], count: int) -> Integers:
         raise InputError(Problem(what, field="`clusters`"))
     missing = [k for k, name in enumerate(names) if name is None or type(name).__name__ in MISSING or name != name]
     if missing:
-        hint = "give a run that shares nothing a name of its own"
+        hint = "give each independent run its own name"
         raise InputError(Problem("is missing", field=f"`clusters[{missing[0]}]`", hint=hint))
     return np.array([numbers[name] for name in names], dtype=np.int64)
 

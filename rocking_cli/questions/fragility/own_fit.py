@@ -20,14 +20,15 @@ Ends = tuple[float, float]
 @short_repr
 @dataclass(frozen=True, eq=False)
 class FittedFragility(Fragility):
-    """A fragility curve of data of one's own; other fields as in `Fragility`.
+    """A fragility curve of your own data; other fields as in `Fragility`.
 
     Its `curve` has the intervals of the likelihood, which are right if the curve is, and if runs are independent.
 
     Parameters
     ----------
     robust : FragilityCurve
-        The same curve with intervals that hold without both: each cluster is left out in turn (the jackknife). Of kind
+        The same curve with intervals that require only independent clusters: each is left out in turn (the
+        jackknife). Of kind
         `none`, with the reason, if there are too few clusters.
     lower : FittedFragility or None
         The fit in which unknown runs count as not exceeding; None if there are none.

@@ -29,7 +29,7 @@ def view(found: FittedFragility) -> View:
     parts: list[Table | str] = [f"{_in_short(found)}."]
     if any(each.curve.kind != "none" for _, each in fits):
         columns = [only_shown("interval", lambda row: row[0], text=True), *fit_columns(percent, "dispersion")[1:]]
-        parts.append(table_of(f"{EXCEEDANCE}, over {found.measure}", columns, rows))
+        parts.append(table_of(f"{EXCEEDANCE} against {found.measure}", columns, rows))
     for edge, each in fits:
         sentences = (f"{edge}: {sentence}" if edge else sentence for sentence in _doubts(each))
         parts += [sentence[0].upper() + sentence[1:] for sentence in sentences]
@@ -52,7 +52,7 @@ def _in_short(found: FittedFragility) -> str:
     """Return the curve in one line, with its robust interval if there is one."""
     best, unknown = found.robustly.curve, found.unknown or 0
     counts = f"{best.exceedances - unknown} of {best.runs} runs exceed"
-    counts += f", and of {unknown} it is {UNKNOWN}" if unknown else ""
+    counts += f"; the outcome of {unknown} is {UNKNOWN}" if unknown else ""
     if best.fit is None or best.median is None:
         return f"no curve; {counts}" if best.kind == "none" else f"step at {_number(best, 'median')}; {counts}"
     spread = f", dispersion {_number(best, 'dispersion')}" if best.dispersion is not None else ""
@@ -73,10 +73,11 @@ def _doubts(each: FittedFragility) -> Iterator[str]:
         yield f"there is no robust interval: {each.robust.why}."
     rarer = min(curve.exceedances, curve.runs - curve.exceedances)
     if curve.fit is not None and rarer < MIN_OUTCOMES:
-        verb = "exceed" if rarer == curve.exceedances else "do not exceed"
+        counted = "count as exceeding" if each.unknown else "exceed"
+        verb = counted if rarer == curve.exceedances else "do not exceed"
         yield (
-            f"only {rarer} of {curve.runs} runs {verb}: with fewer than {MIN_OUTCOMES} the median is easily off by "
-            "half, so rely on its interval."
+            f"only {rarer} of {curve.runs} runs {verb}: with fewer than {MIN_OUTCOMES} the median may be wrong by "
+            "half or more; use its interval."
         )
 
 

@@ -40,7 +40,7 @@ MAX_ETA_DIFFERENCE = 1e-9  # relative difference up to which the restitution of 
 @short_repr
 @dataclass(frozen=True, eq=False)
 class RunGrid:
-    """What is combined with what: an axis each, in the order of the fields; an axis that is None is not there.
+    """What is combined with what: the axes of the runs, in the order of the fields; a field that is None has no axis.
 
     Parameters
     ----------
@@ -145,8 +145,8 @@ class RunGrid:
     def check_memory(self) -> None:
         """Raise `InputError` if all rotations would not fit in memory."""
         if self.count * self.time.size > MOST_VALUES:
-            what = f"{self.count:,} histories of {self.time.size:,} samples do not fit in memory"
-            hint = "ask for fewer at a time, or without `histories`: outcomes and peaks need none"
+            what = f"{self.count:,} histories of {self.time.size:,} samples are more than {MOST_VALUES:,} values"
+            hint = "run fewer at a time, or leave out `histories`: outcomes and peaks do not need them"
             raise InputError(Problem(what, field="`histories`", hint=hint))
 
     def rotations(self, model: ModelName, threads: int | None, progress: Callable[[int], None]) -> Reals:

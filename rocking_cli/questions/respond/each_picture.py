@@ -33,8 +33,8 @@ MARK_SIZE = 18.0  # pt2
 def draw_each(grid: RunGrid, outcomes: Mapping[ModelName, Outcomes], x: str, y: str) -> Figure:
     """Plot a column of the frame against another, with a mark for each run of the first model.
 
-    Runs that overturn, whose peaks are infinite, are crosses above the plane; runs of unknown outcome are open, at the
-    peak until their model ceases to hold.
+    Runs whose value is infinite, as the peak of one that overturns, are crosses above the line; runs of unknown outcome
+    are open marks, at their value until `known_to`.
 
     Parameters
     ----------
@@ -79,7 +79,9 @@ def draw_each(grid: RunGrid, outcomes: Mapping[ModelName, Outcomes], x: str, y: 
         axes.scatter([], [], marker="x", color=style.INK, s=MARK_SIZE, label=f"above the line: {names.OVERTURNS}")
         axes.set_ylim(top=top * (1 + BAND))
     if unknown.any():
-        axes.scatter([], [], s=MARK_SIZE, color="none", edgecolor=style.INK, label=f"open: {names.UNKNOWN}, until then")
+        axes.scatter(
+            [], [], s=MARK_SIZE, color="none", edgecolor=style.INK, label=f"open: {names.UNKNOWN}, value until known_to"
+        )
     positive = across[across > 0]
     if positive.size == across.size and positive.max() > WIDEST_SPREAD * positive.min():
         axes.set_xscale("log")

@@ -40,7 +40,7 @@ MEASURES = ("pga_g", "pgv")
 class EachAnswer(MappingAnswer[ModelName, Outcomes]):
     """Outcomes by model, as arrays over structures, motions, scales and the further axes that are given.
 
-    `plot(x="pga_g", y="peak_ratio")` plots a column of the frame against another.
+    `plot(x="pga_g", y="peak_ratio")` plots a column of the frame against another, for the first model.
 
     Parameters
     ----------
@@ -102,8 +102,8 @@ class EachAnswer(MappingAnswer[ModelName, Outcomes]):
         Returns
         -------
         xarray.Dataset
-            The axes are model, structure, motion and scale, and polarity and restitution if they were given; `pga_g`
-            and `pgv` are over motion and scale. Each variable has its units as an attribute.
+            The axes are model, structure, motion, scale (or `target_pga`), and polarity and restitution if given;
+            `pga_g` and `pgv` are over the third and the fourth. Each variable has its units as an attribute.
 
         Raises
         ------
@@ -126,7 +126,7 @@ class EachAnswer(MappingAnswer[ModelName, Outcomes]):
         }
         for name in MEASURES:
             grid = np.moveaxis(np.reshape(values[name], shape), (2, 3), (0, 1)).reshape(*self.grid.shape[1:3], -1)
-            labelled[name] = Variable(["motion", "scale"], grid[..., 0], of_units.get(name, {}))
+            labelled[name] = Variable(list(axes)[2:4], grid[..., 0], of_units.get(name, {}))
         if self.rotation:
             stacked = np.stack([self.rotation[model] for model in self])
             labelled["rotation"] = Variable([*axes, "time"], stacked, {"units": "rad"})
@@ -160,7 +160,7 @@ def respond_each(
         The structures, or their YAML files.
     motions : GroundMotion, Pulse, str, Path or ndarray, or a sequence of these
         The motions, their files, patterns such as `"records/*.AT2"`, pulses as text; or samples in an array of shape
-        (npts,), or (n, npts) for n motions, with `dt` [s], and `units` if they are not in m/s2.
+        (npts,), or (n, npts) for n motions, with `dt` [s] and `units`, both required.
     models : str or sequence of str, optional
         Models "nonlinear", "linear1" or "linear2"; by default all, or the nonlinear one alone if the others mislead.
     scales : array_like
@@ -178,7 +178,7 @@ def respond_each(
     opening : float
         Largest opening of a joint up to which a history is valid, over D_cr.
     out : str or Path, optional
-        File to write: the rows of `to_frame` (.csv or .parquet).
+        File for the rows of `to_frame`, with units in the headings (.csv or .parquet).
     watch : Watcher
         Told what was read, what is doubtful about structures and motions, and how far the runs are.
     **options
@@ -243,7 +243,11 @@ def respond_each(
     peaks = abs(grid.runs.scale) * np.array([each.pga for each in grid.measured])[grid.runs.record]
     if (pga := float(peaks.max())) > MAX_PGA:
         what = f"up to {pga:.4g} g is not plausible for a ground motion"
-        raise InputError(Problem(what, field="`scales`", hint=f"at most {MAX_PGA:g} g: check unit and factors"))
+        field, hint = (
+            "`scales`" if target_pga is None else "`target_pga`",
+            f"give at most {MAX_PGA:g} g: check the units",
+        )
+        raise InputError(Problem(what, field=field, hint=hint))
     if histories:
         grid.check_memory()
     with watch.progress(grid.count * len(chosen) * (1 + histories), "runs") as advance:

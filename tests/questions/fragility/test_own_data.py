@@ -106,7 +106,7 @@ def test_unknown_runs_are_counted_both_ways():
     assert fit.lower.robust_interval == lower.robust_interval
     assert (fit.unknown, fit.is_band) == (5, True)
     assert fit.sentences[0].endswith(
-        f"90 % robust intervals; {int(np.nansum(known))} of 150 runs exceed, and of 5 it is unknown."
+        f"90 % robust intervals; {int(np.nansum(known))} of 150 runs exceed; the outcome of 5 is unknown."
     )
     assert any("whether 5 of 150 runs (3.3 %) exceed the limit is unknown; the result is the band" in each
                for each in fit.sentences)  # fmt: skip
@@ -135,7 +135,7 @@ N = np.arange(1, 41)
         (N, N < 0, None, "none", "None of the 40 runs exceed."),
         (N, N > 0, None, "none", "All of the 40 runs exceed."),
         (N * 0 + 3, N % 2, None, "none", "All runs have the intensity 3: other levels are needed."),
-        (N, (N > 37) + (N == 12), None, "lognormal", "Only 4 of 40 runs exceed: with fewer than 10 the median is"),
+        (N, (N > 37) + (N == 12), None, "lognormal", "Only 4 of 40 runs exceed: with fewer than 10 the median may"),
         (N, (N > 3) & (N != 12), None, "lognormal", "Only 4 of 40 runs do not exceed"),
         (N, (N > 8) & (N < 30), None, "lognormal", "Do not rely on this curve: the goodness-of-fit test rejects"),
         (N, (N - 9 * np.sin(N)) > 20, N // 21, "lognormal", "There is no robust interval: the 40 runs are of 2 clu"),
@@ -184,7 +184,7 @@ def test_columns_of_frames_are_of_the_same_rows():
     x, exceeded = (pandas.Series(each) for each in cloud(6))
     assert rk.fit_fragility(x, exceeded).median == rk.fit_fragility(x.to_numpy(), exceeded).median
     for other in (x.sort_values(), x.iloc[::-1]):
-        with pytest.raises(rk.InputError, match="has other rows than the intensity, or another order"):
+        with pytest.raises(rk.InputError, match="have different rows, or rows in a different order"):
             rk.fit_fragility(other, exceeded)
 
 
