@@ -48,6 +48,8 @@ class Motions:
         How the files are read and corrected, and the floor.
     scale, target_pga, target_pgv : float, optional
         Scale factor, or what to scale to: as for `MotionArguments`.
+    repeated : int
+        Number of motions that were given before, and are not among the sources again.
     """
 
     sources: tuple[Source, ...]
@@ -55,6 +57,7 @@ class Motions:
     scale: float | None = None
     target_pga: float | None = None
     target_pgv: float | None = None
+    repeated: int = 0
 
     @classmethod
     def of(
@@ -79,23 +82,24 @@ class Motions:
         }
         if len(scaling) > 1:
             raise InputError("`scale`, `target_pga` and `target_pgv` cannot be combined: give one of them")
-        sources: dict[object, Source] = {}
+        every: list[tuple[object, Source]] = []
         for one in each_of(given):
             if isinstance(one, np.ndarray):
-                sources |= {id(each): each for each in _of_array(one, options)}
+                every += [(id(each), each) for each in _of_array(one, options)]
             elif isinstance(one, GroundMotion | Scaled):
-                sources[id(one)] = one
+                every.append((id(one), one))
             elif (pulse := pulse_in(one)) is not None:
-                sources[pulse] = pulse
+                every.append((pulse, pulse))
             else:
                 try:
-                    for listed in files_of(str(one)):
-                        sources.setdefault((listed.path, listed.folder, repr(listed.entry)), listed)
+                    every += [((each.path, each.folder, repr(each.entry)), each) for each in files_of(str(one))]
                 except InputError as error:
-                    sources[id(error)] = error
+                    every.append((id(error), error))
+        sources = dict(every)
         if any(isinstance(one, np.ndarray) for one in each_of(given)) and not _have_files(sources.values()):
             options = {name: each for name, each in options.items() if name not in ("dt", "units")}  # of the array
-        return cls(tuple(sources.values()), reading_of(options, usual).check(), **scaling)
+        repeated = len(every) - len(sources)
+        return cls(tuple(sources.values()), reading_of(options, usual).check(), **scaling, repeated=repeated)
 
     def __bool__(self) -> bool:
         """Return whether any motion is given."""

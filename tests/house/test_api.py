@@ -494,9 +494,21 @@ VERBS = [
     if ">>>" in (PROJECT / f"{name.replace('.', '/')}.py").read_text(encoding="utf-8")
 ]
 MODULES = (
-    "", *VERBS, ".ask.watcher", ".core.given", ".dynamics.batch", ".dynamics.exact", ".names", ".short_repr",
-    ".structure", ".units", ".views.column",
-)  # fmt: skip
+    "",
+    *VERBS,
+    ".ask.answer",
+    ".ask.watcher",
+    ".core.given",
+    ".dynamics.batch",
+    ".dynamics.exact",
+    ".dynamics.outcome",
+    ".excitation.base",
+    ".names",
+    ".short_repr",
+    ".structure",
+    ".units",
+    ".views.column",
+)
 
 
 @pytest.mark.every(2)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from math import isclose, nan, prod
+from math import isclose, isnan, nan, prod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rocking_cli import names
 from rocking_cli.arrays import Reals
-from rocking_cli.core import Mechanism
+from rocking_cli.core import Direction, Mechanism
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import TAIL_SECONDS, follow
 from rocking_cli.dynamics.model import Model, ModelName
@@ -107,10 +107,30 @@ class RunGrid:
         return [measure(each.of_ground) for each in self.motions]
 
     @cached_property
-    def _other(self) -> dict[tuple[int, float], Structure]:
-        """The structures with each restitution; raises `InputError` if one would add energy at an impact."""
-        etas = [] if self.restitutions is None else self.restitutions[~np.isnan(self.restitutions)].tolist()
-        return {(k, eta): each.with_eta(eta) for k, each in enumerate(self.structures) for eta in etas}
+    def places(self) -> dict[str, NDArray[np.int64]]:
+        """The place of each run of one model along each axis, by the name of the axis, shape (n,)."""
+        return dict(zip(self.axes, np.indices(self.shape).reshape(len(self.shape), -1), strict=True))
+
+    @property
+    def pga(self) -> Reals:
+        """Peak ground acceleration of each run of one model [g], shape (n,)."""
+        return self._scaled([each.pga for each in self.measured])
+
+    @property
+    def pgv(self) -> Reals:
+        """Peak ground velocity of each run of one model [m/s], shape (n,)."""
+        return self._scaled([each.pgv for each in self.measured])
+
+    def _scaled(self, peaks: Sequence[float]) -> Reals:
+        scaled: Reals = np.abs(self.runs.scale) * np.array(peaks)[self.runs.record]
+        return scaled
+
+    @cached_property
+    def _other(self) -> dict[tuple[int, int], Structure]:
+        """The structures with each restitution, by their places; raises `InputError` if one would add energy."""
+        etas = enumerate(() if self.restitutions is None else self.restitutions.tolist())
+        given = [(j, eta) for j, eta in etas if not isnan(eta)]
+        return {(k, j): each.with_eta(eta) for k, each in enumerate(self.structures) for j, eta in given}
 
     def prepared(self, name: ModelName) -> tuple[list[Model], Runs]:
         """Return the models of all structures and their runs.
@@ -118,17 +138,14 @@ class RunGrid:
         A structure on three or more columns has a model of its own for each restitution, which is that of its columns
         too. Raises as `respond_many`.
         """
-        models, place, eta = (
-            [each.model(name) for each in self.structures],
-            self.runs.model.copy(),
-            self.runs.eta.copy(),
-        )
-        for (k, value), structure in self._other.items():
+        models = [each.model(name) for each in self.structures]
+        of_run, eta = self.runs.model.copy(), self.runs.eta.copy()
+        for (k, j), structure in self._other.items():
             if models[k].columns:
-                mine = (self.runs.model == k) & (self.runs.eta == value)
-                place[mine], eta[mine] = len(models), nan
+                mine = (self.places["structure"] == k) & (self.places["restitution"] == j)
+                of_run[mine], eta[mine] = len(models), nan
                 models.append(structure.model(name))
-        return models, replace(self.runs, model=place, eta=eta)
+        return models, replace(self.runs, model=of_run, eta=eta)
 
     def outcomes(self, model: ModelName, threads: int | None, progress: Callable[[int], None]) -> Outcomes:
         """Return the outcomes of all runs of a model, as arrays of the shape of the grid. Raises as `respond_many`."""
@@ -173,17 +190,13 @@ class RunGrid:
 
 def columns(grid: RunGrid, outcomes: Mapping[ModelName, Outcomes]) -> Columns:
     """Return a row for each run of each model: what was combined, how strong the motion was, and what came of it."""
-    place = dict(zip(grid.axes, np.indices(grid.shape).reshape(len(grid.shape), -1), strict=True))
+    place = grid.places
     table: dict[str, Any] = {name: grid.axes[name][place[name]] for name in ("structure", "motion")}
     table["scale"] = grid.runs.scale
     table["polarity"] = grid.runs.polarity
     of_structure = np.array([_common(each.etas) for each in grid.structures])[place["structure"]]
     table["eta"] = np.where(np.isnan(grid.runs.eta), of_structure, grid.runs.eta)
-    of_motions = {
-        "pga_g [g]": [each.pga for each in grid.measured], "pgv [m/s]": [each.pgv for each in grid.measured]
-    }  # fmt: skip
-    for name, peaks in of_motions.items():
-        table[name] = np.abs(table["scale"]) * np.array(peaks)[place["motion"]]
+    table["pga_g [g]"], table["pgv [m/s]"] = grid.pga, grid.pgv
     parts = [
         table | {"model": np.full(grid.count, model, dtype=object)} | _outcome_columns(grid, outcome)
         for model, outcome in outcomes.items()
@@ -228,7 +241,7 @@ def _displacements(grid: RunGrid, outcome: Outcomes) -> Iterator[Reals]:
         yield np.max(by_side, axis=0)
 
 
-def _moved(mechanism: Mechanism, direction: Any, peaks: Reals) -> Reals:
+def _moved(mechanism: Mechanism, direction: Direction, peaks: Reals) -> Reals:
     inside = np.where(peaks < mechanism.limit(direction), peaks, np.inf)  # a linear model may pass the limit
     moved = largest_on_the_way(partial(centroid_moved, mechanism), inside.ravel(), direction)
     return np.where(np.isfinite(moved), moved, np.nan).reshape(peaks.shape)

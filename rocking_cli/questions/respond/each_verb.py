@@ -125,8 +125,8 @@ class EachAnswer(MappingAnswer[ModelName, Outcomes]):
             if name not in (*axes, *MEASURES)
         }
         for name in MEASURES:
-            grid = np.moveaxis(np.reshape(values[name], shape), (2, 3), (0, 1)).reshape(*self.grid.shape[1:3], -1)
-            labelled[name] = Variable(list(axes)[2:4], grid[..., 0], of_units.get(name, {}))
+            of_first = np.reshape(values[name], shape)[0, 0].reshape(*self.grid.shape[1:3], -1)
+            labelled[name] = Variable(list(axes)[2:4], of_first[..., 0], of_units.get(name, {}))
         if self.rotation:
             stacked = np.stack([self.rotation[model] for model in self])
             labelled["rotation"] = Variable([*axes, "time"], stacked, {"units": "rad"})
@@ -227,8 +227,8 @@ def respond_each(
     if models is None and any(len(each.default_models) < len(MODELS) for each in ready):
         chosen = ("nonlinear",)
     sources = Motions.of(motions, options)
-    if (twice := len(each_of(motions)) - sources.count) > 0:
-        watch.warn(f"a motion that is given twice is used once: {twice} left out")
+    if sources.repeated:
+        watch.warn(f"a motion that is given twice is used once: {sources.repeated} left out")
     shaking = sources.gather(max(each.growth for each in ready), watch)
     if target_pga is not None and (still := [one.motion.name for one in shaking if one.motion.of_ground.pga_g == 0]):
         raise InputError(Problem("is zero throughout and cannot be scaled to a peak", still[0]))
@@ -240,14 +240,12 @@ def respond_each(
         None if restitutions is None else _axis("restitutions", restitutions),
         target_pga is not None,
     )
-    peaks = abs(grid.runs.scale) * np.array([each.pga for each in grid.measured])[grid.runs.record]
-    if (pga := float(peaks.max())) > MAX_PGA:
-        what = f"up to {pga:.4g} g is not plausible for a ground motion"
-        field, hint = (
-            "`scales`" if target_pga is None else "`target_pga`",
-            f"give at most {MAX_PGA:g} g: check the units",
+    if (pga := float(grid.pga.max())) > MAX_PGA:
+        what, scaled = (
+            f"up to {pga:.4g} g is not plausible for a ground motion",
+            "target_pga" if grid.of_pga else "scales",
         )
-        raise InputError(Problem(what, field=field, hint=hint))
+        raise InputError(Problem(what, field=f"`{scaled}`", hint=f"give at most {MAX_PGA:g} g: check the units"))
     if histories:
         grid.check_memory()
     with watch.progress(grid.count * len(chosen) * (1 + histories), "runs") as advance:

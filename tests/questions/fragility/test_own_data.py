@@ -179,6 +179,12 @@ def test_a_wrong_argument_is_named(given, options, message):
         rk.fit_fragility(*given, **options)
 
 
+def test_few_that_exceed_are_counted_as_the_fit_counts_them():
+    fit = rk.fit_fragility(N, np.where(N == 15, np.nan, (N > 37) + (N == 12)))
+    assert "; 4 of 40 runs exceed; the outcome of 1 is unknown." in fit.sentences[0]
+    assert any("nly 5 of 40 runs count as exceeding" in each for each in fit.sentences)
+
+
 def test_columns_of_frames_are_of_the_same_rows():
     pandas = pytest.importorskip("pandas")
     x, exceeded = (pandas.Series(each) for each in cloud(6))

@@ -64,6 +64,19 @@ def test_each_row_is_the_response_that_it_names(answer):
     assert {"rad", "m", "m/s", "s", "g"} == set(frame.attrs["units"].values())
 
 
+def test_what_is_said_is_counted(answer):
+    frame = answer.to_frame().query("model == 'nonlinear'")
+    fell, unknown = ((frame["outcome"] == each).sum() for each in ("overturns", "unknown"))
+    assert 0 < fell < unknown < len(frame) == 48
+    said = [f"By the nonlinear model {fell} of 48 runs overturn, and the outcome of {unknown} is unknown."]
+    said.append(f"Their rotations are kept at {answer.rotation['nonlinear'].shape[-1]:,} times, until 22 s.")
+    assert answer.sentences == said and answer.time[-1] == pytest.approx(22.0, abs=0.02)
+    legend = [text.get_text() for text in answer.plot().legends[0].get_texts()]
+    assert legend == ["tall", "low", "above the line: overturns", "open: unknown, value until known_to"]
+    assert answer.plot().axes[0].get_title("left") == "48 runs, nonlinear model"
+    assert answer.share() == (fell / 48, (fell + unknown) / 48)
+
+
 def test_rotations_are_those_of_single_responses(answer):
     rotation = answer.rotation["nonlinear"]
     assert rotation.shape == (*answer["nonlinear"].peak_ratio.shape, answer.time.size)
@@ -216,13 +229,13 @@ def test_what_cannot_be_combined_is_said(given, said):
 
 
 def test_a_motion_that_is_given_twice_is_used_once_and_said():
-    quake = rk.read_record(ACCEL)
-    with pytest.warns(rk.DoubtWarning, match="a motion that is given twice is used once: 1 left out"):
-        assert rk.respond_each(block(), [quake, quake, "sine:0.3g:1s"], models="nonlinear")["nonlinear"].fell.shape == (
-            1,
-            2,
-            1,
-        )
+    quake, both = rk.read_record(ACCEL), str(EXAMPLES / "accel*.csv")
+    for given, left_out, used in (
+        ([quake, quake, "sine:0.3g:1s"], 1, 2),
+        ([both, "sine:1g:1s", ACCEL, "sine:1g:1s"], 2, 3),
+    ):
+        with pytest.warns(rk.DoubtWarning, match=f"a motion that is given twice is used once: {left_out} left out"):
+            assert rk.respond_each(block(), given, models="nonlinear")["nonlinear"].fell.shape == (1, used, 1)
 
 
 def test_a_plot_is_of_any_two_columns(answer):
