@@ -37,22 +37,34 @@ def svg(figure: Figure, salt: str, *, text_as: str = "none") -> str:
     return stream.getvalue()
 
 
-def inline_svg(figure: Figure, prefix: str) -> Markup:
-    """Return a figure as an svg element to put inside an HTML page.
+def dark_figures(scope: str = "figure ") -> Markup:
+    """Return the style sheet of the figures on a page, for readers who have chosen dark pages."""
+    return Markup(f"@media screen and (prefers-color-scheme: dark) {{\n{style.dark_rules(scope)}\n}}")
+
+
+def inline_svg(draw: Callable[[], Figure], prefix: str) -> Markup:
+    """Return a figure as two svg elements to put inside an HTML page, one of which is shown.
 
     Parameters
     ----------
-    figure : matplotlib.figure.Figure
-        The figure.
+    draw : callable
+        Draws the figure: once for a wide screen and for print (class `wide`), and once for a phone (`narrow`).
     prefix : str
         Prefix of every identifier, so that those of several figures on a page differ.
     """
+    wide = _inline(draw(), prefix)
+    with style.on_phone():
+        narrow = _inline(draw(), f"{prefix}-narrow")
+    return Markup(f'<div class="wide">{wide}</div><div class="narrow">{narrow}</div>')
+
+
+def _inline(figure: Figure, prefix: str) -> str:
     text = svg(figure, prefix)
     text = text[text.index("<svg") :]
     # A style sheet would apply to the whole page, and the comments repeat every text.
     text = re.sub(r"<(metadata|style)\b.*?</\1>|\s*<!--.*?-->", "", text, flags=re.DOTALL)
     # Text from users is left unchanged.
-    return Markup(re.sub(r"<[^>]*>", lambda tag: _tag(tag[0], prefix), text))
+    return re.sub(r"<[^>]*>", lambda tag: _tag(tag[0], prefix), text)
 
 
 def _tag(tag: str, prefix: str) -> str:

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from rocking_cli.core import Mechanism
-from rocking_cli.documents.figures import inline_svg, template
+from rocking_cli.documents.figures import dark_figures, inline_svg, template
 from rocking_cli.documents.mathematics import BRACKETS, Node, Unreadable, formulas_of, pieces, width
 from rocking_cli.plotting.moving import asset
 from rocking_cli.plotting.structure import draw_structure
@@ -44,6 +44,7 @@ def render(sheet: Sheet) -> str:
         say=sheet.language,
         parts=parts(sheet, alone=True),
         motion_style=Markup(asset("motion.css")),
+        dark_figures=dark_figures(),
     )
     return printable(page)
 
@@ -56,7 +57,7 @@ def parts(sheet: Sheet, level: int = 2, *, alone: bool = False) -> Markup:
     steps, pictures = count(1), count(1)
 
     def svg(item: Drawing) -> Markup:
-        return inline_svg(figure_of(item, sheet.language), f"sheet-{next(pictures)}")
+        return inline_svg(lambda: figure_of(item, sheet.language), f"sheet-{next(pictures)}")
 
     page = template(
         "sheet_parts.html", formula=formula, math=math, is_wide=is_wide, formulas=formulas_of, svg=svg

@@ -88,7 +88,7 @@ def draw_hung(axes: Axes, picture: Picture, rotation: float, panel: Panel, label
         )
         labels.keep_off([at], MARK_COST)
     for outline in drawn.weights:
-        axes.add_patch(Polygon(xy(outline), facecolor=style.INK, edgecolor="white", linewidth=style.THIN, zorder=5))
+        axes.add_patch(Polygon(xy(outline), facecolor=style.INK, edgecolor=style.PAPER, linewidth=style.THIN, zorder=5))
         labels.keep_off([*outline, outline[0]], MARK_COST)
     for tail, tip in drawn.forces:
         axes.annotate(

@@ -50,9 +50,9 @@ class Page:
         InputError
             If the user gave axes and there are several panels.
         """
-        page, target = complex(style.PAGE_WIDTH, height), style.given()
+        page, target = complex(style.page_width(), height), style.given()
         if target is None:
-            return cls(Figure(figsize=(style.PAGE_WIDTH, height), dpi=style.DPI), page)
+            return cls(Figure(figsize=(style.page_width(), height), dpi=style.DPI), page)
         if isinstance(target, Axes):
             raise style.several(panels)
         size = style.inches(target)
@@ -161,7 +161,7 @@ def lay_out(panels: Sequence[Panel], middle: Panel, head: float, foot: float) ->
 
 def _largest(panels: Sequence[Panel]) -> float:
     """Return the largest scale at which panels fit side by side [inches per metre]."""
-    width = style.PAGE_WIDTH - PANEL_GAP * (len(panels) + 1) - sum(each.room.real for each in panels)
+    width = style.page_width() - PANEL_GAP * (len(panels) + 1) - sum(each.room.real for each in panels)
     return min(
         width / sum(each.plane.real for each in panels),
         *((MAX_PANEL_HEIGHT - each.room.imag) / each.plane.imag for each in panels),
@@ -172,7 +172,7 @@ def _row(panels: Sequence[Panel], scale: float, base: float) -> float:
     """Place panels at one scale side by side above `base`, with their levels y = 0 in line; return the top [inches]."""
     for each in panels:
         each.scale = scale
-    spare = style.PAGE_WIDTH - PANEL_GAP * (len(panels) + 1) - sum(each.inches.real for each in panels)
+    spare = style.page_width() - PANEL_GAP * (len(panels) + 1) - sum(each.inches.real for each in panels)
     depth = max(each.depth for each in panels)
     height = max(each.inches.imag - each.depth for each in panels)  # largest height of a panel above y = 0 [inches]
     x = PANEL_GAP

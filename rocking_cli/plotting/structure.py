@@ -96,7 +96,7 @@ def draw_structure(picture: Picture, title: str, ratio: float | None = None, say
         _draw_displaced(axes, picture, panel, direction, turned[direction])
         half = max((style.size_of(line, style.LABEL).real / 2 for line in words[direction].split("\n")), default=0.0)
         middle = min(
-            max(panel.corner.real + panel.inches.real / 2, PANEL_GAP + half), style.PAGE_WIDTH - PANEL_GAP - half
+            max(panel.corner.real + panel.inches.real / 2, PANEL_GAP + half), style.page_width() - PANEL_GAP - half
         )
         page.text(
             complex(middle, panel.corner.imag - SCALE_HEIGHT), words[direction],
@@ -255,7 +255,7 @@ def draw_parts(axes: Axes, picture: Picture, rotation: float, line: float) -> No
             axes.add_patch(patch)
     axes.plot(
         centroids.real, centroids.imag, linestyle="none", marker="o", markersize=5, fillstyle="top", zorder=4,
-        color=style.INK, markerfacecoloralt="white", markeredgewidth=style.THIN,
+        color=style.INK, markerfacecoloralt=style.PAPER, markeredgewidth=style.THIN,
     )  # fmt: skip
 
 
@@ -315,7 +315,7 @@ def _draw_pins(
             labels.keep_off(z[chain])
     axes.plot(
         z.real, z.imag, linestyle="none", marker="o", markersize=4.5, zorder=5,
-        color="white", markeredgecolor=style.INK, markeredgewidth=style.MEDIUM,
+        color=style.PAPER, markeredgecolor=style.INK, markeredgewidth=style.MEDIUM,
     )  # fmt: skip
     return pins
 

@@ -28,13 +28,16 @@ from rocking_cli import names
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.text import printable
 
-PAGE_WIDTH = 7.2  # inches of text
+PAGE_WIDTH, PHONE_WIDTH = 7.2, 3.75  # inches of text on paper, and on a screen of 390 px
 DPI = 150
 POINTS_PER_INCH = 72
 MAX_SIDE_MARGIN = 0.9  # inches at the sides of a panel
-MAX_HEADING_LENGTH = 120  # characters
+MAX_HEADING_LENGTH, MAX_HEADING_LINES = 240, 3  # characters and lines
 LEAST_LEFT = 0.3  # share of the height of a panel that a legend below it is taken to leave
-INK, FAINT, SHADE, GRID = "#222222", "#9a9a9a", "#eeeeee", "#dddddd"
+INK, FAINT, SHADE, GRID, PAPER = "#222222", "#9a9a9a", "#eeeeee", "#dddddd", "#ffffff"
+# Colours of curves: colour-blind readers can tell each two of them apart, on a dark page too.
+BLACK, ORANGE, BLUE = "#111111", "#cc7a00", "#1f77b4"
+VIOLET, BROWN, STONE = "#a21ce6", "#6b3a0a", "#93886a"
 TITLE, LABEL, TICK, SMALL, TINY = 10, 9, 8, 7, 5  # sizes of type [pt]
 HAIR, THIN, CURVE, MEDIUM, BOLD = 0.4, 0.6, 0.7, 1.0, 1.6  # weights of line [pt]
 LEGEND: dict[str, Any] = {"fontsize": TICK, "frameon": True, "framealpha": 0.9, "edgecolor": "none"}
@@ -49,57 +52,101 @@ TIE: dict[str, Any] = {"color": "#1d6b4f", "linewidth": 1.3}
 SLACK = (0, (2.5, 2))
 # Curves differ in darkness, dash and weight as well as in hue; the heaviest is visible behind the others.
 LINES = {
-    "nonlinear": {"color": "#111111", "linestyle": "-", "linewidth": 1.9},
-    "linear1": {"color": "#e08a00", "linestyle": "--", "linewidth": 1.3},
-    "linear2": {"color": "#1f77b4", "linestyle": "-.", "linewidth": 0.9},
+    "nonlinear": {"color": BLACK, "linestyle": "-", "linewidth": 1.9},
+    "linear1": {"color": ORANGE, "linestyle": "--", "linewidth": 1.3},
+    "linear2": {"color": BLUE, "linestyle": "-.", "linewidth": 0.9},
 }
 RECORD_COLOUR = "#8a8a8a"  # pale, as bold curves are drawn over it
 PULSES: tuple[dict[str, Any], ...] = (
-    {"color": "#111111", "linestyle": "-", "linewidth": 2.4},
-    {"color": "#e08a00", "linestyle": "--", "linewidth": 2.0},
-    {"color": "#1f77b4", "linestyle": "-.", "linewidth": 1.6},
+    {"color": BLACK, "linestyle": "-", "linewidth": 2.4},
+    {"color": ORANGE, "linestyle": "--", "linewidth": 2.0},
+    {"color": BLUE, "linestyle": "-.", "linewidth": 1.6},
 )
 LABELS = {"nonlinear": "nonlinear", "linear1": r"linear, $\kappa_1$", "linear2": r"linear, $\kappa_2$"}
 
 # Regions of a plane of pulses, and the boundaries between them.
 # From white to dark, so that the order is visible in grey; blue to orange to brown for the colour-blind.
 REGIONS = {
-    names.NO_UPLIFT: "#ffffff",
-    names.ROCKS: "#d6e6f2",
+    names.NO_UPLIFT: PAPER,
+    names.ROCKS: "#c6dcec",
     f"{names.OVERTURNS} after one impact": "#f2b04a",
     f"{names.OVERTURNS} after two or more": "#c46a1b",
     f"{names.OVERTURNS} without impact": "#5b3a55",
     names.UNKNOWN: "#c9c9c9",  # grey, and hatched too
 }
 BOUNDARIES: dict[str, dict[str, Any]] = {
-    "uplift": {"color": "#222222", "linestyle": "-", "linewidth": 1.0},
-    "without_impact": {"color": "#000000", "linestyle": "-", "linewidth": 2.0},
-    "after_one_impact": {"color": "#000000", "linestyle": (0, (4, 1.5)), "linewidth": 1.6},
-    "impact_at_end": {"color": "#000000", "linestyle": (0, (1, 1.5)), "linewidth": 1.3},
+    "uplift": {"color": INK, "linestyle": "-", "linewidth": 1.0},
+    "without_impact": {"color": BLACK, "linestyle": "-", "linewidth": 2.0},
+    "after_one_impact": {"color": BLACK, "linestyle": (0, (4, 1.5)), "linewidth": 1.6},
+    "impact_at_end": {"color": BLACK, "linestyle": (0, (1, 1.5)), "linewidth": 1.3},
 }
 
 MARKED: dict[str, Any] = {
-    "marker": "o", "markersize": 8, "color": "white", "markeredgecolor": "#000000", "markeredgewidth": 1.8
+    "marker": "o", "markersize": 8, "color": PAPER, "markeredgecolor": BLACK, "markeredgewidth": 1.8
 }  # fmt: skip
 
-STAR: dict[str, Any] = {"marker": "*", "markersize": 15, "markeredgecolor": "white", "linestyle": "none", "zorder": 6}
+STAR: dict[str, Any] = {"marker": "*", "markersize": 15, "markeredgecolor": PAPER, "linestyle": "none", "zorder": 6}
 
 UNKNOWN: dict[str, Any] = {"facecolor": "none", "edgecolor": FAINT, "hatch": "////", "linewidth": 0.0}
 """The look of areas in which the outcome is not known: hatched in grey."""
 
-SPARED, EXCEEDED = "#1f77b4", "#b35900"  # runs below and above a limit; their marks differ, too
+SPARED, EXCEEDED = BLUE, "#b35900"  # runs below and above a limit; their marks differ, too
+SATISFIED = REGIONS[names.ROCKS]  # areas in which a requirement or a band is met
+MEAN, TARGET, MISSED, OVERTURNED = BLACK, "#c46a1b", VIOLET, "#c46a1b"
+RANKS = ("#4a1306", "#b3450f", "#e99a3c", "#f8dfa4")  # from the first of a ranking to the last
 
 # For any number of curves: dashes and marks distinguish them in grey, and where they overlap.
 _DASHES = ("-", "--", "-.", ":", (0, (6, 1, 1, 1, 1, 1)), (0, (3, 1)))
-_HUES = ("#111111", "#d98200", "#1f77b4", "#8a3b62", "#3c7d3c", "#777777")
+HUES = (BLACK, ORANGE, BLUE, VIOLET, BROWN, STONE)
 _MARKS = ("o", "s", "^", "D", "v", "P")
+
+DARK = {
+    PAPER: "#16181b", INK: "#e8e6e1", FAINT: "#84888e", SHADE: "#26292e", GRID: "#3a3d42", "#000000": "#f4f2ee",
+    BLACK: "#f4f2ee", ORANGE: "#ffb454", BLUE: "#6db3f2", VIOLET: "#a06bff", BROWN: "#bb6520", STONE: "#b5a886",
+    "#dfe6ec": "#3d4852", "#f1e2c6": "#5d4f31", "#c2cdd8": "#57646f", RESTING_COLOUR: "#2b2e32", EARTH: "#a99c88",
+    MEASURE: "#7fb6e6", CURSOR: "#ff8a65", "#b3541e": "#ff9d5c", "#1d6b4f": "#4fbf94", RECORD_COLOUR: "#8b8e94",
+    "#b35900": "#ff9a4d", "#c6dcec": "#20384b", "#f2b04a": "#9a6413", "#c46a1b": "#dc8a45", "#5b3a55": "#dcb6d4",
+    "#c9c9c9": "#5c6066",
+}  # fmt: skip
+"""The colour on a dark page that takes the place of each colour of a picture."""
+
+
+def dark_rules(scope: str = "") -> str:
+    """Return a style sheet that shows the SVG of pictures, those within `scope`, in the colours of a dark page."""
+    rules = [f"{scope}text:not([style*='fill']) {{ fill: {DARK['#000000']} }}"]
+    for light, dark in DARK.items():
+        rules += [f"{scope}[style*='{what}: {light}'] {{ {what}: {dark} !important }}" for what in ("fill", "stroke")]
+    return "\n".join(rules)
+
+
+_width: ContextVar[float] = ContextVar("width", default=PAGE_WIDTH)
+
+
+def page_width() -> float:
+    """Return the width of a new figure [inches]."""
+    return _width.get()
+
+
+def is_narrow() -> bool:
+    """Return whether new figures are for the screen of a phone: their panels are below one another, words shorter."""
+    return page_width() < PAGE_WIDTH
+
+
+@contextmanager
+def on_phone() -> Iterator[None]:
+    """Have pictures drawn for the screen of a phone: not smaller, but narrow."""
+    token = _width.set(PHONE_WIDTH)
+    try:
+        yield
+    finally:
+        _width.reset(token)
 
 
 def distinct(k: int) -> dict[str, Any]:
     """Return the style of curve number k of several; from the seventh on, a colour has another dash and mark."""
-    again = k + k // len(_HUES)
+    again = k + k // len(HUES)
     return {
-        "color": _HUES[k % len(_HUES)],
+        "color": HUES[k % len(HUES)],
         "linestyle": _DASHES[again % len(_DASHES)],
         "marker": _MARKS[again % len(_MARKS)],
         "markersize": 4.5,
@@ -108,14 +155,13 @@ def distinct(k: int) -> dict[str, Any]:
 
 
 def family(k: int) -> dict[str, Any]:
-    """Return the style of curve number k of a family of at most five, without marks, for small panels."""
-    dashes = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
-    return {"color": ("#111111", "#1f77b4", "#e08a00", "#7b4ea3", "#4a8f3c")[k], "linestyle": dashes[k]}
+    """Return the style of curve number k of a family of at most six, without marks, for small panels."""
+    return {"color": HUES[k], "linestyle": _DASHES[k]}
 
 
 def new_figure(height: float) -> Figure:
     """Return an empty figure of the common width; `height` in inches."""
-    return Figure(figsize=(PAGE_WIDTH, height), dpi=DPI, layout="constrained")
+    return Figure(figsize=(page_width(), height), dpi=DPI, layout="constrained")
 
 
 Target = Axes | Figure | SubFigure
@@ -210,8 +256,13 @@ def panels(
                 Problem(f"must have the projection {projection}, not {target.name}", field="`ax`", hint=hint)
             )
         return cast("Figure", target.figure), np.array([[target]])
+    how |= {"subplot_kw": {"projection": projection}}
+    if target is None and is_narrow() and columns > 1:  # below one another
+        figure = new_figure(height * columns)
+        tall = np.repeat(how.get("height_ratios", np.ones(rows)), columns).tolist()
+        stacked = figure.subplots(rows * columns, 1, squeeze=False, subplot_kw=how["subplot_kw"], height_ratios=tall)
+        return figure, stacked.reshape(rows, columns)
     figure = new_figure(height) if target is None else cast("Figure", target)
-    how = {"subplot_kw": {"projection": projection}, **how}
     return figure, figure.subplots(rows, columns, squeeze=False, **how)
 
 
@@ -239,8 +290,9 @@ def _measure() -> Any:
     return RendererAgg(1, 1, DPI)  # type: ignore[no-untyped-call]
 
 
-def fitted(text: str, width: float = PAGE_WIDTH - 0.3, points: float = TITLE) -> str:
-    """Shorten a text, without mathematics, to the words that fit a width [inches]."""
+def fitted(text: str, width: float | None = None, points: float = TITLE) -> str:
+    """Shorten a text, without mathematics, to the words that fit a width [inches], by default that of the page."""
+    width = page_width() - 0.3 if width is None else width
     for most in range(MAX_HEADING_LENGTH, 10, -5):
         short = shorten(text, most, placeholder=" ...")
         if size_of(plain(short), points).real <= width:
@@ -260,20 +312,26 @@ def folded(text: str, width: float, points: float, indent: str = "") -> str:
     return "\n".join(lines)
 
 
+def _in_lines(text: str, width: float) -> str:
+    """Break a title into lines of a width [inches], with dollars escaped; only a very long one is cut."""
+    for most in range(MAX_HEADING_LENGTH, 10, -10):
+        lines = folded(plain(shorten(text, most, placeholder=" ...")), width, TITLE)
+        if lines.count("\n") < MAX_HEADING_LINES:
+            break
+    return lines
+
+
 def heading(axes: Axes, text: str) -> None:
     """Write the title of a plot above its first panel; dollars in names are plain characters."""
-    text = fitted(text, PAGE_WIDTH - MAX_SIDE_MARGIN)
-    if given() is not None:
-        text = folded(plain(text), inches(axes).real, TITLE).replace(r"\$", "$")
-    axes.set_title(text, loc="left", fontsize=TITLE, color=INK, parse_math=False)
+    width = page_width() - MAX_SIDE_MARGIN if given() is None else inches(axes).real
+    lines = _in_lines(text, width).replace(r"\$", "$")
+    axes.set_title(lines, loc="left", fontsize=TITLE, color=INK, parse_math=False)
 
 
 def heading_of_all(figure: Figure, text: str) -> None:
     """Write the title of a plot above all its panels."""
-    text = plain(fitted(text))
-    if given() is not None:
-        text = folded(text, 0.97 * inches(figure).real, TITLE)
-    figure.suptitle(text, fontsize=TITLE, x=0.01, ha="left", color=INK)
+    width = page_width() - 0.3 if given() is None else 0.97 * inches(figure).real
+    figure.suptitle(_in_lines(text, width), fontsize=TITLE, x=0.01, ha="left", color=INK)
 
 
 def over(ends_at_limit: Sequence[bool], *, math: bool = False) -> str:
@@ -352,15 +410,11 @@ def in_percent(axis: Axis) -> None:
 def legend_below(figure: Figure, handles: Sequence[Any] | None = None, ncols: int = 2, **look: Any) -> None:
     """Draw the legend of a figure below its panels; in a figure of the user where no layout makes room, in a panel."""
     context, below = _given.get(), {"fontsize": TICK, "frameon": False, **look}
-    if context is None:
-        keys = {} if handles is None else {"handles": handles}
-        figure.legend(**keys, loc="outside lower center", ncols=ncols, **below)
-        return
-    target = context.target
+    target = figure if context is None else context.target
     panels = [target] if isinstance(target, Axes) else target.axes
     lowest, layout = min(panels, key=lambda axes: axes.bbox.y0), _layout(target)
     handles = [each for axes in panels for each in axes.get_legend_handles_labels()[0]] if handles is None else handles
-    outside = isinstance(target, Figure) and layout is None
+    outside = isinstance(target, Figure) and (layout is None or context is None)
     outside |= not isinstance(target, Axes) and isinstance(layout, ConstrainedLayoutEngine)
     room = inches(target if outside else lowest).real
     beside = (look.get("handlelength", 2.0) + 3.5) * TICK / POINTS_PER_INCH  # room of handle and gaps in a column
@@ -370,8 +424,10 @@ def legend_below(figure: Figure, handles: Sequence[Any] | None = None, ncols: in
     if widest + beside > room:
         labels = [folded(each, room - beside, TICK, "    ") for each in labels]
     if outside:
-        context.below.append(target.legend(handles, labels, loc="outside lower center", ncols=ncols, **below))
-    elif layout is not None:
+        key = target.legend(handles, labels, loc="outside lower center", ncols=ncols, **below)
+        if context is not None:
+            context.below.append(key)
+    elif layout is not None and context is not None:
         context.below.append(lowest.legend(handles, labels, loc="upper center", ncols=ncols, **below))
     else:
         lowest.legend(handles, labels, loc="best", **LEGEND, **look)

@@ -94,10 +94,10 @@ def _frames(stage: _Stage, film: Film, times: Reals, advance: Callable[[int], No
 @cache
 def _palette() -> Image.Image:
     """Return the colours of a GIF: those of the style, and shades of them. Few colours make small files."""
-    colours = {to_rgb("white"), to_rgb(style.INK)}
+    colours = {to_rgb(style.PAPER), to_rgb(style.INK)}
     drawn = (style.RESTING_COLOUR, style.EARTH, style.CURSOR, style.INK, style.FAINT, style.TIE["color"])
     for each in (*style.BODIES, *drawn):
-        colour, white, ink = (np.array(to_rgb(c)) for c in (each, "white", style.INK))
+        colour, white, ink = (np.array(to_rgb(c)) for c in (each, style.PAPER, style.INK))
         for other in (white, ink):
             colours |= {tuple(colour + share * (other - colour)) for share in (0.0, *BLENDS)}
     # The nearest colour of the palette is found approximately: nearly white must not become white.
@@ -117,35 +117,35 @@ class _Stage:
         panel = Panel(low, high, (left, right, below, above))
         size = panel.plane
         panel.scale = min(
-            (style.PAGE_WIDTH - 2 * PANEL_GAP - panel.room.real) / size.real,
+            (style.page_width() - 2 * PANEL_GAP - panel.room.real) / size.real,
             (MAX_STRUCTURE_HEIGHT - panel.room.imag) / size.imag,
         )
-        spare = style.PAGE_WIDTH - 2 * PANEL_GAP - panel.inches.real
+        spare = style.page_width() - 2 * PANEL_GAP - panel.inches.real
         panel.around = left + spare / 2, right + spare / 2, below, above
         below = 2 * TRACE_HEIGHT + 3 * PANEL_GAP + FOOT_HEIGHT + 0.3
         panel.corner = complex(PANEL_GAP, below)
         tall = ceil((below + panel.inches.imag + TITLE_HEIGHT) * DOTS_PER_INCH) / DOTS_PER_INCH
-        figure = Figure(figsize=(style.PAGE_WIDTH, tall), dpi=DOTS_PER_INCH * SUPERSAMPLING)
+        figure = Figure(figsize=(style.page_width(), tall), dpi=DOTS_PER_INCH * SUPERSAMPLING)
         figure.text(
-            PANEL_GAP / style.PAGE_WIDTH, 1 - 0.1 / tall, style.fitted(title), va="top",
+            PANEL_GAP / style.page_width(), 1 - 0.1 / tall, style.fitted(title), va="top",
             fontsize=style.TITLE, color=style.INK, parse_math=False,
         )  # fmt: skip
-        axes = panel.axes(Page(figure, complex(style.PAGE_WIDTH, tall)))
+        axes = panel.axes(Page(figure, complex(style.page_width(), tall)))
         draw_ground(axes, film.picture, panel)
         draw_scale(axes, panel)
         lower = figure.add_axes(
             (
-                LEFT_MARGIN / style.PAGE_WIDTH,
+                LEFT_MARGIN / style.page_width(),
                 FOOT_HEIGHT / tall,
-                1 - (LEFT_MARGIN + PANEL_GAP) / style.PAGE_WIDTH,
+                1 - (LEFT_MARGIN + PANEL_GAP) / style.page_width(),
                 TRACE_HEIGHT / tall,
             )
         )
         upper = figure.add_axes(
             (
-                LEFT_MARGIN / style.PAGE_WIDTH,
+                LEFT_MARGIN / style.page_width(),
                 (FOOT_HEIGHT + TRACE_HEIGHT + PANEL_GAP) / tall,
-                1 - (LEFT_MARGIN + PANEL_GAP) / style.PAGE_WIDTH,
+                1 - (LEFT_MARGIN + PANEL_GAP) / style.page_width(),
                 TRACE_HEIGHT / tall,
             )
         )
@@ -181,7 +181,7 @@ class _Stage:
         for letter, place in places:
             pen.text(
                 (place.real + 5, frame.height - place.imag - 5), letter, fill=style.INK, font=_font(12, bold=True),
-                anchor="lb", stroke_width=2, stroke_fill="white",
+                anchor="lb", stroke_width=2, stroke_fill=style.PAPER,
             )  # fmt: skip
         start, end = self._times
         share = (time - start) / (end - start) if end > start else 0.0
@@ -215,7 +215,7 @@ class _Stage:
         seen = [] if rotation == 0 else [k for k, pin in enumerate(picture.pins) if pin.direction is direction]
         for x, y in self._pixels(pins[seen]):
             ring = Affine2D().scale(HINGE_RADIUS).translate(x, y)
-            self._renderer.draw_path(pen, Path.unit_circle(), ring, to_rgb("white"))
+            self._renderer.draw_path(pen, Path.unit_circle(), ring, to_rgb(style.PAPER))
         pen.restore()
         places = self._pixels(pins[seen]) @ np.array([1, 1j])
         return [(picture.pins[k].letter, complex(place)) for k, place in zip(seen, places, strict=True)]
@@ -244,7 +244,7 @@ class _Stage:
         pen.restore()
 
     def _draw_loads(self, shown: hung.Symbols) -> None:
-        pen = self._pen("white", style.THIN)
+        pen = self._pen(style.PAPER, style.THIN)
         for outline in shown.weights:
             self._fill(pen, outline, style.INK)
         pen.restore()
@@ -285,7 +285,7 @@ def _draw_traces(upper: Axes, lower: Axes, film: Film, start: float, end: float)
         axes.set_xlim(start, max(end, start + 1e-3))
         tall = 1.1 * max(float(np.abs(values).max()), 1e-3)
         axes.set_ylim(-tall, tall)
-        axes.yaxis.set_label_coords(-(LEFT_MARGIN - 0.3) / (style.PAGE_WIDTH - LEFT_MARGIN - PANEL_GAP), 0.5)
+        axes.yaxis.set_label_coords(-(LEFT_MARGIN - 0.3) / (style.page_width() - LEFT_MARGIN - PANEL_GAP), 0.5)
         axes.yaxis.set_major_locator(MaxNLocator(4))
         axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
         style.tidy(axes, y=label)

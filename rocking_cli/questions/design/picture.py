@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from rocking_cli.plotting import style
 from rocking_cli.questions.design.study import Design
 
-SATISFIED_COLOUR = "#d6e6f2"
 HEADROOM = 0.12  # share of the height above the curve
 MAX_MARKED_VALUES = 60  # largest number of values of the scan that are marked one by one
 
@@ -27,7 +26,7 @@ def draw_design(found: Design) -> Figure:
     finite = np.isfinite(found.metric)
     shown = np.where(finite, found.metric, np.nan)
     for k, (low, high) in enumerate(found.holds):
-        axes.axvspan(low, high, color=SATISFIED_COLOUR, linewidth=0, label=f"{found.aim} holds" if k == 0 else None)
+        axes.axvspan(low, high, color=style.SATISFIED, linewidth=0, label=f"{found.aim} holds" if k == 0 else None)
     axes.axhline(found.aim.level, color=style.EXCEEDED, linewidth=style.BOLD, linestyle="--", label="required level")
     few = finite.sum() <= MAX_MARKED_VALUES
     axes.plot(
@@ -73,7 +72,7 @@ def _mark_unknown(axes: Axes, found: Design) -> None:
     here = _unknown(found) & np.isfinite(found.metric)
     if here.any():
         axes.plot(
-            found.values[here], found.metric[here], linestyle="none", marker="D", markersize=5, color="white",
+            found.values[here], found.metric[here], linestyle="none", marker="D", markersize=5, color=style.PAPER,
             markeredgecolor=style.INK, label="open: some neighbours of unknown outcome, counted as overturning",
         )  # fmt: skip
 
@@ -93,7 +92,7 @@ def _mark_missing(axes: Axes, found: Design) -> None:
                 marker,
                 transform=across,
                 color=style.FAINT,
-                markerfacecolor="white" if marker == "D" else style.FAINT,
+                markerfacecolor=style.PAPER if marker == "D" else style.FAINT,
                 markersize=5,
                 label=label,
             )

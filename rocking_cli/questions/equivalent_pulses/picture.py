@@ -45,7 +45,9 @@ def draw_equivalent(found: EquivalentResponses, title: str) -> Figure:
             below.plot(tau[-1], ratio[-1], marker="x", markersize=7, color=style.distinct(k)["color"])
         if unknown and ratio.size:
             colour = style.distinct(k)["color"]
-            below.plot(tau[-1], ratio[-1], marker="o", markersize=9, color=colour, markerfacecolor="white", zorder=3)
+            below.plot(
+                tau[-1], ratio[-1], marker="o", markersize=9, color=colour, markerfacecolor=style.PAPER, zorder=3
+            )
     _draw_linear(below, found)
     end = found.pulse_end + SHOWN_AFTER_PULSE
     below.set_xlim(0.0, min(end, float(found.tau[-1])))

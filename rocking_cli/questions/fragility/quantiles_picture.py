@@ -19,7 +19,6 @@ MIN_LOG_RATIO = 30.0  # ratio of the ends of an axis from which it is logarithmi
 BAND_OPACITY = 0.16  # opacity of the area between the lowest quantile and the highest
 LINE_END = 0.85  # height in the band of overturning at which the lines end
 ORDER = (names.NO_UPLIFT, names.ROCKS, names.UNKNOWN, names.OVERTURNS)
-OVERTURNED_COLOUR = "#c46a1b"  # light enough for its line, and darker in grey than that of runs that rock
 
 
 def draw_quantiles(found: Quantiles, label: str) -> Figure:
@@ -92,7 +91,7 @@ def _shares(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:
     still, unknown, fallen = (
         np.array([getattr(each, of) for each in found.groups]) / runs for of in ("no_uplift", "unknown", "overturned")
     )  # fmt: skip
-    colors = (style.REGIONS[names.NO_UPLIFT], style.REGIONS[names.ROCKS], style.SHADE, OVERTURNED_COLOUR)
+    colors = (style.REGIONS[names.NO_UPLIFT], style.REGIONS[names.ROCKS], style.SHADE, style.OVERTURNED)
     shares = [still, 1 - still - unknown - fallen, unknown, fallen]
     those = [k for k in range(len(ORDER)) if ORDER[k] != names.UNKNOWN or found.unknown]
     drawn = axes.stackplot(

@@ -12,7 +12,7 @@ import numpy as np
 from markupsafe import Markup, escape
 
 from rocking_cli.core import Angle, Length
-from rocking_cli.documents.figures import inline_svg, template
+from rocking_cli.documents.figures import dark_figures, inline_svg, template
 from rocking_cli.documents.sheet_page import parts
 from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.pulse_fit import PulseFit
@@ -121,7 +121,7 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
         doubts=words.doubts(content),
         cautioned=cautioned(verified.found) if verified is not None else [],
         restitution=_greek(restitution_used(content.structure)),
-        drawing=inline_svg(draw_structure(content.picture, content.name), "drawing"),
+        drawing=inline_svg(lambda: draw_structure(content.picture, content.name), "drawing"),
         measured=[f"{each.text} ({each.direction.label})" if each.direction else each.text for each in lengths],
         directions=[f"{each.direction.label} ({SENSE[each.direction]})" for each in sides] if sides[1:] else ["value"],
         hung=hung_on(content),
@@ -143,11 +143,13 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
         ],
         checked=any(contact.followed for each in content.results for contact in each.contacts.values()),
         contact_columns=["ground motion", *(column.head for column in demands), "outcome known"],
-        margins=inline_svg(draw_margins(margins, ""), "margins") if margins else None,
+        margins=inline_svg(lambda: draw_margins(margins, ""), "margins") if margins else None,
         around=content.results[0].margin.around if content.results else None,
         deviations=deviations(content.results[0].margin.around) if content.results else "",
         maps=[_map(each, k) for k, each in enumerate(content.maps)],
-        errors=inline_svg(draw_linearisation(content.curves, content.asked, ""), "errors") if content.curves else None,
+        errors=inline_svg(lambda: draw_linearisation(content.curves, content.asked, ""), "errors")
+        if content.curves
+        else None,
         error_tables=[
             (
                 each.direction.label if len(content.asked) > 1 else "",
@@ -160,6 +162,7 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
         ],
         measures=[_measures(each) for each in content.results],
         style=Markup(asset("motion.css")),
+        dark_figures=dark_figures(),
         script=Markup(asset("motion.js")),
     )
     return printable(page)  # names and contents of files may have characters that a page cannot hold
@@ -308,7 +311,7 @@ def _map(each: PulseMap, k: int) -> dict[str, Any]:
     return {
         "title": each.found.shape.title,
         "shape": each.found.shape.name,
-        "picture": inline_svg(draw_map(each.found, "", dimensionless=False, marks=places), f"map-{k}"),
+        "picture": inline_svg(lambda: draw_map(each.found, "", dimensionless=False, marks=places), f"map-{k}"),
         "share": f"{100 * share(each.found):.0f} %",
         "unknown": f"{100 * each.found.shares[Region.UNKNOWN]:.0f} %" if each.found.outcome.unknown.any() else "",
         "p": _number(shaken.p),

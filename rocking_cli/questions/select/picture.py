@@ -11,8 +11,6 @@ from rocking_cli.questions.select.study import RecordSet
 
 MAX_TICKED_RATIO = 8.0  # ratio of the ends of the band up to which its axis has more ticks
 MAX_OPAQUE_LINES = 12  # with more records, their lines are transparent
-MEAN_COLOUR, TARGET_COLOUR, LIMITS_COLOUR = "#111111", "#c46a1b", "#d6e6f2"
-MISSED_COLOUR = "#8a3b62"
 
 
 def draw_record_set(found: RecordSet, title: str) -> Figure:
@@ -28,15 +26,15 @@ def draw_record_set(found: RecordSet, title: str) -> Figure:
     periods, target, mean = found.candidates.periods, found.candidates.target, found.mean
     low, high = found.wanted.within
     figure, axes = style.one_panel(4.4, title)
-    axes.fill_between(periods, low * target, high * target, color=LIMITS_COLOUR, linewidth=0, zorder=0)
+    axes.fill_between(periods, low * target, high * target, color=style.SATISFIED, linewidth=0, zorder=0)
     faint = min(1.0, max(MAX_OPAQUE_LINES / len(found.chosen), 0.2))
     axes.plot(periods, found.spectra.T, color=style.FAINT, linewidth=style.CURVE, alpha=faint, zorder=1.5)
-    axes.plot(periods, target, color=TARGET_COLOUR, linestyle="--", linewidth=style.BOLD, zorder=2.5)
-    axes.plot(periods, mean, color=MEAN_COLOUR, linewidth=2.2, zorder=3)
+    axes.plot(periods, target, color=style.TARGET, linestyle="--", linewidth=style.BOLD, zorder=2.5)
+    axes.plot(periods, mean, color=style.MEAN, linewidth=2.2, zorder=3)
     missed = found.too_low | found.too_high
     if missed.any():
         axes.plot(
-            periods[missed], mean[missed], linestyle="none", marker="x", markersize=5, color=MISSED_COLOUR, zorder=4
+            periods[missed], mean[missed], linestyle="none", marker="x", markersize=5, color=style.MISSED, zorder=4
         )
     short = periods[-1] / periods[0] <= MAX_TICKED_RATIO
     style.logarithmic(axes.xaxis, (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0) if short else (1.0, 2.0, 5.0))
@@ -45,12 +43,12 @@ def draw_record_set(found: RecordSet, title: str) -> Figure:
     damping = f"{100 * found.wanted.damping:g} % damping"
     style.tidy(axes, "period [s]", f"pseudo-acceleration [g], {damping}")
     handles: list[Line2D | Patch] = [
-        Line2D([], [], color=MEAN_COLOUR, linewidth=2.2, label="mean"),
-        Line2D([], [], color=TARGET_COLOUR, linestyle="--", linewidth=style.BOLD, label="target"),
-        Patch(color=LIMITS_COLOUR, linewidth=0, label=f"{low:g} to {high:g} times the target"),
+        Line2D([], [], color=style.MEAN, linewidth=2.2, label="mean"),
+        Line2D([], [], color=style.TARGET, linestyle="--", linewidth=style.BOLD, label="target"),
+        Patch(color=style.SATISFIED, linewidth=0, label=f"{low:g} to {high:g} times the target"),
         Line2D([], [], color=style.FAINT, linewidth=style.CURVE, label="each record, scaled"),
     ]
     if missed.any():
-        handles.append(Line2D([], [], linestyle="none", marker="x", color=MISSED_COLOUR, label="outside the limits"))
+        handles.append(Line2D([], [], linestyle="none", marker="x", color=style.MISSED, label="outside the limits"))
     style.legend_below(figure, handles, len(handles))
     return figure

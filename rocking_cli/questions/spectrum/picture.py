@@ -200,7 +200,7 @@ def _second_axis(axes: Axes, spectra: Sequence[Spectrum]) -> None:
     above = axes.secondary_xaxis("top", functions=both)  # type: ignore[arg-type]
     above.set_xlabel("scale (1: as given)" if of_structures else "size R of the blocks [m]", fontsize=style.LABEL)
     _log_ticks(above.xaxis, spectra[0].scales[-1] / spectra[0].scales[0])
-    above.tick_params(labelsize=8, colors=style.INK)
+    above.tick_params(labelsize=style.TICK, colors=style.INK)
 
 
 def _between(x: Reals, y: Reals, power: float) -> Callable[[Reals], Reals]:

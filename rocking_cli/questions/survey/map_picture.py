@@ -25,7 +25,7 @@ BORDER_SHARE = 0.08  # border around the marks, over the extent of the map
 SLIMMEST = 0.6  # least ratio of the shorter side of a map to the longer one
 SCALE_SHARE = 0.3  # longest scale bar over the width of the map
 SAME_PLACE_SHARE = 0.02  # distance over the width of the map within which structures share a label
-RANKS = LinearSegmentedColormap.from_list("ranks", ["#4a1306", "#b3450f", "#e99a3c", "#f8dfa4"])
+RANKS = LinearSegmentedColormap.from_list("ranks", style.RANKS)
 """Colours of the ranks, from dark for the first to pale, so that the order is visible in grey."""
 
 

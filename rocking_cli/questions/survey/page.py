@@ -40,7 +40,7 @@ def render(found: Survey, source: str, about: Sequence[str]) -> str:
         about=about,
         title=title(found),
         said=[each.replace("`", "") for each in (*counts(found), *sentences(found))],
-        picture=inline_svg(draw_survey(found, ""), "survey") if found.rows else None,
+        picture=inline_svg(lambda: draw_survey(found, ""), "survey") if found.rows else None,
         map=_map(found),
         columns=[_symbolic(each) for each in rows.columns],
         words=[k for k in range(len(rows.columns)) if k not in rows.numbers],
@@ -61,7 +61,7 @@ def _map(found: Survey) -> Markup | None:
         where = coordinates(found)
     except InputError:
         return None
-    return inline_svg(draw_map(found, where, ""), "map")
+    return inline_svg(lambda: draw_map(found, where, ""), "map")
 
 
 def _symbolic(heading: str) -> str:

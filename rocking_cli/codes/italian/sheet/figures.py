@@ -93,7 +93,7 @@ def draw_chain(say: Language, side: ItalianVerified) -> Figure:
     title = say("{name}: weights, forces and arms at rest, {way} direction", name=side.chain.mechanism.name,
                 way=say(side.direction.label))  # fmt: skip
     page.figure.text(
-        PANEL_GAP / style.PAGE_WIDTH, 1 - 0.09 / height, style.fitted(title), va="top", fontsize=style.TITLE,
+        PANEL_GAP / style.page_width(), 1 - 0.09 / height, style.fitted(title), va="top", fontsize=style.TITLE,
         color=style.INK, parse_math=False,
     )  # fmt: skip
     return in_language(say, page.figure)
