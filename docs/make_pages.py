@@ -84,7 +84,7 @@ def main() -> None:
     runs = run(commands(), RUN)
     make_sheets.main()
     make_sheets.draw(RUN)
-    keep(drawn(runs), RUN)
+    keep(drawn(runs), runs, RUN)
     for page in pages():
         text = page.read_text(encoding="utf-8")
         anew = renewed(text, lambda kind, what: made(kind, what, runs))
