@@ -10,12 +10,15 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from markupsafe import Markup
 from matplotlib import rc_context
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from rocking_cli.plotting import style
 
 FONT_FAMILY = "system-ui, 'Segoe UI', Helvetica, Arial, 'DejaVu Sans', sans-serif"
 
-SVG_ATTRIBUTES = 'aria-hidden="true" focusable="false" style="stroke-linejoin: round; stroke-linecap: butt"'
+HALO = "over-lines-"  # prefix of the identifier of words over lines
+SVG_STYLE = f"font-family: {FONT_FAMILY}; stroke-linejoin: round; stroke-linecap: butt"
+SVG_ATTRIBUTES = f'aria-hidden="true" focusable="false" style="{SVG_STYLE}"'
 
 
 def template(name: str, **filters: Callable[..., object]) -> Template:
@@ -31,10 +34,14 @@ def template(name: str, **filters: Callable[..., object]) -> Template:
 def svg(figure: Figure, salt: str, *, text_as: str = "none") -> str:
     """Return a figure as the content of an SVG file, the same each time, with its text as text or as "path"."""
     stream = StringIO()
+    over_lines = [each for each in figure.findobj(Text) if each.get_path_effects()] if text_as == "none" else []
+    for k, each in enumerate(over_lines):  # otherwise they would be written as shapes, in another font
+        each.set(path_effects=[], gid=f"{HALO}{k}")
     with rc_context({"svg.fonttype": text_as, "svg.hashsalt": salt}):
         unnamed = {"Date": None, "Creator": None, "Format": None, "Type": None}
         style.save(figure, stream, format="svg", metadata=unnamed)
-    return stream.getvalue()
+    halo = f"paint-order: stroke; stroke: {style.PAPER}; stroke-width: {style.HALO_WEIGHT}; stroke-linejoin: round"
+    return re.sub(rf'<g id="{HALO}\d+"', rf'\g<0> style="{halo}"', stream.getvalue())
 
 
 def dark_figures(scope: str = "figure ") -> Markup:
@@ -73,6 +80,6 @@ def _tag(tag: str, prefix: str) -> str:
     tag = re.sub(r'(href="|url\()#', rf"\1#{prefix}-", tag)
     # A hundredth of a point is not seen, and a line break of each point of a path is as long as a number.
     tag = re.sub(r"(\.\d\d)\d+", r"\1", re.sub(r"\s+", " ", tag)) if tag.startswith("<path") else tag
-    tag = re.sub(r"'?DejaVu Sans'?[^;\"]*", FONT_FAMILY, tag)
+    tag = re.sub(r"font-family: '?DejaVu Sans'?[^;\"]*(; )?", "", tag)  # that of the whole figure
     # Screen readers take the description beside the picture.
     return tag.replace("<svg ", f"<svg {SVG_ATTRIBUTES} ", 1)

@@ -10,7 +10,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 from rocking_cli.plotting import style
@@ -49,8 +48,7 @@ def name_curves(axes: Axes, curves: Sequence[Line2D]) -> bool:
     look: dict[str, Any] = {"fontsize": style.TICK, "ha": "center", "va": "center", "zorder": 8}
     for text, place, colour in placed:
         at = (place.real / size.real, place.imag / size.imag)
-        halo = [withStroke(linewidth=2.5, foreground=style.PAPER)]
-        axes.text(*at, text, transform=axes.transAxes, color=colour, path_effects=halo, **look)
+        axes.text(*at, text, transform=axes.transAxes, color=colour, path_effects=style.HALO, **look)
     return True
 
 

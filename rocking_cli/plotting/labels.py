@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 from rocking_cli.core import Angle, Length
@@ -101,7 +100,7 @@ class Labels:
         at = place.middle / self._scale
         self._axes.annotate(
             text, (at.real, at.imag), ha="center", va="center", rotation=place.turned, rotation_mode="anchor",
-            annotation_clip=False, path_effects=[withStroke(linewidth=2.5, foreground=style.PAPER)], **look,
+            annotation_clip=False, path_effects=style.HALO, **look,
         )  # fmt: skip
         across = np.linspace(-0.5, 0.5, 2 + int(size.real / POINT_SPACING)) * size.real
         up = np.linspace(-0.5, 0.5, 5) * size.imag

@@ -19,6 +19,7 @@ from matplotlib.figure import Figure, SubFigure
 from matplotlib.font_manager import FontProperties
 from matplotlib.layout_engine import ConstrainedLayoutEngine, TightLayoutEngine
 from matplotlib.legend import Legend
+from matplotlib.patheffects import withStroke
 from matplotlib.text import Annotation, Text
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, PercentFormatter
 from matplotlib.transforms import ScaledTranslation
@@ -39,7 +40,7 @@ INK, FAINT, SHADE, GRID, PAPER = "#222222", "#9a9a9a", "#eeeeee", "#dddddd", "#f
 BLACK, ORANGE, BLUE = "#111111", "#cc7a00", "#1f77b4"
 VIOLET, BROWN, STONE = "#a21ce6", "#6b3a0a", "#93886a"
 TITLE, LABEL, TICK, SMALL, TINY = 10, 9, 8, 7, 5  # sizes of type [pt]
-HAIR, THIN, CURVE, MEDIUM, BOLD = 0.4, 0.6, 0.7, 1.0, 1.6  # weights of line [pt]
+HAIR, THIN, CURVE, MEDIUM, BOLD, HALO_WEIGHT = 0.4, 0.6, 0.7, 1.0, 1.6, 2.5  # weights of line [pt]
 LEGEND: dict[str, Any] = {"fontsize": TICK, "frameon": True, "framealpha": 0.9, "edgecolor": "none"}
 # Structures: bodies differ in darkness too; marks are black, dimensions blue, thrust lines dashed.
 BODIES = ("#dfe6ec", "#f1e2c6", "#c2cdd8")
@@ -86,6 +87,9 @@ MARKED: dict[str, Any] = {
 }  # fmt: skip
 
 STAR: dict[str, Any] = {"marker": "*", "markersize": 15, "markeredgecolor": PAPER, "linestyle": "none", "zorder": 6}
+
+HALO = [withStroke(linewidth=HALO_WEIGHT, foreground=PAPER)]
+"""The path effects of words over lines."""
 
 UNKNOWN: dict[str, Any] = {"facecolor": "none", "edgecolor": FAINT, "hatch": "////", "linewidth": 0.0}
 """The look of areas in which the outcome is not known: hatched in grey."""
