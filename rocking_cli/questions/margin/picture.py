@@ -90,5 +90,6 @@ def _mark_uplift(axes: Axes, found: Margin, colour: str, *, named: bool) -> None
     axes.plot(at, 0.0, color=colour, clip_on=False, marker=mark, markersize=size, linestyle="none")
     if named:
         side = "left" if at < 1.5 * low else "right" if at > high / 1.5 else "center"
-        look = {"ha": side, "va": "top", "fontsize": style.TICK, "color": style.INK}
-        axes.annotate(_uplift(found), (at, 0.0), (0, -9), textcoords="offset points", **look)
+        axes.annotate(
+            _uplift(found), (at, 0.0), (0, -9), textcoords="offset points", ha=side, va="top", fontsize=style.TICK
+        )

@@ -182,8 +182,9 @@ def _reached(found: Margin, shares: NDArray[np.float64], does: str) -> str:
     ]
     if not reached:
         return (
-            f"At no scale factor from {low:.2g} to {high:.2g} (PGA from {low * found.pga:.3g} g to {high * found.pga:.3g} g) do "
-            f"{percent(SHARE_LEVELS[0])} or more of the neighbouring motions {does.removesuffix(',')}."
+            f"At no scale factor from {low:.2g} to {high:.2g} (PGA from {low * found.pga:.3g} g to "
+            f"{high * found.pga:.3g} g) do {percent(SHARE_LEVELS[0])} or more of the neighbouring motions "
+            f"{does.removesuffix(',')}."
         )
     (level, first), *others = reached
     parts = [f"{percent(level)} of the neighbouring motions first {does} at a factor of {at(first, 'PGA ')}"]
