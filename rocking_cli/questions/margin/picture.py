@@ -69,8 +69,8 @@ def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
     y = f"share of neighbours that overturn{f', {polarities}' if polarities else ''}"
     style.tidy(axes, f"scale factor ({'; '.join(filter(None, said))})", style.folded(y, 2.6, style.LABEL))
     if not alone and not name_curves(axes, curves):
-        for each in curves:
-            each.set_label(str(each.get_label()).replace("\n", ", "))
+        for curve in curves:
+            curve.set_label(str(curve.get_label()).replace("\n", ", "))
         style.legend_below(figure, curves, handlelength=3.5)
     return figure
 
