@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
@@ -58,7 +60,9 @@ def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
     style.in_percent(axes.yaxis)
     axes.margins(x=0.01)
     if alone and first.pga > 0:
-        top = axes.secondary_xaxis("top", functions=(lambda factor: factor * first.pga, lambda pga: pga / first.pga))
+        top = axes.secondary_xaxis(
+            "top", functions=(partial(np.multiply, first.pga), partial(np.multiply, 1 / first.pga))
+        )
         style.plain_numbers(top.xaxis)
         top.tick_params(labelsize=style.TICK, colors=style.INK)
         top.set_xlabel("PGA [g]", fontsize=style.LABEL)
