@@ -72,7 +72,8 @@ def _margin() -> Figure:
     factors = np.union1d(FACTORS, 1.0)
     shares = np.clip(2 * np.log(factors), 0, 1) * np.where((factors > 2) & (factors < 2.6), 0.3, 1.0)  # and an island
     other = np.clip(np.log(factors / 0.6), 0, 0.95)
-    found = [Margin(Neighbourhood(), 0.4, factors, each, np.zeros(factors.size)) for each in (shares, other)]
+    none = np.zeros(factors.size)
+    found = [Margin(Neighbourhood(), 0.4, factors, each, none, pga=0.3, polarities=(1, -1)) for each in (shares, other)]
     return draw_margins({"one": found[0], "other": found[1]}, "margin")
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.text import Text
 from numpy.typing import NDArray
 
 from rocking_cli.plotting import style
@@ -35,7 +36,7 @@ def name_curves(axes: Axes, curves: Sequence[Line2D]) -> bool:
     size = style.inches(axes)
     along = [_in_inches(axes, each) for each in curves]
     every = np.concatenate([*along, *(_in_inches(axes, each) for each in axes.lines if each not in curves)])
-    taken: list[tuple[complex, complex]] = []  # middle and size of each name
+    taken = [_middle_and_size(axes, each) for each in axes.texts]
     placed = []
     for curve, points in zip(curves, along, strict=True):
         text = str(curve.get_label())
@@ -50,6 +51,13 @@ def name_curves(axes: Axes, curves: Sequence[Line2D]) -> bool:
         at = (place.real / size.real, place.imag / size.imag)
         axes.text(*at, text, transform=axes.transAxes, color=colour, path_effects=style.HALO, **look)
     return True
+
+
+def _middle_and_size(axes: Axes, text: Text) -> tuple[complex, complex]:
+    """Return where a text is, from the lower left corner of the panel, and how large it is [inches]."""
+    box = text.get_window_extent()
+    middle = complex(box.x0 + box.x1, box.y0 + box.y1) / 2 - complex(axes.bbox.x0, axes.bbox.y0)
+    return middle / axes.figure.dpi, complex(box.width, box.height) / axes.figure.dpi
 
 
 def _in_inches(axes: Axes, curve: Line2D) -> Points:

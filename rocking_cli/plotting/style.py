@@ -34,6 +34,7 @@ DPI = 150
 POINTS_PER_INCH = 72
 MAX_SIDE_MARGIN = 0.9  # inches at the sides of a panel
 MAX_HEADING_LENGTH, MAX_HEADING_LINES = 240, 3  # characters and lines
+LINE_SPACING = 1.3  # height of a line of text over its size of type
 LEAST_LEFT = 0.3  # share of the height of a panel that a legend below it is taken to leave
 INK, FAINT, SHADE, GRID, PAPER = "#222222", "#9a9a9a", "#eeeeee", "#dddddd", "#ffffff"
 # Colours of curves: colour-blind readers can tell each two of them apart, on a dark page too.
@@ -279,6 +280,9 @@ def one_panel(height: float, title: str) -> tuple[Figure, Axes]:
 
 def size_of(text: str, points: float, weight: str = "normal") -> complex:
     """Return width and height of a text [inches]; mathematics is between dollars, other dollars are escaped."""
+    if "\n" in text:
+        sizes = [size_of(line, points, weight) for line in text.split("\n")]
+        return complex(max(each.real for each in sizes), LINE_SPACING * points / POINTS_PER_INCH * len(sizes))
     text = printable(text)  # text as it is written to the file
     math = text.count("$") > text.count(r"\$")
     with catch_warnings():
@@ -464,7 +468,7 @@ def _break_lines(axes: Axes, before: set[Any], left: float) -> None:
 def tidy(axes: Axes, x: str = "", y: str = "") -> None:
     """Apply the common style to axes."""
     if x:
-        axes.set_xlabel(x, fontsize=LABEL)
+        axes.set_xlabel(folded(x, page_width() - MAX_SIDE_MARGIN, LABEL), fontsize=LABEL)
     if y:
         axes.set_ylabel(y, fontsize=LABEL)
     axes.grid(True, color=GRID, linewidth=THIN)

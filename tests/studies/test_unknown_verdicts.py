@@ -60,7 +60,7 @@ def folder(tmp_path_factory):
 class TestMargin:
     FOUND = Margin(
         Neighbourhood(20, 0.04, 0.05, 0.1), 0.3, np.array([0.5, 1.0, 2.0, 4.0]), np.array([0.0, 0.05, 0.2, 0.6]),
-        np.array([0.0, 0.1, 0.4, 0.4]),
+        np.array([0.0, 0.1, 0.4, 0.4]), pga=0.5, polarities=(1,),
     )  # fmt: skip
 
     END = Conclusion(concluded=Concluded.ROCKS, peak_ratio=0.2, motion="a", ratio=1.0, share=FOUND.share)
@@ -69,7 +69,7 @@ class TestMargin:
         found = replace(self.FOUND, unknown=np.zeros(4), checked=False)
         assert margin_views.margin_data(found)["unknown"] is None
         structure, end = Structure(rk.load_structure(EXAMPLES / "curve.yaml")), self.END
-        row = margin_views.MarginRow("a", 1.0, 0.5, found, end)
+        row = margin_views.MarginRow("a", 1.0, found, end)
         parts = margin_views.view(structure, [row], "1", found.around, end).parts
         assert str(parts[-1]).startswith("Caution: the joints of this mechanism are not checked")
 

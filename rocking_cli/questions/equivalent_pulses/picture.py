@@ -25,7 +25,7 @@ def draw_equivalent(found: EquivalentResponses, title: str) -> Figure:
     title : str
         Heading.
     """
-    figure, ((above,), (below,)) = style.panels(5.8, 2, height_ratios=[1, 1.8])
+    figure, ((above,), (below,)) = style.panels(5.8 + 0.2 * len(found.members), 2, height_ratios=[1, 1.8])
     style.heading(above, title)
     for k, each in enumerate(found.members):
         t = np.linspace(0.0, each.pulse.duration, 400)
@@ -57,10 +57,11 @@ def draw_equivalent(found: EquivalentResponses, title: str) -> Figure:
         "end of the pulses", (found.pulse_end, 1.0), (3, -3), xycoords=("data", "axes fraction"),
         textcoords="offset points", va="top", fontsize=style.SMALL, color=style.FAINT,
     )  # fmt: skip
+    style.make_room(below, 0.1)
     below.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
-    below.legend(**style.LEGEND, handlelength=4)
     style.tidy(above, "time [s]", "pulse of each [g]")
-    style.tidy(below, r"$p\,t$", r"$\phi/\phi_{cr}$, first lifted side up")
+    style.tidy(below, r"dimensionless time $p\,t$", r"$\phi/\phi_{cr}$, first lifted side up")
+    style.legend_below(figure, below.get_legend_handles_labels()[0], handlelength=4)
     return figure
 
 

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rocking_cli.plotting import style
+from rocking_cli.plotting.curve_names import name_curves
 from rocking_cli.questions.error.study import Linearisation, preferred
 
 Reals = NDArray[np.float64]
@@ -34,7 +35,8 @@ def draw_linearisation(curves: Sequence[Linearisation], asked: Sequence[Linearis
     -------
     matplotlib.figure.Figure
     """
-    bold = preferred(asked) or 2  # if both are equally good, kappa 2, which is exact at uplift
+    best = preferred(asked)
+    bold = best or 2  # if both are equally good, kappa 2, which is exact at uplift
     figure, panels = style.panels(2.9 * len(curves) + 0.3, len(curves), 2, sharey="col")
     for (left, right), curve, marks in zip(panels, curves, asked, strict=True):
         _line(left, curve.amplitude, curve.period_ratio, "either kappa", style.LINES["nonlinear"])
@@ -42,31 +44,30 @@ def draw_linearisation(curves: Sequence[Linearisation], asked: Sequence[Linearis
         left.set_xlim(0.0, 1.0)
         for kappa in (1, 2):
             ratio = getattr(curve, f"overturning_ratio{kappa}")
-            _line(
-                right,
-                curve.acceleration,
-                ratio,
-                rf"$\kappa_{kappa}$",
-                style.LINES[f"linear{kappa}"] | (PREFERRED_STYLE if kappa == bold else OTHER_STYLE),
-            )
+            label = rf"$\kappa_{kappa}$" + (", preferred" if kappa == best else "")
+            look = style.LINES[f"linear{kappa}"] | (PREFERRED_STYLE if kappa == bold else OTHER_STYLE)
+            _line(right, curve.acceleration, ratio, label, look)
             _dots(right, marks.acceleration, getattr(marks, f"overturning_ratio{kappa}"))
         right.set_xscale("log")
         right.set_xticks([1, 2, 5, 10], ["1", "2", "5", "10"])
         right.minorticks_off()
         right.set_xlim(1.0, curve.acceleration.max())
         ratios = np.concatenate([curve.overturning_ratio1, curve.overturning_ratio2])
-        cut = f"not drawn: beyond {100 * MAX_SHOWN_ERROR:g} %" if (np.abs(ratios - 1) > MAX_SHOWN_ERROR).any() else None
-        right.legend(**style.LEGEND, loc="lower right", title=cut, title_fontsize=style.TICK, alignment="left")
-        if len(curves) > 1:
-            left.set_title(f"{curve.direction.label} direction", fontsize=style.LABEL, loc="left")
+        beyond = (np.abs(ratios - 1) > MAX_SHOWN_ERROR).any()
+        cut = f" (not drawn: beyond {100 * MAX_SHOWN_ERROR:g} %)" if beyond else ""
         for axes, x, y in (
-            (left, r"amplitude $\phi/\phi_{cr}$", "error of the free period"),
-            (right, r"constant acceleration $a/\lambda$", "error of the overturning time"),
+            (left, r"amplitude $\phi/\phi_{cr}$ (dots: as in the table)", "error of the free period"),
+            (right, rf"constant acceleration $a/\lambda${cut}", "error of the overturning time"),
         ):
+            if len(curves) > 1:
+                axes.set_title(f"{curve.direction.label} direction", fontsize=style.LABEL, loc="left")
             axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
             style.in_percent(axes.yaxis)
             style.tidy(axes, x, y)
     style.heading_of_all(figure, title)
+    kappas = [[each for each in right.lines if each.get_label().startswith("$")] for _, right in panels]
+    if not all(name_curves(right, each) for (_, right), each in zip(panels, kappas, strict=True)):
+        style.legend_below(figure, kappas[0])
     return figure
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.fit import Counts, totals
+from rocking_cli.studies.intervals import wilson
 
 # Relative difference of equal intensities: far above rounding, far below a change of shaking.
 INTENSITY_TOLERANCE = 1e-9
@@ -164,15 +165,13 @@ class Observations:
         several = np.maximum(records - 1, 1)
         quantile = stdtrit(several, level) if self.repeated else np.full(runs.size, ndtri(level))
         part = exceeding / runs
-        z2 = quantile**2 / trials
-        middle = (part + z2 / 2) / (1 + z2)
-        half = np.sqrt(z2 * (part * (1 - part) + z2 / 4)) / (1 + z2)
+        low, high = wilson(part, trials, quantile)
         alone = self.repeated & (records == 1)
         return ObservedParts(
             np.bincount(group, self.x[self.counts.term] * number) / runs,
             part,
-            np.where(alone, 0.0, np.clip(middle - half, 0.0, part)),
-            np.where(alone, 1.0, np.clip(middle + half, part, 1.0)),
+            np.where(alone, 0.0, low),
+            np.where(alone, 1.0, high),
             np.rint(runs).astype(np.int64),
             np.rint(exceeding).astype(np.int64),
             records,

@@ -7,8 +7,9 @@ computations. Instead, the share of neighbouring motions that overturn is comput
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import inf
+from statistics import NormalDist
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import LEAST_SHARE, Conclusion, NeighbourShare
 from rocking_cli.studies.engines import respond
+from rocking_cli.studies.intervals import wilson
 from rocking_cli.studies.neighbours import Draws, Neighbourhood, least_uplift, simulate_neighbours
 from rocking_cli.studies.response import concluded
 
@@ -47,6 +49,10 @@ class Margin:
         The additional share of unknown outcome: at most the sum of both overturns, under the worse polarity.
     checked : bool
         Whether the joints of the structure are known; if not, no outcome is unknown.
+    pga : float
+        Peak ground acceleration of the motion at a factor of 1 [standard gravity].
+    polarities : sequence of int
+        The polarities that were simulated.
     """
 
     around: Neighbourhood
@@ -55,6 +61,8 @@ class Margin:
     overturned: Reals
     unknown: Reals
     checked: bool = True
+    pga: float = field(kw_only=True)
+    polarities: Sequence[int] = field(kw_only=True)
 
     @property
     def at_most(self) -> Reals:
@@ -66,6 +74,16 @@ class Margin:
         """The share of neighbours that overturns at a factor of 1."""
         one = np.searchsorted(self.factors, 1.0)
         return NeighbourShare(float(self.overturned[one]), float(self.at_most[one]), self.around.count)
+
+    @property
+    def interval(self) -> tuple[Reals, Reals]:
+        """Range of the shares that so few neighbours are known to within: its ends from 5 to 95 %, each shape (n,).
+
+        The lower end is that of the share that overturns, the upper that of the share that may overturn.
+        """
+        quantile = NormalDist().inv_cdf(0.95)
+        (low, _), (_, high) = (wilson(each, self.around.count, quantile) for each in (self.overturned, self.at_most))
+        return low, high
 
     def first(self, level: float, *, unknown: bool = False) -> float | None:
         """Return the least factor at which a share `level` overturns (or is unknown); None without one."""
@@ -155,7 +173,10 @@ def margin(
     at_most = np.maximum(at_most, overturned)
     uplifts = [least_uplift(model, motion.scaled(sign)) for sign in polarities]
     least = min((uplift for uplift in uplifts if uplift is not None), default=None)
-    return Margin(around, least, factors, overturned, at_most - overturned, checked=model.joints is not None)
+    return Margin(
+        around, least, factors, overturned, at_most - overturned, checked=model.joints is not None,
+        pga=motion.of_ground.pga_g, polarities=tuple(polarities),
+    )  # fmt: skip
 
 
 def conclusion(structure: Structure, motion: GroundMotion, polarities: Sequence[int], found: Margin) -> Conclusion:

@@ -102,7 +102,7 @@ def margin(
             scaled = each.motion.scaled(each.factor)
             result = study.margin(model, scaled, signs, around=around, progress=advance)
             end = study.conclusion(ready, scaled, signs, result)
-            rows.append(MarginRow(each.motion.name, each.factor, scaled.of_ground.pga_g, result, end))
+            rows.append(MarginRow(each.motion.name, each.factor, result, end))
     end = replace(worst(row.conclusion for row in rows), motions=[row.name for row in rows])
     margins = Concluding({row.name: row.margin for row in rows}, end)
     figure = drawn("questions.margin.picture.draw_margins", margins, heading(ready.mechanism))

@@ -27,11 +27,10 @@ GOVERNING_ROW = "overturn or unknown"
 
 
 class MarginRow(NamedTuple):
-    """A motion: name, scale factor on the record as read, PGA with this factor [g], margin, and conclusion."""
+    """A motion: name, scale factor on the record as read, margin with this factor, and conclusion."""
 
     name: str
     factor: float
-    pga: float
     margin: Margin
     conclusion: Conclusion
 
@@ -49,10 +48,12 @@ class _Line(NamedTuple):
 
 def _lines(rows: Sequence[MarginRow]) -> Iterator[_Line]:
     """Yield the line that governs for each motion; if outcomes are unknown, also a line of those known to overturn."""
-    for name, _, pga, margin, _ in rows:
+    for name, _, margin, _ in rows:
         doubt = bool(margin.unknown.any())
         governing = f"{name}: {GOVERNING_ROW}" if doubt else name
-        yield _Line(governing, number(pga, 3), number(margin.uplift, 3), margin.share.highest, margin, unknown=True)
+        yield _Line(
+            governing, number(margin.pga, 3), number(margin.uplift, 3), margin.share.highest, margin, unknown=True
+        )
         if doubt:
             yield _Line("  known to overturn", "", "", margin.share.lowest, margin, unknown=False)
 
@@ -96,9 +97,7 @@ def view(
         parts.append(
             f"The row '{GOVERNING_ROW}' governs; the row below it alone does not prove that the structure stands."
         )
-    parts += (
-        [f"{row.name}: {in_words(row.margin, row.pga)}" for row in rows] if len(rows) <= MAX_DETAILED_MOTIONS else []
-    )
+    parts += [f"{row.name}: {in_words(row.margin)}" for row in rows] if len(rows) <= MAX_DETAILED_MOTIONS else []
     parts += [f"Caution: {text}" for text in cautions_of(mechanism)]
     if not all(row.margin.checked for row in rows):
         parts.append(unchecked(why=mechanism.unchecked))
@@ -115,10 +114,10 @@ def _data(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around
             {
                 "name": row.name,
                 "scale": row.factor,
-                "pga": row.pga,
+                "pga": row.margin.pga,
                 "conclusion": conclusion_data(row.conclusion),
                 **margin_data(row.margin),
-                "verdict": in_words(row.margin, row.pga),
+                "verdict": in_words(row.margin),
             }
             for row in rows
         ],
@@ -146,20 +145,18 @@ def margin_data(found: Margin) -> dict[str, Any]:
     }
 
 
-def in_words(found: Margin, pga: float) -> str:
+def in_words(found: Margin) -> str:
     """Describe a margin in a few sentences, of which the first one governs: unknown outcomes count as overturning.
 
     Parameters
     ----------
     found : Margin
         The margin, with at least one factor.
-    pga : float
-        Peak ground acceleration at a factor of 1 [standard gravity].
     """
     doubt = bool(found.unknown.any())
-    at = partial(_at, pga)
+    at = partial(_at, found.pga)
     does = "overturn the structure, or have an unknown outcome," if doubt else "overturn the structure"
-    sentence = _reached(found, found.at_most, does, pga)
+    sentence = _reached(found, found.at_most, does)
     if not doubt:
         return sentence
     first = float(found.factors[(found.unknown > 0).argmax()])
@@ -176,17 +173,18 @@ def in_words(found: Margin, pga: float) -> str:
     return f"{sentence} {few}; this does not prove that it stands."
 
 
-def _reached(found: Margin, shares: NDArray[np.float64], does: str, pga: float) -> str:
+def _reached(found: Margin, shares: NDArray[np.float64], does: str) -> str:
     """Return in words at which factors the shares of neighbours that do something first reach each level."""
-    at = partial(_at, pga)
+    at = partial(_at, found.pga)
     low, high = found.factors[[0, -1]]
     reached = [
         (level, float(found.factors[(shares >= level).argmax()])) for level in SHARE_LEVELS if (shares >= level).any()
     ]
     if not reached:
         return (
-            f"At no scale factor from {low:.2g} to {high:.2g} (PGA from {low * pga:.3g} g to {high * pga:.3g} g) do "
-            f"{percent(SHARE_LEVELS[0])} or more of the neighbouring motions {does.removesuffix(',')}."
+            f"At no scale factor from {low:.2g} to {high:.2g} (PGA from {low * found.pga:.3g} g to "
+            f"{high * found.pga:.3g} g) do {percent(SHARE_LEVELS[0])} or more of the neighbouring motions "
+            f"{does.removesuffix(',')}."
         )
     (level, first), *others = reached
     parts = [f"{percent(level)} of the neighbouring motions first {does} at a factor of {at(first, 'PGA ')}"]

@@ -291,7 +291,7 @@ def _closeness(content: Assessment, result: MotionResult) -> str:
         if best.peak_ratio > 1:
             sentences.append("It exceeds this rotation and is brought back only by the subsequent ground motion.")
     neighbours = neighbours_in_words(result.neighbours[result.polarity])
-    return " ".join([*sentences, neighbours, in_words(result.margin, result.pga_of_ground)])
+    return " ".join([*sentences, neighbours, in_words(result.margin)])
 
 
 def _trusted(content: Assessment, result: MotionResult) -> str:

@@ -30,7 +30,7 @@ def draw_reliability(found: Scored) -> Figure:
     bins = [each for each in found.bins if each.tests]
     if not bins:
         raise InputError("a reliability diagram needs tests with an observed outcome, which none of these have")
-    figure, ((axes,), (below,)) = style.panels(6.2, 2, sharex=True, height_ratios=(3, 1))
+    figure, ((axes,), (below,)) = style.panels(6.6, 2, sharex=True, height_ratios=(3, 1))
     tests = len(found.observed)
     style.heading(axes, f"Stated and observed shares of overturning: {tests} tests in {found.clusters} clusters")
     axes.plot([0, 1], [0, 1], color=style.FAINT, linewidth=style.MEDIUM, linestyle="--", label="stated = observed")
@@ -41,6 +41,12 @@ def draw_reliability(found: Scored) -> Figure:
         stated, value, ends, color=style.INK, marker="o", markersize=7, linestyle="none", capsize=4,
         label="observed, 5 to 95 % of draws of clusters",
     )  # fmt: skip
+    lone = [each for each in bins if each.clusters == 1]
+    if lone:
+        axes.plot(
+            [each.stated for each in lone], [each.observed.value for each in lone], linestyle="none",
+            label="observed in one cluster: no interval", **(style.MARKED | {"markersize": 7}),
+        )  # fmt: skip
     for each in bins:
         right = each.stated < 0.8
         axes.annotate(
@@ -48,7 +54,6 @@ def draw_reliability(found: Scored) -> Figure:
             ha="left" if right else "right", va="top", fontsize=style.TICK,
         )  # fmt: skip
     axes.set_ylim(-0.08, 1.04)
-    axes.legend(loc="upper left", **style.LEGEND)
     shares = [
         [each.share or 0.0 for each in found.observed if bool(each.test.overturned) is overturned]
         for overturned in (False, True)
@@ -63,10 +68,10 @@ def draw_reliability(found: Scored) -> Figure:
     else:
         below.yaxis.set_major_locator(MaxNLocator(integer=True, nbins=4))
     below.set_xlim(-0.02, 1.02)
-    below.legend(loc="upper center", **style.LEGEND)
     for panel in (axes, below):
         style.in_percent(panel.xaxis)
     style.in_percent(axes.yaxis)
     style.tidy(axes, y="observed share")
     style.tidy(below, "stated share of neighbours that overturn (numbers: tests in the bin)", "tests")
+    style.legend_below(figure)
     return figure

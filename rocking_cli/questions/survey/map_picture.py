@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import cos, floor, log10, radians
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,6 +16,7 @@ from matplotlib.ticker import MaxNLocator
 
 from rocking_cli.arrays import Reals
 from rocking_cli.plotting import style
+from rocking_cli.plotting.point_names import name_points
 from rocking_cli.questions.survey.coordinates import Coordinates
 from rocking_cli.questions.survey.picture import MAX_RANKED_LABELS, MAX_VECTOR_MARKS
 from rocking_cli.questions.survey.study import Survey
@@ -45,7 +47,9 @@ def draw_map(found: Survey, where: Coordinates, title: str) -> Figure:
     x, y, ranks = where.longitude[there], where.latitude[there], there + 1
     (west, east), (south, north), narrower = _extent(x, y)
     shape = (north - south) / ((east - west) * narrower)
-    figure, axes = style.one_panel(min(8.0, 1.2 + 5.4 * shape), title)
+    narrow = style.is_narrow()
+    wide, other = (2.85, 2.0) if narrow else (5.4, 1.2)  # inches: width of the map, height of all else
+    figure, axes = style.one_panel(min(8.0, other + wide * shape), title)
     axes.set_xlim(west, east)
     axes.set_ylim(south, north)
     axes.set_aspect(1 / narrower)
@@ -55,10 +59,9 @@ def draw_map(found: Survey, where: Coordinates, title: str) -> Figure:
         x[::-1], y[::-1], c=ranks[::-1], cmap=RANKS, norm=norm, s=sizes[::-1],
         edgecolors=style.INK, linewidths=style.HAIR, rasterized=len(x) > MAX_VECTOR_MARKS, zorder=3,
     )  # fmt: skip
-    _label(axes, x[:MAX_RANKED_LABELS], y[:MAX_RANKED_LABELS], ranks[:MAX_RANKED_LABELS].tolist(), narrower)
     style.tidy(axes, "longitude [deg]", "latitude [deg]")
     axes.ticklabel_format(useOffset=False, style="plain")
-    for axis, most in ((axes.xaxis, 4), (axes.yaxis, 6)):
+    for axis, most in ((axes.xaxis, 3 if narrow else 4), (axes.yaxis, 6)):
         axis.set_major_locator(MaxNLocator(most))
     _scale_bar(axes, narrower)
     if len(found.rows) > 1:
@@ -66,6 +69,9 @@ def draw_map(found: Survey, where: Coordinates, title: str) -> Figure:
     if missing := len(found.rows) - len(there):
         axes.plot([], [], linestyle="none", label=f"not on the map: {missing:,} without coordinates")
         style.legend_below(figure)
+    first = slice(MAX_RANKED_LABELS)
+    ranked = _in_places(axes, x[first], y[first], ranks[first].tolist(), narrower)
+    name_points(axes, ranked, np.column_stack([x, y]))
     return figure
 
 
@@ -84,19 +90,15 @@ def _extent(x: Reals, y: Reals) -> tuple[tuple[float, float], tuple[float, float
     )
 
 
-def _label(axes: Axes, x: Reals, y: Reals, ranks: Sequence[int], narrower: float) -> None:
-    """Write ranks beside their marks; those of structures in almost the same place in one label."""
+def _in_places(axes: Axes, x: Reals, y: Reals, ranks: Sequence[int], narrower: float) -> list[tuple[float, float, str]]:
+    """Return longitude, latitude and ranks of each place; those of structures in almost the same place in one."""
     same_place = SAME_PLACE_SHARE * float(np.ptp(axes.get_xlim())) * narrower
     labels: dict[complex, list[str]] = {}
     for longitude, latitude, rank in zip(x, y, ranks, strict=True):
         point = complex(longitude * narrower, latitude)
         place = next((each for each in labels if abs(each - point) < same_place), point)
         labels.setdefault(place, []).append(str(rank))
-    for place, names in labels.items():
-        axes.annotate(
-            ", ".join(names), (place.real / narrower, place.imag), xytext=(5, 3), textcoords="offset points",
-            fontsize=style.TICK, color=style.INK, zorder=4, path_effects=[withStroke(linewidth=2, foreground="white")],
-        )  # fmt: skip
+    return [(place.real / narrower, place.imag, ", ".join(names)) for place, names in labels.items()]
 
 
 def scale_length(width: float) -> float:
@@ -125,14 +127,17 @@ def _scale_bar(axes: Axes, narrower: float) -> None:
     axes.text(
         left, low + 0.012, f"{length:g} m" if length < 1000 else f"{length / 1000:g} km", transform=axes.transAxes,
         fontsize=style.TICK, color=style.INK, va="bottom", zorder=5,
-        path_effects=[withStroke(linewidth=2, foreground="white")],
+        path_effects=[withStroke(linewidth=2, foreground=style.PAPER)],
     )  # fmt: skip
 
 
 def _bar_of_ranks(figure: Figure, axes: Axes, norm: Normalize, last: int) -> None:
-    bar = figure.colorbar(ScalarMappable(norm, RANKS), ax=axes, shrink=0.7, aspect=25, pad=0.02)
-    bar.ax.invert_yaxis()
-    bar.ax.yaxis.set_major_locator(MaxNLocator(6, integer=True))
-    bar.set_ticks([1, *(each for each in bar.get_ticks() if 1 < each < 0.95 * last), last])
+    below = style.is_narrow()
+    look: dict[str, Any] = {"location": "bottom", "shrink": 0.9, "pad": 0.02} if below else {"shrink": 0.7, "pad": 0.02}
+    bar = figure.colorbar(ScalarMappable(norm, RANKS), ax=axes, aspect=25, **look)
+    if not below:
+        bar.ax.invert_yaxis()
+    bar.locator = MaxNLocator(4 if below else 6, integer=True)
+    bar.set_ticks([1, *(each for each in bar.get_ticks() if 1 < each < 0.9 * last), last])
     bar.ax.tick_params(labelsize=style.TICK)
     bar.set_label("rank; 1 is the most vulnerable", fontsize=style.LABEL)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from markupsafe import Markup
 
-from rocking_cli.documents.figures import inline_svg, template
+from rocking_cli.documents.figures import dark_figures, inline_svg, template
 from rocking_cli.errors import InputError
 from rocking_cli.plotting.moving import asset
 from rocking_cli.questions.report.page import symbols
@@ -51,6 +51,7 @@ def render(found: Survey, source: str, about: Sequence[str]) -> str:
         ],
         bad_count=len(found.bad),
         style=Markup(asset("motion.css")),
+        dark_figures=dark_figures(),
     )
     return printable(page)  # a table may have characters that a page cannot hold
 

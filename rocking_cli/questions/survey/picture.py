@@ -9,17 +9,17 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rocking_cli.plotting import style
+from rocking_cli.plotting.point_names import name_points
 from rocking_cli.questions.survey.study import Survey
 
 MAX_RANKED_LABELS = 10  # structures whose rank stands beside their mark
-MAX_LABELLED_STRUCTURES = 60  # among more, ranks cannot be read
 MAX_VECTOR_MARKS = 2000  # more are drawn as one image
 MARKS: dict[str, dict[str, Any]] = {
-    "does not uplift": {"marker": "o", "color": "white", "markeredgecolor": style.SPARED},
-    "rocks": {"marker": "o", "color": style.SPARED, "markeredgecolor": "white"},
-    "unknown under at least one motion": {"marker": "D", "color": "white", "markeredgecolor": style.FAINT},
-    "overturns under at least one motion": {"marker": "^", "color": style.EXCEEDED, "markeredgecolor": "white"},
-    "structure": {"marker": "o", "color": style.SPARED, "markeredgecolor": "white"},
+    "does not uplift": {"marker": "o", "color": style.PAPER, "markeredgecolor": style.SPARED},
+    "rocks": {"marker": "o", "color": style.SPARED, "markeredgecolor": style.PAPER},
+    "unknown under at least one motion": {"marker": "D", "color": style.PAPER, "markeredgecolor": style.FAINT},
+    "overturns under at least one motion": {"marker": "^", "color": style.EXCEEDED, "markeredgecolor": style.PAPER},
+    "structure": {"marker": "o", "color": style.SPARED, "markeredgecolor": style.PAPER},
 }
 
 
@@ -41,23 +41,15 @@ def draw_survey(found: Survey, title: str) -> Figure:
         here = here & there
         if here.any():
             label = f"{look} ({here.sum():,})" if found.motions else None
-            edge = 0.8 if MARKS[look]["color"] == "white" else 0.3
+            edge = 0.8 if MARKS[look]["color"] == style.PAPER else 0.3
             axes.plot(
                 p[here], uplift[here], linestyle="none", markersize=5 if len(p) <= MAX_VECTOR_MARKS else 3, label=label,
                 markeredgewidth=edge, rasterized=len(p) > MAX_VECTOR_MARKS, **MARKS[look],
             )  # fmt: skip
     first = np.flatnonzero(there)[:MAX_RANKED_LABELS]
-    if len(p) <= MAX_LABELLED_STRUCTURES:
-        for k in first.tolist():
-            axes.annotate(
-                str(k + 1), (p[k], uplift[k]), xytext=(4, 3), textcoords="offset points", fontsize=style.SMALL,
-                color=style.INK,
-            )  # fmt: skip
-    else:
-        axes.plot(
-            p[first], uplift[first], linestyle="none", marker="o", markersize=9, color="none",
-            markeredgecolor=style.INK, label=f"the {len(first)} most vulnerable",
-        )  # fmt: skip
+    axes.plot(
+        p[first], uplift[first], linestyle="none", marker="o", markersize=7, color="none", markeredgecolor=style.INK
+    )
     axes.margins(0.08)
     axes.set_ylim(bottom=0.0)
     x = "frequency parameter p [rad/s]: large structures left, small ones right"
@@ -67,6 +59,8 @@ def draw_survey(found: Survey, title: str) -> Figure:
         axes.plot([], [], linestyle="none", label=label)
     if axes.get_legend_handles_labels()[1]:
         style.legend_below(figure)
+    ranked = [(float(p[k]), float(uplift[k]), str(k + 1)) for k in first]
+    name_points(axes, ranked, np.column_stack([p[there], uplift[there]]))
     return figure
 
 

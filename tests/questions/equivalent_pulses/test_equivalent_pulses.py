@@ -14,6 +14,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.names import OPENING
+from rocking_cli.plotting import style
 from rocking_cli.questions.equivalent_pulses import study
 from rocking_cli.questions.equivalent_pulses.picture import draw_equivalent
 from rocking_cli.questions.equivalent_pulses.view import judge
@@ -218,6 +219,9 @@ def test_the_picture_has_the_pulses_above_and_the_responses_below():
     assert list(curves) == ["small", "large", "w", "linear block of all"]
     np.testing.assert_array_equal(curves["small"].get_ydata(), found.turned(found.members[0].history))
     assert len({line.get_linestyle() for line in above.get_lines()}) == 3
+    assert not below.get_legend()  # it would lie on the curves
+    (key,) = below.figure.legends
+    assert [each.get_text() for each in key.get_texts()] == list(curves)
 
 
 def test_what_is_not_known_is_not_drawn_as_if_it_were():
@@ -231,7 +235,7 @@ def test_what_is_not_known_is_not_drawn_as_if_it_were():
     drawn = np.asarray(curve.get_xdata(), float)[np.isfinite(np.asarray(curve.get_ydata(), float))]
     assert drawn.size and drawn.max() <= equivalent_block(wall).positive.p * history.known_to * (1 + 1e-9)
     (end,) = [line for line in below.get_lines() if line.get_marker() == "o" and len(line.get_xdata()) == 1]
-    assert end.get_markerfacecolor() in ("white", "none", "w") and end.get_xdata()[0] == pytest.approx(drawn.max())
+    assert end.get_markerfacecolor() == style.PAPER and end.get_xdata()[0] == pytest.approx(drawn.max())
 
 
 def test_a_fall_is_cut_off_with_a_cross():

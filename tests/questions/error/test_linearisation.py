@@ -346,10 +346,11 @@ def test_the_preferred_kappa_is_the_boldest_line_and_what_is_not_drawn_is_said()
     assert preferred([asked]) == 2
     right = draw_linearisation([curve], [asked], "arch").axes[1]
     widths = {line.get_label(): line.get_linewidth() for line in right.get_lines()}
-    assert widths[r"$\kappa_2$"] > widths[r"$\kappa_1$"]
-    assert curve.overturning_ratio1[0] < 0.5 and "50 %" in right.get_legend().get_title().get_text()
+    assert widths[r"$\kappa_2$, preferred"] > widths[r"$\kappa_1$"]
+    assert {each.get_text() for each in right.texts} == {r"$\kappa_2$, preferred", r"$\kappa_1$"}
+    assert curve.overturning_ratio1[0] < 0.5 and "beyond 50 %" in right.get_xlabel()
     close = linearisation(arch, Direction.POSITIVE, [0.2, 0.5], rho[1:])
-    assert not draw_linearisation([close], [asked], "arch").axes[1].get_legend().get_title().get_text()
+    assert "50 %" not in draw_linearisation([close], [asked], "arch").axes[1].get_xlabel()
 
 
 @pytest.mark.parametrize("kappa", [1, 2])

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import re
+from contextlib import nullcontext
 
 import numpy as np
 import pytest
+from scipy.stats import binomtest
 
 from rocking_cli.core import Direction
 from rocking_cli.core.structure_file import load_structure, parse_structure
@@ -14,6 +16,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.excitation.records import read_record
+from rocking_cli.plotting import style
 from rocking_cli.questions.margin import study as margins
 from rocking_cli.questions.margin.picture import draw_margins
 from rocking_cli.questions.margin.study import FACTORS, SHARE_LEVELS, Margin, margin
@@ -138,7 +141,8 @@ def test_sixty_factors_from_a_fifth_to_five():
 
 def made(*shares, unknown=None) -> Margin:
     doubtful = np.zeros(len(shares)) if unknown is None else np.array(unknown, dtype=float)
-    return Margin(AROUND, 0.5, np.arange(1.0, len(shares) + 1), np.array(shares, dtype=float), doubtful)
+    factors = np.arange(1.0, len(shares) + 1)
+    return Margin(AROUND, 0.5, factors, np.array(shares, dtype=float), doubtful, pga=0.5, polarities=(1,))
 
 
 class TestLevels:
@@ -184,7 +188,7 @@ class TestWords:
         ],
     )  # fmt: skip
     def test_it_says_at_which_factors_how_many_overturn(self, shares, unknown, said):
-        words = in_words(made(*shares, unknown=unknown), 0.5)
+        words = in_words(made(*shares, unknown=unknown))
         assert all(each in words for each in said)
         assert ("always worse" in words) == any("always worse" in each or "only 30 %" in each for each in said)
         assert ("unknown" in words) == (unknown is not None)
@@ -192,7 +196,7 @@ class TestWords:
     def test_the_numbers_are_those_of_the_shares(self):
         motion = parse_pulse("ricker:0.7g:0.9s").sampled()
         found = margin(build_model(BLOCK, "nonlinear"), motion, around=AROUND)
-        words = in_words(found, motion.pga_g).split("; the factors")[0]
+        words = in_words(found).split("; the factors")[0]
         said = re.findall(
             r"(\d+) % (?:[a-z ]* first overturn the structure )?at (?:a factor of )?([\d.]+) \((?:PGA )?([\d.]+) g\)",
             words,
@@ -248,7 +252,8 @@ class TestCommand:
         assert theirs["overturned"] == found.share.lowest and theirs["uplift"] == found.uplift
         assert set(theirs["levels"]) == {"10", "50", "90"}
         assert theirs["levels"]["50"]["first"] == found.first(0.5)
-        assert theirs["verdict"] == in_words(found, 0.5)
+        assert theirs["verdict"] == in_words(found)
+        assert theirs["pga"] == found.pga == pytest.approx(0.5, rel=1e-3) and found.polarities == (1, -1)
 
     def test_options_go_before_the_file(self, tmp_path):
         file = tmp_path / "b.yaml"
@@ -309,21 +314,66 @@ def test_a_missing_record_of_several_leaves_the_others():
     assert "no.AT2" in result.stderr and len(json.loads(result.stdout)["motions"]) == 1
 
 
+def shown(uplift=0.5, shares=0.0, unknown=0.0, polarities=(1, -1)) -> Margin:
+    zeros = np.zeros(FACTORS.size)
+    return Margin(AROUND, uplift, FACTORS, zeros + shares, zeros + unknown, pga=0.4, polarities=polarities)
+
+
 @pytest.mark.parametrize(("uplift", "mark"), [(0.05, "<"), (0.5, "|"), (9.0, ">")])
-def test_where_it_uplifts_is_marked_on_the_axis_or_pointed_to(uplift, mark):
-    (axes,) = draw_margins({"a": Margin(AROUND, uplift, FACTORS, *np.zeros((2, FACTORS.size)))}, "title").axes
+def test_where_it_uplifts_is_marked_on_the_axis_or_pointed_to_and_named(uplift, mark):
+    (axes,) = draw_margins({"a": shown(uplift)}, "title").axes
     (drawn,) = (line for line in axes.get_lines() if line.get_marker() in ("<", "|", ">"))
     assert drawn.get_marker() == mark
     assert axes.get_xlim()[0] <= drawn.get_xdata()[0] <= axes.get_xlim()[1]
-    assert ("arrowhead" in axes.get_xlabel()) == (mark != "|")
+    assert [each.get_text() for each in axes.texts] == [f"uplift at {uplift:g}"]
 
 
 def test_both_curves_are_drawn_where_some_outcomes_are_unknown():
     shares, unknown = np.linspace(0, 0.4, FACTORS.size), np.linspace(0, 0.6, FACTORS.size)
-    (axes,) = draw_margins({"a": Margin(AROUND, 0.5, FACTORS, shares, unknown)}, "title").axes
+    (axes,) = draw_margins({"a": shown(0.5, shares, unknown)}, "title").axes
     curves = [line.get_ydata() for line in axes.get_lines() if len(line.get_xdata()) == FACTORS.size]
     np.testing.assert_allclose(curves, [shares, shares + unknown])
-    (band, *_) = axes.collections
-    assert band.get_hatch()
+    (band,) = (each for each in axes.collections if each.get_hatch())
+    assert "hatched: unknown outcomes" in axes.get_xlabel().replace("\n", " ")
     corners = band.get_paths()[0].vertices
     assert corners[:, 1].max() == pytest.approx(1.0) and corners[:, 1].min() == pytest.approx(0.0)
+
+
+def test_a_shaded_band_is_what_so_few_neighbours_leave_open():
+    shares = np.linspace(0, 1, FACTORS.size).round(1)
+    (axes,) = draw_margins({"a": shown(0.5, shares)}, "title").axes
+    (band,) = axes.collections
+    corners = band.get_paths()[0].vertices
+    each = [binomtest(round(share * AROUND.count), AROUND.count).proportion_ci(0.9, "wilson") for share in shares]
+    for factor, interval in zip(FACTORS, each, strict=True):
+        assert set(corners[np.isclose(corners[:, 0], factor), 1].round(6)) >= {round(end, 6) for end in interval}
+    assert f"5 to 95 % interval of a share of {AROUND.count} neighbours" in axes.get_xlabel().replace("\n", " ")
+
+
+def test_one_motion_is_named_and_has_an_axis_of_its_pga():
+    (axes,) = draw_margins({"a.csv": shown()}, "wall").axes
+    (top,) = axes.child_axes
+    assert axes.get_title(loc="left") == "wall, a.csv" and top.get_xlabel() == "PGA [g]"
+    axes.figure.draw_without_rendering()
+    np.testing.assert_allclose(top.get_xlim(), 0.4 * np.array(axes.get_xlim()))
+
+
+@pytest.mark.parametrize(
+    ("polarities", "said"), [((1, -1), "worse of both polarities"), ((-1,), "motion reversed"), ((1,), None)]
+)
+def test_the_axis_names_the_polarities_that_were_simulated(polarities, said):
+    (axes,) = draw_margins({"a": shown(polarities=polarities)}, "").axes
+    words = axes.get_ylabel().replace("\n", " ")
+    assert words == "share of neighbours that overturn" + (f", {said}" if said else "")
+
+
+@pytest.mark.parametrize("narrow", [False, True])
+def test_each_of_several_motions_is_named_with_its_pga_and_uplift_beside_its_curve_or_below(narrow):
+    found = {"a.csv": shown(0.3, np.linspace(0, 1, FACTORS.size)), "b.csv": shown(None)}
+    with style.on_phone() if narrow else nullcontext():
+        figure = draw_margins(found, "wall")
+    beside = [each.get_text() for each in figure.axes[0].texts]
+    below = [each.get_text() for key in figure.legends for each in key.get_texts()]
+    named = [" ".join(each.replace(",", " ").split()) for each in beside or below]
+    assert named == ["a.csv PGA 0.4 g uplift at 0.3", "b.csv PGA 0.4 g"]
+    assert not (beside and below) and not figure.axes[0].child_axes

@@ -477,6 +477,13 @@ def test_files_and_picture(tmp_path):
     points = above.containers[0][0].get_xydata()
     assert points == pytest.approx(np.array([(each.stated, each.observed.value) for each in found.bins]))
     assert {text.get_text() for text in above.texts} == {str(each.tests) for each in found.bins}
+    assert not any("one cluster" in line.get_label() for line in above.get_lines())
+    bins = [found.bins[0]._replace(clusters=1), *found.bins[1:]]
+    (lone,) = (
+        line for line in draw_reliability(replace(found, bins=bins)).axes[0].lines if "one cluster" in line.get_label()
+    )
+    assert lone.get_xdata() == [found.bins[0].stated]
+    assert not above.get_legend() and len(above.figure.legends) == 1
     assert sum(bar.get_height() for container in below.containers for bar in container) == len(stated)
     with pytest.raises(InputError, match="observed outcome"):
         draw_reliability(scored([], Neighbourhood(COUNT)))

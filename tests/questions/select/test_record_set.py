@@ -7,9 +7,10 @@ import pytest
 
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion, Origin
+from rocking_cli.plotting import style
 from rocking_cli.processing.oscillator import response_spectrum
 from rocking_cli.questions.select import subsets
-from rocking_cli.questions.select.picture import MEAN_COLOUR, draw_record_set
+from rocking_cli.questions.select.picture import draw_record_set
 from rocking_cli.questions.select.study import (
     Candidates,
     SetRequirements,
@@ -284,7 +285,7 @@ def test_the_picture_shows_the_mean_and_marks_where_it_does_not_fit():
     chosen = choose(made(8, 3, 0.9), SetRequirements(3, BAND, one_per="none"))
     (axes,) = draw_record_set(chosen, "a title").axes
     lines = {line.get_color(): line for line in axes.lines if line.get_linewidth() > 2}
-    np.testing.assert_allclose(lines[MEAN_COLOUR].get_ydata(), chosen.mean)
+    np.testing.assert_allclose(lines[style.MEAN].get_ydata(), chosen.mean)
     marked = next(line for line in axes.lines if line.get_marker() == "x")
     outside = (chosen.ratio < 0.9) | (chosen.ratio > 1.3)
     np.testing.assert_allclose(marked.get_xdata(), chosen.candidates.periods[outside])

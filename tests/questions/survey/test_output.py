@@ -5,17 +5,22 @@ import hashlib
 import json
 import re
 from dataclasses import replace
+from itertools import combinations
 from math import cos, radians
 from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
+from matplotlib.transforms import Bbox
 
 import rocking_cli as rk
 from rocking_cli.errors import InputError, Refused
+from rocking_cli.plotting import style
 from rocking_cli.questions.survey import sheets as survey_sheets
 from rocking_cli.questions.survey.coordinates import coordinates
 from rocking_cli.questions.survey.map_picture import METRES_PER_DEGREE, draw_map, scale_length
+from rocking_cli.questions.survey.picture import draw_survey
 from rocking_cli.questions.survey.sheets import LIST_FILE, MAX_STEM_LENGTH, file_names
 from rocking_cli.questions.survey.view import columns as written
 from rocking_cli.verification import Code
@@ -274,7 +279,7 @@ class TestMaps:
             pytest.approx(each) for each in ([13.15, 42.3], [13.2, 42.2], [13.1, 42.1])  # drawn last: rank 1
         ]  # fmt: skip
         assert marks.get_array().tolist() == [3, 2, 1]
-        assert labels(axes)[:3] == ["1", "2", "3"]
+        assert labels(axes)[1:] == ["1", "2", "3"]
         figure = drawn(places([13.1, 13.2, 13.15], [42.1, 42.2, 42.3]))
         grey = [
             0.3 * r + 0.59 * g + 0.11 * b for r, g, b, _ in figure.axes[0].collections[0].cmap(np.linspace(0, 1, 9))
@@ -323,9 +328,29 @@ class TestMaps:
 
     def test_one_place_and_ranks_in_the_same_place(self):
         axes = drawn(places([13.1, 13.1, 13.1], [42.0, 42.0, 42.5])).axes[0]
-        assert labels(axes)[:2] == ["1, 2", "3"]
+        assert labels(axes)[1:] == ["1, 2", "3"]
         assert np.ptp(drawn(places([13.1], [42.0])).axes[0].get_ylim()) * 111_195 == pytest.approx(116.0, rel=1e-3)
         assert len(labels(drawn(places(np.linspace(1, 2, 30), [3.0] * 30)).axes[0])) == 11  # ten ranks and the scale
+
+    def test_ranks_of_a_crowd_are_apart_and_nothing_is_cut_on_a_phone(self):
+        random = np.random.default_rng(3)
+        longitude, latitude = random.normal([13.0, 42.0], 0.001, (40, 2)).T.tolist()
+        found = rk.survey(places(longitude, latitude)).result
+        with style.on_phone():
+            drawn = [draw_map(found, coordinates(found), "a map " * 9), draw_survey(found, "a survey " * 9)]
+        for figure in drawn:
+            figure.draw_without_rendering()
+            (ranks,) = ([each for each in axes.texts if each.get_text().isdigit()] for axes in figure.axes[:1])
+            assert [each.get_text() for each in ranks] == [str(k + 1) for k in range(10)]
+            boxes = [Text.get_window_extent(each) for each in ranks]
+            assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))
+            tight = figure.get_tightbbox()  # inches
+            assert min(tight.x0, tight.y0) > -0.01 and tight.x1 < figure.get_figwidth() + 0.01
+            assert tight.y1 < figure.get_figheight() + 0.01
+            for each, box in zip(ranks, boxes, strict=True):  # a rank that is not beside its mark has a line to it
+                away = Bbox.from_extents(*box.extents).padded(0.1 * figure.dpi)
+                beside = away.contains(*figure.axes[0].transData.transform(each.xy))
+                assert beside or each.arrow_patch is not None
 
     def test_decimal_commas_and_headings(self):
         Path("g.csv").write_text(
