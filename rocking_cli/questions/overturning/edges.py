@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from math import log2
+from math import ceil, log2
 from typing import TypeVar
 
 import numpy as np
@@ -179,7 +179,7 @@ def _bisect(outlines: dict[int, _Outline], kinds: Integers, simulated: Simulated
         for each in zip(*((each.start, each.end, _on_lines(each.inside, 0)) for each in outlines.values()), strict=True)
     )
     most = int(max(MAX_SHARE * kinds.size, FREE_POINTS))
-    steps = min(int(log2(PRECISION / max(kinds.shape))), most // sum(sizes))
+    steps = min(ceil(log2(PRECISION / max(kinds.shape))), most // sum(sizes))
     count = 0
     for _ in range(steps):
         middle = (start + end) / 2

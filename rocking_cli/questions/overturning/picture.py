@@ -19,6 +19,7 @@ from matplotlib.patheffects import withStroke
 from rocking_cli.arrays import Integers, Points, Reals
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.plotting import style
+from rocking_cli.plotting.curve_names import name_curves
 from rocking_cli.plotting.region_names import name_regions
 from rocking_cli.questions.overturning.study import CONTOUR_LEVELS, Comparison, Kind, OverturningMap
 
@@ -189,20 +190,23 @@ def draw_comparison(found: Comparison, title: str) -> Figure:
     """
     figure, axes = style.one_panel(4.6, f"{title}, up to {found.top:.4g} g")
     every = max(1, found.periods.size // 8)
+    curves = []
     for k, (structure, least) in enumerate(zip(found.structures, found.least, strict=True)):
-        name = style.plain(structure.name)
-        axes.plot(found.periods, least, label=name, markevery=(k * every // 4, every), **style.distinct(k))
+        look = style.distinct(k) | {"label": style.plain(structure.name), "markevery": (k * every // 4, every)}
+        curves += axes.plot(found.periods, least, **look)
         _draw_doubt(axes, found, k)
-    if found.doubtful.any():
-        axes.fill_between([], [], [], label="hatched down to the thin line: unknown outcome", **style.UNKNOWN)
     for axis in (axes.xaxis, axes.yaxis):  # logarithmic, as the curve is steep for short pulses
         style.logarithmic(axis)
     if np.isnan(found.possible).all():
         axes.set_ylim(found.top / 10, found.top)  # without a curve, limits must be set
         style.note(axes, "no structure overturns")
     axes.set_xlim(float(found.periods[0]), float(found.periods[-1]))
-    axes.legend(**style.LEGEND, handlelength=4)
     style.tidy(axes, "period of the pulse [s]", "least amplitude that overturns [g]")
+    handles: list[Line2D | Patch] = [] if name_curves(axes, curves) else [*curves]
+    if found.doubtful.any():
+        handles.append(Patch(label="hatched down to the thin line: unknown outcome", **style.UNKNOWN))
+    if handles:
+        style.legend_below(figure, handles, handlelength=4)
     return figure
 
 
