@@ -11,6 +11,7 @@ from rocking_cli.cli.groups import Output
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import NUMBER, PERIOD, PULSE_AMPLITUDE, RATIO, range_of
 
+AROUND = "around overturning"
 MODELS = ("linear2", "linear1", "nonlinear")
 
 
@@ -32,9 +33,16 @@ MODELS = ("linear2", "linear1", "nonlinear")
 )
 @options.polarity("1", "-1", "both")
 @click.option("--dimensionless", is_flag=True, help="Use the dimensionless axes omega and a, also with FILE.")
-@click.option("--period", type=range_of(PERIOD), metavar="LOW:HIGH", help=options.HELP["period"])
-@click.option("--ag", type=range_of(PULSE_AMPLITUDE), metavar="LOW:HIGH", help=options.HELP["ag"])
-@click.option("--omega", type=range_of(RATIO), metavar="LOW:HIGH", help=f"{options.HELP['omega']}  [default: 0.5:10]")
+@click.option(
+    "--period", type=range_of(PERIOD), metavar="LOW:HIGH", help=f"{options.HELP['period']}  [default: {AROUND}]"
+)
+@click.option(
+    "--ag",
+    type=range_of(PULSE_AMPLITUDE),
+    metavar="LOW:HIGH",
+    help=f"{options.HELP['ag']}  [default: 0.7 to 10 times uplift]",
+)
+@click.option("--omega", type=range_of(RATIO), metavar="LOW:HIGH", help=f"{options.HELP['omega']}  [default: {AROUND}]")
 @click.option("--a", type=range_of(RATIO), metavar="LOW:HIGH", help=f"{options.HELP['a']}  [default: 0.5:10]")
 @click.option(
     "--points",
@@ -52,8 +60,9 @@ def command(files: tuple[str, ...], output: Output, **question: Any) -> None:
 
     Each point of the map is a simulated motion that ends in no uplift, rocking, overturning after one or more impacts,
     overturning without impact, or in an unknown outcome, if a joint opens or slides beyond --opening. --period and --ag
-    are ranges, such as 0.2:4 and 0.1g:2g. Without FILE, the map is that of the linear block, with the axes omega =
-    omega_g/p and a = a_g/(g lambda). With --polarity both, the worse of the two polarities governs.
+    are ranges, such as 0.2:4 and 0.1g:2g; the default ranges show where overturning starts. Without FILE, the map is
+    that of the linear block, with the axes omega = omega_g/p and a = a_g/(g lambda). With --polarity both, the worse of
+    the two polarities governs.
 
     With --compare, the command computes the smallest amplitude that overturns each FILE as a function of the period,
     and which structure overturns first. A FILE that cannot be used is reported and skipped, and the exit code is 5.

@@ -2,31 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
+from itertools import chain
 from textwrap import shorten
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
+from matplotlib.patches import Patch, PathPatch
+from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
-from numpy.typing import NDArray
 
-from rocking_cli import names
+from rocking_cli.arrays import Integers, Points, Reals
+from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.plotting import style
-from rocking_cli.questions.overturning.study import Comparison, OverturningMap, Region
+from rocking_cli.plotting.curve_names import name_curves
+from rocking_cli.plotting.region_names import name_regions
+from rocking_cli.questions.overturning.study import CONTOUR_LEVELS, Comparison, Kind, OverturningMap
 
-Reals = NDArray[np.float64]
-GRID_POINTS = 500  # number of points along either axis on which boundaries are traced
-CONTOUR_LEVELS = (0.1, 0.25, 0.5, 0.75)  # phi/phi_cr of the contours
+LABELS, FILLS = list(style.REGIONS), list(style.REGIONS.values())  # by `Kind`
+DARK_KINDS = Kind.AFTER_MORE, Kind.WITHOUT_IMPACT  # their names are light
+GRID_POINTS = 250  # number of points along either axis on which boundaries are traced
+EQUAL_RATIOS = 1e-6  # relative difference of the steps of a logarithmic axis
+TICKS = (1.0, 2.0, 3.0, 5.0, 7.0)  # multiples of powers of ten along logarithmic axes
+INSET, MAX_PLACES = 0.06, 100  # places for the number of a contour: share of the panel from its edge, and their number
 
 
 def draw_map(
     found: OverturningMap, title: str, *, dimensionless: bool, marks: Sequence[tuple[str, float, float]] = ()
 ) -> Figure:
     """Plot a map, with contours of the peak and the boundaries that are known in closed form.
+
+    Axes are logarithmic if the points of the map are at equal ratios.
 
     Parameters
     ----------
@@ -41,97 +51,129 @@ def draw_map(
     """
     figure, axes = style.one_panel(6.0, title)
     across, up = (found.omega, found.a) if dimensionless else (found.periods, found.accelerations)
-    kinds = _kinds(found)
-    axes.pcolormesh(
-        across, up, kinds, cmap=ListedColormap(list(style.REGIONS.values())), vmin=-0.5, vmax=len(style.REGIONS) - 0.5,
-        shading="nearest", rasterized=True,
-    )  # fmt: skip
-    _hatch(axes, across, up, found.outcome.unknown)
-    contours = _draw_peaks(axes, across, up, np.where(found.outcome.unknown, np.nan, found.outcome.peak_ratio))
-    handles: list[Line2D | Patch] = [
-        Patch(
-            facecolor=fill, edgecolor=style.FAINT, label=label,
-            hatch=style.UNKNOWN["hatch"] if label == names.UNKNOWN else None,
+    for axis, values in ((axes.xaxis, across), (axes.yaxis, up)):
+        if _at_equal_ratios(values):
+            style.logarithmic(axis, TICKS)
+    axes.set_xlim(float(across.min()), float(across.max()))
+    axes.set_ylim(float(up.min()), float(up.max()))
+    place = partial(_place, found, dimensionless=dimensionless)
+    for kind, outlines in found.edges.outlines.items():
+        look = (
+            {"hatch": style.UNKNOWN["hatch"], "edgecolor": style.UNKNOWN["edgecolor"]} if kind == Kind.UNKNOWN else {}
         )
-        for k, (label, fill) in enumerate(style.REGIONS.items())
-        if (kinds == k).any()
-    ]  # fmt: skip
-    handles += contours
+        path = Path.make_compound_path(*(Path(place(np.append(each, each[0])), closed=True) for each in outlines))
+        axes.add_patch(PathPatch(path, **{"linewidth": 0, "facecolor": FILLS[kind], "zorder": 1 + kind / 10, **look}))
+    handles = _draw_peaks(axes, found, place)
     handles += _draw_boundaries(axes, found, dimensionless=dimensionless)
-    style.legend_below(figure, handles)
+    if found.edges.stepped:
+        handles.append(Line2D([], [], linestyle="none", label="stepped edges: known only to the grid"))
     for name, x, y in marks:
         axes.plot(x, y, linestyle="none", zorder=6, **style.MARKED)
-        right = x > (across.min() + across.max()) / 2
+        right = (axes.transData - axes.transAxes).transform((x, y))[0] > 0.5
         axes.annotate(
             shorten(name, 30, placeholder=" ..."), (x, y), (-9 if right else 9, 7), textcoords="offset points",
             ha="right" if right else "left", fontsize=style.TICK, fontweight="bold", color=style.INK, zorder=7,
-            parse_math=False, path_effects=[withStroke(linewidth=2.5, foreground="white")],
+            parse_math=False, path_effects=[withStroke(linewidth=2.5, foreground=style.PAPER)],
         )  # fmt: skip
     if dimensionless:
-        style.tidy(axes, r"frequency $\omega_g/p$", r"amplitude $a_g/(g\lambda)$")
+        style.tidy(axes, *_dimensionless_labels(found))
     else:
         style.tidy(axes, "period of the pulse [s]", "amplitude of the pulse [g]")
     axes.grid(False)
+    words = {int(kind): (LABELS[kind], style.PAPER if kind in DARK_KINDS else style.INK) for kind in Kind}
+    named = name_regions(axes, partial(_regions_at, found, across, up), words)
+    keys = [
+        Patch(
+            facecolor=FILLS[kind], edgecolor=style.FAINT, label=LABELS[kind],
+            hatch=style.UNKNOWN["hatch"] if kind == Kind.UNKNOWN else None,
+        )
+        for kind in Kind if kind not in named and (found.kinds == kind).any()
+    ]  # fmt: skip
+    if keys or handles:
+        style.legend_below(figure, [*keys, *handles])
     return figure
 
 
-def _hatch(axes: Axes, across: Reals, up: Reals, unknown: NDArray[np.bool_]) -> None:
-    """Hatch the region of unknown outcome."""
-    if unknown.any():
-        region = axes.contourf(
-            across, up, unknown.astype(np.float64), [0.5, 1.5], hatches=[style.UNKNOWN["hatch"]], colors="none"
-        )
-        region.set(edgecolor=style.UNKNOWN["edgecolor"], linewidth=0.0)
+def _at_equal_ratios(values: Reals) -> bool:
+    """Return whether the values of an axis are at equal ratios."""
+    steps = np.diff(np.log(values))
+    return bool(np.ptp(steps) < EQUAL_RATIOS * np.abs(steps).max())
 
 
-def _draw_peaks(axes: Axes, across: Reals, up: Reals, peaks: Reals) -> list[Line2D]:
-    """Draw the longest contour of each level; the many short ones are islands of a point or two near overturning."""
-    if not (peaks > CONTOUR_LEVELS[0]).any():
-        return []
-    traced = axes.contour(across, up, np.ma.masked_invalid(peaks), levels=CONTOUR_LEVELS, linewidths=0)
-    pieces = [[piece for piece in each if len(piece) > 1] for each in traced.allsegs]
-    traced.remove()
-    for level, each in zip(CONTOUR_LEVELS, pieces, strict=True):
-        if not each:
-            continue
-        line = max(each, key=len)
-        axes.plot(*line.T, color=style.MEASURE, linewidth=style.CURVE)
-        # Put the label at half of the height, where the lines are farther apart.
-        place = line[np.abs(line[:, 1] - line[:, 1].mean()).argmin()]
-        axes.annotate(
-            f"{level:g}", place, ha="center", va="center", fontsize=style.SMALL, color=style.MEASURE,
-            bbox={"facecolor": style.REGIONS[names.ROCKS], "edgecolor": "none", "pad": 0.5},
-        )  # fmt: skip
-    return [Line2D([], [], color=style.MEASURE, linewidth=style.CURVE, label=r"peak $\phi/\phi_{cr}$")]
+def _place(found: OverturningMap, line: Points, *, dimensionless: bool) -> Reals:
+    """Return the coordinates of a line of the map on the axes, shape (k, 2)."""
+    omega, a = found.at(line)
+    if dimensionless:
+        return np.column_stack([omega, a])
+    return np.column_stack([found.structure.period(omega), a * found.structure.unit / STANDARD_GRAVITY])
 
 
-def _kinds(found: OverturningMap) -> NDArray[np.int64]:
-    """Return for each point the index of its fill colour."""
-    kinds = found.regions + (found.regions >= Region.WITHOUT_IMPACT)
-    return np.where((found.regions == Region.AFTER_IMPACT) & (found.outcome.impact_count > 1), 3, kinds)
+def _dimensionless_labels(found: OverturningMap) -> tuple[str, str]:
+    """Return the labels of dimensionless axes, which say what the symbols mean."""
+    shaken = found.structure
+    of_block = shaken.gravity == 1  # its p and lambda are 1
+    p, uplift = ("", "") if of_block else (f" = {shaken.p:.3g} rad/s", f", {shaken.lambda_:.3g} g")
+    x = (
+        r"frequency $\omega_g/p$ ($\omega_g$: circular frequency of the pulse, "
+        rf"$p${p}: frequency parameter of the structure)"
+    )
+    y = rf"amplitude $a_g/(g\lambda)$ of the pulse ($g\lambda$: uplift acceleration{uplift})"
+    return style.folded(x, style.page_width() - 1.3 * style.MAX_SIDE_MARGIN, style.LABEL), y
+
+
+def _draw_peaks(axes: Axes, found: OverturningMap, place: Callable[[Points], Reals]) -> list[Line2D]:
+    """Draw the contours of the peak under the regions that overturn, and number the longest of each level."""
+    look: dict[str, Any] = {"color": style.MEASURE, "linewidth": style.CURVE}
+    lines = [[place(each) for each in pieces] for pieces in found.edges.contours]
+    for line in chain.from_iterable(lines):
+        axes.plot(*line.T, zorder=1 + (Kind.ROCKS + 0.5) / 10, **look)
+    apart = [np.concatenate([np.empty((0, 2)), *(_inside(axes, line) for line in each)]) for each in lines]
+    for k, (level, points) in enumerate(zip(CONTOUR_LEVELS, apart, strict=True)):
+        others = np.concatenate([*apart[:k], *apart[k + 1 :]])
+        if points.size:
+            nearest = [np.hypot(*(others - each).T).min(initial=1.0) for each in points]
+            halo = withStroke(linewidth=2.5, foreground=FILLS[Kind.ROCKS])
+            axes.annotate(
+                f"{level:g}", points[int(np.argmax(nearest))], xycoords="axes fraction", ha="center", va="center",
+                fontsize=style.SMALL, color=style.MEASURE, path_effects=[halo],
+            )  # fmt: skip
+    words = r"peak rotation over critical rotation $\phi/\phi_{cr}$"
+    return [Line2D([], [], label=words, **look)] if any(found.edges.contours) else []
+
+
+def _inside(axes: Axes, line: Reals) -> Reals:
+    """Return points of a line that are off its ends and those of the panel, as shares of its width and height."""
+    ends = len(line) // 10
+    points = (axes.transData - axes.transAxes).transform(line[ends : len(line) - ends])
+    inside: Reals = points[((points > INSET) & (points < 1 - INSET)).all(axis=1)]
+    return inside[:: 1 + len(inside) // MAX_PLACES]
 
 
 def _draw_boundaries(axes: Axes, found: OverturningMap, *, dimensionless: bool) -> list[Line2D]:
-    omega = np.linspace(found.omega.min(), found.omega.max(), GRID_POINTS)
-    a = np.linspace(found.a.min(), found.a.max(), GRID_POINTS)
-    if not dimensionless:  # space the points evenly along the drawn axis of periods
-        omega = 2 * np.pi / np.linspace(2 * np.pi / omega[-1], 2 * np.pi / omega[0], GRID_POINTS)
-    across, up = np.meshgrid(omega, a)
+    along = np.linspace(0, 1, GRID_POINTS)
+    grid = (found.omega.size - 1) * along + 1j * ((found.a.size - 1) * along)
+    omega, a = found.at(grid)
+    x, y = _place(found, grid, dimensionless=dimensionless).T
     drawn = []
     for boundary in found.boundaries:
-        level = boundary.level(across, up)
+        level = boundary.level(*np.meshgrid(omega, a))
         finite = level[np.isfinite(level)]
         if not finite.size or finite.min() >= 0 or finite.max() <= 0:
             continue
-        scale_x = omega if dimensionless else found.structure.period(omega)
-        scale_y = a if dimensionless else a * found.accelerations[0] / found.a[0]
         look = style.BOUNDARIES[boundary.name]
         axes.contour(
-            scale_x, scale_y, np.ma.masked_invalid(level), levels=[0.0],
+            x, y, np.ma.masked_invalid(level), levels=[0.0],
             colors=look["color"], linestyles=[look["linestyle"]], linewidths=look["linewidth"],
         )  # fmt: skip
         drawn.append(Line2D([], [], label=f"{boundary.title} (closed form)", **look))
     return drawn
+
+
+def _regions_at(found: OverturningMap, across: Reals, up: Reals, x: Reals, y: Reals) -> Integers:
+    """Return the kind of the nearest point of the map, for each y and x on the axes."""
+    nearest = [np.abs(np.log(of) - np.log(to)[:, None]).argmin(axis=1) for of, to in ((up, y), (across, x))]
+    kinds: Integers = found.kinds[np.ix_(*nearest)]
+    return kinds
 
 
 def draw_comparison(found: Comparison, title: str) -> Figure:
@@ -148,20 +190,23 @@ def draw_comparison(found: Comparison, title: str) -> Figure:
     """
     figure, axes = style.one_panel(4.6, f"{title}, up to {found.top:.4g} g")
     every = max(1, found.periods.size // 8)
+    curves = []
     for k, (structure, least) in enumerate(zip(found.structures, found.least, strict=True)):
-        name = style.plain(structure.name)
-        axes.plot(found.periods, least, label=name, markevery=(k * every // 4, every), **style.distinct(k))
+        look = style.distinct(k) | {"label": style.plain(structure.name), "markevery": (k * every // 4, every)}
+        curves += axes.plot(found.periods, least, **look)
         _draw_doubt(axes, found, k)
-    if found.doubtful.any():
-        axes.fill_between([], [], [], label="hatched down to the thin line: unknown outcome", **style.UNKNOWN)
     for axis in (axes.xaxis, axes.yaxis):  # logarithmic, as the curve is steep for short pulses
         style.logarithmic(axis)
     if np.isnan(found.possible).all():
         axes.set_ylim(found.top / 10, found.top)  # without a curve, limits must be set
         style.note(axes, "no structure overturns")
     axes.set_xlim(float(found.periods[0]), float(found.periods[-1]))
-    axes.legend(**style.LEGEND, handlelength=4)
     style.tidy(axes, "period of the pulse [s]", "least amplitude that overturns [g]")
+    handles: list[Line2D | Patch] = [] if name_curves(axes, curves) else [*curves]
+    if found.doubtful.any():
+        handles.append(Patch(label="hatched down to the thin line: unknown outcome", **style.UNKNOWN))
+    if handles:
+        style.legend_below(figure, handles, handlelength=4)
     return figure
 
 

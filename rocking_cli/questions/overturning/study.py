@@ -8,17 +8,19 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
 from itertools import count
 from math import pi
 
 import numpy as np
 
 from rocking_cli import names
-from rocking_cli.arrays import Bools, Integers, Reals
+from rocking_cli.arrays import Bools, Integers, Points, Reals
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import Pulse
+from rocking_cli.questions.overturning.edges import Edges, edges_of
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.under_pulses import Progress, PulsedModel, outcomes
 
@@ -28,8 +30,12 @@ RESCAN_RATIO = 4  # a scan is repeated from the least a - 1 over this: islands c
 HALVINGS = 25  # halvings of the interval left by the scan, which has some thousandths of a - 1
 USUAL_PASSES = 2  # scans that a search usually takes, for the estimate of progress
 TIE_TOLERANCE = 1e-6  # relative difference of least amplitudes below which structures overturn together
-OMEGA_RANGE, AMPLITUDE_RANGE = (0.5, 10.0), (0.5, 10.0)  # defaults of omega_g/p and a
-MIN_OMEGA = 1.0  # least omega_g/p, at which the default range of periods ends
+USUAL_AMPLITUDES = 0.7, 10.0  # default range of a of logarithmic axes: from below uplift to far above it
+LINEAR_AMPLITUDES = 0.5, 10.0  # that of linear axes
+TRIED_OMEGAS, TRIED_AMPLITUDES = np.geomspace(1.0, 40.0, 24), 1 + np.geomspace(0.03, USUAL_AMPLITUDES[1] - 1, 24)
+NEAR_UPLIFT = 1.2  # the longest period of a map is one at which the structure overturns from this a on
+USUAL_OMEGAS = 1.0, 10.0  # range of omega_g/p of a map if no pulse tried overturns the structure
+CONTOUR_LEVELS = (0.1, 0.25, 0.5, 0.75)  # phi/phi_cr of the contours
 MAX_PARAMETER = 1e6  # largest a, omega and 1/omega: slower pulses would be simulated for ever
 
 
@@ -55,6 +61,24 @@ class Region(IntEnum):
 
 
 FALLS = Region.AFTER_IMPACT, Region.WITHOUT_IMPACT
+
+
+class Kind(IntEnum):
+    """A region of a plotted map, in which overturning after one impact is apart; the worse, the higher."""
+
+    NO_UPLIFT = 0
+    ROCKS = 1
+    AFTER_ONE = 2
+    AFTER_MORE = 3
+    WITHOUT_IMPACT = 4
+    UNKNOWN = 5
+
+
+def _kinds(found: Outcomes) -> Integers:
+    """Return the `Kind` of outcomes, as integers."""
+    stays = np.where(found.peak_ratio > 0, Kind.ROCKS, Kind.NO_UPLIFT)
+    falls = np.array([Kind.WITHOUT_IMPACT, Kind.AFTER_ONE, Kind.AFTER_MORE])[np.minimum(found.impact_count, 2)]
+    return np.where(found.fell, falls, np.where(found.unknown, Kind.UNKNOWN, stays))
 
 
 @short_repr
@@ -95,16 +119,41 @@ class OverturningMap:
         """Pulse amplitudes of the rows [standard gravity]."""
         return self.a * self.structure.unit / STANDARD_GRAVITY
 
-    @property
+    @cached_property
     def regions(self) -> Integers:
         """The `Region` of each point, as integers, shape (m, n)."""
-        stays = np.where(self.outcome.peak_ratio > 0, Region.ROCKS, Region.NO_UPLIFT)
-        falls = np.where(self.outcome.impact_count == 0, Region.WITHOUT_IMPACT, Region.AFTER_IMPACT)
-        return np.where(self.outcome.fell, falls, np.where(self.outcome.unknown, Region.UNKNOWN, stays))
+        return self.kinds - (self.kinds >= Kind.AFTER_MORE)
+
+    @cached_property
+    def kinds(self) -> Integers:
+        """The `Kind` of each point, as integers, shape (m, n)."""
+        return _kinds(self.outcome)
+
+    @cached_property
+    def edges(self) -> Edges:
+        """Edges between the kinds, and contours of the peak; the first use simulates further pulses near the edges."""
+
+        def simulated(places: Points) -> Integers:
+            omega, a = self.at(places)
+            return _kinds(
+                outcomes(
+                    self.structure, self.shape, self.structure.period(omega), a * self.structure.unit,
+                    polarities=self.polarities,
+                )
+            )  # fmt: skip
+
+        return edges_of(
+            self.kinds, simulated, self.outcome.peak_ratio, CONTOUR_LEVELS, falls=Kind.AFTER_ONE, unknown=Kind.UNKNOWN
+        )
+
+    def at(self, places: Points) -> tuple[Reals, Reals]:
+        """Return omega and a at columns u and rows v, fractions included, given as u + iv."""
+        columns, rows = np.arange(self.omega.size), np.arange(self.a.size)
+        return np.interp(places.real, columns, self.omega), np.interp(places.imag, rows, self.a)
 
     @property
     def shares(self) -> dict[Region, float]:
-        """The share of the points in each region; the shares add up to 1."""
+        """The share of the points in each region, which depends on the axes; the shares add up to 1."""
         counts = np.bincount(self.regions.ravel(), minlength=len(Region))
         return {region: float(counts[region] / self.regions.size) for region in Region}
 
@@ -174,16 +223,36 @@ def overturning_map(
     )
 
 
-def usual_periods(structures: Sequence[PulsedModel]) -> tuple[float, float]:
-    """Return the default range of pulse periods for some structures [s]."""
-    p = [each.p for each in structures]
-    return _round(2 * pi / (OMEGA_RANGE[1] * max(p))), _round(2 * pi / (MIN_OMEGA * min(p)))
+def usual_omegas(structure: PulsedModel, shape: Pulse, polarities: Sequence[int] = (1,)) -> tuple[float, float]:
+    """Return the default range of omega_g/p for a structure, found by simulating a few pulses of all frequencies.
+
+    The fastest pulses of the range are just too fast to overturn the structure at the largest default amplitude; the
+    slowest overturn it soon above uplift. If none overturns, this is the range of unknown outcomes.
+    """
+    omega, a = (each.ravel() for each in np.meshgrid(TRIED_OMEGAS, TRIED_AMPLITUDES))
+    found = outcomes(structure, shape, structure.period(omega), a * structure.unit, polarities=polarities)
+    falls = (found.fell if found.fell.any() else found.unknown).reshape(TRIED_AMPLITUDES.size, -1)
+    if not falls.any():
+        return USUAL_OMEGAS
+    least = np.where(falls.any(axis=0), TRIED_AMPLITUDES[falls.argmax(axis=0)], np.inf)
+    last = int(np.flatnonzero(np.isfinite(least))[-1])
+    first = min(int((least > NEAR_UPLIFT).argmax()), last)
+    return _round(TRIED_OMEGAS[first]), _round(TRIED_OMEGAS[min(last + 1, TRIED_OMEGAS.size - 1)])
+
+
+def usual_periods(
+    structures: Sequence[PulsedModel], shape: Pulse, polarities: Sequence[int] = (1,)
+) -> tuple[float, float]:
+    """Return the default range of pulse periods for some structures [s]; see `usual_omegas`."""
+    periods = [each.period(np.array(usual_omegas(each, shape, polarities))).tolist() for each in structures]
+    slowest, fastest = zip(*periods, strict=True)
+    return _round(min(fastest)), _round(max(slowest))
 
 
 def usual_amplitudes(structures: Sequence[PulsedModel]) -> tuple[float, float]:
     """Return the default range of pulse amplitudes, from below uplift to far above it [standard gravity]."""
-    unit = max(each.unit for each in structures) / STANDARD_GRAVITY
-    return _round(AMPLITUDE_RANGE[0] * unit), _round(AMPLITUDE_RANGE[1] * unit)
+    units = [each.unit / STANDARD_GRAVITY for each in structures]
+    return _round(USUAL_AMPLITUDES[0] * min(units)), _round(USUAL_AMPLITUDES[1] * max(units))
 
 
 def _round(value: float) -> float:
@@ -411,7 +480,7 @@ class Boundary:
     level: Callable[[Reals, Reals], Reals]
 
 
-UPLIFT = Boundary("uplift", "uplift, a = 1", lambda omega, a: a - 1 + 0 * omega)
+UPLIFT = Boundary("uplift", "uplift", lambda omega, a: a - 1 + 0 * omega)
 
 
 def boundaries(shape: Pulse, eta: float) -> list[Boundary]:

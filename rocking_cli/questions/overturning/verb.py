@@ -224,13 +224,11 @@ def overturning_map(
         more = "" if bare else ", or add `dimensionless`"
         raise InputError(f"`{name}` has no effect {why}: give `{right[name]}`{more}")
     if bare:
-        columns, rows = (
-            np.linspace(*(omega or study.OMEGA_RANGE), points),
-            np.linspace(*(a or study.AMPLITUDE_RANGE), points),
-        )
-    else:
-        columns = subject.period(np.linspace(*(period or study.usual_periods([subject])), points))
-        rows = np.linspace(*(ag or study.usual_amplitudes([subject])), points) * STANDARD_GRAVITY / subject.unit
+        columns = np.linspace(*(omega or study.usual_omegas(subject, form, signs)), points)
+        rows = np.linspace(*(a or study.LINEAR_AMPLITUDES), points)
+    else:  # at equal ratios, as the axes are logarithmic
+        columns = subject.period(np.geomspace(*(period or study.usual_periods([subject], form, signs)), points))
+        rows = np.geomspace(*(ag or study.usual_amplitudes([subject])), points) * STANDARD_GRAVITY / subject.unit
     count = study.count_histories([subject], columns.size * rows.size, signs)
     with watch.progress(count, "histories") as progress:
         result = study.overturning_map(subject, form, columns, rows, polarities=signs, progress=progress)
@@ -305,7 +303,7 @@ def overturning_curves(
         refuse_idle("on linear blocks, which have no joints", opening=opening != OPENING)
     ready = structures_of(structures, watch, opening)
     subjects = [pulsed_model(each, model, form, signs, eta) for each in ready]
-    periods = np.geomspace(*(period or study.usual_periods(subjects)), points)
+    periods = np.geomspace(*(period or study.usual_periods(subjects, form, signs)), points)
     highest = study.usual_amplitudes(subjects)[1] if top is None else top
     count = study.count_scans(subjects, periods.size, signs)
     with watch.progress(count, "histories") as progress:

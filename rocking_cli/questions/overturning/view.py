@@ -59,7 +59,7 @@ def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionles
     parts: list[Table | str] = [
         f"{map_title(found)}{source}: amplitudes {amplitude} against {what}",
         table_of("", columns, spaced(len(across))),
-        f"Shares of the pulses on the map: {shares}.",
+        f"Shares of the points of the map, which depend on the ranges of its axes: {shares}.",
     ]
     if some_unknown:
         parts.append(
@@ -68,10 +68,13 @@ def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionles
         )
     if not (found.outcome.peak_ratio != 0).any():
         parts.append(
-            f"No pulse on the map causes uplift: the largest has a = {found.a.max():.4g}, and uplift requires a > 1."
+            "No pulse on the map causes uplift: the amplitude of the strongest is "
+            f"{found.a.max():.4g} times the uplift acceleration."
         )
-    step = unit * (found.a[1] - found.a[0])
-    parts.append(f"Amplitudes are read from the map, whose step is {step:.2g}{'' if dimensionless else ' g'}.")
+    step = unit * np.diff(found.a).max()
+    parts.append(
+        f"Amplitudes are read from the map, whose steps are at most {step:.2g}{'' if dimensionless else ' g'}."
+    )
     if not np.isnan(found.safe_again).all():
         parts.append(
             "Stronger is not always worse: 'survives again at' is the largest amplitude that does not overturn the "

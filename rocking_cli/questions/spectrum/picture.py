@@ -19,19 +19,23 @@ from rocking_cli import names
 from rocking_cli.arrays import Reals
 from rocking_cli.names import MIN_MOTIONS
 from rocking_cli.plotting import style
+from rocking_cli.plotting.curve_names import name_curves
 from rocking_cli.questions.spectrum.study import Spectrum
 
 MAX_NAME_LENGTH = 40  # characters of a structure's name in the legend
 MAX_TICKED_RATIO = 8.0  # ratio of the ends of an axis up to which it has more ticks
 MAX_SHADED_CURVES = 2  # more shades of the spread of motions cannot be told apart
 MAX_OPAQUE_LINES = 20  # with more motions, their lines are transparent
+MARK_SIZE = 2.6  # points
+END_GAP = 1.02  # factor between the outermost sizes and the ends of the axis
 MARK_ROW_HEIGHT = 0.06  # share of the height of the peaks, for a row of marks of overturning or unknown outcomes
 
 
 def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title: str) -> Figure:
-    """Plot spectra against 2 pi/p, with given structures marked; for several motions also the share that overturns.
+    """Plot spectra against sizes in metres, with given structures marked; for several motions also overturned shares.
 
-    Open symbols above the peaks mark unknown outcomes; in the panel of shares, a hatched band includes them.
+    Each computed size has a mark. Open marks above the peaks mean unknown outcomes; in the panel of shares, a hatched
+    band includes them. Of the smallest sizes, those at which all motions overturn every structure are cut to a few.
 
     Parameters
     ----------
@@ -60,20 +64,22 @@ def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title:
         and any((each.followed >= MIN_MOTIONS).any() for each in spectra)
     )
     top = _top(spectra, high if shaded else 0.5)
-    for k, (each, median) in enumerate(zip(spectra, medians, strict=True)):
+    words, sizes = _sizes(spectra)
+    curves = []
+    for k, (each, size, median) in enumerate(zip(spectra, sizes, medians, strict=True)):
         if shaded:
-            _draw_spread(panels[0], each, k, (low, high), top, every=len(spectra) == 1)
+            _draw_spread(panels[0], each, size, k, (low, high), top, every=len(spectra) == 1)
         if many:
-            _draw_doubt(panels[1], each, k)
-            _draw_line(panels[1], each, k, each.share)
+            _draw_doubt(panels[1], each, size, k)
+            _draw_line(panels[1], each, size, k, each.share)
         heights = {
             known: top * (1 + MARK_ROW_HEIGHT * (place + 0.5)) for place, (of, known) in enumerate(rows) if of == k
         }
         beyond = np.where(falls[k], heights.get(True, np.nan), heights.get(False, np.nan))
-        _draw_line(panels[0], each, k, median, beyond, doubtful[k])
+        curves.append(_draw_line(panels[0], each, size, k, median, beyond, doubtful[k]))
         if each.given is not None:
             for axes in panels:
-                axes.axvline(each.periods[each.given], color=style.INK, linewidth=style.CURVE, linestyle=":", zorder=1)
+                axes.axvline(size[each.given], color=style.INK, linewidth=style.CURVE, linestyle=":", zorder=1)
     _scale_peaks(panels[0], top, [known for _, known in rows])
     if many:
         panels[1].set_ylim(-0.04, 1.04)
@@ -81,16 +87,41 @@ def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title:
         panels[1].set_ylabel("share that overturns", fontsize=style.LABEL)
     what = r"median peak $\phi/\phi_{cr}$" if many else r"peak $\phi/\phi_{cr}$"
     panels[0].set_ylabel(what, fontsize=style.LABEL)
-    panels[-1].set_xlabel(r"size $2\pi/p$ [s]", fontsize=style.LABEL)
+    ends = _ends(spectra, sizes)
     for axes in panels:
         axes.set_xscale("log")
-        axes.margins(x=0.01)
-        _log_ticks(axes.xaxis, spectra[0].periods[-1] / spectra[0].periods[0])
+        axes.set_xlim(*ends)
+        _log_ticks(axes.xaxis, ends[1] / ends[0])
         style.tidy(axes)
-    _second_axis(panels[0], spectra)
+    room = style.page_width() - 1.5 * style.MAX_SIDE_MARGIN
+    panels[-1].set_xlabel(style.folded(words, room, style.LABEL), fontsize=style.LABEL)
+    _second_axis(panels[0], spectra, sizes, ends)
     handles = _legend(spectra, (low, high) if shaded else None, many=many)
-    style.legend_below(figure, handles, handlelength=3.5)
+    named = name_curves(panels[0], curves)
+    style.legend_below(figure, handles if named else [*curves, *handles], handlelength=3.5)
     return figure
+
+
+def _sizes(spectra: Sequence[Spectrum]) -> tuple[str, list[Reals]]:
+    """Return in words what the sizes are, and those of each spectrum [m]: heights of a single structure, or else R."""
+    height = spectra[0].shape.height
+    if len(spectra) == 1 and height is not None:
+        return "height of the structure [m]", [spectra[0].scales * height]
+    blocks = all(each.shape.slenderness is not None for each in spectra)
+    words = "half of the diagonal, R [m]" if blocks else "half of the diagonal of the block with the same p, R [m]"
+    return words, [each.radii for each in spectra]
+
+
+def _ends(spectra: Sequence[Spectrum], sizes: Sequence[Reals]) -> tuple[float, float]:
+    """Return the ends of the axis of sizes: of those at which all motions overturn every structure, few are shown."""
+    least = [
+        size[max(0, rest - max(1, (size.size - rest) // 4))]
+        for each, size in zip(spectra, sizes, strict=True)
+        for rest in [int(np.append(each.overturned < np.maximum(each.followed, 1), True).argmax())]
+    ]
+    given = [size[each.given] for each, size in zip(spectra, sizes, strict=True) if each.given is not None]
+    low, high = min([*least, *given]), max(size[-1] for size in sizes)
+    return float(low / END_GAP), float(high * END_GAP)
 
 
 def _top(spectra: Sequence[Spectrum], q: float) -> float:
@@ -112,58 +143,62 @@ def _within(each: Spectrum) -> Reals:
     return inside
 
 
-def _draw_spread(axes: Axes, each: Spectrum, k: int, bounds: tuple[float, float], top: float, *, every: bool) -> None:
+def _draw_spread(
+    axes: Axes, each: Spectrum, size: Reals, k: int, bounds: tuple[float, float], top: float, *, every: bool
+) -> None:
     """Shade between two fractiles, up to the top if the upper one overturns; with `every`, each motion faintly."""
     lower, upper = (np.minimum(each.fractile(q), top) * _within(each) for q in bounds)
     colour = style.distinct(k)["color"]
-    axes.fill_between(each.periods, lower, upper, color=colour, alpha=0.15, linewidth=0)
+    axes.fill_between(size, lower, upper, color=colour, alpha=0.15, linewidth=0)
     for edge in (lower, upper):  # each edge is drawn up to overturning
-        axes.plot(each.periods, np.where(edge < top, edge, np.nan), color=colour, linewidth=style.MEDIUM, zorder=2.2)
+        axes.plot(size, np.where(edge < top, edge, np.nan), color=colour, linewidth=style.MEDIUM, zorder=2.2)
     if every:
         curves = np.where(np.isfinite(each.peak_ratio), each.peak_ratio, np.nan) * _within(each)
         clear = min(1.0, MAX_OPAQUE_LINES / len(curves))  # the fractiles must stay visible above many curves
-        axes.plot(each.periods, curves.T, color=style.FAINT, linewidth=style.THIN, alpha=max(clear, 0.1))
+        axes.plot(size, curves.T, color=style.FAINT, linewidth=style.THIN, alpha=max(clear, 0.1))
 
 
-def _draw_doubt(axes: Axes, each: Spectrum, k: int) -> None:
+def _draw_doubt(axes: Axes, each: Spectrum, size: Reals, k: int) -> None:
     """Hatch up to the share that overturns if all motions of unknown outcome do."""
     if not each.unknown.any():
         return
     look = style.distinct(k)
     low, high = each.share * _within(each), each.share_at_most * _within(each)
-    axes.fill_between(each.periods, low, high, alpha=0.4, **(style.UNKNOWN | {"edgecolor": look["color"]}))
-    axes.plot(each.periods, high, color=look["color"], linestyle=look["linestyle"], linewidth=style.CURVE)
+    axes.fill_between(size, low, high, alpha=0.4, **(style.UNKNOWN | {"edgecolor": look["color"]}))
+    axes.plot(size, high, color=look["color"], linestyle=look["linestyle"], linewidth=style.CURVE)
 
 
 def _draw_line(
     axes: Axes,
     each: Spectrum,
+    size: Reals,
     k: int,
     values: Reals,
     beyond: Reals | float = np.nan,
     doubtful: NDArray[np.bool_] | bool = False,
-) -> None:
-    """Draw a curve with the given structure on it; infinite values become marks at the heights `beyond`.
+) -> Line2D:
+    """Draw a curve with a mark at each size and the given structure on it; return it.
 
-    Marks of unknown outcomes are open.
+    Infinite values become marks at the heights `beyond`, open ones if the outcome is unknown.
     """
-    look = style.distinct(k)
+    name = style.plain(shorten(each.shape.structure.name, MAX_NAME_LENGTH, placeholder=" ..."))
+    alpha = each.shape.slenderness
+    label = name if alpha is None else rf"blocks, $\alpha$ = {alpha:g} rad = {degrees(alpha):.3g}°"
+    look = style.distinct(k) | {"markersize": MARK_SIZE, "linewidth": style.MEDIUM}
     finite = np.where(np.isfinite(values), values, np.nan)
-    spaced = max(1, each.scales.size // 8)
-    axes.plot(each.periods, finite * _within(each), markevery=(k * spaced // 4, spaced), **look)
-    small = look | {"linestyle": "none", "markersize": 3.5}
-    no_line = np.isnan(np.pad(finite, 1, constant_values=np.nan))
-    axes.plot(each.periods, np.where(no_line[:-2] & no_line[2:], finite, np.nan), **small)
+    (curve,) = axes.plot(size, finite * _within(each), label=label, **look)
+    small = look | {"linestyle": "none"}
     marks = np.where(np.isinf(values), beyond, np.nan)
     unknown = np.broadcast_to(doubtful, marks.shape)
-    axes.plot(each.periods, np.where(unknown, np.nan, marks), **small)
-    axes.plot(each.periods, np.where(unknown, marks, np.nan), **small, markerfacecolor="white")
+    axes.plot(size, np.where(unknown, np.nan, marks) * _within(each), **small)
+    axes.plot(size, np.where(unknown, marks, np.nan) * _within(each), **small, markerfacecolor=style.PAPER)
     finite = np.where(np.isinf(values), beyond, finite)
     if each.given is not None:
         star = style.STAR | {"color": look["color"], "clip_on": False}
         if unknown[each.given]:
-            star |= {"markerfacecolor": "white", "markeredgecolor": look["color"]}
-        axes.plot(each.periods[each.given], finite[each.given], **star)
+            star |= {"markerfacecolor": style.PAPER, "markeredgecolor": look["color"]}
+        axes.plot(size[each.given], finite[each.given], **star)
+    return curve
 
 
 def _scale_peaks(axes: Axes, top: float, rows: Sequence[bool]) -> None:
@@ -188,18 +223,13 @@ def _log_ticks(axis: Axis, ratio: float) -> None:
     style.plain_numbers(axis, (1.0, 2.0, 5.0) if ratio > MAX_TICKED_RATIO else (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0))
 
 
-def _second_axis(axes: Axes, spectra: Sequence[Spectrum]) -> None:
-    """Add an upper axis: the scale of the structure if there is only one, or R of the blocks if all are blocks."""
-    of_structures = [each for each in spectra if each.shape.slenderness is None]
-    if len(of_structures) > 1:
-        return
-    of = of_structures[0] if of_structures else spectra[0]
-    both: tuple[Callable[[Reals], Reals], ...] = (of.shape.scales, of.shape.periods)
-    if of.shape.own is not None:  # interpolate between the sizes that were computed, each from a model of its own
-        both = _between(of.periods, of.scales, 2.0), _between(of.scales, of.periods, 0.5)
-    above = axes.secondary_xaxis("top", functions=both)  # type: ignore[arg-type]
-    above.set_xlabel("scale (1: as given)" if of_structures else "size R of the blocks [m]", fontsize=style.LABEL)
-    _log_ticks(above.xaxis, spectra[0].scales[-1] / spectra[0].scales[0])
+def _second_axis(axes: Axes, spectra: Sequence[Spectrum], sizes: Sequence[Reals], ends: tuple[float, float]) -> None:
+    """Add an upper axis of 2 pi/p, which is proportional to the root of R, or is known at the computed heights."""
+    to = _between(sizes[0], spectra[0].periods, 0.5)
+    above = axes.secondary_xaxis("top", functions=(to, _between(spectra[0].periods, sizes[0], 2.0)))  # type: ignore[arg-type]
+    above.set_xlabel(r"$2\pi/p$, with frequency parameter $p$ [s]", fontsize=style.LABEL)
+    low, high = to(np.array(ends)).tolist()
+    _log_ticks(above.xaxis, high / low)
     above.tick_params(labelsize=style.TICK, colors=style.INK)
 
 
@@ -219,11 +249,6 @@ def _between(x: Reals, y: Reals, power: float) -> Callable[[Reals], Reals]:
 
 def _legend(spectra: Sequence[Spectrum], bounds: tuple[float, float] | None, *, many: bool) -> list[Line2D | Patch]:
     handles: list[Line2D | Patch] = []
-    for k, each in enumerate(spectra):
-        alpha = each.shape.slenderness
-        name = style.plain(shorten(each.shape.structure.name, MAX_NAME_LENGTH, placeholder=" ..."))
-        label = rf"blocks, $\alpha$ = {alpha:g} rad = {degrees(alpha):.3g}°" if alpha is not None else name
-        handles.append(Line2D([], [], label=label, **style.distinct(k)))
     if any(each.given is not None for each in spectra):
         handles.append(Line2D([], [], label="as given", color=style.INK, **style.STAR))
     if bounds is not None:

@@ -58,6 +58,8 @@ class SpectrumShape:
         Number of bodies of the structure.
     caution : str
         A caution about the lambda of the structure; empty if there is none.
+    height : float, optional
+        Height of the structure at scale 1 [m]; None if the shape of a body is not known.
     """
 
     structure: PulsedModel
@@ -66,6 +68,7 @@ class SpectrumShape:
     hung: bool = False
     bodies: int = 1
     caution: str = ""
+    height: float | None = None
 
     @property
     def leaves_out_joints(self) -> bool:
@@ -91,6 +94,11 @@ class SpectrumShape:
         if self.own is not None:
             return np.array([self.own.period(scale) for scale in scales.tolist()])
         return self.period * np.sqrt(scales)
+
+
+def radius(periods: Reals, gravity: float) -> Reals:
+    """Return R of rectangular blocks, half of their diagonal [m], from their 2 pi/p [s]: p^2 = 3 g/(4 R)."""
+    return 3 * gravity / 4 * (periods / (2 * pi)) ** 2
 
 
 def shape_of(structure: Structure, model: ModelName, eta: float | None = None) -> SpectrumShape:
@@ -122,7 +130,16 @@ def shape_of(structure: Structure, model: ModelName, eta: float | None = None) -
         hung=bool(mechanism.attached),
         bodies=len(mechanism.bodies()),
         caution=mechanism.own_caution(),
+        height=_height(mechanism),
     )
+
+
+def _height(mechanism: Mechanism) -> float | None:
+    """Return the height of a structure at rest [m]; None if the shape of a body is not known."""
+    carrier = mechanism.carrier
+    if set(carrier.outlines) < set(carrier.bodies):
+        return None
+    return float(np.ptp([point.imag for each in carrier.outlines.values() for line in each for point in line]))
 
 
 def blocks_of(slenderness: float, model: ModelName, eta: float | None = None) -> SpectrumShape:
@@ -190,6 +207,11 @@ class Spectrum:
     def periods(self) -> Reals:
         """2 pi/p of the sizes, shape (n,) [s]."""
         return self.shape.periods(self.scales)
+
+    @property
+    def radii(self) -> Reals:
+        """R of the rectangular block with the same p at each size, half of its diagonal, shape (n,) [m]."""
+        return radius(self.periods, self.shape.structure.gravity)
 
     @property
     def uplifts(self) -> Reals:
