@@ -407,8 +407,13 @@ def in_percent(axis: Axis) -> None:
     axis.set_major_formatter(PercentFormatter(1.0))
 
 
-def legend_below(figure: Figure, handles: Sequence[Any] | None = None, ncols: int = 2, **look: Any) -> None:
-    """Draw the legend of a figure below its panels; in a figure of the user where no layout makes room, in a panel."""
+def legend_below(
+    figure: Figure, handles: Sequence[Any] | None = None, ncols: int = 2, *, grows: bool = False, **look: Any
+) -> None:  # fmt: skip
+    """Draw the legend of a figure below its panels; in a figure of the user where no layout makes room, in a panel.
+
+    A new figure that `grows` becomes higher by its legend.
+    """
     context, below = _given.get(), {"fontsize": TICK, "frameon": False, **look}
     target = figure if context is None else context.target
     panels = [target] if isinstance(target, Axes) else target.axes
@@ -427,6 +432,8 @@ def legend_below(figure: Figure, handles: Sequence[Any] | None = None, ncols: in
         key = target.legend(handles, labels, loc="outside lower center", ncols=ncols, **below)
         if context is not None:
             context.below.append(key)
+        elif grows:
+            figure.set_figheight(figure.get_figheight() + key.get_window_extent().height / figure.dpi)
     elif layout is not None and context is not None:
         context.below.append(lowest.legend(handles, labels, loc="upper center", ncols=ncols, **below))
     else:
