@@ -25,7 +25,8 @@ from rocking_cli.questions.fragility.curves import FragilityCurve, Surface
 from rocking_cli.questions.fragility.definition import Limit
 from rocking_cli.questions.fragility.observed import MIN_RELIABLE_RECORDS, Observations
 from rocking_cli.questions.fragility.own_fit import FittedFragility
-from rocking_cli.questions.fragility.quantiles import MIN_RECORDS
+from rocking_cli.questions.fragility.quantiles import not_exceeded
+from rocking_cli.questions.fragility.quantiles_picture import draw_fractiles
 from rocking_cli.questions.fragility.view import limit_name
 
 Reals = NDArray[np.float64]
@@ -40,9 +41,9 @@ HATCH_OPACITY = 0.4
 HATCHES = ("////", "\\\\\\\\", "||||", "----")
 MAX_DRAWN_RUNS = 3000  # runs and records that are drawn one by one
 MAX_DRAWN_LADDERS = 300
+MAX_NAMED_RECORDS = 11
 CONTOUR_LEVELS = (0.1, 0.25, 0.5, 0.75, 0.9)  # probabilities of the contours
 EDGE_LABELS = (f"if {names.UNKNOWN} runs exceed", f"if {names.UNKNOWN} runs do not")
-FRACTILES = ((0.16, "16 %"), (0.5, "median"), (0.84, "84 %"))
 LABEL_FREE_MARGIN = 0.08  # share of the plane at its edges without names of contours
 MAX_COUNTED_LEVELS = 15  # with more levels of shaking, not every one is labelled with its counts
 
@@ -192,10 +193,13 @@ def _remark(drawn: Sequence[LabelledCurve], of: str, observed: int, *, merged: b
         parts.append(f"{'bands and ' if fits else ''}bars: {100 * drawn[0].curve.confidence:.3g} % confidence")
         beside = ", side by side" if observed > 1 else ""
         parts.append(f"marks: observed shares{beside}{', of neighbouring intensities together' if merged else ''}")
-    fewest = min((each.records for each in fits), default=MIN_RELIABLE_RECORDS)
-    if fewest < MIN_RELIABLE_RECORDS:
-        parts.append(f"only {fewest} {of}: a rough guide")
-    return "; ".join(parts)
+    return "; ".join([*parts, *_few(fits, of)])
+
+
+def _few(fits: Sequence[FragilityCurve | Surface], of: str) -> list[str]:
+    """Return words on fits of few records, if there are any."""
+    fewest = min((each.records for each in fits if each.fit is not None), default=MIN_RELIABLE_RECORDS)
+    return [f"only {fewest} {of}: a rough guide"] if fewest < MIN_RELIABLE_RECORDS else []
 
 
 def _unbroken(text: str) -> str:
@@ -235,7 +239,7 @@ def _draw_observed(axes: Axes, each: LabelledCurve, look: dict[str, Any], place:
             count, (x, top), xytext=(0, 2), textcoords="offset points", ha="center", fontsize=style.SMALL,
             color=style.INK,
         )  # fmt: skip
-    return marks.max() < each.observations.group.max()
+    return bool(marks.max() < each.observations.group.max())
 
 
 def _marks(axes: Axes, seen: Observations, least: float) -> tuple[Integers, float]:
@@ -296,7 +300,9 @@ def _key(words: str, curve: FragilityCurve, look: dict[str, Any]) -> Line2D:
     return Line2D([], [], label=_unbroken(words), **look | {"markerfacecolor": style.PAPER})
 
 
-def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str, records: int | None = None) -> Figure:
+def draw_ida(
+    intensity: Reals, peaks: Reals, label: str, title: str, records: int | None = None, named: Sequence[str] = ()
+) -> Figure:  # fmt: skip
     """Plot the peak rotation of each record against the intensity, with quantiles over the records.
 
     Parameters
@@ -311,6 +317,8 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str, records: in
         Heading.
     records : int, optional
         Number of distinct records, which decides which quantiles are drawn; by default that of the rows.
+    named : sequence of str
+        Names of the rows, if each is a record; a few records have colours and names of their own.
 
     Returns
     -------
@@ -318,7 +326,7 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str, records: in
         Runs that overturn are shown in a band above the rotations, with their number at each level; so are unknown
         outcomes, which rank below overturning.
     """
-    figure, axes = style.one_panel(4.6, title)
+    figure, axes = style.one_panel(PANEL_HEIGHT, title)
     fallen, doubtful = np.isnan(peaks), np.isposinf(peaks)
     floor = 1.05 * max(1.0, float(np.max(peaks, initial=0.0, where=np.isfinite(peaks))))  # lower edge of the bands
     high = 0.15 * floor
@@ -332,20 +340,26 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str, records: in
     peaks = np.where(fallen, middle, np.where(doubtful, places.get(names.UNKNOWN, middle), peaks))
     axes.axhline(1.0, color=style.FAINT, linewidth=style.CURVE)
     some = np.linspace(0, len(peaks) - 1, min(len(peaks), MAX_DRAWN_LADDERS)).round().astype(int)
-    for each in peaks[some]:
-        axes.plot(intensity, each, color=style.FAINT, linewidth=style.THIN, alpha=0.8)
-    ranked = np.sort(peaks, axis=0)
-    name = "one record" if some.size == len(peaks) else f"one record, {some.size} drawn"
-    handles = [Line2D([], [], color=style.FAINT, linewidth=style.THIN, label=name)]
-    for k, (fractile, name), fewest in zip((1, 0, 2), FRACTILES, MIN_RECORDS, strict=True):
-        if (len(peaks) if records is None else records) < fewest:
-            continue
-        place = int(np.ceil(fractile * len(ranked))) - 1  # the lowest peak that this share of records does not exceed
-        look = style.distinct(k) | {"marker": "none", "linewidth": 2.0}
-        line = ranked[place].copy()
-        above = line > min(places.values()) * (1 - 1e-9)
-        line[1:][above[1:] & above[:-1]] = np.nan  # the line ends at overturning or unknown outcomes
-        handles += axes.plot(intensity, line, label=name, **look)
+    ladders = [np.column_stack([intensity, each]) for each in peaks[some]]
+    what = "record" if len(peaks) == records else "run of a record"
+    name = f"one {what}" if some.size == len(peaks) else f"one {what}, {some.size} drawn"
+    looks: list[dict[str, Any]] = [{"colors": style.FAINT, "linewidths": style.THIN, "alpha": 0.8, "label": name}]
+    if len(named) == len(peaks) <= MAX_NAMED_RECORDS:
+        looks = [
+            {
+                "colors": each["color"],
+                "linestyles": each["linestyle"],
+                "linewidths": style.MEDIUM,
+                "label": style.plain(name),
+            }
+            for each, name in zip(map(style.distinct, range(1, len(named) + 1)), named, strict=True)
+        ]
+    parts = np.array_split(np.array(ladders), len(looks))
+    handles: list[Any] = [
+        axes.add_collection(LineCollection(list(part), **look)) for part, look in zip(parts, looks, strict=True)
+    ]
+    records = len(peaks) if records is None else records
+    ranked = np.array([not_exceeded(each, records) for each in np.sort(peaks, axis=0).T]).T
     every = max(1, int(np.ceil(intensity.size / MAX_COUNTED_LEVELS)))
     for which, edge in ((fallen, top), (doubtful, floor)):
         for x, count in list(zip(intensity, which.sum(axis=0), strict=True))[::every]:
@@ -359,9 +373,10 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str, records: in
     ticks = np.arange(0.0, 1.1, 0.2)
     axes.set_yticks([*ticks, *places.values()], [*(f"{y:.1f}" for y in ticks), *places])
     style.tidy(axes, label, r"peak rotation $\phi/\phi_{cr}$")
-    also = f" or\nare of {names.UNKNOWN} outcome" if doubtful.any() else ""
-    handles.append(Line2D([], [], linestyle="none", label=f"numbers: records that overturn{also}, of {len(peaks)}"))
-    style.legend_below(figure, handles, 5)
+    handles += draw_fractiles(axes, intensity, ranked, ranked >= min(places.values()) * (1 - 1e-9))
+    also = f" or are of {names.UNKNOWN} outcome" if doubtful.any() else ""
+    handles.append(_words(f"numbers: those that overturn{also}, of {len(peaks)}"))
+    style.legend_below(figure, handles, 2, grows=True)
     return figure
 
 
@@ -383,7 +398,7 @@ def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figur
         Of many runs, only every n-th is drawn. If many are of unknown outcome, grey contours show the surface in which
         these count as not exceeding.
     """
-    figure, axes = style.one_panel(4.9, title)
+    figure, axes = style.one_panel(1.1 * PANEL_HEIGHT, title)
     surface, spared, exceeding = found.surface, found.runs - found.exceeding, (found.lower or found).exceeding
     doubtful = found.exceeding - exceeding
     share = max(sum(int(np.count_nonzero(each)) for each in (spared, exceeding, doubtful)), 1)
@@ -406,14 +421,13 @@ def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figur
     if band and found.lower is not None:
         handles.append(_contours(axes, found.lower.surface, across, up, style.RECORD_COLOUR, EDGE_LABELS[1]))
     handles.append(_contours(axes, surface, across, up, style.INK, EDGE_LABELS[0] if band else ""))
-    notes = [surface.warning] if surface.warning else []
-    notes += [f"one of every {every} runs is drawn"] if every > 1 else []
+    notes = [f"one of every {every} runs is drawn"] if every > 1 else []
+    notes += _few([surface], "records")
     handles += [_words(each) for each in notes]
     axes.set_xlim(across[0], across[-1])
     axes.set_ylim(up[0], up[-1])
     style.tidy(axes, labels[0], labels[1])
-    columns = 1 if surface.kind == "none" or notes or band else 2
-    style.legend_below(figure, handles, columns)
+    style.legend_below(figure, handles, 3, grows=True)
     return figure
 
 
@@ -428,7 +442,7 @@ def _contours(axes: Axes, surface: Surface, across: Reals, up: Reals, color: str
     for name in axes.clabel(
         drawn, manual=_label_places(drawn, across, up), fmt=lambda level: f"{100 * level:g} %", fontsize=style.TICK
     ):
-        name.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5})
+        name.set_bbox({"facecolor": style.PAPER, "edgecolor": "none", "alpha": 0.8, "pad": 0.5})
         name.set_zorder(6)  # names are drawn above the marks
     return Line2D([], [], color=color, label=f"probability of exceedance{which and f', {which}'}")
 

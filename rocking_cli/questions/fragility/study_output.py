@@ -99,7 +99,7 @@ def _increments(answer: StudyAnswer, structure: str) -> Figure:
     from rocking_cli.questions.fragility.definition import SCALE
     from rocking_cli.questions.fragility.picture import draw_ida
     from rocking_cli.questions.fragility.store import Store
-    from rocking_cli.questions.fragility.tally import peaks
+    from rocking_cli.questions.fragility.tally import peaks, samples_of
     from rocking_cli.studies.fragility.quantities import label
 
     plan, measure = answer.plan, answer.definition.levels.measure
@@ -107,4 +107,6 @@ def _increments(answer: StudyAnswer, structure: str) -> Figure:
     usable = [k for k, each in enumerate(plan.records) if each.reason is None]
     with Store.reading(answer.store) as store:
         table = peaks(store, plan, structure)
-    return draw_ida(np.array(plan.levels), table, across, structure, np.unique(plan.of_sets.one[usable]).size)
+    records, ladders = np.unique(plan.of_sets.one[usable]).size, len(samples_of(plan, structure)) * plan.block
+    named = [plan.records[k].name for k in usable] if ladders == len(plan.levels) else []
+    return draw_ida(np.array(plan.levels), table, across, structure, records, named)
