@@ -447,9 +447,11 @@ def _layout(target: Target) -> ConstrainedLayoutEngine | TightLayoutEngine | Non
 
 
 def _put_below(key: Legend, axes: Axes) -> None:
-    """Put the legend of axes below the words of their horizontal axis."""
-    root, words = cast("Figure", axes.get_figure(root=True)), axes.xaxis.get_tightbbox()
-    depth = max(axes.bbox.y0 - words.y0, 0.0) / root.dpi if words is not None else 0.0
+    """Put the legend of axes below the words of their horizontal axis, and of that of their twins."""
+    root = cast("Figure", axes.get_figure(root=True))
+    twins = [each for each in root.axes if np.allclose(each.bbox.bounds, axes.bbox.bounds)]
+    words = [box for each in twins if (box := each.xaxis.get_tightbbox()) is not None]
+    depth = max([0.0, *(axes.bbox.y0 - box.y0 for box in words)]) / root.dpi
     key.set_bbox_to_anchor((0.5, 0.0), axes.transAxes + ScaledTranslation(0, -depth, root.dpi_scale_trans))
 
 
