@@ -44,8 +44,12 @@ def outcome(*, uplifts: bool, overturned: bool, still_rocking: bool = False, unk
     return ROCKS if uplifts else NO_UPLIFT
 
 
-MIN_MOTIONS, MIN_MOTIONS_OF_MEDIAN = 20, 5
-"""Least number of motions for a quantile, and for the median: with fewer, a single motion decides it."""
+MIN_MOTIONS, MIN_MOTIONS_OF_MEDIAN = 18, 6
+"""Least number of motions for the quantiles of 16 and 84 %, and for the median.
+
+With fewer, the lowest and the highest peak do not enclose the quantile with a confidence of 95 %, so that no number of
+motions ranked below and above it bounds the quantile.
+"""
 HALF_UP = 1e-9  # %: a share that ends in .5 is rounded up despite floating-point error
 
 

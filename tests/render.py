@@ -87,9 +87,8 @@ def _seen(median: float, dispersion: float) -> Observations:
 
 def _curves(*medians: float) -> Figure:
     seen = [_seen(each, 0.3 + 0.1 * k) for k, each in enumerate(medians)]
-    return draw_curves(
-        [LabelledCurve(f"{k}", fit_curve(each), each) for k, each in enumerate(seen)], "PGA [g]", "curves"
-    )
+    curves = [LabelledCurve(f"{k}", fit_curve(each), each) for k, each in enumerate(seen)]
+    return _of_one_height(draw_curves(curves, "PGA [g]", "curves"))
 
 
 def _surface() -> Figure:
@@ -98,7 +97,13 @@ def _surface() -> Figure:
     exceeding = (np.log(x1 * x2) > 0.5 * random.normal(size=60)).astype(int)
     surface = fit_surface(x1, x2, exceeding, np.arange(60))
     found = Bivariate("a", "uplift", ("PGA", "PGV"), x1, x2, np.ones(60, int), exceeding, surface)
-    return draw_surface(found, ("PGA [g]", "PGV [m/s]"), "surface")
+    return _of_one_height(draw_surface(found, ("PGA [g]", "PGV [m/s]"), "surface"))
+
+
+def _of_one_height(figure: Figure) -> Figure:
+    """A figure that is not higher by its legend, whose height is that of a font."""
+    figure.set_figheight(4.6)
+    return figure
 
 
 FIGURES: dict[str, Callable[[], Figure]] = {

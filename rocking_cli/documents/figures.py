@@ -80,6 +80,9 @@ def _tag(tag: str, prefix: str) -> str:
     tag = re.sub(r'(href="|url\()#', rf"\1#{prefix}-", tag)
     # A hundredth of a point is not seen, and a line break of each point of a path is as long as a number.
     tag = re.sub(r"(\.\d\d)\d+", r"\1", re.sub(r"\s+", " ", tag)) if tag.startswith("<path") else tag
+    # Rules of the page do not reach the shape of a mark, whose style its uses repeat, nor the attribute of a rectangle.
+    tag = re.sub(r'(<path id="[^"]*" d="[^"]*") style="[^"]*"', r"\1", tag)
+    tag = re.sub(r'(<rect [^>]*)\bfill="(#\w+)"', r'\1style="fill: \2"', tag)
     tag = re.sub(r"font-family: '?DejaVu Sans'?[^;\"]*(; )?", "", tag)  # that of the whole figure
     # Screen readers take the description beside the picture.
     return tag.replace("<svg ", f"<svg {SVG_ATTRIBUTES} ", 1)

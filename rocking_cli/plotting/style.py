@@ -415,8 +415,13 @@ def in_percent(axis: Axis) -> None:
     axis.set_major_formatter(PercentFormatter(1.0))
 
 
-def legend_below(figure: Figure, handles: Sequence[Any] | None = None, ncols: int = 2, **look: Any) -> None:
-    """Draw the legend of a figure below its panels; in a figure of the user where no layout makes room, in a panel."""
+def legend_below(
+    figure: Figure, handles: Sequence[Any] | None = None, ncols: int = 2, *, grows: bool = False, **look: Any
+) -> None:  # fmt: skip
+    """Draw the legend of a figure below its panels; in a figure of the user where no layout makes room, in a panel.
+
+    A new figure that `grows` becomes higher by its legend.
+    """
     context, below = _given.get(), {"fontsize": TICK, "frameon": False, **look}
     target = figure if context is None else context.target
     panels = [target] if isinstance(target, Axes) else target.axes
@@ -435,6 +440,8 @@ def legend_below(figure: Figure, handles: Sequence[Any] | None = None, ncols: in
         key = target.legend(handles, labels, loc="outside lower center", ncols=ncols, **below)
         if context is not None:
             context.below.append(key)
+        elif grows:
+            figure.set_figheight(figure.get_figheight() + key.get_window_extent().height / figure.dpi)
     elif layout is not None and context is not None:
         context.below.append(lowest.legend(handles, labels, loc="upper center", ncols=ncols, **below))
     else:
@@ -448,9 +455,11 @@ def _layout(target: Target) -> ConstrainedLayoutEngine | TightLayoutEngine | Non
 
 
 def _put_below(key: Legend, axes: Axes) -> None:
-    """Put the legend of axes below the words of their horizontal axis."""
-    root, words = cast("Figure", axes.get_figure(root=True)), axes.xaxis.get_tightbbox()
-    depth = max(axes.bbox.y0 - words.y0, 0.0) / root.dpi if words is not None else 0.0
+    """Put the legend of axes below the words of their horizontal axis, and of that of their twins."""
+    root = cast("Figure", axes.get_figure(root=True))
+    twins = [each for each in root.axes if np.allclose(each.bbox.bounds, axes.bbox.bounds)]
+    words = [box for each in twins if (box := each.xaxis.get_tightbbox()) is not None]
+    depth = max([0.0, *(axes.bbox.y0 - box.y0 for box in words)]) / root.dpi
     key.set_bbox_to_anchor((0.5, 0.0), axes.transAxes + ScaledTranslation(0, -depth, root.dpi_scale_trans))
 
 

@@ -9,7 +9,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 from rocking_cli import names
-from rocking_cli.documents.figures import svg
+from rocking_cli.documents.figures import inline_svg, svg
 from rocking_cli.plotting import style
 from tests.conftest import EXAMPLES
 from tests.render import FIGURES
@@ -111,3 +111,17 @@ def test_a_dark_page_recolours_words_lines_and_areas():
     assert f"stroke: {style.BLUE}" in text
     assert f"figure [style*='stroke: {style.BLUE}'] {{ stroke: {style.DARK[style.BLUE]} !important }}" in rules
     assert "figure text:not([style*='fill'])" in rules
+
+
+def test_marks_and_hatches_have_their_colours_where_a_dark_page_finds_them():
+    def draw():
+        figure = Figure()
+        axes = figure.subplots()
+        axes.plot([0], [0], marker="s", color=style.ORANGE, markerfacecolor=style.PAPER)
+        axes.axhspan(0, 1, facecolor=style.SHADE, hatch="////", edgecolor=style.FAINT)
+        return figure
+
+    text = str(inline_svg(draw, "a"))
+    assert not re.search(r'<path id="[^"]*" [^>]*style=', text)  # a rule does not reach the shape of a mark
+    assert re.search(rf"<use [^>]*fill: {style.PAPER}; stroke: {style.ORANGE}", text)
+    assert re.search(rf'<rect [^>]*style="fill: {style.SHADE}"', text) and 'fill="#' not in text

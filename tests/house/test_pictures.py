@@ -4,6 +4,7 @@
 """
 
 import pytest
+from matplotlib.collections import PolyCollection
 from matplotlib.contour import QuadContourSet
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
@@ -57,7 +58,7 @@ def drop(axes, kind, keep):
         ("margin", 0, Line2D, lambda each: each.get_marker() != "*"),  # the motions themselves
         ("margin", 0, Line2D, lambda each: each.get_marker() != "|"),  # from where they uplift
         ("fragility", 0, Line2D, lambda each: each.get_marker() != "o"),  # what was observed
-        ("fragility_of_four", 0, Line2D, lambda each: each.get_linewidth() > 1 or each.get_marker() != "None"),  # bands
+        ("fragility_of_four", 0, PolyCollection, lambda each: False),  # bands
         ("surface", 0, QuadContourSet, lambda each: False),  # the probability
     ],
 )

@@ -117,6 +117,11 @@ class FragilityCurve(FittedToRuns):
         return replace(self, implied={})
 
     @property
+    def is_exact(self) -> bool:
+        """Whether the curve is a step at an exactly known intensity, which a motion must exceed."""
+        return self.step is not None and self.step.low == self.step.high
+
+    @property
     def steps(self) -> list[Estimate]:
         """The step of this curve and those of the curves that cut it: below each, the probability is zero."""
         return [each.step for each in (self, *self.implied.values()) if each.step is not None]
@@ -170,8 +175,7 @@ class FragilityCurve(FittedToRuns):
         if self.fit is not None:
             probability = self.fit.probability(self._design(x)).reshape(x.shape)
         elif self.step is not None:
-            known = self.step.low == self.step.high  # exactly known uplift acceleration, which a motion must exceed
-            probability = np.heaviside(x - self.step.value, 0.0 if known else 0.5)
+            probability = np.heaviside(x - self.step.value, 0.0 if self.is_exact else 0.5)
         else:
             return np.full(x.shape, np.nan)
         return np.asarray(np.min([probability, *(each.probability(x) for each in self.implied.values())], axis=0))

@@ -133,13 +133,15 @@ class Observations:
         cells = self.counts.term * self.records + self.counts.record  # cells are sorted, so that they can be searched
         return np.asarray(self.group[np.searchsorted(cells, place * self.records + who)])
 
-    def parts(self, confidence: float) -> ObservedParts:
+    def parts(self, confidence: float, joined: Integers | None = None) -> ObservedParts:
         """Return the share of the runs that exceeds, in each group.
 
         Parameters
         ----------
         confidence : float
             Confidence level of the intervals.
+        joined : ndarray of int, optional
+            Number of the larger group to which each group belongs, from 0, to count those.
 
         Returns
         -------
@@ -155,7 +157,7 @@ class Observations:
         from scipy.special import ndtri, stdtrit
 
         number = self.counts.number
-        group = self.group
+        group = self.group if joined is None else joined[self.group]
         runs = np.bincount(group, number)
         exceeding = np.bincount(group, self.exceeding)
         keys, which = np.unique(group * self.records + self.counts.record, return_inverse=True)

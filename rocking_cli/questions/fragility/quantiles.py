@@ -24,7 +24,7 @@ from rocking_cli.short_repr import short_repr
 
 QUANTILES = (0.16, 0.5, 0.84)
 MIN_RECORDS = (names.MIN_MOTIONS, names.MIN_MOTIONS_OF_MEDIAN, names.MIN_MOTIONS)
-"""Smallest number of records with which each quantile is given."""
+"""Smallest number of records with which each quantile is given: their lowest and highest peak enclose it with 95 %."""
 COUNT_TOLERANCE = 1e-9  # difference of numbers of runs that counts as rounding
 
 
@@ -148,7 +148,7 @@ def _group(peaks: Reals, record: Integers, x: Reals, mean: float, records: int) 
     ranked = np.sort(peaks[~np.isnan(peaks)])
     rocks = (peaks > 0) & (peaks < UNKNOWN_PEAK)
     rocking = np.sort(peaks[rocks])
-    every = _not_exceeded(ranked, records)
+    every = not_exceeded(ranked, records)
     low, high = float(x.min()), float(x.max())
     return Group(
         min(max(mean, low), high),  # the mean lies between them, except for rounding
@@ -158,14 +158,14 @@ def _group(peaks: Reals, record: Integers, x: Reals, mean: float, records: int) 
         records,
         int((ranked == 0).sum()),
         int(np.isinf(ranked).sum()),
-        _not_exceeded(rocking, np.unique(record[rocks.any(axis=(1, 2))]).size),
+        not_exceeded(rocking, np.unique(record[rocks.any(axis=(1, 2))]).size),
         tuple(np.inf if value == UNKNOWN_PEAK else value for value in every),
         int((ranked == UNKNOWN_PEAK).sum()),
         tuple(value == UNKNOWN_PEAK for value in every),
     )
 
 
-def _not_exceeded(ranked: Reals, records: int) -> tuple[float, ...]:
+def not_exceeded(ranked: Reals, records: int) -> tuple[float, ...]:
     """Return for each share the lowest of increasing observed values that it does not exceed; NaN if too few."""
     return tuple(
         float(ranked[int(np.ceil(share * ranked.size - COUNT_TOLERANCE)) - 1])

@@ -8,16 +8,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from numpy.typing import NDArray
 
 from rocking_cli import names
+from rocking_cli.arrays import Bools, Reals
 from rocking_cli.plotting import style
-from rocking_cli.questions.fragility.quantiles import Quantiles
+from rocking_cli.plotting.curve_names import name_curves
+from rocking_cli.questions.fragility.quantiles import MIN_RECORDS, QUANTILES, Quantiles
 
-Reals = NDArray[np.float64]
 MIN_LOG_RATIO = 30.0  # ratio of the ends of an axis from which it is logarithmic
 BAND_OPACITY = 0.16  # opacity of the area between the lowest quantile and the highest
-LINE_END = 0.85  # height in the band of overturning at which the lines end
+DASHES = ("--", "-", "-.")
 ORDER = (names.NO_UPLIFT, names.ROCKS, names.UNKNOWN, names.OVERTURNS)
 
 
@@ -36,56 +36,84 @@ def draw_quantiles(found: Quantiles, label: str) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Lines with marks, over a shade: runs that rock without overturning. Black lines: all runs; they end in the band
-        of overturning, or of unknown outcome.
+        The quantiles are those of all runs. They end with a mark in the band of overturning, or of unknown outcome.
     """
-    figure, ((above,), (below,)) = style.panels(5.2, 2, sharex=True, height_ratios=(3, 1.3))
+    figure, ((above,), (below,)) = style.panels(4.7, 2, sharex=True, height_ratios=(3, 1.3))
     style.heading(above, f"{found.structure}: peak rotation")
     x = np.array([each.x for each in found.groups])
-    handles = _peaks(above, x, found) + _shares(below, x, found)
     if x[-1] > MIN_LOG_RATIO * x[0]:
         style.logarithmic(below.xaxis)
     else:
         below.set_xlim(0.0, 1.03 * x[-1])
     style.tidy(above, y=r"peak rotation $\phi/\phi_{cr}$")
     style.tidy(below, label + ("" if found.stripes else ", means of tenths of the runs"), "runs")
-    style.legend_below(figure, handles, 3)
+    shares = _draw_shares(below, x, found)
+    handles = _draw_peaks(above, x, found)
+    style.legend_below(figure, [*shares, *handles], 4, grows=True)
     return figure
 
 
-def _peaks(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:
-    """Draw the quantiles of the runs that rock without overturning, and of all; return the legend entries."""
-    rocking, every = (np.array([getattr(each, of) for each in found.groups]).T for of in ("rocking", "every"))
-    largest = np.concatenate([rocking[np.isfinite(rocking)], every[np.isfinite(every)], [0.0]]).max()
-    falls = bool(np.isinf(every).any())
-    floor = 1.06 * max(1.0, largest) if falls or largest > 0.5 else 1.15 * max(largest, 1e-3)
-    top = 1.12 * floor if falls else floor
-    color = style.distinct(2)["color"]
-    shade = axes.fill_between(x, rocking[0], rocking[2], color=color, alpha=BAND_OPACITY, linewidth=0.0)
-    shade.set_label("runs that rock, 16 to 84 %")
-    blank = Line2D([], [], linestyle="none", label="")  # so that each column of the legend has one kind
-    handles: list[Any] = [shade if np.isfinite(rocking[0]).any() else blank]
-    handles += axes.plot(x, rocking[1], color=color, linewidth=style.BOLD, marker="o", markersize=3.5,
-                         label="runs that rock, median", zorder=4)  # fmt: skip
-    handles += [blank, blank] if found.unknown else [blank]
-    for line, dash, name in zip(every, ("--", "-", "-."), ("16 %", "median", "84 %"), strict=True):
-        end = np.where(np.isinf(line), floor + LINE_END * (top - floor), line)
-        end[1:][np.isinf(line[1:]) & np.isinf(line[:-1])] = np.nan
-        (drawn,) = axes.plot(x, end, color=style.INK, linestyle=dash, linewidth=style.MEDIUM, label=f"all runs, {name}")
-        handles.append(blank if np.isnan(line).all() else drawn)  # too few records give no line
-    handles += [blank] if found.unknown else []
+def _draw_peaks(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:
+    """Draw the quantiles of all runs; return the entries of the legend."""
+    every = np.array([each.every for each in found.groups]).T
+    beyond = np.isinf(every)
+    largest = float(np.max(every, initial=0.0, where=np.isfinite(every)))
+    floor = 1.06 * max(1.0, largest) if beyond.any() or largest > 0.5 else 1.15 * max(largest, 1e-3)
+    top = 1.12 * floor if beyond.any() else floor
     ticks = np.arange(0.0, floor, 0.2 if floor > 0.5 else floor / 5).tolist()
-    if falls:
+    if beyond.any():
         axes.axhspan(floor, top, color=style.SHADE, linewidth=0)
-        middle = (floor + top) / 2
         known = not any(any(each.doubtful) for each in found.groups)
         word = names.OVERTURNS if known else f"{names.OVERTURNS}\nor {names.UNKNOWN}"
-        axes.set_yticks([*ticks, middle], [*(f"{y:.2g}" for y in ticks), word])
+        axes.set_yticks([*ticks, (floor + top) / 2], [*(f"{y:.2g}" for y in ticks), word])
     axes.set_ylim(0.0, top)
-    return handles
+    return draw_fractiles(axes, x, np.where(beyond, (floor + top) / 2, every), beyond)
 
 
-def _shares(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:
+def draw_fractiles(axes: Axes, x: Reals, peaks: Reals, beyond: Bools) -> list[Line2D]:
+    """Draw the quantiles of peak rotations, named at the curves if there is room.
+
+    Parameters
+    ----------
+    axes : Axes
+        The panel, with its final limits.
+    x : ndarray, shape (m,)
+        Intensities, ascending.
+    peaks : ndarray, shape (3, m)
+        The quantiles of `QUANTILES`; NaN of those that too few records give. The label of the axis then says
+        how many are needed.
+    beyond : ndarray of bool, shape (3, m)
+        Whether the quantile is a run that overturns or of unknown outcome. From where this lasts to the largest
+        intensity, the line ends with a mark.
+
+    Returns
+    -------
+    list
+        The lines for a legend; empty if they are named.
+    """
+    axes.fill_between(x, peaks[0], peaks[2], color=style.INK, alpha=BAND_OPACITY, linewidth=0.0)
+    lines: list[Line2D] = []
+    for share, line, outside, dash in zip(QUANTILES, peaks, beyond, DASHES, strict=True):
+        known = ~np.isnan(line)
+        if not known.any():
+            continue
+        at, y, out = x[known], line[known], outside[known]
+        end = min(int(np.flatnonzero(~out).max(initial=-1)) + 2, at.size)
+        weight = style.BOLD if share == 0.5 else style.MEDIUM
+        lines += axes.plot(
+            at[:end], y[:end], color=style.INK, linestyle=dash, linewidth=weight, marker=".", markersize=3, zorder=4,
+            label="median" if share == 0.5 else f"{100 * share:g} % of runs below",
+        )  # fmt: skip
+        if out[end - 1]:
+            axes.plot(at[end - 1], y[end - 1], color=style.INK, marker="^", markersize=6, zorder=5)
+    if np.isnan(peaks).any():
+        needs = f"records needed: {min(MIN_RECORDS)} for the median, {max(MIN_RECORDS)} for 16 and 84 %"
+        needs = style.folded(needs, style.page_width() - style.MAX_SIDE_MARGIN, style.TICK)
+        axes.set_xlabel(f"{axes.get_xlabel()}\n{needs}".strip(), fontsize=style.TICK)
+    return [] if name_curves(axes, lines) else lines
+
+
+def _draw_shares(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:
     """Draw the shares of the runs, stacked; return the legend entries."""
     runs = np.array([each.runs for each in found.groups])
     still, unknown, fallen = (

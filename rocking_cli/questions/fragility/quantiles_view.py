@@ -25,7 +25,8 @@ def with_quantiles(shown: View, found: Sequence[Quantiles], outcomes: Sequence[U
         note = (
             "Quantiles of the peak phi/phi_cr. For all runs, a run without uplift counts as 0 and an overturning run "
             f"ranks above every finite peak; '{OVERTURNS}' marks quantiles that are such runs. The median needs "
-            f"{min(MIN_RECORDS)} distinct records, the others {max(MIN_RECORDS)}; of fewer, they are '{ABSENT}'."
+            f"{min(MIN_RECORDS)} distinct records, the others {max(MIN_RECORDS)}: then the lowest and the highest peak "
+            f"enclose the quantile with a confidence of 95 %. Of fewer records, they are '{ABSENT}'."
         )
         if any(each.unknown for each in found):
             note += (

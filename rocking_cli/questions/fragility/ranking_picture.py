@@ -24,17 +24,16 @@ def draw_ranking(ranking: Ranking) -> Figure:
     matplotlib.figure.Figure
     """
     measures = ranking.measures
-    figure, (panels,) = style.panels(1.4 + 0.26 * len(measures), 1, 1 + bool(ranking.against), sharey=True)
+    figure, drawn = style.panels(1.0 + 0.26 * len(measures), 1, 1 + bool(ranking.against), sharey=True)
+    panels = drawn.ravel()
     filled = " (filled: residuals show no trend)" if ranking.against else ""
     style.heading(panels[0], f"{ranking.structure}: which measure predicts best{filled}")
     places = np.arange(len(measures))
     for place, each in zip(places, measures, strict=True):
-        face = style.INK if each.sufficient else "white"
+        face = style.INK if each.sufficient else style.PAPER
         panels[0].plot(each.efficiency, place, "o", color=style.INK, markerfacecolor=face, markersize=6)
     panels[0].set_xlim(left=0.0)
     panels[0].set_xlabel(r"efficiency: dispersion of $\ln(\phi/\phi_{cr})$", fontsize=style.LABEL)
-    panels[0].set_yticks(places, [each.measure for each in measures], parse_math=False)
-    panels[0].invert_yaxis()
     if ranking.against:
         for k, name in enumerate(ranking.against):
             values = np.array([each.trends[name] for each in measures])
@@ -44,7 +43,9 @@ def draw_ranking(ranking: Ranking) -> Figure:
         panels[1].set_xlim(MIN_DRAWN_P_VALUE / 1.3, 1.3)
         panels[1].set_xlabel(f"p-value of no trend; trend if below {MIN_P_VALUE:g}", fontsize=style.LABEL)
         style.logarithmic(panels[1].xaxis, (1.0,))
-        panels[1].legend(loc="best", fontsize=style.TICK, frameon=True)
+        style.legend_below(figure, grows=True)
     for axes in panels:
+        axes.set_yticks(places, [each.measure for each in measures], parse_math=False)
+        axes.set_ylim(len(measures) - 0.4, -0.6)
         style.tidy(axes)
     return figure

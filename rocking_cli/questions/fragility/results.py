@@ -294,13 +294,13 @@ def _whole(parts: Iterable[Columns]) -> Columns:
 
 
 def _figure(definition: Definition, curves: list[Fragility]) -> Figure:
-    from rocking_cli.questions.fragility.picture import LabelledCurve, draw_curves
-    from rocking_cli.questions.fragility.view import limit_name
+    from rocking_cli.plotting.style import plain
+    from rocking_cli.questions.fragility.picture import LabelledCurve, draw_curves, limit_in_picture
     from rocking_cli.studies.fragility.quantities import label
 
     measure = definition.fitted_measures[0]
     lines = [
-        LabelledCurve.of(f"{curve.structure}, {limit_name(curve.limit)}", curve)
+        LabelledCurve.of(f"{plain(curve.structure)}, {limit_in_picture(curve.limit, math=True)}", curve)
         for curve in curves
         if curve.measure == measure
     ]

@@ -49,7 +49,8 @@ def show_study(answer: StudyAnswer, shown: StudyOutput, watch: OnTerminal) -> No
 
 def _draw_all(folder: Path, answer: StudyAnswer) -> None:
     """Draw the curves of each structure, the comparison of structures, the data behind them, surfaces and rankings."""
-    from rocking_cli.questions.fragility.picture import LabelledCurve, draw_curves, draw_surface
+    from rocking_cli.plotting.style import plain
+    from rocking_cli.questions.fragility.picture import LabelledCurve, draw_curves, draw_surface, limit_in_picture
     from rocking_cli.questions.fragility.quantiles_picture import draw_quantiles
     from rocking_cli.questions.fragility.ranking_picture import draw_ranking
     from rocking_cli.questions.fragility.view import limit_name
@@ -65,20 +66,23 @@ def _draw_all(folder: Path, answer: StudyAnswer) -> None:
     for measure in definition.fitted_measures:
         these = [each for each in curves if each.measure == measure]
         for structure in structures:
-            lines = [LabelledCurve.of(limit_name(each.limit), each) for each in these if each.structure == structure]
+            own = [each for each in these if each.structure == structure]
+            lines = [LabelledCurve.of(limit_in_picture(each.limit, math=True), each) for each in own]
             add(f"{structure} {measure}", draw_curves(lines, label(measure), structure))
         for limit in definition.limit_states if len(structures) > 1 else []:
-            lines = [LabelledCurve.of(each.structure, each) for each in these if each.limit == limit]
-            add(f"{limit_name(limit)} {measure}", draw_curves(lines, label(measure), limit_name(limit)))
+            lines = [LabelledCurve.of(plain(each.structure), each) for each in these if each.limit == limit]
+            title = limit_in_picture(limit, math=False)
+            add(f"{limit_name(limit)} {measure}", draw_curves(lines, label(measure), title))
     if definition.method == "ida":
         for structure in structures:
             add(f"{structure} ida", _increments(answer, structure))
     for quantiles in answer.quantiles:
         add(f"{quantiles.structure} {quantiles.measure} quantiles", draw_quantiles(quantiles, label(quantiles.measure)))
     for surface in answer.surfaces:
-        name = f"{surface.structure}, {limit_name(surface.limit)}"
         one, other = surface.measures
-        add(f"{name} {one} {other}", draw_surface(surface, (label(one), label(other)), name))
+        title = f"{surface.structure}, {limit_in_picture(surface.limit, math=False)}"
+        name = f"{surface.structure}, {limit_name(surface.limit)} {one} {other}"
+        add(name, draw_surface(surface, (label(one), label(other)), title))
     for ranking in answer.rankings:
         if ranking.measures:
             add(f"{ranking.structure} which measure serves", draw_ranking(ranking))
@@ -95,7 +99,7 @@ def _increments(answer: StudyAnswer, structure: str) -> Figure:
     from rocking_cli.questions.fragility.definition import SCALE
     from rocking_cli.questions.fragility.picture import draw_ida
     from rocking_cli.questions.fragility.store import Store
-    from rocking_cli.questions.fragility.tally import peaks
+    from rocking_cli.questions.fragility.tally import peaks, samples_of
     from rocking_cli.studies.fragility.quantities import label
 
     plan, measure = answer.plan, answer.definition.levels.measure
@@ -103,4 +107,6 @@ def _increments(answer: StudyAnswer, structure: str) -> Figure:
     usable = [k for k, each in enumerate(plan.records) if each.reason is None]
     with Store.reading(answer.store) as store:
         table = peaks(store, plan, structure)
-    return draw_ida(np.array(plan.levels), table, across, structure, np.unique(plan.of_sets.one[usable]).size)
+    records, ladders = np.unique(plan.of_sets.one[usable]).size, len(samples_of(plan, structure)) * plan.block
+    named = [plan.records[k].name for k in usable] if ladders == len(plan.levels) else []
+    return draw_ida(np.array(plan.levels), table, across, structure, records, named)

@@ -1,19 +1,29 @@
 """Pictures of fragility show the data, the curves, and what could not be fitted."""
 
 import io
+from contextlib import nullcontext
 from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.collections import LineCollection
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 from scipy.stats import binomtest
 
+from rocking_cli.plotting import style
 from rocking_cli.questions.fragility.assess import Bivariate
-from rocking_cli.questions.fragility.curves import fit_curve, fit_surface
+from rocking_cli.questions.fragility.curves import exact_step, fit_curve, fit_surface
 from rocking_cli.questions.fragility.observed import Observations
-from rocking_cli.questions.fragility.picture import LabelledCurve, draw_curves, draw_ida, draw_surface
+from rocking_cli.questions.fragility.picture import (
+    LabelledCurve,
+    draw_curves,
+    draw_ida,
+    draw_surface,
+    limit_in_picture,
+)
 
 LEVELS = np.array([0.2, 0.4, 0.6, 0.8])
 
@@ -34,9 +44,25 @@ def drawn(name, seen):
 
 def marks(axes):
     """Where the observed parts are, a row a mark, and the ends of the bars of the first that is drawn."""
-    (points, *_) = [line for line in axes.get_lines() if line.get_linestyle() == "None"]
-    bars = next(each for each in axes.collections if isinstance(each, LineCollection))
-    return points.get_xydata(), np.array([segment[:, 1] for segment in bars.get_segments()])
+    (points, *_) = observed(axes)
+    bars = [each.get_segments() for each in axes.collections if isinstance(each, LineCollection)]
+    bars = next(each for each in bars if len(each[0]) == 2)
+    return points.get_xydata(), np.array([segment[:, 1] for segment in bars])
+
+
+def observed(axes):
+    return [line for line in axes.get_lines() if line.get_linestyle() == "None"]
+
+
+def bands(axes):
+    """The heights of the edges of each band."""
+    filled = [each for each in axes.collections if isinstance(each, PolyCollection)]
+    return [{round(y, 12) for y in each.get_paths()[0].vertices[:, 1]} for each in filled]
+
+
+def band_of(curve, axes):
+    (line, *_) = [line for line in axes.get_lines() if len(line.get_xdata()) > 10]
+    return {round(y, 12) for y in np.concatenate(curve.band(line.get_xdata()))}
 
 
 def words(figure):
@@ -61,10 +87,9 @@ def test_stripes_are_marked_with_counts_and_wilsons_intervals_under_the_curve():
     np.testing.assert_allclose(ends, [[ci.low, ci.high] for ci in expected])
     (line,) = [line for line in axes.get_lines() if len(line.get_xdata()) > 10]
     np.testing.assert_array_equal(line.get_ydata(), each.curve.probability(line.get_xdata()))
-    low, high = each.curve.band(line.get_xdata())
-    band = next(each for each in axes.collections if each.get_alpha() == 0.14).get_paths()[0].vertices[:, 1]
-    assert {round(value, 12) for value in band} == {round(value, 12) for value in np.concatenate([low, high])}
-    assert f"median {each.curve.median.value:.3g}" in words(figure)[0] and "95 %" in words(figure)[1]
+    assert bands(axes) == [band_of(each.curve, axes)]
+    assert words(figure)[0].startswith(f"overturning: median {each.curve.median.value:.3g} g (")
+    assert words(figure)[1:] == ["bands and bars: 95 % confidence; marks: observed shares"]
 
 
 def test_bars_and_bands_count_records():
@@ -80,9 +105,7 @@ def test_bars_and_bands_count_records():
     parts = seen.parts(0.95)
     np.testing.assert_allclose(ends, np.column_stack([parts.low, parts.high]))
     assert (np.diff(ends, axis=1) > 0.35).all()
-    said = words(figure)
-    assert "bars and shades: 95 % confidence, by record" in said[1]
-    assert said[2].startswith("only 8 distinct records")
+    assert words(figure)[1].endswith("; only 8 records: a rough guide")
 
 
 def test_a_cloud_of_many_runs_is_a_few_marks():
@@ -93,14 +116,42 @@ def test_a_cloud_of_many_runs_is_a_few_marks():
     assert len(marks(axes)[0]) == 10
 
 
-@pytest.mark.parametrize(("levels", "every"), [(25, 1), (26, 2), (50, 2)])
-def test_of_many_intensities_some_are_marked_as_they_are(levels, every):
-    x = np.tile(np.linspace(0.1, 2, levels), 20)
-    exceeded = x > np.exp(0.4 * np.random.default_rng(5).normal(size=x.size))
-    seen = Observations.of(x, exceeded, np.repeat(np.arange(20), levels))
-    figure = rendered(draw_curves([drawn("overturning", seen)], "PGA [g]", "a block"))
-    np.testing.assert_allclose(marks(figure.axes[0])[0][:, 1], seen.parts(0.95).part[::every])
-    assert (f"one of every {every} intensities is marked" in words(figure)[1]) == (every > 1)
+def test_marks_of_several_curves_lie_beside_one_another_and_none_is_left_out():
+    random = np.random.default_rng(5)
+    x, record = np.tile(np.linspace(0.1, 2, 50), 20), np.repeat(np.arange(20), 50)
+    seen = [Observations.of(x, x > k * np.exp(0.4 * random.normal(size=x.size)), record) for k in (0.8, 1, 1.2)]
+    figure = rendered(draw_curves([drawn(f"{k}", each) for k, each in enumerate(seen)], "PGA [g]", "a block"))
+    (axes,) = figure.axes
+    places = []
+    for line, each in zip(observed(axes), seen, strict=True):
+        np.testing.assert_allclose(line.get_ydata(), each.parts(0.95).part.reshape(25, 2).mean(axis=1))
+        np.testing.assert_allclose(line.get_xdata(), each.parts(0.95).x.reshape(25, 2).mean(axis=1))
+        places.append(line.get_transform().transform(line.get_xydata())[:, 0] * 72 / figure.dpi)
+    np.testing.assert_allclose(np.diff(places, axis=0), 4.0)  # points
+    assert np.diff(np.sort(np.concatenate(places))).min() > 3.9
+    assert words(figure)[-1].endswith("marks: observed shares, side by side, of neighbouring intensities together")
+    alone = rendered(draw_curves([drawn("all", seen[0])], "PGA [g]", "a block")).axes[0]
+    np.testing.assert_allclose(marks(alone)[0][:, 1], seen[0].parts(0.95).part)
+
+
+def test_what_is_known_exactly_has_no_marks_and_bounds_the_others():
+    seen = stripes([0, 5, 12, 19])
+    step = exact_step(fit_curve(stripes([0, 20, 20, 20])), 0.25, "")
+    cut = replace(fit_curve(seen), implied={"uplift": step})
+    curves = [LabelledCurve("uplift", step, seen), LabelledCurve("overturning", cut, seen)]
+    figure = rendered(draw_curves(curves, "PGA [g]", "a block"))
+    (axes,) = figure.axes
+    assert words(figure)[0] == "uplift: 0.25 g, exact" and len(observed(axes)) == 1
+    points, ends = marks(axes)
+    assert tuple(ends[0]) == (0, 0) and (ends[1:, 1] > points[1:, 1]).all()
+    line = next(line for line in axes.get_lines() if line.get_label() == "uplift")
+    assert line.get_xdata()[np.flatnonzero(np.diff(line.get_ydata()))] == pytest.approx(0.25)
+    assert {text.get_text() for text in axes.texts} >= {"uplift", "overturning"}  # at the curves
+
+
+def test_limit_states_are_mathematics():
+    assert limit_in_picture(0.5, math=True) == r"$\phi > 0.5\,\phi_{cr}$"
+    assert limit_in_picture(0.5, math=False) == "φ > 0.5 φcr" and limit_in_picture("25 mm", math=True) == "top > 25 mm"
 
 
 def test_a_surface_of_few_records_carries_the_warning():
@@ -108,25 +159,24 @@ def test_a_surface_of_few_records_carries_the_warning():
     x1, x2 = np.exp(random.normal(size=(2, 90)))
     exceeded = np.log(x1) + np.log(x2) > random.normal(size=90)
     found = replace(bivariate(x1, x2, exceeded), surface=fit_surface(x1, x2, exceeded, np.arange(90) % 9))
-    said = words(rendered(draw_surface(found, ("a", "b"), "a frame")))[-1]
-    assert said == found.surface.warning != ""
+    assert words(rendered(draw_surface(found, ("a", "b"), "a frame")))[-1] == "only 9 records: a rough guide"
 
 
 def test_a_step_a_curve_and_nothing_share_a_picture():
     entries = [
-        drawn("uplift $1", stripes([0, 20, 20, 20])),
+        drawn(r"uplift \$1", stripes([0, 20, 20, 20])),
         drawn("phi/phi_cr > 0.5", stripes([1, 5, 12, 19])),
         drawn("overturning", stripes([0, 0, 0, 0])),
     ]
     figure = rendered(draw_curves(entries, "PGA [g]", "$ of a block"))
     (axes,) = figure.axes
     said = words(figure)
-    assert "step, between 0.2 and 0.4" in said[0] and "lognormal" in said[1]
-    assert "no curve: none of the 80 runs exceed" in said[2]
-    assert said[4].startswith(r"shade of a step: the interval between two levels, not a confidence band: uplift \$1")
+    assert said[0] == r"uplift \$1: step in the shade, 0.2 to 0.4 g" and "median" in said[1]
+    assert said[2] == "overturning: no curve, none of the 80 runs exceed"
+    assert bands(axes)[0] == {0, 1} and band_of(entries[0].curve, axes) == {0, 1}
     curves = [line for line in axes.get_lines() if len(line.get_xdata()) > 10 and line.get_linewidth() > 1]
     assert len(curves) == 2
-    assert not axes.texts
+    assert [text.get_text() for text in axes.texts] == [each.name for each in entries[:2]]
     step = curves[0]
     jump = step.get_xdata()[np.flatnonzero(np.diff(step.get_ydata()))]
     np.testing.assert_allclose(jump, entries[0].curve.step.value)
@@ -146,19 +196,25 @@ def test_the_records_of_an_ida_rise_into_the_band_of_overturning():
     peaks = np.array(
         [[0.1, 0.3, 0.7, np.nan], [0.1, 0.4, np.nan, np.nan], [0.0, 0.2, 0.4, 0.6], [0.2, 0.5, 1.1, np.nan]]
     )
-    for few, drawn in ((4, set()), (5, {"median"}), (20, {"16 %", "median", "84 %"})):
-        named = {line.get_label() for line in draw_ida(LEVELS, peaks, "PGA [g]", "", few).axes[0].get_lines()}
-        assert named & {"16 %", "median", "84 %"} == drawn
-    figure = rendered(draw_ida(LEVELS, peaks, "PGA [g]", "a wall", 20))
+    every = {"16 % of runs below", "median", "84 % of runs below"}
+    for few, drawn in ((5, set()), (17, {"median"})):
+        (axes,) = draw_ida(LEVELS, peaks, "PGA [g]", "", few).axes
+        assert {line.get_label() for line in axes.get_lines()} & every == drawn
+        assert "records needed: 6 for the median, 18 for" in axes.get_xlabel()
+    figure = rendered(draw_ida(LEVELS, peaks, "PGA [g]", "a wall", 18))
     (axes,) = figure.axes
+    assert axes.get_xlabel() == "PGA [g]"
     lines = {line.get_label(): line.get_ydata() for line in axes.get_lines()}
     height = axes.get_yticks()[-1]
     assert axes.get_yticklabels()[-1].get_text() == "overturns" and height > 1.05 * 1.1
     np.testing.assert_allclose(lines["median"], [0.1, 0.3, 0.7, height])
-    np.testing.assert_allclose(lines["16 %"], [0.0, 0.2, 0.4, 0.6])
-    np.testing.assert_allclose(lines["84 %"], [0.2, 0.5, height, np.nan])
-    assert [(text.get_text(), text.xy[0]) for text in axes.texts] == [("1", 0.6), ("3", 0.8)]
-    assert any("records that overturn, of 4" in each for each in words(figure))
+    np.testing.assert_allclose(lines["16 % of runs below"], [0.0, 0.2, 0.4, 0.6])
+    np.testing.assert_allclose(lines["84 % of runs below"], [0.2, 0.5, height])
+    assert {tuple(line.get_xdata()) for line in axes.get_lines() if line.get_marker() == "^"} == {(0.6,), (0.8,)}
+    counts = [(text.get_text(), text.xy[0]) for text in axes.texts if text.get_text().isdigit()]
+    assert counts == [("1", 0.6), ("3", 0.8)]
+    assert words(figure)[-1] == "numbers: those that overturn, of 4"
+    assert words(draw_ida(LEVELS, peaks, "PGA [g]", "", 4, "abcd"))[:4] == [*"abcd"]
 
 
 @pytest.mark.parametrize("peak", [0.0, np.nan])
@@ -223,23 +279,33 @@ def test_a_band_that_the_data_leave_open_is_not_painted_and_said():
     x = np.exp(random.normal(size=40))
     seen = Observations.of(x, random.random(40) < 0.4 + 0.1 * (x > 1), np.arange(40))
     figure = rendered(draw_curves([drawn("uplift", seen)], "PGA [g]", "a block"))
-    assert not [each for each in figure.axes[0].collections if each.get_alpha() == 0.14]
-    assert words(figure)[-1] == "no confidence band, as the data do not bound it: uplift"
+    assert not bands(figure.axes[0]) and words(figure)[0].endswith(", no confidence band")
 
 
-def test_bands_of_several_are_their_edges_and_labels_are_whole():
+@pytest.mark.parametrize("narrow", [False, True])
+def test_bands_of_several_are_shades_and_a_legend_takes_its_own_room(narrow):
     counts = ([1, 5, 12, 19], [0, 4, 10, 20], [2, 7, 13, 20], [0, 0, 0, 0])
     entries = [drawn(f"{'a long name of a structure ' * 3}{k}", stripes(each)) for k, each in enumerate(counts)]
-    figure = rendered(draw_curves(entries, "PGA [g]", "overturning"))
-    (axes,) = figure.axes
-    assert not [each for each in axes.collections if each.get_alpha() == 0.14]
-    thin = [line for line in axes.get_lines() if len(line.get_xdata()) > 10 and line.get_linewidth() < 1]
-    assert len(thin) == 6
-    for line, each in zip(thin[::2], entries, strict=False):
-        np.testing.assert_array_equal(line.get_ydata(), each.curve.band(line.get_xdata())[0])
+    with style.on_phone() if narrow else nullcontext():
+        figure, other = (draw_curves(each, "PGA [g]", "overturning") for each in (entries, entries[:1]))
+    figure.draw_without_rendering()
+    other.draw_without_rendering()
+    (axes,), (few,) = figure.axes, other.axes
+    assert bands(axes) == [band_of(each.curve, axes) for each in entries[:3]]
     for said, each in zip(words(figure), entries, strict=False):
-        assert said.startswith(f"{each.name}: ") and "..." not in said
-    lines = [line for text in figure.legends[0].get_texts() for line in text.get_text().split("\n")]
-    assert max(map(len, lines)) <= 96 and not any(" %" in line for line in lines)
-    edge = figure.bbox.width
-    assert all(text.get_window_extent().x1 <= edge for text in figure.legends[0].get_texts())
+        assert said.startswith(f"{each.name}: ")
+    texts = figure.legends[0].get_texts()
+    assert not any(line.startswith("%") for text in texts for line in text.get_text().split("\n"))
+    assert all(text.get_window_extent().x1 <= figure.bbox.width for text in texts)
+    assert axes.bbox.height == pytest.approx(few.bbox.height, rel=0.05)
+
+
+def test_a_legend_below_twin_axes_is_below_the_words_of_both():
+    figure = Figure(layout="constrained")
+    below = figure.subplots()
+    below.set_xlabel("of the axes below")
+    with style.drawing_in(below.twinx()):
+        draw_curves([drawn("overturning", stripes([1, 5, 12, 19]))], "PGA [g]", "")
+    figure.draw_without_rendering()
+    (key,) = figure.findobj(Legend)
+    assert key.get_window_extent().y1 <= below.xaxis.get_tightbbox().y0

@@ -6,7 +6,9 @@ import json
 import numpy as np
 import pytest
 import yaml
+from scipy.stats import binom
 
+from rocking_cli.names import MIN_MOTIONS, MIN_MOTIONS_OF_MEDIAN
 from rocking_cli.questions.fragility import assess, quantiles
 from rocking_cli.questions.fragility.quantiles import Group, Quantiles, all_quantiles
 from rocking_cli.questions.fragility.quantiles_picture import draw_quantiles
@@ -94,16 +96,24 @@ def test_each_group_has_the_runs_between_its_ends_and_their_quantiles(whole):
     assert kinds == {True, False}
 
 
-@pytest.mark.parametrize(("records", "told"), [(4, "---"), (5, "-m-"), (19, "-m-"), (20, "lmh")])
+@pytest.mark.parametrize(("records", "told"), [(5, "---"), (6, "-m-"), (17, "-m-"), (18, "lmh")])
 def test_a_quantile_of_too_few_records_is_not_told(monkeypatch, records, told):
-    monkeypatch.setattr(quantiles, "MIN_RECORDS", (20, 5, 20))
+    monkeypatch.setattr(quantiles, "MIN_RECORDS", (MIN_MOTIONS, MIN_MOTIONS_OF_MEDIAN, MIN_MOTIONS))
     peaks, record = np.linspace(0.1, 0.9, 40).reshape(40, 1, 1), np.arange(40) % records
     found = quantiles._group(peaks, record, np.ones(40), 1.0, records)
     for values in (found.rocking, found.every):
         assert "".join("-" if np.isnan(value) else word for value, word in zip(values, "lmh", strict=True)) == told
     half = np.where(record[:, None, None] < records // 2, 0.0, peaks)  # half of the records do not uplift
     found = quantiles._group(half, record, np.ones(40), 1.0, records)
-    assert np.isnan(found.rocking[0]) and np.isnan(found.every[0]) == (records < 20)
+    assert np.isnan(found.rocking[0]) and np.isnan(found.every[0]) == (records < 18)
+
+
+@pytest.mark.parametrize(("share", "fewest"), [(0.16, MIN_MOTIONS), (0.5, MIN_MOTIONS_OF_MEDIAN), (0.84, MIN_MOTIONS)])
+def test_the_fewest_records_are_those_whose_range_encloses_the_quantile(share, fewest):
+    def enclosed(n):  # neither all peaks below the quantile, nor all above it
+        return binom(n, share).cdf(n - 1) - binom(n, share).cdf(0)
+
+    assert enclosed(fewest - 1) < 0.95 <= enclosed(fewest)
 
 
 def test_groups_are_those_of_the_observed_parts(whole):
@@ -179,11 +189,12 @@ def test_the_picture_shows_the_quantiles_and_the_shares():
     figure.savefig(io.BytesIO(), format="png", dpi=40)
     above, below = figure.axes
     lines = {line.get_label(): line.get_ydata() for line in above.get_lines()}
-    np.testing.assert_array_equal(lines["runs that rock, median"], [np.nan, 0.2, 0.4, np.nan])
-    np.testing.assert_array_equal(lines["all runs, median"][:3], [0.0, 0.1, 0.5])
+    np.testing.assert_array_equal(lines["median"][:3], [0.0, 0.1, 0.5])
     band = next(each for each in above.patches).get_extents().transformed(above.transData.inverted())
-    assert band.y0 < lines["all runs, median"][3] < band.y1 and band.y0 > 1
-    assert band.y0 < lines["all runs, 84 %"][2] < band.y1 and np.isnan(lines["all runs, 84 %"][3])
+    assert band.y0 < lines["median"][3] < band.y1 == above.get_ylim()[1] and band.y0 > 1
+    assert band.y0 < lines["84 % of runs below"][2] < band.y1 and len(lines["84 % of runs below"]) == 3
+    assert sorted(line.get_xdata()[0] for line in above.get_lines() if line.get_marker() == "^") == [0.3, 0.4, 0.4]
+    assert not above.get_xlabel()
     assert above.get_yticklabels()[-1].get_text() == "overturns" and below.get_xlabel() == "PGA [g]"
     still, rocks, fallen = below.collections
     heights = [each.get_paths()[0].get_extents() for each in (still, rocks, fallen)]
@@ -192,6 +203,24 @@ def test_the_picture_shows_the_quantiles_and_the_shares():
     assert {(0.1, 1.0), (0.2, 0.3), (0.3, 0.0)} <= top_of_still
     low_of_fallen = {tuple(each) for each in fallen.get_paths()[0].vertices.round(9).tolist()}
     assert {(0.2, 1.0), (0.3, 0.6), (0.4, 0.0)} <= low_of_fallen
+
+
+def test_a_quantile_that_returns_from_overturning_stays_in_one_piece():
+    every = [
+        (0.1, 0.2, np.inf),
+        (0.2, np.inf, 0.9),
+        (np.nan, 0.4, np.nan),
+        (0.3, np.inf, np.inf),
+        (0.4, np.inf, np.inf),
+    ]
+    some = groups(*((0.1 * k, 0, 2, NONE, each) for k, each in enumerate(every, 1)))
+    (above, _) = draw_quantiles(Quantiles("a", "PGA", True, some), "PGA [g]").axes
+    lines = {line.get_label(): line.get_xydata().T for line in above.get_lines()}
+    top = above.get_yticks()[-1]
+    np.testing.assert_allclose(lines["median"], [[0.1, 0.2, 0.3, 0.4], [0.2, top, 0.4, top]])
+    np.testing.assert_allclose(lines["84 % of runs below"], [[0.1, 0.2, 0.4], [top, 0.9, top]])
+    np.testing.assert_allclose(lines["16 % of runs below"], [[0.1, 0.2, 0.4, 0.5], [0.1, 0.2, 0.3, 0.4]])
+    assert above.get_xlabel() == "records needed: 6 for the median, 18 for 16 and 84 %"
 
 
 @pytest.mark.every(2)

@@ -306,7 +306,7 @@ def test_pictures_hatch_what_is_not_known(whole, tmp_path):
     said = [" ".join(text.get_text().split()) for text in legend.get_texts()]
     assert said[0].startswith("overturning, if unknown runs exceed:")
     assert said[1].startswith("overturning, if unknown runs do not:")
-    assert said[2].startswith("band between the two curves: runs of unknown outcome (overturning ")
+    assert said[2].startswith("runs of unknown outcome: overturning ")
     none = replace(each.lower, curve=replace(each.curve, kind="none", fit=None))
     (axes,) = draw_curves([replace(each, lower=none)], "PGA [g]", "").axes
     (band,) = [collection for collection in axes.collections if collection.get_hatch()]

@@ -92,11 +92,11 @@ class TestTables:
         assert "pedestal as given, 2 pi/p = 2.78 s: 1 of 3 motions overturn it (r2.csv)" in " ".join(text.split())
         assert max(map(len, text.splitlines())) <= 60
         (row, *_) = (line.split() for line in text.splitlines() if "of 3" in line)
-        assert row[2] == "-" and row[3] != "-" and "'-' under fewer than 20 motions" in " ".join(text.split())
+        assert row[2] == "-" and row[3] != "-" and "'-' under fewer than 18 motions" in " ".join(text.split())
 
-    def test_fractiles_are_given_from_twenty_motions_on(self):
+    def test_fractiles_are_given_from_eighteen_motions_on(self):
         pulses = [word for k in range(20) for word in ("--pulse", f"sine:{0.2 + k / 100:g}g:0.8s")]
-        for count, told in ((19, False), (20, True)):
+        for count, told in ((17, False), (18, True)):
             found = run_json(BLOCK, *pulses[: 2 * count], *QUICK, "--fractiles", "0.16")
             low, median = found["spectra"][0]["peaks"]
             assert median[-1] is not None and (low[-1] is not None) == told
