@@ -79,7 +79,8 @@ class Labels:
         """Return what a label of a size [inches] costs at each place."""
         self._points, self._costs = [np.concatenate(self._points)], [np.concatenate(self._costs)]
         (points,), (costs,) = self._points, self._costs
-        cost, turned = np.array([[each.cost, each.turned] for each in places]).T
+        cost: NDArray[np.float64] = np.array([each.cost for each in places])
+        turned = np.array([each.turned for each in places])
         middles = np.array([each.middle for each in places])
         half = size / 2 + CLEARANCE * (1 + 1j)
         for angle in np.unique(turned):
@@ -98,7 +99,9 @@ class Labels:
             box = complex(abs(turn.real), abs(turn.imag)) * size.real / 2
             box += complex(abs(turn.imag), abs(turn.real)) * size.imag / 2
             above, below = middles[here] + box - self._high, self._low - (middles[here] - box)
-            over = np.maximum(0.0, np.maximum(above.real, below.real)) + np.maximum(0.0, np.maximum(above.imag, below.imag))
+            over = np.maximum(0.0, np.maximum(above.real, below.real)) + np.maximum(
+                0.0, np.maximum(above.imag, below.imag)
+            )
             cost[here] += OUTSIDE_COST * over
         return cost
 

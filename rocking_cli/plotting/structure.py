@@ -190,10 +190,9 @@ def _displaced_panel(picture: Picture, rotation: float, head: str, words: str) -
     low, high = box_around([np.array(moved), *(each for part in outlines for each in part)])
     side = max(0.1, MIN_PANEL_WIDTH / 4)
     left, right, below, above = np.maximum((side, side, 0.16, 0.12), hung.margins(picture)).tolist()
-    return Panel(
-        low, high, (left, right, below, above), LINE_HEIGHT * len(_lines(head)) + 0.1,
-        LINE_HEIGHT * len(_lines(words)) + 0.1, max(style.size_of(line, style.LABEL).real for line in _lines(head, words)),
-    )  # fmt: skip
+    tall, deep = (LINE_HEIGHT * len(_lines(text)) + 0.1 for text in (head, words))
+    widest = max(style.size_of(line, style.LABEL).real for line in _lines(head, words))
+    return Panel(low, high, (left, right, below, above), tall, deep, widest)
 
 
 def _head(picture: Picture, direction: Direction, ratio: float, width: float) -> str:
@@ -215,7 +214,10 @@ def _is_at_rest(picture: Picture, each: Length | Angle | Line | Forces | DrawnHi
 
 def _words(picture: Picture, direction: Direction) -> str:
     """Return the lengths and angles of a direction as text, if the two directions differ."""
-    every = [*(each for each in picture.sketch.lengths if not each.derived), *picture.sketch.angles]
+    every: list[Length | Angle] = [
+        *(each for each in picture.sketch.lengths if not each.derived),
+        *picture.sketch.angles,
+    ]
     if not picture.mechanism.rocks_both_ways or not any(each.direction is Direction.NEGATIVE for each in every):
         return ""
     return ", ".join(mathematics(each) for each in every if each.direction is direction)
@@ -366,11 +368,10 @@ def _draw_forces(axes: Axes, picture: Picture, scale: float) -> None:
         middle = np.asarray(each.points)[seen]
         strokes = [hung.xy(np.array(ends)) for ends in zip(middle - half, middle + half, strict=True)]
         look = _look(picture, each)[1]
-        weights = MAX_STROKE_WEIGHT * np.sqrt(share[seen])
         dashes = "-" if look is style.THRUST else look["linestyle"]
-        axes.add_collection(
-            LineCollection(strokes, colors=look["color"], linewidths=weights, linestyles=[dashes], zorder=3), autolim=False
-        )
+        weights = MAX_STROKE_WEIGHT * np.sqrt(share[seen])
+        drawn = LineCollection(strokes, colors=look["color"], linewidths=weights, linestyles=[dashes], zorder=3)
+        axes.add_collection(drawn, autolim=False)
 
 
 def _smaller_side(picture: Picture) -> float:

@@ -179,14 +179,16 @@ def _copies(body: str | None, copies: Copies, *, every: bool) -> Sequence[tuple[
 def _pieces(tie: Stretched, of_body: Mapping[str, int], shift: complex, *, spring: bool) -> Iterator[TiePiece]:
     for one, other in zip(tie.spots, tie.spots[1:], strict=False):
         parts = [None if spot.body is None else of_body[spot.body] for spot in (one, other)]
+        kind: Literal["line", "spring", "symbol"] = "line"
+        start, end = End(parts[0], one.at + shift), End(parts[1], other.at + shift)
         if abs(other.at - one.at) <= COINCIDENT_DISTANCE * (1 + abs(one.at)):
             # The ends of this tie coincide at rest: they are drawn apart, the fixed end below the moving one.
             up = -1j if parts[1] is None else 1j
-            ends = End(parts[0], one.at + shift, -up), End(parts[1], other.at + shift, up)
-            yield TiePiece(*ends, "symbol" if spring else "line")
-        else:
-            coiled = spring and (None in parts or len(tie.spots) == 2)
-            yield TiePiece(End(parts[0], one.at + shift), End(parts[1], other.at + shift), "spring" if coiled else "line")
+            start, end = start._replace(lead=-up), end._replace(lead=up)
+            kind = "symbol" if spring else "line"
+        elif spring and (None in parts or len(tie.spots) == 2):
+            kind = "spring"
+        yield TiePiece(start, end, kind)
 
 
 def _bed(bed: SpringBed, part: int, shift: complex, centroid: complex) -> Iterator[TiePiece]:
