@@ -36,7 +36,8 @@ def heights(picture: Picture, lengths: Sequence[Length]) -> list[Length]:
     tolerance = 1e-6 * abs(high - low)
     ties = [end for tie in picture.ties if not tie.is_bed for piece in tie.pieces for end in (piece.start, piece.end)]
     levels = [load.point.imag for load in picture.loads] + [end.point.imag for end in ties if end.part is not None]
-    shown = [low.imag, *(each.end.imag for each in lengths if abs(each.start.imag - low.imag) <= tolerance)]
+    upright = [each for each in lengths if abs((each.end - each.start).real) <= tolerance]
+    shown = [low.imag, *(each.end.imag for each in upright if abs(each.start.imag - low.imag) <= tolerance)]
     measured: list[float] = []
     for level in sorted(levels):
         if all(abs(level - other) > tolerance for other in (*shown, *measured)):

@@ -214,10 +214,8 @@ def _is_at_rest(picture: Picture, each: Length | Angle | Line | Forces | DrawnHi
 
 def _words(picture: Picture, direction: Direction) -> str:
     """Return the lengths and angles of a direction as text, if the two directions differ."""
-    every: list[Length | Angle] = [
-        *(each for each in picture.sketch.lengths if not each.derived),
-        *picture.sketch.angles,
-    ]
+    lengths = [each for each in picture.sketch.lengths if not each.derived]
+    every: list[Length | Angle] = [*lengths, *picture.sketch.angles]
     if not picture.mechanism.rocks_both_ways or not any(each.direction is Direction.NEGATIVE for each in every):
         return ""
     return ", ".join(mathematics(each) for each in every if each.direction is direction)
@@ -359,8 +357,8 @@ def _draw_lines(axes: Axes, picture: Picture, labels: Labels) -> None:
 
 def _draw_forces(axes: Axes, picture: Picture, scale: float) -> None:
     """Draw forces in joints as strokes along them, thicker for larger forces."""
-    longest = min(MAX_STROKE_LENGTH, MAX_STROKE_SHARE * _smaller_side(picture) * scale) / scale
     for each in picture.sketch.forces:
+        longest = min(MAX_STROKE_LENGTH, MAX_STROKE_SHARE * _smaller_side(picture) * scale) / scale
         force = np.asarray(each.forces)
         share = np.abs(force) / np.abs(force).max()
         seen = share > MIN_FORCE_SHARE
