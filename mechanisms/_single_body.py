@@ -80,7 +80,7 @@ class SingleBody(Mechanism):
         return ()
 
     def lengths(self) -> Sequence[Length]:
-        """Return the fields that are lengths, which drawings show beside R and alpha."""
+        """Return the fields that are lengths, which drawings show beside alpha, instead of R."""
         return ()
 
     def sketch(self) -> Sketch:
@@ -89,9 +89,10 @@ class SingleBody(Mechanism):
         alike = isclose(self.alpha(Direction.POSITIVE), self.alpha(Direction.NEGATIVE), rel_tol=1e-9)
         sides = [Direction.POSITIVE] if alike else list(Direction)
         subscript = {Direction.POSITIVE: "" if alike else "₊", Direction.NEGATIVE: "₋"}
+        sizes = self.lengths()
         return Sketch(
             outlines={body.name: self.outlines()} if self.outlines() else {},
             hinges={side: [self._foot_joint(side)] for side in Direction},
-            lengths=[*self.lengths(), *(Length(f"R{subscript[s]}", centres[s], body.centroid, s) for s in sides)],
+            lengths=[*sizes, *(Length(f"R{subscript[s]}", centres[s], body.centroid, s, bool(sizes)) for s in sides)],
             angles=[Angle(f"α{subscript[s]}", centres[s], centres[s] + 1j, body.centroid, s) for s in sides],
         )

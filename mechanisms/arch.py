@@ -236,7 +236,10 @@ class Arch(Mechanism):
             lengths=[
                 Length("r", 0j, complex(r * springing * np.exp(-0.3j * self._beta))),
                 Length("t", (r - half) * across, (r + half) * across),
-                *(Length(f"r_{link}", hinge, centroid, Direction.POSITIVE) for link, hinge, _, centroid in links),
+                *(
+                    Length(f"r_{link}", hinge, centroid, Direction.POSITIVE, derived=True)
+                    for link, hinge, _, centroid in links
+                ),
             ],
             angles=[
                 Angle("β", 0j, complex(r * springing), -complex(r * springing).conjugate()),

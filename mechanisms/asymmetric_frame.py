@@ -151,9 +151,9 @@ class AsymmetricFrame(Mechanism):
         for direction in Direction:
             A, B, C, D = self.hinges(direction)
             lengths += [
-                Length("R₀", A, left.centroid, direction),
-                Length("R₁", D, right.centroid, direction),
-                Length("r_BC", B, beam.centroid, direction),
+                Length("R₀", A, left.centroid, direction, derived=True),
+                Length("R₁", D, right.centroid, direction, derived=True),
+                Length("r_BC", B, beam.centroid, direction, derived=True),
             ]
             angles += [Angle("φ₀", A, A + 1, B, direction), Angle("ψ_BC", B, C, beam.centroid, direction)]
         return Sketch(

@@ -219,7 +219,7 @@ class SymmetricFrame(Mechanism):
         lengths = [
             Length("2b", complex(-b), right),
             Length("2h", complex(-b), -b + top),
-            Length("R", right, columns.centroid, Direction.POSITIVE),
+            Length("R", right, columns.centroid, Direction.POSITIVE, derived=True),
         ]
         outlines = {columns.name: [columns.outline], beam.name: [beam.outline]}
         notes = []

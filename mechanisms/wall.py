@@ -93,7 +93,7 @@ class Wall(Mechanism):
             lengths=[
                 Length("2b", left, right),
                 Length("4h", left, left + 4j * h),
-                Length("R", pivot, lower.centroid, Direction.POSITIVE),
+                Length("R", pivot, lower.centroid, Direction.POSITIVE, derived=True),
             ],
             angles=[Angle("α", pivot, pivot + 1j, lower.centroid, Direction.POSITIVE)],
         )

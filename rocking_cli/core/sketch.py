@@ -55,12 +55,15 @@ class Length:
         End points [m].
     direction : Direction, optional
         Direction of rocking in which it is shown; None for both.
+    derived : bool
+        Whether it follows from lengths that are shown: the drawing leaves it out, and lists of lengths do not.
     """
 
     symbol: str
     start: complex
     end: complex
     direction: Direction | None = None
+    derived: bool = False
 
     @property
     def value(self) -> float:
@@ -69,8 +72,8 @@ class Length:
 
     @property
     def text(self) -> str:
-        """Symbol, value with three digits, and unit."""
-        return f"{self.symbol} = {three_digits(self.value)} m"
+        """Symbol if there is one, value with three digits, and unit."""
+        return f"{self.symbol}{' = ' if self.symbol else ''}{three_digits(self.value)} m"
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from rocking_cli.core import Angle, Length
 from rocking_cli.plotting import style
 from rocking_cli.plotting.labels import LabelPlace, Labels, mathematics
 from rocking_cli.plotting.panels import Panel
+from rocking_cli.studies.picture import Picture
 
 ROW_SPACING = 0.26  # inches from a dimension line to the next
 FIRST_ROW_OFFSET = 0.27  # inches from the structure to the first dimension line, beyond the ground
@@ -22,10 +23,27 @@ TEXT_STYLE: dict[str, Any] = {"fontsize": style.LABEL, "color": style.MEASURE, "
 TEXT_BACKGROUND = {"facecolor": style.PAPER, "edgecolor": "none", "pad": 0.6}  # interrupts the line below a label
 SIDE_MARGIN, TEXT_MARGIN = 0.16, 0.85  # inches at a side without dimension lines, and at one with labels
 MIN_WIDE_ANGLE = 0.5  # rad
+MAX_HEIGHTS = 5  # of more levels of loads and ties, none is measured
 MAX_FLAT_ASPECT = 0.2  # height over width up to which there is no room for angles
 SIDES = ("left", "right", "below", "above")
 Rows = dict[str, list[list[Length]]]
 """The lengths of each side, in rows from the structure outwards."""
+
+
+def heights(picture: Picture, lengths: Sequence[Length]) -> list[Length]:
+    """Return the heights of loads and ties above the foot of a structure that no other length shows, lowest first."""
+    low, high = picture.extent
+    tolerance = 1e-6 * abs(high - low)
+    ties = [end for tie in picture.ties if not tie.is_bed for piece in tie.pieces for end in (piece.start, piece.end)]
+    levels = [load.point.imag for load in picture.loads] + [end.point.imag for end in ties if end.part is not None]
+    upright = [each for each in lengths if abs((each.end - each.start).real) <= tolerance]
+    shown = [low.imag, *(each.end.imag for each in upright if abs(each.start.imag - low.imag) <= tolerance)]
+    measured: list[float] = []
+    for level in sorted(levels):
+        if all(abs(level - other) > tolerance for other in (*shown, *measured)):
+            measured.append(level)
+    found = [Length("", low, complex(low.real, level)) for level in measured]
+    return found if len(found) <= MAX_HEIGHTS else []
 
 
 def in_rows(lengths: Sequence[Length], low: complex, high: complex) -> tuple[Rows, list[Length]]:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
@@ -28,9 +28,11 @@ NAME_MARGIN = 0.3  # inches at either side of a structure
 BACKGROUND_ZORDER = 0.8  # layer of the symbols that the moving structure may cover
 SQUARE: Points = np.array([-1 - 1j, 1 - 1j, 1 + 1j, -1 + 1j], np.complex128)
 WEIGHT_OUTLINE: Points = np.array(
-    [-1 - 1j, 1 - 1j, 0.7 + 0.6j, 0.3 + 0.6j, 0.3 + 1.1j, -0.3 + 1.1j, -0.3 + 0.6j, -0.7 + 0.6j], np.complex128
-)
-"""A weight with its handle, of half width 1."""
+    [0, 0.35 + 0.7j, 1 + 0.7j, 0.7 + 2.1j, 0.3 + 2.1j, 0.3 + 2.6j, -0.3 + 2.6j, -0.3 + 2.1j, -0.7 + 2.1j, -1 + 0.7j,
+     -0.35 + 0.7j], np.complex128,
+)  # fmt: skip
+"""A weight with its handle, of half width 1, that stands on its point with a tip: a centroid there stays visible."""
+WEIGHT_HEIGHT = 2.6 * WEIGHT_HALF_WIDTH  # inches
 
 
 class Symbols(NamedTuple):
@@ -87,8 +89,9 @@ def draw_hung(axes: Axes, picture: Picture, rotation: float, panel: Panel, label
             Polygon(xy(square), facecolor=style.EARTH, edgecolor=style.INK, linewidth=style.THIN, zorder=order)
         )
         labels.keep_off([at], MARK_COST)
+    look: dict[str, Any] = {"facecolors": style.INK, "edgecolors": style.PAPER, "linewidths": style.THIN, "zorder": 5}
+    axes.add_collection(PolyCollection([xy(each) for each in drawn.weights], **look), autolim=False)
     for outline in drawn.weights:
-        axes.add_patch(Polygon(xy(outline), facecolor=style.INK, edgecolor=style.PAPER, linewidth=style.THIN, zorder=5))
         labels.keep_off([*outline, outline[0]], MARK_COST)
     for tail, tip in drawn.forces:
         axes.annotate(
@@ -113,15 +116,15 @@ def name_hung(picture: Picture, panel: Panel, labels: Labels) -> None:
             out = _tail(load.force, place, panel.scale)
             labels.write(text, labels.around(out, out - place, 0.02, size), color=style.CURSOR, **look)
         else:
-            labels.write(
-                text, labels.around(place, 1 + 0.5j, WEIGHT_HALF_WIDTH, size, turning=0.6), color=style.INK, **look
-            )
+            middle = place + 0.5j * WEIGHT_HEIGHT / panel.scale
+            spots = labels.around(middle, 1 + 0j, WEIGHT_HALF_WIDTH, size, turning=0.6)
+            labels.write(text, spots, color=style.INK, **look)
     for tie, ends in zip(picture.ties, ties, strict=True):
         if not tie.name:
             continue
         text, size = _fitted(tie.name)
-        kinds = [piece.kind for piece in tie.pieces]
-        if set(kinds) == {"symbol"}:
+        apart = [pair for pair, piece in zip(ends, tie.pieces, strict=True) if not (piece.together or tie.is_bed)]
+        if not apart:
             start, end = ends[len(ends) // 2]
             away = start - end if len(ends) > 1 else 1 - 0.3j
             at = start if len(ends) > 1 else (start + end) / 2
@@ -129,7 +132,7 @@ def name_hung(picture: Picture, panel: Panel, labels: Labels) -> None:
                 text, labels.around(at, away, SYMBOL_OFFSET, size, turning=0.6), color=style.TIE["color"], **look
             )
         else:
-            longest = max((each for each, kind in zip(ends, kinds, strict=True) if kind != "symbol"), key=_length)
+            longest = max(apart, key=lambda pair: abs(pair[1] - pair[0]))
             labels.write(text, labels.along(*longest, size), color=style.TIE["color"], **look)
 
 
@@ -144,8 +147,9 @@ def beside(picture: Picture) -> tuple[float, float, float, float]:
 
 
 def margins(picture: Picture) -> tuple[float, float, float, float]:
-    """Return the space that arrows need left, right, below and above their points [inches]."""
-    left = right = below = above = 0.0
+    """Return the space that arrows and weights need left, right, below and above their points [inches]."""
+    left = right = below = 0.0
+    above = WEIGHT_HEIGHT + 0.03 if any(load.mass is not None for load in picture.loads) else 0.0
     for force in (load.acting(first=first) for load in picture.loads for first in (True, False)):
         if force:
             direction = -force / abs(force) * (ARROW_LENGTH + 0.03)
@@ -176,10 +180,6 @@ def _fitted(name: str, more: str = "") -> tuple[str, complex]:
     """Return a name, shortened to the available width, and its size [inches]."""
     text = style.plain(style.fitted(name, MAX_NAME_WIDTH, style.TICK)) + more
     return text, style.size_of(text, style.TICK)
-
-
-def _length(ends: Sequence[complex]) -> float:
-    return abs(ends[1] - ends[0])
 
 
 def xy(z: Points) -> NDArray[np.float64]:

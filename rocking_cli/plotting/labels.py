@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -53,8 +53,8 @@ class Labels:
         self._axes, self._scale = axes, panel.scale
         (left, right), (below, above) = axes.get_xlim(), axes.get_ylim()
         self._low, self._high = complex(left, below) * self._scale, complex(right, above) * self._scale
-        self._points: list[Points] = []
-        self._costs: list[NDArray[np.float64]] = []
+        self._points: list[Points] = [np.empty(0, np.complex128)]
+        self._costs: list[NDArray[np.float64]] = [np.empty(0)]
 
     def keep_off(self, z: Iterable[complex] | Points, cost: float = LINE_COST) -> None:
         """Reserve the space of a line through points [m], or of a single point, against labels."""
@@ -70,29 +70,39 @@ class Labels:
 
     def write(self, text: str, places: Iterable[LabelPlace], **look: Any) -> None:
         """Write a label at the best of several places."""
-        points, costs = np.concatenate([[], *self._points]), np.concatenate([[], *self._costs])
         size = style.size_of(text, float(look["fontsize"]), str(look.get("fontweight", "normal")))
         places = list(places)
-        middles = np.array([place.middle for place in places])
-        reach = abs(size) / 2 + 2 * CLEARANCE
-        nearby = np.ones(points.size, bool)
-        for along, of in ((points.real, middles.real), (points.imag, middles.imag)):
-            nearby &= (of.min() - reach < along) & (along < of.max() + reach)
-        points, costs = points[nearby], costs[nearby]
+        self.put(text, places[int(np.argmin(self._cost(places, size)))], size, **look)
 
-        def against(place: LabelPlace) -> float:
-            turn = np.exp(1j * np.radians(place.turned))
-            local = (points - place.middle) / turn
-            hit = (np.abs(local.real) < size.real / 2 + CLEARANCE) & (np.abs(local.imag) < size.imag / 2 + CLEARANCE)
+    def _cost(self, places: Sequence[LabelPlace], size: complex) -> NDArray[np.float64]:
+        """Return what a label of a size [inches] costs at each place."""
+        self._points, self._costs = [np.concatenate(self._points)], [np.concatenate(self._costs)]
+        (points,), (costs,) = self._points, self._costs
+        cost: NDArray[np.float64] = np.array([each.cost for each in places])
+        turned = np.array([each.turned for each in places])
+        middles = np.array([each.middle for each in places])
+        half = size / 2 + CLEARANCE * (1 + 1j)
+        for angle in np.unique(turned):
+            turn = np.exp(1j * np.radians(angle))
+            here = np.flatnonzero(turned == angle)
+            at, every = middles[here] / turn, points / turn
+            low, high = at.imag.min() - half.imag, at.imag.max() + half.imag
+            near = np.flatnonzero((low < every.imag) & (every.imag < high))
+            near = near[np.argsort(every.real[near])]  # so that a label covers points between two indices
+            along, up, of_point = every.real[near], every.imag[near], costs[near]
+            starts = np.searchsorted(along, at.real - half.real, "right")
+            ends = np.searchsorted(along, at.real + half.real, "left")
+            for k, level, start, end in zip(here, at.imag, starts, ends, strict=True):
+                cost[k] += of_point[start:end][np.abs(up[start:end] - level) < half.imag].sum()
             # Half of the upright box around the rotated label.
-            half = complex(abs(turn.real), abs(turn.imag)) * size.real / 2
-            half += complex(abs(turn.imag), abs(turn.real)) * size.imag / 2
-            above, below = place.middle + half - self._high, self._low - (place.middle - half)
-            over = max(0.0, above.real, below.real) + max(0.0, above.imag, below.imag)
-            return float(costs[hit].sum()) + place.cost + OUTSIDE_COST * over
-
-        best = min(places, key=against)
-        self.put(text, best, size, **look)
+            box = complex(abs(turn.real), abs(turn.imag)) * size.real / 2
+            box += complex(abs(turn.imag), abs(turn.real)) * size.imag / 2
+            above, below = middles[here] + box - self._high, self._low - (middles[here] - box)
+            over = np.maximum(0.0, np.maximum(above.real, below.real)) + np.maximum(
+                0.0, np.maximum(above.imag, below.imag)
+            )
+            cost[here] += OUTSIDE_COST * over
+        return cost
 
     def put(self, text: str, place: LabelPlace, size: complex | None = None, **look: Any) -> None:
         """Write a label at a place, and reserve its space against other labels."""

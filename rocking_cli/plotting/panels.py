@@ -94,12 +94,16 @@ class Page:
 class Panel:
     """A box of the plane [m], and the space around it: left, right, below, above [inches].
 
-    `lay_out` sets `scale` [inches per metre] and `corner`, the lower left one [inches].
+    `head` and `foot` are the space above and below it, and `heading` the width of its heading [inches]. `lay_out` sets
+    `scale` [inches per metre] and `corner`, the lower left one [inches].
     """
 
     low: complex
     high: complex
     around: tuple[float, float, float, float]
+    head: float = 0.0
+    foot: float = 0.0
+    heading: float = 0.0
     scale: float = 1.0
     corner: complex = 0j
 
@@ -134,8 +138,8 @@ class Panel:
         return axes
 
 
-def lay_out(panels: Sequence[Panel], middle: Panel, head: float, foot: float) -> float:
-    """Place panels side by side at one scale, or the middle one, larger, above the others.
+def lay_out(panels: Sequence[Panel], middle: Panel) -> float:
+    """Place panels side by side at one scale, or the middle one, larger, above the others; on a phone always above.
 
     Parameters
     ----------
@@ -143,44 +147,54 @@ def lay_out(panels: Sequence[Panel], middle: Panel, head: float, foot: float) ->
         From left to right. Their scale, corner and room to the sides are set.
     middle : Panel
         The panel that may be placed above the others.
-    head, foot : float
-        Space that each panel needs above and below itself [inches].
 
     Returns
     -------
     float
         Total height [inches]; corners are measured from the lower edge.
     """
-    together, apart = _largest(panels), _largest([middle])
-    if apart < MIN_STACKING_GAIN * together:
-        return _row(panels, together, foot) + head
-    others = [each for each in panels if each is not middle]
-    low = _row(others, _largest(others), foot) + head
-    return _row([middle], apart, low + foot) + head
+    apart, others = _largest([middle]), [each for each in panels if each is not middle]
+    if not others or not (style.is_narrow() or apart >= MIN_STACKING_GAIN * _largest(panels)):
+        return _row(panels, _largest(panels), 0.0)
+    rows, scale = [others], _largest(others)
+    if style.is_narrow() and (alone := min(_largest([each]) for each in others)) >= MIN_STACKING_GAIN * scale:
+        rows, scale = [[each] for each in reversed(others)], alone
+    top = 0.0
+    for row in rows:  # from the lowest
+        top = _row(row, min(scale, apart), top)
+    return _row([middle], apart, top)
 
 
 def _largest(panels: Sequence[Panel]) -> float:
     """Return the largest scale at which panels fit side by side [inches per metre]."""
-    width = style.page_width() - PANEL_GAP * (len(panels) + 1) - sum(each.room.real for each in panels)
-    return min(
-        width / sum(each.plane.real for each in panels),
-        *((MAX_PANEL_HEIGHT - each.room.imag) / each.plane.imag for each in panels),
-    )
+    width = style.page_width() - PANEL_GAP * (len(panels) + 1)
+    tallest = min((MAX_PANEL_HEIGHT - each.room.imag) / each.plane.imag for each in panels)
+    wide = list(panels)  # those whose headings are not wider than what they show
+    while wide:
+        rest = width - sum(each.heading for each in panels if each not in wide) - sum(each.room.real for each in wide)
+        scale = min(tallest, rest / sum(each.plane.real for each in wide))
+        wider = [each for each in wide if each.plane.real * scale + each.room.real >= each.heading]
+        if len(wider) == len(wide):
+            return scale
+        wide = wider
+    return tallest
 
 
 def _row(panels: Sequence[Panel], scale: float, base: float) -> float:
     """Place panels at one scale side by side above `base`, with their levels y = 0 in line; return the top [inches]."""
     for each in panels:
         each.scale = scale
-    spare = style.page_width() - PANEL_GAP * (len(panels) + 1) - sum(each.inches.real for each in panels)
+    spare = style.page_width() - PANEL_GAP * (len(panels) + 1)
+    spare -= sum(max(each.inches.real, each.heading) for each in panels)
     depth = max(each.depth for each in panels)
     height = max(each.inches.imag - each.depth for each in panels)  # largest height of a panel above y = 0 [inches]
+    base += max(each.foot for each in panels)
     x = PANEL_GAP
     for each in panels:
         left, right, below, above = each.around
-        wider = spare / len(panels) / 2
+        wider = (max(0.0, each.heading - each.inches.real) + spare / len(panels)) / 2
         above += height - (each.inches.imag - each.depth)
         each.around = left + wider, right + wider, below + depth - each.depth, above
         each.corner = complex(x, base)
         x += each.inches.real + PANEL_GAP
-    return base + depth + height
+    return base + depth + height + max(each.head for each in panels)

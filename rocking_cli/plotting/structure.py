@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 from math import degrees, floor, log10
-from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -23,21 +22,19 @@ from rocking_cli.plotting.panels import PANEL_GAP, Page, Panel, lay_out
 from rocking_cli.studies.picture import MAX_SEPARATE_PARTS, DrawnHinge, DrawnPart, Picture, box_around
 
 Points = NDArray[np.complex128]
-HEADING_HEIGHT, SCALE_HEIGHT = 0.42, 0.34  # inches above a panel for its heading, and below it for the scale
-# Inches of the title, of a line of notes, and of a line under a panel.
-TITLE_HEIGHT, NOTE_HEIGHT, TEXT_ROW_HEIGHT = 0.34, 0.13, 0.17
+SCALE_HEIGHT = 0.34  # inches below a panel for the scale
+LINE_HEIGHT, NOTE_HEIGHT = 0.16, 0.13  # inches of a line of a heading or a title, and of a note
 MIN_PANEL_WIDTH = 0.95  # inches: a slender structure still needs room for its labels
 HINGE_RADIUS = 0.035  # inches
 HATCH_DEPTH = 0.08  # inches; depth of the hatching of the ground
 MAX_SCALE_LENGTH = 0.8  # inches
-MAX_PANEL_LINE = 40  # characters of a line under a panel
-MAX_NOTE_LINE = 125  # characters
 MAX_STROKE_LENGTH, MAX_STROKE_SHARE = 0.3, 0.8  # longest stroke of a force: inches, and share of a block's smaller side
 # Smaller forces than this share of the largest are not drawn, and the largest has a stroke of this weight [pt].
 MIN_FORCE_SHARE, MAX_STROKE_WEIGHT = 0.003, 2.4
 LINE_WEIGHT_SHARE = 0.04  # weight of outlines over the smaller side of a block, if there are dozens of blocks
 NO_CRITICAL_TEXT = "no critical rotation: displaced to a visible angle"
 STARTING_TEXT = "displaced as the mechanism starts, exaggerated"
+NO_BREAK = "\u00a0"
 SENSE = {Direction.POSITIVE: "clockwise", Direction.NEGATIVE: "anticlockwise"}
 
 
@@ -66,43 +63,52 @@ def draw_structure(picture: Picture, title: str, ratio: float | None = None, say
     ratios = picture.usual if ratio is None else dict.fromkeys(picture.directions, ratio)
     turned = {side: side * times * picture.reference[side] for side, times in ratios.items()}
     low, high = _box_at_rest(picture)
-    lengths = [each for each in picture.sketch.lengths if _is_at_rest(picture, each)]
+    lengths = [each for each in picture.sketch.lengths if _is_at_rest(picture, each) and not each.derived]
+    lengths = [*dimensions.heights(picture, lengths), *lengths]  # the lowest is the nearest to the structure
     rows, inside = dimensions.in_rows(lengths, low, high)
-    rest = _rest_panel(picture, low, high, dimensions.room(rows, low, high))
-    sides = {direction: _displaced_panel(picture, turn) for direction, turn in turned.items()}
-    words = {direction: _words(picture, direction) for direction in turned}
-    foot = SCALE_HEIGHT + TEXT_ROW_HEIGHT * max(text.count("\n") + bool(text) for text in words.values())
-    orange: list[Line | Forces] = [*picture.sketch.lines, *picture.sketch.forces]
-    named = [f"orange: {each.name}{_of(each)}" for each in orange if _is_at_rest(picture, each)]
+    room = style.page_width() - 2 * PANEL_GAP
+    width = (room - PANEL_GAP) / len(turned) if style.is_narrow() else room / (1 + len(turned))
+    heads = {direction: _head(picture, direction, ratios[direction], width) for direction in turned}
+    words = {direction: style.folded(_words(picture, direction), width, style.LABEL) for direction in turned}
+    scale = 0.0
+    for _ in range(2):  # at a larger scale, dimensions find more room beside ties
+        rest = _rest_panel(picture, low, high, dimensions.room(rows, low, high), scale)
+        sides = {side: _displaced_panel(picture, turn, heads[side], words[side]) for side, turn in turned.items()}
+        in_order = [sides.get(Direction.NEGATIVE), rest, sides.get(Direction.POSITIVE)]
+        height = lay_out([each for each in in_order if each is not None], rest)
+        scale = rest.scale
+    things: list[Line | Forces] = [*picture.sketch.lines, *picture.sketch.forces]
+    named = [f"{_look(picture, each)[0]}: {each.name}{_of(each)}" for each in things]
     free = [] if None not in picture.phi_cr.values() else [NO_CRITICAL_TEXT if picture.start is None else STARTING_TEXT]
-    notes = fill("; ".join(map(say, [*named, *picture.sketch.notes, *free])), MAX_NOTE_LINE)
-    in_order = [sides.get(Direction.NEGATIVE), rest, sides.get(Direction.POSITIVE)]
-    height = lay_out([each for each in in_order if each is not None], rest, HEADING_HEIGHT, foot)
-    below = PANEL_GAP + NOTE_HEIGHT * (notes.count("\n") + bool(notes))
-    height = below + height + TITLE_HEIGHT
-    page = Page.new(height, len(in_order) - in_order.count(None))
+    notes = style.folded(style.plain("; ".join(map(say, [*named, *picture.sketch.notes, *free]))), room, style.SMALL)
+    title = style.in_lines(title, room)
+    below = PANEL_GAP + NOTE_HEIGHT * len(_lines(notes))
+    height += below + LINE_HEIGHT * len(_lines(title)) + 0.18
+    page = Page.new(height, 1 + len(sides))
     for panel in (rest, *sides.values()):
         panel.corner += 1j * below
     for text, x, y, place, size in (
-        (style.fitted(title), PANEL_GAP, height - 0.09, "top", style.TITLE),
+        (title, PANEL_GAP, height - 0.09, "top", style.TITLE),
         (notes, PANEL_GAP, 0.07, "bottom", style.SMALL),
     ):
-        page.text(complex(x, y), text, va=place, fontsize=size, color=style.INK, parse_math=False)
+        said = text.replace(r"\$", "$")
+        page.text(complex(x, y), said, va=place, fontsize=size, color=style.INK, parse_math=False)
 
     _draw_rest(rest.axes(page), picture, rest, (low, high), rows, inside)
     for direction, panel in sides.items():
         axes = panel.axes(page)
-        axes.set_title(_head(picture, direction, ratios[direction]), fontsize=style.LABEL, color=style.INK)
+        axes.set_title(heads[direction], fontsize=style.LABEL, color=style.INK)
         _draw_displaced(axes, picture, panel, direction, turned[direction])
-        half = max((style.size_of(line, style.LABEL).real / 2 for line in words[direction].split("\n")), default=0.0)
-        middle = min(
-            max(panel.corner.real + panel.inches.real / 2, PANEL_GAP + half), style.page_width() - PANEL_GAP - half
-        )
         page.text(
-            complex(middle, panel.corner.imag - SCALE_HEIGHT), words[direction],
+            panel.corner + panel.inches.real / 2 - 0.06j, words[direction],
             ha="center", va="top", fontsize=style.LABEL, color=style.MEASURE,
         )  # fmt: skip
     return page.finished()
+
+
+def _lines(*texts: str) -> list[str]:
+    """Return the lines of texts; an empty text has none."""
+    return [line for text in texts for line in text.splitlines()]
 
 
 def _draw_rest(
@@ -141,7 +147,6 @@ def _draw_displaced(axes: Axes, picture: Picture, panel: Panel, direction: Direc
     own_pins = [pin for pin in picture.pins if pin.direction is direction]
     pins = _draw_pins(axes, picture, turn, own_pins, panel, labels)
     _draw_letters(picture, turn, pins, labels)
-    draw_scale(axes, panel)
 
 
 def draw_at_rest(axes: Axes, picture: Picture, title: str) -> None:
@@ -166,32 +171,40 @@ def _box_at_rest(picture: Picture) -> tuple[complex, complex]:
     return box_around([np.array([*picture.extent, *measured])])
 
 
-def _rest_panel(picture: Picture, low: complex, high: complex, around: tuple[float, float, float, float]) -> Panel:
-    """Return the panel for the structure from `low` to `high`, its labels, loads and ties."""
+def _rest_panel(
+    picture: Picture, low: complex, high: complex, around: tuple[float, float, float, float], scale: float
+) -> Panel:
+    """Return the panel for the structure from `low` to `high`, its labels, loads and ties, at least at a scale."""
     far = box_around([np.array([low, high, *picture.held(0.0)])])
-    beside = np.add(around, hung.beside(picture))
-    left, right, below, above = np.maximum(beside, hung.margins(picture)).tolist()
+    beyond = (low - far[0]).real, (far[1] - high).real, (low - far[0]).imag, (far[1] - high).imag
+    beside = np.add(around, hung.beside(picture)) - scale * np.array(beyond)
+    left, right, below, above = np.maximum(np.maximum(beside, dimensions.SIDE_MARGIN), hung.margins(picture)).tolist()
     wider = hung.NAME_MARGIN if picture.loads or picture.ties else 0.0
-    return Panel(*far, (left + wider, right + wider, below, above))
+    return Panel(*far, (left + wider, right + wider, below, above), head=LINE_HEIGHT + 0.1, foot=SCALE_HEIGHT)
 
 
-def _displaced_panel(picture: Picture, rotation: float) -> Panel:
+def _displaced_panel(picture: Picture, rotation: float, head: str, words: str) -> Panel:
+    """Return the panel for the structure at a rotation, with its heading and the words below it."""
     outlines, pins = picture.placed(rotation)
     moved = [*picture.extent, *pins, *picture.held(rotation)]
     low, high = box_around([np.array(moved), *(each for part in outlines for each in part)])
     side = max(0.1, MIN_PANEL_WIDTH / 4)
     left, right, below, above = np.maximum((side, side, 0.16, 0.12), hung.margins(picture)).tolist()
-    return Panel(low, high, (left, right, below, above))
+    tall, deep = (LINE_HEIGHT * len(_lines(text)) + 0.1 for text in (head, words))
+    widest = max(style.size_of(line, style.LABEL).real for line in _lines(head, words))
+    return Panel(low, high, (left, right, below, above), tall, deep, widest)
 
 
-def _head(picture: Picture, direction: Direction, ratio: float) -> str:
+def _head(picture: Picture, direction: Direction, ratio: float, width: float) -> str:
     """Return the title of a panel that shows the displaced structure: direction and rotation, or how it starts."""
     if picture.start is not None:
         return f"{direction.label}\nas it starts"
     phi = ratio * picture.reference[direction]
     times = "" if ratio == 1 else f"{ratio:g} "
     of = "" if picture.phi_cr[direction] is None else rf"{times}$\phi_{{cr}}$ = "
-    return f"{direction.label} ({SENSE[direction]})\n" rf"$\phi$ = {of}{phi:.3g} rad = {three_digits(degrees(phi))}°"
+    value = f"{phi:.3g} rad = {three_digits(degrees(phi))}°"
+    lines = style.folded(rf"$\phi$ = {of}{value.replace(' ', NO_BREAK)}", width, style.LABEL)
+    return f"{direction.label} ({SENSE[direction]})\n{lines.replace(NO_BREAK, ' ')}"
 
 
 def _is_at_rest(picture: Picture, each: Length | Angle | Line | Forces | DrawnHinge) -> bool:
@@ -201,20 +214,16 @@ def _is_at_rest(picture: Picture, each: Length | Angle | Line | Forces | DrawnHi
 
 def _words(picture: Picture, direction: Direction) -> str:
     """Return the lengths and angles of a direction as text, if the two directions differ."""
-    every: list[Length | Angle] = [*picture.sketch.lengths, *picture.sketch.angles]
+    lengths = [each for each in picture.sketch.lengths if not each.derived]
+    every: list[Length | Angle] = [*lengths, *picture.sketch.angles]
     if not picture.mechanism.rocks_both_ways or not any(each.direction is Direction.NEGATIVE for each in every):
         return ""
-    lines: list[str] = []
-    wide = 0
-    for each in every:
-        if each.direction is direction:
-            wide += len(each.text) + 2
-            if not lines or wide > MAX_PANEL_LINE:
-                lines.append(mathematics(each))
-                wide = len(each.text)
-            else:
-                lines[-1] += ", " + mathematics(each)
-    return "\n".join(lines)
+    return ", ".join(mathematics(each) for each in every if each.direction is direction)
+
+
+def _look(picture: Picture, each: Line | Forces) -> tuple[str, dict[str, Any]]:
+    """Return the name and the look of a line or of forces: another for the second direction."""
+    return ("orange", style.THRUST) if _is_at_rest(picture, each) else ("violet, dotted", style.OTHER_THRUST)
 
 
 def _of(thing: Line | Forces) -> str:
@@ -249,19 +258,24 @@ def draw_parts(axes: Axes, picture: Picture, rotation: float, line: float) -> No
     centroids = picture.marks(rotation)
     direction = picture.side(rotation)
     for k, (part, polygons) in enumerate(zip(picture.parts, outlines, strict=True)):
-        dashes = (0, (3, 2)) if part.assumed else "-"
-        look = {"facecolor": colour(picture, k, direction), "edgecolor": style.INK, "linestyle": dashes}
-        for patch in _patches(part, polygons, **look, linewidth=line, joinstyle="round"):
+        moves = picture.shades[direction][k] is not None
+        look = {
+            "facecolor": colour(picture, k, direction),
+            "edgecolor": style.INK if moves else style.EARTH,
+            "linewidth": line if moves else min(line, style.THIN),
+            "linestyle": (0, (3, 2)) if part.assumed else "-",
+        }
+        for patch in _patches(part, polygons, **look, joinstyle="round"):
             axes.add_patch(patch)
     axes.plot(
-        centroids.real, centroids.imag, linestyle="none", marker="o", markersize=5, fillstyle="top", zorder=4,
+        centroids.real, centroids.imag, linestyle="none", marker="o", markersize=5, fillstyle="top", zorder=5.5,
         color=style.INK, markerfacecoloralt=style.PAPER, markeredgewidth=style.THIN,
     )  # fmt: skip
 
 
 def _draw_outline_at_rest(axes: Axes, picture: Picture, line: float) -> None:
     for part in picture.parts:
-        look = {"fill": False, "edgecolor": style.FAINT, "linestyle": "--", "linewidth": line}
+        look = {"facecolor": style.SHADE, "edgecolor": style.FAINT, "linestyle": "--", "linewidth": line}
         for patch in _patches(part, part.outlines, **look):
             axes.add_patch(patch)
 
@@ -336,35 +350,26 @@ def _draw_letters(picture: Picture, rotation: float, pins: Sequence[DrawnHinge],
 
 def _draw_lines(axes: Axes, picture: Picture, labels: Labels) -> None:
     for each in picture.sketch.lines:
-        if not _is_at_rest(picture, each):
-            continue
         z = np.asarray(each.points)
-        axes.plot(z.real, z.imag, zorder=3, **style.THRUST)
+        axes.plot(z.real, z.imag, zorder=3, **_look(picture, each)[1])
         labels.keep_off(z)
 
 
 def _draw_forces(axes: Axes, picture: Picture, scale: float) -> None:
     """Draw forces in joints as strokes along them, thicker for larger forces."""
     for each in picture.sketch.forces:
-        if _is_at_rest(picture, each):
-            force = np.asarray(each.forces)
-            share = np.abs(force) / np.abs(force).max()
-            seen = share > MIN_FORCE_SHARE
-            half = (
-                force[seen]
-                / np.abs(force[seen])
-                * min(MAX_STROKE_LENGTH, MAX_STROKE_SHARE * _smaller_side(picture) * scale)
-                / scale
-                / 2
-            )
-            middle = np.asarray(each.points)[seen]
-            strokes = [hung.xy(np.array(ends)) for ends in zip(middle - half, middle + half, strict=True)]
-            look = {
-                "colors": style.THRUST["color"],
-                "linewidths": MAX_STROKE_WEIGHT * np.sqrt(share[seen]),
-                "zorder": 3,
-            }
-            axes.add_collection(LineCollection(strokes, **look), autolim=False)
+        longest = min(MAX_STROKE_LENGTH, MAX_STROKE_SHARE * _smaller_side(picture) * scale) / scale
+        force = np.asarray(each.forces)
+        share = np.abs(force) / np.abs(force).max()
+        seen = share > MIN_FORCE_SHARE
+        half = force[seen] / np.abs(force[seen]) * longest / 2
+        middle = np.asarray(each.points)[seen]
+        strokes = [hung.xy(np.array(ends)) for ends in zip(middle - half, middle + half, strict=True)]
+        look = _look(picture, each)[1]
+        dashes = "-" if look is style.THRUST else look["linestyle"]
+        weights = MAX_STROKE_WEIGHT * np.sqrt(share[seen])
+        drawn = LineCollection(strokes, colors=look["color"], linewidths=weights, linestyles=[dashes], zorder=3)
+        axes.add_collection(drawn, autolim=False)
 
 
 def _smaller_side(picture: Picture) -> float:

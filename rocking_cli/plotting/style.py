@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from functools import cache
+from functools import cache, lru_cache
 from textwrap import shorten
 from typing import IO, Any, NamedTuple, cast
 from warnings import catch_warnings, filterwarnings
@@ -44,12 +44,13 @@ TITLE, LABEL, TICK, SMALL, TINY = 10, 9, 8, 7, 5  # sizes of type [pt]
 HAIR, THIN, CURVE, MEDIUM, BOLD, HALO_WEIGHT = 0.4, 0.6, 0.7, 1.0, 1.6, 2.5  # weights of line [pt]
 LEGEND: dict[str, Any] = {"fontsize": TICK, "frameon": True, "framealpha": 0.9, "edgecolor": "none"}
 # Structures: bodies differ in darkness too; marks are black, dimensions blue, thrust lines dashed.
-BODIES = ("#dfe6ec", "#f1e2c6", "#c2cdd8")
+BODIES = ("#cbd8e4", "#eed7a6", "#a6b8ca")
 RESTING_COLOUR = "#f4f3f0"  # colour of parts at rest while the links of a structure move
 EARTH, MEASURE = "#8a7f70", "#2b5d86"
 CURSOR = "#c4371a"
 TRACE: dict[str, Any] = {"color": INK, "linestyle": "-", "linewidth": 0.9}
 THRUST: dict[str, Any] = {"color": "#b3541e", "linestyle": (0, (3, 1)), "linewidth": 1.8}
+OTHER_THRUST: dict[str, Any] = {"color": VIOLET, "linestyle": (0, (1, 1)), "linewidth": 1.6}  # in the other direction
 TIE: dict[str, Any] = {"color": "#1d6b4f", "linewidth": 1.3}
 SLACK = (0, (2.5, 2))
 # Curves differ in darkness, dash and weight as well as in hue; the heaviest is visible behind the others.
@@ -108,7 +109,7 @@ _MARKS = ("o", "s", "^", "D", "v", "P")
 DARK = {
     PAPER: "#16181b", INK: "#e8e6e1", FAINT: "#84888e", SHADE: "#26292e", GRID: "#3a3d42", "#000000": "#f4f2ee",
     BLACK: "#f4f2ee", ORANGE: "#ffb454", BLUE: "#6db3f2", VIOLET: "#a06bff", BROWN: "#bb6520", STONE: "#b5a886",
-    "#dfe6ec": "#3d4852", "#f1e2c6": "#5d4f31", "#c2cdd8": "#57646f", RESTING_COLOUR: "#2b2e32", EARTH: "#a99c88",
+    "#cbd8e4": "#435567", "#eed7a6": "#6a5730", "#a6b8ca": "#667c92", RESTING_COLOUR: "#2b2e32", EARTH: "#a99c88",
     MEASURE: "#7fb6e6", CURSOR: "#ff8a65", "#b3541e": "#ff9d5c", "#1d6b4f": "#4fbf94", RECORD_COLOUR: "#8b8e94",
     "#b35900": "#ff9a4d", "#c6dcec": "#20384b", "#f2b04a": "#9a6413", "#c46a1b": "#dc8a45", "#5b3a55": "#dcb6d4",
     "#c9c9c9": "#5c6066",
@@ -278,6 +279,7 @@ def one_panel(height: float, title: str) -> tuple[Figure, Axes]:
     return figure, axes
 
 
+@lru_cache(maxsize=4096)
 def size_of(text: str, points: float, weight: str = "normal") -> complex:
     """Return width and height of a text [inches]; mathematics is between dollars, other dollars are escaped."""
     if "\n" in text:
@@ -320,7 +322,7 @@ def folded(text: str, width: float, points: float, indent: str = "") -> str:
     return "\n".join(lines)
 
 
-def _in_lines(text: str, width: float) -> str:
+def in_lines(text: str, width: float) -> str:
     """Break a title into lines of a width [inches], with dollars escaped; only a very long one is cut."""
     for most in range(MAX_HEADING_LENGTH, 10, -10):
         lines = folded(plain(shorten(text, most, placeholder=" ...")), width, TITLE)
@@ -332,14 +334,14 @@ def _in_lines(text: str, width: float) -> str:
 def heading(axes: Axes, text: str) -> None:
     """Write the title of a plot above its first panel; dollars in names are plain characters."""
     width = page_width() - MAX_SIDE_MARGIN if given() is None else inches(axes).real
-    lines = _in_lines(text, width).replace(r"\$", "$")
+    lines = in_lines(text, width).replace(r"\$", "$")
     axes.set_title(lines, loc="left", fontsize=TITLE, color=INK, parse_math=False)
 
 
 def heading_of_all(figure: Figure, text: str) -> None:
     """Write the title of a plot above all its panels."""
     width = page_width() - 0.3 if given() is None else 0.97 * inches(figure).real
-    figure.suptitle(_in_lines(text, width), fontsize=TITLE, x=0.01, ha="left", color=INK)
+    figure.suptitle(in_lines(text, width), fontsize=TITLE, x=0.01, ha="left", color=INK)
 
 
 def over(ends_at_limit: Sequence[bool], *, math: bool = False) -> str:

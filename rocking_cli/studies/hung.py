@@ -31,11 +31,16 @@ class End(NamedTuple):
 
 
 class TiePiece(NamedTuple):
-    """A piece of a tie: a plain line, a line with a spring in it, or a spring symbol alone."""
+    """A piece of a tie: a plain line for a bar or a tendon, a line with a spring in it, or a spring symbol alone."""
 
     start: End
     end: End
     kind: Literal["line", "spring", "symbol"]
+
+    @property
+    def together(self) -> bool:
+        """Whether its ends coincide at rest, so that they are drawn apart."""
+        return bool(self.start.lead or self.end.lead)
 
 
 @dataclass(frozen=True)
@@ -137,6 +142,7 @@ def carried(mechanism: Mechanism, copies: Copies) -> Iterator[Carried]:
 def strands(mechanism: Mechanism, copies: Copies, centroids: Sequence[complex]) -> Iterator[Strand]:
     """Yield the ties of a structure; a tie that each of several equal bodies has, once for each body."""
     each = _each(mechanism)
+    springs = {tie.name for tie in mechanism.ties or [] if tie.stiffness}  # others have a section, or a law
     for tie in mechanism.hung.ties:
         first = next(spot.body for part in tie.stretched for spot in part.spots if spot.body is not None)
         for k, (part, shift) in enumerate(_copies(first, copies, every=each.get(tie.name, False))):
@@ -145,7 +151,7 @@ def strands(mechanism: Mechanism, copies: Copies, centroids: Sequence[complex]) 
                 yield Strand(name, tuple(_bed(tie, part, shift, centroids[part])), tie)
             elif isinstance(tie, Stretched):
                 of_body = {body: those[min(k, len(those) - 1)][0] for body, those in copies.items()}
-                yield Strand(name, tuple(_pieces(tie, of_body, shift)), tie)
+                yield Strand(name, tuple(_pieces(tie, of_body, shift, spring=tie.name in springs)), tie)
 
 
 def walls(mechanism: Mechanism, low: complex, high: complex) -> tuple[Points, ...]:
@@ -170,16 +176,19 @@ def _copies(body: str | None, copies: Copies, *, every: bool) -> Sequence[tuple[
     return parts if every else parts[:1]
 
 
-def _pieces(tie: Stretched, of_body: Mapping[str, int], shift: complex) -> Iterator[TiePiece]:
+def _pieces(tie: Stretched, of_body: Mapping[str, int], shift: complex, *, spring: bool) -> Iterator[TiePiece]:
     for one, other in zip(tie.spots, tie.spots[1:], strict=False):
         parts = [None if spot.body is None else of_body[spot.body] for spot in (one, other)]
+        kind: Literal["line", "spring", "symbol"] = "line"
+        start, end = End(parts[0], one.at + shift), End(parts[1], other.at + shift)
         if abs(other.at - one.at) <= COINCIDENT_DISTANCE * (1 + abs(one.at)):
             # The ends of this tie coincide at rest: they are drawn apart, the fixed end below the moving one.
             up = -1j if parts[1] is None else 1j
-            yield TiePiece(End(parts[0], one.at + shift, -up), End(parts[1], other.at + shift, up), "symbol")
-        else:
-            kind: Literal["line", "spring"] = "spring" if None in parts else "line"
-            yield TiePiece(End(parts[0], one.at + shift), End(parts[1], other.at + shift), kind)
+            start, end = start._replace(lead=-up), end._replace(lead=up)
+            kind = "symbol" if spring else "line"
+        elif spring and (None in parts or len(tie.spots) == 2):
+            kind = "spring"
+        yield TiePiece(start, end, kind)
 
 
 def _bed(bed: SpringBed, part: int, shift: complex, centroid: complex) -> Iterator[TiePiece]:

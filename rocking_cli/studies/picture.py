@@ -571,7 +571,9 @@ def _picture(mechanism: Mechanism, collapses: Mapping[Direction, CollapseMechani
             for k in carriers:
                 letter, point = hinge.letter if k == carriers[0] else "", hinge.point + parts[k].shift
                 pins.append(DrawnHinge(letter, point, k, direction, hinge.slide))
-    ground = tuple(np.asarray(each, np.complex128) for each in sketch.ground) or _level_ground(parts, pins)
+    outlines = [outline for part in parts for outline in part.outlines]
+    ground = tuple(face for each in sketch.ground for face in _faces(np.asarray(each, np.complex128), outlines))
+    ground = ground or _level_ground(parts, pins)
     if any(part.assumed for part in parts):
         sketch = replace(sketch, notes=[*sketch.notes, ASSUMED_NOTE])
     if mechanism.crushing:
@@ -581,7 +583,7 @@ def _picture(mechanism: Mechanism, collapses: Mapping[Direction, CollapseMechani
     ties = tuple(strands(mechanism, copies, [part.centroid for part in parts]))
     start = None
     if starts:
-        low, high = box_around([outline for part in parts for outline in part.outlines])
+        low, high = box_around(outlines)
         start = Start({body.name: body.centroid for body in bodies}, abs(high - low), collapses)
     return Picture(mechanism, parts, tuple(pins), phi_cr, limit, ground, sketch, loads, ties, start)
 
@@ -632,6 +634,26 @@ def _hinges_of_motion(bodies: Sequence[Body], motions: Sequence[RigidMotion]) ->
             gap = motions[i].carry(centre)[0] - motions[j].carry(centre)[0]
             add(centre, (bodies[i].name, bodies[j].name), gap)
     return hinges
+
+
+def _faces(line: Points, outlines: Sequence[Points]) -> list[Points]:
+    """Return a line of the ground; of a closed one, a block of the ground, the faces upwards and those at a part."""
+    if len(line) < 3 or line[0] != line[-1]:
+        return [line]
+    corners = np.concatenate(outlines)
+    faces: list[Points] = []
+    last = None
+    for start, end in pairwise(line):
+        place = (corners - start) / (end - start)
+        tolerance = SAME_POINT_SHARE
+        touched = (np.abs(place.imag) <= tolerance) & (place.real > tolerance) & (place.real < 1 - tolerance)
+        if (end - start).real > tolerance * abs(end - start) or touched.any():
+            if last == start:
+                faces[-1] = np.append(faces[-1], end)
+            else:
+                faces.append(np.array([start, end]))
+            last = end
+    return faces
 
 
 def _level_ground(parts: Sequence[DrawnPart], pins: Sequence[DrawnHinge]) -> tuple[Points, ...]:

@@ -2,6 +2,7 @@
 
 import io
 import json
+from contextlib import nullcontext
 from dataclasses import replace
 from functools import cache, partial
 from itertools import combinations
@@ -10,8 +11,8 @@ from math import atan2, degrees, hypot, pi
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from matplotlib.patches import Polygon
 
 from mechanisms._arch_collapse import Ring, thrust
 from mechanisms.arch import Arch
@@ -24,10 +25,10 @@ from mechanisms.wall import Wall
 from rocking_cli.core import Angle, Body, Direction, Hinge, Length, Mechanism, Sketch, box, rotation, three_digits
 from rocking_cli.core.structure_file import load_structure
 from rocking_cli.plotting import dimensions, style
-from rocking_cli.plotting.labels import Labels, mathematics
+from rocking_cli.plotting.labels import LabelPlace, Labels, mathematics
 from rocking_cli.plotting.panels import Page, Panel
-from rocking_cli.plotting.structure import colour, draw_structure
-from rocking_cli.studies.picture import ASSUMED_NOTE, NODES_PER_SIDE, picture
+from rocking_cli.plotting.structure import draw_parts, draw_structure
+from rocking_cli.studies.picture import ASSUMED_NOTE, NODES_PER_SIDE, _faces, picture
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 
@@ -309,7 +310,8 @@ class TestFigure:
         words = " ".join(text.get_text() for axes in figure.axes for text in axes.texts)
         for each in [*structure.sketch().lengths, *structure.sketch().angles]:
             if each.direction is not Direction.NEGATIVE:
-                assert mathematics(each) in words
+                assert (mathematics(each) in words) is not getattr(each, "derived", False)
+        assert [line.get_marker() for axes in figure.axes for line in axes.lines].count("|") == 1  # scale bars
 
     def test_the_displaced_panels_show_the_block_at_its_rotation(self):
         block = Block(width=0.7, height=2.8)
@@ -319,8 +321,8 @@ class TestFigure:
             axes = by_title[direction.label]
             phi = 0.5 * block.critical_rotation(direction)
             assert f"{phi:.3g} rad = {three_digits(degrees(phi))}°" in axes.get_title()
-            filled = [each for each in axes.patches if isinstance(each, Polygon) and each.get_fill()]
-            corners = filled[0].get_xy()[:4] @ [1, 1j]
+            moved = [each for each in axes.patches if to_hex(each.get_edgecolor()) == style.INK]
+            corners = moved[0].get_xy()[:4] @ [1, 1j]
             foot = complex(direction * 0.35)
             expected = foot + np.exp(-1j * direction * phi) * (
                 np.array([-0.35, 0.35, 0.35 + 2.8j, -0.35 + 2.8j]) - foot
@@ -335,9 +337,16 @@ class TestFigure:
         assert [each.symbol for each in inside] == ["d"]
 
     @pytest.mark.every(9)
+    @pytest.mark.parametrize("screen", [nullcontext, style.on_phone])
     @pytest.mark.parametrize("structure", SHAPES, ids=str)
-    def test_words_neither_meet_nor_leave_the_picture(self, structure):
-        figure = draw_structure(picture(SHAPES[structure]()), "a title")
+    def test_words_neither_meet_nor_leave_the_picture(self, structure, screen):
+        title = "a structure with a title that is longer than the screen of a phone"
+        with screen():
+            figure = draw_structure(picture(SHAPES[structure]()), title)
+        assert title in [text.get_text().replace("\n", " ") for text in figure.texts]
+        if figure.get_figwidth() < style.PAGE_WIDTH:
+            rest, *others = sorted((axes.get_position() for axes in figure.axes), key=lambda place: -place.y0)
+            assert rest.y0 > max(place.y1 for place in others)
         canvas = FigureCanvasAgg(figure)
         figure.draw_without_rendering()
         inside = figure.bbox
@@ -400,8 +409,48 @@ class TestFigure:
         expected = [k - 1 if 0 < k < 4 else None for k in np.searchsorted(arch.hinge_angles, along)]
         assert list(shown.links[direction].values()) == expected
         assert None in expected and {0, 1, 2} < set(expected)
-        colours = {colour(shown, k, direction) for k in range(len(expected))}
-        assert colours == {*style.BODIES, style.RESTING_COLOUR}
+        axes = Figure().subplots()
+        draw_parts(axes, shown, 0.01 * direction, style.MEDIUM)
+        for link, patch in zip(expected, axes.patches, strict=True):
+            moving = (style.INK, style.MEDIUM) if link is not None else (style.EARTH, style.THIN)
+            assert (to_hex(patch.get_edgecolor()), patch.get_linewidth()) == moving
+            assert (to_hex(patch.get_facecolor()) == style.RESTING_COLOUR) is (link is None)
+        assert {to_hex(patch.get_facecolor()) for patch in axes.patches} == {*style.BODIES, style.RESTING_COLOUR}
+
+    def test_the_line_of_thrust_is_drawn_in_both_directions(self):
+        figure = draw_structure(picture(ARCH), "arch")
+        (rest,) = (axes for axes in figure.axes if axes.get_title() == "at rest")
+        for line, look in zip(ARCH.sketch().lines, (style.THRUST, style.OTHER_THRUST), strict=True):
+            (drawn,) = (each for each in rest.lines if each.get_color() == look["color"])
+            np.testing.assert_array_equal(drawn.get_xydata() @ [1, 1j], line.points)
+            assert f"{line.name} ({line.direction.label} direction)" in figure.texts[1].get_text().replace("\n", " ")
+
+    def test_labels_cost_what_they_cover(self):
+        """Against each point and each place one by one."""
+        panel = Panel(0j, 1 + 1j, (0.5, 0.5, 0.5, 0.5), scale=3.0)
+        labels, size = Labels(panel.axes(Page(Figure(figsize=(4, 4)), 4 + 4j)), panel), 0.6 + 0.2j
+        z = np.random.default_rng(1).uniform(0, 1, (300, 2)) @ [1, 1j]
+        for k, each in enumerate(z):
+            labels.keep_off([each], 1.0 + k % 3)
+        places = [LabelPlace(3 * at, turned, 0.5) for at in z[:40] for turned in (0.0, 30.0)]
+        for place, cost in zip(places, labels._cost(places, size), strict=True):
+            local = (3 * z - place.middle) * np.exp(-1j * np.radians(place.turned))
+            hit = (np.abs(local.real) < 0.32) & (np.abs(local.imag) < 0.12)
+            corners = place.middle + np.array([0.3 + 0.1j, 0.3 - 0.1j, -0.3 + 0.1j, -0.3 - 0.1j]) * np.exp(
+                1j * np.radians(place.turned)
+            )
+            over = sum(max(0.0, -0.5 - low, high - 3.5) for low, high in (
+                (corners.real.min(), corners.real.max()), (corners.imag.min(), corners.imag.max())
+            ))  # fmt: skip
+            assert cost == pytest.approx((1.0 + np.arange(300) % 3)[hit].sum() + 0.5 + 1000 * over)
+
+    def test_a_block_of_the_ground_shows_what_bears(self):
+        """Its face upwards, and the side at which a body rests; not its other sides."""
+        corners = [0j, 4 + 0j, 4 - 2j, -2j, 0j]
+        beside = np.array([4 - 1j, 5 - 1j, 5 - 3j, 4 - 3j])
+        assert [line.tolist() for line in _faces(np.array(corners), [beside + 1])] == [[0j, 4 + 0j]]
+        assert [line.tolist() for line in _faces(np.array(corners), [beside])] == [[0j, 4 + 0j, 4 - 2j]]
+        assert all((np.diff(line).real > 0).all() for line in picture(loaded(EXAMPLES / "masonry/portal.yaml")).ground)
 
     def test_a_body_given_by_numbers_is_a_dashed_disc(self):
         figure = draw_structure(picture(RigidBody(R=1.5, alpha_deg=14.0, inertia_ratio=4 / 3)), "numbers")

@@ -6,13 +6,14 @@ from math import pi
 
 import numpy as np
 import pytest
+from matplotlib.collections import PolyCollection
 from PIL import Image
 
 from mechanisms.block import Block
 from mechanisms.symmetric_frame import SymmetricFrame
 from rocking_cli.core import Direction
 from rocking_cli.excitation.pulses import parse_pulse
-from rocking_cli.plotting import hung, style
+from rocking_cli.plotting import dimensions, hung, style
 from rocking_cli.plotting.moving import moving, ratio_chart
 from rocking_cli.plotting.structure import NO_CRITICAL_TEXT, draw_structure
 from rocking_cli.questions.respond.picture import draw_history
@@ -86,6 +87,30 @@ class TestPicture:
         turned = [0.3 + np.exp(-0.05j) * (z - 0.3) for z in (0.2 + 5j, 0.3 + 4j, -0.3 + 7.5j)]
         np.testing.assert_allclose([*loads, piece[1]], turned)
         assert piece[0] == -6 + 7.5j and slack == [False]
+
+    @pytest.mark.parametrize(
+        ("of", "kind"),
+        [
+            ({"stiffness": 1e5}, "spring"),
+            ({"area": 4e-4, "modulus": 2e11}, "line"),
+            ({"area": 4e-6, "steel": "S235"}, "line"),
+            ({"stiffness": 0, "prestress": 1e2}, "line"),
+        ],
+    )
+    def test_a_bar_is_a_line_and_a_stiffness_alone_a_spring(self, of, kind):
+        long, short = (
+            {key: value for key, value in each.items() if key not in ("stiffness", "prestress")} | of
+            for each in (BAR, TENDON | {"length": 5.0} if "modulus" in of else TENDON)
+        )
+        shown = picture(Block(**FACADE, ties=[long, short]))
+        assert [tie.pieces[0].kind for tie in shown.ties] == [kind, {"spring": "symbol"}.get(kind, kind)]
+        lines = [line.size for line, _, _ in hung.symbols(shown, 0.0, 1.0).lines]
+        assert (min(lines) > 2) is (kind == "spring") and (max(lines) > 2) is (kind == "spring")
+
+    def test_heights_that_a_length_shows_already_are_not_measured_again(self):
+        roof = FLOOR | {"name": "roof", "at": [0, 8]}
+        shown = picture(Block(**FACADE, loads=[FLOOR, THRUST, roof], ties=[BAR, TENDON]))
+        assert [each.text for each in dimensions.heights(shown, shown.sketch.lengths)] == ["4 m", "5 m", "7.5 m"]
 
     def test_a_tie_that_pulls_only_is_slack_the_other_way(self):
         shown = picture(Block(**FACADE, ties=[BAR]))
@@ -169,7 +194,11 @@ class TestDraw:
     def test_names_are_written_and_one_direction_is_shown(self):
         figure = draw_structure(picture(Block(**FACADE, one_sided="positive", rebound=0.5, loads=[FLOOR, THRUST],
                                               ties=[BAR])), "facade")  # fmt: skip
-        assert {"floor, 2 t", "thrust, 5 kN", "bar"} <= set(texts(figure))
+        assert {"floor, 2 t", "thrust, 5 kN", "bar", "4 m", "5 m", "7.5 m"} <= set(texts(figure))
+        for axes in figure.axes:  # a centroid is in front of a weight at the same place
+            (weights,) = (each for each in axes.collections if isinstance(each, PolyCollection))
+            (centroids,) = (line for line in axes.lines if line.get_fillstyle() == "top")
+            assert centroids.get_zorder() > weights.get_zorder() and len(weights.get_paths()) == 1
         assert [axes.get_title().split()[0] for axes in figure.axes] == ["at", "positive"]
         lines = [line for axes in figure.axes for line in axes.lines if line.get_color() == style.TIE["color"]]
         assert [line.get_linestyle() for line in lines] == ["-", "-"]

@@ -24,7 +24,7 @@ from rocking_cli.plotting import dimensions, hung, style
 from rocking_cli.plotting.labels import MARK_COST, Labels
 from rocking_cli.plotting.panels import PANEL_GAP, Page, Panel, lay_out
 from rocking_cli.plotting.spectra import draw_spectra_of_site
-from rocking_cli.plotting.structure import draw_ground, draw_parts, labels_of, weight
+from rocking_cli.plotting.structure import LINE_HEIGHT, draw_ground, draw_parts, labels_of, weight
 from rocking_cli.studies.picture import Picture, box_around, picture
 from rocking_cli.verification.demand import SiteDemand, StateDemand
 from rocking_cli.verification.spectra import spectra_at_states
@@ -32,7 +32,7 @@ from rocking_cli.views.sheet.language import Language
 
 MAX_WEIGHTS = 6  # of more masses, the blocks are drawn with the sums of their weights
 ARROW_LENGTH = 0.45  # inches
-TITLE_HEIGHT, FOOT_HEIGHT = 0.34, 0.12  # inches above and below the drawing of a chain
+FOOT_HEIGHT = 0.12  # inches below the drawing of a chain
 CENTRE_SHARE = 1.0  # share of the size of a structure within which a centre of rotation is drawn
 SHORTEST_PERIOD, PERIODS_PER_SPECTRUM = 0.02, 400  # s, and number
 TALLEST_SHARE = 3.0  # of the largest acceleration of a capacity curve, above which a spectrum is cut off
@@ -79,8 +79,18 @@ def draw_chain(say: Language, side: ItalianVerified) -> Figure:
     weights = [each if each.centre in centres else each._replace(centre=None) for each in weights]
     rows, _ = dimensions.in_rows(_arms(weights, low, high), low, high)
     around = np.maximum(dimensions.room(rows, low, high), hung.margins(drawing)).tolist()
-    panel = Panel(low, high, (around[0] + 1.2, around[1] + 1.2, max(around[2], ARROW_LENGTH), around[3] + 0.1))
-    height = lay_out([panel], panel, TITLE_HEIGHT, FOOT_HEIGHT)
+    title = say("{name}: weights, forces and arms at rest, {way} direction", name=side.chain.mechanism.name,
+                way=say(side.direction.label))  # fmt: skip
+    held = _of_held(say, drawing, position, Scale.of(side.chain))
+    room = style.page_width() - 2 * PANEL_GAP
+    every = (*_of_weights(say, weights, Scale.of(side.chain)), *held.values())
+    below = "\n".join(style.folded(each, room, style.TICK, "  ") for each in every)
+    beside = hung.NAME_MARGIN
+    panel = Panel(low, high, (around[0] + beside, around[1] + beside, max(around[2], ARROW_LENGTH), around[3] + 0.1))
+    title = style.in_lines(title, room)
+    panel.head = LINE_HEIGHT * (1 + title.count("\n")) + 0.18
+    panel.foot = FOOT_HEIGHT + LINE_HEIGHT * len(below.splitlines())
+    height = lay_out([panel], panel)
     page = Page.new(height, 1)
     axes = panel.axes(page)
     draw_ground(axes, drawing, panel)
@@ -88,14 +98,11 @@ def draw_chain(say: Language, side: ItalianVerified) -> Figure:
     draw_parts(axes, drawing, 0.0, weight(drawing, panel.scale))
     hung.draw_hung(axes, drawing, 0.0, panel, labels)
     dimensions.draw_outside(axes, rows, panel, low, high, labels)
-    _draw_weights(say, axes, weights, panel, labels, Scale.of(side.chain))
-    _name_held(say, drawing, position, panel, labels, Scale.of(side.chain))
-    title = say("{name}: weights, forces and arms at rest, {way} direction", name=side.chain.mechanism.name,
-                way=say(side.direction.label))  # fmt: skip
-    page.figure.text(
-        PANEL_GAP / style.page_width(), 1 - 0.09 / height, style.fitted(title), va="top", fontsize=style.TITLE,
-        color=style.INK, parse_math=False,
-    )  # fmt: skip
+    _draw_weights(axes, weights, panel, labels)
+    _name_held(drawing, {name: _name(say, name) for name in held}, panel, labels)
+    for text, y, size in ((title, height - 0.09, style.TITLE), (below, panel.foot, style.TICK)):
+        said = text.replace(r"\$", "$")
+        page.text(complex(PANEL_GAP, y), said, va="top", fontsize=size, color=style.INK, parse_math=False)
     return in_language(say, page.figure)
 
 
@@ -131,10 +138,19 @@ def _arms(weights: Sequence[DrawnWeight], low: complex, high: complex) -> list[L
     ]  # fmt: skip
 
 
-def _draw_weights(
-    say: Language, axes: Axes, weights: Sequence[DrawnWeight], panel: Panel, labels: Labels, scale: Scale
-) -> None:
-    """Draw an arrow for each weight, with its number, name and size, and the centres of rotation."""
+def _of_weights(say: Language, weights: Sequence[DrawnWeight], scale: Scale) -> list[str]:
+    """Return number, name and size of each weight, which stand below the drawing."""
+    texts = []
+    for k, each in enumerate(weights, 1):
+        P, PQ = (say.number(scale.weight(value), FORCE_DIGITS) for value in (each.P, each.PQ))
+        moved = "" if P == PQ else f", P + Q = {PQ} {scale.unit}"
+        name = style.fitted(each.name, hung.MAX_NAME_WIDTH, style.TICK)
+        texts.append(style.plain(f"{k} {name}: P = {P} {scale.unit}{moved}"))
+    return texts
+
+
+def _draw_weights(axes: Axes, weights: Sequence[DrawnWeight], panel: Panel, labels: Labels) -> None:
+    """Draw an arrow for each weight, with its number, and the centres of rotation."""
     numbers = {each.centre: each.block for each in weights if each.centre is not None}
     for centre, number in numbers.items():
         symbol = f"O{number}" if len(numbers) > 1 else "O"
@@ -142,43 +158,46 @@ def _draw_weights(
         labels.keep_off([centre], MARK_COST)
         around = labels.around(centre, -1 - 1j, 0.05, style.size_of(symbol, style.LABEL))
         labels.write(symbol, around, fontsize=style.LABEL, color=style.CURSOR, zorder=7)
-    for k, each in enumerate(weights, 1):
-        tip = each.at - 1j * ARROW_LENGTH / panel.scale
+    tips = [each.at - 1j * ARROW_LENGTH / panel.scale for each in weights]
+    for each, tip in zip(weights, tips, strict=True):
         look = {"arrowstyle": "-|>,head_width=0.2,head_length=0.45", "color": style.INK, "linewidth": style.BOLD}
         axes.annotate("", (tip.real, tip.imag), (each.at.real, each.at.imag), annotation_clip=False, zorder=6,
                       arrowprops={**look, "shrinkA": 0, "shrinkB": 0})  # fmt: skip
         labels.keep_off([each.at, tip], MARK_COST)
-        P, PQ = (say.number(scale.weight(value), FORCE_DIGITS) for value in (each.P, each.PQ))
-        moved = "" if P == PQ else f", P + Q = {PQ} {scale.unit}"
-        text = style.plain(
-            f"{k} {style.fitted(each.name, hung.MAX_NAME_WIDTH, style.TICK)}: P = {P} {scale.unit}{moved}"
-        )
-        size = style.size_of(text, style.TICK)
-        labels.write(text, labels.around(tip, 1 + 0.2j, 0.06, size, turning=0.6), fontsize=style.TICK, zorder=8,
-                     color=style.INK)  # fmt: skip
+    for k, tip in enumerate(tips, 1):
+        spots = labels.around(tip, 1 + 0.2j, 0.06, style.size_of(str(k), style.LABEL), turning=0.6)
+        labels.write(str(k), spots, fontsize=style.LABEL, color=style.INK, zorder=8)
 
 
-def _name_held(
-    say: Language, drawing: Picture, position: DisplacedChain, panel: Panel, labels: Labels, scale: Scale
-) -> None:
-    """Write force and arm beside each tie, and beside the point of each force."""
+def _name(say: Language, name: str) -> str:
+    return style.plain(style.fitted(named(say, name), hung.MAX_NAME_WIDTH, style.TICK))
+
+
+def _of_held(say: Language, drawing: Picture, position: DisplacedChain, scale: Scale) -> dict[str, str]:
+    """Return name, force and arm of each tie and of each force, by its name; they stand below the drawing."""
     works = {each.name: each for each in position.held}
-    places, ties, _ = drawing.hung(0.0, hung.SYMBOL_OFFSET / panel.scale)
-    at = {each.name: (place, place) for each, place in zip(drawing.loads, places.tolist(), strict=True) if each.force}
-    for tie, pieces in zip(drawing.ties, ties, strict=True):
-        at[tie.name] = max(pieces, key=lambda ends: abs(ends[1] - ends[0]))
-    for name, ends in at.items():
+    texts: dict[str, str] = {}
+    for name in [each.name for each in drawing.loads if each.force] + [each.name for each in drawing.ties]:
         of = [works[key] for key in (name, f"{name}, x", f"{name}, y") if key in works]
         sizes = [
             f"{say.number(scale.weight(each.force), FORCE_DIGITS)} {scale.unit} "
             f"({say('arm')} {say.number(scale.near(abs(each.rate)), 3)} m)"
             for each in of
         ]
-        if not sizes:
-            continue
-        text = style.plain(f"{style.fitted(named(say, name), hung.MAX_NAME_WIDTH, style.TICK)}: {'; '.join(sizes)}")
+        if sizes:
+            texts[name] = f"{_name(say, name)}: {style.plain('; '.join(sizes))}"
+    return texts
+
+
+def _name_held(drawing: Picture, texts: Mapping[str, str], panel: Panel, labels: Labels) -> None:
+    """Write a name beside each tie, and beside the point of each force."""
+    places, ties, _ = drawing.hung(0.0, hung.SYMBOL_OFFSET / panel.scale)
+    at = {each.name: (place, place) for each, place in zip(drawing.loads, places.tolist(), strict=True) if each.force}
+    for tie, pieces in zip(drawing.ties, ties, strict=True):
+        at[tie.name] = max(pieces, key=lambda ends: abs(ends[1] - ends[0]))
+    for name, text in texts.items():
         size = style.size_of(text, style.TICK)
-        start, end = ends
+        start, end = at[name]
         spots = labels.around(start, 1j, 0.1, size, turning=0.6) if start == end else labels.along(start, end, size)
         labels.write(text, spots, fontsize=style.TICK, color=style.TIE["color"], zorder=8)
 
