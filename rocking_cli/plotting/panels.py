@@ -153,10 +153,10 @@ def lay_out(panels: Sequence[Panel], middle: Panel, head: float, foot: float) ->
     """
     together, apart = _largest(panels), _largest([middle])
     if apart < MIN_STACKING_GAIN * together:
-        return _row(panels, together, foot) + head
+        return row(panels, together, foot) + head
     others = [each for each in panels if each is not middle]
-    low = _row(others, _largest(others), foot) + head
-    return _row([middle], apart, low + foot) + head
+    low = row(others, _largest(others), foot) + head
+    return row([middle], apart, low + foot) + head
 
 
 def _largest(panels: Sequence[Panel]) -> float:
@@ -168,7 +168,7 @@ def _largest(panels: Sequence[Panel]) -> float:
     )
 
 
-def _row(panels: Sequence[Panel], scale: float, base: float) -> float:
+def row(panels: Sequence[Panel], scale: float, base: float) -> float:
     """Place panels at one scale side by side above `base`, with their levels y = 0 in line; return the top [inches]."""
     for each in panels:
         each.scale = scale
