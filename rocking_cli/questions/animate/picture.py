@@ -121,7 +121,8 @@ class _Actor:
         self.film = film
         self._scene, self._picture = scene, film.picture.grouped
         low, high = scene.box(film)
-        around = np.maximum((0.15, 0.15, 0.16, 0.15), hung.margins(film.picture)).tolist()
+        side = 0.15 if len(scene.films) == 1 else 0.4  # a slender structure needs room for its name
+        around = np.maximum((side, side, 0.16, 0.15), hung.margins(film.picture)).tolist()
         self.panel = Panel(low, high, tuple(around))
 
     def draw_still(self, page: Page, name: str, look: dict[str, Any]) -> None:
@@ -247,7 +248,7 @@ class _Stage:
         self._scene, self._times = scene, (start, end)
         self._actors = [_Actor(scene, film) for film in scene.films]
         width, several = style.page_width(), len(scene.films) > 1
-        below = 2 * TRACE_HEIGHT + 3 * PANEL_GAP + FOOT_HEIGHT + 0.3
+        below = 2 * TRACE_HEIGHT + 3 * PANEL_GAP + FOOT_HEIGHT + (0.1 if several else 0.3)
         top = _arranged([each.panel for each in self._actors], below, NAME_HEIGHT if several else 0.0)
         words = style.folded(scale_in_words(scene), width - 2 * PANEL_GAP, style.LABEL)
         # The title, the words on the scale, the readings, and how the motion of the only structure ends.

@@ -204,7 +204,7 @@ def animate(
         given, *others = motions.gather(fastest.growth, watch, fastest.name)
         if others:
             what = f"several structures are animated under one motion, and {1 + len(others)} are given"
-            raise InputError(Problem(what, field="`motion`"))
+            raise InputError(Problem(what, field="`motion`", hint="give one, or call this once for each motion"))
         made, refused = dict[str, Animation](), list[RockingError]()
         for ready in usable:
             try:
