@@ -325,7 +325,7 @@ function motionView(root, {start, end, step, enlargement, ground, scale, drawn: 
   const whole = () => look(start, last - start);
   function build() {
     width = Math.max(280, root.clientWidth || 700);
-    const tallest = Math.max(240, Math.min(0.5 * width, 420)), wide = actors.map(({figure}) => figure.clientWidth || width);
+    const tallest = Math.max(240, Math.min(0.5 * width, 420)), wide = actors.map(({figure}) => figure.getBoundingClientRect().width || width);
     const scale = Math.min(...actors.map(({stage}, k) => stage.fits(wide[k], tallest)));  // the same for all
     actors.forEach(({stage}, k) => stage.build(wide[k], scale));
     look(view[0], view[1] - view[0]);

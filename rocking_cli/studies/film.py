@@ -66,8 +66,10 @@ class Film:
     @property
     def end(self) -> float:
         """Time at which the animation ends [s]."""
-        last = min(self.stops, float(self.history.time[-1]))
-        return min(last, self.history.end_time + SECONDS_AFTER if self.uplifts else self.motion.duration)
+        last = float(self.history.time[self._moving - 1])
+        if self.stops < inf or not self.uplifts:
+            return last
+        return min(last, self.history.end_time + SECONDS_AFTER)
 
     @property
     def start(self) -> float:

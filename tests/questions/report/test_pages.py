@@ -85,6 +85,15 @@ def animation(folder, browser):
 
 
 @pytest.fixture(scope="module")
+def beside(folder, browser):
+    """Two structures that rock and one whose outcome becomes unknown, under one motion."""
+    path = folder / "beside.html"
+    files = (EXAMPLES / "arch.yaml", FRAME, EXAMPLES / "block.yaml")
+    run("animate", *files, "--pulse", "sine:0.6g:0.5s", "--opening", "0.3%", "--neighbours", 0, "--out", path)
+    return path
+
+
+@pytest.fixture(scope="module")
 def film():
     """What the pages must show: the motion as given governs here."""
     mechanism, motion = load_structure(FRAME), read_record(ACCEL)
@@ -308,7 +317,24 @@ def test_the_animation_plays_at_once_unless_asked_for_calm(browser, animation):
         assert page.get_by_role("button", name="Play").count() == 1
 
 
-@pytest.mark.parametrize("what", ["report", "animation"])
+def test_what_is_unknown_stands_still_beside_what_is_not(browser, beside):
+    moved = "all => all.map(each => [...each.querySelectorAll('.world, .part')].map(g => g.getAttribute('transform')))"
+    with opened(browser, beside) as page:
+        data = json.loads(page.locator("#data").text_content())
+        stops = [stage["stops"] for stage in data["stages"]]
+        assert 0 < stops[0] < 1 and stops[1:] == [None, None]
+        places, slider = [], page.locator(".motion input")
+        for time in (stops[0], stops[0] + 0.2, 2.0):
+            slider.evaluate(SET, time)
+            places.append(page.locator(".actor").evaluate_all(moved))
+        one, *later = ([each[k] for each in places] for k in range(3))
+        assert one[0] == one[1] == one[2] and all(each[1] != each[2] for each in later)
+        assert page.locator(".stopped").count() == 1 == page.locator(".fate", has_text="unknown after").count()
+        scales = page.locator(".plane").evaluate_all("all => all.map(each => each.getScreenCTM().a)")
+        assert scales == pytest.approx([scales[0]] * 3)
+
+
+@pytest.mark.parametrize("what", ["report", "animation", "beside"])
 @pytest.mark.parametrize(("scheme", "width"), [("light", 1000), ("dark", 360)])
 def test_text_is_legible_and_nothing_sticks_out(what, scheme, width, browser, request):
     look = {"color_scheme": scheme, "viewport": {"width": width, "height": 800}}
@@ -323,7 +349,7 @@ def test_text_is_legible_and_nothing_sticks_out(what, scheme, width, browser, re
         )
 
 
-@pytest.mark.parametrize(("what", "scheme"), [("report", "dark"), ("animation", "light")])
+@pytest.mark.parametrize(("what", "scheme"), [("report", "dark"), ("animation", "light"), ("beside", "dark")])
 def test_axe_finds_nothing(what, scheme, browser, request):
     axe = pytest.importorskip("axe_playwright_python.sync_playwright")
     with opened(browser, request.getfixturevalue(what), color_scheme=scheme) as page:
