@@ -131,7 +131,7 @@ def ratio_chart(histories: Mapping[ModelName, History], bins: int = BINS_ACROSS)
 
 def ratio_charts(films: Sequence[Film], bins: int = BINS_ACROSS) -> dict[str, Any]:
     """Return a chart like `ratio_chart` with a curve for each of several structures, as far as its outcome is known."""
-    return _ratio_chart([(name_of(each), f"curve-{k}", each.history, each.stops) for k, each in enumerate(films)], bins)
+    return _ratio_chart([(name_of(each), f"curve-{k}", each.history, inf) for k, each in enumerate(films)], bins)
 
 
 def _ratio_chart(curves: Sequence[tuple[str, str, History, float]], bins: int) -> dict[str, Any]:

@@ -99,7 +99,7 @@ class TestFilm:
 
 
 class TestScale:
-    @pytest.mark.parametrize("amplitude", [0.3, 0.32, 0.28, 0.27, 0.255])
+    @pytest.mark.parametrize("amplitude", [0.3, 0.304, 0.28, 0.27, 0.255])
     def test_rotations_below_two_degrees_are_enlarged_by_a_round_number(self, amplitude):
         shown = film(amplitude)
         scene = Scene((shown,))
@@ -124,7 +124,7 @@ class TestScale:
         np.testing.assert_allclose(shown.ratio(shown.rotation(time)), shown.history.ratio)
 
     def test_both_kinds_are_tried_above(self):
-        assert peak(film(0.3)) < 2 < peak(film(0.32))
+        assert peak(film(0.3)) < 2 < peak(film(0.304)) < 2.5  # which a factor of 2 would not take past 5
 
     def test_a_slender_structure_is_not_made_to_overturn(self):
         column = film(0.04, structure=Block(width=0.1, height=3.0))

@@ -331,7 +331,7 @@ def test_what_is_unknown_stands_still_beside_what_is_not(browser, beside):
         assert one[0] == one[1] == one[2] and all(each[1] != each[2] for each in later)
         assert page.locator(".stopped").count() == 1 == page.locator(".fate", has_text="unknown after").count()
         scales = page.locator(".plane").evaluate_all("all => all.map(each => each.getScreenCTM().a)")
-        assert scales == pytest.approx([scales[0]] * 3)
+        assert scales == pytest.approx([scales[0]] * 3, rel=1e-4)
 
 
 @pytest.mark.parametrize("what", ["report", "animation", "beside"])
