@@ -1,5 +1,5 @@
 "use strict";
-// A structure that moves, with a slider and charts over time: shared by the page of `rocking animate` and the report.
+// Structures that move, with a slider and charts over time: shared by the page of `rocking animate` and the report.
 
 function element(parent, tag, attributes, text) {
   const node = document.createElement(tag);
@@ -36,9 +36,11 @@ function roundStep(rough) {
   return [1, 2, 5, 10].map(k => k * unit).find(v => v >= rough * (1 - 1e-9));
 }
 
-// The structure to scale. Returns a function that redraws it at a width, and one that moves it to a signed rotation [rad].
-function structureStage(svg, picture, colours, low, high) {
-  let moving = [], pins = [], moveHung;
+// A structure on its ground. Returns a function for the largest scale [pixels per m] at which it fits, one that redraws it
+// at a scale, and one that moves it to a signed rotation [rad], drawn larger than it is, on ground that has moved [m].
+function structureStage(svg, {picture, shades, middle, box: [low, high]}, enlargement, words) {
+  const SIDE = picture.loads.some(load => load.force) ? 52 : 26, TOP = SIDE, BELOW = 18, LINE = 18;
+  let moving = [], pins = [], world, moveHung, scale;
   const first = Object.keys(picture.reference)[0];  // of the directions that it can rock in
   const sideOf = r => r === 0 ? first : r < 0 ? "negative" : "positive";
   const ratioOf = r => r / picture.reference[sideOf(r)];
@@ -50,13 +52,13 @@ function structureStage(svg, picture, colours, low, high) {
     const at = values => values[k] + w * (values[k + 1] - values[k]);
     return {x: at(part.x), y: at(part.y), psi: at(part.psi)};
   }
-  function hatch(start, end) {
+  function hatch(parent, start, end) {
     const [dx, dy] = [end[0] - start[0], end[1] - start[1]], size = Math.hypot(dx, dy), count = Math.floor(size / 9);
     const along = [dx / size, dy / size], c = Math.cos(2.4), s = Math.sin(2.4);
     const tick = [9 * (along[0] * c - along[1] * s), 9 * (along[0] * s + along[1] * c)];
     for (let k = 0; k < count; k++) {
       const w = (k + .5) / count, x = start[0] + w * dx, y = start[1] + w * dy;
-      shape(svg, "line", {class: "earth", style: "stroke-width:1px", x1: x, y1: y, x2: x + tick[0], y2: y + tick[1]});
+      shape(parent, "line", {class: "earth", style: "stroke-width:1px", x1: x, y1: y, x2: x + tick[0], y2: y + tick[1]});
     }
   }
   // Loads and ties, drawn into one group behind the bodies and one before them; returns what moves them.
@@ -116,47 +118,61 @@ function structureStage(svg, picture, colours, low, high) {
     }
     return (places, k, side) => { for (const step of steps) step(places, k, side); };
   }
-  function build(width, tallest) {
+  const fits = (width, tallest) => Math.min((width - 2 * SIDE) / (high[0] - low[0]), tallest / (high[1] - low[1]));
+  function build(width, newScale) {
     svg.replaceChildren();
-    const margin = picture.loads.some(load => load.force) ? 52 : 34, [x0, y0] = low, [x1, y1] = high;
-    const scale = Math.min((width - 2 * margin) / (x1 - x0), tallest / (y1 - y0));
-    const height = (y1 - y0) * scale + 2 * margin;
-    const left = (width - (x1 - x0) * scale) / 2;
-    const X = x => left + (x - x0) * scale, Y = y => margin + (y1 - y) * scale;
+    scale = newScale;
+    const foot = TOP + (high[1] - low[1]) * scale + BELOW, left = (width - (high[0] - low[0]) * scale) / 2;
+    const X = x => left + (x - low[0]) * scale, Y = y => TOP + (high[1] - y) * scale;
+    // The lines of the foot: the bar of the scale, and beside it or below it how much displacements are enlarged.
+    const bar = roundStep(0.12 * width / scale), lines = [];
+    for (const word of words.split(" ").filter(Boolean)) {
+      const longer = lines.length ? `${lines.at(-1)} ${word}` : word;
+      if (lines.length && longer.length * 7 > width - 24) lines.push(word); else lines.splice(-1, 1, longer);
+    }
+    const beside = bar * scale + 70 + words.length * 7 < width;
+    const height = foot + LINE * (1 + (beside ? 0 : lines.length)) + 6;
     svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    shape(svg, "line", {class: "plumb", x1: X(middle), x2: X(middle), y1: 6, y2: foot});  // it stands still
+    world = shape(svg, "g", {class: "world"});
     for (const line of [...picture.ground, ...picture.walls]) {
       const points = line.map(p => [X(p[0]), Y(p[1])]);
-      shape(svg, "path", {class: "earth", d: "M" + points.map(p => p.join(",")).join("L")});
-      for (let k = 1; k < points.length; k++) hatch(points[k - 1], points[k]);
+      shape(world, "path", {class: "earth", d: "M" + points.map(p => p.join(",")).join("L")});
+      for (let k = 1; k < points.length; k++) hatch(world, points[k - 1], points[k]);
     }
-    const behind = shape(svg, "g", {});
-    const plane = shape(svg, "g", {class: "plane", transform: `translate(${X(0)},${Y(0)}) scale(${scale},${-scale})`});
+    const behind = shape(world, "g", {});
+    const plane = shape(world, "g", {class: "plane", transform: `translate(${X(0)},${Y(0)}) scale(${scale},${-scale})`});
     for (const part of picture.parts) {
       const at = placed(part, 0);
       for (const each of part.outlines)
         shape(plane, "path", {class: "rest", d: outline(each), transform: `translate(${at.x},${at.y})`});
     }
-    moving = picture.parts.map((part, k) => {
-      const group = shape(plane, "g", {class: "part"});
+    moving = picture.parts.map(part => {
+      const group = shape(plane, "g", {});
       for (const each of part.outlines)
         shape(group, "path", {class: part.assumed ? "body assumed" : "body", d: outline(each)});
       shape(group, "circle", {class: "centroid", r: 3 / scale});
       return group;
     });
-    moveHung = hang(behind, shape(svg, "g", {}), X, Y, width);
+    moveHung = hang(behind, shape(world, "g", {}), X, Y, width);
     pins = picture.pins.map(pin => ({
-      pin, X, Y, mark: shape(svg, "circle", {class: "pin", r: 4}), letter: shape(svg, "text", {class: "letter"}, pin.letter),
+      pin, X, Y, mark: shape(world, "circle", {class: "pin", r: 4}), letter: shape(world, "text", {class: "letter"}, pin.letter),
     }));
-    const bar = roundStep(0.12 * width / scale);
-    shape(svg, "line", {x1: 12, x2: 12 + bar * scale, y1: height - 9, y2: height - 9, stroke: "currentColor", "stroke-width": 3});
-    shape(svg, "text", {x: 18 + bar * scale, y: height - 5}, `${Number(bar.toPrecision(3))} m`);
+    const level = foot + LINE;
+    shape(svg, "line", {x1: 12, x2: 12 + bar * scale, y1: level - 4, y2: level - 4, stroke: "currentColor", "stroke-width": 3});
+    shape(svg, "text", {x: 18 + bar * scale, y: level}, `${Number(bar.toPrecision(3))} m`);
+    if (beside) shape(svg, "text", {x: width - 12, y: level, "text-anchor": "end"}, words);
+    else lines.forEach((line, k) => shape(svg, "text", {x: 12, y: level + LINE * (k + 1)}, line));
   }
-  function show(rotation) {
-    const side = sideOf(rotation), places = picture.parts.map(part => placed(part, rotation));
-    moveHung(places, nearest(picture.rotation, rotation), side);
+  function show(rotation, shift) {
+    const side = sideOf(rotation), places = picture.parts.map(part => placed(part, enlargement * rotation));
+    world.setAttribute("transform", `translate(${shift * scale},0)`);
+    // Ties are slack as at the rotation itself; the nodes of the table are far apart, and rest is none of them.
+    const at = nearest(picture.rotation, rotation), still = picture.rotation.indexOf(0);
+    moveHung(places, at === still ? clamp(at + Math.sign(rotation), 0, picture.rotation.length - 1) : at, side);
     moving.forEach((group, k) => {
       group.setAttribute("transform", `translate(${places[k].x},${places[k].y}) rotate(${places[k].psi * 180 / Math.PI})`);
-      group.setAttribute("fill", colours[side][k]); // of its link in this direction
+      group.setAttribute("class", `part shade-${shades[side][k] ?? "rest"}`); // of its link in this direction
     });
     for (const {pin, X, Y, mark, letter} of pins) {
       const seen = rotation !== 0 && pin.direction === side;
@@ -168,7 +184,13 @@ function structureStage(svg, picture, colours, low, high) {
       letter.setAttribute("x", x + 7); letter.setAttribute("y", y - 7);
     }
   }
-  return {build, show, ratioOf};
+  return {fits, build, show, ratioOf};
+}
+
+// The look of a curve beside its name.
+function swatch(parent, look) {
+  const drawn = shape(parent, "svg", {"aria-hidden": "true", class: "swatch", viewBox: "0 0 34 10"});
+  shape(drawn, "line", {class: `trace ${look}`, x1: 1, x2: 33, y1: 5, y2: 5});
 }
 
 // One chart over time: curves, a cursor, and a legend that reads the values under it.
@@ -178,8 +200,7 @@ function timeChart(root, {label, tall, levels, series}) {
   element(legend, "span", {class: "heading"}, label);
   const values = series.map(({name, look}) => {
     const entry = element(legend, "span", {});
-    const swatch = shape(entry, "svg", {"aria-hidden": "true", viewBox: "0 0 34 10"});
-    shape(swatch, "line", {class: `trace ${look}`, x1: 1, x2: 33, y1: 5, y2: 5});
+    swatch(entry, look);
     element(entry, "span", {}, ` ${name} `);
     return element(entry, "span", {class: "value"});
   });
@@ -245,58 +266,76 @@ function timeChart(root, {label, tall, levels, series}) {
 }
 
 // The whole view in `root`. `moment` is the time shown first [s]; `listener` receives the keys.
-function motionView(root, {picture, colours, film, charts, ratio, label, speed, moment}, listener) {
-  const svg = shape(root, "svg", {role: "img", "aria-label": label, class: "stage"});
-  const stage = structureStage(svg, picture, colours, film.low, film.high);
+function motionView(root, {start, end, step, enlargement, ground, scale, drawn: words, stages, charts, speed, moment}, listener) {
+  const alone = stages.length === 1;
+  const scenes = element(root, "div", {class: alone ? "stages" : "stages several"});
+  const actors = stages.map((given, k) => {
+    const figure = element(scenes, "div", {class: "actor", style: `flex-grow: ${given.box[1][0] - given.box[0][0]}`});
+    if (!alone) swatch(element(figure, "p", {class: "name"}, `${given.name} `), `curve-${k}`);
+    const svg = shape(figure, "svg", {role: "img", "aria-label": `${given.label}. ${scale}`, class: "stage"});
+    const stage = structureStage(svg, given, enlargement, alone ? scale : enlargement === 1 ? "" : `enlarged ${enlargement} times`);
+    const read = alone ? null : element(figure, "output", {class: "now", "aria-live": "off"});
+    if (!alone) element(figure, "p", {class: "fate"}, given.fate);
+    // Small rotations, as all are over a limit, need more digits.
+    const small = enlargement > 1 || Object.values(given.picture.phi_cr).includes(null);
+    return {...given, figure, stage, read, digits: small ? 5 : 2};
+  });
+  element(root, "p", {class: "drawn"}, alone ? words : `${scale} ${words}`);
   const controls = element(root, "div", {class: "controls"});
   const play = element(controls, "button", {type: "button", class: "play"}, "Play");
-  const slider = element(controls, "input", {type: "range", min: 0, max: film.end, step: "any", "aria-label": "time in seconds"});
+  const slider = element(controls, "input", {type: "range", min: start, max: end, step: "any", "aria-label": "time in seconds"});
   const rate = element(element(controls, "label", {}, "speed "), "select", {});
   for (const each of [...new Set([0.1, 0.25, 0.5, 1, 2, 4, speed])].sort((a, b) => a - b))
     rate.add(new Option(`${Number(each.toPrecision(3))} ×`, each, false, each === speed));
   const read = element(root, "output", {class: "now", "aria-live": "off"});
-  if (film.ending) element(root, "p", {class: "ending"}, film.ending);
+  if (alone && stages[0].ending) element(root, "p", {class: "ending"}, stages[0].ending);
   const drawn = charts.map(each => timeChart(root, each));
   const zooms = element(root, "div", {class: "controls"});
   const button = (text, act) => element(zooms, "button", {type: "button"}, text).addEventListener("click", act);
   element(root, "p", {class: "hint"}, "Point at a chart to see the values and the structure at that moment. Drag across it, " +
     "pinch it, or click it and turn the wheel, to zoom. Keys: space plays, arrows move, + and − zoom, 0 shows all.");
-  const end = Math.max(film.end, 1e-3), FINEST = 0.05;
-  const digits = Object.values(picture.phi_cr).includes(null) ? 5 : 2;  // over a limit all rotations are small
-  let now = moment, view = [0, end], running = false, before = 0, frame = 0, width = 0;
+  const last = Math.max(end, start + 1e-3), FINEST = 0.05;
+  let now = clamp(moment, start, end), view = [start, last], running = false, before = 0, frame = 0, width = 0;
 
-  function rotationAt(time) {
-    const k = clamp(time / film.step, 0, film.rotation.length - 1), low = Math.floor(k);
-    const high = Math.min(low + 1, film.rotation.length - 1);
-    return film.rotation[low] + (k - low) * (film.rotation[high] - film.rotation[low]);
+  function valueAt(values, time) {
+    const k = clamp((time - start) / step, 0, values.length - 1), low = Math.floor(k), high = Math.min(low + 1, values.length - 1);
+    return values[low] + (k - low) * (values[high] - values[low]);
   }
   function show() {
-    const rotation = rotationAt(now);
-    stage.show(rotation);
+    const said = `t = ${now.toFixed(2)} s`;
+    for (const {stage, rotation, stops, ratio, digits, figure, read: own} of actors) {
+      const until = Math.min(now, stops ?? now), turn = valueAt(rotation, until);  // after that, all of it stands still
+      stage.show(turn, valueAt(ground, until));
+      figure.classList.toggle("stopped", !alone && stops !== null && now > stops);
+      const values = `φ = ${fixed(turn * 180 / Math.PI, digits > 2 ? 3 : 2)}°, ${ratio} = ${fixed(stage.ratioOf(turn), digits)}`;
+      (own ?? read).textContent = alone ? `${said}, ${values}` : values;
+    }
+    if (!alone) read.textContent = said;
     if (now < view[0] || now > view[1]) look(now - (view[1] - view[0]) / 2, view[1] - view[0]);
     for (const chart of drawn) chart.show(now);
     slider.value = now;
     slider.setAttribute("aria-valuetext", `${now.toFixed(2)} seconds`);
-    read.textContent = `t = ${now.toFixed(2)} s, φ = ${fixed(rotation * 180 / Math.PI, digits > 2 ? 3 : 2)}°, ${ratio} = ${fixed(stage.ratioOf(rotation), digits)}`;
   }
   function look(from, span) {
-    const wide = clamp(span, Math.min(FINEST, end), end), start = clamp(from, 0, end - wide);
-    view = [start, start + wide];
+    const wide = clamp(span, Math.min(FINEST, last - start), last - start), low = clamp(from, start, last - wide);
+    view = [low, low + wide];
     for (const chart of drawn) { chart.build(width, view); chart.show(now); }
   }
   const zoom = (factor, at) => look(at - (at - view[0]) * factor, (view[1] - view[0]) * factor);
-  const whole = () => look(0, end);
+  const whole = () => look(start, last - start);
   function build() {
     width = Math.max(280, root.clientWidth || 700);
-    stage.build(width, Math.max(240, Math.min(0.5 * width, 420)));
+    const tallest = Math.max(240, Math.min(0.5 * width, 420)), wide = actors.map(({figure}) => figure.getBoundingClientRect().width || width);
+    const scale = Math.min(...actors.map(({stage}, k) => stage.fits(wide[k], tallest)));  // the same for all
+    actors.forEach(({stage}, k) => stage.build(wide[k], scale));
     look(view[0], view[1] - view[0]);
     show();
   }
   function tick(at) {
-    now = Math.min(film.end, now + (at - before) / 1000 * Number(rate.value));
+    now = Math.min(end, now + (at - before) / 1000 * Number(rate.value));
     before = at;
     show();
-    if (now >= film.end) set(false);
+    if (now >= end) set(false);
     if (running) frame = requestAnimationFrame(tick);
   }
   function set(on) {
@@ -304,11 +343,11 @@ function motionView(root, {picture, colours, film, charts, ratio, label, speed, 
     play.textContent = on ? "Pause" : "Play";
     cancelAnimationFrame(frame);
     if (!on) return;
-    if (now >= film.end) now = film.start;
+    if (now >= end) now = start;
     before = performance.now();
     frame = requestAnimationFrame(tick);
   }
-  function go(time) { set(false); now = clamp(time, 0, film.end); show(); }
+  function go(time) { set(false); now = clamp(time, start, end); show(); }
 
   for (const chart of drawn) {
     const fingers = new Map();
@@ -350,7 +389,7 @@ function motionView(root, {picture, colours, film, charts, ratio, label, speed, 
   play.addEventListener("click", () => set(!running));
   listener.addEventListener("keydown", event => {
     if (event.target === rate || event.ctrlKey || event.metaKey || event.altKey) return;
-    const to = {ArrowLeft: now - 0.1, ArrowRight: now + 0.1, Home: 0, End: film.end}[event.key];
+    const to = {ArrowLeft: now - 0.1, ArrowRight: now + 0.1, Home: start, End: end}[event.key];
     if (to !== undefined) go(to);
     else if (event.key === " " && event.target.tagName !== "BUTTON") set(!running);
     else if (event.key === "+" || event.key === "-") zoom(event.key === "+" ? 0.5 : 2, now);

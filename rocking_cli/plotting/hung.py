@@ -56,9 +56,13 @@ class Symbols(NamedTuple):
     forces: list[tuple[complex, complex]]
 
 
-def symbols(picture: Picture, rotation: float, scale: float) -> Symbols:
-    """Return the symbols of loads and ties at a signed rotation, at a scale in inches per metre."""
-    places, ties, slack = picture.hung(rotation, SYMBOL_OFFSET / scale)
+def symbols(picture: Picture, rotation: float, scale: float, enlargement: float = 1.0) -> Symbols:
+    """Return the symbols of loads and ties at a signed rotation, at a scale in inches per metre.
+
+    They are where they are at a rotation that is enlarged; ties are slack as at the rotation itself.
+    """
+    places, ties, _ = picture.hung(enlargement * rotation, SYMBOL_OFFSET / scale)
+    _, _, slack = picture.hung(rotation, 0.0)
     lines, anchors = [], []
     for tie, ends, loose in zip(picture.ties, ties, slack, strict=True):
         for piece, (start, end) in zip(tie.pieces, ends, strict=True):

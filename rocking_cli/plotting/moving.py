@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
+from math import floor, inf, log10
 from typing import Any
 
 import numpy as np
@@ -17,10 +18,9 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.io.json_text import json_text
 from rocking_cli.plotting import style
-from rocking_cli.plotting.structure import colour
 from rocking_cli.plotting.style import BINS_ACROSS, visible
-from rocking_cli.studies.film import Film
-from rocking_cli.views.animation import verdict_of, why_it_ends
+from rocking_cli.studies.film import Film, Scene
+from rocking_cli.views.animation import drawing_in_words, fate, scale_in_words, why_it_ends
 
 Reals = NDArray[np.float64]
 MAX_SHOWN_RATIO = 1.6  # largest ratio of phi to phi_cr: beyond it, a structure overturns or nearly does
@@ -30,6 +30,10 @@ PULSE_POINTS = 200
 NAMES: Mapping[ModelName, str] = {
     "nonlinear": "nonlinear", "linear1": "linear, κ₁", "linear2": "linear, κ₂"
 }  # fmt: skip
+LEVELS = {
+    (True, True): "kinematic limit", (False, False): "critical rotation", (False, True): "critical rotation or limit"
+}  # fmt: skip
+"""Names of a ratio of 1, by whether in all and in any curves rotations are divided by the kinematic limit."""
 
 
 def asset(name: str) -> str:
@@ -47,9 +51,15 @@ def as_script(data: Mapping[str, Any]) -> str:
 
 
 def moving(
-    film: Film, charts: Sequence[Mapping[str, Any]], *, label: str, speed: float, moment: float
+    film: Film,
+    charts: Sequence[Mapping[str, Any]],
+    *,
+    label: str,
+    speed: float,
+    moment: float,
+    beside: Sequence[Film] = (),
 ) -> dict[str, Any]:
-    """Return all data that a moving structure on a page needs.
+    """Return all data that moving structures on a page need.
 
     Parameters
     ----------
@@ -63,25 +73,51 @@ def moving(
         Initial speed: seconds of motion per second.
     moment : float
         Time that is shown first [s].
+    beside : sequence of Film
+        Motions of other structures under the same ground motion, to show beside it.
     """
-    picture = film.picture.grouped
+    scene = Scene((film, *beside))
+    step = max(MIN_FRAME_INTERVAL, (scene.end - scene.start) / MAX_FRAMES)
+    time = scene.start + np.arange(0.0, scene.end - scene.start + step, step)
+    size = abs(np.subtract(*scene.box(film)))
     return {
-        "picture": picture.as_dict(),
-        "colours": {
-            direction.label: [colour(picture, k, direction) for k in range(len(picture.parts))]
-            for direction in picture.directions
-        },
-        "film": {
-            **film.as_dict(max(MIN_FRAME_INTERVAL, film.end / MAX_FRAMES)),
-            "ending": why_it_ends(film),
-            "verdict": verdict_of(film),
-        },
+        "start": scene.start,
+        "end": scene.end,
+        "step": step,
+        "enlargement": scene.enlargement,
+        "ground": [round(value, 5 - floor(log10(size))) for value in scene.shift(time).tolist()],
+        "scale": scale_in_words(scene),
+        "drawn": drawing_in_words(scene),
+        "stages": [
+            _stage(scene, each, time, label if not beside else f"{name_of(each)}, {label}") for each in scene.films
+        ],
         "charts": list(charts),
-        "ratio": style.over(film.history.ends_at_limit),
-        "label": label,
         "speed": speed,
         "moment": moment,
     }
+
+
+def _stage(scene: Scene, film: Film, time: Reals, label: str) -> dict[str, Any]:
+    """Return one of the structures, with its rotations [rad] at some times."""
+    picture = film.picture.grouped
+    return {
+        "name": name_of(film),
+        "label": label,
+        "picture": picture.as_dict(),
+        "shades": {direction.label: picture.shades[direction] for direction in picture.directions},
+        "ratio": style.over(film.history.ends_at_limit),
+        "rotation": _short(film.rotation(time), 5),
+        "middle": (picture.extent[0] + picture.extent[1]).real / 2,
+        "box": [[corner.real, corner.imag] for corner in scene.box(film)],
+        "stops": None if film.stops == inf else film.stops,
+        "ending": why_it_ends(film),
+        "fate": fate(film),
+    }
+
+
+def name_of(film: Film) -> str:
+    """Return the name of the structure of a film."""
+    return film.picture.mechanism.name or film.picture.mechanism.mechanism
 
 
 def ratio_chart(histories: Mapping[ModelName, History], bins: int = BINS_ACROSS) -> dict[str, Any]:
@@ -89,24 +125,30 @@ def ratio_chart(histories: Mapping[ModelName, History], bins: int = BINS_ACROSS)
 
     There is a curve for each model, with some two samples in each bin, until the time to which the outcome is known.
     """
-    series, reach, until = [], 0.0, known_until(histories)
-    first = next(iter(histories.values()))
-    for name, run in histories.items():
+    until = known_until(histories)
+    return _ratio_chart([(NAMES[name], name, run, until) for name, run in histories.items()], bins)
+
+
+def ratio_charts(films: Sequence[Film], bins: int = BINS_ACROSS) -> dict[str, Any]:
+    """Return a chart like `ratio_chart` with a curve for each of several structures, as far as its outcome is known."""
+    return _ratio_chart([(name_of(each), f"curve-{k}", each.history, inf) for k, each in enumerate(films)], bins)
+
+
+def _ratio_chart(curves: Sequence[tuple[str, str, History, float]], bins: int) -> dict[str, Any]:
+    series, reach = [], 0.0
+    for name, look, run, until in curves:
         ratio = run.ratio[np.isfinite(run.ratio) & (run.time <= until)]
         reach = max(reach, float(np.abs(ratio).max()))
         shown = visible(ratio, bins)
-        series.append(_series(NAMES[name], name, run.time[shown], ratio[shown]))
+        series.append(_series(name, look, run.time[shown], ratio[shown]))
+    limits = [run.ends_at_limit for _, _, run, _ in curves]
     levels = [
-        {"at": level, "text": "kinematic limit" if at_limit else "critical rotation"}
-        for level, at_limit in zip((1, -1), first.ends_at_limit, strict=True)
+        {"at": level, "text": LEVELS[all(at_limit), any(at_limit)]}
+        for level, at_limit in zip((1, -1), zip(*limits, strict=True), strict=True)
     ]
     tall = min(1.1 * reach, MAX_SHOWN_RATIO) if reach else MAX_SHOWN_RATIO
-    return {
-        "label": f"rotation {style.over(first.ends_at_limit)}, clockwise up",
-        "tall": tall,
-        "levels": levels,
-        "series": series,
-    }
+    over = style.over([each for pair in limits for each in pair])
+    return {"label": f"rotation {over}, clockwise up", "tall": tall, "levels": levels, "series": series}
 
 
 def ground_chart(motion: GroundMotion, fits: Sequence[PulseFit], bins: int = BINS_ACROSS) -> dict[str, Any]:

@@ -155,14 +155,14 @@ def lay_out(panels: Sequence[Panel], middle: Panel) -> float:
     """
     apart, others = _largest([middle]), [each for each in panels if each is not middle]
     if not others or not (style.is_narrow() or apart >= MIN_STACKING_GAIN * _largest(panels)):
-        return _row(panels, _largest(panels), 0.0)
+        return place_row(panels, _largest(panels), 0.0)
     rows, scale = [others], _largest(others)
     if style.is_narrow() and (alone := min(_largest([each]) for each in others)) >= MIN_STACKING_GAIN * scale:
         rows, scale = [[each] for each in reversed(others)], alone
     top = 0.0
     for row in rows:  # from the lowest
-        top = _row(row, min(scale, apart), top)
-    return _row([middle], apart, top)
+        top = place_row(row, min(scale, apart), top)
+    return place_row([middle], apart, top)
 
 
 def _largest(panels: Sequence[Panel]) -> float:
@@ -180,7 +180,7 @@ def _largest(panels: Sequence[Panel]) -> float:
     return tallest
 
 
-def _row(panels: Sequence[Panel], scale: float, base: float) -> float:
+def place_row(panels: Sequence[Panel], scale: float, base: float) -> float:
     """Place panels at one scale side by side above `base`, with their levels y = 0 in line; return the top [inches]."""
     for each in panels:
         each.scale = scale

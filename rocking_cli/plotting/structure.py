@@ -299,7 +299,7 @@ def labels_of(axes: Axes, picture: Picture, panel: Panel, rotation: float) -> La
         labels.keep_off([centroid], MARK_COST)
     for line in (*picture.ground, *picture.walls):
         labels.keep_off(line, EDGE_COST)
-        labels.keep_off(np.concatenate([line[:1], _hatches(line, panel).ravel()]), EDGE_COST / 2)
+        labels.keep_off(np.concatenate([line[:1], hatches(line, panel).ravel()]), EDGE_COST / 2)
     return labels
 
 
@@ -382,11 +382,11 @@ def draw_ground(axes: Axes, picture: Picture, panel: Panel) -> None:
     """Draw the ground and side walls, hatched."""
     for line in (*picture.ground, *picture.walls):
         axes.plot(line.real, line.imag, color=style.EARTH, linewidth=style.BOLD, zorder=1)
-        ticks = [hung.xy(each) for each in _hatches(line, panel)]
+        ticks = [hung.xy(each) for each in hatches(line, panel)]
         axes.add_collection(LineCollection(ticks, colors=style.EARTH, linewidths=style.THIN))
 
 
-def _hatches(line: Points, panel: Panel) -> Points:
+def hatches(line: Points, panel: Panel) -> Points:
     """Return start and end of the hatches under a line of the ground, shape (n, 2) [m]."""
     ticks: list[Points] = []
     for start, end in pairwise(line):

@@ -259,14 +259,14 @@ class TestAnimate:
         np.testing.assert_allclose(film.ratio(history.phi), history.ratio)
         shown = moving(film, [ratio_chart({"nonlinear": history})], label="", speed=1.0, moment=0.0)
         (chart,) = shown["charts"]
-        assert shown["ratio"] == "φ/limit" and "φ/limit" in chart["label"]
+        assert shown["stages"][0]["ratio"] == "φ/limit" and "φ/limit" in chart["label"]
         assert {level["text"] for level in chart["levels"]} == {"kinematic limit"}
 
     def test_the_view_holds_all_that_hangs_on_it(self):
         mechanism = Block(**FACADE, ties=[BAR])
         motion = parse_pulse("sine:0.1g:0.5s").sampled()
         film = Film(picture(mechanism), respond(mechanism, motion, models=("nonlinear",))["nonlinear"], motion)
-        assert film.box[0].real == pytest.approx(-6)
+        assert film.box()[0].real == pytest.approx(-6)
 
 
 class TestRespond:
