@@ -1,0 +1,60 @@
+"""Writes the chooser of mechanisms: a thumbnail of each, docs/static/mechanisms/NAME.svg, and the list that shows them.
+
+A thumbnail is right on a light and on a dark page; the numbers in it have the digits that are seen.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from matplotlib.figure import Figure
+from parts import same
+
+from rocking_cli import Registry
+from rocking_cli.documents.figures import svg
+from rocking_cli.plotting import style
+from rocking_cli.questions.mechanisms.command import drawing
+from rocking_cli.questions.mechanisms.picture import THUMBNAIL, draw_thumbnail
+
+PLACE = Path(__file__).resolve().parent / "static" / "mechanisms"
+
+
+def listed(names: str) -> str:
+    """Return the list of mechanisms with their thumbnails, in the order of some names."""
+    every = Registry()
+    return "\n".join(
+        f"- [![{every[name].title}](static/mechanisms/{name}.svg) `{name}`](mechanisms/{name}.md): {every[name].suits}"
+        for name in names.split()
+    )
+
+
+def thumbnail(name: str) -> str:
+    """Return the file of the thumbnail of a mechanism."""
+    figure = Figure(figsize=(THUMBNAIL.real, THUMBNAIL.imag), frameon=False)  # the page shows through
+    draw_thumbnail(figure.add_axes((0, 0, 1, 1)), drawing(name, Registry()))
+    text = re.sub(r"<(metadata|style)\b.*?</\1>|\s*<!--.*?-->|^.*(?=<svg)", "", svg(figure, name), flags=re.S)
+    text = re.sub(r"(\.\d\d)\d+", r"\1", text)
+    rules = [rule for rule in style.dark_rules().split("\n") if any(f"'{each}'" in rule for each in _looks(text))]
+    dark = "\n".join(["@media (prefers-color-scheme: dark) {", *rules, "}"])
+    return text.replace("<defs>", f"<style>\n{dark}\n</style>\n<defs>", 1)
+
+
+def _looks(text: str) -> set[str]:
+    """Return the colours of an SVG file as its style has them, such as `fill: #222222`."""
+    return set(re.findall(r"(?:fill|stroke): #\w+", text))
+
+
+def stale() -> dict[str, str]:
+    """Return the thumbnails that are missing or differ from what is drawn, by the names of mechanisms."""
+    every = Registry()
+    own = [name for name in every if every.package_of(name).startswith("rocking-cli ")]
+    there = {file.stem: file.read_text(encoding="utf-8") for file in PLACE.glob("*.svg")}
+    return {name: text for name in own if not same(text := thumbnail(name), there.get(name, ""))}
+
+
+def keep() -> None:
+    """Write the thumbnails that are stale."""
+    for name, text in stale().items():
+        (PLACE / f"{name}.svg").write_text(text, encoding="utf-8", newline="\n")
+        print(f"renewed docs/static/mechanisms/{name}.svg")
