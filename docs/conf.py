@@ -23,7 +23,7 @@ author = "The rocking-cli authors"
 project_copyright = author
 version = release = __version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml", "phone"]
 # All but the first are parts of other pages.
 exclude_patterns = ["_generated", "corrections.md", "validation_*.md", "trust/*.md"]
 myst_enable_extensions = ["dollarmath"]

@@ -1,19 +1,14 @@
-"""Writes the chooser of mechanisms: a thumbnail of each, docs/static/mechanisms/NAME.svg, and the list that shows them.
-
-A thumbnail is right on a light and on a dark page; the numbers in it have the digits that are seen.
-"""
+"""Writes the chooser of mechanisms: a thumbnail of each, docs/static/mechanisms/NAME.svg, and the list that shows them."""
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 from matplotlib.figure import Figure
+from make_runs import themed
 from parts import same
 
 from rocking_cli import Registry
-from rocking_cli.documents.figures import svg
-from rocking_cli.plotting import style
 from rocking_cli.questions.mechanisms.command import drawing
 from rocking_cli.questions.mechanisms.picture import THUMBNAIL, draw_thumbnail
 
@@ -33,16 +28,7 @@ def thumbnail(name: str) -> str:
     """Return the file of the thumbnail of a mechanism."""
     figure = Figure(figsize=(THUMBNAIL.real, THUMBNAIL.imag), frameon=False)  # the page shows through
     draw_thumbnail(figure.add_axes((0, 0, 1, 1)), drawing(name, Registry()))
-    text = re.sub(r"<(metadata|style)\b.*?</\1>|\s*<!--.*?-->|^.*(?=<svg)", "", svg(figure, name), flags=re.S)
-    text = re.sub(r"(\.\d\d)\d+", r"\1", text)
-    rules = [rule for rule in style.dark_rules().split("\n") if any(f"'{each}'" in rule for each in _looks(text))]
-    dark = "\n".join(["@media (prefers-color-scheme: dark) {", *rules, "}"])
-    return text.replace("<defs>", f"<style>\n{dark}\n</style>\n<defs>", 1)
-
-
-def _looks(text: str) -> set[str]:
-    """Return the colours of an SVG file as its style has them, such as `fill: #222222`."""
-    return set(re.findall(r"(?:fill|stroke): #\w+", text))
+    return themed(figure, name)
 
 
 def stale() -> dict[str, str]:

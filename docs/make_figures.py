@@ -438,9 +438,12 @@ def draw_paper_figure(paper: PaperFigure) -> Figure:
     matplotlib.figure.Figure
     """
     rows, columns = len(paper.panels), len(paper.panels[0])
+    if style.is_narrow():  # below one another
+        rows, columns = rows * columns, 1
     cut = any(_is_ratio(panel) and _values(panel).max() > MOST for row in paper.panels for panel in row)
     said = f"Figure {paper.number} of DeJong and Dimitrakopoulos (2014), recomputed. {paper.caption}"
-    caption = fill(said + (f" Curves are cut off at a ratio of {MOST:g}." if cut else ""), CAPTION)
+    characters = int(CAPTION * style.page_width() / style.PAGE_WIDTH)
+    caption = fill(said + (f" Curves are cut off at a ratio of {MOST:g}." if cut else ""), characters)
     drawn = DRAWN if paper.structures else 0.0
     families = {
         tuple(curve.label for curve in panel.curves) for row in paper.panels for panel in row if len(panel.curves) > 1
@@ -481,7 +484,8 @@ def draw_paper_figure(paper: PaperFigure) -> Figure:
         handles = max((each.get_lines() for each in axes.flat), key=len)
         handles = [line for line in handles if not line.get_label().startswith("_")]
         look = style.LEGEND | {"fontsize": style.TICK, "handlelength": 3.0}
-        below.legend(handles=handles, loc="outside upper center", ncols=len(handles), **look)
+        ncols = min(len(handles), 3 if style.is_narrow() else len(handles))
+        below.legend(handles=handles, loc="outside upper center", ncols=ncols, **look)
         families.clear()
     labels: list[str] = []
     for panel, each in zip((p for row in paper.panels for p in row), axes.flat, strict=True):

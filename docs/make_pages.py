@@ -87,7 +87,7 @@ def main() -> None:
     runs = run(commands(), RUN)
     make_sheets.main()
     make_sheets.draw(RUN)
-    keep(drawn(runs), RUN)
+    keep(drawn(runs), runs, RUN)
     make_chooser.keep()
     for page in pages():
         text = page.read_text(encoding="utf-8")

@@ -1,7 +1,8 @@
 """Runs the commands that README.md and the documentation show, and keeps what they draw in docs/pictures.
 
-A picture is written anew only when it no longer shows what its command draws: `content.json` has what each shows, in
-words and numbers, as pixels depend on the fonts of the machine.
+What a command plots is kept as SVG in the colours of a light and of a dark page, and once more for a phone; pages of
+HTML and animations are kept as pixels. A picture is written anew only when it no longer shows what its command draws:
+`content.json` has what each shows, in words and numbers, as pixels depend on the fonts of the machine.
 """
 
 from __future__ import annotations
@@ -11,8 +12,8 @@ import re
 import shlex
 import shutil
 import subprocess
-from collections.abc import Iterable, Iterator
-from contextlib import chdir, contextmanager
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import chdir, contextmanager, nullcontext
 from dataclasses import dataclass
 from importlib import import_module
 from itertools import chain
@@ -28,6 +29,8 @@ from parts import same
 from PIL import Image, ImageSequence
 
 from rocking_cli.cli.main import main
+from rocking_cli.documents.figures import svg_element
+from rocking_cli.plotting import style
 
 DOCS = Path(__file__).resolve().parent
 EXAMPLES = DOCS.parent / "examples"
@@ -38,17 +41,20 @@ Content = list[Entry]
 
 WIDTH = 100  # columns of the terminal
 CLOSE = 1e-2  # of a number, mean or deviation: pictures differ by less from machine to machine
-LARGEST = 100_000  # bytes of a picture
+PHONE = "-phone.svg"  # ending of the drawing of a plot for a phone
+LARGEST = 100_000  # bytes of a picture of pixels
 # Colours and width of a picture in pixels, the first that make it small enough.
 PLAINER = ((128, 1600), (64, 1300), (64, 1000), (64, 480), (32, 480), (32, 360))
 
 
 @dataclass(frozen=True)
 class Run:
-    """Output of a command, and the content of each picture that it drew, by the name of the file."""
+    """Output of a command, and the content of each picture that it drew, by the name under which it is kept."""
 
     output: str
     pictures: dict[str, Content]
+    plots: tuple[str, ...]
+    """Names of the pictures that are plots, in the order in which they were drawn."""
 
 
 def run(commands: Iterable[str], folder: Path) -> dict[str, Run]:
@@ -75,11 +81,11 @@ def ran(command: str) -> Run:
     if into:
         Path(into).write_text(output, encoding="utf-8")
     made = sorted(set(Path().rglob("*")) - there, key=lambda file: file.stat().st_mtime_ns)
-    drawn = [file.name for file in made if file.suffix == ".png"]
-    pictures = dict(zip(drawn, map(content, figures), strict=True)) if drawn else {}
+    plots = tuple(f"{file.stem}.svg" for file in made if file.suffix == ".png")
+    pictures = dict(zip(plots, map(content, figures), strict=True)) if plots else {}
     pictures |= {file.name: content_of_frames(file) for file in made if file.suffix == ".gif"}
     pictures |= {f"{file.stem}.png": [[output]] for file in made if file.suffix == ".html"}  # a page in a browser
-    return Run(output, pictures)
+    return Run(output, pictures, plots)
 
 
 @contextmanager
@@ -154,22 +160,50 @@ def stale(contents: dict[str, Content]) -> list[str]:
     return [name for name, entries in contents.items() if name not in there or not alike(entries, there[name])]
 
 
-def keep(contents: dict[str, Content], folder: Path) -> None:
+def files(contents: Iterable[str]) -> set[str]:
+    """Return the files of pictures."""
+    return {file for name in contents for file in (name, name.replace(".svg", PHONE))}
+
+
+def keep(contents: dict[str, Content], runs: dict[str, Run], folder: Path) -> None:
     """Renew the pictures that are stale, and drop those that are not among these."""
     KEPT.mkdir(exist_ok=True)
     there = kept()
-    for name in stale(contents):
-        made = found(folder, name)
-        if made is None:
-            print(f"docs/pictures/{name} is stale, and there is no chromium here to renew it")
-            continue
-        write_small(made, KEPT / name)
+    gone = stale(contents)
+    for command, each in runs.items():
+        if wanted := set(gone) & set(each.plots):
+            draw_again(command, each.plots, wanted, folder)
+    for name in gone:
+        if not name.endswith(".svg"):
+            made = found(folder, name)
+            if made is None:
+                print(f"docs/pictures/{name} is stale, and there is no chromium here to renew it")
+                continue
+            write_small(made, KEPT / name)
         there[name] = contents[name]
         print(f"renewed docs/pictures/{name}")
-    for file in set(KEPT.iterdir()) - {KEPT_CONTENT, *(KEPT / name for name in contents)}:
+    for file in set(KEPT.iterdir()) - {KEPT_CONTENT, *(KEPT / name for name in files(contents))}:
         file.unlink()
     lines = ",\n".join(f" {json.dumps(name)}: {json.dumps(there[name])}" for name in sorted(there.keys() & contents))
     KEPT_CONTENT.write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")
+
+
+def draw_again(command: str, plots: Sequence[str], wanted: set[str], folder: Path) -> None:
+    """Keep the wanted plots of a command, for a wide page and for a phone."""
+    for ending, on_page in ((".svg", nullcontext), (PHONE, style.on_phone)):
+        with chdir(folder), on_page(), noted_figures() as figures:
+            ran(command)
+        for name, figure in zip(plots, figures, strict=True):
+            if name in wanted:
+                file = KEPT / name.replace(".svg", ending)
+                file.write_text(themed(figure, file.stem), encoding="utf-8", newline="\n")
+
+
+def themed(figure: Figure, name: str) -> str:
+    """Return a figure as an SVG file that follows the colours of the page on which it is shown, light or dark."""
+    start, _, rest = svg_element(figure, name).partition(">")
+    rules = f"<style>@media (prefers-color-scheme: dark) {{\n{style.dark_rules()}\n}}</style>"
+    return f"{start}>{rules}{rest}\n"
 
 
 def found(folder: Path, name: str) -> Path | None:

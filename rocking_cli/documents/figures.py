@@ -52,13 +52,14 @@ def inline_svg(draw: Callable[[], Figure], prefix: str) -> Markup:
     prefix : str
         Prefix of every identifier, so that those of several figures on a page differ.
     """
-    wide = _inline(draw(), prefix)
+    wide = svg_element(draw(), prefix)
     with style.on_phone():
-        narrow = _inline(draw(), f"{prefix}-narrow")
+        narrow = svg_element(draw(), f"{prefix}-narrow")
     return Markup(f'<div class="wide">{wide}</div><div class="narrow">{narrow}</div>')
 
 
-def _inline(figure: Figure, prefix: str) -> str:
+def svg_element(figure: Figure, prefix: str) -> str:
+    """Return a figure as one svg element, with a prefix of every identifier."""
     text = svg(figure, prefix)
     text = text[text.index("<svg") :]
     # A style sheet would apply to the whole page, and the comments repeat every text.
