@@ -1,11 +1,11 @@
-"""Writes the chooser of mechanisms: a thumbnail of each, docs/static/mechanisms/NAME.svg, and the list that shows them."""
+"""Writes the chooser of mechanisms: a thumbnail of each, static/mechanisms/NAME.svg, and the list that shows them."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from matplotlib.figure import Figure
 from make_runs import themed
+from matplotlib.figure import Figure
 from parts import same
 
 from rocking_cli import Registry
