@@ -14,7 +14,7 @@ from sphinx.util.nodes import make_refnode
 
 from rocking_cli import __version__
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # mathml.py
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # mathml.py, phone.py, folded.py
 
 from make_reference import docstrings, typed
 
@@ -23,7 +23,7 @@ author = "The rocking-cli authors"
 project_copyright = author
 version = release = __version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml", "phone"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml", "phone", "folded"]
 # All but the first are parts of other pages.
 exclude_patterns = ["_generated", "corrections.md", "validation_*.md", "trust/*.md"]
 myst_enable_extensions = ["dollarmath"]
@@ -42,6 +42,7 @@ html_title = "rocking-cli"
 html_math_renderer = "mathml"
 html_static_path = ["static"]
 html_css_files = ["site.css"]
+html_js_files = ["open.js"]
 html_copy_source = False
 html_show_sourcelink = False
 pygments_style = "tango"

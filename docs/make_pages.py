@@ -10,6 +10,7 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
+import make_chooser
 import make_reference
 import make_sheets
 from make_runs import Content, Run, keep, run, shown
@@ -58,6 +59,8 @@ def made(kind: str, what: str, runs: dict[str, Run]) -> str:
         return make_reference.helpers(what, verification)
     if kind == "names":
         return make_reference.helpers(what, rocking_cli)
+    if kind == "chooser":
+        return make_chooser.listed(what)
     if kind == "index":
         return make_reference.index(what)
     return {"options": make_reference.command_line, "formulas": make_reference.standing_of_formulas}[kind]()
@@ -85,6 +88,7 @@ def main() -> None:
     make_sheets.main()
     make_sheets.draw(RUN)
     keep(drawn(runs), runs, RUN)
+    make_chooser.keep()
     for page in pages():
         text = page.read_text(encoding="utf-8")
         anew = renewed(text, lambda kind, what: made(kind, what, runs))

@@ -49,6 +49,7 @@ class Arch(Mechanism):
 
     mechanism: ClassVar[str] = "arch"
     title: ClassVar[str] = "circular masonry arch, four hinges"
+    suits: ClassVar[str] = "masonry arch or vault strip on fixed springings"
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Section 5.2; Oppenheim (1992)"
     verified: ClassVar[str] = "static theorem (linear programme of the line of thrust); Oppenheim's arch, lambda = 0.37"
 

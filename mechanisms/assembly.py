@@ -132,6 +132,7 @@ class Assembly(LinkedBodies):
 
     mechanism: ClassVar[str] = "assembly"
     title: ClassVar[str] = "assembly of rigid blocks, by its weakest mechanism"
+    suits: ClassVar[str] = "dry blocks, weakest mechanism unknown: portal, arch on piers"
     source: ClassVar[str] = (
         "Livesley (1978), limit analysis of rigid blocks; DeJong and Dimitrakopoulos (2014), Section 2"
     )

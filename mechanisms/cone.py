@@ -19,6 +19,7 @@ class Cone(SingleBody):
 
     mechanism: ClassVar[str] = "cone"
     title: ClassVar[str] = "conical spire (shell, solid or hollow)"
+    suits: ClassVar[str] = "spire, pinnacle"
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Table I; DeJong (2012), Engineering Structures 40"
     verified: ClassVar[str] = "closed forms of shell and solid; the hollow cone tends to both"
 

@@ -45,6 +45,7 @@ class Curve(Mechanism):
 
     mechanism: ClassVar[str] = "curve"
     title: ClassVar[str] = "structure given by its capacity curve"
+    suits: ClassVar[str] = "structure whose capacity curve comes from another program"
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Eqs. 8-10, with G/B from another analysis"
     verified: ClassVar[str] = "the block from its own curve"
     caution: ClassVar[str] = (

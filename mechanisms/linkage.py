@@ -60,6 +60,7 @@ class Linkage(LinkedBodies):
 
     mechanism: ClassVar[str] = "linkage"
     title: ClassVar[str] = "linkage of any rigid bodies"
+    suits: ClassVar[str] = "bodies and joints that you list: portico, two storeys"
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Section 2, for any joints"
     verified: ClassVar[str] = "block, walls, asymmetric frame and arch rebuilt; loop closure of each joint"
 

@@ -16,6 +16,7 @@ class PointMass(SingleBody):
 
     mechanism: ClassVar[str] = "point_mass"
     title: ClassVar[str] = "point mass on a massless strut with a rigid base"
+    suits: ClassVar[str] = "heavy top on a light support: lantern, tank"
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Table I"
     verified: ClassVar[str] = "closed forms p^2 = g/R, lambda = tan(alpha), eta = cos(2 alpha)"
 

@@ -45,6 +45,7 @@ class RigidBody(SingleBody):
 
     mechanism: ClassVar[str] = "rigid_body"
     title: ClassVar[str] = "any rigid body: by its inertia, as a polygon, or of parts"
+    suits: ClassVar[str] = "one body of any shape: statue, boulder, gable, pinnacle"
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Section 2.2"
     verified: ClassVar[str] = (
         "p^2 = m g R/I_O, eta = 1 - 2 m R^2 sin^2(alpha)/I_O; polygons against the block; rounded feet by Lagrange"

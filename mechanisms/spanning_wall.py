@@ -43,6 +43,7 @@ class SpanningWall(Mechanism):
 
     mechanism: ClassVar[str] = "spanning_wall"
     title: ClassVar[str] = "wall spanning between floors, with a load on top"
+    suits: ClassVar[str] = "wall between two floors, with the storeys above on top"
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Section 4, for any hinge and a load on top"
     verified: ClassVar[str] = "lambda in closed form; Lagrange's equation in symbols; the wall without a load"
 

@@ -44,6 +44,7 @@ class SymmetricFrame(Mechanism):
 
     mechanism: ClassVar[str] = "symmetric_frame"
     title: ClassVar[str] = "equal columns under a freely supported beam"
+    suits: ClassVar[str] = "colonnade or bridge on equal columns"
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Table I; Makris and Vassiliou (2013)"
     verified: ClassVar[str] = "closed forms p^2 = 3g/(4R) (1+2 gamma)/(1+3 gamma), lambda = tan(alpha), eta"
 

@@ -33,6 +33,7 @@ class Wall(Mechanism):
 
     mechanism: ClassVar[str] = "wall"
     title: ClassVar[str] = "masonry wall bending out of plane, top held sideways"
+    suits: ClassVar[str] = "wall held sideways at its top, which cracks at mid-height"
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Eqs. 21-23"
     verified: ClassVar[str] = "closed forms phi_cr = alpha, kappa1 = 1/2, lambda = 2 tan(alpha), p^2 = 3g/(2R); Eq. 21"
     caution: ClassVar[str] = (

@@ -27,6 +27,8 @@ class Kinematics(Given, ABC):
 
     title: ClassVar[str]
     """Title of the mechanism, in a few words."""
+    suits: ClassVar[str] = ""
+    """Structures that it is meant for, in a few words; by default the list of mechanisms shows the title instead."""
     source: ClassVar[str]
     """The publication and its equations."""
     verified: ClassVar[str] = ""

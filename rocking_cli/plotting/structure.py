@@ -140,7 +140,7 @@ def _draw_rest(
 def _draw_displaced(axes: Axes, picture: Picture, panel: Panel, direction: Direction, turn: float) -> None:
     """Draw a structure at a signed rotation [rad] over its outline at rest."""
     draw_ground(axes, picture, panel)
-    _draw_outline_at_rest(axes, picture, min(style.THIN, weight(picture, panel.scale)))
+    draw_outline_at_rest(axes, picture, min(style.THIN, weight(picture, panel.scale)))
     draw_parts(axes, picture, turn, weight(picture, panel.scale))
     labels = labels_of(axes, picture, panel, turn)
     hung.draw_hung(axes, picture, turn, panel, labels)
@@ -273,7 +273,8 @@ def draw_parts(axes: Axes, picture: Picture, rotation: float, line: float) -> No
     )  # fmt: skip
 
 
-def _draw_outline_at_rest(axes: Axes, picture: Picture, line: float) -> None:
+def draw_outline_at_rest(axes: Axes, picture: Picture, line: float) -> None:
+    """Draw the outlines of the parts at rest, faint and dashed, with lines of a weight [pt]."""
     for part in picture.parts:
         look = {"facecolor": style.SHADE, "edgecolor": style.FAINT, "linestyle": "--", "linewidth": line}
         for patch in _patches(part, part.outlines, **look):

@@ -45,17 +45,24 @@ COLUMNS: tuple[Column[Mapping[str, Any]], ...] = (
 
 
 class InstalledMechanism(NamedTuple):
-    """An installed mechanism: name, title (None if it cannot be loaded), and package."""
+    """An installed mechanism: name, title and structures that it suits (None if it cannot be loaded), and package."""
 
     name: str
     title: str | None
+    suits: str | None
     package: str
+
+    @property
+    def meant_for(self) -> str:
+        """Structures that it suits, or its title."""
+        return self.suits or self.title or "(cannot be loaded)"
 
 
 INSTALLED: tuple[Column[InstalledMechanism], ...] = (
     Column("name", of("name"), head="mechanism", text=True),
     Column("title", of("title")),
-    only_shown("description", lambda each: each.title or "(cannot be loaded)", text=True),
+    Column("suits", of("suits")),
+    only_shown("structures", of("meant_for"), text=True),
     Column("package", of("package"), head="package", text=True),
 )
 CHECKS: tuple[Column[Verdict], ...] = (
@@ -73,9 +80,11 @@ def installed(found: Sequence[InstalledMechanism]) -> View:
         {"mechanisms": [data_of(INSTALLED, each) for each in found]},
         [
             table_of("Mechanisms", INSTALLED, found),
-            "`rocking mechanisms NAME` lists the fields of a mechanism and `rocking new NAME` prints a file to start "
-            "from. Loads, ties, supports, strengths and uncertainties can be added to any mechanism: see `rocking "
-            "mechanisms loads`, `ties`, `interlock`, `crushing`, `strength`, `uncertainty`.",
+            "Next: `rocking new NAME > structure.yaml` prints a file to start from, and `rocking draw structure.yaml` "
+            "draws it. `rocking mechanisms NAME` lists the fields of a mechanism. If none fits, list blocks in an "
+            "`assembly`, or bodies and joints in a `linkage`. Loads, ties, supports, strengths and uncertainties can "
+            "be added to any mechanism: see `rocking mechanisms loads`, `ties`, `interlock`, `crushing`, `strength`, "
+            "`uncertainty`.",
         ],
     )
 

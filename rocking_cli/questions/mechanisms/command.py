@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from itertools import chain
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from rocking_cli.cli import complete, options, terminal
-from rocking_cli.errors import InputError, MechanismError
+from rocking_cli.errors import InputError, MechanismError, RockingError
 
 if TYPE_CHECKING:
     from rocking_cli.core import Mechanism
     from rocking_cli.core.contract import Verdict
     from rocking_cli.core.registry import Registry
+    from rocking_cli.studies.picture import Picture
 
 PARTS = ("loads", "ties", "interlock", "strength", "crushing", "uncertainty")
 """Additions to any mechanism, with fields of their own."""
@@ -29,9 +32,10 @@ TEMPLATE_CHECK = "The file that `rocking new` prints is a structure."
     is_flag=True,
     help="Check NAME against the contract of mechanisms, on its examples or on FILE.",
 )
+@options.plot("Draw all mechanisms, small, to choose one")
 @options.as_json
-def command(name: str | None, file: str | None, checked: bool, as_json: bool) -> None:
-    """List the installed mechanisms and the package of each; with NAME, show the fields of one.
+def command(name: str | None, file: str | None, checked: bool, plot: Path | None, as_json: bool) -> None:
+    """List the installed mechanisms and the structures that each suits; with NAME, show the fields of one.
 
     NAME may also be `loads`, `ties`, `interlock`, `strength`, `crushing` or `uncertainty`, which can be added to any
     mechanism.
@@ -43,6 +47,7 @@ def command(name: str | None, file: str | None, checked: bool, as_json: bool) ->
     \b
     Example:
       rocking mechanisms
+      rocking mechanisms --plot chooser.png
       rocking mechanisms arch
       rocking mechanisms --check arch
     """
@@ -52,6 +57,8 @@ def command(name: str | None, file: str | None, checked: bool, as_json: bool) ->
         raise click.UsageError("--check needs the NAME of a mechanism.")
     if file is not None and not checked:
         raise click.UsageError("FILE requires --check.")
+    if name is not None and plot is not None:
+        raise click.UsageError(f"--plot draws all mechanisms: leave out {name}, or use rocking draw for a structure.")
     registry = Registry()
     if name is not None and checked:
         check(name, file, registry, as_json)
@@ -64,22 +71,53 @@ def command(name: str | None, file: str | None, checked: bool, as_json: bool) ->
 
         terminal.show(view(registry[name], registry.package_of(name)), as_json=as_json)
     else:
-        _all(registry, as_json)
+        _all(registry, plot, as_json)
 
 
-def _all(registry: Registry, as_json: bool) -> None:
+def _all(registry: Registry, plot: Path | None, as_json: bool) -> None:
     from rocking_cli.views.mechanisms import InstalledMechanism, installed
 
     rows = []
     for name in registry:
+        package = registry.package_of(name)
         try:
-            title: str | None = registry[name].title
+            rows.append(InstalledMechanism(name, registry[name].title, registry[name].suits or None, package))
         except MechanismError as error:  # one broken plugin must not hide the others
             terminal.warning(str(error))
             terminal.debug_traceback(error)
-            title = None
-        rows.append(InstalledMechanism(name, title, registry.package_of(name)))
+            rows.append(InstalledMechanism(name, None, None, package))
+    if plot is not None:
+        from rocking_cli.cli.groups import write_picture
+        from rocking_cli.questions.mechanisms.picture import draw_chooser
+
+        write_picture(
+            plot, draw_chooser([(each, drawing(each.name, registry) if each.title else None) for each in rows])
+        )
     terminal.show(installed(rows), as_json=as_json)
+
+
+def drawing(name: str, registry: Registry) -> Picture | None:
+    """Return the drawing of a structure that `rocking new` prints for a mechanism; None if it cannot be drawn.
+
+    It is that of the mechanism's own template, or of a common structure if that template gives no shape.
+    """
+    from rocking_cli.core.structure_file import parse_structure
+    from rocking_cli.io.starters import STARTERS, starter
+    from rocking_cli.studies.picture import picture
+    from rocking_cli.views.template import template
+
+    # The later ones are of less regular shape.
+    common = (text for text in map(starter, reversed(STARTERS)) if f"mechanism: {name}\n" in text)
+    found = None
+    try:
+        for text in chain([template(registry[name])], common):
+            one = picture(parse_structure(text, f"rocking new {name}", name, registry))
+            found = found or one
+            if not any(part.assumed for part in one.parts):
+                return one
+    except RockingError as error:
+        terminal.warning(f"{name} is not drawn: {error}")
+    return found
 
 
 def check(name: str, file: str | None, registry: Registry, as_json: bool) -> None:

@@ -1,0 +1,12 @@
+/* Opens the folded part to which a link leads, and all parts for print. */
+function open_target() {
+  const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+  if (!target) return;
+  const content = target.tagName === "DT" ? target.parentElement.querySelector(":scope > dd") : target;
+  for (let each = content.querySelector(":scope > details") || target; each; each = each.parentElement)
+    if (each.tagName === "DETAILS") each.open = true;
+  target.scrollIntoView();
+}
+addEventListener("DOMContentLoaded", open_target);
+addEventListener("hashchange", open_target);
+addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((each) => (each.open = true)));
