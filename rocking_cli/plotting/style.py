@@ -416,13 +416,7 @@ def legend_below(figure: Figure, handles: Sequence[Any] | None = None, ncols: in
     handles = [each for axes in panels for each in axes.get_legend_handles_labels()[0]] if handles is None else handles
     outside = isinstance(target, Figure) and (layout is None or context is None)
     outside |= not isinstance(target, Axes) and isinstance(layout, ConstrainedLayoutEngine)
-    room = inches(target if outside else lowest).real
-    beside = (look.get("handlelength", 2.0) + 3.5) * TICK / POINTS_PER_INCH  # room of handle and gaps in a column
-    labels = [str(each.get_label()) for each in handles]
-    widest = max((size_of(line, TICK).real for each in labels for line in each.split("\n")), default=0.0)
-    ncols = max(1, min(ncols, int(room / (widest + beside))))
-    if widest + beside > room:
-        labels = [folded(each, room - beside, TICK, "    ") for each in labels]
+    labels, ncols = _in_columns(handles, inches(target if outside else lowest).real, ncols, look)
     if outside:
         key = target.legend(handles, labels, loc="outside lower center", ncols=ncols, **below)
         if context is not None:
@@ -431,6 +425,29 @@ def legend_below(figure: Figure, handles: Sequence[Any] | None = None, ncols: in
         context.below.append(lowest.legend(handles, labels, loc="upper center", ncols=ncols, **below))
     else:
         lowest.legend(handles, labels, loc="best", **LEGEND, **look)
+
+
+def _in_columns(handles: Sequence[Any], room: float, ncols: int, look: dict[str, Any]) -> tuple[list[str], int]:
+    """Return the labels of a legend, broken into lines, and its columns, at most `ncols`, that fit a width [inches]."""
+    beside = (look.get("handlelength", 2.0) + 3.5) * TICK / POINTS_PER_INCH  # room of handle and gaps in a column
+    labels = [str(each.get_label()) for each in handles]
+    widest = max((size_of(line, TICK).real for each in labels for line in each.split("\n")), default=0.0)
+    if widest + beside > room:
+        labels = [folded(each, room - beside, TICK, "    ") for each in labels]
+    return labels, max(1, min(ncols, int(room / (widest + beside))))
+
+
+def legends_below(figure: Figure, keys: Sequence[tuple[Axes, Sequence[Any]]], ncols: int = 3) -> None:
+    """Draw legends below some panels, given from top to bottom; a new figure becomes taller by what they take."""
+    others, handles = keys[:-1], keys[-1][1]
+    for axes, its in others:
+        labels, columns = _in_columns(its, inches(axes).real, ncols, {})
+        axes.legend(its, labels, loc="upper left", bbox_to_anchor=(0, 0), ncols=columns, fontsize=TICK, frameon=False)
+    legend_below(figure, handles, ncols)
+    if given() is None:
+        every = [*figure.legends, *(each for axes, _ in others if (each := axes.get_legend()) is not None)]
+        taken = sum(each.get_window_extent().height for each in every) / figure.dpi
+        figure.set_figheight(figure.get_figheight() + taken)
 
 
 def _layout(target: Target) -> ConstrainedLayoutEngine | TightLayoutEngine | None:

@@ -164,7 +164,7 @@ def animate(
             {history.model: history},
             scaled,
             heading(ready.mechanism),
-            uplift=ready.uplift,
+            structure=ready,
         )
         return Answer("animation", Animation(film, neighbourhood), shown, partial(_columns, film), figure)
 
