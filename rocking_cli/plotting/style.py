@@ -343,6 +343,11 @@ def over(ends_at_limit: Sequence[bool], *, math: bool = False) -> str:
     return label.replace("φcr", r"$\phi_{cr}$").replace("φ", r"$\phi$") if math else label
 
 
+def angle_unit(reach: float) -> tuple[float, str]:
+    """Return the factor and the unit in which rotations up to `reach` [rad] without a critical one are plotted."""
+    return (180 / np.pi, "°") if reach >= np.pi / 180 else (1000.0, " mrad")
+
+
 def plain(text: str) -> str:
     """Escape dollars in a text, so that they are not read as mathematics."""
     return text.replace("$", r"\$")

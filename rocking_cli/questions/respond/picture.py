@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
 from math import inf, isfinite, isnan
 from textwrap import shorten
 from typing import Any, NamedTuple
@@ -119,7 +120,7 @@ def draw_history(
         _hatch_unknown(panels[-1], max(list(until.values())[: len(contacts)]), (start, end))
     figure.align_ylabels(panels)  # not those of others in a figure of the user
     unnamed = name_points(marks)
-    for mark in sum(unnamed.values(), []):
+    for mark in chain(*unnamed.values()):
         mark.set_label(str(mark.get_label()).replace("\n", ", "))
     style.legends_below(figure, [(axes, [*curves, *unnamed.get(axes, [])]) for axes, curves in keys])
     return figure
@@ -269,9 +270,8 @@ def _scale_of(responses: Mapping[str, Runs], until: Mapping[str, float]) -> _Sca
     """Return the scale of rotations, the same for all panels, so that the axis fits all that is drawn."""
     every = [(run, until[what]) for what, each in responses.items() for run in each.values()]
     reach = max(float(np.abs(run.phi[: _shown(run, known)]).max()) for run, known in every)
-    scale = _Scale(None, r" $\phi_{cr}$", 0.0, 0.0)
-    if any(any(run.ends_at_limit) for run, _ in every):
-        scale = _Scale(*((180 / np.pi, "\u00b0") if reach > np.radians(1) else (1000.0, " mrad")), 0.0, 0.0)
+    free = any(any(run.ends_at_limit) for run, _ in every)
+    scale = _Scale(*style.angle_unit(reach), 0.0, 0.0) if free else _Scale(None, r" $\phi_{cr}$", 0.0, 0.0)
     low = high = 0.0
     for run, known in every:
         drawn = np.where(np.abs(run.ratio) > MAX_SHOWN_RATIO, np.nan, scale.of(run))[: _shown(run, known)]
