@@ -20,7 +20,7 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.layout_engine import ConstrainedLayoutEngine, TightLayoutEngine
 from matplotlib.legend import Legend
 from matplotlib.text import Annotation, Text
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, PercentFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, PercentFormatter
 from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
@@ -377,7 +377,7 @@ def note(axes: Axes, text: str, height: float = 0.96) -> None:
     """Write a remark at the right edge of a panel, at a fraction of its height, legible over curves."""
     axes.annotate(
         text,
-        (1.0, height),
+        (0.99, height),
         xycoords="axes fraction",
         ha="right",
         va="top",
@@ -405,6 +405,14 @@ def logarithmic(axis: Axis, subs: Sequence[float] = (1.0, 2.0, 5.0)) -> None:
     axes = axis.axes
     (axes.set_xscale if axis is axes.xaxis else axes.set_yscale)("log")
     plain_numbers(axis, subs)
+
+
+def time_axis(axes: Axes, first: float, last: float) -> tuple[float, float]:
+    """Set an axis of times so that it shows those between two [s], and begins and ends at a tick; return its ends."""
+    ticks = MaxNLocator(5 if is_narrow() else 9, steps=[1, 2, 2.5, 5, 10]).tick_values(first, last)
+    axes.set_xticks(ticks)
+    axes.set_xlim(ticks[0], ticks[-1])
+    return float(ticks[0]), float(ticks[-1])
 
 
 def in_percent(axis: Axis) -> None:

@@ -12,7 +12,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MaxNLocator
 
 from rocking_cli import names
 from rocking_cli.arrays import Reals
@@ -162,11 +161,7 @@ def _draw_time(
     starts += [] if pulse is None else [pulse.start]
     first = max(0.0, min(starts))
     last = max(_end(run, known, first) for run, known in moving)
-    steps = MaxNLocator(5 if style.is_narrow() else 9, steps=[1, 2, 2.5, 5, 10])
-    ticks = steps.tick_values(first, last)
-    axes.set_xticks(ticks)
-    axes.set_xlim(ticks[0], ticks[-1])
-    start, end = float(ticks[0]), float(ticks[-1])
+    start, end = style.time_axis(axes, first, last)
     lasts = max([lasts, *(run.end_time for run, known in moving if not isfinite(known) and not run.fell)])
     left_out = [f"0 to {start:g} s, at rest"] if start > 0 else []
     if lasts > end:
