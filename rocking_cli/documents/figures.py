@@ -72,6 +72,8 @@ def _tag(tag: str, prefix: str) -> str:
     tag = re.sub(r'(href="|url\()#', rf"\1#{prefix}-", tag)
     # A hundredth of a point is not seen, and a line break of each point of a path is as long as a number.
     tag = re.sub(r"(\.\d\d)\d+", r"\1", re.sub(r"\s+", " ", tag)) if tag.startswith("<path") else tag
+    if tag.startswith("<path id="):  # a mark: rules for dark pages reach the colours where it is used, not here
+        tag = re.sub(r"\bstroke: #\w{6};? ?", "", tag)
     tag = re.sub(r"'?DejaVu Sans'?[^;\"]*", FONT_FAMILY, tag)
     # Screen readers take the description beside the picture.
     return tag.replace("<svg ", f"<svg {SVG_ATTRIBUTES} ", 1)
