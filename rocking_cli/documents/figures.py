@@ -78,8 +78,6 @@ def svg_element(figure: Figure, prefix: str) -> str:
 def _tag(tag: str, prefix: str) -> str:
     tag = re.sub(r'\bid="', f'id="{prefix}-', tag)
     tag = re.sub(r'(href="|url\()#', rf"\1#{prefix}-", tag)
-    # A mark repeats the look of its uses, where the style sheet of a dark page would not find it.
-    tag = re.sub(r'^(<path id="[^"]*\bm[0-9a-f]{10}"[^>]*) style="[^"]*"', r"\1", tag)
     # A hundredth of a point is not seen, and a line break of each point of a path is as long as a number.
     tag = re.sub(r"(\.\d\d)\d+", r"\1", re.sub(r"\s+", " ", tag)) if tag.startswith("<path") else tag
     # Rules of the page do not reach the shape of a mark, whose style its uses repeat, nor the attribute of a rectangle.

@@ -89,7 +89,7 @@ def _compare(run: History, best: History) -> Agreement:
         peak = run.peak_ratio / best.peak_ratio - 1
         worst = grade(peak)
         if run.ratio.any() and best.ratio.any():  # a motion may start and end between two samples
-            delay, apart = _peak_time(run) - _peak_time(best), _difference(run, best)
+            delay, apart = peak_time(run) - peak_time(best), _difference(run, best)
             late = Grade.ESTIMATE if abs(delay) * best.p > SAME_PEAK_DELAY else Grade.AGREES
             worst = max(worst, grade(apart, AGREEING_RMS, ESTIMATING_RMS), late)
     if grade(run.uplift_error) is Grade.DISREGARD:
@@ -101,7 +101,8 @@ def _fate(run: History) -> str:
     return names.OVERTURNS if run.fell else names.ROCKS if run.peak_ratio else names.NO_UPLIFT
 
 
-def _peak_time(run: History) -> float:
+def peak_time(run: History) -> float:
+    """Return the time of the peak rotation of a history that is known to its end and does not overturn [s]."""
     size = np.abs(run.ratio)
     return float(run.time[int((size >= PEAK_SHARE * size.max()).argmax())])
 

@@ -1,8 +1,8 @@
-"""Names of curves beside them, instead of in a legend: where each is on a curve and on no other."""
+"""Names of curves and marks beside them, instead of in a legend: where each is on a curve and on no other."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise, product
 from typing import Any
 
@@ -17,6 +17,7 @@ from rocking_cli.plotting import style
 
 Points = NDArray[np.complex128]
 GAPS = (0.03, 0.09)  # inches from a curve to its name
+POINT_GAPS = (0.05, 0.12, 0.22)  # inches from a mark to its name
 PLACES = 60  # places that are tried along a curve
 SPACING = 0.04  # inches between the points of a curve that names keep off
 CLEARANCE = 0.03  # inches around a name
@@ -29,35 +30,79 @@ def name_curves(axes: Axes, curves: Sequence[Line2D]) -> bool:
     If one does not, or if the user gave the axes, nothing is written: the plot needs a legend. Limits and scales of the
     axes must be final.
     """
-    figure = axes.figure
-    if style.given() is not None or not isinstance(figure, Figure):
+    _lay_out(axes)
+    places = _places(axes, curves)
+    if None in places:
         return False
-    figure.draw_without_rendering()  # places the panel
-    size = style.inches(axes)
-    along = [_in_inches(axes, each) for each in curves]
-    every = np.concatenate([*along, *(_in_inches(axes, each) for each in axes.lines if each not in curves)])
-    taken = [_middle_and_size(axes, each) for each in axes.texts]
-    placed = []
-    for curve, points in zip(curves, along, strict=True):
-        text = str(curve.get_label())
-        extent = style.size_of(text, style.TICK)
-        place = _place(points, extent, every, taken, size)
-        if place is None:
-            return False
-        taken.append((place, extent))
-        placed.append((text, place, curve.get_color()))
-    look: dict[str, Any] = {"fontsize": style.TICK, "ha": "center", "va": "center", "zorder": 8}
-    for text, place, colour in placed:
-        at = (place.real / size.real, place.imag / size.imag)
-        axes.text(*at, text, transform=axes.transAxes, color=colour, path_effects=style.HALO, **look)
+    _write(axes, curves, places)
     return True
 
 
-def _middle_and_size(axes: Axes, text: Text) -> tuple[complex, complex]:
-    """Return where a text is, from the lower left corner of the panel, and how large it is [inches]."""
+def name_points(panels: Mapping[Axes, Sequence[Line2D]]) -> dict[Axes, list[Line2D]]:
+    """Write the label of each mark or line of finished panels of a figure beside it, joined to a mark farther away.
+
+    Returns those that do not fit, all of them if the user gave the axes: the plot needs a legend of these.
+    """
+    _lay_out(next(iter(panels)))
+    left: dict[Axes, list[Line2D]] = {}
+    for axes, points in panels.items():
+        places = _places(axes, points)
+        _write(axes, points, places)
+        left[axes] = [point for point, place in zip(points, places, strict=True) if place is None]
+    return left
+
+
+def _lay_out(axes: Axes) -> None:
+    """Place the panels of a new figure."""
+    figure = axes.figure
+    if style.given() is None and isinstance(figure, Figure) and (engine := figure.get_layout_engine()) is not None:
+        engine.execute(figure)
+
+
+def _places(axes: Axes, curves: Sequence[Line2D]) -> list[complex | None]:
+    """Return the middle of the name of each curve [inches from the lower left corner]; None if it does not fit."""
+    if style.given() is not None:
+        return [None] * len(curves)
+    size = style.inches(axes)
+    along = [_in_inches(axes, each) for each in curves]
+    every = np.concatenate([*along, *(_in_inches(axes, each) for each in axes.lines if each not in curves)])
+    taken = [_box(axes, text) for text in axes.texts]  # middle and size of each name
+    places: list[complex | None] = []
+    for curve, points in zip(curves, along, strict=True):
+        extent = style.size_of(str(curve.get_label()), style.TICK)
+        places.append(place := _place(points, extent, every, taken, size))
+        if place is not None:
+            taken.append((place, extent))
+    return places
+
+
+def _box(axes: Axes, text: Text) -> tuple[complex, complex]:
+    """Return middle and size of a text [inches], the middle from the lower left corner of the panel."""
     box = text.get_window_extent()
-    middle = complex(box.x0 + box.x1, box.y0 + box.y1) / 2 - complex(axes.bbox.x0, axes.bbox.y0)
-    return middle / axes.figure.dpi, complex(box.width, box.height) / axes.figure.dpi
+    low, high = (complex(x - axes.bbox.x0, y - axes.bbox.y0) / axes.figure.dpi for x, y in (box.min, box.max))
+    return (low + high) / 2, high - low
+
+
+def _write(axes: Axes, curves: Sequence[Line2D], places: Sequence[complex | None]) -> None:
+    size = style.inches(axes)
+    look: dict[str, Any] = {
+        "fontsize": style.TICK,
+        "ha": "center",
+        "va": "center",
+        "zorder": 8,
+        "path_effects": style.HALO,
+    }
+    for curve, place in zip(curves, places, strict=True):
+        if place is None:
+            continue
+        at = (place.real / size.real, place.imag / size.imag)
+        x, y = np.asarray(curve.get_xdata()), np.asarray(curve.get_ydata())
+        look["color"] = curve.get_color()
+        if x.size > 1:
+            axes.text(*at, str(curve.get_label()), transform=axes.transAxes, **look)
+            continue
+        line = {"arrowstyle": "-", "color": style.FAINT, "linewidth": style.THIN, "shrinkA": 1, "shrinkB": 3}
+        axes.annotate(str(curve.get_label()), (x[0], y[0]), at, textcoords="axes fraction", arrowprops=line, **look)
 
 
 def _in_inches(axes: Axes, curve: Line2D) -> Points:
@@ -85,16 +130,16 @@ def _place(
     if not inside.size:
         return None
     anchors = inside[np.linspace(0, inside.size - 1, min(PLACES, inside.size)).astype(int)]
-    others = every[~np.isin(every, points)]
+    others, gaps = every[~np.isin(every, points)], GAPS if points.size > 1 else POINT_GAPS
     best: tuple[float, complex] | None = None
-    for anchor, gap, up, aside in product(anchors, GAPS, (1, -1), (0, 1, -1)):
+    for anchor, gap, up, aside in product(anchors, gaps, (1, -1), (0, 1, -1)):
         middle = anchor + 1j * up * (gap + extent.imag / 2) + aside * (gap + extent.real / 2)
         if not (_within(middle.real, extent.real, size.real) and _within(middle.imag, extent.imag, size.imag)):
             continue
         if _covers(middle, extent, every) or any(_covers(middle, extent + each, np.array([at])) for at, each in taken):
             continue
         free = float(np.abs(others - middle).min()) if others.size else 1.0
-        score = min(free, 0.6) - gap
+        score = min(free, 0.6) - gap * (1 if points.size > 1 else 5)  # near a mark
         if best is None or score > best[0]:
             best = score, middle
     return None if best is None else best[1]

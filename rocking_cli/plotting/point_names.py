@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 from rocking_cli.plotting import style
@@ -65,13 +64,12 @@ def name_points(axes: Axes, points: Sequence[tuple[float, float, str]], marks: N
         farther = np.add.outer(GAPS, 0.005 * TURNS).ravel()
         best = int((farther + covered @ costs + NAME_COST * beyond).argmin())
         move, leads = complex(moves[best]), GAPS[best // TURNS.size] > LEAST_LINE
-        halo = [withStroke(linewidth=2, foreground=style.PAPER)]
         line = {"arrowstyle": "-", "color": style.INK, "linewidth": style.THIN, "shrinkA": 0, "shrinkB": 3}
         axes.annotate(
             name, (x, y), (style.POINTS_PER_INCH * move.real, style.POINTS_PER_INCH * move.imag), ha="center",
             textcoords="offset points", va="center", fontsize=style.TICK, color=style.INK, zorder=7,
             bbox={"facecolor": style.PAPER, "edgecolor": "none", "alpha": 0.85, "pad": 0.6},
-            arrowprops=line | {"path_effects": halo, "zorder": 6} if leads else None,
+            arrowprops=line | {"path_effects": style.HALO, "zorder": 6} if leads else None,
         )  # fmt: skip
         box = _spread(at + move, extent)
         between = at + move * np.linspace(0, 1, 12)[1:-1] if leads else np.empty(0)

@@ -21,7 +21,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine, TightLayoutEngine
 from matplotlib.legend import Legend
 from matplotlib.patheffects import withStroke
 from matplotlib.text import Annotation, Text
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, PercentFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, PercentFormatter
 from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
@@ -353,6 +353,11 @@ def over(ends_at_limit: Sequence[bool], *, math: bool = False) -> str:
     return label.replace("φcr", r"$\phi_{cr}$").replace("φ", r"$\phi$") if math else label
 
 
+def angle_unit(reach: float) -> tuple[float, str]:
+    """Return the factor and the unit in which rotations up to `reach` [rad] without a critical one are plotted."""
+    return (180 / np.pi, "°") if reach >= np.pi / 180 else (1000.0, " mrad")
+
+
 def plain(text: str) -> str:
     """Escape dollars in a text, so that they are not read as mathematics."""
     return text.replace("$", r"\$")
@@ -382,7 +387,7 @@ def note(axes: Axes, text: str, height: float = 0.96) -> None:
     """Write a remark at the right edge of a panel, at a fraction of its height, legible over curves."""
     axes.annotate(
         text,
-        (1.0, height),
+        (0.99, height),
         xycoords="axes fraction",
         ha="right",
         va="top",
@@ -412,6 +417,14 @@ def logarithmic(axis: Axis, subs: Sequence[float] = (1.0, 2.0, 5.0)) -> None:
     plain_numbers(axis, subs)
 
 
+def time_axis(axes: Axes, first: float, last: float) -> tuple[float, float]:
+    """Set an axis of times so that it shows those between two [s], and begins and ends at a tick; return its ends."""
+    ticks = MaxNLocator(5 if is_narrow() else 9, steps=[1, 2, 2.5, 5, 10]).tick_values(first, last)
+    axes.set_xticks(ticks)
+    axes.set_xlim(ticks[0], ticks[-1])
+    return float(ticks[0]), float(ticks[-1])
+
+
 def in_percent(axis: Axis) -> None:
     """Number an axis of shares in per cent."""
     axis.set_major_formatter(PercentFormatter(1.0))
@@ -431,13 +444,7 @@ def legend_below(
     handles = [each for axes in panels for each in axes.get_legend_handles_labels()[0]] if handles is None else handles
     outside = isinstance(target, Figure) and (layout is None or context is None)
     outside |= not isinstance(target, Axes) and isinstance(layout, ConstrainedLayoutEngine)
-    room = inches(target if outside else lowest).real
-    beside = (look.get("handlelength", 2.0) + 3.5) * TICK / POINTS_PER_INCH  # room of handle and gaps in a column
-    labels = [str(each.get_label()) for each in handles]
-    widest = max((size_of(line, TICK).real for each in labels for line in each.split("\n")), default=0.0)
-    ncols = max(1, min(ncols, int(room / (widest + beside))))
-    if widest + beside > room:
-        labels = [folded(each, room - beside, TICK, "    ") for each in labels]
+    labels, ncols = _in_columns(handles, inches(target if outside else lowest).real, ncols, look)
     if outside:
         key = target.legend(handles, labels, loc="outside lower center", ncols=ncols, **below)
         if context is not None:
@@ -448,6 +455,29 @@ def legend_below(
         context.below.append(lowest.legend(handles, labels, loc="upper center", ncols=ncols, **below))
     else:
         lowest.legend(handles, labels, loc="best", **LEGEND, **look)
+
+
+def _in_columns(handles: Sequence[Any], room: float, ncols: int, look: dict[str, Any]) -> tuple[list[str], int]:
+    """Return the labels of a legend, broken into lines, and its columns, at most `ncols`, that fit a width [inches]."""
+    beside = (look.get("handlelength", 2.0) + 3.5) * TICK / POINTS_PER_INCH  # room of handle and gaps in a column
+    labels = [str(each.get_label()) for each in handles]
+    widest = max((size_of(line, TICK).real for each in labels for line in each.split("\n")), default=0.0)
+    if widest + beside > room:
+        labels = [folded(each, room - beside, TICK, "    ") for each in labels]
+    return labels, max(1, min(ncols, int(room / (widest + beside))))
+
+
+def legends_below(figure: Figure, keys: Sequence[tuple[Axes, Sequence[Any]]], ncols: int = 3) -> None:
+    """Draw legends below some panels, given from top to bottom; a new figure becomes taller by what they take."""
+    others, handles = keys[:-1], keys[-1][1]
+    for axes, its in others:
+        labels, columns = _in_columns(its, inches(axes).real, ncols, {})
+        axes.legend(its, labels, loc="upper left", bbox_to_anchor=(0, 0), ncols=columns, fontsize=TICK, frameon=False)
+    legend_below(figure, handles, ncols)
+    if given() is None:
+        every = [*figure.legends, *(each for axes, _ in others if (each := axes.get_legend()) is not None)]
+        taken = sum(each.get_window_extent().height for each in every) / figure.dpi
+        figure.set_figheight(figure.get_figheight() + taken)
 
 
 def _layout(target: Target) -> ConstrainedLayoutEngine | TightLayoutEngine | None:

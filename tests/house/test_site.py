@@ -1,12 +1,6 @@
 """The site, as a browser shows it on a phone and on a wide screen, in light and dark colours."""
 
-import subprocess
-import sys
-
 import pytest
-
-from tests.browser import launch
-from tests.conftest import PROJECT
 
 pytestmark = pytest.mark.docs
 SCREENS = [(width, scheme) for width in (390, 1280) for scheme in ("light", "dark")]
@@ -47,9 +41,11 @@ FOUND = r"""() => {
   const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   while (walker.nextNode()) {
     const each = walker.currentNode.parentElement;
-    if (!walker.currentNode.textContent.trim() || !each.checkVisibility() || each.closest("svg, script, style")) continue;
+    if (!walker.currentNode.textContent.trim() || !each.checkVisibility() || each.closest("svg, script, style"))
+      continue;
     const style = getComputedStyle(each), behind = [];
-    for (let around = each; around; around = around.parentElement) behind.unshift(getComputedStyle(around).backgroundColor);
+    for (let around = each; around; around = around.parentElement)
+      behind.unshift(getComputedStyle(around).backgroundColor);
     const paper = behind.reduce((below, colour) => over(rgba(colour), below), [255, 255, 255]);
     const [low, high] = [light(over(rgba(style.color), paper)), light(paper)].sort((a, b) => a - b);
     const size = parseFloat(style.fontSize), bold = style.fontWeight >= 700;

@@ -191,7 +191,7 @@ def animate(
             {history.model: history},
             film.motion,
             heading(ready.mechanism),
-            uplift=ready.uplift,
+            structure=ready,
         )
         return Answer("animation", made, shown, partial(_columns, film), figure)
 

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
 from rocking_cli.arrays import Reals
+from rocking_cli.names import percent
 from rocking_cli.plotting import style
-from rocking_cli.questions.calibrate.region import EDGE_DROP, JointRegion
+from rocking_cli.questions.calibrate.region import EDGE_DROP, REGION_PROBABILITY, JointRegion
 from rocking_cli.questions.calibrate.study import MIN_GAP_RATIO, TraceFit
+
+LOWER = (-20.0, -15.0, -10.0, -7.0, -5.0)  # log-likelihood, less the largest, of the lines outside the joint region
 
 
 def draw_trace(found: TraceFit, name: str) -> Figure:
@@ -41,7 +47,6 @@ def draw_trace(found: TraceFit, name: str) -> Figure:
     axes.plot(times, rest, color=style.FAINT, linewidth=style.THIN, linestyle="--", label="at rest")
     at_impact = degrees(found.offset.value + found.drift.value * found.impacts)
     axes.plot(found.impacts, at_impact, label="impacts", linestyle="none", **{**style.MARKED, "markersize": 5})
-    axes.legend(loc="upper right", ncols=2, **style.LEGEND)
     for values, look, label in (
         (found.fitted, {"color": style.INK, "linewidth": style.THIN}, "one eta"),
         (found.own, {"color": style.EXCEEDED, "linewidth": style.THIN, "linestyle": "--"}, "an eta for each impact"),
@@ -49,11 +54,9 @@ def draw_trace(found: TraceFit, name: str) -> Figure:
         below.plot(*_broken(times, degrees(found.trace.angles - values)), label=label, **look)
     noise = degrees(found.noise)
     below.axhspan(-2 * noise, 2 * noise, color=style.SHADE, zorder=0, label="twice the noise")
-    below.legend(loc="upper right", ncols=3, **style.LEGEND)
-    low, high = below.get_ylim()
-    below.set_ylim(low, high + 0.35 * (high - low))  # room for the legend
     style.tidy(axes, y="angle [deg]")
     style.tidy(below, "time [s]", "residual [deg]")
+    style.legends_below(figure, [(each, each.get_legend_handles_labels()[0]) for each in (axes, below)], ncols=4)
     return figure
 
 
@@ -79,15 +82,23 @@ def draw_region(found: JointRegion, name: str) -> Figure:
     )
     across, up = found.restitution, found.slenderness
     below = np.maximum(found.likelihood - found.likelihood.max(), -20.0)
-    filled = axes.contourf(across, up, below, levels=[-20, -15, -10, -7, -5, -EDGE_DROP, -1, 0], cmap="Blues")
-    axes.contour(across, up, below, levels=[-EDGE_DROP], colors=[style.INK], linewidths=style.BOLD, linestyles="solid")
-    axes.plot(*found.best[::-1], color=style.CURSOR, label="likeliest", **style.STAR)
-    axes.plot([], [], color=style.INK, linewidth=style.BOLD, label="joint region of 90 %")
-    points = np.meshgrid(across, up)
-    axes.plot(*(each.ravel() for each in points), ".", color=style.FAINT, markersize=2)
-    axes.legend(loc="lower left", **style.LEGEND)
-    bar = figure.colorbar(filled, ax=axes)
-    bar.set_label("log-likelihood less the largest", fontsize=style.LABEL)
-    bar.ax.tick_params(labelsize=style.TICK)
+    inside: dict[str, Any] = {"facecolor": style.SATISFIED, "edgecolor": style.INK, "linewidth": style.BOLD}
+    axes.contourf(across, up, below, levels=[-EDGE_DROP, 1.0], colors=[style.SATISFIED])
+    for level in (*LOWER, -EDGE_DROP):
+        edge = level == -EDGE_DROP
+        look: dict[str, Any] = {
+            "colors": [style.INK if edge else style.FAINT],
+            "linewidths": style.BOLD if edge else style.THIN,
+        }
+        if below.min() < level:
+            line = axes.contour(across, up, below, levels=[level], linestyles="solid", **look)
+            if not edge:
+                axes.clabel(line, fmt="%g", fontsize=style.SMALL, colors=style.INK)
+    points = axes.plot(*(each.ravel() for each in np.meshgrid(across, up)), ".", color=style.FAINT, markersize=2)
+    best = axes.plot(*found.best[::-1], color=style.CURSOR, label="likeliest", **style.STAR)
+    region = Patch(label=f"joint region of {percent(REGION_PROBABILITY)}", **inside)
+    (less,) = axes.plot([], [], color=style.FAINT, linewidth=style.THIN, label="log-likelihood less the largest")
+    points[0].set_label("points computed")
+    style.legend_below(figure, [*best, region, less, *points])
     style.tidy(axes, "restitution eta", "factor on slenderness")
     return figure

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patheffects import withStroke
 
 from rocking_cli.arrays import Bools, Reals
 from rocking_cli.plotting import style
@@ -130,7 +129,7 @@ def _name_answer(axes: Axes, at: tuple[float, float], text: str, x: Reals, shown
     axes.annotate(
         text, at, (9 if right else -9, 9 * above), textcoords="offset points", ha="left" if right else "right",
         va="bottom" if above > 0 else "top", fontsize=style.TICK, color=style.CURSOR, zorder=7, parse_math=False,
-        path_effects=[withStroke(linewidth=2.5, foreground=style.PAPER)],
+        path_effects=style.HALO,
     )  # fmt: skip
 
 

@@ -14,7 +14,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
-from matplotlib.patheffects import withStroke
 
 from rocking_cli.arrays import Integers, Points, Reals
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -73,7 +72,7 @@ def draw_map(
         axes.annotate(
             shorten(name, 30, placeholder=" ..."), (x, y), (-9 if right else 9, 7), textcoords="offset points",
             ha="right" if right else "left", fontsize=style.TICK, fontweight="bold", color=style.INK, zorder=7,
-            parse_math=False, path_effects=[withStroke(linewidth=2.5, foreground=style.PAPER)],
+            parse_math=False, path_effects=style.HALO,
         )  # fmt: skip
     if dimensionless:
         style.tidy(axes, *_dimensionless_labels(found))
@@ -132,10 +131,9 @@ def _draw_peaks(axes: Axes, found: OverturningMap, place: Callable[[Points], Rea
         others = np.concatenate([*apart[:k], *apart[k + 1 :]])
         if points.size:
             nearest = [np.hypot(*(others - each).T).min(initial=1.0) for each in points]
-            halo = withStroke(linewidth=2.5, foreground=FILLS[Kind.ROCKS])
             axes.annotate(
                 f"{level:g}", points[int(np.argmax(nearest))], xycoords="axes fraction", ha="center", va="center",
-                fontsize=style.SMALL, color=style.MEASURE, path_effects=[halo],
+                fontsize=style.SMALL, color=style.MEASURE, path_effects=style.HALO,
             )  # fmt: skip
     words = r"peak rotation over critical rotation $\phi/\phi_{cr}$"
     return [Line2D([], [], label=words, **look)] if any(found.edges.contours) else []

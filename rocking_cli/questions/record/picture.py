@@ -8,18 +8,22 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.measures import Measures, arias_build_up
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.plotting import style
+from rocking_cli.plotting.curve_names import name_points
 from rocking_cli.processing.oscillator import DAMPING, response_spectrum
 
 SPECTRUM_PERIODS = np.geomspace(0.02, 10.0, 120)  # s; periods of a spectrum
 MAX_BEFORE_RATIO = 3.0  # the series before processing is cut off at this multiple of the peak after it
 BEFORE_STYLE: dict[str, Any] = {"color": style.RECORD_COLOUR, "linewidth": style.CURVE}
 AFTER_STYLE: dict[str, Any] = {"color": style.INK, "linewidth": style.MEDIUM}
+POINT: dict[str, Any] = {"marker": "o", "markersize": 4.5, "color": style.INK, "linestyle": "none"}
+ROOM = 0.25  # margin above and below a curve, over its height, for the name of its peak
 MIN_PULSE_DURATIONS = 2.0  # time shown after a pulse, over its duration
 PULSE_POINTS = 2000
 
@@ -32,7 +36,7 @@ def draw_record(motion: GroundMotion, measures: Measures) -> Figure:
     motion : GroundMotion
         The scaled motion.
     measures : Measures
-        Its measures: the peaks are written on the curves, the significant duration is shaded.
+        Its measures: the peaks are named at the curves, the significant duration is shaded.
 
     Returns
     -------
@@ -41,20 +45,27 @@ def draw_record(motion: GroundMotion, measures: Measures) -> Figure:
     figure, every = style.panels(7.0, 4, sharex=True)
     panels = every[:, 0]
     style.heading(panels[0], motion.name)
+    style.time_axis(panels[3], 0.0, motion.duration)
     peaks = f"PGA {measures.pga:.3g} g", f"PGV {measures.pgv:.3g} m/s", f"PGD {measures.pgd:.3g} m"
+    points: dict[Axes, list[Line2D]] = {}
     for axes, (label, values), peak in zip(panels, _quantities(motion), peaks, strict=False):
         style.draw_samples(axes, values, motion.dt, color=style.INK, linewidth=style.CURVE)
         axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
-        style.make_room(axes)
-        style.note(axes, peak)
+        axes.margins(y=ROOM)
+        k = int(np.abs(values).argmax())
+        points[axes] = axes.plot(k * motion.dt, values[k], label=peak, **POINT)
         style.tidy(axes, y=label)
-    _draw_build_up(panels[3], motion, measures)
-    style.tidy(panels[3], "time [s]", "Arias intensity [%]")
-    for axes in panels:
-        if measures.t_5 is not None and measures.t_95 is not None:
-            axes.axvspan(measures.t_5, measures.t_95, color=style.SHADE, linewidth=0, zorder=0)
-    panels[3].set_xlim(0.0, motion.duration)
-    figure.align_ylabels()
+    points[panels[3]] = _draw_build_up(panels[3], motion, measures)
+    style.tidy(panels[3], "time [s]", f"Arias intensity\n[% of {measures.arias:.3g} m/s]")
+    if measures.t_5 is not None and measures.t_95 is not None:
+        shade = {"color": style.SHADE, "linewidth": 0, "zorder": 0}
+        spans = [axes.axvspan(measures.t_5, measures.t_95, **shade) for axes in panels]
+        spans[0].set_label(f"from 5 to 95 % of the Arias intensity: {measures.t_95 - measures.t_5:.4g} s")
+        style.legend_below(figure, spans[:1])
+    figure.align_ylabels(panels)
+    for axes, unnamed in name_points(points).items():
+        for point in unnamed:
+            style.note(axes, str(point.get_label()), 0.96 if axes is not panels[3] else 0.2)
     return figure
 
 
@@ -66,19 +77,16 @@ def _quantities(motion: GroundMotion) -> list[tuple[str, NDArray[np.float64]]]:
     ]
 
 
-def _draw_build_up(axes: Axes, motion: GroundMotion, measures: Measures) -> None:
-    """Draw the Husid plot, with 5 and 95 % marked unless the motion is zero."""
-    axes.set_ylim(-15.0, 105.0)  # room for a label below 5 %
+def _draw_build_up(axes: Axes, motion: GroundMotion, measures: Measures) -> list[Line2D]:
+    """Draw the Husid plot; return marks at 5 and 95 % with labels, none if the motion is zero."""
+    axes.set_ylim(-20.0, 120.0)  # room for labels
+    axes.set_yticks([0, 50, 100])
     if measures.t_5 is None or measures.t_95 is None:
-        return
+        return []
     built = 100 * arias_build_up(motion) / measures.arias
     style.draw_samples(axes, built, motion.dt, color=style.INK, linewidth=style.MEDIUM)
-    for time, level in ((measures.t_5, 5), (measures.t_95, 95)):
-        axes.plot(time, level, marker="o", markersize=4.5, color=style.INK)
-        text = f"{level} % at {time:.4g} s"
-        # An increasing curve leaves the lower right corner free.
-        axes.annotate(text, (time, level), (6, -3), textcoords="offset points", va="top", fontsize=style.TICK)
-    style.note(axes, f"{measures.arias:.3g} m/s; 5 to 95 % in {measures.t_95 - measures.t_5:.4g} s", height=0.5)
+    times = {5: measures.t_5, 95: measures.t_95}
+    return [axes.plot(at, of, label=f"{of} % at {at:.4g} s", **POINT)[0] for of, at in times.items()]
 
 
 def draw_before_and_after(before: GroundMotion, after: GroundMotion, shift: float) -> Figure:
@@ -102,16 +110,18 @@ def draw_before_and_after(before: GroundMotion, after: GroundMotion, shift: floa
         style.draw_samples(axes, old, before.dt, label="as read", **BEFORE_STYLE)
         style.draw_samples(axes, new, after.dt, shift, label="processed", **AFTER_STYLE)
         _set_height(axes, old, new)
-        axes.set_xlim(0.0, max(before.duration, shift + after.duration))
+        style.time_axis(axes, 0.0, max(before.duration, shift + after.duration))
         style.tidy(axes, y=label)
-    panels[0].legend(loc="upper right", ncols=2, **style.LEGEND)
-    panels[2].set_xlabel(f"time [s]; {', '.join(after.processing)}", fontsize=style.LABEL)
+    label = f"time [s]; {', '.join(after.processing)}"
+    panels[2].set_xlabel(style.folded(label, style.page_width() - style.MAX_SIDE_MARGIN, style.LABEL))
+    panels[2].xaxis.label.set_size(style.LABEL)
     for motion, look in ((before, BEFORE_STYLE), (after, AFTER_STYLE)):
         spectrum = response_spectrum(motion, SPECTRUM_PERIODS[2 * motion.dt < SPECTRUM_PERIODS])
         panels[3].plot(spectrum.periods, spectrum.sa, **look)
     style.logarithmic(panels[3].xaxis)
-    panels[3].set_yscale("log")
-    style.tidy(panels[3], "period [s]", f"Sa at {100 * DAMPING:g} % [g]")
+    style.logarithmic(panels[3].yaxis, (1.0,))
+    style.tidy(panels[3], "period [s]", f"Sa, {100 * DAMPING:g} % damping [g]")
+    style.legend_below(figure, panels[0].get_lines())
     figure.align_ylabels()
     return figure
 
@@ -154,7 +164,7 @@ def draw_pulses(motion: GroundMotion, fits: Sequence[PulseFit], end: float) -> F
         end = max(end, fit.start + (1 + MIN_PULSE_DURATIONS) * fit.pulse.duration)
     style.tidy(above, y="acceleration [g]")
     style.tidy(below, "time [s]", "velocity [m/s]")
-    below.set_xlim(min([0.0, *(fit.start for fit in fits)]), min(end, motion.duration))
+    style.time_axis(below, min([0.0, *(fit.start for fit in fits)]), min(end, motion.duration))
     style.legend_below(figure, ncols=1)
     figure.align_ylabels()
     return figure

@@ -7,14 +7,20 @@ from textwrap import shorten
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from rocking_cli import names
+from rocking_cli.arrays import Bools, Reals
 from rocking_cli.plotting import style
-from rocking_cli.questions.respond.azimuths import AzimuthResponses
+from rocking_cli.questions.respond.azimuths import AZIMUTH_STEP, AzimuthResponses
 
-# Ratio phi/phi_cr at which directions that overturn are marked; motions that come back rarely reach it.
-OVERTURNED_RADIUS = 1.08
+HEIGHT, SPARE = 6.6, 1.4  # inches of the figure at most, and more than its width
+# Radius over the peaks, and phi/phi_cr, at which the first arc is drawn; motions that come back rarely reach it.
+FIRST_ARC, NEXT_ARC = 1.1, 0.07
+ARCS = {names.OVERTURNS: "-", names.UNKNOWN: (0, (0.5, 0.5))}
+ARC_WEIGHT = 4.0  # pt
 MAX_NAME_LENGTH = 32  # characters
 
 
@@ -24,49 +30,68 @@ def draw_azimuths(found: AzimuthResponses, title: str, free: Sequence[bool]) -> 
     Parameters
     ----------
     found : AzimuthResponses
-        The responses: a closed curve for each model, crosses outside for overturning, circles for an unknown outcome.
+        The responses: a closed curve for each model, and arcs outside where it overturns or its outcome is unknown.
     title : str
         Heading.
     free : sequence of bool
-        Whether each direction has no critical rotation.
+        Whether each direction has no critical rotation: rotations are then plotted in degrees or mrad.
 
     Returns
     -------
     matplotlib.figure.Figure
     """
-    figure, ((axes,),) = style.panels(6.4, projection="polar")
+    figure, ((axes,),) = style.panels(min(HEIGHT, style.page_width() + SPARE), projection="polar")
     axes.set_theta_zero_location("N")
     axes.set_theta_direction(-1)
-    style.heading(axes, title)
-    angles = np.radians(np.append(found.azimuths, found.azimuths[0]))
-    peaks = {name: np.where(each.unknown, np.nan, each.peak_ratio) for name, each in found.outcomes.items()}
+    if isinstance(style.given(), Axes):
+        style.heading(axes, title)
+    else:
+        style.heading_of_all(figure, title)
+    turned = {name: np.fmax(each.peak_positive, each.peak_negative) for name, each in found.outcomes.items()}
+    size = {name: turned[name] if any(free) else each.peak_ratio for name, each in found.outcomes.items()}
+    peaks = {name: np.where(each.unknown | each.fell, np.nan, size[name]) for name, each in found.outcomes.items()}
     reach = max((float(np.nanmax(each)) for each in peaks.values() if np.isfinite(each).any()), default=0.0)
-    falls = any(each.fell.any() for each in found.outcomes.values())
-    doubtful = any(each.unknown.any() for each in found.outcomes.values())
-    marked = falls or doubtful
-    outside = max(OVERTURNED_RADIUS, reach * OVERTURNED_RADIUS)
-    for k, (name, each) in enumerate(found.outcomes.items()):
-        look: Any = style.LINES[name]
-        axes.plot(angles, np.append(peaks[name], peaks[name][0]), label=style.LABELS[name], **look)
-        ring = outside * (1 + 0.07 * k)
-        for flags, marker in ((each.fell, "x"), (each.unknown, "o")):
-            at = np.radians(found.azimuths[flags])
-            axes.plot(
-                at, np.full(at.size, ring), linestyle="none", marker=marker, markersize=5, color=look["color"],
-                markerfacecolor="white",
-            )  # fmt: skip
-    if marked or reach > 0.5:
+    factor, unit = style.angle_unit(reach) if any(free) else (1.0, "")
+    reach *= factor
+    angles = np.radians(np.append(found.azimuths, found.azimuths[0]))
+    curves = [
+        axes.plot(angles, factor * np.append(each, each[0]), label=style.LABELS[name], **style.LINES[name])[0]
+        for name, each in peaks.items()
+    ]
+    flags = {
+        names.OVERTURNS: {name: each.fell for name, each in found.outcomes.items()},
+        names.UNKNOWN: {name: each.unknown for name, each in found.outcomes.items()},
+    }
+    shown = [what for what, each in flags.items() if any(where.any() for where in each.values())]
+    critical = not any(free) and (bool(shown) or reach > 0.5)
+    first = FIRST_ARC * max(reach, float(critical))
+    for what in shown:
+        look: dict[str, Any] = {"linewidth": ARC_WEIGHT, "linestyle": ARCS[what], "solid_capstyle": "butt"}
+        for k, (name, where) in enumerate(flags[what].items()):
+            arcs, radius = _arcs(found.azimuths, where), first * (1 + NEXT_ARC * k)
+            axes.plot(arcs, np.full(arcs.size, radius), **look, color=style.LINES[name]["color"])
+        curves += axes.plot([], [], label=what, color=style.INK, **look)
+    if critical:
         around = np.linspace(0.0, 2 * np.pi, 361)
-        axes.plot(around, np.ones(around.size), color=style.FAINT, linewidth=style.MEDIUM, linestyle=":")
-    axes.set_ylim(0.0, outside * (1 + 0.07 * len(found.outcomes)) if marked else max(1.1 * reach, 1e-3))
+        look = {"color": style.INK, "linewidth": style.CURVE, "linestyle": ":", "label": "critical rotation"}
+        curves += axes.plot(around, np.ones(around.size), **look)
+    axes.set_ylim(0.0, first * (1 + NEXT_ARC * len(peaks)) if shown else max(1.1 * reach, 1e-3))
     one, other = (shorten(name, MAX_NAME_LENGTH, placeholder=" ...") for name in found.names)
     axes.set_xticks(np.radians(np.arange(0, 360, 30)))
     axes.tick_params(labelsize=style.TICK, colors=style.INK)
     axes.set_rlabel_position(67)
+    axes.yaxis.set_major_locator(MaxNLocator(4))
+    for each in axes.get_yticklabels():
+        each.set_path_effects(style.HALO)
     axes.grid(True, color=style.GRID, linewidth=style.THIN)
-    label = f"peak {style.over(free, math=True)}; 0° is {style.plain(one)}, 90° {style.plain(other)}"
-    crosses = f"; crosses: {names.OVERTURNS}" if falls else ""
-    circles = f"; circles: {names.UNKNOWN}" if doubtful else ""
-    axes.set_xlabel(label + crosses + circles, fontsize=style.LABEL)
-    axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0), **style.LEGEND)
+    over = f"rotation [{unit.strip()}]" if any(free) else style.over(free, math=True)
+    label = f"peak {over}; 0° is {style.plain(one)}, 90° is {style.plain(other)}"
+    axes.set_xlabel(style.folded(label, style.page_width() - style.MAX_SIDE_MARGIN, style.LABEL), fontsize=style.LABEL)
+    style.legend_below(figure, curves, ncols=3)
     return figure
+
+
+def _arcs(azimuths: Reals, where: Bools) -> Reals:
+    """Return arcs over flagged directions [deg], half a step before and after each, with NaN between them [rad]."""
+    around = np.append(np.linspace(-0.5, 0.5, 5), np.nan) * AZIMUTH_STEP
+    return np.asarray(np.radians(azimuths[where, None] + around).ravel())

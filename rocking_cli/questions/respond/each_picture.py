@@ -62,11 +62,12 @@ def draw_each(grid: RunGrid, outcomes: Mapping[ModelName, Outcomes], x: str, y: 
     unknown = values["outcome"] == names.UNKNOWN
     above = np.isinf(up)
     top = 1.05 * float(np.nanmax(up[~above], initial=0.0)) or 1.0
+    marks = []
     for k, name in enumerate(grid.axes["structure"]):
         mine, look = values["structure"] == name, style.distinct(k)
         dots: dict[str, Any] = {"s": MARK_SIZE, "color": look["color"], "marker": look["marker"], "linewidth": 0.8}
         known = mine & ~unknown & ~above
-        axes.scatter(across[known], up[known], label=style.plain(str(name)), **dots)
+        marks.append(axes.scatter(across[known], up[known], label=style.plain(str(name)), **dots))
         open_look = dots | {"color": "none", "edgecolor": look["color"]}
         axes.scatter(across[mine & unknown], up[mine & unknown], **open_look)
         high = np.full(int((mine & above).sum()), top * (1 + BAND * (0.25 + 0.5 * _share(k, grid.shape[0]))))
@@ -76,16 +77,16 @@ def draw_each(grid: RunGrid, outcomes: Mapping[ModelName, Outcomes], x: str, y: 
     style.tidy(axes, *(labels.get(each) or _label(each, units) for each in (x, y)))
     if above.any():
         axes.axhline(top, color=style.FAINT, linewidth=style.THIN)
-        axes.scatter([], [], marker="x", color=style.INK, s=MARK_SIZE, label=f"above the line: {names.OVERTURNS}")
+        above_it = f"above the line: {names.OVERTURNS}"
+        marks.append(axes.scatter([], [], marker="x", color=style.INK, s=MARK_SIZE, label=above_it))
         axes.set_ylim(top=top * (1 + BAND))
     if unknown.any():
-        axes.scatter(
-            [], [], s=MARK_SIZE, color="none", edgecolor=style.INK, label=f"open: {names.UNKNOWN}, value until known_to"
-        )
+        open_one = f"open: {names.UNKNOWN}, value until known_to"
+        marks.append(axes.scatter([], [], s=MARK_SIZE, color="none", edgecolor=style.INK, label=open_one))
     positive = across[across > 0]
     if positive.size == across.size and positive.max() > WIDEST_SPREAD * positive.min():
-        axes.set_xscale("log")
-    style.legend_below(figure)
+        style.logarithmic(axes.xaxis)
+    style.legend_below(figure, marks)
     return figure
 
 

@@ -295,7 +295,6 @@ def _impact_columns(response: Response) -> Columns:
 
 def _figure(response: Response, structure: Structure, title: str, *, contact: bool) -> Figure:
     from rocking_cli.questions.respond.picture import draw_history
-    from rocking_cli.studies.movements import Watched
     from rocking_cli.views.conclusion import headline
 
     first, *others = response.runs.values()
@@ -303,7 +302,4 @@ def _figure(response: Response, structure: Structure, title: str, *, contact: bo
     pulse = (fit, alone) if fit is not None and alone is not None else None
     checked = list(response.contacts.values()) if contact else []
     title = f"{title} ({headline(response.conclusion)})"
-    return draw_history(
-        first, response.first, title, others[0] if others else None, pulse, structure.uplift, checked,
-        Watched(structure.mechanism),
-    )  # fmt: skip
+    return draw_history(first, response.first, title, others[0] if others else None, pulse, structure, checked)

@@ -11,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
-from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
 from rocking_cli.arrays import Reals
@@ -127,7 +126,7 @@ def _scale_bar(axes: Axes, narrower: float) -> None:
     axes.text(
         left, low + 0.012, f"{length:g} m" if length < 1000 else f"{length / 1000:g} km", transform=axes.transAxes,
         fontsize=style.TICK, color=style.INK, va="bottom", zorder=5,
-        path_effects=[withStroke(linewidth=2, foreground=style.PAPER)],
+        path_effects=style.HALO,
     )  # fmt: skip
 
 
