@@ -9,7 +9,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 from rocking_cli import names
-from rocking_cli.documents.figures import svg
+from rocking_cli.documents.figures import inline_svg, svg
 from rocking_cli.plotting import style
 from tests.conftest import EXAMPLES
 from tests.render import FIGURES
@@ -111,3 +111,17 @@ def test_a_dark_page_recolours_words_lines_and_areas():
     assert f"stroke: {style.BLUE}" in text
     assert f"figure [style*='stroke: {style.BLUE}'] {{ stroke: {style.DARK[style.BLUE]} !important }}" in rules
     assert "figure text:not([style*='fill'])" in rules
+
+
+def test_marks_have_their_colours_where_they_are_used():
+    """Rules do not reach the definition of a mark through its use."""
+
+    def drawn():
+        figure = Figure()
+        figure.subplots().plot([0, 1], color=style.BLUE, marker="o")
+        return figure
+
+    page = str(inline_svg(drawn, "p"))
+    defined = re.findall(r'<path id="p-m[^>]*>', page)
+    assert defined and not any("stroke: #" in each for each in defined)
+    assert re.search(rf"<use [^>]*stroke: {style.BLUE}", page)

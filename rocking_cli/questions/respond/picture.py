@@ -315,6 +315,12 @@ def _draw_run(axes: Axes, run: History, scale: _Scale, until: float, *, told: bo
     return curve
 
 
+def _peak(run: History) -> int:
+    """Return the index of the sample at the peak; of equal peaks the first, whatever rounding does."""
+    size, k = np.abs(run.ratio), int(np.searchsorted(run.time, peak_time(run)))
+    return k + int((np.diff(size[k:], append=-inf) <= 0).argmax())
+
+
 def _fate(run: History, scale: _Scale) -> str:
     """Return the outcome of a history that is known to its end, with its peak or its time."""
     if run.fell:
@@ -323,7 +329,7 @@ def _fate(run: History, scale: _Scale) -> str:
         return names.NO_UPLIFT
     peak = run.peak_ratio if scale.factor is None else scale.factor * run.furthest
     # A motion may start and end between two samples.
-    at = peak_time(run) if run.ratio.any() else run.uplift_time
+    at = float(run.time[_peak(run)]) if run.ratio.any() else run.uplift_time
     return f"peak {peak:.3g}{scale.unit} at {at:.4g} s"
 
 
@@ -348,7 +354,7 @@ def _points(axes: Axes, run: History, scale: _Scale, until: float, watched: Watc
         point = next(each for each in watched.peaks(run).points if each.name == watched.control)
         moved, unit = (point.horizontal, "m") if point.horizontal > 1 else (1000 * point.horizontal, "mm")
         words += "" if isnan(moved) else f"\n{point.name} {moved:.3g} {unit}"
-    k = int(np.flatnonzero(run.time >= peak_time(run))[0])
+    k = _peak(run)
     yield mark(float(run.time[k]), float(scale.of(run)[k]), words, "o")
     if not run.at_rest:
         yield mark(_last(run), float(scale.of(run)[np.isfinite(run.ratio)][-1]), names.STILL_ROCKING, ">")
