@@ -155,14 +155,14 @@ def _draw_time(
     It begins and ends at a tick. Returns its ends [s].
     """
     every = [(run, until[what]) for what, each in responses.items() for run in each.values()]
-    lasts = motion.duration if motion is not None else 0.0
     moving = [(run, known) for run, known in every if run.lifted] or every
     starts = [0.0 if run.ratio[0] or isnan(run.uplift_time) else run.uplift_time - SECONDS_BEFORE for run, _ in moving]
     starts += [] if pulse is None else [pulse.start]
     first = max(0.0, min(starts))
     last = max(_end(run, known, first) for run, known in moving)
     start, end = style.time_axis(axes, first, last)
-    lasts = max([lasts, *(run.end_time for run, known in moving if not isfinite(known) and not run.fell)])
+    lasts = max(run.overturning_time if run.fell else run.end_time for run, known in moving)
+    lasts = max(lasts, motion.duration) if motion is not None else lasts
     left_out = [f"0 to {start:g} s, at rest"] if start > 0 else []
     if lasts > end:
         why = " or ".join(dict.fromkeys(_state(run, known, end) for run, known in moving))

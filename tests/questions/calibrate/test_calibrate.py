@@ -497,6 +497,6 @@ class TestRegion:
         text = " ".join(part for part in region_view(found, "a", "f", 5).parts if isinstance(part, str))
         assert ("the region reaches the edge" in text) == wide
         assert found.inside.sum() == (9 if wide else 1)
-        axes = draw_region(found, "a").axes[0]  # levels that the likelihood does not reach are not asked for
+        axes = draw_region(found, "a").axes[0]  # levels that the likelihood does not reach are left out
         labels = {text.get_text() for text in axes.texts}
         assert labels == (set() if wide else {f"{level:g}" for level in LOWER if level > -drop})

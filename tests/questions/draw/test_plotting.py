@@ -97,10 +97,11 @@ def test_the_axes_fit_what_happens_end_at_a_tick_and_say_what_is_left_out():
 @pytest.mark.parametrize("narrow", [False, True])
 def test_nothing_is_cut_off_or_on_another_word(narrow):
     histories = respond(BLOCK, PULSE)
+    motion = replace(PULSE, name="a ground motion with quite a long name, longer than a phone is wide")
     with style.on_phone() if narrow else nullcontext():
         figures = [
-            draw_history(histories, PULSE, "a block with a long name " * 3, structure=Structure(BLOCK)),
-            draw_record(PULSE, measure(PULSE)),
+            draw_history(histories, motion, "a block with a long name " * 3, structure=Structure(BLOCK)),
+            draw_record(motion, measure(motion)),
         ]
     for figure in figures:
         FigureCanvasAgg(figure).draw()
@@ -140,6 +141,7 @@ def test_overturning_after_the_last_sample_is_in_the_legend():
     axes = draw_history({"nonlinear": run}, motion, "a block").axes[1]
     assert f"nonlinear: overturns at {run.overturning_time:.4g} s, after the last sample" in words(axes)
     assert not any(line.get_marker() == "x" for line in axes.lines)
+    assert axes.get_xlabel() == f"time [s]; not shown: 5 to {run.overturning_time:.4g} s, still moving"
 
 
 @pytest.mark.parametrize("motion", [None, PULSE.scaled(0.01)])
