@@ -61,7 +61,7 @@ def _lay_out(axes: Axes) -> None:
 
 def _places(axes: Axes, curves: Sequence[Line2D]) -> list[complex | None]:
     """Return the middle of the name of each curve [inches from the lower left corner]; None if it does not fit."""
-    if style.given() is not None:
+    if style.given() is not None or not curves:
         return [None] * len(curves)
     size = style.inches(axes)
     along = [_in_inches(axes, each) for each in curves]

@@ -186,10 +186,21 @@ class TestAzimuths:
 
     def test_no_curve_is_drawn_there(self):
         axes = draw_azimuths(self.found(), "", (False, False)).axes[0]
-        curve, crosses, circles = axes.lines[:3]
+        curve, falls, _, unknown = axes.lines[:4]
         assert np.isnan(curve.get_ydata()).tolist() == [True, True, True, False, False, False, True]
-        assert len(crosses.get_xdata()) == 1 and np.allclose(circles.get_xdata(), np.radians([60, 120]))
-        assert "circles: unknown" in axes.get_xlabel()
+        step = np.radians([[-1, -0.5, 0, 0.5, 1, nan]])
+        np.testing.assert_allclose(falls.get_xdata(), step[0])
+        np.testing.assert_allclose(unknown.get_xdata(), (np.radians([[60], [120]]) + step).ravel())
+        words = [text.get_text() for text in axes.get_figure().legends[0].get_texts()]
+        assert words == ["nonlinear", "overturns", "unknown", "critical rotation"]
+
+    @pytest.mark.parametrize("size", [0.003, 0.3])
+    def test_without_a_critical_rotation_peaks_are_in_mrad_or_degrees(self, size):
+        found, of = self.found(), np.full(6, size)
+        many = replace(found.outcomes["nonlinear"], peak_positive=of, peak_negative=of / 2)
+        axes = draw_azimuths(replace(found, outcomes={"nonlinear": many}), "", (True, True)).axes[0]
+        values, unit = (1000 * size, "mrad") if size < 0.01 else (np.degrees(size), "°")
+        assert axes.lines[0].get_ydata()[3] == pytest.approx(values) and f"peak rotation [{unit}]" in axes.get_xlabel()
 
 
 class TestVerification:

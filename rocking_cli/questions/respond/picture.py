@@ -155,14 +155,14 @@ def _draw_time(
     It begins and ends at a tick. Returns its ends [s].
     """
     every = [(run, until[what]) for what, each in responses.items() for run in each.values()]
-    lasts = motion.duration if motion is not None else 0.0
     moving = [(run, known) for run, known in every if run.lifted] or every
     starts = [0.0 if run.ratio[0] or isnan(run.uplift_time) else run.uplift_time - SECONDS_BEFORE for run, _ in moving]
     starts += [] if pulse is None else [pulse.start]
     first = max(0.0, min(starts))
     last = max(_end(run, known, first) for run, known in moving)
     start, end = style.time_axis(axes, first, last)
-    lasts = max([lasts, *(run.end_time for run, known in moving if not isfinite(known) and not run.fell)])
+    lasts = max(run.overturning_time if run.fell else run.end_time for run, known in moving)
+    lasts = max(lasts, motion.duration) if motion is not None else lasts
     left_out = [f"0 to {start:g} s, at rest"] if start > 0 else []
     if lasts > end:
         why = " or ".join(dict.fromkeys(_state(run, known, end) for run, known in moving))
@@ -315,6 +315,12 @@ def _draw_run(axes: Axes, run: History, scale: _Scale, until: float, *, told: bo
     return curve
 
 
+def _peak(run: History) -> int:
+    """Return the index of the sample at the peak; of equal peaks the first, whatever rounding does."""
+    size, k = np.abs(run.ratio), int(np.searchsorted(run.time, peak_time(run)))
+    return k + int((np.diff(size[k:], append=-inf) <= 0).argmax())
+
+
 def _fate(run: History, scale: _Scale) -> str:
     """Return the outcome of a history that is known to its end, with its peak or its time."""
     if run.fell:
@@ -323,7 +329,7 @@ def _fate(run: History, scale: _Scale) -> str:
         return names.NO_UPLIFT
     peak = run.peak_ratio if scale.factor is None else scale.factor * run.furthest
     # A motion may start and end between two samples.
-    at = peak_time(run) if run.ratio.any() else run.uplift_time
+    at = float(run.time[_peak(run)]) if run.ratio.any() else run.uplift_time
     return f"peak {peak:.3g}{scale.unit} at {at:.4g} s"
 
 
@@ -348,7 +354,7 @@ def _points(axes: Axes, run: History, scale: _Scale, until: float, watched: Watc
         point = next(each for each in watched.peaks(run).points if each.name == watched.control)
         moved, unit = (point.horizontal, "m") if point.horizontal > 1 else (1000 * point.horizontal, "mm")
         words += "" if isnan(moved) else f"\n{point.name} {moved:.3g} {unit}"
-    k = int(np.flatnonzero(run.time >= peak_time(run))[0])
+    k = _peak(run)
     yield mark(float(run.time[k]), float(scale.of(run)[k]), words, "o")
     if not run.at_rest:
         yield mark(_last(run), float(scale.of(run)[np.isfinite(run.ratio)][-1]), names.STILL_ROCKING, ">")

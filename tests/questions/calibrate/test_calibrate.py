@@ -16,6 +16,7 @@ from rocking_cli.core import Direction
 from rocking_cli.errors import InputError
 from rocking_cli.io.yaml_file import with_fields
 from rocking_cli.questions.calibrate.free_rocking import MechanismSide, ScaledSide, free_rocking
+from rocking_cli.questions.calibrate.picture import LOWER, draw_region
 from rocking_cli.questions.calibrate.region import JointRegion, joint_region
 from rocking_cli.questions.calibrate.study import fit_trace, pool
 from rocking_cli.questions.calibrate.trace import Trace, read_trace
@@ -496,3 +497,6 @@ class TestRegion:
         text = " ".join(part for part in region_view(found, "a", "f", 5).parts if isinstance(part, str))
         assert ("the region reaches the edge" in text) == wide
         assert found.inside.sum() == (9 if wide else 1)
+        axes = draw_region(found, "a").axes[0]  # levels that the likelihood does not reach are left out
+        labels = {text.get_text() for text in axes.texts}
+        assert labels == (set() if wide else {f"{level:g}" for level in LOWER if level > -drop})

@@ -23,7 +23,7 @@ from rocking_cli.studies.picture import NODES_PER_SIDE, picture
 from rocking_cli.views.verdict import verdict
 from tests.cli.test_cli import run, run_json
 from tests.conftest import rows_of
-from tests.following import respond
+from tests.following import respond, structure_of
 
 OF_STONE = {"density": 2400.0, "depth": 1.0}
 BAR = {"name": "bar", "from": {"ground": [-6, 7.5]}, "to": {"at": [-0.3, 7.5]}, "stiffness": 1e5, "only": "tension"}
@@ -293,30 +293,35 @@ class TestRespond:
         last = rows_of(out)[-1]
         assert last["nonlinear phi [rad]"] == last["nonlinear top u_x [m]"] == last["linear2 top u_x [m]"] == ""
 
-    def test_forces_of_ties_are_drawn_below_the_rotation(self):
-        mechanism = Block(**TIED)
-        motion = parse_pulse("sine:0.5g:0.5s").sampled()
-        histories = respond(mechanism, motion, models=("nonlinear",))
-        watched = Watched(mechanism)
-        _, rotation, forces = draw_history(histories, motion, "x", watched=watched).axes
-        assert "limit" in rotation.get_ylabel() and "phi_{cr}" not in rotation.get_ylabel()
+    @pytest.mark.parametrize(("stiffness", "unit", "factor"), [(1e7, "°", np.degrees(1)), (2e8, "mrad", 1000.0)])
+    def test_forces_of_ties_are_drawn_below_the_rotation_in_degrees_or_mrad(self, stiffness, unit, factor):
+        mechanism = Block(**TIED | {"ties": [TENDON | {"stiffness": stiffness}]})
+        motion = parse_pulse("sine:0.6g:1s").sampled()
+        run = respond(mechanism, motion, models=("nonlinear",))["nonlinear"]
+        assert all(run.ends_at_limit)
+        figure = draw_history({"nonlinear": run}, motion, "x", structure=structure_of(mechanism))
+        _, rotation, forces = figure.axes
+        assert rotation.get_ylabel() == f"rotation [{unit}], clockwise up"
+        np.testing.assert_allclose(rotation.lines[1].get_ydata(), factor * run.phi)
+        words = [text.get_text() for axes in figure.axes for text in axes.texts]
+        assert any(each.startswith(f"peak {factor * run.furthest:.3g}") and unit in each for each in words)
         (line,) = (line for line in forces.lines if line.get_label() == "tendon")
-        largest = watched.peaks(histories["nonlinear"]).ties[0].force / 1000
+        largest = Watched(mechanism).peaks(run).ties[0].force / 1000
         assert largest * 0.99 < line.get_ydata().max() <= largest
-        assert "tendon" in {text.get_text() for text in forces.get_legend().get_texts()}
+        assert "tendon" in words
 
     def test_without_ties_there_is_no_panel_for_them(self):
         mechanism = Block(width=0.7, height=2.8)
         motion = parse_pulse("sine:0.5g:0.5s").sampled()
         histories = respond(mechanism, motion, models=("nonlinear",))
-        assert len(draw_history(histories, motion, "x", watched=Watched(mechanism)).axes) == 2
+        assert len(draw_history(histories, motion, "x", structure=structure_of(mechanism)).axes) == 2
 
     @pytest.mark.parametrize("side", ["positive", "negative"])
     def test_the_side_that_it_leans_on_is_hatched(self, side):
         mechanism = Block(**FACADE, one_sided=side, rebound=0.4)
         motion = parse_pulse("sine:0.15g:0.8s").sampled()
         histories = respond(mechanism, motion, models=("nonlinear",))
-        axes = draw_history(histories, motion, "x", watched=Watched(mechanism)).axes[1]
+        axes = draw_history(histories, motion, "x", structure=structure_of(mechanism)).axes[1]
         assert [text.get_text() for text in axes.texts if "support" in text.get_text()] == ["supports"]
         low, high = axes.get_ylim()
         sign = Direction[side.upper()]

@@ -1,27 +1,35 @@
 """The pictures show what happened, in print and in grey, however long the record."""
 
+from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.text import Text
 
 from mechanisms.block import Block
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.measures import measure
+from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.plotting import style
 from rocking_cli.plotting.style import BINS_ACROSS, visible
 from rocking_cli.questions.record.picture import draw_record
 from rocking_cli.questions.respond.picture import MIN_IMPACT_RATE, draw_history
+from rocking_cli.structure import Structure
 from rocking_cli.studies.contact import Contacts
+from rocking_cli.studies.movements import Watched
 from tests.following import respond
 
 BLOCK = Block(width=0.7, height=2.8)
 PULSE = GroundMotion("pulse", 0.01, -0.35 * STANDARD_GRAVITY * np.sin(np.linspace(0, 2 * np.pi, 81)))
 
 
-def curves(axes):
-    return {line.get_label(): line for line in axes.get_lines() if not line.get_label().startswith("_")}
+def words(axes):
+    """All words in and below a panel."""
+    figure, legend = axes.get_figure(), axes.get_legend()
+    keys = [*figure.legends, *([legend] if legend is not None else [])]
+    return [text.get_text() for text in (*axes.texts, *(text for key in keys for text in key.get_texts()))]
 
 
 def test_the_record_stands_above_and_the_responses_below_with_their_impacts():
@@ -30,35 +38,79 @@ def test_the_record_stands_above_and_the_responses_below_with_their_impacts():
     above, below = figure.axes
     assert above.get_title(loc="left") == "a block"
     np.testing.assert_allclose(above.get_lines()[0].get_ydata(), PULSE.acceleration / STANDARD_GRAVITY)
-    drawn = curves(below)
-    assert len(drawn) == 3
-    np.testing.assert_array_equal(drawn["nonlinear"].get_ydata(), histories["nonlinear"].ratio)
-    marked = [line.get_xdata() for line in below.get_lines() if line.get_marker() == "|"]
-    assert len(marked) == 3
-    assert marked[0][0] == histories["nonlinear"].impacts[0, 0]
-    assert [len(times) for times in marked] == [len(run.felt) for run in histories.values()]
-    assert 0 < len(marked[0]) < histories["nonlinear"].impact_count
+    assert "pulse, PGA 0.35 g" in words(above)
+    nonlinear, *others = below.get_lines()[1:4]
+    run = histories["nonlinear"]
+    np.testing.assert_array_equal(nonlinear.get_ydata(), run.ratio)
+    assert nonlinear.get_label() == "nonlinear"
+    for line, other in zip(others, (histories["linear1"], histories["linear2"]), strict=True):
+        at = other.time[np.abs(other.ratio).argmax()]
+        assert line.get_label().endswith(f": peak {other.peak_ratio:.3g} $\\phi_{{cr}}$ at {at:.4g} s")
+    (marked,) = (line for line in below.get_lines() if line.get_marker() == "|")
+    assert marked.get_label() == f"impacts, nonlinear, {100 * MIN_IMPACT_RATE:g} % of the strongest or more"
+    np.testing.assert_array_equal(marked.get_xdata(), run.felt[:, 0])
+    assert 0 < len(run.felt) < run.impact_count
     assert "time [s]" in below.get_xlabel() and "phi" in below.get_ylabel()
     with_up = draw_history(histories, replace(PULSE, vertical=PULSE.scaled(0.5)), "a block").axes[0]
     drawn = [line.get_ydata() for line in with_up.get_lines()]
     assert any(np.array_equal(y, 0.5 * PULSE.acceleration / STANDARD_GRAVITY) for y in drawn)
 
 
-def test_notes_are_on_no_peak_and_the_marks_say_which_impacts_they_are():
-    """A motion whose peak is where its name stands: late, and to the right."""
-    late = GroundMotion("late", 0.01, np.concatenate([np.zeros(400), -PULSE.acceleration[::-1]]))
-    figure = draw_history(respond(BLOCK, late), late, "a block")
+def test_what_happens_is_named_at_the_curve_and_on_no_other():
+    structure = Structure(BLOCK)
+    run = respond(BLOCK, PULSE, models=("nonlinear",))["nonlinear"]
+    axes = draw_history({"nonlinear": run}, PULSE, "a block", structure=structure).axes[1]
+    moved = Watched(BLOCK).peaks(run).points[0].horizontal
+    k = int(np.abs(run.ratio).argmax())
+    uplift, peak = (line for line in axes.lines if line.get_label().startswith(("uplift", "peak")))
+    assert (uplift.get_xdata()[0], peak.get_xdata()[0]) == pytest.approx((run.uplift_time, run.time[k]))
+    assert peak.get_ydata()[0] == run.ratio[k]
+    named = f"peak {run.peak_ratio:.3g} $\\phi_{{cr}}$ at {run.time[k]:.4g} s\ntop {1000 * moved:.3g} mm"
+    assert {named, f"uplift at {run.uplift_time:.4g} s"} <= set(words(axes))
+    figure = axes.get_figure()
     FigureCanvasAgg(figure).draw()
-    above, below = figure.axes
-    (note,) = (text for text in above.texts if "PGA" in text.get_text())
-    bottom = above.transData.inverted().transform(note.get_window_extent())[0, 1]
-    assert above.get_lines()[0].get_ydata().max() < bottom
-    (key,) = (text.get_text() for text in below.texts if "impacts" in text.get_text())
-    assert f"{100 * MIN_IMPACT_RATE:g} %" in key
-    for axes, name in zip(draw_record(late, measure(late)).axes, ("PGA", "PGV", "PGD"), strict=False):
-        low, high = axes.get_ylim()
-        assert any(name in text.get_text() for text in axes.texts)
-        assert axes.get_lines()[0].get_ydata().max() < high - 0.15 * (high - low)
+    curve = axes.transData.transform(np.column_stack([run.time, run.ratio]))
+    for text in axes.texts:
+        box = text.get_window_extent()
+        assert not box.count_contains(curve) and axes.bbox.x0 < box.x0 and box.x1 < axes.bbox.x1
+
+
+def test_the_axes_fit_what_happens_end_at_a_tick_and_say_what_is_left_out():
+    """A motion of 40 s of which the structure rocks for a few, and hardly: .05 phi_cr fills the panel."""
+    shaking = np.concatenate([np.zeros(1000), PULSE.scaled(0.8).acceleration, np.zeros(3000)])
+    motion = GroundMotion("late", 0.01, shaking)
+    run = respond(BLOCK, motion, models=("nonlinear",))["nonlinear"]
+    assert 0.005 < run.peak_ratio < 0.05 and run.at_rest
+    axes = draw_history({"nonlinear": run}, motion, "a block").axes[1]
+    low, high = axes.get_ylim()
+    assert np.ptp(run.ratio) > 0.6 * (high - low) and low < run.ratio.min() and run.ratio.max() < high
+    start, end = axes.get_xlim()
+    assert start < run.uplift_time < run.end_time < end < 25 and {start, end} <= set(axes.get_xticks())
+    assert axes.get_xlabel() == f"time [s]; not shown: 0 to {start:g} s and {end:g} to {motion.duration:.4g} s, at rest"
+    cut = GroundMotion("cut", 0.01, shaking[: int(run.uplift_time / 0.01) + 30])
+    short = respond(BLOCK, cut, models=("nonlinear",), tail=0.0)["nonlinear"]
+    label = draw_history({"nonlinear": short}, cut, "a block").axes[1].get_xlabel()
+    assert short.end_time > short.time[-1] and label.endswith(f"to {short.end_time:.4g} s, still moving")
+
+
+@pytest.mark.every(2)
+@pytest.mark.parametrize("narrow", [False, True])
+def test_nothing_is_cut_off_or_on_another_word(narrow):
+    histories = respond(BLOCK, PULSE)
+    motion = replace(PULSE, name="a ground motion with quite a long name, longer than a phone is wide")
+    with style.on_phone() if narrow else nullcontext():
+        figures = [
+            draw_history(histories, motion, "a block with a long name " * 3, structure=Structure(BLOCK)),
+            draw_record(motion, measure(motion)),
+        ]
+    for figure in figures:
+        FigureCanvasAgg(figure).draw()
+        shown = [text for text in figure.findobj(Text) if text.get_text() and text.get_visible()]
+        boxes = {text: text.get_window_extent() for text in shown}
+        labels = [text for axes in figure.axes for axis in (axes.xaxis, axes.yaxis) for text in axis.get_ticklabels()]
+        for text in (each for each in shown if each not in labels):
+            assert figure.bbox.x0 <= boxes[text].x0 and boxes[text].x1 <= figure.bbox.x1
+            assert not any(boxes[text].overlaps(boxes[each]) for each in shown if each is not text), text
 
 
 def test_a_title_is_as_long_as_there_is_room_for():
@@ -71,15 +123,25 @@ def test_a_title_is_as_long_as_there_is_room_for():
     assert style.fitted("\udcff\x1b a") == "\udcff\x1b a"  # it is spelled out when it is written
 
 
-def test_overturning_is_named_and_the_fall_is_cut_off_with_a_cross_inside_the_panel():
-    histories = respond(BLOCK, PULSE.scaled(5.0), models=("nonlinear",))
-    figure = draw_history(histories, PULSE.scaled(5.0), "a block")
-    below = figure.axes[1]
-    assert list(curves(below)) == ["nonlinear, overturns"]
-    (cross,) = [line for line in below.get_lines() if line.get_marker() == "x"]
-    bottom, top = below.get_ylim()
-    assert bottom < cross.get_ydata()[0] < 0.99 * top <= 1.6
-    assert curves(below)["nonlinear, overturns"].get_xdata()[-1] == cross.get_xdata()[0]
+def test_overturning_is_named_where_the_curve_passes_the_critical_rotation():
+    motion = PULSE.scaled(5.0)
+    run = respond(BLOCK, motion, models=("nonlinear",))["nonlinear"]
+    axes = draw_history({"nonlinear": run}, motion, "a block").axes[1]
+    (cross,) = [line for line in axes.lines if line.get_marker() == "x"]
+    assert cross.get_xydata().tolist() == [[run.overturning_time, run.fell_to]]
+    assert f"overturns at {run.overturning_time:.4g} s" in words(axes) and "critical rotation" in words(axes)
+    assert np.interp(run.overturning_time, *axes.lines[1].get_data()) == pytest.approx(run.fell_to, abs=0.01)
+    assert 1 < np.abs(axes.lines[1].get_ydata()).max() < 1.6
+
+
+def test_overturning_after_the_last_sample_is_in_the_legend():
+    block, motion = Block(width=2.0, height=20.0), parse_pulse("sine:0.12g:4s").sampled()
+    run = respond(block, motion, models=("nonlinear",), tail=1.0)["nonlinear"]
+    assert run.fell and run.overturning_time > run.time[-1]
+    axes = draw_history({"nonlinear": run}, motion, "a block").axes[1]
+    assert f"nonlinear: overturns at {run.overturning_time:.4g} s, after the last sample" in words(axes)
+    assert not any(line.get_marker() == "x" for line in axes.lines)
+    assert axes.get_xlabel() == f"time [s]; not shown: 5 to {run.overturning_time:.4g} s, still moving"
 
 
 @pytest.mark.parametrize("motion", [None, PULSE.scaled(0.01)])
@@ -94,11 +156,8 @@ def test_a_reversed_record_has_a_panel_of_its_own():
     other = respond(BLOCK, PULSE.scaled(-1), models=("linear1",))
     figure = draw_history(histories, PULSE, "a block", other)
     _, one, two = figure.axes
-    assert (one.get_legend().get_title().get_text(), two.get_legend().get_title().get_text()) == (
-        "polarity 1", "polarity -1",
-    )  # fmt: skip
-    (drawn,) = curves(two).values()
-    np.testing.assert_array_equal(drawn.get_ydata(), other["linear1"].ratio)
+    assert (one.get_title(loc="left"), two.get_title(loc="left")) == ("polarity 1", "polarity -1")
+    np.testing.assert_array_equal(two.get_lines()[1].get_ydata(), other["linear1"].ratio)
     assert one.get_ylim() == two.get_ylim()
 
 
@@ -119,15 +178,18 @@ def test_a_record_is_drawn_with_its_integrals_and_the_build_up():
     measures = measure(PULSE)
     figure = draw_record(PULSE, measures)
     labels = [axes.get_ylabel() for axes in figure.axes]
-    assert labels == ["acceleration [g]", "velocity [m/s]", "displacement [m]", "Arias intensity [%]"]
+    arias = f"Arias intensity\n[% of {measures.arias:.3g} m/s]"
+    assert labels == ["acceleration [g]", "velocity [m/s]", "displacement [m]", arias]
     assert figure.axes[-1].get_xlabel() == "time [s]"
     np.testing.assert_allclose(figure.axes[1].get_lines()[0].get_ydata(), PULSE.velocity)
     built = figure.axes[3].get_lines()[0].get_ydata()
     assert built[0] == 0 and built[-1] == pytest.approx(100) and (np.diff(built) >= 0).all()
     marks = [(line.get_xdata()[0], line.get_ydata()[0]) for line in figure.axes[3].get_lines()[1:]]
     assert marks == [(measures.t_5, 5), (measures.t_95, 95)]
-    words = " ".join(text.get_text() for axes in figure.axes for text in axes.texts)
-    assert f"PGV {measures.pgv:.3g} m/s" in words and f"95 % at {measures.t_95:.4g} s" in words
+    peak = figure.axes[1].get_lines()[-1]
+    assert abs(peak.get_ydata()[0]) == pytest.approx(measures.pgv) and peak.get_label() in words(figure.axes[1])
+    assert peak.get_label() == f"PGV {measures.pgv:.3g} m/s"
+    assert f"95 % at {measures.t_95:.4g} s" in words(figure.axes[3])
 
 
 def test_a_record_of_zeros_can_be_drawn():
@@ -158,19 +220,22 @@ class TestThinning:
         above, below = figure.axes
         end = below.get_xlim()[1]
         assert end < 10
-        np.testing.assert_allclose(above.get_lines()[0].get_ydata()[:81], long.acceleration[:81] / STANDARD_GRAVITY)
+        drawn = above.get_lines()[0].get_ydata()
+        np.testing.assert_allclose(drawn, long.acceleration[: drawn.size] / STANDARD_GRAVITY)
         assert above.get_lines()[0].get_xdata()[-1] >= end
 
 
-def test_where_nothing_lifts_the_picture_says_so_and_what_would():
-    quiet = PULSE.scaled(1e-3)
-    figure = draw_history(respond(BLOCK, quiet), quiet, "a block", uplift=(0.25, 0.2))
-    ground, rotation = figure.axes
-    assert [line.get_ydata()[0] for line in ground.lines[-2:]] == [-0.25, 0.2]
-    assert "uplift at 0.2 g and -0.25 g" in " ".join(text.get_text() for text in ground.texts)
-    assert "does not uplift" in [text.get_text() for text in rotation.texts]
-    rocks = draw_history(respond(BLOCK, PULSE.scaled(3.0)), PULSE, "a block", uplift=(0.25, 0.25))
-    assert "does not uplift" not in [text.get_text() for each in rocks.axes for text in each.texts]
+def test_accelerations_of_uplift_are_drawn_and_named_and_no_uplift_said():
+    quiet, leaning = PULSE.scaled(1e-3), Block(width=0.7, height=2.8, one_sided="positive", rebound=0.4)
+    for block, levels, named in ((BLOCK, [-0.25, 0.25], "±0.25 g"), (leaning, [-0.25], "−0.25 g (clockwise)")):
+        histories = respond(block, quiet, models=("nonlinear",))
+        ground, rotation = draw_history(histories, quiet, "a block", structure=Structure(block)).axes
+        assert [line.get_ydata()[0] for line in ground.lines[1:]] == pytest.approx(levels)
+        low, high = ground.get_ylim()
+        assert all(low < level < high for level in levels)
+        assert f"uplift at {named}" in words(ground) and "does not uplift" in words(rotation)
+    rocks = draw_history(respond(BLOCK, PULSE), PULSE, "a block", structure=Structure(BLOCK))
+    assert "uplift at ±0.25 g" in words(rocks.axes[0]) and "does not uplift" not in words(rocks.axes[1])
 
 
 def test_the_friction_needed_is_a_panel_below():
@@ -188,5 +253,8 @@ def test_the_friction_needed_is_a_panel_below():
     assert len(rubbed.axes) == len(plain.axes) + 1
     below = rubbed.axes[-1]
     curves = below.get_lines()
-    assert [line.get_label() for line in curves] == ["polarity 1", "polarity -1", "available: 0.3"]
+    assert "available: 0.3" in words(below)
+    assert [line.get_label() for line in curves] == [
+        "required, polarity 1", "required, polarity -1", "available: 0.3",
+    ]  # fmt: skip
     assert max(curves[0].get_ydata()) == contacts[0].friction_needed < below.get_ylim()[1]

@@ -209,8 +209,8 @@ class TestWithPulse:
         assert bold.get_linewidth() > 3 * thin.get_linewidth() and bold.get_color() != thin.get_color()
         np.testing.assert_allclose(bold.get_ydata() * 9.80665, fit.acceleration(bold.get_xdata()))
         for axes, title, runs in ((record, "record", whole), (pulse, "its pulse alone", alone)):
-            assert axes.get_legend().get_title().get_text() == title
-            np.testing.assert_array_equal(axes.get_lines()[0].get_ydata(), runs["nonlinear"].ratio)
+            assert axes.get_title(loc="left") == title
+            np.testing.assert_array_equal(axes.get_lines()[1].get_ydata(), runs["nonlinear"].ratio)
 
     @pytest.mark.parametrize(
         ("options", "words"),

@@ -255,3 +255,9 @@ def test_a_plot_is_of_any_two_columns(answer):
         rk.InputError, match="`y` must be a column of numbers, got 'peak_ration'\n  did you mean peak_ratio"
     ):
         drawn(y="peak_ration")
+
+
+def test_a_structure_whose_name_begins_with_an_underscore_is_in_the_legend():
+    block = rk.Block(width=0.7, height=2.8, name="_$1")
+    figure = rk.respond_each(block, "sine:0.4g:0.8s", models="nonlinear", scales=[0.1, 0.5, 4]).figure()
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == [r"_\$1", "above the line: overturns"]
