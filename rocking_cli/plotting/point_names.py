@@ -65,7 +65,7 @@ def name_points(axes: Axes, points: Sequence[tuple[float, float, str]], marks: N
         farther = np.add.outer(GAPS, 0.005 * TURNS).ravel()
         best = int((farther + covered @ costs + NAME_COST * beyond).argmin())
         move, leads = complex(moves[best]), GAPS[best // TURNS.size] > LEAST_LINE
-        halo = [withStroke(linewidth=2, foreground=style.PAPER)]
+        halo = [withStroke(linewidth=1.4, foreground=style.PAPER)]
         line = {"arrowstyle": "-", "color": style.INK, "linewidth": style.THIN, "shrinkA": 0, "shrinkB": 3}
         axes.annotate(
             name, (x, y), (style.POINTS_PER_INCH * move.real, style.POINTS_PER_INCH * move.imag), ha="center",
