@@ -34,7 +34,7 @@ def name_points(axes: Axes, points: Sequence[tuple[float, float, str]], marks: N
     if style.given() is None and isinstance(axes.figure, Figure):
         axes.figure.draw_without_rendering()  # places the panel
     size, dpi, corner = style.inches(axes), axes.figure.dpi, complex(axes.bbox.x0, axes.bbox.y0)
-    named = _inches(axes, np.array([each[:2] for each in points]))
+    named = _inches(axes, np.array([each[:2] for each in points]).reshape(-1, 2))
     boxes = [each.get_window_extent() for each in axes.texts]
     texts = [
         _spread(
@@ -55,8 +55,8 @@ def name_points(axes: Axes, points: Sequence[tuple[float, float, str]], marks: N
         )
         moves = np.concatenate([(gap + half) * DIRECTIONS for gap in GAPS])
         away = taken[:, None] - (at + moves)
-        near = [np.abs(each).T - clear for each in (away.real, away.imag)]
-        covered = (near[0] < extent.real / 2) & (near[1] < extent.imag / 2)
+        excess = [np.abs(each).T - clear for each in (away.real, away.imag)]
+        covered = (excess[0] < extent.real / 2) & (excess[1] < extent.imag / 2)
         covered[:, len(marks) + k] = False
         off = at + moves - size / 2
         beyond = np.maximum(np.abs(off.real) - (size - extent).real / 2, 0)

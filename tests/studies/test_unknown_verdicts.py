@@ -117,7 +117,7 @@ class TestSurvey:
         said = " ".join(survey_views.sentences(found))
         assert "one: the outcome under at least one motion is unknown" in said
         assert "the joints of three are not checked" in said
-        labels = [line.get_label() for line in draw_survey(found, "").axes[0].lines]
+        labels = draw_survey(found, "").axes[0].get_legend_handles_labels()[1]
         assert labels == ["rocks (2)", "unknown under at least one motion (1)"]
 
     def test_the_limit_of_the_opening_holds_for_every_row(self, folder):

@@ -66,12 +66,12 @@ def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
         style.plain_numbers(top.xaxis)
         top.tick_params(labelsize=style.TICK, colors=style.INK)
         top.set_xlabel("PGA [g]", fontsize=style.LABEL)
-    said = ["star: as given", "" if alone else "tick: uplift"]
-    said += [f"shaded: 5 to 95 % interval of a share of {first.around.count} neighbours"]
-    said += ["hatched: unknown outcomes" if any(each.unknown.any() for each in margins.values()) else ""]
+    legend = ["star: as given", "" if alone else "tick: uplift"]
+    legend += [f"shaded: 5 to 95 % interval of a share of {first.around.count} neighbours"]
+    legend += ["hatched: unknown outcomes" if any(each.unknown.any() for each in margins.values()) else ""]
     polarities = POLARITIES.get(tuple(first.polarities))
     y = f"share of neighbours that overturn{f', {polarities}' if polarities else ''}"
-    style.tidy(axes, f"scale factor ({'; '.join(filter(None, said))})", style.folded(y, 2.6, style.LABEL))
+    style.tidy(axes, f"scale factor ({'; '.join(filter(None, legend))})", style.folded(y, 2.6, style.LABEL))
     if not alone and not name_curves(axes, curves):
         for curve in curves:
             curve.set_label(str(curve.get_label()).replace("\n", ", "))

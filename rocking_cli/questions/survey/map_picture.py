@@ -47,16 +47,17 @@ def draw_map(found: Survey, where: Coordinates, title: str) -> Figure:
     (west, east), (south, north), narrower = _extent(x, y)
     shape = (north - south) / ((east - west) * narrower)
     narrow = style.is_narrow()
-    wide, other = (2.85, 2.0) if narrow else (5.4, 1.2)  # inches: width of the map, height of all else
+    wide, other = (2.85, 1.8) if narrow else (5.4, 1.2)  # inches: width of the map, height of all else
     figure, axes = style.one_panel(min(8.0, other + wide * shape), title)
     axes.set_xlim(west, east)
     axes.set_ylim(south, north)
     axes.set_aspect(1 / narrower)
     norm = Normalize(1, max(len(found.rows), 2))
     sizes = np.where(np.arange(len(x)) < MAX_RANKED_LABELS, 40.0, 22.0 if len(x) <= MAX_VECTOR_MARKS else 9.0)
+    edges = np.where(np.arange(len(x)) < MAX_RANKED_LABELS, style.MEDIUM, style.HAIR)
     axes.scatter(
         x[::-1], y[::-1], c=ranks[::-1], cmap=RANKS, norm=norm, s=sizes[::-1],
-        edgecolors=style.INK, linewidths=style.HAIR, rasterized=len(x) > MAX_VECTOR_MARKS, zorder=3,
+        edgecolors=style.INK, linewidths=edges[::-1], rasterized=len(x) > MAX_VECTOR_MARKS, zorder=3,
     )  # fmt: skip
     style.tidy(axes, "longitude [deg]", "latitude [deg]")
     axes.ticklabel_format(useOffset=False, style="plain")

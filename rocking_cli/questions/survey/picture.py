@@ -48,7 +48,13 @@ def draw_survey(found: Survey, title: str) -> Figure:
             )  # fmt: skip
     first = np.flatnonzero(there)[:MAX_RANKED_LABELS]
     axes.plot(
-        p[first], uplift[first], linestyle="none", marker="o", markersize=7, color="none", markeredgecolor=style.INK
+        p[first],
+        uplift[first],
+        linestyle="none",
+        marker="o",
+        color="none",
+        markeredgecolor=style.INK,
+        markersize=7 if len(p) <= MAX_VECTOR_MARKS else 4.5,
     )
     axes.margins(0.08)
     axes.set_ylim(bottom=0.0)
