@@ -235,7 +235,8 @@ class TestPicture:
         np.testing.assert_allclose(heights, 2.8 * found.scales)
         falls = np.isinf(found.peak_ratio[0])
         shown = 2.8 * found.scales >= axes.get_xlim()[0]
-        assert falls[~shown].all() and falls[~shown].size > 3 and 1 <= falls[shown].sum() <= 10 and shown[-1]
+        first = int(np.argmin(falls[shown]))  # of those shown that does not overturn
+        assert falls[~shown].all() and falls[~shown].size > 3 and 1 <= first <= 6 and shown[-1]
 
     def test_nothing_but_overturning_and_nothing_at_all_can_be_drawn(self):
         shape = SpectrumShape(blocks_of(0.1, "linear2").structure)
