@@ -71,6 +71,8 @@ def svg_element(figure: Figure, prefix: str) -> str:
     text = text[text.index("<svg") :]
     # A style sheet would apply to the whole page, and the comments repeat every text.
     text = re.sub(r"<(metadata|style)\b.*?</\1>|\s*<!--.*?-->", "", text, flags=re.DOTALL)
+    # Rules of a page do not reach copies of marks, which take the colours of the element that places them.
+    text = re.sub(r'(<defs>\s*<path [^>]*style=")(?:fill: #\w+; )?stroke: #\w+(?:; )?', r"\1", text)
     # Text from users is left unchanged.
     return re.sub(r"<[^>]*>", lambda tag: _tag(tag[0], prefix), text)
 

@@ -58,7 +58,7 @@ def edges_of(
     Parameters
     ----------
     kinds : ndarray of int, shape (m, n)
-        Kind of the outcome at each point.
+        Kind of the outcome at each point, 0 for the one that needs no outline.
     simulated : callable
         Simulates further pulses.
     peaks : ndarray, shape (m, n)
@@ -68,7 +68,7 @@ def edges_of(
     falls, unknown : int
         The kind from which on the structure overturns, and that of unknown outcomes, which is the highest.
     """
-    present = np.unique(kinds)[1:].tolist()
+    present = [kind for kind in np.unique(kinds).tolist() if kind > 0]
     lines = tuple(_on_lines(_places(kinds.shape), end) for end in (0, 1))
     outlines = {kind: _Outline(kinds >= kind, *lines) for kind in present}
     count = _bisect(outlines, kinds, simulated)

@@ -57,11 +57,10 @@ def draw_map(
     axes.set_ylim(float(up.min()), float(up.max()))
     place = partial(_place, found, dimensionless=dimensionless)
     for kind, outlines in found.edges.outlines.items():
-        look = (
-            {"hatch": style.UNKNOWN["hatch"], "edgecolor": style.UNKNOWN["edgecolor"]} if kind == Kind.UNKNOWN else {}
-        )
         path = Path.make_compound_path(*(Path(place(np.append(each, each[0])), closed=True) for each in outlines))
-        axes.add_patch(PathPatch(path, **{"linewidth": 0, "facecolor": FILLS[kind], "zorder": 1 + kind / 10, **look}))
+        axes.add_patch(PathPatch(path, facecolor=FILLS[kind], linewidth=0.0, zorder=1 + kind / 10))
+        if kind == Kind.UNKNOWN:  # a patch of its own: the colour under a hatch would be the same on a dark page
+            axes.add_patch(PathPatch(path, zorder=1 + kind / 10, **style.UNKNOWN))
     handles = _draw_peaks(axes, found, place)
     handles += _draw_boundaries(axes, found, dimensionless=dimensionless)
     if found.edges.stepped:

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
+from matplotlib.path import Path as Path2D
 
 from mechanisms.block import Block
 from rocking_cli.core import Direction, equivalent_block
@@ -17,8 +19,20 @@ from rocking_cli.dynamics.exact import closed_form, exact_response
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD
+from rocking_cli.plotting import style
+from rocking_cli.questions.overturning.edges import FREE_POINTS, edges_of
 from rocking_cli.questions.overturning.picture import draw_comparison, draw_map
-from rocking_cli.questions.overturning.study import SCAN_AMPLITUDES, Region, boundaries, compare, overturning_map
+from rocking_cli.questions.overturning.study import (
+    CONTOUR_LEVELS,
+    SCAN_AMPLITUDES,
+    Kind,
+    Region,
+    boundaries,
+    compare,
+    overturning_map,
+    usual_amplitudes,
+    usual_periods,
+)
 from rocking_cli.structure import Structure, build_models
 from rocking_cli.studies.under_pulses import linear_block, outcomes, parse_shape, pulsed_model, weakest_direction
 from tests.cli.test_cli import run, run_json
@@ -377,7 +391,8 @@ class TestCommand:
             "no_uplift": 1.0, "rocks": 0.0, "after_impact": 0.0, "without_impact": 0.0, "unknown": 0.0,
         }  # fmt: skip
         assert set(data["least_a"]["overturning"]) == {None} and max(data["a"]) <= 1
-        assert f"the largest has a = {max(data['a']):.4g}, and uplift requires a > 1" in run(*arguments).stdout
+        strongest = f"the strongest is {max(data['a']):.4g} times the uplift acceleration"
+        assert strongest in " ".join(run(*arguments).stdout.split())
         assert {row["outcome"] for row in rows_of("map.csv")} == {"does not uplift"}
 
     def test_curves_of_pulses_too_weak_to_lift_are_a_result(self, tmp_path):
@@ -415,24 +430,157 @@ class TestCommand:
         assert list(tmp_path.iterdir()) == []
 
 
+def painted(edges, place):
+    """The kind that the outlines paint at a place u + iv of the grid."""
+    inside = [
+        kind
+        for kind, lines in edges.outlines.items()
+        if sum(Path2D(np.column_stack([each.real, each.imag])).contains_point((place.real, place.imag))
+               for each in map(closed, lines)) % 2
+    ]  # fmt: skip
+    return max(inside, default=0)
+
+
+def closed(line):
+    return np.append(line, line[0])
+
+
+def beside(edges, size, away, rng, count):
+    """Random places at both sides of edges, so many cells away from them, and not beside the frame."""
+    lines = [closed(each) for lines in edges.outlines.values() for each in lines]
+    starts, ends = (np.concatenate([each[part] for each in lines]) for part in (np.s_[:-1], np.s_[1:]))
+    middle, normal = (starts + ends) / 2, 1j * (ends - starts) / np.abs(ends - starts)
+    inner = (np.minimum(middle.real, middle.imag) > 0.3) & (np.maximum(middle.real, middle.imag) < size - 1.3)
+    chosen = rng.choice(np.flatnonzero(inner), count)
+    return np.concatenate([middle[chosen] + side * away * normal[chosen] for side in (1, -1)])
+
+
+@pytest.fixture(scope="module")
+def maps():
+    block = pulsed_model(Structure(BLOCK), "nonlinear", SINE)
+    omega, a = np.linspace(3.5, 8, 50), np.linspace(0.5, 9, 50)
+    return [overturning_map(each, SINE, omega, a) for each in (linear_block(0.9), block)]
+
+
+class TestEdges:
+    """The lines on a map, against histories one by one."""
+
+    @pytest.mark.parametrize("k", [0, 1])
+    def test_beside_them_the_outcomes_are_those_painted(self, maps, k):
+        found, rng = maps[k], np.random.default_rng(4)
+        places = beside(found.edges, 50, 0.06, rng, 40 if k else 100)
+        kinds = set()
+        for place, omega, a in zip(places, *found.at(places), strict=True):
+            if k:
+                period, ag = float(found.structure.period(omega)), float(a * found.structure.unit)
+                motion = replace(SINE, amplitude=ag, period=period).sampled(COARSE_POINTS_PER_PERIOD)
+                alone = respond(BLOCK, motion, models=("nonlinear",))["nonlinear"]
+                impacts, rocks = alone.impact_count if alone.fell else None, alone.peak_ratio > 0
+            else:
+                alone = exact_pulse(float(a), float(omega), 0.9)
+                impacts, rocks = alone.impacts_before_overturning, alone.max_ratio != 0
+            kind = Kind(int(rocks) if impacts is None else (4, 2, 3)[min(impacts, 2)])
+            assert painted(found.edges, place) == kind
+            kinds.add(kind)
+        assert kinds >= {Kind.ROCKS, Kind.AFTER_ONE, Kind.WITHOUT_IMPACT}
+        assert not found.edges.stepped and found.edges.simulated < 4000
+
+    def test_contours_end_at_the_edges_of_where_it_rocks(self, maps):
+        for found in maps:
+            levels = [np.concatenate(pieces) for pieces in found.edges.contours]
+            assert len(levels) == len(CONTOUR_LEVELS)
+            for level, pieces in zip(CONTOUR_LEVELS, found.edges.contours, strict=True):
+                for piece in pieces:
+                    for end in (piece[0], piece[-1]):
+                        assert min(end.real, end.imag, 49 - end.real, 49 - end.imag) == pytest.approx(0, abs=1e-12)
+                omega, a = found.at(np.concatenate(pieces)[::5])
+                again = outcomes(found.structure, SINE, found.structure.period(omega), a * found.structure.unit)
+                np.testing.assert_allclose(again.peak_ratio[~again.fell], level, atol=0.06)
+                assert again.fell.mean() < 0.1
+
+    def test_islands_are_steps_and_the_work_is_bounded(self):
+        rng, simulated = np.random.default_rng(1), []
+        kinds = rng.integers(1, 3, (30, 30))
+
+        def at_random(places):
+            simulated.append(places.size)
+            return rng.integers(1, 3, places.size)
+
+        edges = edges_of(kinds, at_random, np.full(kinds.shape, 0.5), CONTOUR_LEVELS, falls=2, unknown=5)
+        assert edges.stepped and edges.simulated == sum(simulated) <= FREE_POINTS
+        for row, column in zip(*rng.integers(0, 30, (2, 60)), strict=True):
+            place = complex(np.clip(column, 0.01, 28.99), np.clip(row, 0.01, 28.99))
+            assert painted(edges, place) == kinds[row, column]
+        assert all(not pieces for pieces in edges.contours[:3])  # islands of a point or two have none
+
+    def test_those_in_closed_form_bound_the_colours(self, maps):
+        found, _ = maps
+        level = {each.name: each.level for each in found.boundaries}
+        step, bottom = found.a[1] - found.a[0], min(np.concatenate(found.edges.outlines[Kind.ROCKS]).imag)
+        assert found.at(np.array([1j * bottom]))[1] == pytest.approx(1, abs=step / 32)
+        line = np.concatenate(found.edges.outlines[Kind.WITHOUT_IMPACT])
+        line = line[(np.minimum(line.real, line.imag) > 0) & (np.maximum(line.real, line.imag) < 49)]
+        below, above = (level["without_impact"](*found.at(line + away)) for away in (0.06 - 0.06j, 0.06j - 0.06))
+        assert line.size > 20 and (below < 0).all() and (above > 0).all()
+
+    @pytest.mark.parametrize(
+        ("mechanism", "shape"), [(BLOCK, "ricker"), (load_structure(FRAME), "half_sine"), (PORTAL, "sine")]
+    )
+    def test_the_default_ranges_contain_where_overturning_starts(self, mechanism, shape):
+        form = parse_shape(shape)
+        structure = pulsed_model(Structure(mechanism), "linear2", form)
+        shortest, longest = usual_periods([structure], form)
+        low, high = usual_amplitudes([structure])
+        periods = np.geomspace(shortest, longest, 9)
+        (least,) = compare([structure], form, periods, high).least
+        assert np.isnan(least[0]) and np.isfinite(least[2:]).all()
+        uplift = structure.unit / STANDARD_GRAVITY
+        assert low < 0.75 * uplift and least[-1] < 1.5 * uplift < least[2] < high
+
+
 class TestPictures:
-    def test_a_map_names_what_it_shows(self, plane):
+    def test_a_map_names_its_regions_in_them(self, plane):
         figure = draw_map(plane, "a block", dimensionless=True)
         (axes,) = figure.axes
+        figure.draw_without_rendering()
         (legend,) = figure.legends
         labels = [text.get_text() for text in legend.get_texts()]
-        assert labels[:4] == ["does not uplift", "rocks", "overturns after one impact", "overturns without impact"]
-        assert "overturning without impact (closed form)" in labels and "uplift, a = 1 (closed form)" in labels
-        assert "omega" in axes.get_xlabel() and "lambda" in axes.get_ylabel()
+        written = {text.get_text().replace("\n", " "): text for text in axes.texts}
+        for name, kind in (("does not uplift", 0), ("rocks", 1), ("overturns after one impact", 2)):
+            box = written[name].get_window_extent().transformed(axes.transData.inverted())
+            for omega, a in box.corners():
+                row, column = np.abs(plane.a - a).argmin(), np.abs(plane.omega - omega).argmin()
+                assert plane.kinds[row, column] == kind
+            assert name not in labels
+        assert "overturning without impact (closed form)" in labels and "uplift (closed form)" in labels
+        assert "omega" in axes.get_xlabel() and "lambda" in axes.get_ylabel() and "uplift" in axes.get_ylabel()
 
-    def test_one_of_a_structure_has_units(self):
-        found = overturning_map(
-            pulsed_model(Structure(BLOCK), "linear2", SINE), SINE, np.linspace(1, 8, 20), np.linspace(0.5, 9, 20)
-        )
+    def test_in_axes_of_the_user_the_legend_names_them(self, plane):
+        given = Figure().subplots()
+        with style.drawing_in(given):
+            draw_map(plane, "", dimensionless=True)
+        assert "rocks" in [text.get_text() for text in given.get_legend().get_texts()]
+
+    def test_one_of_a_structure_has_units_and_fills_its_axes(self):
+        structure = pulsed_model(Structure(BLOCK), "linear2", SINE)
+        found = overturning_map(structure, SINE, np.geomspace(1, 8, 20), np.geomspace(0.5, 9, 20))
         (axes,) = draw_map(found, "a block", dimensionless=False).axes
         assert "[s]" in axes.get_xlabel() and "[g]" in axes.get_ylabel()
-        low, high = axes.get_xlim()
-        assert low < found.periods.min() and high > found.periods.max()
+        assert axes.get_xscale() == axes.get_yscale() == "log"
+        assert axes.get_xlim() == pytest.approx((found.periods.min(), found.periods.max()))
+        high = replace(found, a=found.a + 1, outcome=found.outcome.by_field(lambda each: each[-5:]))
+        for part in (found, replace(high, a=found.a[-5:])):
+            paths = list(draw_map(part, "", dimensionless=True).axes[0].patches)
+            assert len(paths) == len(set(part.kinds.ravel().tolist()) - {0})
+
+    def test_a_name_that_begins_with_an_underscore_is_shown(self, curves):
+        hidden = replace(curves, structures=[replace(each, name=f"_{each.name}") for each in curves.structures])
+        names, given = {each.name for each in hidden.structures}, Figure().subplots()
+        (axes,) = draw_comparison(hidden, "sine").axes
+        assert names <= {text.get_text() for text in axes.texts}
+        with style.drawing_in(given):
+            draw_comparison(hidden, "sine")
+        assert names <= {text.get_text() for text in given.get_legend().get_texts()}
 
     def test_curves_differ_by_dash_and_mark(self, curves):
         (axes,) = draw_comparison(curves, "sine").axes

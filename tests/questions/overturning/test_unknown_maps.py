@@ -104,6 +104,9 @@ def histories():
     return respond(PORTAL, RECORD)
 
 
+ROUND = np.floor, np.ceil
+
+
 class TestMap:
     def test_unknown_is_a_region_of_its_own(self, plane):
         assert set(plane.regions.ravel().tolist()) == set(Region)
@@ -184,25 +187,25 @@ class TestMap:
             assert found.data["shares"]["unknown"] == share and any(said in str(part) for part in found.parts)
             assert (found.data["least_a"]["overturning_or_unknown"] is None) is (share is None)
 
-    def test_the_picture_has_a_third_colour_and_no_line_through_it(self, plane):
+    def test_the_picture_has_a_hatch_of_its_own_and_no_line_through_it(self, plane):
         figure = draw_map(plane, "", dimensionless=True)
         figure.draw_without_rendering()
         (axes,) = figure.axes
-        labels = {patch.get_label(): patch for patch in figure.legends[0].get_patches()}
-        texts = [text.get_text() for text in figure.legends[0].get_texts()]
-        unknown = dict(zip(texts, [*labels.values(), *[None] * len(texts)], strict=False))["unknown"]
-        assert unknown.get_hatch() and to_hex(unknown.get_facecolor()) == style.REGIONS["unknown"]
-        colours = axes.collections[0].to_rgba(axes.collections[0].get_array())
-        hidden = plane.outcome.unknown
-        assert {to_hex(each) for each in colours[hidden]} == {style.REGIONS["unknown"]}
-        assert style.REGIONS["unknown"] not in {to_hex(each) for each in colours[~hidden]}
-        drawn = [line for line in axes.lines if len(line.get_xdata()) > 1 and line.get_color() == style.MEASURE]
-        assert drawn
-        for line in drawn:
-            x, y = line.get_data()
-            columns = [np.abs(plane.omega - each).argmin() for each in x]
-            rows = [np.abs(plane.a - each).argmin() for each in y]
-            assert not hidden[rows, columns].any()
+        (hatch,) = [each for each in axes.patches if each.get_hatch()]
+        grey = [each for each in axes.patches if to_hex(each.get_facecolor()) == style.REGIONS["unknown"]]
+        assert [each.get_path() for each in grey] == [hatch.get_path()]
+        assert "unknown" in [text.get_text() for text in axes.texts]
+        places = np.stack(np.meshgrid(plane.omega[1:-1], plane.a[1:-1]), axis=-1).reshape(-1, 2)
+        inside = hatch.get_path().contains_points(places).reshape(plane.a.size - 2, -1)
+        np.testing.assert_array_equal(inside, plane.outcome.unknown[1:-1, 1:-1])
+        drawn = [line for line in axes.lines if line.get_color() == style.MEASURE]
+        assert drawn and all(line.get_zorder() < grey[0].get_zorder() for line in drawn)
+        u, v = (
+            np.interp(np.concatenate([line.get_data()[k] for line in drawn]), of, np.arange(of.size))
+            for k, of in enumerate((plane.omega[::-1], plane.a))
+        )
+        corners = [(r(v).astype(int), plane.omega.size - 1 - c(u).astype(int)) for r in ROUND for c in ROUND]
+        assert not np.all([plane.outcome.unknown[each] for each in corners], axis=0).any()
 
 
 class TestCurves:
@@ -233,7 +236,8 @@ class TestCurves:
         assert view.data["undecided"][0] and view.data["first"][0] is None
         (axes,) = draw_comparison(curves, "").axes
         bands = [each for each in axes.collections if each.get_hatch()]
-        assert len(bands) == 2 and "unknown outcome" in axes.get_legend().get_texts()[-1].get_text()
+        (legend,) = axes.figure.legends
+        assert len(bands) == 1 and "unknown outcome" in legend.get_texts()[-1].get_text()
 
 
 class TestSpectrum:
@@ -282,7 +286,9 @@ class TestSpectrum:
         assert "unknown" in table.columns and any("unknown" in row[2:5] for row in table.rows)
         above, below = draw_spectra(found, results.fractiles, "").axes
         assert "unknown" in [label.get_text() for label in above.get_yticklabels()]
-        opened = [line for line in above.lines if line.get_markerfacecolor() == "white" and line.get_marker() == "o"]
+        opened = [
+            line for line in above.lines if line.get_markerfacecolor() == style.PAPER and line.get_marker() == "o"
+        ]
         seen = np.isfinite(opened[0].get_ydata())
         np.testing.assert_array_equal(seen, np.isinf(found[0].fractile(0.5)) & ~found[0].fractile_overturns(0.5))
         assert seen.any() and any(each.get_hatch() for each in below.collections)
@@ -308,7 +314,7 @@ class TestPulses:
         assert rest[1:] == judge(known) and "equivalently vulnerable" in rest[-1]
         assert judge(replace(found, members=found.members[:2]))[-1].endswith("is not known.")
         _, below = draw_equivalent(found, "").axes
-        ends = [line for line in below.lines if line.get_marker() == "o" and line.get_markerfacecolor() == "white"]
+        ends = [line for line in below.lines if line.get_marker() == "o" and line.get_markerfacecolor() == style.PAPER]
         assert [line.get_xdata()[0] for line in ends] == [pytest.approx(0.497 * PORTAL_P, rel=1e-2)]
 
     def test_json_of_a_pulse(self):

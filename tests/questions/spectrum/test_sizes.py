@@ -147,4 +147,4 @@ def test_the_second_axis_of_the_picture_goes_through_the_sizes():
     figure.draw_without_rendering()
     (above,) = figure.axes[0].child_axes
     forward, backward = above._functions
-    assert forward(found.periods) == approx(found.scales) and backward(found.scales) == approx(found.periods)
+    assert forward(found.radii) == approx(found.periods) and backward(found.periods) == approx(found.radii)

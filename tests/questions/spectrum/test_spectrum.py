@@ -203,14 +203,15 @@ class TestPicture:
         figure = draw_spectra(found, (0.16, 0.5, 0.84), "title")
         figure.draw_without_rendering()
         above, below = figure.axes
-        assert below.get_xlabel() == r"size $2\pi/p$ [s]" and above.child_axes[0].get_xlabel() == "scale (1: as given)"
+        assert below.get_xlabel().endswith("R [m]") and above.child_axes[0].get_xlabel().startswith(r"$2\pi/p$")
         stars = [[line for line in axes.lines if line.get_marker() == "*"] for axes in (above, below)]
         place = found[0].given
         for (star,), value in zip(stars, (found[0].fractile(0.5)[place], found[0].share[place]), strict=True):
-            assert star.get_xdata()[0] == pytest.approx(shapes[0].period)
+            assert star.get_xdata()[0] == pytest.approx(np.hypot(0.35, 1.4))
             if np.isfinite(value):
                 assert star.get_ydata()[0] == pytest.approx(value)
-        assert any("0.1 rad = 5.73°" in text.get_text() for text in figure.legends[0].get_texts())
+        words = [text.get_text() for text in (*above.texts, *figure.legends[0].get_texts())]
+        assert any("0.1 rad = 5.73°" in each for each in words)
         assert "overturns" in [label.get_text() for label in above.get_yticklabels()]
 
     def test_of_one_motion_it_has_one_panel(self, shapes):
@@ -218,10 +219,24 @@ class TestPicture:
         figure = draw_spectra([found], (0.5,), "title")
         figure.draw_without_rendering()
         (axes,) = figure.axes
-        assert axes.child_axes[0].get_xlabel() == "size R of the blocks [m]"
+        assert axes.get_xlabel() == "half of the diagonal, R [m]"
+        np.testing.assert_allclose(axes.lines[0].get_xdata(), found.scales)
         line = axes.lines[0].get_ydata()
         finite = np.isfinite(found.peak_ratio[0])
         assert (np.isfinite(line) == finite).all() and (line[finite] == found.peak_ratio[0][finite]).all()
+
+    def test_every_size_has_one_mark_and_few_of_those_that_overturn_for_certain_are_shown(self):
+        (found,) = spectra([shape_of(Structure(Block(**BLOCK)), "linear2")], np.geomspace(0.9, 9, 40), [a_record()])
+        (axes,) = draw_spectra([found], (0.5,), "title").axes
+        heights = np.sort(np.concatenate([
+            line.get_xdata()[np.isfinite(line.get_ydata())] for line in axes.lines if line.get_marker() == "o"
+        ]))  # fmt: skip
+        assert all(line.get_markevery() is None for line in axes.lines)
+        np.testing.assert_allclose(heights, 2.8 * found.scales)
+        falls = np.isinf(found.peak_ratio[0])
+        shown = 2.8 * found.scales >= axes.get_xlim()[0]
+        first = int(np.argmin(falls[shown]))  # of those shown that does not overturn
+        assert falls[~shown].all() and falls[~shown].size > 3 and 1 <= first <= 6 and shown[-1]
 
     def test_nothing_but_overturning_and_nothing_at_all_can_be_drawn(self):
         shape = SpectrumShape(blocks_of(0.1, "linear2").structure)
