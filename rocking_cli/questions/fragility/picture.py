@@ -41,7 +41,7 @@ HATCH_OPACITY = 0.4
 HATCHES = ("////", "\\\\\\\\", "||||", "----")
 MAX_DRAWN_RUNS = 3000  # runs and records that are drawn one by one
 MAX_DRAWN_LADDERS = 300
-MAX_NAMED_RECORDS = 11
+MAX_NAMED_RECORDS = 11  # more are not told apart by colour and dash
 CONTOUR_LEVELS = (0.1, 0.25, 0.5, 0.75, 0.9)  # probabilities of the contours
 EDGE_LABELS = (f"if {names.UNKNOWN} runs exceed", f"if {names.UNKNOWN} runs do not")
 LABEL_FREE_MARGIN = 0.08  # share of the plane at its edges without names of contours
@@ -138,7 +138,8 @@ def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str, *, of: s
     merged = [
         _draw_observed(axes, drawn[k], style.distinct(k), place, len(observed)) for place, k in enumerate(observed)
     ]
-    name_curves(axes, named if len(named) > 1 else [])
+    if len(named) > 1:
+        name_curves(axes, named)
     if doubtful := [each for each in drawn if each.lower is not None]:
         shares = ", ".join(f"{each.name} {names.percent(each.share)}" for each in doubtful)
         handles.append(Patch(**style.UNKNOWN, label=_unbroken(f"runs of {names.UNKNOWN} outcome: {shares}")))
@@ -165,7 +166,7 @@ def _in_words(curve: FragilityCurve, unit: str, most: float) -> str:
     """Return the numbers of a curve, or why there is none; an intensity beyond the largest of the data has none."""
     unit = unit and f" {unit}"
     if curve.kind == "none":
-        return f"no curve, {curve.why}"
+        return f"no curve, {style.plain(curve.why)}"
     if curve.step is not None:
         low, high = curve.step.low, curve.step.high
         return f"{low:.4g}{unit}, exact" if curve.is_exact else f"step in the shade, {low:.3g} to {high:.3g}{unit}"
@@ -434,7 +435,9 @@ def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figur
 def _contours(axes: Axes, surface: Surface, across: Reals, up: Reals, color: str, which: str) -> Line2D:
     """Draw the contours of a surface, and return its entry in the legend."""
     if surface.kind == "none":
-        return Line2D([], [], linestyle="none", label=_unbroken(f"no surface{which and f' {which}'}: {surface.why}"))
+        return Line2D(
+            [], [], linestyle="none", label=_unbroken(f"no surface{which and f' {which}'}: {style.plain(surface.why)}")
+        )
     drawn = axes.contour(
         across, up, surface.probability(*np.meshgrid(across, up)), levels=CONTOUR_LEVELS, colors=color,
         linewidths=[0.8, 0.8, 1.8, 0.8, 0.8], linestyles=["--", "--", "-", "--", "--"],

@@ -110,7 +110,7 @@ def draw_fractiles(axes: Axes, x: Reals, peaks: Reals, beyond: Bools) -> list[Li
         needs = f"records needed: {min(MIN_RECORDS)} for the median, {max(MIN_RECORDS)} for 16 and 84 %"
         needs = style.folded(needs, style.page_width() - style.MAX_SIDE_MARGIN, style.TICK)
         axes.set_xlabel(f"{axes.get_xlabel()}\n{needs}".strip(), fontsize=style.TICK)
-    return [] if name_curves(axes, lines) else lines
+    return [] if lines and name_curves(axes, lines) else lines
 
 
 def _draw_shares(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:
