@@ -25,9 +25,9 @@ def command(file: str | Path, at: float | None, output: Output) -> None:
     """Draw a structure at rest with its dimensions, and displaced in both directions, to scale.
 
     Check the drawing before you trust a number: is this the intended mechanism, and were the dimensions read correctly?
-    It shows the bodies, the hinges with the letters of the paper, the centroids, and R and alpha or the angles of the
-    linkage; for an arch, the voussoirs and the line of thrust at uplift; the loads, the ties (dashed if slack), and the
-    walls behind a structure that rocks in one direction only.
+    It shows the bodies, the hinges with the letters of the paper, the centroids, and alpha or the angles of the
+    linkage; for an arch, the voussoirs and the lines of thrust at uplift; the loads and the ties (dashed if slack) with
+    their heights, and the walls behind a structure that rocks in one direction only.
 
     Without FILE, the command uses rocking.yaml of this folder, or else a block of 0.7 m x 2.8 m.
 

@@ -99,8 +99,8 @@ def rest_of(page, *sources):
 def text_of(tmp_path, monkeypatch):
     """Returns the text of the Italian sheet of a structure, with the texts of its figures, which are not rendered."""
 
-    def texts(figure, _):
-        every = (each.get_text() for each in figure.findobj(Text) if each.get_visible())
+    def texts(draw, _):
+        every = (each.get_text() for each in draw().findobj(Text) if each.get_visible())
         return Markup(" ").join(map(Markup.escape, every))
 
     monkeypatch.setattr(sheet_page, "inline_svg", texts)
@@ -210,6 +210,8 @@ def test_texts_of_mechanisms_are_recognised_whole_by_parts_and_otherwise_stay():
         ("source", "Doe (2020), Section 5.2, corrected, my way", "Doe (2020), par. 5.2, corrette, my way"),
         ("drawing", "orange: a line of thrust at uplift, 0.157 g (positive direction)",
          "in arancione: una linea delle pressioni all'attivazione, 0,157 g (verso positivo)"),
+        ("drawing", "violet, dotted: a line of thrust at uplift, 0.157 g (negative direction)",
+         "in viola, punteggiata: una linea delle pressioni all'attivazione, 0,157 g (verso negativo)"),
         ("caution", "My plugin is 0.5 wide, and more.", "My plugin is 0.5 wide, and more."),
         ("body_arch", "segment 3", "concio 3"), ("body_linkage", "segment 3", "segment 3"),
     ]:  # fmt: skip
