@@ -300,16 +300,16 @@ class _Stage:
         for x0, x1, y0, y1 in self._strip:
             x = round(x0 + share * (x1 - x0))
             pen.line([(x, frame.height - y1), (x, frame.height - y0)], fill=style.CURSOR, width=2)
-        said, left = f"t = {time:6.2f} s", round(PANEL_GAP * DOTS_PER_INCH)
+        clock, left = f"t = {time:6.2f} s", round(PANEL_GAP * DOTS_PER_INCH)
         ended = [time >= min(actor.film.stops, end) for actor in self._actors]
         if len(self._actors) == 1:
             film = self._actors[0].film
-            pen.text((left, self._row), f"{said}    {_reading(film, time)}", fill=style.INK, font=_font(13))
+            pen.text((left, self._row), f"{clock}    {_reading(film, time)}", fill=style.INK, font=_font(13))
             if ended[0]:
                 under = (left, self._row + round(LINE_HEIGHT * DOTS_PER_INCH))
                 pen.text(under, why_it_ends(film) or fate(film), fill=style.CURSOR, font=_font(13, bold=True))
             return frame
-        pen.text((left, self._row), said, fill=style.INK, font=_font(13))
+        pen.text((left, self._row), clock, fill=style.INK, font=_font(13))
         for actor, is_over in zip(self._actors, ended, strict=True):
             if is_over:
                 below = actor.panel.corner * DOTS_PER_INCH - 37j

@@ -180,8 +180,8 @@ def animate(
         scaled = given.motion.scaled(signs[0] * given.factor)
         history = follow(ready, scaled, model=name)
         assumed = Contacts(ready.mechanism).check(history, scaled).assumed_friction if name == "nonlinear" else None
-        near = outcomes(ready.model(name), scaled, around) if neighbours else None
-        return Animation(Film(picture(ready.mechanism), history, scaled, assumed), near)
+        neighbourhood = outcomes(ready.model(name), scaled, around) if neighbours else None
+        return Animation(Film(picture(ready.mechanism), history, scaled, assumed), neighbourhood)
 
     def of(ready: Structure, made: Animation, scene: Scene, file: _Written) -> Answer[Animation]:
         film, history = made.film, made.film.history
@@ -219,13 +219,13 @@ def animate(
         under = scene.films[0].motion.name
         written = _write(path, scene, in_short(list(made), most=MAX_STRUCTURES), under, speed, fps, watch)
         shown = [ready for ready in usable if ready.name in made]
-        found = {ready.name: of(ready, made[ready.name], scene, written) for ready in shown}
-        for answer in found.values():
+        by_name = {ready.name: of(ready, made[ready.name], scene, written) for ready in shown}
+        for answer in by_name.values():
             watch.take(answer)
         rows = [views.row(key, each.film, each.neighbours) for key, each in made.items()]
         notes = [f"{ready.name}: {note}" for ready in shown for note in views.notes(ready, made[ready.name].film)]
         table = views.several(f"under {under}", "structure", name, rows, [views.scale_in_words(scene), *notes])
-        return answers("animations", "structure", found, table.parts)
+        return answers("animations", "structure", by_name, table.parts)
 
     if isinstance(structure, list | tuple):
         return beside(structure)

@@ -24,11 +24,11 @@ MAX_MESSAGE = 300  # characters
 
 def ffmpeg(file: Path) -> str:
     """Return the path of ffmpeg. Raises `InputError`, which names the file to write, if it is not installed."""
-    found = shutil.which("ffmpeg")
-    if found is None:
+    program = shutil.which("ffmpeg")
+    if program is None:
         hint = "install it from ffmpeg.org or by your package manager, or give a name that ends in .gif or .html"
         raise InputError(Problem("an MP4 video requires the program ffmpeg, which is not found", str(file), hint=hint))
-    return found
+    return program
 
 
 def write_mp4(stream: BinaryIO, program: str, drawn: Iterator[Image.Image], fps: float) -> None:
@@ -53,12 +53,12 @@ def write_mp4(stream: BinaryIO, program: str, drawn: Iterator[Image.Image], fps:
     first = next(drawn)
     pad = f"pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white,tpad=stop_mode=clone:stop_duration={HOLD}"
     # An MP4 is not written in one pass, so it cannot come through a pipe.
-    with TemporaryDirectory() as folder, TemporaryFile() as said:
+    with TemporaryDirectory() as folder, TemporaryFile() as messages:
         made = Path(folder) / "video.mp4"
         size = f"{first.width}x{first.height}"
         given = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-video_size", size, "-framerate", f"{fps:g}", "-i", "pipe:0"]
         command = [program, "-nostdin", "-loglevel", "error", *given, "-vf", pad, *OUTPUT, str(made)]
-        process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=said)
+        process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=messages)
         assert process.stdin is not None
         try:
             for each in chain([first], drawn):
@@ -73,8 +73,8 @@ def write_mp4(stream: BinaryIO, program: str, drawn: Iterator[Image.Image], fps:
             process.kill()
             process.wait()
         if code != 0 or not made.exists():
-            said.seek(0)
-            why = one_line(said.read().decode(errors="replace").strip())[-MAX_MESSAGE:]
+            messages.seek(0)
+            why = one_line(messages.read().decode(errors="replace").strip())[-MAX_MESSAGE:]
             raise Refused(f"ffmpeg did not write the video (exit code {code}){f': {why}' if why else ''}")
         with made.open("rb") as video:
             shutil.copyfileobj(video, stream)
