@@ -43,9 +43,10 @@ html_math_renderer = "mathml"
 html_static_path = ["static"]
 html_css_files = ["site.css"]
 html_js_files = ["open.js"]
+html_use_index = False
 html_copy_source = False
 html_show_sourcelink = False
-pygments_style = "tango"
+pygments_style = "xcode"  # its colours are legible on the paper of a block
 highlight_language = "none"
 
 python_maximum_signature_line_length = 80  # a longer one has a line for each argument

@@ -19,7 +19,9 @@ def _with_narrow(app: Sphinx, page: str, template: str, context: dict[str, Any],
         name = f"{image['stem']}-phone.svg"
         if not (PICTURES / name).exists():
             return image[0]
-        shutil.copy(PICTURES / name, Path(app.outdir) / "_images" / name)
+        images = Path(app.outdir) / "_images"
+        images.mkdir(exist_ok=True)  # of a new site
+        shutil.copy(PICTURES / name, images / name)
         source = f'<source media="(max-width: {WIDEST}px)" srcset="{image["folder"]}/{name}">'
         return f"<picture>{source}{image[0]}</picture>"
 

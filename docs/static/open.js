@@ -5,7 +5,7 @@ function open_target() {
   const content = target.tagName === "DT" ? target.parentElement.querySelector(":scope > dd") : target;
   for (let each = content.querySelector(":scope > details") || target; each; each = each.parentElement)
     if (each.tagName === "DETAILS") each.open = true;
-  target.scrollIntoView();
+  target.scrollIntoView({ behavior: "instant" });
 }
 addEventListener("DOMContentLoaded", open_target);
 addEventListener("hashchange", open_target);

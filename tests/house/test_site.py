@@ -1,9 +1,34 @@
 """The site, as a browser shows it on a phone and on a wide screen, in light and dark colours."""
 
+import subprocess
+import sys
+
 import pytest
 
+from tests.browser import launch
+from tests.conftest import PROJECT
+
 pytestmark = pytest.mark.docs
-SCREENS = [(width, scheme) for width in (390, 1280) for scheme in ("light", "dark")]
+SCREENS = ((390, "light"), (1280, "dark"))  # width [px] and colours
+TALLEST = 30_000  # px of a page, as it opens, on a phone
+
+
+@pytest.fixture(scope="module")
+def browser():
+    shown, driver = launch()
+    yield shown
+    shown.close()
+    driver.stop()
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    pytest.importorskip("sphinx", reason="the documentation is not installed here")
+    folder = tmp_path_factory.mktemp("site")
+    command = [sys.executable, "-m", "sphinx", "-q", "-b", "html", "-d", str(folder / "trees"), "docs"]
+    subprocess.run([*command, str(folder / "html")], cwd=PROJECT, check=True, capture_output=True)
+    return folder / "html"
+
 
 FOUND = r"""() => {
   document.querySelectorAll("details").forEach((each) => (each.open = true));
@@ -11,15 +36,15 @@ FOUND = r"""() => {
   const name = (each) => `${each.tagName.toLowerCase()}.${each.className} "${each.textContent.trim().slice(0, 30)}"`;
   if (document.documentElement.scrollWidth > wide) said.add("the page scrolls sideways");
   const main = document.querySelector("[role=main]");
-  for (const each of main.querySelectorAll("*")) {
-    if (each.closest("svg, math, .visually-hidden")) continue;
-    const style = getComputedStyle(each);
+  const scrolling = new Map([[main, false]]), papers = new Map([[null, [255, 255, 255]]]), colours = new Map();
+  for (const each of main.querySelectorAll("*")) {  // in the order of the page: what is around each comes before it
+    const around = scrolling.get(each.parentElement);
+    if (each.closest("svg, math")) continue;
+    const { overflowX } = getComputedStyle(each);
+    scrolling.set(each, around || overflowX === "auto" || overflowX === "scroll");
     const box = each.getBoundingClientRect();
-    let scrolls = false;
-    for (let around = each; around !== main; around = around.parentElement)
-      scrolls ||= /auto|scroll/.test(getComputedStyle(around).overflowX);
-    if (box.width > 1 && box.right > wide + 1 && !scrolls) said.add(`cut: ${name(each)}`);
-    if (style.overflowX === "hidden" && each.scrollWidth > each.clientWidth + 1) said.add(`hidden: ${name(each)}`);
+    if (box.width > 1 && box.right > wide + 1 && !around) said.add(`cut: ${name(each)}`);
+    if (overflowX === "hidden" && each.scrollWidth > each.clientWidth + 1) said.add(`hidden: ${name(each)}`);
   }
   let level = 0;
   for (const each of main.querySelectorAll("h1, h2, h3, h4, h5, h6")) {
@@ -27,7 +52,8 @@ FOUND = r"""() => {
     level = +each.tagName[1];
   }
   const canvas = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
-  const rgba = (colour) => {
+  const rgba = (colour) => colours.get(colour) ?? (colours.set(colour, pixel(colour)), colours.get(colour));
+  const pixel = (colour) => {
     canvas.clearRect(0, 0, 1, 1);
     canvas.fillStyle = colour;
     canvas.fillRect(0, 0, 1, 1);
@@ -38,15 +64,19 @@ FOUND = r"""() => {
     const [r, g, b] = colour.map((x) => (x / 255 <= 0.04045 ? x / 255 / 12.92 : ((x / 255 + 0.055) / 1.055) ** 2.4));
     return 0.2126 * r + 0.7152 * g + 0.0722 * b;
   };
+  const paper_of = (each) => {
+    if (!papers.has(each)) {
+      const own = rgba(getComputedStyle(each).backgroundColor);
+      papers.set(each, over(own, paper_of(each.parentElement)));
+    }
+    return papers.get(each);
+  };
   const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   while (walker.nextNode()) {
     const each = walker.currentNode.parentElement;
-    if (!walker.currentNode.textContent.trim() || !each.checkVisibility() || each.closest("svg, script, style"))
-      continue;
-    const style = getComputedStyle(each), behind = [];
-    for (let around = each; around; around = around.parentElement)
-      behind.unshift(getComputedStyle(around).backgroundColor);
-    const paper = behind.reduce((below, colour) => over(rgba(colour), below), [255, 255, 255]);
+    if (!walker.currentNode.textContent.trim()) continue;
+    if (!each.checkVisibility() || each.closest("svg, script, style")) continue;
+    const style = getComputedStyle(each), paper = paper_of(each);
     const [low, high] = [light(over(rgba(style.color), paper)), light(paper)].sort((a, b) => a - b);
     const size = parseFloat(style.fontSize), bold = style.fontWeight >= 700;
     const ratio = (high + 0.05) / (low + 0.05);
@@ -55,3 +85,79 @@ FOUND = r"""() => {
   }
   return [...said];
 }"""
+
+"""What a page does wrong: parts that are cut, headings that skip a level, text too faint."""
+
+
+def faults(browser, pages, width, scheme):
+    """What each page does wrong on a screen, by its path."""
+    shown = browser.new_context(viewport={"width": width, "height": 844}, color_scheme=scheme)
+    try:
+        page = shown.new_page()
+        found = {}
+        for path in pages:
+            page.goto(path.as_uri())
+            tall = page.evaluate("document.documentElement.scrollHeight")
+            found[path] = [*([f"{tall} px tall"] if tall > TALLEST else []), *page.evaluate(FOUND)]
+        return {path.name: each for path, each in found.items() if each}
+    finally:
+        shown.close()
+
+
+@pytest.mark.parametrize(("width", "scheme"), SCREENS)
+def test_every_page_fits_the_screen_and_can_be_read(browser, site, width, scheme):
+    pages = [each for each in sorted(site.rglob("*.html")) if "_downloads" not in each.parts]
+    assert len(pages) > 60
+    assert faults(browser, pages, width, scheme) == {}
+
+
+def test_a_fault_of_a_page_is_found(browser, tmp_path):
+    """So that a page without any is one that was looked at."""
+    parts = {
+        "sideways": "<p style='width: 600px'>wide</p>",
+        "cut: p": "<p style='width: 600px'>wide</p>",
+        "hidden: p": "<p style='width: 50px; overflow: hidden; white-space: nowrap'>more than fits</p>",
+        "skips a level: h3": "<h1>one</h1><h3>three</h3>",
+        "contrast 2.8: rgb(153, 153, 153)": "<p style='color: #999'>faint</p>",
+        "px tall": f"<p style='height: {TALLEST}px'>tall</p>",
+    }
+    for said, part in parts.items():
+        (tmp_path / "page.html").write_text(f"<meta charset=utf-8><div role=main>{part}</div>", encoding="utf-8")
+        assert said in " ".join(faults(browser, [tmp_path / "page.html"], 390, "light")["page.html"])
+
+
+def test_a_link_opens_the_folded_part_it_leads_to(browser, site):
+    shown = browser.new_context(viewport={"width": 390, "height": 844})
+    try:
+        page = shown.new_page()
+        for name, target in (
+            ("commands", "neighbours"),
+            ("commands", "pulses"),
+            ("api/responses", "rocking_cli.respond"),
+        ):
+            page.goto(f"{site.as_uri()}/{name}.html#{target}")
+            assert page.locator("details[open]").count() >= 1, target
+            at = page.evaluate(f"document.getElementById('{target}').getBoundingClientRect().y")
+            assert 0 <= at < 300, (target, at)
+    finally:
+        shown.close()
+
+
+@pytest.mark.parametrize("chosen", ["light", "dark"])
+def test_a_drawing_has_the_colours_that_the_reader_chose_for_the_page(browser, site, chosen):
+    """Whatever those of the system are."""
+    import io
+
+    from PIL import Image
+
+    shown = browser.new_context(color_scheme="dark" if chosen == "light" else "light")
+    try:
+        page = shown.new_page()
+        page.goto(f"{site.as_uri()}/mechanisms.html")
+        page.evaluate(f"document.body.dataset.theme = '{chosen}'")
+        pixels = Image.open(io.BytesIO(page.locator("#which-structure-is-yours img").first.screenshot())).convert("RGB")
+        body = {"light": (0xDF, 0xE6, 0xEC), "dark": (0x3D, 0x48, 0x52)}  # of a block, by plotting/style.py
+        counts = {name: sum(colour == each for each in pixels.getdata()) for name, colour in body.items()}
+        assert counts[chosen] > 100 and sum(counts.values()) == counts[chosen]
+    finally:
+        shown.close()
