@@ -52,8 +52,8 @@ def browser() -> str:
     ]
     if not installed:
         hint = (
-            f"install Chromium, Chrome or Edge, or name one in {BROWSER_VARIABLE}; for a calculation sheet, "
-            "pip install 'rocking-cli[pdf]' does too; or write .html and print it yourself"
+            f"install Chromium, Chrome or Edge, or name one in {BROWSER_VARIABLE}; or pip install 'rocking-cli[pdf]', "
+            "which needs no browser; or write .html and print it yourself"
         )
         raise InputError(Problem("a PDF is printed by a browser, and none is found here", hint=hint))
     return installed[0]

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from rocking_cli.ask.given import SiteLike, yaml_of
 from rocking_cli.ask.watcher import Watcher
+from rocking_cli.core import Mechanism
 from rocking_cli.documents import files
 from rocking_cli.excitation.records.opening import STANDARD_INPUT, name_of, original
 from rocking_cli.io.browser import browser
@@ -84,13 +85,20 @@ def sheet_for(
     title: TitleBlock, origin: SheetOrigin,
 ) -> Sheet:  # fmt: skip
     """Return the sheet of a verification, with the checksums of the files that were given."""
-    if isinstance(given, str | Path):
-        of_site = File(str(given), original(given))
-    else:
-        of_site = File("site", json_text(given).encode())
+    return sheet(found, site, Language(language), title, sources(found.mechanism, given, motions, origin))
+
+
+def sources(
+    mechanism: Mechanism, site: SiteLike | None, motions: Sequence[Scaled], origin: SheetOrigin
+) -> SheetSources:
+    """Return the files that were given, with the versions of what computes."""
+    of_site = None
+    if isinstance(site, str | Path):
+        of_site = File(str(site), original(site))
+    elif site is not None:
+        of_site = File("site", json_text(site).encode())
     records = {str(each.file or each.motion.name): file_of_motion(each) for each in motions}
-    sources = SheetSources(origin.structure, of_site, records, versions(found.mechanism), origin.strengthened)
-    return sheet(found, site, Language(language), title, sources)
+    return SheetSources(origin.structure, of_site, records, versions(mechanism), origin.strengthened)
 
 
 def rendered(content: Sheet, suffix: str) -> bytes:
@@ -105,7 +113,7 @@ def rendered(content: Sheet, suffix: str) -> bytes:
         return render_typst(content)
     from rocking_cli.documents.sheet_page import render
 
-    return files.laid_out(render(content), suffix)
+    return files.laid_out(render(content, still=suffix == ".pdf"), suffix)
 
 
 def write(file: Path, content: Sheet, watch: Watcher) -> None:
