@@ -76,7 +76,13 @@ def _files(sheet: Sheet) -> dict[str, bytes]:
         figure, file = figure_of(item, sheet.language), f"{len(pictures)}.svg"
         width = printed_width(figure, item.height)  # before it is drawn
         pictures[file] = svg(figure, file, text_as="path").encode()
-        return {"kind": "drawing", "file": file, "width": width, "alt": printable(item.label), "label": _runs(item.label)}
+        return {
+            "kind": "drawing",
+            "file": file,
+            "width": width,
+            "alt": printable(item.label),
+            "label": _runs(item.label),
+        }
 
     def item(each: Item) -> dict[str, Any]:
         if isinstance(each, Table):

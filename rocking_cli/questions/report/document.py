@@ -19,7 +19,7 @@ from rocking_cli.questions.error.study import errors, preferred
 from rocking_cli.questions.margin.picture import draw_margins
 from rocking_cli.questions.overturning.picture import draw_map
 from rocking_cli.questions.report.study import Assessment, MotionResult, PulseMap, amplitude_in_g
-from rocking_cli.questions.report.words import PACKAGE, context, in_language, next_step, printed
+from rocking_cli.questions.report.words import PACKAGE, context, in_language, printed
 from rocking_cli.questions.respond.picture import draw_history
 from rocking_cli.studies.conclusion import Concluded
 from rocking_cli.studies.film import Film
@@ -30,7 +30,6 @@ from rocking_cli.views.sheet.build import SheetSources, about, of_files
 from rocking_cli.views.sheet.document import Moving, Sentence, Sheet, SheetPart
 from rocking_cli.views.sheet.language import Language
 from rocking_cli.views.sheet.template import guarded
-from rocking_cli.views.view import force_unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -86,7 +85,6 @@ def document(content: Assessment, sources: SheetSources, verified: VerifiedRepor
     ends = [each for each in (verified.found.conclusion if verified else None, content.conclusion) if each is not None]
     values = context(content, say, verified.found if verified is not None else None)
     motions, sides = values["motions"], values["sides"]
-    per, unit = force_unit(mechanism)
     bins = int(np.clip(TOTAL_BINS // max(1, len(motions)), MIN_BINS, MAX_BINS))
     moving_pictures = [_moving(content, each.result, bins) for each in motions]
     of_block = [errors(content.asked, kappa) for kappa in (1, 2)] if content.asked else []
@@ -99,10 +97,10 @@ def document(content: Assessment, sources: SheetSources, verified: VerifiedRepor
         "pictures": dict(zip((each.key for each in motions), moving_pictures, strict=True)),
         "pgas": [each.result.pga_of_ground for each in motions],
         "falls": content.conclusion is not None and content.conclusion.concluded in BAD_CONCLUSIONS,
-        "next_steps": dict.fromkeys(step for end in ends for step in end.next), "step": partial(next_step, say),
+        "next_steps": dict.fromkeys(step for end in ends for step in end.next),
         "around": motions[0].result.margin.around if motions else None,
         "one_model": len(content.structure.default_models) == 1,
-        "parameters": _parameters(content, sides), "force": {"per": per, "unit": unit},
+        "parameters": _parameters(content, sides),
         "doubtful": any(each.result.neighbours[each.result.polarity].unknown for each in motions),
         "on_floor": any(each.result.motion.ground is not None for each in motions),
         "followed": any(contact.followed for each in motions for contact in each.result.contacts.values()),

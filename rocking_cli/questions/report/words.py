@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from math import degrees, inf, isclose, isnan
 from typing import Any, NamedTuple
 
 from markupsafe import Markup
 
+from rocking_cli.core import Mechanism
 from rocking_cli.core.advice import Grade
 from rocking_cli.core.equivalence import EQUAL_DIRECTIONS
 from rocking_cli.core.hung.attached import Spot
@@ -23,7 +24,7 @@ from rocking_cli.names import peaks_over, percent
 from rocking_cli.questions.equiv.view import EquivalentSide, is_symmetric, kappa_in_words, sentence, sides_of
 from rocking_cli.questions.margin.view import in_words
 from rocking_cli.questions.report.study import Assessment, MotionResult
-from rocking_cli.studies.conclusion import Conclusion
+from rocking_cli.studies.conclusion import Conclusion, are_alike, worst
 from rocking_cli.studies.movements import Movements, Watched, largest
 from rocking_cli.text import in_short
 from rocking_cli.verification.results import MINUS, Verification
@@ -35,6 +36,7 @@ from rocking_cli.views.restitution import restitution_source, restitution_used
 from rocking_cli.views.sheet.language import Language, plain
 from rocking_cli.views.sheet.template import guarded
 from rocking_cli.views.verdict import blocks_in_words, ends, joints_in_words, why_unknown
+from rocking_cli.views.view import force_unit
 
 PACKAGE = "rocking_cli.questions.report"
 SYMBOLS = {
@@ -168,9 +170,7 @@ class English:
 
     def why_alone(self) -> Markup:
         """Return why there are no linear models."""
-        why = (self.content.structure.why_no_block or self.content.structure.misleading or "").removeprefix(
-            f"{self.content.name}: "
-        )
+        why = _why_alone(self.content)
         return printed(f"{why[0].upper()}{why[1:]}.")
 
     def misleading(self) -> Markup:
@@ -195,6 +195,17 @@ class English:
         return printed(text if side.block is not None else f"{text[0].upper()}{text[1:]}")
 
 
+def _why_alone(content: Assessment) -> str:
+    return (content.structure.why_no_block or content.structure.misleading or "").removeprefix(f"{content.name}: ")
+
+
+def _translated(mechanism: Mechanism, say: Language) -> list[Markup]:
+    """Return the cautions on a structure in another language."""
+    own = [say.caution(mechanism.mechanism, mechanism.caution)] if mechanism.caution else []
+    rest = [each for each in cautions_of(mechanism) if each != mechanism.caution]
+    return [*map(guarded, own), *(guarded(say.recognised("caution", each)) for each in rest)]
+
+
 def context(content: Assessment, say: Language, verified: Verification | None = None) -> dict[str, Any]:
     """Return the values of the templates of a report."""
     mechanism, structure = content.mechanism, content.structure
@@ -212,6 +223,8 @@ def context(content: Assessment, say: Language, verified: Verification | None = 
     falls = [each for each in content.results if each.histories["nonlinear"].fell]
     strained = [(tie.force, tie.name, each.name) for each in motions for tie in each.worst.ties if not isnan(tie.force)]
     lambdas = [side.lambda_ for side in structure.statics]
+    ends = [each.conclusion for each in content.results]
+    governs = worst(ends) if ends else None
     hung = mechanism.hung if mechanism.attached else None
 
     def number(value: float | None, digits: int) -> Markup:
@@ -227,6 +240,15 @@ def context(content: Assessment, say: Language, verified: Verification | None = 
         "close": all(each.close for each in falls) if falls else any(each.close for each in content.results),
         "not_holding": any(not contact.holds and not contact.followed for contact in contacts),
         "sliding": any(contact.assumed_friction is not None for contact in contacts),
+        "governs": governs,
+        "alike": [each for each in content.results if governs is not None and are_alike(each.conclusion, governs)],
+        "restitution": restitution_source(mechanism),
+        "joint": lambda label: guarded(say.joint(mechanism.mechanism, label)),
+        "force": dict(zip(("per", "unit"), force_unit(mechanism), strict=True)),
+        "step": partial(next_step, say),
+        "sizes": lambda: doubts_about_size(mechanism),
+        "why_alone": lambda: guarded(say.recognised("reason", _why_alone(content))),
+        "translated_cautions": lambda: _translated(mechanism, say),
         "restitution_given": restitution_source(mechanism) == "given",
         "elastic": any(tie.is_elastic for tie in mechanism.ties or []),
         "printed": printed, "infinite": inf, "disagree": disagree,
