@@ -24,6 +24,7 @@ from rocking_cli.views.sheet.language import Language
 
 ORIGIN_MARKS = {"print": "", "transcription": "*", "code": "†", "ours": "‡", "plain": ""}
 """Marks beside formulas, by how far these were checked."""
+SCRIPT_TEXT = "script "  # begins the keys of texts of data/motion.js
 LEAVES = {"number": "mn", "letter": "mi", "word": "mi", "sign": "mo", "bracket": "mo"}
 SCREEN_WIDTH = 25  # characters of a formula that fit on any screen
 TEXT_WIDTH = 17.0  # cm of an A4 page, between margins of 2 cm
@@ -61,10 +62,19 @@ def render(sheet: Sheet, *, still: bool = False) -> str:
         marks=ORIGIN_MARKS,
         moving=moving,
         motion_style=Markup(asset("motion.css")),
-        script=Markup(asset("motion.js")) if moving else "",
+        script=Markup(_script(sheet.language)) if moving else "",
         dark_figures=dark_figures(),
     )
     return printable(page)  # names and contents of files may have characters that a page cannot hold
+
+
+def _script(say: Language) -> str:
+    """Return the script of moving pictures, with the texts of its buttons and hints in a language."""
+    script = asset("motion.js")
+    for key, text in say.texts.items():
+        if key.startswith(SCRIPT_TEXT):
+            script = script.replace(key.removeprefix(SCRIPT_TEXT), text)
+    return script
 
 
 def _moving(part: SheetPart) -> list[Moving]:

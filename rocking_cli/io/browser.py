@@ -59,6 +59,14 @@ def browser() -> str:
     return installed[0]
 
 
+def has_browser() -> bool:
+    """Return whether there is a browser that prints."""
+    try:
+        return bool(browser())
+    except InputError:
+        return False
+
+
 def as_pdf(page: bytes) -> bytes:
     """Return a page of HTML, which must not need a network, as PDF.
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking_cli.core.advice import Grade
+from rocking_cli.plotting.language import in_language
 from rocking_cli.plotting.moving import ground_chart, moving, ratio_chart
 from rocking_cli.questions.equiv.view import PARAMETERS, EquivalentSide
 from rocking_cli.questions.error.picture import draw_linearisation
@@ -19,7 +20,7 @@ from rocking_cli.questions.error.study import errors, preferred
 from rocking_cli.questions.margin.picture import draw_margins
 from rocking_cli.questions.overturning.picture import draw_map
 from rocking_cli.questions.report.study import Assessment, MotionResult, PulseMap, amplitude_in_g
-from rocking_cli.questions.report.words import PACKAGE, context, in_language, printed
+from rocking_cli.questions.report.words import PACKAGE, context, language_of, printed
 from rocking_cli.questions.respond.picture import draw_history
 from rocking_cli.studies.conclusion import Concluded
 from rocking_cli.studies.film import Film
@@ -81,12 +82,12 @@ def document(content: Assessment, sources: SheetSources, verified: VerifiedRepor
     language : str
         Language, "en" or "it".
     """
-    say, mechanism = in_language(language), content.mechanism
+    say, mechanism = language_of(language), content.mechanism
     ends = [each for each in (verified.found.conclusion if verified else None, content.conclusion) if each is not None]
     values = context(content, say, verified.found if verified is not None else None)
     motions, sides = values["motions"], values["sides"]
     bins = int(np.clip(TOTAL_BINS // max(1, len(motions)), MIN_BINS, MAX_BINS))
-    moving_pictures = [_moving(content, each.result, bins) for each in motions]
+    moving_pictures = [_moving(content, each.result, bins, say) for each in motions]
     of_block = [errors(content.asked, kappa) for kappa in (1, 2)] if content.asked else []
     graded = [each.grade for each in of_block]
     fits = [(each.name, each.result.fits[0]) for each in motions if each.result.file and each.result.fits]
@@ -110,9 +111,9 @@ def document(content: Assessment, sources: SheetSources, verified: VerifiedRepor
         "prefer": preferred(content.asked) if content.asked else None,
         "first_estimate": bool(graded) and min(graded) is Grade.ESTIMATE,
         "figures": {
-            "margins": partial(draw_margins, {each.name: each.result.margin for each in motions}, ""),
-            "map": partial(_draw_map, content.map) if content.map is not None else None,
-            "errors": partial(draw_linearisation, content.curves, content.asked, ""),
+            "margins": in_language(say, partial(draw_margins, {each.name: each.result.margin for each in motions}, "")),
+            "map": in_language(say, partial(_draw_map, content.map)) if content.map is not None else None,
+            "errors": in_language(say, partial(draw_linearisation, content.curves, content.asked, "")),
         },
     }  # fmt: skip
     parts = template.parts(say, PACKAGE, "report", values)
@@ -159,7 +160,7 @@ def _below(match: re.Match[str]) -> str:
     return f"_[{match[1] or ' ₁₂'.index(match[2])}]"
 
 
-def _moving(content: Assessment, result: MotionResult, bins: int) -> Moving:
+def _moving(content: Assessment, result: MotionResult, bins: int, say: Language) -> Moving:
     """Return the moving structure under a motion, with the charts; on paper, the plot of the response."""
     best, watched = result.histories["nonlinear"], Watched(content.mechanism)
     film = Film(content.picture, best, result.motion, result.contacts[result.polarity].assumed_friction)
@@ -172,7 +173,17 @@ def _moving(content: Assessment, result: MotionResult, bins: int) -> Moving:
         moment = float(best.time[int(np.nanargmax(np.abs(best.ratio)))])
     label = f"{content.name}, as it moves under {result.given.motion.name}"
     picture = partial(draw_history, result.histories, result.motion, "", watched=watched)
-    return Moving("", picture, data=moving(film, charts, label=label, speed=1.0, moment=moment))
+    data = moving(film, charts, label=label, speed=1.0, moment=moment)
+    return Moving("", in_language(say, picture), data=data if say.key == "en" else _translated(say, data))
+
+
+def _translated(say: Language, data: Any) -> Any:
+    """Return the data of a moving picture with its texts in a language."""
+    if isinstance(data, dict):
+        return {key: _translated(say, value) for key, value in data.items()}
+    if isinstance(data, list):
+        return [_translated(say, each) for each in data] if data and not isinstance(data[0], float) else data
+    return say.recognised("figure", data) if isinstance(data, str) else data
 
 
 def _draw_map(drawn: PulseMap) -> Figure:

@@ -161,7 +161,7 @@ def report(
     if out is not None:
         made = sheets.sources(ready.mechanism, verify, chosen, source)
         try:
-            sheets.write(Path(out), document(content, made, verified, language), watch)
+            sheets.write(Path(out), document(content, made, verified, language), watch, by_browser=True)
         except RockingError as error:
             watch.unwritten(error)
     shown = view(content, verified.found if verified is not None else None)

@@ -9,7 +9,7 @@ from rocking_cli.questions.equiv.view import sides_of
 from rocking_cli.questions.error.view import trust
 from rocking_cli.questions.margin.view import margin_data
 from rocking_cli.questions.report.study import Assessment
-from rocking_cli.questions.report.words import PACKAGE, context, in_language
+from rocking_cli.questions.report.words import PACKAGE, context, language_of
 from rocking_cli.studies.conclusion import worst
 from rocking_cli.studies.movements import Watched
 from rocking_cli.verification.results import Verification
@@ -23,7 +23,7 @@ from rocking_cli.views.view import View
 
 def view(content: Assessment, verified: Verification | None = None) -> View:
     """Show a report: its answer in a sentence, and all its content as plain data."""
-    say, watched = in_language("en", is_plain=True), Watched(content.mechanism)
+    say, watched = language_of("en", is_plain=True), Watched(content.mechanism)
     values = context(content, say, verified)
 
     def said(name: str, **more: Any) -> list[SheetPart]:

@@ -275,7 +275,7 @@ def context(content: Assessment, say: Language, verified: Verification | None = 
     }  # fmt: skip
 
 
-def in_language(key: str, *, is_plain: bool = False) -> Language:
+def language_of(key: str, *, is_plain: bool = False) -> Language:
     """Return a language with the texts of a report."""
     from rocking_cli.views.sheet.language import texts_of
 
