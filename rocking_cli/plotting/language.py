@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 from matplotlib.figure import Figure
 from matplotlib.text import Text
@@ -20,7 +20,7 @@ class _Numbers(Formatter):
     def __call__(self, value: float, pos: int | None = None) -> str:
         return self.say.formula(self.own(value, pos))
 
-    def format_ticks(self, values: Sequence[float]) -> list[str]:  # type: ignore[override]
+    def format_ticks(self, values: list[float]) -> list[str]:
         return [*map(self.say.formula, self.own.format_ticks(values))]
 
 

@@ -21,7 +21,6 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.records import read_record
 from rocking_cli.questions.survey.page import symbols
 from rocking_cli.studies.neighbours import Neighbourhood
-from rocking_cli.studies.under_pulses import parse_shape
 from rocking_cli.views.neighbours import deviations
 from tests.browser import launch
 from tests.cli.test_cli import run, run_json
@@ -279,7 +278,7 @@ class TestCommand:
             (["--scale", "2"], "give --record or --pulse"),
             (["--pulse", "sine:1g:1s", "--scale", "2", "--target-pga", "1"], "cannot be combined"),
             (["--record", "none.csv"], "none.csv"),
-            (["-o", "r.txt"], "does not end in .html, .pdf or .docx"),
+            (["-o", "r.txt"], "does not end in .html or .pdf or .docx"),
             (["-o", "none/r.html"], "does not exist"),
         ],
     )
