@@ -1,4 +1,4 @@
-"""A calculation sheet as a document for word processors, made with python-docx."""
+"""A document for word processors, made with python-docx."""
 
 from __future__ import annotations
 
@@ -10,15 +10,7 @@ from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.documents.mathematics import Node, Unreadable, formulas_of, pieces
-from rocking_cli.documents.sheet_page import (
-    ORIGIN_MARKS,
-    OWN_PAGES,
-    SIGNATURE_FIELDS,
-    TEXT_WIDTH,
-    figure_of,
-    printed_width,
-    runs,
-)  # fmt: skip
+from rocking_cli.documents.sheet_page import ORIGIN_MARKS, TEXT_WIDTH, figure_of, printed_width, runs
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.plotting import style
 from rocking_cli.text import printable
@@ -31,6 +23,7 @@ if TYPE_CHECKING:
     from docx.text.paragraph import Paragraph
 
 CELL, FORMULA = "Cell", "Formula"
+MONOSPACED = "Courier New"
 FONT_SIZES = {CELL: 8, FORMULA: 10}  # pt of the styles of paragraphs in tables
 COUNT_WIDTH = 1.1  # cm of the column with the numbers of steps
 CELL_MARGIN = 3  # characters that are as wide as the margins of a cell
@@ -51,12 +44,12 @@ def check_package() -> None:
 
 
 def render(sheet: Sheet) -> bytes:
-    """Return the document of a calculation sheet.
+    """Return a document as the content of a .docx file.
 
     Parameters
     ----------
     sheet : Sheet
-        The sheet.
+        The document.
 
     Raises
     ------
@@ -98,7 +91,8 @@ class _Writer:
     def _sign_and_list(self) -> None:
         """Write the place for the signature, and the table of contents, which a word processor fills on request."""
         say = self.sheet.language
-        self._table([[say(name) + "\n" * SIGNATURE_LINES for name in SIGNATURE_FIELDS]])
+        if self.sheet.signature:
+            self._table([[say(name) + "\n" * SIGNATURE_LINES for name in self.sheet.signature]])
         title = self.document.add_paragraph()
         title.paragraph_format.page_break_before = title.paragraph_format.keep_with_next = True
         self._text(title, say("Contents"), bold=True, size=14)
@@ -153,7 +147,7 @@ class _Writer:
 
     def _part(self, part: SheetPart, level: int) -> None:
         heading = self.document.add_heading(level=min(level, 9))
-        heading.paragraph_format.page_break_before = part.key in OWN_PAGES or None
+        heading.paragraph_format.page_break_before = part.key in self.sheet.own_pages or None
         self._text(heading, part.heading)
         for item in part.items:
             self._item(item)
@@ -173,7 +167,7 @@ class _Writer:
         elif isinstance(item, Drawing):
             stream = BytesIO()
             figure = figure_of(item, self.sheet.language)
-            width = printed_width(figure)  # before it is drawn
+            width = printed_width(figure, item.height)  # before it is drawn
             style.save(figure, stream, format="png")
             stream.seek(0)
             self.document.add_picture(stream, width=Cm(width))
@@ -184,7 +178,7 @@ class _Writer:
                 paragraph = self.document.add_paragraph()
                 paragraph.paragraph_format.space_after = Pt(0)
                 run = paragraph.add_run(printable(line))
-                run.font.name, run.font.size = "Courier New", Pt(8)
+                run.font.name, run.font.size = MONOSPACED, Pt(8)
         else:
             self._text(self.document.add_paragraph(), item.text, bold=item.answers, marked=item.is_open)
 
@@ -249,7 +243,9 @@ class _Writer:
             run = paragraph.add_run("\n".join(map(printable, piece.split("\n"))))
             run.bold = bold or None
             run.font.highlight_color = WD_COLOR_INDEX.YELLOW if marked else None
-            if place:
+            if place == "code":
+                run.font.name = MONOSPACED
+            elif place:
                 setattr(run.font, {"sub": "subscript", "sup": "superscript"}[place], True)
             if size is not None:
                 run.font.size = Pt(size)

@@ -1,7 +1,8 @@
-"""A calculation sheet as a single HTML page that needs no other file and no network."""
+"""A document as a single HTML page that needs no other file and no network."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from functools import partial
 from itertools import count
@@ -13,60 +14,72 @@ from matplotlib.text import Text
 from rocking_cli.core import Mechanism
 from rocking_cli.documents.figures import dark_figures, inline_svg, template
 from rocking_cli.documents.mathematics import BRACKETS, Node, Unreadable, formulas_of, pieces, width
-from rocking_cli.plotting.moving import asset
+from rocking_cli.plotting.moving import as_script, asset
 from rocking_cli.plotting.structure import draw_structure
 from rocking_cli.studies.picture import picture
 from rocking_cli.text import printable
 from rocking_cli.verification.results import MARK
-from rocking_cli.views.sheet.document import Drawing, Sheet
+from rocking_cli.views.sheet.document import Drawing, Moving, Sheet, SheetPart
 from rocking_cli.views.sheet.language import Language
 
 ORIGIN_MARKS = {"print": "", "transcription": "*", "code": "†", "ours": "‡", "plain": ""}
 """Marks beside formulas, by how far these were checked."""
+SCRIPT_TEXT = "script "  # begins the keys of texts of data/motion.js
 LEAVES = {"number": "mn", "letter": "mi", "word": "mi", "sign": "mo", "bracket": "mo"}
 SCREEN_WIDTH = 25  # characters of a formula that fit on any screen
 TEXT_WIDTH = 17.0  # cm of an A4 page, between margins of 2 cm
-OWN_PAGES = ("workings", "inputs")  # keys of the sections that begin a page
-MAX_FIGURE_HEIGHT = 11.0  # cm
-SIGNATURE_FIELDS = ("Place and date", "Name", "Signature", "Stamp")
 
 
-def render(sheet: Sheet) -> str:
-    """Return the page of a calculation sheet.
+def render(sheet: Sheet, *, still: bool = False) -> str:
+    """Return the page of a document.
 
     Parameters
     ----------
     sheet : Sheet
-        The sheet; every text in it is escaped.
-    """
-    page = template("sheet.html").render(
-        sheet=sheet,
-        say=sheet.language,
-        parts=parts(sheet, alone=True),
-        motion_style=Markup(asset("motion.css")),
-        dark_figures=dark_figures(),
-    )
-    return printable(page)
-
-
-def parts(sheet: Sheet, level: int = 2, *, alone: bool = False) -> Markup:
-    """Return the sections of a sheet as HTML, with headings from a given level, such as for a report.
-
-    A sheet that stands `alone` has a place for the signature and its contents after the first section.
+        The document; every text in it is escaped.
+    still : bool
+        Whether moving pictures are replaced by still ones, as for paper.
     """
     steps, pictures = count(1), count(1)
 
     def svg(item: Drawing) -> Markup:
-        return inline_svg(lambda: figure_of(item, sheet.language), f"sheet-{next(pictures)}")
+        return inline_svg(lambda: figure_of(item, sheet.language), f"figure-{next(pictures)}")
 
+    moving = [] if still else [each for part in sheet.parts for each in _moving(part)]
     page = template(
-        "sheet_parts.html", formula=formula, math=math, is_wide=is_wide, formulas=formulas_of, svg=svg
-    )  # fmt: skip
-    text = page.render(
-        sheet=sheet, say=sheet.language, level=level, step=lambda: next(steps), number=sheet.language.number,
-        marks=ORIGIN_MARKS, alone=alone, signed=SIGNATURE_FIELDS,
-    )  # fmt: skip
-    return Markup(text)
+        "document.html",
+        formula=formula,
+        math=math,
+        is_wide=is_wide,
+        formulas=formulas_of,
+        svg=svg,
+        as_script=lambda data: Markup(as_script(data)),
+    ).render(
+        sheet=sheet,
+        say=sheet.language,
+        step=lambda: next(steps),
+        number=sheet.language.number,
+        marks=ORIGIN_MARKS,
+        moving=moving,
+        motion_style=Markup(asset("motion.css")),
+        script=Markup(_script(sheet.language)) if moving else "",
+        dark_figures=dark_figures(),
+    )
+    return printable(page)  # names and contents of files may have characters that a page cannot hold
+
+
+def _script(say: Language) -> str:
+    """Return the script of moving pictures, with the texts of its buttons and hints in a language."""
+    script = asset("motion.js")
+    for key, text in say.texts.items():
+        if key.startswith(SCRIPT_TEXT):
+            script = script.replace(key.removeprefix(SCRIPT_TEXT), text)
+    return script
+
+
+def _moving(part: SheetPart) -> list[Moving]:
+    own = [each for each in part.items if isinstance(each, Moving)]
+    return own + [each for below in part.parts for each in _moving(below)]
 
 
 def figure_of(item: Drawing, say: Language) -> Figure:
@@ -86,18 +99,18 @@ def figure_of(item: Drawing, say: Language) -> Figure:
     return figure
 
 
-def printed_width(figure: Figure) -> float:
-    """Return the width of a figure on paper, in cm: that of the text, or less if it would be too high."""
+def printed_width(figure: Figure, tallest: float) -> float:
+    """Return the width of a figure on paper, in cm: that of the text, or less if it would be higher than `tallest`."""
     width, height = map(float, figure.get_size_inches())
-    return min(TEXT_WIDTH, MAX_FIGURE_HEIGHT * width / height)
+    return min(TEXT_WIDTH, tallest * width / height)
 
 
 def runs(text: str) -> Iterator[tuple[str, str]]:
-    """Yield the pieces of a text, each with its place: "sub", "sup" or neither."""
+    """Yield the pieces of a text, each with its kind: "sub", "sup", "code" (between backticks), or "" for none."""
     end = 0
-    for mark in MARK.finditer(text):
+    for mark in re.finditer(f"`([^`]+)`|{MARK.pattern}", text):
         yield text[end : mark.start()], ""
-        yield mark[2], "sub" if mark[1] == "_" else "sup"
+        yield (mark[1], "code") if mark[1] else (mark[3], "sub" if mark[2] == "_" else "sup")
         end = mark.end()
     yield text[end:], ""
 

@@ -1,4 +1,4 @@
-"""A calculation sheet as PDF, laid out by typst, which needs no browser and no fonts of the system."""
+"""A document as PDF, laid out by typst, which needs no browser and no fonts of the system."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any
 
 from rocking_cli.documents.figures import svg
 from rocking_cli.documents.mathematics import Unreadable, formulas_of, pieces
-from rocking_cli.documents.sheet_page import ORIGIN_MARKS, OWN_PAGES, SIGNATURE_FIELDS, figure_of, printed_width, runs
+from rocking_cli.documents.sheet_page import ORIGIN_MARKS, figure_of, printed_width, runs
 from rocking_cli.errors import Refused
 from rocking_cli.io.json_text import json_text
 from rocking_cli.text import printable
@@ -20,16 +20,16 @@ from rocking_cli.verification.results import Working
 from rocking_cli.views.sheet.document import Drawing, Item, Listing, Sheet, SheetPart, Steps
 from rocking_cli.views.view import Table
 
-LAYOUT = "sheet.typ"
+LAYOUT = "document.typ"
 
 
 def render(sheet: Sheet) -> bytes:
-    """Return the PDF of a calculation sheet.
+    """Return the PDF of a document.
 
     Parameters
     ----------
     sheet : Sheet
-        The sheet.
+        The document.
 
     Raises
     ------
@@ -41,7 +41,7 @@ def render(sheet: Sheet) -> bytes:
 
 
 def page_pictures(sheet: Sheet, ppi: float) -> list[bytes]:
-    """Return the pages of the PDF of a calculation sheet as pictures, PNG, with a number of pixels per inch."""
+    """Return the pages of the PDF of a document as pictures, PNG, with a number of pixels per inch."""
     pages: list[bytes] = _laid_out(sheet, format="png", ppi=ppi)
     return pages
 
@@ -74,9 +74,15 @@ def _files(sheet: Sheet) -> dict[str, bytes]:
 
     def drawing(item: Drawing) -> dict[str, Any]:
         figure, file = figure_of(item, sheet.language), f"{len(pictures)}.svg"
-        width = printed_width(figure)  # before it is drawn
+        width = printed_width(figure, item.height)  # before it is drawn
         pictures[file] = svg(figure, file, text_as="path").encode()
-        return {"kind": "drawing", "file": file, "width": width, "label": printable(item.label)}
+        return {
+            "kind": "drawing",
+            "file": file,
+            "width": width,
+            "alt": printable(item.label),
+            "label": _runs(item.label),
+        }
 
     def item(each: Item) -> dict[str, Any]:
         if isinstance(each, Table):
@@ -96,8 +102,8 @@ def _files(sheet: Sheet) -> dict[str, bytes]:
     content = {
         "language": say.key, "heading": printable(sheet.heading), "subtitle": printable(sheet.subtitle),
         "about": [[printable(name), printable(text)] for name, text in sheet.about.items()],
-        "signed": [*map(say, SIGNATURE_FIELDS)], "contents": say("Contents"), "logo-name": say("Logo"), "logo": None,
-        "parts": _parts(sheet.parts, item),
+        "signed": [*map(say, sheet.signature)], "contents": say("Contents"), "logo-name": say("Logo"), "logo": None,
+        "parts": _parts(sheet, sheet.parts, item),
     }  # fmt: skip
     if sheet.logo:
         kind, _, data = sheet.logo.partition(";base64,")
@@ -107,10 +113,10 @@ def _files(sheet: Sheet) -> dict[str, bytes]:
     return {LAYOUT: layout.read_bytes(), "sheet.json": json_text(content).encode(), **pictures}
 
 
-def _parts(parts: Sequence[SheetPart], item: Callable[[Item], dict[str, Any]]) -> list[dict[str, Any]]:
+def _parts(sheet: Sheet, parts: Sequence[SheetPart], item: Callable[[Item], dict[str, Any]]) -> list[dict[str, Any]]:
     return [
-        {"own_page": each.key in OWN_PAGES, "heading": _runs(each.heading), "items": [*map(item, each.items)],
-         "parts": _parts(each.parts, item)}
+        {"own_page": each.key in sheet.own_pages, "heading": _runs(each.heading), "items": [*map(item, each.items)],
+         "parts": _parts(sheet, each.parts, item)}
         for each in parts
     ]  # fmt: skip
 

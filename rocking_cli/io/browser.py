@@ -52,11 +52,19 @@ def browser() -> str:
     ]
     if not installed:
         hint = (
-            f"install Chromium, Chrome or Edge, or name one in {BROWSER_VARIABLE}; for a calculation sheet, "
-            "pip install 'rocking-cli[pdf]' does too; or write .html and print it yourself"
+            f"install Chromium, Chrome or Edge, or name one in {BROWSER_VARIABLE}; or pip install 'rocking-cli[pdf]', "
+            "which needs no browser; or write .html and print it yourself"
         )
         raise InputError(Problem("a PDF is printed by a browser, and none is found here", hint=hint))
     return installed[0]
+
+
+def has_browser() -> bool:
+    """Return whether there is a browser that prints."""
+    try:
+        return bool(browser())
+    except InputError:
+        return False
 
 
 def as_pdf(page: bytes) -> bytes:

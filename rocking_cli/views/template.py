@@ -8,6 +8,7 @@ from typing import Any
 import yaml
 from pydantic import BaseModel
 
+from rocking_cli.io import starters
 from rocking_cli.io.json_text import json_text
 from rocking_cli.verification.code import Code, Site
 from rocking_cli.views.mechanisms import fields
@@ -62,6 +63,13 @@ def starter(code: Code, commands: Sequence[str] = ()) -> str:
     head = [f"# A site, to verify a structure by the {_in_a_line(f'{code.name} ({code.edition})')}."]
     head += [f"#   {each}" for each in commands]
     return "\n".join([*head, *fill_in, f"# {SITE_UNITS_NOTE}", f"code: {_yaml(code.key)}", *lines]) + "\n"
+
+
+def comments(cls: Any, code: Code | None) -> frozenset[str]:
+    """Return the lines that are comments in the templates of a mechanism, of common structures and of a site."""
+    texts = [template(cls), *map(starters.starter, starters.STARTERS), *([] if code is None else [starter(code)])]
+    both = [each for text in texts for each in (text, starters.in_italian(text)[0])]
+    return frozenset(line for text in both for line in text.splitlines() if line.startswith("#"))
 
 
 def _lines(

@@ -1,4 +1,4 @@
-"""`rocking report`: write a report on a structure as one page of HTML, or as PDF."""
+"""`rocking report`: write a report on a structure as a page of HTML, as PDF, or for a word processor."""
 
 from __future__ import annotations
 
@@ -14,15 +14,17 @@ from rocking_cli.cli.help import Command
 from rocking_cli.questions.verify import heads
 
 
-@click.command(cls=Command, short_help="Write a complete report on a structure, as HTML or PDF.")
+@click.command(cls=Command, short_help="Write a complete report on a structure, as HTML, PDF or .docx.")
 @click.argument("files", metavar="[FILE]", nargs=-1, type=click.Path())
 @options.ground_motions
 @options.reading
 @options.scaling("1", "-1", "both", default="both")
 @options.out(
-    ".html", ".pdf",
-    what="Output file; .pdf needs a browser.  [default: FILE with the ending .html, in this folder; none with --json]",
+    ".html", ".pdf", ".docx",
+    what="Output file; .pdf needs a browser or an extra package, .docx an extra package.  [default: FILE with the "
+    "ending .html, in this folder; none with --json]",
 )  # fmt: skip
+@heads.language
 @heads.head
 @click.option(
     "--verify", type=click.Path(), metavar="SITE.yaml", shell_complete=complete.files,
@@ -41,14 +43,14 @@ from rocking_cli.questions.verify import heads
 def command(
     ctx: click.Context, files: tuple[str, ...], asked: GroundMotions, out: Path | None, as_json: bool, **question: Any
 ) -> None:  # fmt: skip
-    """Write a report on a structure: one HTML file that opens in any browser and can be printed, or a PDF.
+    """Write a report on a structure: one HTML file that opens in any browser and can be printed, a PDF, or .docx.
 
-    The HTML file needs no network. A PDF (`-o report.pdf`) is printed by the browser of this computer. The report
-    starts with a summary in words: whether the structure uplifts or overturns, how close it is to overturning, which
-    model is reliable, and what is doubtful. Then follow the drawing, the parameters, the response to each ground motion
-    (with --polarity both, that of the worse polarity), the pulses and the overturning map, the error of the equivalent
-    block, and the inputs and versions needed to reproduce the results. Without a ground motion, the report contains
-    only the parts that need none.
+    The HTML file needs no network. A PDF (`-o report.pdf`) is printed by the browser of this computer, or made with the
+    extra package `pdf`. The first page is for the owner: what was asked, the conclusion, the drawing, and what to do
+    next. Then follow what the results rest on, the parameters, the response to each ground motion (with --polarity
+    both, that of the worse polarity), the joints, the margin, the pulses and the overturning map, the error of the
+    equivalent block, and the files and versions needed to reproduce the results. Without a ground motion, the report
+    contains only the parts that need none.
 
     With --verify SITE.yaml, the report also contains the verification by the code of the site, step by step as in
     `rocking verify --sheet`; --state and --on-floor are those of `rocking verify`.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import pi
 
 import numpy as np
 
@@ -17,11 +16,10 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
 from rocking_cli.excitation.doubts import coarse_for, doubts
 from rocking_cli.excitation.measures import Measures, measure
 from rocking_cli.excitation.pulse_fit import PulseFit, fit_pulses
-from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.processing.listed import Scaled
 from rocking_cli.questions.error.study import Linearisation, compare
 from rocking_cli.questions.margin.study import SHARE_LEVELS, Margin, margin
-from rocking_cli.questions.overturning.study import OverturningMap, Region, overturning_map
+from rocking_cli.questions.overturning.study import OverturningMap, overturning_map, usual_amplitudes, usual_periods
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Conclusion, worst
@@ -37,9 +35,7 @@ ERROR_AMPLITUDES, ERROR_ACCELERATIONS = (0.25, 0.5, 0.75), (1.5, 2.0, 4.0)
 FITTED_PULSES = ("sine", "ricker")  # those whose only parameters are the two axes of a map, amplitude and period
 MIN_CAUTIONED_FACTOR = 2.0  # scale factor on a record, above which a report has a caution
 MAX_CLOSE_FACTOR = 1.25  # factor on the motion: a result is close if neighbours within it have the opposite outcome
-MAP_POINTS = 80  # points along each side of a map
-MAP_OMEGAS, MIN_MAP_TOP = (1.0, 10.0), 10.0  # omega_g/p of a map, and least a_g/(g lambda) at its top
-MAP_HEADROOM = 1.15  # factor by which a map extends beyond a mark
+MAP_POINTS, MAP_SHAPE = 256, "sine"  # points along each side of the map, and the shape of its pulses
 
 
 @short_repr
@@ -118,14 +114,14 @@ class MotionResult(Response):
 @short_repr
 @dataclass(frozen=True, eq=False)
 class PulseMap:
-    """Overturning map of one pulse shape, with the pulses of the ground motions marked on it.
+    """Overturning map of sine pulses, with those in the ground motions marked on it.
 
     Parameters
     ----------
     found : OverturningMap
-        The map, by the nonlinear model, of the worse polarity.
+        The map, by the equivalent block with kappa2.
     marks : tuple of (str, PulseFit)
-        Name of each motion whose pulse has this shape, and the pulse.
+        Name of each motion whose sine pulse is on the map, and the pulse.
     """
 
     found: OverturningMap
@@ -151,8 +147,8 @@ class Assessment:
         Why there is no such error; empty if there is one.
     results : tuple of MotionResult
         The response to each ground motion.
-    maps : tuple of PulseMap
-        One map for each pulse shape; empty if no history can be computed or there is no equivalent block.
+    map : PulseMap or None
+        The map of pulses; None if no history can be computed, or no equivalent block represents the structure.
     title : TitleBlock
         The heading of the report.
     versions : mapping of str to str
@@ -166,7 +162,7 @@ class Assessment:
     asked: tuple[Linearisation, ...]
     no_error: str
     results: tuple[MotionResult, ...]
-    maps: tuple[PulseMap, ...]
+    map: PulseMap | None
     title: TitleBlock
     versions: Mapping[str, str]
 
@@ -236,7 +232,7 @@ def gather(
     for each in given:
         results.append(_result(structure, each, polarities, around or Neighbourhood()))
         done(1)
-    maps = _maps(structure, results)
+    pulse_map = _map(structure, results)
     done(1)
     return Assessment(
         structure=structure,
@@ -246,7 +242,7 @@ def gather(
         asked=tuple(marks),
         no_error=why,
         results=tuple(results),
-        maps=tuple(maps),
+        map=pulse_map,
         title=title,
         versions=versions(mechanism),
     )
@@ -301,42 +297,29 @@ def _fits(given: Scaled, scaled: GroundMotion) -> tuple[PulseFit, ...]:
     return tuple(sorted(fits, key=lambda fit: -fit.captured))
 
 
-def _maps(structure: Structure, results: Sequence[MotionResult]) -> list[PulseMap]:
-    """Compute a map for each shape among the best pulses of the motions; for the sine if no motion has a pulse."""
-    if structure.why_no_block or structure.refuses("sizes") or min(structure.etas) <= 0:
-        return []  # no block to scale pulses by, or no histories
-    marks: dict[Pulse, list[tuple[str, PulseFit]]] = {}
-    for result in results:
-        if result.fits:
-            best = result.fits[0]
-            marks.setdefault(replace(best.pulse, amplitude=1.0, period=1.0), []).append(
-                (result.given.motion.name, best)
-            )
-    marks = marks or {parse_shape("sine"): []}
-    return [PulseMap(_map(structure, shape, each), tuple(each)) for shape, each in marks.items()]
+def _map(structure: Structure, results: Sequence[MotionResult]) -> PulseMap | None:
+    """Return the map that `rocking overturning` draws by default; None without a block that represents the structure.
 
-
-def _map(structure: Structure, shape: Pulse, marks: Sequence[tuple[str, PulseFit]]) -> OverturningMap:
-    """Return the map of a pulse shape that shows all marked pulses."""
-    under = pulsed_model(structure, "nonlinear", shape, (1, -1))
-    usual = [2 * pi / (omega * under.p) for omega in MAP_OMEGAS]
-    pulses = [fit.pulse for _, fit in marks]
-    periods = [
-        *usual,
-        *(pulse.period / MAP_HEADROOM for pulse in pulses),
-        *(pulse.period * MAP_HEADROOM for pulse in pulses),
-    ]
-    strongest = max([MIN_MAP_TOP, *(MAP_HEADROOM * pulse.amplitude / under.unit for pulse in pulses)])
-    omega = under.period(np.linspace(min(periods), max(periods), MAP_POINTS))
-    a = np.linspace(strongest / MAP_POINTS, strongest, MAP_POINTS)
-    return overturning_map(under, shape, omega, a, polarities=(1, -1))
+    The best-fitting sine pulses of the motions are marked, if they are on it.
+    """
+    if structure.why_no_block or structure.misleading or structure.refuses("sizes") or min(structure.etas) <= 0:
+        return None
+    shape = parse_shape(MAP_SHAPE)
+    under = pulsed_model(structure, "linear2", shape)
+    periods = np.linspace(*usual_periods([under], shape), MAP_POINTS)
+    amplitudes = np.linspace(*usual_amplitudes([under]), MAP_POINTS) * STANDARD_GRAVITY / under.unit
+    found = overturning_map(under, shape, under.period(periods), amplitudes)
+    sines = [
+        (each.given.motion.name, fit) for each in results for fit in each.fits if fit.pulse.name == MAP_SHAPE
+    ]  # fmt: skip
+    marks = [
+        (name, fit) for name, fit in sines
+        if periods[0] <= fit.pulse.period <= periods[-1]
+        and amplitudes[0] <= fit.pulse.amplitude / under.unit <= amplitudes[-1]
+    ]  # fmt: skip
+    return PulseMap(found, tuple(marks))
 
 
 def amplitude_in_g(fit: PulseFit) -> float:
     """Return the amplitude a_p of a fitted pulse [standard gravity]."""
     return fit.pulse.amplitude / STANDARD_GRAVITY
-
-
-def share(found: OverturningMap) -> float:
-    """Return the share of the area of a map in which the structure overturns."""
-    return sum(found.shares[region] for region in (Region.AFTER_IMPACT, Region.WITHOUT_IMPACT))

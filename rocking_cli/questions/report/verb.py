@@ -1,4 +1,4 @@
-"""`rk.report`: write a report on a structure as one page of HTML, or as PDF."""
+"""`rk.report`: write a report on a structure as a page of HTML, as PDF, or for a word processor."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from rocking_cli.views.view import heading
 if TYPE_CHECKING:
     from rocking_cli.io.tables import Columns
     from rocking_cli.processing.listed import Scaled
-    from rocking_cli.questions.report.page import VerifiedReport
+    from rocking_cli.questions.report.document import VerifiedReport
     from rocking_cli.questions.report.study import Assessment
     from rocking_cli.questions.verify.sheets import SheetOrigin
     from rocking_cli.structure import Structure
@@ -48,11 +48,12 @@ def report(
     place: str | None = None,
     author: str | None = None,
     logo: str | Path | None = None,
+    language: str = "en",
     origin: str | None = None,
     watch: Watcher = SILENT,
     **options: Unpack[MotionArguments],
 ) -> Answer[Assessment]:
-    """Write a report: one HTML file that opens in any browser and can be printed, or a PDF.
+    """Write a report: one HTML file that opens in any browser and can be printed, a PDF, or a .docx file.
 
     Parameters
     ----------
@@ -61,7 +62,8 @@ def report(
     motions : GroundMotion, Pulse, str or Path, or a sequence of these
         Ground motions, their files, or pulses as text; may be empty.
     out : str or Path, optional
-        File to write: .html, or .pdf with a browser; None to write none.
+        File to write: .html, .pdf (by a browser, or with the extra `pdf`) or .docx (with the extra `docx`); None to
+        write none.
     polarity : {"both", "1", "-1"}
         Polarity of the motions: as given, reversed, or both, of which the worse is shown.
     neighbours : int
@@ -79,6 +81,8 @@ def report(
         Largest opening of a joint up to which a history is valid, over D_cr.
     project, place, author, logo : str, str, str, path, optional
         Entries for the heading of the report, and a picture in .png, .jpg or .svg.
+    language : {"en", "it"}
+        Language of the report.
     origin : str, optional
         What the report says of how it was made; by default this function and the structure.
     watch : Watcher
@@ -113,16 +117,17 @@ def report(
     True
     """
     from rocking_cli.documents import files
-    from rocking_cli.questions.report.page import render
+    from rocking_cli.questions.report.document import document
     from rocking_cli.questions.report.study import count_steps, gather
     from rocking_cli.questions.report.view import view
+    from rocking_cli.questions.verify import sheets
     from rocking_cli.questions.verify.sheets import Head, SheetOrigin
     from rocking_cli.verification.check import refuse
     from rocking_cli.verification.results import Histories
     from rocking_cli.views.sheet.build import sheet_of
 
     if out is not None:
-        files.check(Path(out), ".html", ".pdf")
+        files.check(Path(out), ".html", ".pdf", ".docx")
     signs, requested = signs_of(polarity), Motions.of(motions, options)
     if (state is not None or on_floor) and (verify is None or not requested):
         raise InputError("`state` and `on_floor` describe records of a verification: give `verify` and `motions`")
@@ -145,18 +150,18 @@ def report(
         refuse(site, motions=bool(requested))
     ready = structure_of(structure, watch, opening)
     source = SheetOrigin.of(origin or "rocking_cli.report(...)", ready)
-    title = Head(project, place, author, logo).block(source)
+    title = Head(project, place, author, logo).block(source, language)
     chosen = requested.gather(ready.growth, watch) if requested else []
     verified = None
     if verify is not None and site is not None:
         histories = Histories(chosen, signs, state, on_floor, refused=requested.refused(chosen))
-        verified = _verified(ready, site, verify, chosen, histories, title, source)
+        verified = _verified(ready, site, verify, chosen, histories, language, title, source)
     with watch.progress(count_steps(chosen), "parts of the report") as advance:
         content = gather(ready, source.structure, chosen, signs, around=around, title=title, progress=advance)
     if out is not None:
-        page = render(content, verified)
+        made = sheets.sources(ready.mechanism, verify, chosen, source)
         try:
-            watch.note(files.write(Path(out), files.laid_out(page, Path(out).suffix.lower())))
+            sheets.write(Path(out), document(content, made, verified, language), watch, by_browser=True)
         except RockingError as error:
             watch.unwritten(error)
     shown = view(content, verified.found if verified is not None else None)
@@ -166,17 +171,17 @@ def report(
 
 def _verified(
     structure: Structure, site: SiteFile, given: SiteLike, motions: Sequence[Scaled], histories: Histories,
-    title: TitleBlock, origin: SheetOrigin,
+    language: str, title: TitleBlock, origin: SheetOrigin,
 ) -> VerifiedReport:  # fmt: skip
     """Return the verification in a report, with time histories under its ground motions."""
-    from rocking_cli.questions.report.page import VerifiedReport
+    from rocking_cli.questions.report.document import VerifiedReport
     from rocking_cli.questions.verify.sheets import sheet_for
     from rocking_cli.verification.check import verify, with_histories
 
     verification = verify(structure, site)
     if motions:
         verification = with_histories(verification, structure, site, histories)
-    return VerifiedReport(verification, sheet_for(verification, site, given, motions, "en", title, origin))
+    return VerifiedReport(verification, sheet_for(verification, site, given, motions, language, title, origin))
 
 
 def _columns(found: Assessment) -> Columns:

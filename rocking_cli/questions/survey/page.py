@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from rocking_cli.documents.figures import dark_figures, inline_svg, template
 from rocking_cli.errors import InputError
 from rocking_cli.plotting.moving import asset
-from rocking_cli.questions.report.page import symbols
 from rocking_cli.questions.survey.coordinates import coordinates
 from rocking_cli.questions.survey.map_picture import draw_map
 from rocking_cli.questions.survey.picture import draw_survey
@@ -18,6 +18,7 @@ from rocking_cli.questions.survey.view import counts, sentences, table, title
 from rocking_cli.text import printable
 
 MAX_PAGE_ROWS = 10_000  # browsers need many seconds to lay out more
+SUBSCRIPT = re.compile(r"([φθλωψ]|\b[A-Za-z])_([A-Za-z]+(?:,\d)?)")
 SYMBOLS = {"zeta": "ζ", "lambda": "λ", "phi_cr": "φ_cr", "kappa2": "κ₂", "eta": "η"}
 
 
@@ -54,6 +55,11 @@ def render(found: Survey, source: str, about: Sequence[str]) -> str:
         dark_figures=dark_figures(),
     )
     return printable(page)  # a table may have characters that a page cannot hold
+
+
+def symbols(text: str) -> Markup:
+    """Return a text of this package as HTML, with an underscore after a symbol turned into a subscript."""
+    return Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text))))
 
 
 def _map(found: Survey) -> Markup | None:

@@ -29,7 +29,7 @@ head: options.Decorator = options.in_order(
 
 
 language: options.Decorator = click.option(
-    "--language", type=click.Choice(LANGUAGES), default="en", show_default=True, help="Language of the sheet."
+    "--language", type=click.Choice(LANGUAGES), default="en", show_default=True, help="Language of the document."
 )
 
 

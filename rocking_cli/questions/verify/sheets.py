@@ -10,9 +10,10 @@ from typing import NamedTuple
 
 from rocking_cli.ask.given import SiteLike, yaml_of
 from rocking_cli.ask.watcher import Watcher
+from rocking_cli.core import Mechanism
 from rocking_cli.documents import files
 from rocking_cli.excitation.records.opening import STANDARD_INPUT, name_of, original
-from rocking_cli.io.browser import browser
+from rocking_cli.io.browser import browser, has_browser
 from rocking_cli.io.json_text import json_text
 from rocking_cli.processing.listed import Scaled
 from rocking_cli.structure import Structure
@@ -84,30 +85,37 @@ def sheet_for(
     title: TitleBlock, origin: SheetOrigin,
 ) -> Sheet:  # fmt: skip
     """Return the sheet of a verification, with the checksums of the files that were given."""
-    if isinstance(given, str | Path):
-        of_site = File(str(given), original(given))
-    else:
-        of_site = File("site", json_text(given).encode())
+    return sheet(found, site, Language(language), title, sources(found.mechanism, given, motions, origin))
+
+
+def sources(
+    mechanism: Mechanism, site: SiteLike | None, motions: Sequence[Scaled], origin: SheetOrigin
+) -> SheetSources:
+    """Return the files that were given, with the versions of what computes."""
+    of_site = None
+    if isinstance(site, str | Path):
+        of_site = File(str(site), original(site))
+    elif site is not None:
+        of_site = File("site", json_text(site).encode())
     records = {str(each.file or each.motion.name): file_of_motion(each) for each in motions}
-    sources = SheetSources(origin.structure, of_site, records, versions(found.mechanism), origin.strengthened)
-    return sheet(found, site, Language(language), title, sources)
+    return SheetSources(origin.structure, of_site, records, versions(mechanism), origin.strengthened)
 
 
-def rendered(content: Sheet, suffix: str) -> bytes:
-    """Return a sheet as the content of a file with a suffix."""
+def rendered(content: Sheet, suffix: str, *, by_browser: bool = False) -> bytes:
+    """Return a document as the content of a file with a suffix; a PDF by typst, or `by_browser` where there is one."""
     if suffix == ".docx":
         from rocking_cli.documents.sheet_docx import render as render_docx
 
         return render_docx(content)
-    if suffix == ".pdf" and find_spec("typst") is not None:
+    if suffix == ".pdf" and find_spec("typst") is not None and not (by_browser and has_browser()):
         from rocking_cli.documents.sheet_typst import render as render_typst
 
         return render_typst(content)
     from rocking_cli.documents.sheet_page import render
 
-    return files.laid_out(render(content), suffix)
+    return files.laid_out(render(content, still=suffix == ".pdf"), suffix)
 
 
-def write(file: Path, content: Sheet, watch: Watcher) -> None:
-    """Write a sheet, and tell that it was written."""
-    watch.note(files.write(file, rendered(content, file.suffix.lower())))
+def write(file: Path, content: Sheet, watch: Watcher, *, by_browser: bool = False) -> None:
+    """Write a document, and tell that it was written; arguments as of `rendered`."""
+    watch.note(files.write(file, rendered(content, file.suffix.lower(), by_browser=by_browser)))

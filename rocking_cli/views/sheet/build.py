@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
+from functools import partial
 from importlib.resources import files
 from typing import Any
 
+from rocking_cli.core import Mechanism
 from rocking_cli.errors import InputError, PluginError, Problem
 from rocking_cli.names import LANGUAGES
 from rocking_cli.plugins.errors import blame
 from rocking_cli.studies.provenance import File, TitleBlock
 from rocking_cli.verification.check import code_of
-from rocking_cli.verification.code import SiteFile
+from rocking_cli.verification.code import Code, SiteFile
 from rocking_cli.verification.results import Verification
 from rocking_cli.views.sheet import template
 from rocking_cli.views.sheet.document import Sheet
 from rocking_cli.views.sheet.language import SIGNIFICANT_DIGITS, Language, texts_of
+from rocking_cli.views.template import comments
 
 MAX_LISTED_LINES = 200  # lines of a file that a sheet shows
+SIGNATURE_FIELDS = ("Place and date", "Name", "Signature", "Stamp")
+OWN_PAGES = ("workings", "inputs")
 
 
 @dataclass(frozen=True)
@@ -27,8 +32,10 @@ class SheetSources:
 
     Parameters
     ----------
-    structure, site : File
-        The files of the structure and of the site.
+    structure : File
+        The file of the structure.
+    site : File or None
+        The file of the site, if there is one.
     records : mapping of str to File or None
         File of each ground motion, by its path; None for a pulse, by its name.
     versions : mapping of str to str
@@ -37,16 +44,32 @@ class SheetSources:
     """
 
     structure: File
-    site: File
+    site: File | None
     records: Mapping[str, File | None]
     versions: Mapping[str, str]
     strengthened: File | None = None
 
-    @staticmethod
-    def listed(file: File) -> tuple[str, int]:
-        """Return the beginning of a file, and how many lines of it follow."""
-        lines = file.text.splitlines()
-        return "\n".join(lines[:MAX_LISTED_LINES]), max(0, len(lines) - MAX_LISTED_LINES)
+
+def listed(of_templates: Collection[str], file: File) -> tuple[str, int, int]:
+    """Return the beginning of a file, how many lines follow, and how many comments of templates are left out."""
+    lines = file.text.splitlines()
+    kept = [each for each in lines if each not in of_templates]
+    return "\n".join(kept[:MAX_LISTED_LINES]), max(0, len(kept) - MAX_LISTED_LINES), len(lines) - len(kept)
+
+
+def of_files(mechanism: Mechanism, title: TitleBlock, made: SheetSources, code: Code | None = None) -> dict[str, Any]:
+    """Return the values of the section on the files and versions of a document."""
+    known = comments(type(mechanism), code)
+    return {"mechanism": mechanism, "command": title.command, "sources": made, "listed": partial(listed, known)}
+
+
+def about(say: Language, mechanism: Mechanism, title: TitleBlock, made: SheetSources, site: str = "") -> dict[str, str]:
+    """Return the entries of the heading of a document."""
+    kind = say.mechanism(mechanism.mechanism, mechanism.title)
+    entries = {say("Structure"): f"{mechanism.name}: {kind}"}
+    entries |= {say(name.capitalize()): text for name, text in title.known.items()}
+    entries |= {say("Site"): site} if site else {}
+    return entries | {say("Date"): title.date, say("Program"): f"rocking-cli {made.versions['rocking-cli']}"}
 
 
 @dataclass(frozen=True)
@@ -110,18 +133,11 @@ def sheet(found: Verification, site: SiteFile, language: Language, title: TitleB
     """
     chapters = sheet_of(site)
     say, mechanism = chapters.language(language.key), found.mechanism
-    kind = say.mechanism(mechanism.mechanism, mechanism.title)
-    about = {say("Structure"): f"{mechanism.name}: {kind}"}
-    about |= {say(name.capitalize()): text for name, text in title.known.items()}
-    if site.site.name:
-        about[say("Site")] = site.site.name
-    about[say("Date")] = title.date
-    about[say("Program")] = f"rocking-cli {made.versions['rocking-cli']}"
-    of_every_sheet = {
-        "mechanism": mechanism, "digits": SIGNIFICANT_DIGITS, "command": title.command, "sources": made,
-    }  # fmt: skip
+    of_every_sheet = {"digits": SIGNIFICANT_DIGITS, **of_files(mechanism, title, made, code_of(site))}
     with blame(f"the code {site.site.code} failed in its sheet", chapters.context.__module__):
         context = {**of_every_sheet, **chapters.context(say, found, site.site)}
         parts = template.parts(say, chapters.package, "sheet", context)
     heading = say("Calculation sheet: {name}", name=mechanism.name)
-    return Sheet(say, heading, say("subtitle", structure=kind), about, parts, title.logo)
+    subtitle = say("subtitle", structure=say.mechanism(mechanism.mechanism, mechanism.title))
+    head = about(say, mechanism, title, made, site.site.name or "")
+    return Sheet(say, heading, subtitle, head, parts, title.logo, SIGNATURE_FIELDS, OWN_PAGES)

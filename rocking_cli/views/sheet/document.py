@@ -1,10 +1,10 @@
-"""Structure of a calculation sheet, independent of its output format: headings, sentences, tables and steps."""
+"""Structure of a document, independent of its output format: headings, sentences, tables, steps and pictures."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 from rocking_cli.core import Mechanism
 from rocking_cli.verification.results import Working
@@ -34,10 +34,18 @@ class Steps:
 
 @dataclass(frozen=True)
 class Drawing:
-    """A picture with its caption: what `figure` draws, or the structure."""
+    """A picture with its caption: what `figure` draws, or the structure; at most so high on paper [cm]."""
 
     label: str
     figure: Callable[[], Figure] | Mechanism
+    height: float = 11.0
+
+
+@dataclass(frozen=True, eq=False)
+class Moving(Drawing):
+    """A picture that moves on a page of HTML, by the data that `motionView` of data/motion.js reads."""
+
+    data: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -52,7 +60,7 @@ Item = Sentence | Table | Steps | Drawing | Listing
 
 @dataclass(frozen=True)
 class SheetPart:
-    """A section of a sheet, or a subsection.
+    """A section of a document, or a subsection.
 
     Parameters
     ----------
@@ -82,7 +90,7 @@ def workings(parts: Iterable[SheetPart]) -> Iterator[Working]:
 
 @dataclass(frozen=True)
 class Sheet:
-    """A calculation sheet.
+    """A document: a calculation sheet, or a report.
 
     Parameters
     ----------
@@ -93,6 +101,10 @@ class Sheet:
     parts : sequence of SheetPart
     logo : str, optional
         The logo as a data URL.
+    signature : sequence of str
+        What is filled in by hand below the first section, in English; without it, that section has a page of its own.
+    own_pages : sequence of str
+        Keys of the sections that begin a page.
     """
 
     language: Language
@@ -101,3 +113,5 @@ class Sheet:
     about: Mapping[str, str]
     parts: Sequence[SheetPart]
     logo: str | None = None
+    signature: Sequence[str] = ()
+    own_pages: Sequence[str] = ()

@@ -53,10 +53,11 @@ def _environment(package: str, language: str) -> Environment:
 
 def _filled_in(value: Any) -> Any:
     """Return a value that a template prints, so that nothing in it is read as a mark of the template."""
-    return value if isinstance(value, Markup) else _guarded(plain(str(value)))
+    return value if isinstance(value, Markup) else guarded(plain(str(value)))
 
 
-def _guarded(text: str) -> Markup:
+def guarded(text: str) -> Markup:
+    """Return a text that a template prints unchanged, with its sub- and superscripts: nothing in it is a mark."""
     return Markup(GUARD + re.sub(r"\s+", " ", text.replace("|", BAR)))
 
 
@@ -96,14 +97,14 @@ def parts(say: Language, package: str, name: str, context: Mapping[str, Any]) ->
 
     text = _environment(package, say.key).get_template(f"{name}.md").render(
         **context,
-        n=lambda value, digits=SIGNIFICANT_DIGITS: _guarded(say.number(value, digits)),
-        say=lambda key, **values: _guarded(say(key, **values)),
-        recognised=lambda family, text: _guarded(say.recognised(family, text)),
+        n=lambda value, digits=SIGNIFICANT_DIGITS: guarded(say.number(value, digits)),
+        say=lambda key, **values: guarded(say(key, **values)),
+        recognised=lambda family, text: guarded(say.recognised(family, text)),
         steps=steps,
         rows=lambda table: Markup("\n".join(f"| {' | '.join(map(cell, row))} |" for row in table)),
         put=put,
-        formulas=lambda: [(each, _guarded(each.symbol), _guarded(each.formula)) for each in formulas.values()],
-        draw=lambda figure: Markup(put(Drawing("", figure)).strip() + " "),
+        formulas=lambda: [(each, guarded(each.symbol), guarded(each.formula)) for each in formulas.values()],
+        draw=lambda of, **how: Markup(put(of if isinstance(of, Drawing) else Drawing("", of, **how)).strip() + " "),
         listing=lambda content: put(Listing(content)),
     )  # fmt: skip
     return _read(say, text, objects)

@@ -177,6 +177,7 @@ def test_the_report_of_a_tied_structure_reads_on_a_telephone(browser, folder, sc
     run("report", structure, "--pulse", "sine:0.5g:0.7s", "--neighbours", 5, "-o", path)
     with opened(browser, path, viewport={"width": 360, "height": 700}, color_scheme=scheme) as page:
         assert page.evaluate("document.documentElement.scrollWidth") <= 360
+        page.locator("nav summary").click()  # folded on a phone
         page.locator("nav a", has_text="Loads and ties").click()
         assert page.locator("#hung table").count() == 5
         assert page.locator(".tie").first.is_visible()
@@ -361,11 +362,12 @@ def test_axe_finds_nothing(what, scheme, browser, request):
 def test_on_paper_everything_is_there_and_nothing_to_press(browser, report):
     with opened(browser, report, color_scheme="dark") as page:
         page.emulate_media(media="print", color_scheme="dark")
-        assert not any(page.locator("button, input, select, nav").nth(k).is_visible() for k in range(5))
-        shown = ("#summary", "#drawing svg", "#parameters table", ".stage", ".plot svg", "#pulses svg", "#error svg")
+        assert not any(page.locator("button, input, select").nth(k).is_visible() for k in range(5))
+        shown = ("#summary svg", "#structure table", ".stage", ".plot svg", "#pulses svg", "#error svg", "nav li")
         for part in shown:
             assert page.locator(part).first.is_visible(), part
         assert "yaml" in page.locator("#inputs").inner_text()
+        assert page.locator("#summary").evaluate("e => e.getBoundingClientRect().bottom") < 1050  # pixels: a page of A4
         found = page.evaluate(CONTRASTS)
         assert [each for each in found if each["ratio"] < 4.5] == []
         assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
@@ -386,7 +388,7 @@ def test_names_stay_text(browser, folder):
         page.on("dialog", lambda dialog: (alerts.append(dialog.message), dialog.dismiss()))
         page.wait_for_timeout(50)
         assert EVIL in page.locator("h1").text_content() and EVIL in page.title()
-        assert page.locator("#drawing svg").first.text_content().count(EVIL[:20]) == 1
+        assert page.locator("#summary svg").first.text_content().count(EVIL[:20]) == 1
         assert record.name in page.locator("#response h3").first.text_content()
         assert page.locator("img, b, #evil").count() == 0
         assert page.locator("script").count() == 2
@@ -406,3 +408,12 @@ def test_without_a_motion_there_is_a_page_too(browser, folder):
         assert page.locator(".motion, #response").count() == 0
         assert page.locator("#pulses svg").count() == 1
         assert "No ground motion was given" in page.locator(".answer").text_content()
+
+
+def test_contents_stay_in_view_on_a_wide_screen(browser, report):
+    with opened(browser, report, viewport={"width": 1280, "height": 800}) as page:
+        page.locator("#inputs").scroll_into_view_if_needed()
+        box = page.locator("nav.contents").bounding_box()
+        assert (box["x"], box["y"]) == (0, 0) and page.locator("nav li").first.is_visible()
+        assert page.locator("main").bounding_box()["x"] >= box["width"]
+        assert page.evaluate("document.documentElement.scrollWidth") <= 1280

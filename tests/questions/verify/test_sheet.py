@@ -24,7 +24,7 @@ from rocking_cli.core import Direction
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.documents import sheet_docx, sheet_page
-from rocking_cli.documents.sheet_page import ORIGIN_MARKS, SIGNATURE_FIELDS
+from rocking_cli.documents.sheet_page import ORIGIN_MARKS
 from rocking_cli.errors import InputError
 from rocking_cli.io.yaml_file import parse
 from rocking_cli.studies.conclusion import Concluded
@@ -32,7 +32,7 @@ from rocking_cli.studies.provenance import File, versions
 from rocking_cli.verification.check import site_in
 from rocking_cli.verification.results import control_at
 from rocking_cli.views.sheet import template
-from rocking_cli.views.sheet.build import SheetSources
+from rocking_cli.views.sheet.build import SIGNATURE_FIELDS, SheetSources
 from rocking_cli.views.sheet.document import Sentence, Steps
 from rocking_cli.views.sheet.language import SIGNIFICANT_DIGITS, texts_of
 from rocking_cli.views.verification import data, view
