@@ -161,8 +161,8 @@ def _draw_time(
     first = max(0.0, min(starts))
     last = max(_end(run, known, first) for run, known in moving)
     start, end = style.time_axis(axes, first, last)
-    lasts = max(run.overturning_time if run.fell else run.end_time for run, known in moving)
-    lasts = max(lasts, motion.duration) if motion is not None else lasts
+    ends = [run.overturning_time if run.fell else run.end_time for run, known in moving if not isfinite(known)]
+    lasts = max([*ends, motion.duration if motion is not None else 0.0])
     left_out = [f"0 to {start:g} s, at rest"] if start > 0 else []
     if lasts > end:
         why = " or ".join(dict.fromkeys(_state(run, known, end) for run, known in moving))

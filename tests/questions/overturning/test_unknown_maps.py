@@ -13,7 +13,7 @@ import rocking_cli as rk
 from mechanisms.block import Block
 from rocking_cli.core.structure_file import load_structure
 from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcome
-from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD, parse_pulse
 from rocking_cli.excitation.records import read_record
 from rocking_cli.plotting import style
@@ -355,7 +355,8 @@ class TestFilm:
 class TestHistory:
     def test_nothing_is_drawn_beyond_but_a_hatch(self, histories):
         until = histories["nonlinear"].known_to
-        _, below = draw_history(histories, RECORD, "").axes
+        long = GroundMotion("long", RECORD.dt, np.append(RECORD.acceleration, np.zeros(int(20 / RECORD.dt))))
+        _, below = draw_history(histories, long, "").axes
         curves = [line for line in below.lines if len(line.get_xdata()) > 2]
         assert len(curves) > 3 and all(max(line.get_xdata()) <= until for line in curves)
         (hatch,) = [each for each in below.patches if isinstance(each, Rectangle) and each.get_hatch()]
@@ -365,7 +366,7 @@ class TestHistory:
         assert words in [text.get_text() for text in below.texts]
         labels = [text.get_text() for text in below.get_figure().legends[0].get_texts()]
         assert "nonlinear" in labels and not any("peak" in label or "overturns" in label for label in labels)
-        assert until < below.get_xlim()[1] and below.get_xlabel().endswith("s, unknown")
+        assert until < below.get_xlim()[1] and below.get_xlabel().endswith(f"to {long.duration:.4g} s, unknown")
 
     def test_a_known_one_is_drawn_as_ever_and_so_is_a_linear_one_alone(self, histories):
         linear = {"linear2": histories["linear2"]}
