@@ -108,16 +108,16 @@ def drawing(name: str, registry: Registry) -> Picture | None:
 
     # The later ones are of less regular shape.
     common = (text for text in map(starter, reversed(STARTERS)) if f"mechanism: {name}\n" in text)
-    found = None
+    without_shape = None
     try:
         for text in chain([template(registry[name])], common):
-            one = picture(parse_structure(text, f"rocking new {name}", name, registry))
-            found = found or one
-            if not any(part.assumed for part in one.parts):
-                return one
+            drawn = picture(parse_structure(text, f"rocking new {name}", name, registry))
+            if not any(part.assumed for part in drawn.parts):
+                return drawn
+            without_shape = without_shape or drawn
     except RockingError as error:
         terminal.warning(f"{name} is not drawn: {error}")
-    return found
+    return without_shape
 
 
 def check(name: str, file: str | None, registry: Registry, as_json: bool) -> None:
