@@ -406,7 +406,7 @@ def test_without_a_motion_there_is_a_page_too(browser, folder):
     run("report", EXAMPLES / "arch.yaml", "-o", path)
     with opened(browser, path) as page:
         assert page.locator(".motion, #response").count() == 0
-        assert page.locator("#pulses svg").count() == 1
+        assert page.locator("#pulses .wide svg").count() == 1
         assert "No ground motion was given" in page.locator(".answer").text_content()
 
 
