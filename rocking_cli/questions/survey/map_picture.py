@@ -58,7 +58,7 @@ def draw_map(found: Survey, where: Coordinates, title: str) -> Figure:
     edges = np.where(np.arange(len(x)) < MAX_RANKED_LABELS, style.MEDIUM, style.HAIR)
     axes.scatter(
         x[::-1], y[::-1], c=ranks[::-1], cmap=RANKS, norm=norm, s=sizes[::-1],
-        edgecolors=style.INK, linewidths=edges[::-1], rasterized=len(x) > MAX_VECTOR_MARKS, zorder=3,
+        edgecolors=style.INK, linewidths=edges[::-1].tolist(), rasterized=len(x) > MAX_VECTOR_MARKS, zorder=3,
     )  # fmt: skip
     style.tidy(axes, "longitude [deg]", "latitude [deg]")
     axes.ticklabel_format(useOffset=False, style="plain")
