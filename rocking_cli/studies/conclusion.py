@@ -37,6 +37,7 @@ class NextStep(StrEnum):
     HINGE_AT_JOINT = "hinge_at_joint"
     HOLD_JOINT = "hold_joint"
     ASSUME_OVERTURNING = "assume_overturning"
+    STRENGTHEN = "strengthen"
     MARGIN = "margin"
     YIELD_FORCE = "give_yield_force"
     MORE_MOTIONS = "give_more_motions"
@@ -151,6 +152,8 @@ class Conclusion:
     def next(self) -> Sequence[NextStep]:
         """What to do next, the most useful step first."""
         steps = [] if self.remedy is None else [self.remedy]
+        if self.concluded is Concluded.OVERTURNS:
+            steps.append(NextStep.STRENGTHEN)
         neighbours_differ = self.share is not None and self.share.highest > 0 and self.share.lowest < 1
         if self.ratio is None and (self.remedy is not None or neighbours_differ):
             steps.append(NextStep.MARGIN)

@@ -28,6 +28,7 @@ MAX_DIGITS = 9
 POLARITIES = {1: "as given", -1: "reversed"}
 NEXT_STEPS: Mapping[str, str] = {
     **REMEDIES,
+    NextStep.STRENGTHEN: "hold the structure or change its size: `rocking design` finds a value with which it stands",
     NextStep.MARGIN: "`rocking margin` shows from which scale factor on neighbours overturn, or are unknown",
     NextStep.YIELD_FORCE: "give the tie `steel` (or `yield`) in place of its stiffness or modulus, so that it counts",
     NextStep.MORE_MOTIONS: "give at least as many records as the code requires",
