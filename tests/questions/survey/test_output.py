@@ -344,6 +344,7 @@ class TestMaps:
             assert [each.get_text() for each in ranks] == [str(k + 1) for k in range(10)]
             boxes = [Text.get_window_extent(each) for each in ranks]
             assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))
+            assert figure.axes[0].get_position().width > 0.7, "the bar of ranks is below the map"
             tight = figure.get_tightbbox()  # inches
             assert min(tight.x0, tight.y0) > -0.01 and tight.x1 < figure.get_figwidth() + 0.01
             assert tight.y1 < figure.get_figheight() + 0.01
