@@ -42,8 +42,8 @@ def heights(picture: Picture, lengths: Sequence[Length]) -> list[Length]:
     for level in sorted(levels):
         if all(abs(level - other) > tolerance for other in (*shown, *measured)):
             measured.append(level)
-    found = [Length("", low, complex(low.real, level)) for level in measured]
-    return found if len(found) <= MAX_HEIGHTS else []
+    lines = [Length("", low, complex(low.real, level)) for level in measured]
+    return lines if len(lines) <= MAX_HEIGHTS else []
 
 
 def in_rows(lengths: Sequence[Length], low: complex, high: complex) -> tuple[Rows, list[Length]]:

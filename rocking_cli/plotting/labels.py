@@ -87,9 +87,9 @@ class Labels:
             here = np.flatnonzero(turned == angle)
             at, every = middles[here] / turn, points / turn
             low, high = at.imag.min() - half.imag, at.imag.max() + half.imag
-            near = np.flatnonzero((low < every.imag) & (every.imag < high))
-            near = near[np.argsort(every.real[near])]  # so that a label covers points between two indices
-            along, up, of_point = every.real[near], every.imag[near], costs[near]
+            nearby = np.flatnonzero((low < every.imag) & (every.imag < high))
+            nearby = nearby[np.argsort(every.real[nearby])]  # so that a label covers points between two indices
+            along, up, of_point = every.real[nearby], every.imag[nearby], costs[nearby]
             starts = np.searchsorted(along, at.real - half.real, "right")
             ends = np.searchsorted(along, at.real + half.real, "left")
             for k, level, start, end in zip(here, at.imag, starts, ends, strict=True):

@@ -91,8 +91,8 @@ def draw_structure(picture: Picture, title: str, ratio: float | None = None, say
         (title, PANEL_GAP, height - 0.09, "top", style.TITLE),
         (notes, PANEL_GAP, 0.07, "bottom", style.SMALL),
     ):
-        said = text.replace(r"\$", "$")
-        page.text(complex(x, y), said, va=place, fontsize=size, color=style.INK, parse_math=False)
+        plain_text = text.replace(r"\$", "$")
+        page.text(complex(x, y), plain_text, va=place, fontsize=size, color=style.INK, parse_math=False)
 
     _draw_rest(rest.axes(page), picture, rest, (low, high), rows, inside)
     for direction, panel in sides.items():

@@ -326,6 +326,8 @@ def test_pictures_of_a_page_have_the_digits_that_are_seen():
     page = inline_svg(lambda: figure, "a").partition('<div class="narrow">')[0]
     lines, whole = (re.findall(r'<path[^>]* d="([^"]*)"', text) for text in (page, svg(figure, "a")))
     assert len(lines) == len(whole) > 3
+    # Marks have the look of their uses, which the style sheet of a dark page finds.
+    assert "<use" in page and not re.search(r'<path id="a-m[^>]*style', page)
     for line, other in zip(lines, whole, strict=True):
         assert "\n" not in line and not re.search(r"\.\d{3}", line)
         values = (np.array(re.findall(r"[-\d.]+", each), dtype=float) for each in (line, other))

@@ -101,8 +101,8 @@ def draw_chain(say: Language, side: ItalianVerified) -> Figure:
     _draw_weights(axes, weights, panel, labels)
     _name_held(drawing, {name: _name(say, name) for name in held}, panel, labels)
     for text, y, size in ((title, height - 0.09, style.TITLE), (below, panel.foot, style.TICK)):
-        said = text.replace(r"\$", "$")
-        page.text(complex(PANEL_GAP, y), said, va="top", fontsize=size, color=style.INK, parse_math=False)
+        plain_text = text.replace(r"\$", "$")
+        page.text(complex(PANEL_GAP, y), plain_text, va="top", fontsize=size, color=style.INK, parse_math=False)
     return in_language(say, page.figure)
 
 
