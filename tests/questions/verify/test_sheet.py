@@ -28,11 +28,11 @@ from rocking_cli.documents.sheet_page import ORIGIN_MARKS
 from rocking_cli.errors import InputError
 from rocking_cli.io.yaml_file import parse
 from rocking_cli.studies.conclusion import Concluded
-from rocking_cli.studies.provenance import File, versions
+from rocking_cli.studies.provenance import File, TitleBlock, versions
 from rocking_cli.verification.check import site_in
 from rocking_cli.verification.results import control_at
 from rocking_cli.views.sheet import template
-from rocking_cli.views.sheet.build import SIGNATURE_FIELDS, SheetSources
+from rocking_cli.views.sheet.build import SIGNATURE_FIELDS, SheetSources, of_files
 from rocking_cli.views.sheet.document import Sentence, Steps
 from rocking_cli.views.sheet.language import SIGNIFICANT_DIGITS, texts_of
 from rocking_cli.views.verification import data, view
@@ -142,7 +142,7 @@ def parts_of(found, given, language="en", by=build.SHEET):
     """The parts of the sheet of a verification."""
     say = by.language(language)
     sources = SheetSources(File("s.yaml", b"s: 1"), File("site.yaml", b"t: 1"), {}, versions(found.mechanism))
-    every = {"mechanism": found.mechanism, "digits": SIGNIFICANT_DIGITS, "command": "rocking", "sources": sources}
+    every = {"digits": SIGNIFICANT_DIGITS, **of_files(found.mechanism, TitleBlock("rocking", ""), sources)}
     context = {**every, **by.context(say, found, given)}
     return template.parts(say, by.package, "sheet", context)
 
