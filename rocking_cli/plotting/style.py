@@ -38,7 +38,7 @@ LINE_SPACING = 1.3  # height of a line of text over its size of type
 LEAST_LEFT = 0.3  # share of the height of a panel that a legend below it is taken to leave
 INK, FAINT, SHADE, GRID, PAPER = "#222222", "#9a9a9a", "#eeeeee", "#dddddd", "#ffffff"
 # Colours of curves: colour-blind readers can tell each two of them apart, on a dark page too.
-BLACK, ORANGE, BLUE = "#111111", "#cc7a00", "#1f77b4"
+BLACK, ORANGE, BLUE = "#111111", "#cc7a00", "#1b6ca8"
 VIOLET, BROWN, STONE = "#a21ce6", "#6b3a0a", "#93886a"
 TITLE, LABEL, TICK, SMALL, TINY = 10, 9, 8, 7, 5  # sizes of type [pt]
 HAIR, THIN, CURVE, MEDIUM, BOLD, HALO_WEIGHT = 0.4, 0.6, 0.7, 1.0, 1.6, 2.5  # weights of line [pt]
