@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,7 @@ ROOMS = (2.5, 1.8, 1.3)  # room around a name, in sizes of the name; the last le
 
 
 def name_regions(
-    axes: Axes, region: Callable[[Reals, Reals], Integers], names: Mapping[int, tuple[str, str]]
+    axes: Axes, region: Callable[[Reals, Reals], Integers], names: Mapping[int, str], dark: Collection[int] = ()
 ) -> set[int]:
     """Write the name of each region of a panel in it, off lines and words, and return the regions in which it fits.
 
@@ -31,8 +31,10 @@ def name_regions(
         The panel.
     region : callable
         Returns the numbers of the regions at every combination of some x (columns) and y (rows).
-    names : mapping of int to (str, str)
-        Name and colour of the name, by number of the region.
+    names : mapping of int to str
+        Names, by number of the region.
+    dark : collection of int
+        Regions whose colour is dark: their names are in a box.
     """
     figure = axes.figure
     layout = figure.get_layout_engine() if isinstance(figure, Figure) else None
@@ -44,15 +46,16 @@ def name_regions(
     along = [(axes.transAxes - axes.transData).transform(np.column_stack([each, each])) for each in (x, y)]
     regions = region(along[0][:, 0], along[1][:, 1])
     covered = _covered(axes, regions.shape)
-    look: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": style.TICK, "zorder": 5}
+    box = {"facecolor": style.PAPER, "edgecolor": "none", "boxstyle": "round,pad=0.25"}
+    look: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": style.TICK, "color": style.INK, "zorder": 5}
     named = set()
-    for number, (name, colour) in names.items():
+    for number, name in names.items():
         for count in range(1, len(name.split()) + 1):
             lines = style.folded(name, style.size_of(name, style.TICK).real / count, style.TICK)
             middle = _middle((regions == number) & ~covered, lines)
             if middle is not None:
                 at = middle * RASTER / (size.imag, size.real)
-                axes.text(at[1], at[0], lines, transform=axes.transAxes, color=colour, **look)
+                axes.text(at[1], at[0], lines, transform=axes.transAxes, bbox=box if number in dark else None, **look)
                 named.add(number)
                 break
     return named

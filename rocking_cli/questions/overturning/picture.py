@@ -23,7 +23,7 @@ from rocking_cli.plotting.region_names import name_regions
 from rocking_cli.questions.overturning.study import CONTOUR_LEVELS, Comparison, Kind, OverturningMap
 
 LABELS, FILLS = list(style.REGIONS), list(style.REGIONS.values())  # by `Kind`
-DARK_KINDS = Kind.AFTER_MORE, Kind.WITHOUT_IMPACT  # their names are light
+DARK_KINDS = Kind.AFTER_MORE, Kind.WITHOUT_IMPACT
 GRID_POINTS = 250  # number of points along either axis on which boundaries are traced
 EQUAL_RATIOS = 1e-6  # relative difference of the steps of a logarithmic axis
 TICKS = (1.0, 2.0, 3.0, 5.0, 7.0)  # multiples of powers of ten along logarithmic axes
@@ -78,8 +78,7 @@ def draw_map(
     else:
         style.tidy(axes, "period of the pulse [s]", "amplitude of the pulse [g]")
     axes.grid(False)
-    words = {int(kind): (LABELS[kind], style.PAPER if kind in DARK_KINDS else style.INK) for kind in Kind}
-    named = name_regions(axes, partial(_regions_at, found, across, up), words)
+    named = name_regions(axes, partial(_regions_at, found, across, up), dict(enumerate(LABELS)), DARK_KINDS)
     keys = [
         Patch(
             facecolor=FILLS[kind], edgecolor=style.FAINT, label=LABELS[kind],
