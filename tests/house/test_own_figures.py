@@ -77,6 +77,10 @@ def lines(axes):
     return [(*each.get_xydata().ravel().tolist(), each.get_color()) for each in axes.get_lines()]
 
 
+def shapes(axes):
+    return [each for each in axes.get_children() if not isinstance(each, Text)]
+
+
 def panels(figure):
     return [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
 
@@ -98,9 +102,7 @@ def test_in_axes_of_the_user(answer, tmp_path):
     else:
         assert answer.plot(tmp_path / "all.png", ax=mine) is figure
         np.testing.assert_equal(lines(mine), lines(own[0]))
-        # There, curves have a legend instead of names beside them.
-        shapes = [[each for each in axes.get_children() if not isinstance(each, Text)] for axes in (mine, own[0])]
-        assert len(shapes[0]) >= len(shapes[1])
+        assert len(shapes(mine)) >= len(shapes(own[0]))  # names beside curves and in regions are in the legend here
         assert (tmp_path / "all.png").stat().st_size > 5000
         drawn(figure)
         wide = figure.bbox.width

@@ -230,8 +230,8 @@ def usual_omegas(structure: PulsedModel, shape: Pulse, polarities: Sequence[int]
     slowest overturn it soon above uplift. If none overturns, this is the range of unknown outcomes.
     """
     omega, a = (each.ravel() for each in np.meshgrid(TRIED_OMEGAS, TRIED_AMPLITUDES))
-    found = outcomes(structure, shape, structure.period(omega), a * structure.unit, polarities=polarities)
-    falls = (found.fell if found.fell.any() else found.unknown).reshape(TRIED_AMPLITUDES.size, -1)
+    tried = outcomes(structure, shape, structure.period(omega), a * structure.unit, polarities=polarities)
+    falls = (tried.fell if tried.fell.any() else tried.unknown).reshape(TRIED_AMPLITUDES.size, -1)
     if not falls.any():
         return USUAL_OMEGAS
     least = np.where(falls.any(axis=0), TRIED_AMPLITUDES[falls.argmax(axis=0)], np.inf)

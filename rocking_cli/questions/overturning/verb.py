@@ -165,7 +165,8 @@ def overturning_map(
     eta : float, optional
         Coefficient of restitution; by default that of the structure, or 0.9.
     period, ag : (float, float), optional
-        Smallest and largest period [s] and amplitude [standard gravity], for a structure.
+        Smallest and largest period [s] and amplitude [standard gravity], for a structure; the points between them are
+        at equal ratios. The default ranges show where overturning starts.
     omega, a : (float, float), optional
         Smallest and largest dimensionless frequency and amplitude, for the linear block.
     dimensionless : bool
