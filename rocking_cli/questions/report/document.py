@@ -93,7 +93,7 @@ def document(content: Assessment, sources: SheetSources, verified: VerifiedRepor
     values |= of_files(mechanism, content.title, sources) | {
         "verified": verified,
         "site": verified.sheet.about.get(verified.sheet.language("Site"), "") if verified is not None else "",
-        "cautions": [*map(printed, _cautions(verified, say))] if verified is not None else [],
+        "cautions": [*map(guarded, _cautions(verified, say))] if verified is not None else [],
         "pictures": dict(zip((each.key for each in motions), moving_pictures, strict=True)),
         "pgas": [each.result.pga_of_ground for each in motions],
         "falls": content.conclusion is not None and content.conclusion.concluded in BAD_CONCLUSIONS,
