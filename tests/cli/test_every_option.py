@@ -195,8 +195,8 @@ CALLS = {
     "report": (
         {"structure": BLOCK, "motions": RECORD, "neighbours": 2},
         {"structure": OTHER, "motions": PULSE, "out": "o.html", "polarity": "1", "verify": SITE, "state": "SLC",
-         "on_floor": True, "opening": 1.0, "project": "odd", "place": "odd", "author": "odd",
-         "logo": "in.svg", "origin": "odd"} | AROUND,
+         "on_floor": True, "opening": 1.0, "language": "it", "project": "odd", "place": "odd",
+         "author": "odd", "logo": "in.svg", "origin": "odd"} | AROUND,
     ),
 }  # fmt: skip
 """A question of each verb, and an odd value of each of its arguments."""

@@ -12,8 +12,8 @@ from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.errors import InputError, RockingError
-from rocking_cli.names import OPENING
+from rocking_cli.errors import InputError, Problem, RockingError
+from rocking_cli.names import LANGUAGES, OPENING
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.view import heading
 
@@ -128,6 +128,8 @@ def report(
 
     if out is not None:
         files.check(Path(out), ".html", ".pdf", ".docx")
+    if language not in LANGUAGES:
+        raise InputError(Problem(f"there is no report in {language!r}", field="`language`", hint=", ".join(LANGUAGES)))
     signs, requested = signs_of(polarity), Motions.of(motions, options)
     if (state is not None or on_floor) and (verify is None or not requested):
         raise InputError("`state` and `on_floor` describe records of a verification: give `verify` and `motions`")

@@ -175,8 +175,8 @@ def steps_of(items):
 
 
 def flat(text):
-    """A text without the marks of its sub- and superscripts."""
-    return re.sub(r"[_^]\[([^\]]*)\]", r"\1", text)
+    """A text without the marks of its sub- and superscripts, and of code."""
+    return re.sub(r"[_^]\[([^\]]*)\]", r"\1", text).replace("`", "")
 
 
 def number(text):

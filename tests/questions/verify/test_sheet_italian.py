@@ -21,7 +21,7 @@ from rocking_cli.views.sheet.language import texts_of
 from tests.conftest import EXAMPLES
 from tests.questions.verify.test_sheet import ARCH, CASES, FLOOR, SITE, SLC, TIED
 
-PACKAGES = "rocking_cli.codes.italian", "rocking_cli.views.sheet", "rocking_cli.questions.report"
+PACKAGES = "rocking_cli.codes.italian", "rocking_cli.views.sheet"
 FAMILIES = "drawing", "caution", "source", "version", "shape", "point", "reason", "doubt", "figure", "support"
 OF_BOTH = """
     quadrature coordinate m² ij scoreboard cos sin
@@ -54,12 +54,12 @@ def words(text):
     return {each.lower() for each in re.findall(r"[^\W\d_]{2,}", text)}
 
 
-def english_words():
+def english_words(packages):
     """The words of the English texts, and of what mechanisms say of themselves, that are not also Italian."""
     known = Registry()
     own = [known[key] for key in known if known[key].__module__.startswith("mechanisms.")]
     texts = [text for each in own for text in (each.title, each.caution, re.sub(r"[A-Z]\w+", "", each.source))]
-    for package in PACKAGES:
+    for package in packages:
         english, italian = (texts_of(package, key) for key in ("en", "it"))
         texts += english.values()
         texts += [re.sub(rf"^({'|'.join(FAMILIES)}|body_\w+) ", "", key) for key in italian if not key.isidentifier()]
@@ -68,7 +68,7 @@ def english_words():
     return (words(re.sub(r"`[^`]*`|\{[^}]*\}", "", " ".join([*texts, FUNCTION_WORDS])))) - words(OF_BOTH)
 
 
-ENGLISH = english_words()
+ENGLISH = english_words(PACKAGES)
 
 
 def names_of(data):
