@@ -20,7 +20,7 @@ from rocking_cli.questions.error.study import errors, preferred
 from rocking_cli.questions.margin.picture import draw_margins
 from rocking_cli.questions.overturning.picture import draw_map
 from rocking_cli.questions.report.study import Assessment, MotionResult, PulseMap, amplitude_in_g
-from rocking_cli.questions.report.words import PACKAGE, context, language_of, printed
+from rocking_cli.questions.report.words import PACKAGE, context, language_of
 from rocking_cli.questions.respond.picture import draw_history
 from rocking_cli.studies.conclusion import Concluded
 from rocking_cli.studies.film import Film
