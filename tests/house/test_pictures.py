@@ -49,7 +49,7 @@ def drop(axes, kind, keep):
         ("draw_frame", 0, Polygon, lambda each: not each.get_fill()),  # the bodies at rest
         ("draw_frame", 2, Line2D, lambda each: each.get_marker() != "o" or each.get_fillstyle() != "full"),  # hinges
         ("draw_block", 1, Line2D, lambda each: each.get_fillstyle() != "top"),  # a centroid
-        ("draw_block", 1, Polygon, lambda each: each.get_fill()),  # the faint outline at rest
+        ("draw_block", 1, Polygon, lambda each: each.get_linestyle() == "-"),  # the faint outline at rest
         ("draw_arch", 0, Line2D, lambda each: each.get_color() != "#b3541e"),  # the line of thrust
         ("draw_wall", 0, Line2D, lambda each: each.get_marker() != "|"),  # the scale
         ("history", 1, Line2D, lambda each: each.get_marker() != "|"),  # the impacts

@@ -35,7 +35,7 @@ def test_a_mechanism_is_drawn_at_its_critical_rotation_and_named_without_a_drawi
     figure = draw_chooser(found)
     words = [text.get_text() for text in figure.texts]
     assert words == ["block", "pedestal", "odd", "odd thing"]
-    (block,) = (each for each in figure.axes[0].patches if isinstance(each, Polygon) and each.get_fill())
+    (block,) = (each for each in figure.axes[0].patches if isinstance(each, Polygon) and each.get_linestyle() == "-")
     corners = block.get_xy()[:-1]
     width, height = 0.7, 2.8
     assert np.min(corners[:, 1]) == pytest.approx(0, abs=1e-9)
