@@ -138,7 +138,7 @@ def _parameters(content: Assessment, sides: Sequence[EquivalentSide]) -> list[di
         {
             "key": each.key, "symbol": SUBSCRIPT.sub(_below, each.symbol), "meaning": each.words,
             "values": [block[each.key] for block in blocks], "angle": each.unit == "rad",
-            "unit": each.printed_unit.removeprefix("1").replace(" ", NO_BREAK),
+            "unit": each.unit_of(mass=content.mechanism.has_mass).replace("m2", "m²").replace(" ", NO_BREAK),
         }
         for each in PARAMETERS
         if not all(isnan(block[each.key]) for block in blocks)

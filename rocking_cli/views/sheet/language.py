@@ -157,8 +157,8 @@ class Language:
 
     def joint(self, mechanism: str, label: str) -> str:
         """Return the name of a joint of a mechanism in this language: its own, or that of the bodies it connects."""
-        if own := self.texts.get(f"body_{mechanism} {label}"):
-            return own
+        if name := self.texts.get(f"body_{mechanism} {label}"):
+            return name
         bodies = (self(each) if each == GROUND_NAME else self.body(mechanism, each) for each in label.split(" and "))
         return f" {self('and')} ".join(bodies)
 
