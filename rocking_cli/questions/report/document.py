@@ -120,7 +120,12 @@ def document(content: Assessment, sources: SheetSources, verified: VerifiedRepor
         parts = [replace(each, parts=verified.parts) if each.key == "verification" else each for each in parts]
     heading = say("{name}: will it overturn?", name=content.name)
     return Sheet(
-        say, heading, say("report_subtitle"), about(say, mechanism, content.title, sources), parts, content.title.logo,
+        say,
+        heading,
+        say("report_subtitle"),
+        about(say, mechanism, content.title, sources),
+        parts,
+        content.title.logo,
         author=content.title.author,
     )
 
