@@ -78,8 +78,8 @@ def _script(say: Language) -> str:
 
 
 def _moving(part: SheetPart) -> list[Moving]:
-    own = [each for each in part.items if isinstance(each, Moving)]
-    return own + [each for below in part.parts for each in _moving(below)]
+    here = [each for each in part.items if isinstance(each, Moving)]
+    return here + [each for below in part.parts for each in _moving(below)]
 
 
 def figure_of(item: Drawing, say: Language) -> Figure:

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.ticker import Formatter
 
+from rocking_cli.plotting import style
 from rocking_cli.views.sheet.language import Language
 
 
@@ -43,9 +44,14 @@ def in_language(say: Language, draw: Callable[[], Figure]) -> Callable[[], Figur
             axis.set_major_formatter(_Numbers(say, axis.get_major_formatter()))
         for each in figure.findobj(Text):
             assert isinstance(each, Text)  # as selected above
-            each.set_text(
-                "\n".join(say.formula(say.recognised("figure", line)) for line in each.get_text().split("\n"))
-            )
+            each.set_text(say.formula(_translated(say, each.get_text().split("\n"), float(each.get_fontsize()))))
         return figure
 
     return translated
+
+
+def _translated(say: Language, lines: list[str], points: float) -> str:
+    """Return a text of a plot in a language; one sentence in several lines is broken anew, into no wider lines."""
+    if len(lines) > 1 and (whole := say.matched("figure", " ".join(lines))) is not None:
+        return style.folded(whole, max(style.size_of(line, points).real for line in lines), points)
+    return "\n".join(say.recognised("figure", line) for line in lines)

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 from io import StringIO
 
 import numpy as np
@@ -45,7 +46,7 @@ def test_without_masses_it_is_per_unit_mass(name, tmp_path):
         return
     run("report", file, "-o", tmp_path / "r.html")
     page = (tmp_path / "r.html").read_text(encoding="utf-8")
-    assert "kg m" not in page and page.count("Per unit mass of the whole structure") == 3
+    assert not re.search(r"kg\sm", page) and ">m²<" in page and "are per unit mass of the whole structure." in page
 
 
 @pytest.mark.every(2)
@@ -59,7 +60,7 @@ def test_with_masses_it_is_in_kilograms(masses, tmp_path):
     assert data["per_unit_mass"] is False and "kg m2" in said and "per unit mass" not in said
     run("report", file, "-o", tmp_path / "r.html")
     page = (tmp_path / "r.html").read_text(encoding="utf-8")
-    assert "kg m²" in page and "Per unit mass" not in page
+    assert re.search(r"kg\sm²", page) and "are per unit mass" not in page
 
 
 # --- what a mechanism warns of
@@ -74,7 +75,7 @@ def test_the_caution_of_the_wall_is_shown_where_it_is_looked_up_and_used(tmp_pat
     assert wall.caution in flat(run("equiv", file).stdout) and run_json("equiv", file)["caution"] == wall.caution
     out = tmp_path / "r.html"
     run("report", file, "-o", out)
-    assert wall.caution in flat(out.read_text(encoding="utf-8"))
+    assert wall.caution.replace("lambda", "λ") in flat(out.read_text(encoding="utf-8"))
     assert wall.caution in json.loads(run("report", file, "--json").stdout)["doubts"]
 
 

@@ -374,7 +374,7 @@ def test_the_picture_shows_it_where_it_is_requested(tmp_path):
     sizes = []
     for k, more in enumerate(((), ("--contact",))):
         run(*asked, "--plot", tmp_path / f"{k}.svg", *more)
-        sizes.append((tmp_path / f"{k}.svg").read_text(encoding="utf-8").count("friction required"))
+        sizes.append((tmp_path / f"{k}.svg").read_text(encoding="utf-8").count("<!-- required -->"))
     assert sizes == [0, 1]
     assert "give --plot FILE" in " ".join(run(*asked, "--contact", code=2).stderr.split())
 

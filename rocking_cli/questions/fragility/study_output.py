@@ -66,8 +66,8 @@ def _draw_all(folder: Path, answer: StudyAnswer) -> None:
     for measure in definition.fitted_measures:
         these = [each for each in curves if each.measure == measure]
         for structure in structures:
-            own = [each for each in these if each.structure == structure]
-            lines = [LabelledCurve.of(limit_in_picture(each.limit, math=True), each) for each in own]
+            of_structure = [each for each in these if each.structure == structure]
+            lines = [LabelledCurve.of(limit_in_picture(each.limit, math=True), each) for each in of_structure]
             add(f"{structure} {measure}", draw_curves(lines, label(measure), structure))
         for limit in definition.limit_states if len(structures) > 1 else []:
             lines = [LabelledCurve.of(plain(each.structure), each) for each in these if each.limit == limit]

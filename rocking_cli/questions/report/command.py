@@ -14,7 +14,7 @@ from rocking_cli.cli.help import Command
 from rocking_cli.questions.verify import heads
 
 
-@click.command(cls=Command, short_help="Write a complete report on a structure, as HTML, PDF or .docx.")
+@click.command(cls=Command, short_help="Write a report on a structure, as HTML, PDF or .docx.")
 @click.argument("files", metavar="[FILE]", nargs=-1, type=click.Path())
 @options.ground_motions
 @options.reading

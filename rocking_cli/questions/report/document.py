@@ -120,7 +120,13 @@ def document(content: Assessment, sources: SheetSources, verified: VerifiedRepor
         parts = [replace(each, parts=verified.parts) if each.key == "verification" else each for each in parts]
     heading = say("{name}: will it overturn?", name=content.name)
     return Sheet(
-        say, heading, say("report_subtitle"), about(say, mechanism, content.title, sources), parts, content.title.logo
+        say,
+        heading,
+        say("report_subtitle"),
+        about(say, mechanism, content.title, sources),
+        parts,
+        content.title.logo,
+        author=content.title.author,
     )
 
 
@@ -138,7 +144,7 @@ def _parameters(content: Assessment, sides: Sequence[EquivalentSide]) -> list[di
         {
             "key": each.key, "symbol": SUBSCRIPT.sub(_below, each.symbol), "meaning": each.words,
             "values": [block[each.key] for block in blocks], "angle": each.unit == "rad",
-            "unit": each.printed_unit.removeprefix("1").replace(" ", NO_BREAK),
+            "unit": each.unit_of(mass=content.mechanism.has_mass).replace("m2", "m²").replace(" ", NO_BREAK),
         }
         for each in PARAMETERS
         if not all(isnan(block[each.key]) for block in blocks)

@@ -306,9 +306,9 @@ def _map(structure: Structure, results: Sequence[MotionResult]) -> PulseMap | No
         return None
     shape = parse_shape(MAP_SHAPE)
     under = pulsed_model(structure, "linear2", shape)
-    periods = np.linspace(*usual_periods([under], shape), MAP_POINTS)
-    amplitudes = np.linspace(*usual_amplitudes([under]), MAP_POINTS) * STANDARD_GRAVITY / under.unit
-    found = overturning_map(under, shape, under.period(periods), amplitudes)
+    periods = np.geomspace(*usual_periods([under], shape), MAP_POINTS)
+    amplitudes = np.geomspace(*usual_amplitudes([under]), MAP_POINTS) * STANDARD_GRAVITY / under.unit
+    simulated = overturning_map(under, shape, under.period(periods), amplitudes)
     sines = [
         (each.given.motion.name, fit) for each in results for fit in each.fits if fit.pulse.name == MAP_SHAPE
     ]  # fmt: skip
@@ -317,7 +317,7 @@ def _map(structure: Structure, results: Sequence[MotionResult]) -> PulseMap | No
         if periods[0] <= fit.pulse.period <= periods[-1]
         and amplitudes[0] <= fit.pulse.amplitude / under.unit <= amplitudes[-1]
     ]  # fmt: skip
-    return PulseMap(found, tuple(marks))
+    return PulseMap(simulated, tuple(marks))
 
 
 def amplitude_in_g(fit: PulseFit) -> float:

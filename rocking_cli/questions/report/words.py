@@ -201,9 +201,9 @@ def _why_alone(content: Assessment) -> str:
 
 def _translated(mechanism: Mechanism, say: Language) -> list[Markup]:
     """Return the cautions on a structure in another language."""
-    own = [say.caution(mechanism.mechanism, mechanism.caution)] if mechanism.caution else []
+    of_mechanism = [say.caution(mechanism.mechanism, mechanism.caution)] if mechanism.caution else []
     rest = [each for each in cautions_of(mechanism) if each != mechanism.caution]
-    return [*map(guarded, own), *(guarded(say.recognised("caution", each)) for each in rest)]
+    return [*map(guarded, of_mechanism), *(guarded(say.recognised("caution", each)) for each in rest)]
 
 
 def context(content: Assessment, say: Language, verified: Verification | None = None) -> dict[str, Any]:

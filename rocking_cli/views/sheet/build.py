@@ -140,4 +140,4 @@ def sheet(found: Verification, site: SiteFile, language: Language, title: TitleB
     heading = say("Calculation sheet: {name}", name=mechanism.name)
     subtitle = say("subtitle", structure=say.mechanism(mechanism.mechanism, mechanism.title))
     head = about(say, mechanism, title, made, site.site.name or "")
-    return Sheet(say, heading, subtitle, head, parts, title.logo, SIGNATURE_FIELDS, OWN_PAGES)
+    return Sheet(say, heading, subtitle, head, parts, title.logo, SIGNATURE_FIELDS, OWN_PAGES, title.author)

@@ -105,6 +105,8 @@ class Sheet:
         What is filled in by hand below the first section, in English; without it, that section has a page of its own.
     own_pages : sequence of str
         Keys of the sections that begin a page.
+    author : str, optional
+        Whose the logo is.
     """
 
     language: Language
@@ -115,3 +117,4 @@ class Sheet:
     logo: str | None = None
     signature: Sequence[str] = ()
     own_pages: Sequence[str] = ()
+    author: str | None = None

@@ -157,8 +157,8 @@ class Language:
 
     def joint(self, mechanism: str, label: str) -> str:
         """Return the name of a joint of a mechanism in this language: its own, or that of the bodies it connects."""
-        if own := self.texts.get(f"body_{mechanism} {label}"):
-            return own
+        if name := self.texts.get(f"body_{mechanism} {label}"):
+            return name
         bodies = (self(each) if each == GROUND_NAME else self.body(mechanism, each) for each in label.split(" and "))
         return f" {self('and')} ".join(bodies)
 
@@ -174,14 +174,20 @@ class Language:
         """
         if len(sentences := SENTENCE_END.split(text)) > 1:
             return " ".join(self.recognised(family, each) for each in sentences)
-        for pattern, translated in self._patterns(family):
-            if match := pattern.fullmatch(text):
-                parts = match.groupdict().items()
-                return translated.format(**{key: self._part(family, key, part) for key, part in parts})
+        if (translated := self.matched(family, text)) is not None:
+            return translated
         for separator in ("; ", ", "):
             if separator in text:
                 return separator.join(self.recognised(family, each) for each in text.split(separator))
         return text if self.is_plain else plain(text)
+
+    def matched(self, family: str, text: str) -> str | None:
+        """Return a text that is one of a family as a whole, in this language; None for any other."""
+        for pattern, translated in self._patterns(family):
+            if match := pattern.fullmatch(text):
+                parts = match.groupdict().items()
+                return translated.format(**{key: self._part(family, key, part) for key, part in parts})
+        return None
 
     def _part(self, family: str, key: str, part: str) -> str:
         return plain(part) if key.startswith("name") else self.formula(self.recognised(family, part))

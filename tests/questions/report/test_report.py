@@ -48,8 +48,8 @@ class TestContent:
         page = frame_report[0].read_text(encoding="utf-8")
         assert not re.search(r"<!--|/\*|^ *//", page, re.MULTILINE)
         monkeypatch.setattr("rocking_cli.questions.report.study.MAP_POINTS", 8)
-        found, (mark, *_) = (answer := rk.report(FRAME, ACCEL, None, neighbours=5).map).found, answer.marks
-        alone = rk.overturning_map(FRAME, points=8)
+        found, (mark, *_) = (answer := rk.report(BLOCK, ACCEL, None, neighbours=5).map).found, answer.marks
+        alone = rk.overturning_map(BLOCK, points=8)
         np.testing.assert_array_equal(found.regions, alone.regions)
         np.testing.assert_allclose((found.periods, found.accelerations), (alone.periods, alone.accelerations))
         assert mark[0] == "accel.csv" and mark[1].pulse.name == "sine"
