@@ -350,7 +350,8 @@ def test_every_measure_is_explained():
 
 def test_the_guide_gives_the_signatures_of_what_a_sketch_shows():
     for kind in (Length, Angle, Line):
-        fields = [f"{each.name}{f'={each.default}' if each.default in (None, False) else ''}" for each in dataclasses.fields(kind)]
+        usual = {each.name: f"={each.default}" for each in dataclasses.fields(kind) if each.default in (None, False)}
+        fields = [f"{each.name}{usual.get(each.name, '')}" for each in dataclasses.fields(kind)]
         assert f"`{kind.__name__}({', '.join(fields)})`" in " ".join(text_of("plugins.md").split())
 
 
