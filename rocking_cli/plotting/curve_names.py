@@ -65,12 +65,13 @@ def _places(axes: Axes, curves: Sequence[Line2D]) -> list[complex | None]:
         return [None] * len(curves)
     size = style.inches(axes)
     along = [_in_inches(axes, each) for each in curves]
-    every = np.concatenate([*along, *(_in_inches(axes, each) for each in axes.lines if each not in curves)])
+    besides = [_in_inches(axes, each) for each in axes.lines if each not in curves]
     taken = [_box(axes, text) for text in axes.texts]  # middle and size of each name
     places: list[complex | None] = []
-    for curve, points in zip(curves, along, strict=True):
+    for k, (curve, points) in enumerate(zip(curves, along, strict=True)):
         extent = style.size_of(str(curve.get_label()), style.TICK)
-        places.append(place := _place(points, extent, every, taken, size))
+        others = np.concatenate([np.empty(0, np.complex128), *along[:k], *along[k + 1 :], *besides])
+        places.append(place := _place(points, extent, others, taken, size))
         if place is not None:
             taken.append((place, extent))
     return places
@@ -85,13 +86,8 @@ def _box(axes: Axes, text: Text) -> tuple[complex, complex]:
 
 def _write(axes: Axes, curves: Sequence[Line2D], places: Sequence[complex | None]) -> None:
     size = style.inches(axes)
-    look: dict[str, Any] = {
-        "fontsize": style.TICK,
-        "ha": "center",
-        "va": "center",
-        "zorder": 8,
-        "path_effects": style.HALO,
-    }
+    look: dict[str, Any] = {"ha": "center", "va": "center", "zorder": 8, "path_effects": style.HALO}
+    look["fontsize"] = style.TICK
     for curve, place in zip(curves, places, strict=True):
         if place is None:
             continue
@@ -123,14 +119,14 @@ def _in_inches(axes: Axes, curve: Line2D) -> Points:
 
 
 def _place(
-    points: Points, extent: complex, every: Points, taken: Sequence[tuple[complex, complex]], size: complex
+    points: Points, extent: complex, others: Points, taken: Sequence[tuple[complex, complex]], size: complex
 ) -> complex | None:
     """Return the middle of a name [inches]: of the places that cover nothing, the one farthest from other curves."""
     inside = points[(points.real > 0) & (points.real < size.real) & (points.imag > 0) & (points.imag < size.imag)]
     if not inside.size:
         return None
     anchors = inside[np.linspace(0, inside.size - 1, min(PLACES, inside.size)).astype(int)]
-    others, gaps = every[~np.isin(every, points)], GAPS if points.size > 1 else POINT_GAPS
+    every, gaps = np.concatenate([points, others]), GAPS if points.size > 1 else POINT_GAPS
     best: tuple[float, complex] | None = None
     for anchor, gap, up, aside in product(anchors, gaps, (1, -1), (0, 1, -1)):
         middle = anchor + 1j * up * (gap + extent.imag / 2) + aside * (gap + extent.real / 2)

@@ -15,7 +15,7 @@ from matplotlib.ticker import MaxNLocator
 
 from rocking_cli.arrays import Reals
 from rocking_cli.plotting import style
-from rocking_cli.plotting.point_names import name_points
+from rocking_cli.plotting.mark_names import name_marks
 from rocking_cli.questions.survey.coordinates import Coordinates
 from rocking_cli.questions.survey.picture import MAX_RANKED_LABELS, MAX_VECTOR_MARKS
 from rocking_cli.questions.survey.study import Survey
@@ -71,7 +71,7 @@ def draw_map(found: Survey, where: Coordinates, title: str) -> Figure:
         style.legend_below(figure)
     first = slice(MAX_RANKED_LABELS)
     ranked = _in_places(axes, x[first], y[first], ranks[first].tolist(), narrower)
-    name_points(axes, ranked, np.column_stack([x, y]))
+    name_marks(axes, ranked, np.column_stack([x, y]))
     return figure
 
 

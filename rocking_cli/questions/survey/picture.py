@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rocking_cli.plotting import style
-from rocking_cli.plotting.point_names import name_points
+from rocking_cli.plotting.mark_names import name_marks
 from rocking_cli.questions.survey.study import Survey
 
 MAX_RANKED_LABELS = 10  # structures whose rank stands beside their mark
@@ -66,7 +66,7 @@ def draw_survey(found: Survey, title: str) -> Figure:
     if axes.get_legend_handles_labels()[1]:
         style.legend_below(figure)
     ranked = [(float(p[k]), float(uplift[k]), str(k + 1)) for k in first]
-    name_points(axes, ranked, np.column_stack([p[there], uplift[there]]))
+    name_marks(axes, ranked, np.column_stack([p[there], uplift[there]]))
     return figure
 
 

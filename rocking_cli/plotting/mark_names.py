@@ -19,7 +19,7 @@ MARK_COST, LINE_COST, POINT_COST, NAME_COST = 0.1, 0.3, 0.4, 100.0  # of what a 
 CLEARANCE, CLEARANCE_OF_POINTS = 0.03, 0.1  # inches around a name; a name close to another point would be taken for its
 
 
-def name_points(axes: Axes, points: Sequence[tuple[float, float, str]], marks: NDArray[np.float64]) -> None:
+def name_marks(axes: Axes, points: Sequence[tuple[float, float, str]], marks: NDArray[np.float64]) -> None:
     """Write a name beside each of some points of a finished panel.
 
     Parameters
