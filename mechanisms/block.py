@@ -15,7 +15,7 @@ class Block(SingleBody):
     """A uniform rectangle on its base."""
 
     mechanism: ClassVar[str] = "block"
-    title: ClassVar[str] = "free-standing rectangular block"
+    title: ClassVar[str] = "rectangular block"
     suits: ClassVar[str] = "pedestal, pillar, cabinet, parapet, facade free at its top"
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Eqs. 1-6; Housner (1963)"
     verified: ClassVar[str] = "closed forms p^2 = 3g/(4R), lambda = tan(alpha), eta = 1 - 1.5 sin^2(alpha)"

@@ -94,6 +94,23 @@ def _no_defaults_of_a_user(tmp_path_factory, monkeypatch):
     return file
 
 
+@pytest.fixture(autouse=True, scope="module")
+def _pages_without_pictures(request):
+    """Pages leave out their pictures, which take most of their time, except in modules that look at them: `drawn`."""
+    with pytest.MonkeyPatch.context() as patch:
+        if request.node.get_closest_marker("drawn") is None:
+            patch.setattr("rocking_cli.documents.sheet_page.inline_svg", lambda draw, prefix: f"[{prefix}]")
+        yield
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """Pages with their pictures in a test of a module whose others leave them out."""
+    from rocking_cli.documents.figures import inline_svg
+
+    monkeypatch.setattr("rocking_cli.documents.sheet_page.inline_svg", inline_svg)
+
+
 @pytest.fixture
 def small_maps(monkeypatch):
     """Maps of few points in the reports of a test of something else."""
@@ -104,11 +121,15 @@ def small_maps(monkeypatch):
 
 @pytest.fixture(scope="session")
 def frame_report(tmp_path_factory):
-    """The report on the example of a frame: its file, and what was printed."""
+    """The report on the example of a frame, with its pictures: its file, and what was printed."""
+    from rocking_cli.documents.figures import inline_svg
     from tests.cli.test_cli import run
 
     out = tmp_path_factory.mktemp("report") / "r.html"
-    result = run("report", "--neighbours", 20, EXAMPLES / "frame.yaml", "--record", EXAMPLES / "accel.csv", "-o", out)
+    given = EXAMPLES / "frame.yaml", "--record", EXAMPLES / "accel.csv"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("rocking_cli.documents.sheet_page.inline_svg", inline_svg)
+        result = run("report", "--neighbours", 20, *given, "-o", out)
     return out, result.stdout.strip()
 
 

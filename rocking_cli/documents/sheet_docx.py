@@ -170,7 +170,8 @@ class _Writer:
             width = printed_width(figure, item.height)  # before it is drawn
             style.save(figure, stream, format="png")
             stream.seek(0)
-            self.document.add_picture(stream, width=Cm(width))
+            shape = self.document.add_picture(stream, width=Cm(width))
+            shape._inline.docPr.set("descr", printable(item.label))
             self.document.paragraphs[-1].paragraph_format.keep_with_next = True
             self._text(self.document.add_paragraph(), item.label)
         elif isinstance(item, Listing):

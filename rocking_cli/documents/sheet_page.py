@@ -27,6 +27,7 @@ ORIGIN_MARKS = {"print": "", "transcription": "*", "code": "†", "ours": "‡",
 SCRIPT_TEXT = "script "  # begins the keys of texts of data/motion.js
 LEAVES = {"number": "mn", "letter": "mi", "word": "mi", "sign": "mo", "bracket": "mo"}
 SCREEN_WIDTH = 25  # characters of a formula that fit on any screen
+WORD_JOINER = "\N{WORD JOINER}"  # follows a mark that is none
 TEXT_WIDTH = 17.0  # cm of an A4 page, between margins of 2 cm
 
 
@@ -108,11 +109,15 @@ def printed_width(figure: Figure, tallest: float) -> float:
 def runs(text: str) -> Iterator[tuple[str, str]]:
     """Yield the pieces of a text, each with its kind: "sub", "sup", "code" (between backticks), or "" for none."""
     end = 0
-    for mark in re.finditer(f"`([^`]+)`|{MARK.pattern}", text):
-        yield text[end : mark.start()], ""
+    for mark in re.finditer(f"`(?!{WORD_JOINER})([^`]+)`|{MARK.pattern}", text):
+        yield _unescaped(text[end : mark.start()]), ""
         yield (mark[1], "code") if mark[1] else (mark[3], "sub" if mark[2] == "_" else "sup")
         end = mark.end()
-    yield text[end:], ""
+    yield _unescaped(text[end:]), ""
+
+
+def _unescaped(text: str) -> str:
+    return text.replace(f"`{WORD_JOINER}", "`")
 
 
 def formula(text: str) -> Markup:

@@ -54,9 +54,8 @@ def name_points(panels: Mapping[Axes, Sequence[Line2D]]) -> dict[Axes, list[Line
 
 def _lay_out(axes: Axes) -> None:
     """Place the panels of a new figure."""
-    figure = axes.figure
-    if style.given() is None and isinstance(figure, Figure) and (engine := figure.get_layout_engine()) is not None:
-        engine.execute(figure)
+    if style.given() is None and isinstance(axes.figure, Figure):
+        style.lay_out(axes.figure)
 
 
 def _places(axes: Axes, curves: Sequence[Line2D]) -> list[complex | None]:
@@ -93,7 +92,7 @@ def _write(axes: Axes, curves: Sequence[Line2D], places: Sequence[complex | None
             continue
         at = (place.real / size.real, place.imag / size.imag)
         x, y = np.asarray(curve.get_xdata()), np.asarray(curve.get_ydata())
-        look["color"] = curve.get_color()
+        look["color"] = style.WORDS.get(str(curve.get_color()), curve.get_color())
         if x.size > 1:
             axes.text(*at, str(curve.get_label()), transform=axes.transAxes, **look)
             continue

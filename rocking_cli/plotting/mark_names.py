@@ -32,7 +32,7 @@ def name_marks(axes: Axes, points: Sequence[tuple[float, float, str]], marks: ND
         Places of all marks [data].
     """
     if style.given() is None and isinstance(axes.figure, Figure):
-        axes.figure.draw_without_rendering()  # places the panel
+        style.lay_out(axes.figure)
     size, dpi, corner = style.inches(axes), axes.figure.dpi, complex(axes.bbox.x0, axes.bbox.y0)
     named = _inches(axes, np.array([each[:2] for each in points]).reshape(-1, 2))
     boxes = [each.get_window_extent() for each in axes.texts]

@@ -177,7 +177,7 @@ def _largest(panels: Sequence[Panel]) -> float:
         if len(wider) == len(wide):
             return scale
         wide = wider
-    return tallest
+    return min([tallest, *((each.heading - each.room.real) / each.plane.real for each in panels)])
 
 
 def place_row(panels: Sequence[Panel], scale: float, base: float) -> float:

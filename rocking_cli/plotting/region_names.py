@@ -37,10 +37,9 @@ def name_regions(
         Regions whose colour is dark: their names are in a box.
     """
     figure = axes.figure
-    layout = figure.get_layout_engine() if isinstance(figure, Figure) else None
-    if style.given() is not None or layout is None:
+    if style.given() is not None or not isinstance(figure, Figure):
         return set()
-    layout.execute(figure)  # type: ignore[arg-type]  # places the panel
+    style.lay_out(figure)
     size = style.inches(axes)
     x, y = (np.arange(RASTER / 2, length, RASTER) / length for length in (size.real, size.imag))
     along = [(axes.transAxes - axes.transData).transform(np.column_stack([each, each])) for each in (x, y)]

@@ -29,7 +29,7 @@ from rocking_cli import names
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.text import printable
 
-PAGE_WIDTH, PHONE_WIDTH = 7.2, 3.75  # inches of text on paper, and on a screen of 390 px
+PAGE_WIDTH, PHONE_WIDTH = 7.2, 3.3  # inches of text on paper, and on a phone, where it is enlarged to the screen
 DPI = 150
 POINTS_PER_INCH = 72
 MAX_SIDE_MARGIN = 0.9  # inches at the sides of a panel
@@ -40,6 +40,8 @@ INK, FAINT, SHADE, GRID, PAPER = "#222222", "#9a9a9a", "#eeeeee", "#dddddd", "#f
 # Colours of curves: colour-blind readers can tell each two of them apart, on a dark page too.
 BLACK, ORANGE, BLUE = "#111111", "#cc7a00", "#1b6ca8"
 VIOLET, BROWN, STONE = "#a21ce6", "#6b3a0a", "#93886a"
+# Words need more contrast than curves: the tones of the names of these.
+WORDS = {ORANGE: "#9c5c00", STONE: "#6c634b"}
 TITLE, LABEL, TICK, SMALL, TINY = 10, 9, 8, 7, 5  # sizes of type [pt]
 HAIR, THIN, CURVE, MEDIUM, BOLD, HALO_WEIGHT = 0.4, 0.6, 0.7, 1.0, 1.6, 2.5  # weights of line [pt]
 LEGEND: dict[str, Any] = {"fontsize": TICK, "frameon": True, "framealpha": 0.9, "edgecolor": "none"}
@@ -108,11 +110,11 @@ _MARKS = ("o", "s", "^", "D", "v", "P")
 
 DARK = {
     PAPER: "#16181b", INK: "#e8e6e1", FAINT: "#84888e", SHADE: "#26292e", GRID: "#3a3d42", "#000000": "#f4f2ee",
-    BLACK: "#f4f2ee", ORANGE: "#ffb454", BLUE: "#6db3f2", VIOLET: "#a06bff", BROWN: "#bb6520", STONE: "#b5a886",
+    BLACK: "#f4f2ee", ORANGE: "#ffb454", BLUE: "#6db3f2", VIOLET: "#a06bff", BROWN: "#c56d28", STONE: "#b5a886",
     "#cbd8e4": "#435567", "#eed7a6": "#6a5730", "#a6b8ca": "#667c92", RESTING_COLOUR: "#2b2e32", EARTH: "#a99c88",
     MEASURE: "#7fb6e6", CURSOR: "#ff8a65", "#b3541e": "#ff9d5c", "#1d6b4f": "#4fbf94", RECORD_COLOUR: "#8b8e94",
     "#b35900": "#ff9a4d", "#c6dcec": "#20384b", "#f2b04a": "#9a6413", "#c46a1b": "#dc8a45", "#5b3a55": "#dcb6d4",
-    "#c9c9c9": "#5c6066",
+    "#c9c9c9": "#5c6066", "#9c5c00": "#ffb454", "#6c634b": "#b5a886",
 }  # fmt: skip
 """The colour on a dark page that takes the place of each colour of a picture."""
 
@@ -375,12 +377,25 @@ def save(figure: Figure, stream: IO[Any], **options: Any) -> None:
     **options
         Options of `Figure.savefig`.
     """
-    for each in figure.findobj(Text):
-        if isinstance(each, Text) and each.get_text() != printable(each.get_text()):
-            each.set_text(printable(each.get_text()))
+    _spell_out(figure)
     with catch_warnings():
         filterwarnings("ignore", "Glyph .* missing from", UserWarning)  # a missing glyph is drawn as an empty box
         figure.savefig(stream, **options)
+
+
+def lay_out(figure: Figure) -> None:
+    """Place the panels of a new figure, so that they can be measured."""
+    _spell_out(figure)
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.execute(figure)
+
+
+def _spell_out(figure: Figure) -> None:
+    """Spell out the characters of names that neither fonts nor an SVG file can hold."""
+    for each in figure.findobj(Text):
+        if isinstance(each, Text) and each.get_text() != printable(each.get_text()):
+            each.set_text(printable(each.get_text()))
 
 
 def note(axes: Axes, text: str, height: float = 0.96) -> None:
@@ -460,7 +475,7 @@ def legend_below(
 def _in_columns(handles: Sequence[Any], room: float, ncols: int, look: dict[str, Any]) -> tuple[list[str], int]:
     """Return the labels of a legend, broken into lines, and its columns, at most `ncols`, that fit a width [inches]."""
     beside = (look.get("handlelength", 2.0) + 3.5) * TICK / POINTS_PER_INCH  # room of handle and gaps in a column
-    labels = [str(each.get_label()) for each in handles]
+    labels = [printable(str(each.get_label())) for each in handles]
     widest = max((size_of(line, TICK).real for each in labels for line in each.split("\n")), default=0.0)
     if widest + beside > room:
         labels = [folded(each, room - beside, TICK, "    ") for each in labels]

@@ -38,6 +38,7 @@ class NextStep(StrEnum):
     HOLD_JOINT = "hold_joint"
     ASSUME_OVERTURNING = "assume_overturning"
     STRENGTHEN = "strengthen"
+    CHECK_HOLD = "check_hold"
     MARGIN = "margin"
     YIELD_FORCE = "give_yield_force"
     MORE_MOTIONS = "give_more_motions"
@@ -128,6 +129,8 @@ class Conclusion:
         What was given and does not count.
     remedy : NextStep or None
         What to do about the joint at which the response that governs ends; None if all of it is known.
+    relies : bool
+        Whether a satisfied verification relies on what may not hold any more at the displacement reached.
     """
 
     concluded: Concluded
@@ -147,6 +150,7 @@ class Conclusion:
     directions: Sequence[str] = ()
     left_out: Sequence[LeftOut] = ()
     remedy: NextStep | None = None
+    relies: bool = False
 
     @property
     def next(self) -> Sequence[NextStep]:
@@ -154,6 +158,8 @@ class Conclusion:
         steps = [] if self.remedy is None else [self.remedy]
         if self.concluded is Concluded.OVERTURNS:
             steps.append(NextStep.STRENGTHEN)
+        if self.relies:
+            steps.append(NextStep.CHECK_HOLD)
         neighbours_differ = self.share is not None and self.share.highest > 0 and self.share.lowest < 1
         if self.ratio is None and (self.remedy is not None or neighbours_differ):
             steps.append(NextStep.MARGIN)

@@ -508,11 +508,11 @@ class Verification:
             == (governs.concluded, governs.limit_state, governs.method) and _are_close(each.ratio, governs.ratio)
         ]  # fmt: skip
         preceded = any(each.what == "mechanism" for each in self.left_out)
+        satisfied = governs.concluded is Concluded.SATISFIED
         return replace(
             governs,
-            concluded=Concluded.NOT_CHECKED
-            if preceded and governs.concluded is Concluded.SATISFIED
-            else governs.concluded,
+            concluded=Concluded.NOT_CHECKED if preceded and satisfied else governs.concluded,
+            relies=satisfied and not preceded and bool(self.relies_on),
             direction="" if len(alike) == len(self.directions) else governs.direction,
             limit_states=list(dict.fromkeys(each.limit_state for each in conclusions if each.limit_state)),
             directions=[direction.label for direction in self.directions],
@@ -523,8 +523,8 @@ class Verification:
     @property
     def relied_on(self) -> Sequence[Remark]:
         """What the conclusion relies on, without repetitions: nothing if the verification is not satisfied."""
-        satisfied = self.conclusion.concluded is Concluded.SATISFIED
-        return [each for k, each in enumerate(self.relies_on) if satisfied and each not in self.relies_on[:k]]
+        relies = self.conclusion.relies
+        return [each for k, each in enumerate(self.relies_on) if relies and each not in self.relies_on[:k]]
 
     @property
     def deciding(self) -> Any:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from rocking_cli.names import ROCKS, UNKNOWN, peaks_over
+from rocking_cli.names import UNKNOWN, peaks_over
 from rocking_cli.structure import Structure
 from rocking_cli.studies.film import SLOWEST_GROUND, Film, Scene
 from rocking_cli.studies.neighbours import Neighbours
@@ -109,12 +109,7 @@ def why_it_ends(film: Film) -> str:
 def fate(film: Film) -> str:
     """Return the outcome in a few words, to be written beside a structure."""
     end = concluded({1: {film.history.model: film.history}}, {})
-    words = headline(end)
-    return (
-        f"{words} {peaks_over(film.history.ends_at_limit).replace('phi_cr', 'φcr')}"
-        if words.startswith(ROCKS)
-        else words
-    )
+    return headline(end, peaks_over(film.history.ends_at_limit).replace("phi_cr", "φcr"))
 
 
 def scale_in_words(scene: Scene) -> str:

@@ -30,6 +30,8 @@ NEXT_STEPS: Mapping[str, str] = {
     **REMEDIES,
     NextStep.STRENGTHEN: "hold the structure or change its size: `rocking design` finds a value with which it stands",
     NextStep.MARGIN: "`rocking margin` shows from which scale factor on neighbours overturn, or are unknown",
+    NextStep.CHECK_HOLD: "check that what the caution names still holds the structure when it has moved that far, "
+    "anchorages included",
     NextStep.YIELD_FORCE: "give the tie `steel` (or `yield`) in place of its stiffness or modulus, so that it counts",
     NextStep.MORE_MOTIONS: "give at least as many records as the code requires",
     NextStep.FIRST_MECHANISM: "describe the mechanism that starts first as a structure, and verify that structure",
@@ -206,12 +208,15 @@ def next_in_words(end: Conclusion) -> str:
     return f"Next: {steps}." if steps else ""
 
 
-def headline(end: Conclusion) -> str:
-    """Return the conclusion in a few words, for a heading: with the peak, the limit state, or the end of validity."""
+def headline(end: Conclusion, over: str) -> str:
+    """Return the conclusion in a few words, for a heading: with the peak, the limit state, or the end of validity.
+
+    Peaks are divided by `over`, such as "phi_cr".
+    """
     if end.known_until is not None:
         return f"{names.UNKNOWN} after {end.known_until:.4g} s"
     if end.concluded is Concluded.ROCKS and end.peak_ratio is not None:
-        return f"{names.ROCKS} to {end.peak_ratio:.3g}"
+        return f"{names.ROCKS} to {end.peak_ratio:.3g} {over}"
     words = end.concluded.value.replace("_", " ")
     if ties := [each.name for each in end.left_out if each.what == "tie"]:
         words = f"{words} without {in_short(ties)}"
@@ -224,6 +229,6 @@ def conclusion_data(end: Conclusion) -> dict[str, Any]:
     data = {key: list(each) if key in lists else None if each == "" else each for key, each in asdict(end).items()}
     data["left_out"] = [each._asdict() for each in end.left_out]
     data["share"] = end.share._asdict() if end.share is not None else None
-    del data["remedy"]
+    del data["remedy"], data["relies"]
     data["next"] = list(end.next)
     return data

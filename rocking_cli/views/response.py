@@ -372,7 +372,7 @@ def _tables(
     for sign, histories in found.runs.items():
         under = f"{title}, polarity {sign}" if len(found.runs) > 1 else title
         end = found.conclusions[sign]
-        parts.append(outcome_table(f"{under} ({headline(end)})", found, sign, watched))
+        parts.append(outcome_table(f"{under} ({headline(end, names.peaks_over(free))})", found, sign, watched))
         parts.append(verdict(histories, found.agreement[sign], found.assumed_friction(sign)))
         if sign in found.neighbours:
             following = "" if end.remedy else next_in_words(end)

@@ -193,7 +193,7 @@ CALLS = {
          "curve": "logit", "confidence": 0.8, "label": "odd"},
     ),
     "report": (
-        {"structure": BLOCK, "motions": RECORD, "neighbours": 2},
+        {"structure": WEAK, "motions": RECORD, "neighbours": 2},
         {"structure": OTHER, "motions": PULSE, "out": "o.html", "polarity": "1", "verify": SITE, "state": "SLC",
          "on_floor": True, "opening": 1.0, "language": "it", "project": "odd", "place": "odd",
          "author": "odd", "logo": "in.svg", "origin": "odd"} | AROUND,

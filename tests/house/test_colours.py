@@ -80,7 +80,8 @@ def test_words_and_curves_stand_out_from_their_page(page):
     shown, paper = PAGES[page], PAGES[page](style.PAPER)
     for words in (style.INK, "#000000"):
         assert contrast(shown(words), paper) > 7
-    for words in (style.MEASURE, style.CURSOR, style.TIE["color"]):
+    names_of_curves = (style.WORDS.get(each, each) for each in style.HUES)
+    for words in (*names_of_curves, style.MEASURE, style.CURSOR, style.TIE["color"]):
         assert contrast(shown(words), paper) > 4.5
     for curve in (*style.HUES, style.THRUST["color"], style.EARTH, style.RECORD_COLOUR):
         assert contrast(shown(curve), paper) > 3

@@ -117,7 +117,7 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
             for where, each in shown(one).items():
                 sides[where + state] = each
                 if each is one.deciding or len(one.distinct) == 1:
-                    ends[where + state] = f" ({headline(one.conclusion)})"
+                    ends[where + state] = f" ({headline(one.conclusion, over='')})"
         return draw_capacity(TERMINAL, sides, title, ends)
 
 

@@ -176,7 +176,7 @@ METRICS: Mapping[str, Metric] = {
         Metric("lambda", "", "ground acceleration at uplift over g, in the weaker direction", _lambda),
         Metric("phi_cr", "rad", "critical rotation, the smaller of both directions", _phi_cr),
         Metric("p", "rad/s", "frequency parameter of the equivalent block, the larger of both directions", _p),
-        Metric("peak_ratio", "", "peak rotation over the critical one that half of the neighbours do not exceed",
+        Metric("peak_ratio", "", "median of the neighbours' peak rotation over phi_cr",
                of_neighbours=lambda near, _: near.peak_ratio[1], lacks=_lacks_critical_rotation),
         Metric("peak_displacement", "m", "peak displacement of the control point, the centroid of all that moves, that "
                "half of the neighbours do not exceed", of_neighbours=_median_of(centroid_moved)),

@@ -24,11 +24,12 @@ from rocking_cli.questions.report.words import PACKAGE, context, language_of
 from rocking_cli.questions.respond.picture import draw_history
 from rocking_cli.studies.conclusion import Concluded
 from rocking_cli.studies.film import Film
+from rocking_cli.text import in_short
 from rocking_cli.verification.results import Verification
 from rocking_cli.views.sheet import template
 from rocking_cli.views.sheet.build import SheetSources, about, of_files
 from rocking_cli.views.sheet.document import Moving, Sentence, Sheet, SheetPart
-from rocking_cli.views.sheet.language import Language
+from rocking_cli.views.sheet.language import Language, plain
 from rocking_cli.views.sheet.template import guarded
 
 if TYPE_CHECKING:
@@ -38,8 +39,8 @@ SUBSCRIPT, NO_BREAK = re.compile("_(.+)|([₁₂])"), "\N{NO-BREAK SPACE}"
 
 TOTAL_BINS = 6000  # bins of the curves of all motions: each curve has some two samples in a bin
 MIN_BINS, MAX_BINS = 300, 2500  # bins of the curves of one motion
-OWN_PARTS = frozenset({"drawing", "inputs"})
-"""Parts of a calculation sheet that a report leaves out, as it contains them already."""
+OWN_PARTS = frozenset({"drawing", "inputs", "basis-4"})
+"""Parts of a calculation sheet that a report leaves out: it contains them already, or has another order."""
 BAD_CONCLUSIONS = frozenset({Concluded.OVERTURNS, Concluded.UNKNOWN, Concluded.NOT_SATISFIED, Concluded.NOT_CHECKED})
 
 
@@ -105,6 +106,7 @@ def document(content: Assessment, sources: SheetSources, verified: VerifiedRepor
         "on_floor": any(each.result.motion.ground is not None for each in motions),
         "followed": any(contact.followed for each in motions for contact in each.result.contacts.values()),
         "fitted": [(name, fit, amplitude_in_g(fit)) for name, fit in fits],
+        "in_short": lambda names: guarded(plain(in_short(names))),
         "listed_numbers": lambda numbers: guarded(", ".join(say.number(each, 3) for each in numbers.tolist())),
         "errors": of_block,
         "prefer": preferred(content.asked) if content.asked else None,

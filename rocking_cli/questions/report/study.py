@@ -122,10 +122,13 @@ class PulseMap:
         The map, by the equivalent block with kappa2.
     marks : tuple of (str, PulseFit)
         Name of each motion whose sine pulse is on the map, and the pulse.
+    outside : sequence of str
+        Names of the motions whose sine pulse is not on the map.
     """
 
     found: OverturningMap
     marks: tuple[tuple[str, PulseFit], ...]
+    outside: Sequence[str] = ()
 
 
 @short_repr
@@ -317,7 +320,8 @@ def _map(structure: Structure, results: Sequence[MotionResult]) -> PulseMap | No
         if periods[0] <= fit.pulse.period <= periods[-1]
         and amplitudes[0] <= fit.pulse.amplitude / under.unit <= amplitudes[-1]
     ]  # fmt: skip
-    return PulseMap(simulated, tuple(marks))
+    on_map = {name for name, _ in marks}
+    return PulseMap(simulated, tuple(marks), [name for name, _ in sines if name not in on_map])
 
 
 def amplitude_in_g(fit: PulseFit) -> float:

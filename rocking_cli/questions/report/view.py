@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from rocking_cli.names import peaks_over
 from rocking_cli.questions.equiv.view import sides_of
 from rocking_cli.questions.error.view import trust
 from rocking_cli.questions.margin.view import margin_data
@@ -34,6 +35,7 @@ def view(content: Assessment, verified: Verification | None = None) -> View:
     ends = [
         end for end in (verified.conclusion if verified is not None else None, content.conclusion) if end is not None
     ]
+    over = peaks_over([side.phi_cr is None for side in content.structure.statics])
     data = {
         "structure": {
             "mechanism": content.mechanism.mechanism,
@@ -54,7 +56,7 @@ def view(content: Assessment, verified: Verification | None = None) -> View:
                 "factor": each.given.factor,
                 "pga": each.pga_of_ground,
                 **processing.data(each.motion),
-                "headline": f"{headline(each.conclusion)}{' (close)' if each.close else ''}",
+                "headline": f"{headline(each.conclusion, over)}{' (close)' if each.close else ''}",
                 "unknown": each.unknown,
                 "answers": _by_heading(said("answers", result=each, key="")),
                 "doubts": _sentences(said("checks", result=each)),

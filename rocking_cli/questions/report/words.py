@@ -48,7 +48,7 @@ SYMBOL = re.compile(rf"\b({'|'.join(SYMBOLS)})\b")
 
 def printed(text: str) -> Markup:
     """Return a sentence of another view with its symbols as in print."""
-    return guarded(SYMBOL.sub(lambda match: SYMBOLS[match[1]], plain(text)))
+    return guarded(SYMBOL.sub(lambda match: SYMBOLS[match[1]], plain(text, keep_code=True)))
 
 
 class MotionWords(NamedTuple):
@@ -116,7 +116,7 @@ class English:
 
     def headline(self, result: MotionResult) -> Markup:
         """Return the outcome in a few words."""
-        return printed(f"{headline(result.conclusion)}{' (close)' if result.close else ''}")
+        return printed(f"{headline(result.conclusion, self.over)}{' (close)' if result.close else ''}")
 
     def why_unknown(self, result: MotionResult) -> Markup:
         """Return why an outcome is unknown, as a clause."""

@@ -294,6 +294,7 @@ def _impact_columns(response: Response) -> Columns:
 
 
 def _figure(response: Response, structure: Structure, title: str, *, contact: bool) -> Figure:
+    from rocking_cli.names import peaks_over
     from rocking_cli.questions.respond.picture import draw_history
     from rocking_cli.views.conclusion import headline
 
@@ -301,5 +302,6 @@ def _figure(response: Response, structure: Structure, title: str, *, contact: bo
     fit, alone = response.fit, response.to_pulse
     pulse = (fit, alone) if fit is not None and alone is not None else None
     checked = list(response.contacts.values()) if contact else []
-    title = f"{title} ({headline(response.conclusion)})"
+    over = peaks_over(next(iter(first.values())).ends_at_limit)
+    title = f"{title} ({headline(response.conclusion, over)})"
     return draw_history(first, response.first, title, others[0] if others else None, pulse, structure, checked)

@@ -210,9 +210,9 @@ def as_subscript(name: str) -> str:
     return name.translate(OUTSIDE_SIGNS)
 
 
-def plain(text: str) -> str:
-    """Escape a text so that nothing in it is read as a sub- or superscript."""
-    return re.sub(r"([_^])\[", "\\1\N{WORD JOINER}[", text)
+def plain(text: str, *, keep_code: bool = False) -> str:
+    """Escape a text so that nothing in it is read as a sub- or superscript, or as code unless it is kept."""
+    return re.sub(r"[_^](?=\[)" if keep_code else r"[_^](?=\[)|`", "\\g<0>\N{WORD JOINER}", text)
 
 
 ENGLISH = Language("en", is_plain=True)

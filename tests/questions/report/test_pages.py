@@ -16,7 +16,7 @@ from tests.conftest import EXAMPLES
 from tests.following import respond
 from tests.questions.draw.test_hung import TIED_FILE
 
-pytestmark = pytest.mark.rest
+pytestmark = [pytest.mark.rest, pytest.mark.drawn]
 
 FRAME, ACCEL = EXAMPLES / "frame.yaml", EXAMPLES / "accel.csv"
 EVIL = '<script>alert(1)</script> & "quotes" </script> {{ 7*7 }}'

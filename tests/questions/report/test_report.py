@@ -225,6 +225,7 @@ class TestReproduction:
         assert shlex.split(data["command"]) == ["rocking", "report", str(BLOCK), *given, *FEW, "--json"]
 
     @pytest.mark.rest
+    @pytest.mark.usefixtures("drawn")
     def test_elsewhere_it_is_the_same_and_folders_stay_out_unless_given(self, frame_report, tmp_path, monkeypatch):
         monkeypatch.chdir(EXAMPLES)
         out = tmp_path / "r.html"

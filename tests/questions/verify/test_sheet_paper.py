@@ -33,6 +33,8 @@ from tests.questions.verify.test_sheet import (
     verified,
 )
 
+pytestmark = pytest.mark.drawn
+
 G = 9.80665
 DOCS = PROJECT / "docs"
 TIED_FACADE = (EXAMPLES / "verify" / "tied_facade.yaml").read_text(encoding="utf-8")

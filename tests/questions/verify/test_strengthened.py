@@ -99,8 +99,8 @@ def test_each_conclusion_stands_above_the_curve_that_decides_it(files):
         for axes in rk.verify(parse_structure(leaning, "s.yaml", "test", Registry()), site).plot().axes
     ]
     assert titles == [
-        "facade: free-standing rectangular block, positive direction, FC = 1.35 (SLD not satisfied)",
-        "facade: free-standing rectangular block, negative direction, FC = 1.35",
+        "facade: rectangular block, positive direction, FC = 1.35 (SLD not satisfied)",
+        "facade: rectangular block, negative direction, FC = 1.35",
     ]
 
 

@@ -10,7 +10,7 @@ from math import isclose
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rocking_cli.codes.italian.ground import SiteGround
-from rocking_cli.codes.italian.results import Dynamic, ItalianVerification
+from rocking_cli.codes.italian.results import Dynamic, ItalianVerification, ItalianVerified
 from rocking_cli.codes.italian.sheet import dynamic, site, summary
 from rocking_cli.codes.italian.sheet.chain import named
 from rocking_cli.codes.italian.sheet.geometry import Composition
@@ -67,13 +67,24 @@ def _subject(say: Language, found: ItalianVerification, site_values: ItalianSite
         DirectionSteps(ground, each, f"{both or say(DIRECTION_TITLES[each.direction])}{of}", state)
         for each in found.distinct
     ]
+    variants = {"as_calculated": found.deciding, **found.variants()}
     return {
         "state": state, "ending": of, "of": f"{state}-" if state else "", "verification": found, "sides": sides,
-        "variants": {"as_calculated": found.deciding, **found.variants()},
+        "variants": variants, "failing_without_ties": _failing(variants.get("without_ties")),
         "has_seats": any(load.seat for load in found.mechanism.loads or []),
         "structure": Composition(found.mechanism), "body": partial(say.body, found.mechanism.mechanism),
         **summary.context(say, found, sides),
     }  # fmt: skip
+
+
+def _failing(side: ItalianVerified | None) -> dict[str, float]:
+    """Return the zeta_E of each limit state that a direction does not pass."""
+    if side is None:
+        return {}
+    zeta = {state: side.zeta_at(state) for state, at in side.states.items() if at.demand is not None}
+    failing = {state: each for state, each in zeta.items() if each is not None and not side.passes(state)}
+    damage = side.methods["SLD"]
+    return failing | ({"SLD": damage.zeta} if damage.zeta is not None and not damage.passed else {})
 
 
 class SheetFigures(NamedTuple):
