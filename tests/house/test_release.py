@@ -138,7 +138,10 @@ class TestMakefile:
             assert f"--resolution {resolution}" in free and "constraint" not in free
 
     def test_every_tier_runs_somewhere_and_is_explained(self, tmp_path):
-        tiers = {each.partition(":")[0] for each in SETTINGS["tool"]["pytest"]["ini_options"]["markers"]} - {"every(n)", "drawn"}
+        tiers = {each.partition(":")[0] for each in SETTINGS["tool"]["pytest"]["ini_options"]["markers"]} - {
+            "every(n)",
+            "drawn",
+        }
         later = " or ".join(sorted(tiers))
         named = {target: re.findall(r'-m "(.*?)"', self.planned(target, tmp_path)) for target in ("test", "test-all")}
         first, rest = named["test-all"]
