@@ -100,6 +100,7 @@ class Walk:
         self.weights, self.blocks, self.held, self.corners = [], [], [], {}
         self.rest, self.tables, self.after, self.leads = {}, [], [], {}
         self.also = []
+        self.failing_without_ties = {}
         read = {Heading: self.heading, Grid: self.grid, Step: self.step, Sentence: self.sentence}
         for item in sheet.items:
             if type(item) in read:
@@ -624,6 +625,8 @@ def faults_of_variants(walk, chain):
                         faults += [] if is_printed(row[k], value) else [(head, row, value)]
                         continue
                 if what.startswith("verif"):
+                    if re.match(r"without|senza", head) and zeta < 1:
+                        walk.failing_without_ties[name] = zeta
                     faults += [] if is_satisfied(row[k]) == (zeta >= 1) else [(head, row, zeta)]
                 elif what:
                     faults += [] if is_printed(row[k], zeta) else [(head, row, zeta)]
@@ -810,7 +813,11 @@ def faults_of_verdict(walk, sheet):
             wrong = [pair for pair in zip(row[1:5], values, strict=True) if not is_printed(*pair)]
             if wrong or not lasts(row[5], period):
                 faults.append((direction, row, wrong, period))
-    (answer,) = [each.text for each in sheet.items if isinstance(each, Sentence) and "answer" in each.kind]
+    answer, *more = [each.text for each in sheet.items if isinstance(each, Sentence) and "answer" in each.kind]
+    said = re.findall(r"= (\S+) (?:at|allo) (\w+)", "".join(more).replace("0,", "0."))
+    failing = [(f"{zeta:.3g}", state) for state, zeta in walk.failing_without_ties.items()] if all(passed) else []
+    if said != failing:
+        faults.append(("without ties", more, failing))
     least = "" if None in ratios else f" {min(ratios):.3g}".replace(".", "[.,]") + r"(\.|\s|$)"
     if is_satisfied(answer.partition(".")[0]) != all(passed) or not re.search(least, answer):
         faults.append(("the answer", answer, passed, ratios))

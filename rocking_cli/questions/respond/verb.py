@@ -302,6 +302,6 @@ def _figure(response: Response, structure: Structure, title: str, *, contact: bo
     fit, alone = response.fit, response.to_pulse
     pulse = (fit, alone) if fit is not None and alone is not None else None
     checked = list(response.contacts.values()) if contact else []
-    over = peaks_over(next(iter(first.values())).ends_at_limit)
+    over = peaks_over(next(iter(first.values())).ends_at_limit).replace("phi_cr", "φcr")
     title = f"{title} ({headline(response.conclusion, over)})"
     return draw_history(first, response.first, title, others[0] if others else None, pulse, structure, checked)

@@ -44,9 +44,12 @@ def read(path):
 
 @pytest.mark.usefixtures("small_maps")
 class TestContent:
-    def test_its_map_is_that_of_overturning_and_no_comment_is_in_it(self, frame_report, monkeypatch):
+    @pytest.mark.rest
+    def test_no_comment_is_in_it(self, frame_report):
         page = frame_report[0].read_text(encoding="utf-8")
         assert not re.search(r"<!--|/\*|^ *//", page, re.MULTILINE)
+
+    def test_its_map_is_that_of_overturning(self, monkeypatch):
         monkeypatch.setattr("rocking_cli.questions.report.study.MAP_POINTS", 8)
         found, (mark, *_) = (answer := rk.report(BLOCK, ACCEL, None, neighbours=5).map).found, answer.marks
         alone = rk.overturning_map(BLOCK, points=8)
