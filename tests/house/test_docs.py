@@ -29,6 +29,8 @@ from rocking_cli.testing import contract
 from rocking_cli.views.mechanisms import fields
 from tests.conftest import PROJECT
 
+pytestmark = pytest.mark.drawn
+
 DOCS = PROJECT / "docs"
 OWN = [PROJECT / "README.md", PROJECT / "CONTRIBUTING.md"]
 FOLDERS = ("", "api/", "mechanisms/", "walls/", "masonry/")
