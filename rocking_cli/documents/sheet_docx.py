@@ -171,7 +171,7 @@ class _Writer:
             style.save(figure, stream, format="png")
             stream.seek(0)
             shape = self.document.add_picture(stream, width=Cm(width))
-            shape._inline.docPr.set("descr", printable(item.label))
+            shape._inline.docPr.set("descr", printable("".join(piece for piece, _ in runs(item.label))))
             self.document.paragraphs[-1].paragraph_format.keep_with_next = True
             self._text(self.document.add_paragraph(), item.label)
         elif isinstance(item, Listing):

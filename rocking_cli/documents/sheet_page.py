@@ -20,14 +20,13 @@ from rocking_cli.studies.picture import picture
 from rocking_cli.text import printable
 from rocking_cli.verification.results import MARK
 from rocking_cli.views.sheet.document import Drawing, Moving, Sheet, SheetPart
-from rocking_cli.views.sheet.language import Language
+from rocking_cli.views.sheet.language import WORD_JOINER, Language
 
 ORIGIN_MARKS = {"print": "", "transcription": "*", "code": "†", "ours": "‡", "plain": ""}
 """Marks beside formulas, by how far these were checked."""
 SCRIPT_TEXT = "script "  # begins the keys of texts of data/motion.js
 LEAVES = {"number": "mn", "letter": "mi", "word": "mi", "sign": "mo", "bracket": "mo"}
 SCREEN_WIDTH = 25  # characters of a formula that fit on any screen
-WORD_JOINER = "\N{WORD JOINER}"  # follows a mark that is none
 TEXT_WIDTH = 17.0  # cm of an A4 page, between margins of 2 cm
 
 

@@ -239,8 +239,11 @@ def test_a_verdict_that_relies_on_a_long_tie_says_so_at_once():
     first = found.sentences[0]
     assert "The verification is satisfied." in first
     assert f"Caution: at SLV this relies on the tie bar when it is {100 * strain:.2g} % longer" in first
+    assert "Next: check that what the caution names still holds" in first
+    assert found.to_dict()["conclusion"]["next"] == ["check_hold"]
     short = rk.verify(facade(bars=2, diameter=0.012, steel="S235"), {**SITE, "ag": 5.0})
     assert "not satisfied" in short.sentences[0] and "Caution" not in short.sentences[0]
+    assert "check_hold" not in short.to_dict()["conclusion"]["next"]
 
 
 def test_a_facade_that_does_not_rock_relies_on_no_elongation():

@@ -205,6 +205,10 @@ def _slot(name: str | None) -> str:
     return f"(?P<{name}>{'[^;,]' if name.startswith('name') else '.'}*?)" if name else ""
 
 
+WORD_JOINER = "\N{WORD JOINER}"
+"""Follows a sign in a text that is no mark."""
+
+
 def as_subscript(name: str) -> str:
     """Return a name that users gave, without the signs of formulas and tables, so that it may be a subscript."""
     return name.translate(OUTSIDE_SIGNS)
@@ -212,7 +216,7 @@ def as_subscript(name: str) -> str:
 
 def plain(text: str, *, keep_code: bool = False) -> str:
     """Escape a text so that nothing in it is read as a sub- or superscript, or as code unless it is kept."""
-    return re.sub(r"[_^](?=\[)" if keep_code else r"[_^](?=\[)|`", "\\g<0>\N{WORD JOINER}", text)
+    return re.sub(r"[_^](?=\[)" if keep_code else r"[_^](?=\[)|`", rf"\g<0>{WORD_JOINER}", text)
 
 
 ENGLISH = Language("en", is_plain=True)

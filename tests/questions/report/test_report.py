@@ -55,7 +55,16 @@ class TestContent:
         alone = rk.overturning_map(BLOCK, points=8)
         np.testing.assert_array_equal(found.regions, alone.regions)
         np.testing.assert_allclose((found.periods, found.accelerations), (alone.periods, alone.accelerations))
-        assert mark[0] == "accel.csv" and mark[1].pulse.name == "sine"
+        assert mark[0] == "accel.csv" and mark[1].pulse.name == "sine" and not answer.outside
+
+    def test_pulses_off_the_map_are_named(self, monkeypatch, tmp_path):
+        monkeypatch.setattr("rocking_cli.questions.report.study.MAP_POINTS", 8)
+        out = tmp_path / "r.html"
+        time = np.arange(0, 2, 0.001)
+        slow = rk.GroundMotion("off", 0.01, 0.3 * np.sin(2 * np.pi * time / 0.05), unit="g")
+        found = rk.report(BLOCK, slow, out, neighbours=2).map
+        assert not found.marks and list(found.outside) == ["off"]
+        assert "Outside the map: those of off." in read(out).words
 
     def test_the_summary_has_the_numbers_of_respond_and_equiv(self, frame_report):
         out, printed = frame_report

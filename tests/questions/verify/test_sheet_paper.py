@@ -262,7 +262,8 @@ def test_a_document_has_the_figures_and_the_contents(tmp_path):
     (tmp_path / "site.yaml").write_text(SITE, encoding="utf-8")
     run("verify", tmp_path / "s.yaml", "--site", tmp_path / "site.yaml", "--sheet", tmp_path / "o.docx")
     document = docx.Document(str(tmp_path / "o.docx"))
-    assert len(document.inline_shapes) == 4
+    described = [each._inline.docPr.get("descr") for each in document.inline_shapes]
+    assert len(described) == 4 and all(each and not re.search(r"[_^]\[", each) for each in described)
     assert "TOC \\o &quot;1-2&quot;" in document.element.xml and "PAGE" in document.sections[0].footer._element.xml
     headings = [each.text for each in document.paragraphs if each.style.name.startswith("Heading")]
     assert in_order(HEADINGS["en"], headings)
