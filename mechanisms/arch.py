@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
 from math import ceil, degrees, floor, log10, pi, radians
@@ -184,7 +185,7 @@ class Arch(Mechanism):
             at = int(np.searchsorted(self._cuts, (start + end) / 2))
             of = bodies[at - 1].name if 0 < at < len(self._cuts) else None
             piece = annular_sector(f"{self._part} {k + 1}", per_area, inner, outer, springing - start, springing - end)
-            pieces.append(Piece(piece, of))
+            pieces.append(Piece(replace(piece, outline=self._sector(start, end)), of))
         return pieces
 
     def piece_at(self, body: str, at: complex, direction: Direction) -> str:

@@ -36,7 +36,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.names import OPENING
 from rocking_cli.short_repr import short_repr
 
-ModelName = Literal["nonlinear", "linear1", "linear2"]
+ModelName = Literal["nonlinear", "linear1", "linear2", "blocks"]
 MODELS: tuple[ModelName, ...] = ("nonlinear", "linear1", "linear2")
 
 FALLEN_ROTATION = 1e6  # rad: no realistic acceleration turns a linear block back from there

@@ -62,6 +62,8 @@ class Outcome(Generic[Flags, Counts, Numbers]):
     opening : float
         Largest opening or slip of a joint, over that of the farthest block at the critical rotation; NaN if the
         joints are not known, so that nothing was checked.
+    by_blocks : bool
+        Whether it was simulated with free blocks.
     """
 
     still_rocking: Flags
@@ -79,6 +81,7 @@ class Outcome(Generic[Flags, Counts, Numbers]):
     warned: Numbers
     lower_bound: Numbers
     opening: Numbers
+    by_blocks: Flags
 
     @property
     def fell(self) -> Flags:
@@ -156,6 +159,7 @@ UNCHECKED_FIELDS: dict[str, Any] = {
     "warned": nan,
     "lower_bound": nan,
     "opening": nan,
+    "by_blocks": False,
 }
 """The fields of a model that has no joints to be checked, such as an equivalent block."""
 

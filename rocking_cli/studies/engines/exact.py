@@ -1,20 +1,21 @@
-"""Time histories of one structure: what may be requested of them, and which engine simulates them.
-
-There is one engine, that of one degree of freedom (`rocking_cli.dynamics.history`): the joints of the mechanism open
-and close, and all others are only checked. An engine for other structures is chosen in `follow`.
-"""
+"""The engine of one degree of freedom: the joints of the mechanism open and close, all others are only checked."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import isfinite
+from typing import ClassVar
 
+from rocking_cli.arrays import Reals
 from rocking_cli.dynamics import history
+from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import RTOL, TAIL_SECONDS, History, check_rtol
-from rocking_cli.dynamics.model import MODELS, ModelName
+from rocking_cli.dynamics.model import MODELS, Model, ModelName
+from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import Structure
+from rocking_cli.studies.engines.contract import Engine, EngineName
 
 
 def follow(
@@ -57,6 +58,13 @@ def follow(
     SolverError
         If the motion cannot be simulated to its end.
     """
+    check_motion(structure, motion, release, tail)
+    check_rtol(rtol)
+    return history.follow(structure.model(model), motion, release=release or 0.0, tail=tail, rtol=rtol)
+
+
+def check_motion(structure: Structure, motion: GroundMotion | None, release: float | None, tail: float) -> None:
+    """Raise `InputError` if there is nothing to simulate, or a value is out of range."""
     if not isinstance(motion, GroundMotion | None):
         raise InputError(f"motion must be a GroundMotion, got {type(motion).__name__}")
     if motion is None and release is None:
@@ -69,8 +77,6 @@ def follow(
         raise InputError(f"{supports}: it rocks in the {of.one_sided} direction only")
     if not (isfinite(tail) and tail >= 0):
         raise InputError(f"tail must be a time in seconds, 0 or more, got {tail:g}")
-    check_rtol(rtol)
-    return history.follow(structure.model(model), motion, release=release or 0.0, tail=tail, rtol=rtol)
 
 
 def respond(
@@ -98,3 +104,41 @@ def respond(
     if unknown or not models:
         raise InputError(f"models must be of {', '.join(MODELS)}, got {', '.join(unknown) or 'none'}")
     return {name: follow(structure, motion, model=name, release=release, tail=tail, rtol=rtol) for name in models}
+
+
+class Exact(Engine):
+    """The engine of one degree of freedom."""
+
+    name: ClassVar[EngineName] = "exact"
+
+    def respond(
+        self,
+        structure: Structure,
+        motion: GroundMotion | None = None,
+        *,
+        models: Sequence[ModelName] = MODELS,
+        release: float | None = None,
+        tail: float = TAIL_SECONDS,
+        rtol: float = RTOL,
+    ) -> dict[ModelName, History]:
+        """Simulate models of a structure, see `respond`."""
+        return respond(structure, motion, models=models, release=release, tail=tail, rtol=rtol)
+
+    def outcomes(
+        self,
+        models: Sequence[Model],
+        motions: Sequence[GroundMotion | None],
+        runs: Runs,
+        *,
+        release: float | Reals | None = None,
+        threads: int | None = None,
+        only_peaks: bool = False,
+        progress: Callable[[int], None] | None = None,
+    ) -> Outcomes:
+        """Simulate many motions, see `respond_many`."""
+        return respond_many(
+            models, motions, runs, release=release, threads=threads, only_peaks=only_peaks, progress=progress
+        )
+
+
+EXACT = Exact()

@@ -1,0 +1,39 @@
+"""Engines: who simulates the motion of a structure. One degree of freedom is the rule, free blocks are the witness."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.structure import Structure
+from rocking_cli.studies.engines.contract import Engine as Engine
+from rocking_cli.studies.engines.contract import EngineName as EngineName
+from rocking_cli.studies.engines.exact import EXACT as EXACT
+from rocking_cli.studies.engines.exact import follow as follow
+from rocking_cli.studies.engines.exact import respond as respond
+
+ENGINES: tuple[EngineName, ...] = ("exact", "blocks", "auto")
+
+
+def engine_of(name: str, structures: Sequence[Structure] = ()) -> Engine:
+    """Return an engine.
+
+    Parameters
+    ----------
+    name : {"exact", "blocks", "auto"}
+        One degree of freedom, free blocks, or free blocks where one degree of freedom does not tell the outcome.
+    structures : sequence of Structure
+        The structures of the models whose outcomes will be asked for.
+
+    Raises
+    ------
+    InputError
+        If there is no such engine, or MuJoCo, which simulates free blocks, is not installed.
+    """
+    if name not in ENGINES:
+        raise InputError(Problem(f"must be one of {', '.join(ENGINES)}, got {name!r}", field="engine"))
+    if name == "exact":
+        return EXACT
+    from rocking_cli.studies.engines.free import Auto, Blocks
+
+    return Blocks(structures) if name == "blocks" else Auto(structures)

@@ -1,0 +1,304 @@
+"""Free blocks under a ground motion: rigid bodies with contact and friction, simulated by MuJoCo.
+
+Contacts are soft: a body that presses against another sinks into it by a little, and recovers within the time constant
+of the contact. This time, and the step, follow from the blocks; docs/free_blocks.md has the rule and its evidence.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import ceil, inf, nan, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rocking_cli.arrays import Points, Reals
+from rocking_cli.core.kinematics import area_of
+from rocking_cli.dynamics.deck import RELEASE_DT
+from rocking_cli.errors import SolverError
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.short_repr import short_repr
+from rocking_cli.studies.engines.free_blocks import FreeBlocks
+from rocking_cli.studies.engines.scene import scene
+
+if TYPE_CHECKING:
+    import mujoco
+
+SOFTNESS = 0.01  # time constant of a contact, over sqrt(size/g) of the smallest block
+STEPS = 8  # time steps in this time
+HEAVY = 10.0  # weight on a block over its own, from which the contacts are stiffer
+HOLD = 1e-3  # s; the ground acceleration is held over so long at most
+FALL = 0.15  # of the structure's height
+TURN = 0.8  # rad
+SUNK = 1e-3  # largest depth to which a body may sink into another, over its own size
+SETTLING = 0.3  # s
+LIGHT = 0.1  # normal force over the weight of the lighter block, below which friction is not looked at
+STILL = 1e-9  # kinetic energy of a structure at rest, over m g times its height
+LONGEST = 60.0  # s after the motion for which blocks that still move are followed
+COLLAPSE = f"a block falls by {FALL:g} of the structure's height, or turns by {TURN:g} rad"
+
+
+@short_repr
+@dataclass(frozen=True, eq=False, kw_only=True)
+class BlockMotion:
+    """The motion of free blocks.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+        Times of the samples [s], those of the ground motion.
+    moved : ndarray, shape (n, blocks, 3)
+        Displacement of the centroid of each block to the right and upwards [m], and its rotation, anticlockwise [rad].
+    collapsed : float
+        Time at which a block first falls by 0.15 of the structure's height, or turns by 0.8 rad [s]; NaN if none does.
+    block : str
+        This block; empty if there is none.
+    failed : str
+        Why the simulation is no answer, a clause; empty if it is one.
+    at_rest : bool
+        Whether all blocks came to rest in the end.
+    friction : mapping of tuple of str to float
+        Largest shear over normal force of each pair of blocks that touch, at the samples; "" is the ground.
+    """
+
+    time: Reals
+    moved: Reals
+    collapsed: float = nan
+    block: str = ""
+    failed: str = ""
+    at_rest: bool = False
+    friction: Mapping[tuple[str, str], float] = field(default_factory=dict)
+
+
+def time_constant(free: FreeBlocks) -> float:
+    """Return the time in which a contact recovers, by size and weight of the blocks [s]."""
+    each, floors = [], sum(load.mass for load in free.floors)
+    for body in free.bodies:
+        above = floors + sum(other.mass for other in free.bodies if other.centroid.imag > body.centroid.imag)
+        size = max(thickness_of(z) for z in free.shapes[body.name])
+        each.append(size * min(1.0, HEAVY * body.mass / (above or body.mass)))
+    return SOFTNESS * sqrt(min(each) / free.gravity)
+
+
+def thickness_of(z: Points) -> float:
+    """Return the area of a convex polygon over its largest width [m]."""
+    return area_of(z) / float(np.abs(z[:, None] - z).max())
+
+
+class BlockModel:
+    """Free blocks as a model of MuJoCo.
+
+    Parameters
+    ----------
+    free : FreeBlocks
+        The blocks.
+    finer : float
+        Factor by which contacts are stiffer, and steps shorter, than by the rule.
+
+    Raises
+    ------
+    InputError
+        If MuJoCo is not installed, or a load or a tie cannot be simulated.
+    """
+
+    def __init__(self, free: FreeBlocks, finer: float = 1.0) -> None:
+        self.free = free
+        self.names = [body.name for body in free.bodies]
+        self.time_constant = time_constant(free) / finer
+        self.scene = scene(free, self.time_constant)
+        self._masses = np.array([body.mass for body in free.bodies]) / self.scene.mass
+        self._inertias = np.array([body.inertia for body in free.bodies]) / (self.scene.mass * self.scene.size**2)
+
+    @property
+    def step(self) -> float:
+        """Longest time step [s]."""
+        return self.time_constant / STEPS
+
+    @cached_property
+    def digest(self) -> str:
+        """A digest of all on which motions of these blocks depend, besides the ground motion."""
+        rules = STEPS, HOLD, FALL, TURN, SUNK, SETTLING, STILL, LONGEST, self.free.height, self.time_constant
+        return self.scene.digest() + repr(rules)
+
+    def simulate(
+        self,
+        motion: GroundMotion | None,
+        *,
+        factor: float = 1.0,
+        vertical_factor: float = 1.0,
+        start: Reals | None = None,
+        tail: float = 0.0,
+        most: float = inf,
+        progress: Callable[[float], None] | None = None,
+    ) -> BlockMotion:
+        """Simulate the blocks until they are at rest after the motion, or one of them has fallen.
+
+        Parameters
+        ----------
+        motion : GroundMotion or None
+            Ground acceleration, linear between its samples and zero after the last.
+        factor, vertical_factor : float
+            Factors on both components.
+        start : ndarray, shape (blocks, 3), optional
+            Displacements from which the blocks start at rest [m, m, rad].
+        tail : float
+            Time after the motion for which they are followed also at rest [s].
+        most : float
+            Time after which they are not followed [s].
+        progress : callable, optional
+            Called with the time reached [s].
+
+        Raises
+        ------
+        SolverError
+            If the blocks do not stand by themselves.
+        """
+        import mujoco
+
+        model, count = self.scene.model, 3 * len(self.names)
+        data = mujoco.MjData(model)
+        every = motion.every if motion is not None else 1
+        sample = motion.dt if motion is not None else RELEASE_DT
+        holds = ceil(sample / HOLD)
+        steps = ceil(sample / holds / self.step)
+        model.opt.timestep = sample / holds / steps / self.scene.unit_of_time
+        model.opt.gravity[:] = (0.0, 0.0, -1.0)
+        self._settle(data, steps)
+        rest = data.qpos[:count].copy()
+        sunk = self._deepest(data)
+        if start is not None:
+            data.qpos[:count] += self._normal(start)
+        ended = motion.duration if motion is not None else 0.0
+        if motion is not None and motion.vertical is not None:
+            ended = max(ended, motion.vertical.duration)
+        last = min(ended + max(tail, LONGEST), most)
+        pushes, lifts = (
+            _held(each, factor_of / self.free.gravity, sample, holds, ended)
+            for each, factor_of in (
+                (motion, factor),
+                (motion.vertical if motion is not None else None, vertical_factor),
+            )
+        )
+        scale = np.array([self.scene.size, self.scene.size, 1.0])
+        moved, failed, fallen, at_rest = [np.zeros((len(self.names), 3))], "", None, False
+        if start is not None:
+            moved[0] = start
+        frictions: dict[tuple[str, str], float] = {}
+        k = 0
+        while True:
+            for hold in range(k * holds, (k + 1) * holds):
+                if hold < len(pushes):
+                    model.opt.gravity[0], model.opt.gravity[2] = -pushes[hold], -1.0 - lifts[hold]
+                elif hold == len(pushes):
+                    model.opt.gravity[:] = (0.0, 0.0, -1.0)
+                mujoco.mj_step(model, data, steps)
+                if failed := self._fault(data, sunk):
+                    break
+            if failed:
+                break
+            k += 1
+            now = (data.qpos[:count] - rest).reshape(-1, 3) * scale
+            if k % every == 0:
+                moved.append(now)
+                self._note_friction(data, frictions)
+            fallen = self._fallen(now)
+            if fallen is not None:
+                break
+            time = k * sample
+            if progress is not None:
+                progress(time)
+            at_rest = time >= ended and self._kinetic(data) < STILL
+            if (at_rest and time >= ended + tail) or time >= last:
+                break
+        return BlockMotion(
+            time=sample * every * np.arange(len(moved), dtype=np.float64), moved=np.array(moved), failed=failed, at_rest=at_rest,
+            collapsed=k * sample if fallen is not None else nan, friction=frictions,
+            block=self.names[fallen] if fallen is not None else "",
+        )  # fmt: skip
+
+    def _normal(self, moved: Reals) -> Reals:
+        return (np.asarray(moved) / (self.scene.size, self.scene.size, 1.0)).ravel()
+
+    def _settle(self, data: mujoco.MjData, steps: int) -> None:
+        """Let the blocks sink into their contacts at rest."""
+        import mujoco
+
+        mujoco.mj_step(self.scene.model, data, ceil(SETTLING / self.scene.unit_of_time / self.scene.model.opt.timestep))
+        count = 3 * len(self.names)
+        if (
+            fallen := self._fallen(data.qpos[:count].reshape(-1, 3) * (self.scene.size, self.scene.size, 1.0))
+        ) is not None:
+            raise SolverError(f"as free blocks it does not stand by itself: {self.names[fallen]} falls")
+        data.qvel[:] = 0.0
+
+    def _fallen(self, moved: Reals) -> int | None:
+        """Return the number of a block that has fallen, or None."""
+        fallen = (moved[:, 1] < -FALL * self.free.height) | (np.abs(moved[:, 2]) > TURN)
+        return int(fallen.argmax()) if fallen.any() else None
+
+    @cached_property
+    def _limits(self) -> Reals:
+        return SUNK / self.scene.size * self.scene.sizes
+
+    def _deepest(self, data: mujoco.MjData) -> Reals:
+        """Return the depth of each geometry in another, over the size of the structure, shape (geometries,)."""
+        deepest = np.zeros(len(self.scene.owners))
+        depth = -data.contact.dist
+        np.maximum.at(deepest, data.contact.geom.ravel(), np.repeat(depth, 2))
+        return deepest
+
+    def _fault(self, data: mujoco.MjData, sunk: Reals) -> str:
+        """Return why a state is no answer, in words; empty if it is one."""
+        if not np.isfinite(data.qvel).all() or data.warning.number[_diverged()].any():
+            return "a step diverged"
+        if not data.ncon:
+            return ""
+        limits = (self._limits + sunk)[data.contact.geom].min(axis=1)
+        deep = -data.contact.dist > limits
+        if deep.any():
+            one, other = (self.scene.owners[k] or "the ground" for k in data.contact.geom[int(deep.argmax())])
+            return f"{one} and {other} sink into each other by more than 1 per mille of their size"
+        return ""
+
+    def _kinetic(self, data: mujoco.MjData) -> float:
+        rates = data.qvel[: 3 * len(self.names)].reshape(-1, 3)
+        return float(self._masses @ (rates[:, :2] ** 2).sum(axis=1) + self._inertias @ rates[:, 2] ** 2) / 2
+
+    def _note_friction(self, data: mujoco.MjData, most: dict[tuple[str, str], float]) -> None:
+        """Raise the largest shear over normal force of the pairs that touch."""
+        import mujoco
+
+        sums: dict[tuple[str, str], Reals] = {}
+        force = np.zeros(6)
+        for k in range(data.ncon):
+            mujoco.mj_contactForce(self.scene.model, data, k, force)
+            one, other = sorted(self.scene.owners[geometry] for geometry in data.contact.geom[k])
+            shear = data.contact.frame[k].reshape(3, 3)[1:].T @ force[1:3]
+            sums[one, other] = sums.get((one, other), np.zeros(4)) + np.array([force[0], *shear])
+        for pair, (normal, *shear) in sums.items():
+            if normal > LIGHT * min(self._weights[name] for name in pair if name):
+                most[pair] = max(most.get(pair, 0.0), float(np.linalg.norm(shear)) / normal)
+
+    @cached_property
+    def _weights(self) -> dict[str, float]:
+        return dict(zip(self.names, self._masses.tolist(), strict=True))
+
+
+def _diverged() -> list[int]:
+    import mujoco
+
+    kinds = mujoco.mjtWarning
+    return [int(kinds.mjWARN_BADQPOS), int(kinds.mjWARN_BADQVEL), int(kinds.mjWARN_BADQACC)]
+
+
+def _held(motion: GroundMotion | None, factor: float, sample: float, holds: int, ended: float) -> list[float]:
+    """Return the ground acceleration in the middle of each hold, over g, until the motion ends."""
+    count = round(ended / sample) * holds
+    if motion is None:
+        return [0.0] * count
+    middles = (np.arange(count) + 0.5) * (sample / holds)
+    times = np.arange(motion.npts) * motion.dt
+    held: list[float] = (factor * np.interp(middles, times, motion.acceleration, right=0.0)).tolist()
+    return held

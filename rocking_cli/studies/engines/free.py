@@ -1,0 +1,330 @@
+"""The engines of free blocks: of all motions, or of those whose outcome one degree of freedom does not tell."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from hashlib import sha256
+from math import nan
+from typing import Any, ClassVar
+
+import numpy as np
+
+from rocking_cli.arrays import Reals
+from rocking_cli.core import Mechanism
+from rocking_cli.dynamics.batch import Runs
+from rocking_cli.dynamics.history import RTOL, TAIL_SECONDS, History, contact_lost
+from rocking_cli.dynamics.model import MODELS, Model, ModelName
+from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcome, Outcomes
+from rocking_cli.dynamics.parallel import MAX_PROCESSES, in_processes
+from rocking_cli.errors import SolverError
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.structure import Structure
+from rocking_cli.studies.engines import memory
+from rocking_cli.studies.engines.blocks import BlockModel, BlockMotion
+from rocking_cli.studies.engines.contract import Engine, EngineName
+from rocking_cli.studies.engines.exact import EXACT, check_motion
+from rocking_cli.studies.engines.free_blocks import FreeBlocks, free_blocks
+from rocking_cli.studies.engines.scene import engine_version
+
+FINER = (
+    1.0,
+    2.0,
+    4.0,
+    8.0,
+)  # stiffness of contacts over that of the rule; each after the first if a body sank too deep
+MOVED = 1e-3  # rotation over the critical one from which a structure has uplifted
+
+
+def simulate(
+    free: FreeBlocks, models: dict[float, BlockModel], motion: GroundMotion | None, **how: Any
+) -> tuple[BlockModel, BlockMotion]:
+    """Simulate free blocks, with stiffer contacts if a body sinks too deep.
+
+    Parameters
+    ----------
+    free : FreeBlocks
+        The blocks.
+    models : dict of float to BlockModel
+        Models of these blocks by the stiffness of their contacts, which this call adds to.
+    motion, **how
+        See `BlockModel.simulate`.
+    """
+    for finer in FINER:
+        if finer not in models:
+            models[finer] = BlockModel(free, finer)
+        moved = models[finer].simulate(motion, **how)
+        if not moved.failed:
+            break
+    return models[finer], moved
+
+
+def outcome_of(moved: BlockMotion, free: FreeBlocks, phi_cr: Sequence[float]) -> dict[str, Any]:
+    """Return the fields of the outcome of a motion of free blocks."""
+    phi = free.rotation(moved.moved)
+    peaks = [float(np.max(sign * phi, initial=0.0)) for sign in (1, -1)]
+    fell = np.isfinite(moved.collapsed)
+    moving = np.abs(phi) > MOVED * np.where(phi < 0, phi_cr[1], phi_cr[0])
+    uplifts = bool(moving.any()) or bool(fell)
+    fell_to = (1 if phi[-1] >= 0 else -1) if fell else 0
+    ratio = max(peak / limit for peak, limit in zip(peaks, phi_cr, strict=True))
+    end = float(moved.time[-1])
+    return {
+        "still_rocking": not (moved.at_rest or fell or moved.failed),
+        "failed": False,
+        "fell_to": fell_to,
+        "peak_positive": nan if fell_to > 0 else peaks[0] * uplifts,
+        "peak_negative": nan if fell_to < 0 else peaks[1] * uplifts,
+        "peak_ratio": nan if fell else ratio * uplifts,
+        "overturning_time": moved.collapsed,
+        "uplift_time": float(moved.time[moving.argmax()]) if moving.any() else nan,
+        "impact_count": len(impacts_of(moved.time, phi, moving)),
+        "end_time": nan if moved.failed else end,
+        "unknown": bool(moved.failed),
+        "known_to": end if moved.failed else nan,
+        "warned": nan,
+        "lower_bound": ratio if moved.failed else nan,
+        "opening": nan,
+        "by_blocks": True,
+    }
+
+
+def impacts_of(time: Reals, phi: Reals, moving: Any) -> Reals:
+    """Return time, sign of the direction that ends, and rate before of each return through rest after uplift."""
+    rows, side = [], 0
+    for k in range(len(phi)):
+        sign = int(np.sign(phi[k]))
+        if side and sign not in (0, side):
+            ends = time[k - 1] + (time[k] - time[k - 1]) * phi[k - 1] / (phi[k - 1] - phi[k])
+            rows.append((ends, side, abs(phi[k] - phi[k - 1]) / (time[k] - time[k - 1])))
+            side = 0
+        if moving[k]:
+            side = sign
+    return np.array(rows).reshape(-1, 3)
+
+
+def history_of(moved: BlockMotion, free: FreeBlocks, model: Model, motion: GroundMotion | None) -> History:
+    """Return a motion of free blocks as the history of the rotation that the mechanism has."""
+    phi = free.rotation(moved.moved)
+    outcome = outcome_of(moved, free, model.phi_cr)
+    phi_cr = np.where(phi < 0, model.phi_cr[1], model.phi_cr[0])
+    rate = np.gradient(phi, moved.time) if len(phi) > 1 else np.zeros(1)
+    return History(
+        **outcome, model="blocks", time=moved.time, phi=phi, rate=rate, ratio=phi / phi_cr,
+        impacts=impacts_of(moved.time, phi, np.abs(phi) > MOVED * phi_cr),
+        contact_lost=contact_lost(motion, model.gravity), p=model.p, ends_at_limit=model.ends_at_limit,
+    )  # fmt: skip
+
+
+class Blocks(Engine):
+    """The engine of free blocks."""
+
+    name: ClassVar[EngineName] = "blocks"
+
+    def __init__(self, structures: Sequence[Structure] = ()) -> None:
+        engine_version()
+        self.mechanisms = tuple(structure.mechanism for structure in structures)
+
+    def respond(
+        self,
+        structure: Structure,
+        motion: GroundMotion | None = None,
+        *,
+        models: Sequence[ModelName] = MODELS,
+        release: float | None = None,
+        tail: float = TAIL_SECONDS,
+        rtol: float = RTOL,
+    ) -> dict[ModelName, History]:
+        """Simulate one motion of a structure as free blocks; there is one model, so that `models` has no effect."""
+        check_motion(structure, motion, release, tail)
+        history, _, _ = self.follow(structure, motion, release=release, tail=tail)
+        return {"blocks": history}
+
+    def follow(
+        self,
+        structure: Structure,
+        motion: GroundMotion | None,
+        *,
+        release: float | None = None,
+        tail: float = TAIL_SECONDS,
+        progress: Callable[[float], None] | None = None,
+    ) -> tuple[History, BlockMotion, FreeBlocks]:
+        """Return the history of a structure as free blocks, with the motion of the blocks, and the blocks.
+
+        Raises
+        ------
+        InputError
+            If the structure has something that free blocks cannot have.
+        SolverError
+            If the blocks do not stand by themselves, a step diverges, or a body sinks too deep into another.
+        """
+        with structure.named():
+            free = free_blocks(structure.mechanism)
+            model = structure.model("nonlinear")
+            start = _start(structure.mechanism, free, model.phi_cr, release or 0.0)
+            _, moved = simulate(free, {}, motion, start=start, tail=tail, progress=progress)
+        if moved.failed:
+            raise SolverError(f"{structure.name}: free blocks failed at {moved.time[-1]:.4g} s: {moved.failed}")
+        return history_of(moved, free, model, motion), moved, free
+
+    def outcomes(
+        self,
+        models: Sequence[Model],
+        motions: Sequence[GroundMotion | None],
+        runs: Runs,
+        *,
+        release: float | Reals | None = None,
+        threads: int | None = None,
+        only_peaks: bool = False,
+        progress: Callable[[int], None] | None = None,
+    ) -> Outcomes:
+        """Simulate many motions in processes; those that fail are of unknown outcome.
+
+        Restitution is what contact gives: that of a run has no effect.
+        """
+        work = _Work(self.mechanisms, [model.phi_cr for model in models], motions, runs, release)
+        keys = work.keys()
+        known = memory.recall(keys)
+        left = [k for k, key in enumerate(keys) if key not in known]
+        if progress is not None:
+            progress(len(runs) - len(left))
+        work.left = left
+        processes = min(threads or os.cpu_count() or 1, MAX_PROCESSES, len(left))
+        parts = (
+            in_processes(work, len(left), 1, processes)
+            if processes > 1
+            else ((k, work(k, k + 1)) for k in range(len(left)))
+        )
+        for k, found in parts:
+            memory.remember([(keys[left[k]], found)])
+            known[keys[left[k]]] = found
+            if progress is not None:
+                progress(1)
+        rows = [known[key] for key in keys]
+        fields = {name: np.array([row[name] for row in rows]) for name in OUTCOME_FIELDS}
+        for name in ("peak_positive", "peak_negative"):
+            fields[name] = fields[name] * runs.slender
+        return Outcome(**fields)
+
+
+class Auto(Engine):
+    """The engine of one degree of freedom where it knows the outcome, that of free blocks where it does not."""
+
+    name: ClassVar[EngineName] = "auto"
+
+    def __init__(self, structures: Sequence[Structure] = ()) -> None:
+        self.free = Blocks(structures)
+
+    def respond(
+        self,
+        structure: Structure,
+        motion: GroundMotion | None = None,
+        *,
+        models: Sequence[ModelName] = MODELS,
+        release: float | None = None,
+        tail: float = TAIL_SECONDS,
+        rtol: float = RTOL,
+    ) -> Mapping[ModelName, History]:
+        """Simulate models of a structure, and free blocks if the outcome of the nonlinear one is unknown."""
+        found = EXACT.respond(structure, motion, models=models, release=release, tail=tail, rtol=rtol)
+        if "nonlinear" not in found or not found["nonlinear"].unknown:
+            return found
+        return {**found, **self.free.respond(structure, motion, release=release, tail=tail)}
+
+    def outcomes(
+        self,
+        models: Sequence[Model],
+        motions: Sequence[GroundMotion | None],
+        runs: Runs,
+        *,
+        release: float | Reals | None = None,
+        threads: int | None = None,
+        only_peaks: bool = False,
+        progress: Callable[[int], None] | None = None,
+    ) -> Outcomes:
+        """Simulate many motions; each outcome states its engine."""
+        exact = EXACT.outcomes(models, motions, runs, release=release, threads=threads, only_peaks=only_peaks)
+        unknown = np.flatnonzero(exact.unknown)
+        if progress is not None:
+            progress(len(runs) - unknown.size)
+        if not unknown.size:
+            return exact
+        some = replace(runs, **{name: getattr(runs, name)[unknown] for name in vars(runs)})
+        tilts = release if release is None or np.ndim(release) == 0 else np.asarray(release)[unknown]
+        free = self.free.outcomes(models, motions, some, release=tilts, threads=threads, progress=progress)
+        return exact.by_field(lambda one, other: _put(one, unknown, other), free)
+
+
+def _put(values: Any, places: Any, others: Any) -> Any:
+    values = values.copy()
+    values[places] = others
+    return values
+
+
+def _start(mechanism: Mechanism, free: FreeBlocks, phi_cr: tuple[float, float], tilt: float) -> Reals | None:
+    return free.tilted(mechanism, tilt * phi_cr[0 if tilt > 0 else 1]) if tilt else None
+
+
+class _Work:
+    """Motions of free blocks that processes share; each process makes its own models."""
+
+    def __init__(
+        self,
+        mechanisms: Sequence[Mechanism],
+        phi_cr: Sequence[tuple[float, float]],
+        motions: Sequence[GroundMotion | None],
+        runs: Runs,
+        release: float | Reals | None,
+    ) -> None:
+        self.mechanisms, self.phi_cr, self.motions, self.runs = mechanisms, phi_cr, motions, runs
+        self.tilts = np.broadcast_to(np.asarray(0.0 if release is None else release, np.float64), len(runs))
+        self.left: list[int] = []
+        self._models: dict[int, tuple[FreeBlocks, dict[float, BlockModel]]] = {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**vars(self), "_models": {}}
+
+    def _of(self, model: int) -> tuple[FreeBlocks, dict[float, BlockModel]]:
+        if model not in self._models:
+            free = free_blocks(self.mechanisms[model])
+            self._models[model] = free, {1.0: BlockModel(free)}
+        return self._models[model]
+
+    def keys(self) -> list[str]:
+        """Return a key of each run, of all on which its outcome depends."""
+        used = sorted(set(self.runs.model.tolist()))
+        structures = {k: self._of(k)[1][1.0].digest + repr(self.phi_cr[k]) for k in used}
+        motions = {k: _digest(self.motions[k]) for k in sorted(set(self.runs.record.tolist()))}
+        return [
+            sha256(
+                repr((structures[int(runs_model)], motions[int(record)], scale, int(sign), slender, tilt)).encode()
+            ).hexdigest()
+            for runs_model, record, scale, sign, slender, tilt in zip(
+                self.runs.model, self.runs.record, self.runs.scale.tolist(), self.runs.polarity,
+                self.runs.slender.tolist(), self.tilts.tolist(), strict=True,
+            )
+        ]  # fmt: skip
+
+    def __call__(self, first: int, stop: int) -> dict[str, Any]:
+        """Simulate one run, the only one from `first` to before `stop` of those that are left."""
+        k = self.left[first]
+        of = int(self.runs.model[k])
+        free, models = self._of(of)
+        scale, slender = float(self.runs.scale[k]), float(self.runs.slender[k])
+        start = _start(self.mechanisms[of], free, self.phi_cr[of], float(self.tilts[k]))
+        _, moved = simulate(
+            free, models, self.motions[int(self.runs.record[k])], start=start,
+            factor=scale * int(self.runs.polarity[k]) / slender, vertical_factor=abs(scale),
+        )  # fmt: skip
+        return outcome_of(moved, free, self.phi_cr[of])
+
+
+def _digest(motion: GroundMotion | None) -> str:
+    if motion is None:
+        return ""
+    digest = sha256(repr((motion.dt, motion.every)).encode())
+    for each in (motion, motion.vertical):
+        if each is not None:
+            digest.update(repr(each.dt).encode() + np.ascontiguousarray(each.acceleration).tobytes())
+    return digest.hexdigest()

@@ -1,0 +1,350 @@
+"""A structure as free blocks: its rigid pieces, what does not move, and all that holds the pieces besides contact.
+
+The engine of free blocks simulates these. What it cannot simulate is refused here, by name.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from rocking_cli.arrays import Points, Reals
+from rocking_cli.core import Body, Contact, Direction, Mechanism, PointMass, Spot, of_joints
+from rocking_cli.core.contacts import MASONRY_FRICTION
+from rocking_cli.core.hung.element import ConstantForce, Element, Spring
+from rocking_cli.core.kinematics import distance
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.short_repr import short_repr
+from rocking_cli.studies.engines.convex import convex_pieces
+from rocking_cli.studies.picture import box_around, picture
+
+NEAR_SHARE = 1e-6  # distance that counts as zero, over the size of the structure
+LEAD_RATE = 1e-6  # difference of a rate of turning from that of phi that counts as zero
+FLAT_SHARE = 1e-6  # length of a foot, over the size of the structure, below which it is a point
+MARGIN_SHARE = 0.1  # length of the ground beside a foot, over that of the foot
+
+
+class Guide(NamedTuple):
+    """A point of a block that is held: along one line (`along`), or in place (0)."""
+
+    block: str
+    at: complex
+    along: complex
+
+
+class Lead(NamedTuple):
+    """The block whose rotation is phi, in a direction."""
+
+    direction: Direction
+    block: str
+
+
+@short_repr
+@dataclass(frozen=True, eq=False)
+class FreeBlocks:
+    """A structure as free blocks.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        Mass, moment of inertia and centroid of each block, with the masses that are fixed to it.
+    shapes : mapping of str to sequence of ndarray of complex
+        Convex pieces of each block at rest [m].
+    ground : sequence of ndarray of complex
+        Convex pieces of what does not move [m].
+    walls : sequence of ndarray of complex
+        Side walls that it leans on, without friction [m].
+    friction : float
+        Coefficient of friction of all contacts but those of `frictions`.
+    frictions : mapping of tuple of str to float
+        Coefficient of friction of single pairs of blocks; "" is the ground.
+    guides : sequence of Guide
+        Points that are held.
+    floors : sequence of PointMass
+        Masses that only move up and down, as those of floors that are held sideways elsewhere.
+    ties : sequence of Spring
+        Elastic ties.
+    leads : sequence of Lead
+        The block of each direction whose rotation is phi.
+    moves_with : mapping of str to (str or None, complex)
+        The body of the mechanism with which each block moves (None: none), and how far beside it it stands [m].
+    gravity : float
+        Gravitational acceleration [m/s2].
+    """
+
+    bodies: Sequence[Body]
+    shapes: Mapping[str, Sequence[Points]]
+    ground: Sequence[Points]
+    walls: Sequence[Points]
+    friction: float
+    frictions: Mapping[tuple[str, str], float]
+    guides: Sequence[Guide]
+    floors: Sequence[PointMass]
+    ties: Sequence[Spring]
+    leads: Sequence[Lead]
+    moves_with: Mapping[str, tuple[str | None, complex]]
+    gravity: float
+
+    @cached_property
+    def box(self) -> tuple[complex, complex]:
+        """Lower left and upper right corner of all blocks at rest [m]."""
+        return box_around([piece for pieces in self.shapes.values() for piece in pieces])
+
+    @property
+    def height(self) -> float:
+        """Height of the structure [m]."""
+        low, high = self.box
+        return (high - low).imag
+
+    def rotation(self, moved: Reals) -> Reals:
+        """Return phi from the displacements of the blocks, shape (n, blocks, 3): signed, shape (n,) [rad]."""
+        names = [body.name for body in self.bodies]
+        phi = np.zeros(len(moved))
+        for direction, block in self.leads:
+            turned = np.maximum(-direction * moved[:, names.index(block), 2], 0.0)
+            phi = np.where(turned > np.abs(phi), direction * turned, phi)
+        return phi
+
+    def tilted(self, mechanism: Mechanism, phi: float) -> Reals:
+        """Return the displacements of the blocks if the mechanism has rotated by phi (signed) [m, m, rad]."""
+        at, moved = np.array([abs(phi)]), np.zeros((len(self.bodies), 3))
+        names = [body.name for body in mechanism.bodies()]
+        motions = mechanism.motion(at, Direction.POSITIVE if phi > 0 else Direction.NEGATIVE)
+        for k, body in enumerate(self.bodies):
+            of, shift = self.moves_with[body.name]
+            if of is not None:
+                motion = motions[names.index(of)]
+                away = motion.carry(body.centroid - shift)[0][0] + shift - body.centroid
+                moved[k] = away.real, away.imag, motion.psi[0]
+        return moved
+
+
+def free_blocks(mechanism: Mechanism) -> FreeBlocks:
+    """Return a structure as free blocks.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        A structure whose bodies are polygons.
+
+    Raises
+    ------
+    InputError
+        If a body has no shape, or something is attached that free blocks cannot have.
+    """
+    return _Apart(mechanism).blocks()
+
+
+class _Member(NamedTuple):
+    """A piece of the structure, the body that it is of, and its polygons at rest."""
+
+    body: Body
+    of: str | None
+    shift: complex
+    polygons: Sequence[Points]
+
+
+class _Apart:
+    """A structure that is taken apart."""
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        self.mechanism, self.sketch = mechanism, mechanism.sketch()
+        self._refuse()
+        self.members = self._members()
+        # Contacts of each direction, or hinges and guides where contacts are not known.
+        self.contacts = [
+            contact
+            for direction in mechanism.directions
+            for contact in mechanism.contacts(direction)
+            or of_joints(mechanism.guiding_joints(direction), mechanism.friction)
+        ]
+        self.part_of = self._bonded()
+        outlines = [z for member in self.members for z in member.polygons]
+        low, high = box_around(outlines)
+        self.size = abs(high - low)
+        self.friction = mechanism.friction if mechanism.friction is not None else MASONRY_FRICTION
+
+    def blocks(self) -> FreeBlocks:
+        """Return all of it."""
+        outlines = [z for member in self.members for z in member.polygons]
+        shapes, bodies = defaultdict[str, list[Points]](list), defaultdict[str, list[Body]](list)
+        for member in self.members:
+            block = self._block(member)
+            bodies[block].append(member.body)
+            for z in member.polygons:
+                shapes[block] += convex_pieces(z, [other for other in outlines if other is not z])
+        floors = []
+        for load in self.mechanism.hung.masses:
+            for spot, share in self._spots(load.spot):
+                fixed, mass = load.horizontal, share * load.mass
+                up, weight = load.vertical - fixed, load.weight - fixed
+                bodies[spot.body or ""].append(Body(load.name, fixed * mass, 0.0, spot.at))
+                if up > 0 and weight > 0:
+                    floors.append(PointMass(load.name, spot, mass, 0.0, up, weight))
+                elif up or weight:
+                    shares = "its share that moves sideways is larger than that which moves up, or weighs"
+                    raise self._cannot("loads", f"the mass {load.name}: {shares}")
+        ties = [
+            replace(spring, spots=[self._spot(spot) for spot in spring.spots])
+            for element in self.mechanism.hung.elements
+            for spring in element.stretched
+            if isinstance(spring, Spring)
+        ]
+        drawn = picture(self.mechanism)
+        walls = () if self.mechanism.propped else drawn.walls
+        ground = self._ground(drawn.ground)
+        guides, feet = self._held(ground)
+        moves_with = {self._block(member): (member.of, member.shift) for member in reversed(self.members)}
+        return FreeBlocks(
+            [_united(name, each) for name, each in bodies.items()], shapes, [*ground, *feet],
+            [piece for line in walls for piece in _below(line, self.size)], self.friction, self._frictions(), guides,
+            floors, ties, self._leads(), moves_with, self.mechanism.gravity,
+        )  # fmt: skip
+
+    def _cannot(self, field: str, what: str) -> InputError:
+        return InputError(Problem(f"free blocks cannot have {what}", field=field))
+
+    def _refuse(self) -> None:
+        if self.mechanism.crushing is not None:
+            raise self._cannot("crushing", "pivots that crush")
+        for loc, thing in self.mechanism.hung.placed:
+            field = str(loc[0]) if loc else ""
+            if isinstance(thing, ConstantForce):
+                what = "friction of crossing walls" if thing.friction else f"a constant force, as that of {thing.name}"
+                raise self._cannot(field, what)
+            if isinstance(thing, Element):
+                springs = [each for each in thing.stretched if isinstance(each, Spring) and each.stiffness]
+                several = any(spot.body in self.mechanism.alike() for tie in springs for spot in tie.spots)
+                if several or not springs or len(springs) < len(thing.stretched):
+                    raise self._cannot(field, f"{thing.name}, {thing.words}: only elastic ties on single bodies")
+        joints = [joint for direction in self.mechanism.directions for joint in self.mechanism.joints(direction)]
+        if any(joint.roll for joint in joints):
+            raise self._cannot("corner_radius", "rounded feet")
+
+    def _members(self) -> list[_Member]:
+        bodies = {body.name: body for body in self.mechanism.weighed()}
+        members = []
+        for piece in self.mechanism.pieces(self.mechanism.directions[0]):
+            of = bodies.get(piece.of or "", piece.body)
+            drawn = () if of.name in self.sketch.at_will else of.shapes(self.sketch.outlines)
+            shapes = [piece.body.outline] if piece.body.outline else [np.asarray(z) + piece.shift for z in drawn]
+            if not shapes:
+                advice = f": {self.mechanism.unchecked}" if self.mechanism.alike() else ""
+                raise self._cannot("bodies", f"a body of unknown shape, as {of.name}{advice}")
+            if not piece.body.mass > 0:
+                raise self._cannot("bodies", f"a body without mass, as {of.name}")
+            polygons = [np.asarray(z, np.complex128) for z in shapes]
+            members.append(_Member(piece.body, piece.of, piece.shift, polygons))
+        return members
+
+    def _bonded(self) -> dict[str, str]:
+        """Return the block of which each piece is a part, if it is bonded to another in every direction."""
+        fixed = defaultdict[frozenset[str | None], set[bool]](set)
+        for contact in self.contacts:
+            fixed[frozenset(contact.pieces)].add(contact.held == "fixed")
+        part_of: dict[str, str] = {}
+        for pair in (pair for pair, always in fixed.items() if always == {True} and None not in pair):
+            first, last = (part_of.get(name, name) for name in sorted(filter(None, pair)))
+            part_of |= dict.fromkeys([last, *(each for each, of in part_of.items() if of == last)], first)
+        return part_of
+
+    def _block(self, member: _Member) -> str:
+        return self.part_of.get(member.body.name, member.body.name)
+
+    def _spots(self, spot: Spot) -> list[tuple[Spot, float]]:
+        """Return where a load acts: one point, or as many as there are equal bodies, and its share on each."""
+        copies = [member for member in self.members if member.of == spot.body and member.of in self.mechanism.alike()]
+        if not copies:
+            return [(self._spot(spot), 1.0)]
+        return [(Spot(member.body.name, spot.at + member.shift), 1 / len(copies)) for member in copies]
+
+    def _spot(self, spot: Spot) -> Spot:
+        """Return a point of a body as one of its block; of a body that does not move as one of the ground."""
+        if spot.body is None:
+            return spot
+        piece = self.mechanism.piece_at(spot.body, spot.at, self.mechanism.directions[0])
+        known = any(member.body.name == piece for member in self.members)
+        return Spot(self.part_of.get(piece, piece) if known else None, spot.at)
+
+    def _ground(self, drawn: Sequence[Points]) -> list[Points]:
+        """Return what does not move: bodies at rest, polygons of the ground, and the ground below its lines."""
+        moving = {member.of for member in self.members}
+        still = [z for body in self.mechanism.bodies() if body.name not in moving
+                 for z in body.shapes(self.sketch.outlines)]  # fmt: skip
+        closed = [z[:-1] for z in self.sketch.ground if len(z) > 3 and z[0] == z[-1]]
+        lines = [] if closed or still else drawn
+        return [
+            *(piece for z in (*still, *closed) for piece in convex_pieces(z)),
+            *(piece for line in lines for piece in _below(line, self.size)),
+        ]
+
+    def _held(self, ground: Sequence[Points]) -> tuple[list[Guide], list[Points]]:
+        """Return the points that are held, and the ground below feet that stand elsewhere than on `ground`."""
+        guides, feet = list[Guide](), defaultdict[tuple[str, complex], list[complex]](list)
+        slots = defaultdict[tuple[str, complex], list[complex]](list)
+        for contact in self.contacts:
+            bears, borne = contact.pieces
+            if bears is not None or borne is None:
+                continue
+            block = self.part_of.get(borne, borne)
+            if contact.held == "slide":
+                slots[block, 1j * contact.normal].append(contact.points[0])
+            elif contact.held is None and not any(self._touches(contact, piece) for piece in ground):
+                feet[block, contact.normal] += contact.points
+        below = []
+        for (block, normal), points in feet.items():
+            start, end = sorted(points, key=lambda point: (point / normal).imag)[:: len(points) - 1 or 1][:2]
+            if abs(end - start) > FLAT_SHARE * self.size:
+                more = MARGIN_SHARE * (end - start)
+                below += _below(np.array([end + more, start - more]), self.size)
+            else:  # it always turns about this point
+                guides.append(Guide(block, start, 0j))
+        # Both directions may guide a block at points of their own; between them, its path is theirs to second order.
+        guides += [Guide(block, complex(np.mean(points)), along) for (block, along), points in slots.items()]
+        return guides, below
+
+    def _touches(self, contact: Contact, piece: Points) -> bool:
+        return bool(distance(np.array(contact.points), piece).max() < NEAR_SHARE * self.size)
+
+    def _frictions(self) -> dict[tuple[str, str], float]:
+        """Return the friction of pairs of blocks that differ from all others: as given, or 0 of smooth contacts."""
+        frictions = {}
+        for contact in self.contacts:
+            one, other = sorted(self.part_of.get(name or "", name or "") for name in contact.pieces)
+            smooth = contact.held == "slide" and None not in contact.pieces
+            mu = 0.0 if smooth else self.friction if contact.friction is None else contact.friction
+            if contact.held is None or smooth:
+                frictions[one, other] = mu
+        return {pair: mu for pair, mu in frictions.items() if mu != self.friction}
+
+    def _leads(self) -> list[Lead]:
+        """Return a block that turns by phi in each direction."""
+        leads = []
+        for direction in self.mechanism.directions:
+            motions = zip(self.mechanism.bodies(), self.mechanism.motion(np.zeros(1), direction), strict=True)
+            turning = {body.name for body, motion in motions if abs(motion.dpsi[0] + direction) < LEAD_RATE}
+            leads.append(Lead(direction, next(self._block(member) for member in self.members if member.of in turning)))
+        return leads
+
+
+def _below(line: Points, size: float) -> list[Points]:
+    """Return the ground on the right of a line, as one piece for each of its segments, anticlockwise."""
+    pieces = []
+    for start, end in pairwise(line.tolist()):
+        deep = -0.5j * size * (end - start) / abs(end - start)
+        pieces.append(np.array([start + deep, end + deep, end, start]))
+    return pieces
+
+
+def _united(name: str, bodies: Sequence[Body]) -> Body:
+    """Return bodies that are fixed to each other as one."""
+    mass = sum(body.mass for body in bodies)
+    centroid = sum(body.mass * body.centroid for body in bodies) / mass
+    inertia = sum(body.inertia + body.mass * abs(body.centroid - centroid) ** 2 for body in bodies)
+    return Body(name, mass, inertia, centroid)
