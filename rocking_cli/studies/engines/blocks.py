@@ -51,6 +51,8 @@ class BlockMotion:
         Times of the samples [s], those of the ground motion.
     moved : ndarray, shape (n, blocks, 3)
         Displacement of the centroid of each block to the right and upwards [m], and its rotation, anticlockwise [rad].
+    rates : ndarray, shape (n, blocks, 3)
+        Their rates [m/s, m/s, rad/s].
     collapsed : float
         Time at which a block first falls by 0.15 of the structure's height, or turns by 0.8 rad [s]; NaN if none does.
     block : str
@@ -65,6 +67,7 @@ class BlockMotion:
 
     time: Reals
     moved: Reals
+    rates: Reals
     collapsed: float = nan
     block: str = ""
     failed: str = ""
@@ -182,6 +185,7 @@ class BlockModel:
             )
         )
         scale = np.array([self.scene.size, self.scene.size, 1.0])
+        rates = [np.zeros((len(self.names), 3))]
         moved, failed, fallen, at_rest = [np.zeros((len(self.names), 3))], "", None, False
         if start is not None:
             moved[0] = start
@@ -202,6 +206,7 @@ class BlockModel:
             now = (data.qpos[:count] - rest).reshape(-1, 3) * scale
             if k % every == 0:
                 moved.append(now)
+                rates.append(data.qvel[:count].reshape(-1, 3) * scale / self.scene.unit_of_time)
                 self._note_friction(data, frictions)
             fallen = self._fallen(now)
             if fallen is not None:
@@ -213,8 +218,8 @@ class BlockModel:
             if (at_rest and time >= ended + tail) or time >= last:
                 break
         return BlockMotion(
-            time=sample * every * np.arange(len(moved), dtype=np.float64), moved=np.array(moved), failed=failed, at_rest=at_rest,
-            collapsed=k * sample if fallen is not None else nan, friction=frictions,
+            time=sample * every * np.arange(len(moved), dtype=np.float64), moved=np.array(moved), rates=np.array(rates),
+            collapsed=k * sample if fallen is not None else nan, failed=failed, at_rest=at_rest, friction=frictions,
             block=self.names[fallen] if fallen is not None else "",
         )  # fmt: skip
 

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from rocking_cli.arrays import Reals
+from rocking_cli.arrays import Bools, Reals
 from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.batch import Runs
 from rocking_cli.dynamics.history import RTOL, TAIL_SECONDS, History, contact_lost
@@ -79,7 +79,7 @@ def outcome_of(moved: BlockMotion, free: FreeBlocks, phi_cr: Sequence[float]) ->
         "peak_ratio": nan if fell else ratio * uplifts,
         "overturning_time": moved.collapsed,
         "uplift_time": float(moved.time[moving.argmax()]) if moving.any() else nan,
-        "impact_count": len(impacts_of(moved.time, phi, moving)),
+        "impact_count": len(impacts_of(moved.time, phi, free.rotation_rate(moved.moved, moved.rates), moving)),
         "end_time": nan if moved.failed else end,
         "unknown": bool(moved.failed),
         "known_to": end if moved.failed else nan,
@@ -90,14 +90,14 @@ def outcome_of(moved: BlockMotion, free: FreeBlocks, phi_cr: Sequence[float]) ->
     }
 
 
-def impacts_of(time: Reals, phi: Reals, moving: Any) -> Reals:
+def impacts_of(time: Reals, phi: Reals, rate: Reals, moving: Bools) -> Reals:
     """Return time, sign of the direction that ends, and rate before of each return through rest after uplift."""
     rows, side = [], 0
     for k in range(len(phi)):
         sign = int(np.sign(phi[k]))
         if side and sign not in (0, side):
             ends = time[k - 1] + (time[k] - time[k - 1]) * phi[k - 1] / (phi[k - 1] - phi[k])
-            rows.append((ends, side, abs(phi[k] - phi[k - 1]) / (time[k] - time[k - 1])))
+            rows.append((ends, side, abs(rate[k - 1])))
             side = 0
         if moving[k]:
             side = sign
@@ -109,10 +109,10 @@ def history_of(moved: BlockMotion, free: FreeBlocks, model: Model, motion: Groun
     phi = free.rotation(moved.moved)
     outcome = outcome_of(moved, free, model.phi_cr)
     phi_cr = np.where(phi < 0, model.phi_cr[1], model.phi_cr[0])
-    rate = np.gradient(phi, moved.time) if len(phi) > 1 else np.zeros(1)
+    rate = free.rotation_rate(moved.moved, moved.rates)
     return History(
         **outcome, model="blocks", time=moved.time, phi=phi, rate=rate, ratio=phi / phi_cr,
-        impacts=impacts_of(moved.time, phi, np.abs(phi) > MOVED * phi_cr),
+        impacts=impacts_of(moved.time, phi, rate, np.abs(phi) > MOVED * phi_cr),
         contact_lost=contact_lost(motion, model.gravity), p=model.p, ends_at_limit=model.ends_at_limit,
     )  # fmt: skip
 

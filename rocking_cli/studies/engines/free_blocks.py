@@ -104,12 +104,22 @@ class FreeBlocks:
 
     def rotation(self, moved: Reals) -> Reals:
         """Return phi from the displacements of the blocks, shape (n, blocks, 3): signed, shape (n,) [rad]."""
+        return self._signed(moved, moved)
+
+    def rotation_rate(self, moved: Reals, rates: Reals) -> Reals:
+        """Return the rate of `rotation`, shape (n,) [rad/s]."""
+        return self._signed(moved, rates)
+
+    def _signed(self, moved: Reals, values: Reals) -> Reals:
+        """Return the value of the block that leads the direction of larger rotation, clockwise positive."""
         names = [body.name for body in self.bodies]
-        phi = np.zeros(len(moved))
+        furthest, signed = np.zeros(len(moved)), np.zeros(len(moved))
         for direction, block in self.leads:
-            turned = np.maximum(-direction * moved[:, names.index(block), 2], 0.0)
-            phi = np.where(turned > np.abs(phi), direction * turned, phi)
-        return phi
+            k = names.index(block)
+            further = -direction * moved[:, k, 2] > furthest
+            furthest = np.where(further, -direction * moved[:, k, 2], furthest)
+            signed = np.where(further, -values[:, k, 2], signed)
+        return signed
 
     def tilted(self, mechanism: Mechanism, phi: float) -> Reals:
         """Return the displacements of the blocks if the mechanism has rotated by phi (signed) [m, m, rad]."""
