@@ -20,7 +20,7 @@ from rocking_cli.dynamics.deck import RELEASE_DT
 from rocking_cli.errors import SolverError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.short_repr import short_repr
-from rocking_cli.studies.engines.free_blocks import FreeBlocks
+from rocking_cli.studies.engines.free_blocks import FALL, TURN, FreeBlocks
 from rocking_cli.studies.engines.scene import scene
 
 if TYPE_CHECKING:
@@ -30,14 +30,11 @@ SOFTNESS = 0.01  # time constant of a contact, over sqrt(size/g) of the smallest
 STEPS = 8  # time steps in this time
 HEAVY = 10.0  # weight on a block over its own, from which the contacts are stiffer
 HOLD = 1e-3  # s; the ground acceleration is held over so long at most
-FALL = 0.15  # of the structure's height
-TURN = 0.8  # rad
 SUNK = 1e-3  # largest depth to which a body may sink into another, over its own size
 SETTLING = 0.3  # s
 LIGHT = 0.1  # normal force over the weight of the lighter block, below which friction is not looked at
 STILL = 1e-9  # kinetic energy of a structure at rest, over m g times its height
 LONGEST = 60.0  # s after the motion for which blocks that still move are followed
-COLLAPSE = f"a block falls by {FALL:g} of the structure's height, or turns by {TURN:g} rad"
 
 
 @short_repr

@@ -47,6 +47,7 @@ class Engine(ABC):
         *,
         release: float | Reals | None = None,
         threads: int | None = None,
+        rtol: float = RTOL,
         only_peaks: bool = False,
         progress: Callable[[int], None] | None = None,
     ) -> Outcomes:

@@ -132,12 +132,13 @@ class Exact(Engine):
         *,
         release: float | Reals | None = None,
         threads: int | None = None,
+        rtol: float = RTOL,
         only_peaks: bool = False,
         progress: Callable[[int], None] | None = None,
     ) -> Outcomes:
         """Simulate many motions, see `respond_many`."""
         return respond_many(
-            models, motions, runs, release=release, threads=threads, only_peaks=only_peaks, progress=progress
+            models, motions, runs, release=release, threads=threads, rtol=rtol, only_peaks=only_peaks, progress=progress
         )
 
 

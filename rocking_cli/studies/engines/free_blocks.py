@@ -24,6 +24,9 @@ from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.engines.convex import convex_pieces
 from rocking_cli.studies.picture import box_around, picture
 
+FALL = 0.15  # of the structure's height: a block that falls by it has collapsed
+TURN = 0.8  # rad: a block that turns by it has collapsed
+COLLAPSE = f"a block falls by {FALL:g} of the structure's height, or turns by {TURN:g} rad"
 NEAR_SHARE = 1e-6  # distance that counts as zero, over the size of the structure
 LEAD_RATE = 1e-6  # difference of a rate of turning from that of phi that counts as zero
 FLAT_SHARE = 1e-6  # length of a foot, over the size of the structure, below which it is a point
