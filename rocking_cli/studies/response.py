@@ -178,7 +178,7 @@ def response_of(
 ) -> Response:
     """Simulate models of a structure under a motion, or freely from a release, and return all results."""
     contacts = Contacts(structure.mechanism)
-    engine = engine_of(question.engine, [structure])
+    engine = engine_of(question.engine, [structure.mechanism])
     follow = partial(
         engine.respond, structure, models=names, release=question.release, tail=question.tail, rtol=question.rtol
     )

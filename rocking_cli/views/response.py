@@ -204,7 +204,7 @@ def _columns(*, unknown: bool = False, over: str = "phi_cr") -> list[Column[Hist
     """
 
     def of_structure(value: Callable[[History], Any]) -> Callable[[History], Any]:
-        return lambda run: None if unknown and not run.unknown else value(run)
+        return lambda run: None if unknown and not (run.unknown or run.by_blocks) else value(run)
 
     until, bound = ("known until", f"lower bound of peak / {over}") if unknown else (None, None)
     return [

@@ -104,7 +104,7 @@ def margin(
         refuse_idle("with free blocks", restitution_deviation=restitution_deviation, opening=opening != OPENING)
     around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
     ready = structure_of(structure, watch, opening)
-    model, by = ready.model("nonlinear"), engine_of(engine, [ready])
+    model, by = ready.model("nonlinear"), engine_of(engine, [ready.mechanism])
     factors = study.FACTORS if engine == "exact" else study.FEW_FACTORS
     chosen = Motions.of(motions, options).gather(ready.growth, watch)
     rows = []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from rocking_cli.core import Mechanism
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import Structure
@@ -53,18 +54,18 @@ def duration_in_words(seconds: float) -> str:
     """Return a duration in its usual unit."""
     for unit, long in (("h", 3600.0), ("min", 60.0)):
         if seconds >= 2 * long:
-            return f"{seconds / long:.2g} {unit}"
-    return f"{seconds:.2g} s"
+            return f"{seconds / long:.0f} {unit}"
+    return f"{max(seconds, 1.0):.0f} s"
 
 
-def engine_of(name: str, structures: Sequence[Structure] = ()) -> Engine:
+def engine_of(name: str, mechanisms: Sequence[Mechanism] = ()) -> Engine:
     """Return an engine.
 
     Parameters
     ----------
     name : {"exact", "blocks", "auto"}
         One degree of freedom, free blocks, or free blocks where one degree of freedom does not tell the outcome.
-    structures : sequence of Structure
+    mechanisms : sequence of Mechanism
         The structures of the models whose outcomes will be asked for.
 
     Raises
@@ -78,4 +79,4 @@ def engine_of(name: str, structures: Sequence[Structure] = ()) -> Engine:
         return EXACT
     from rocking_cli.studies.engines.free import Auto, Blocks
 
-    return Blocks(structures) if name == "blocks" else Auto(structures)
+    return Blocks(mechanisms) if name == "blocks" else Auto(mechanisms)

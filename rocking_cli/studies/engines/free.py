@@ -124,9 +124,9 @@ class Blocks(Engine):
 
     name: ClassVar[EngineName] = "blocks"
 
-    def __init__(self, structures: Sequence[Structure] = ()) -> None:
+    def __init__(self, mechanisms: Sequence[Mechanism] = ()) -> None:
         engine_version()
-        self.mechanisms = tuple(structure.mechanism for structure in structures)
+        self.mechanisms = tuple(mechanisms)
 
     def respond(
         self,
@@ -216,8 +216,8 @@ class Auto(Engine):
 
     name: ClassVar[EngineName] = "auto"
 
-    def __init__(self, structures: Sequence[Structure] = ()) -> None:
-        self.free = Blocks(structures)
+    def __init__(self, mechanisms: Sequence[Mechanism] = ()) -> None:
+        self.free = Blocks(mechanisms)
 
     def respond(
         self,
