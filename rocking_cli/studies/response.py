@@ -48,8 +48,8 @@ def _of_each(runs: ByPolarity, neighbours: Mapping[int, Neighbours], motion: str
 
 def best_model(histories: Histories) -> ModelName:
     """Return the model by which is concluded: free blocks, then the structure itself, then the first of its blocks."""
-    found: tuple[ModelName, ...] = ("blocks", "nonlinear")
-    return next((name for name in found if name in histories), next(iter(histories)))
+    preferred: tuple[ModelName, ...] = ("blocks", "nonlinear")
+    return next((name for name in preferred if name in histories), next(iter(histories)))
 
 
 def _together(each: Mapping[int, Conclusion]) -> Conclusion:

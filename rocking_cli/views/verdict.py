@@ -27,7 +27,7 @@ MIN_OPENING = 1e-6  # share of D_cr: a smaller opening is reported as none
 SMALL_PEAK, SMALL_PEAK_OPENING, SMALL_PEAK_ERROR = 0.02, 0.001, 0.2
 NEXT_STEP = (
     "Next: `rocking crosscheck` simulates what happens from then on, as free blocks; `rocking margin` shows up to "
-    "which scale factor the outcome is known. Without them, under this motion, {}."
+    "which scale factor the outcome is known. Under this motion, {}."
 )
 OVERTURNS = "assume that it overturns"
 REMEDIES = {

@@ -17,9 +17,10 @@ from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
 from rocking_cli.names import OPENING, percent
 from rocking_cli.studies.conclusion import Concluding, worst
-from rocking_cli.studies.engines import FREE_NEIGHBOURS, cost_in_words, engine_of
+from rocking_cli.studies.engines import FREE_NEIGHBOURS, engine_of
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.studies.neighbours import neighbours as neighbours_of
+from rocking_cli.views.engines import cost_in_words
 from rocking_cli.views.view import View, heading
 
 if TYPE_CHECKING:

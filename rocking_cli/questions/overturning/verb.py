@@ -222,8 +222,9 @@ def overturning_map(
     """
     from rocking_cli.questions.overturning import study
     from rocking_cli.questions.overturning import view as views
-    from rocking_cli.studies.engines import cost_in_words, engine_of
+    from rocking_cli.studies.engines import engine_of
     from rocking_cli.studies.under_pulses import linear_block, parse_shape, pulsed_model
+    from rocking_cli.views.engines import cost_in_words
 
     form, signs = parse_shape(shape), signs_of(polarity)
     axes = {"period": period, "ag": ag, "omega": omega, "a": a}

@@ -151,8 +151,9 @@ def respond(
     'rocks'
     """
     from rocking_cli.questions.respond.several import Several
-    from rocking_cli.studies.engines import cost_in_words, engine_of
+    from rocking_cli.studies.engines import engine_of
     from rocking_cli.studies.response import response_of
+    from rocking_cli.views.engines import cost_in_words
     from rocking_cli.views.response import view
 
     _check_rtol(rtol)

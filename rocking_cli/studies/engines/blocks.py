@@ -33,8 +33,8 @@ HOLD = 1e-3  # s; the ground acceleration is held over so long at most
 SUNK = 1e-3  # largest depth to which a body may sink into another, over its own size
 SETTLING = 0.3  # s
 LIGHT = 0.1  # normal force over the weight of the lighter block, below which friction is not looked at
-STILL = 1e-9  # kinetic energy of a structure at rest, over m g times its height
-LONGEST = 60.0  # s after the motion for which blocks that still move are followed
+REST_ENERGY = 1e-9  # kinetic energy of a structure at rest, over m g times its height
+LONGEST_TAIL = 60.0  # s after the motion for which blocks that still move are followed
 
 
 @short_repr
@@ -119,7 +119,7 @@ class BlockModel:
     @cached_property
     def digest(self) -> str:
         """A digest of all on which motions of these blocks depend, besides the ground motion."""
-        rules = STEPS, HOLD, FALL, TURN, SUNK, SETTLING, STILL, LONGEST, self.free.height, self.time_constant
+        rules = STEPS, HOLD, FALL, TURN, SUNK, SETTLING, REST_ENERGY, LONGEST_TAIL, self.free.height, self.time_constant
         return self.scene.digest() + repr(rules)
 
     def simulate(
@@ -173,7 +173,7 @@ class BlockModel:
         ended = motion.duration if motion is not None else 0.0
         if motion is not None and motion.vertical is not None:
             ended = max(ended, motion.vertical.duration)
-        last = min(ended + max(tail, LONGEST), most)
+        last = min(ended + max(tail, LONGEST_TAIL), most)
         pushes, lifts = (
             _held(each, factor_of / self.free.gravity, sample, holds, ended)
             for each, factor_of in (
@@ -211,7 +211,7 @@ class BlockModel:
             time = k * sample
             if progress is not None:
                 progress(time)
-            at_rest = time >= ended and self._kinetic(data) < STILL
+            at_rest = time >= ended and self._kinetic(data) < REST_ENERGY
             if (at_rest and time >= ended + tail) or time >= last:
                 break
         return BlockMotion(

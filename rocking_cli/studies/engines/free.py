@@ -199,9 +199,9 @@ class Blocks(Engine):
             if processes > 1
             else ((k, work(k, k + 1)) for k in range(len(left)))
         )
-        for k, found in parts:
-            memory.remember([(keys[left[k]], found)])
-            known[keys[left[k]]] = found
+        for k, outcome in parts:
+            memory.remember([(keys[left[k]], outcome)])
+            known[keys[left[k]]] = outcome
             if progress is not None:
                 progress(1)
         rows = [known[key] for key in keys]
@@ -230,10 +230,10 @@ class Auto(Engine):
         rtol: float = RTOL,
     ) -> Mapping[ModelName, History]:
         """Simulate models of a structure, and free blocks if the outcome of the nonlinear one is unknown."""
-        found = EXACT.respond(structure, motion, models=models, release=release, tail=tail, rtol=rtol)
-        if "nonlinear" not in found or not found["nonlinear"].unknown:
-            return found
-        return {**found, **self.free.respond(structure, motion, release=release, tail=tail)}
+        histories = EXACT.respond(structure, motion, models=models, release=release, tail=tail, rtol=rtol)
+        if "nonlinear" not in histories or not histories["nonlinear"].unknown:
+            return histories
+        return {**histories, **self.free.respond(structure, motion, release=release, tail=tail)}
 
     def outcomes(
         self,
