@@ -33,7 +33,7 @@ HOLD = 1e-3  # s; the ground acceleration is held over so long at most
 SUNK = 1e-3  # largest depth to which a body may sink into another, over its own size
 SETTLING = 0.3  # s
 LIGHT = 0.1  # normal force over the weight of the lighter block, below which friction is not looked at
-STILL = 1e-9  # kinetic energy of a structure at rest, over m g times its height
+STILL = 1e-9  # kinetic energy of a structure at rest, over m g times its size; for sqrt(size/g), as blocks turn back
 LONGEST = 60.0  # s after the motion for which blocks that still move are followed
 
 
@@ -187,7 +187,7 @@ class BlockModel:
         if start is not None:
             moved[0] = start
         frictions: dict[tuple[str, str], float] = {}
-        k = 0
+        k = moving = 0  # samples; the last with motion
         while True:
             for hold in range(k * holds, (k + 1) * holds):
                 if hold < len(pushes):
@@ -211,7 +211,9 @@ class BlockModel:
             time = k * sample
             if progress is not None:
                 progress(time)
-            at_rest = time >= ended and self._kinetic(data) < STILL
+            if self._kinetic(data) >= STILL:
+                moving = k
+            at_rest = time >= ended and (k - moving) * sample >= self.scene.unit_of_time
             if (at_rest and time >= ended + tail) or time >= last:
                 break
         return BlockMotion(
