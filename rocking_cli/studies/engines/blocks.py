@@ -170,6 +170,7 @@ class BlockModel:
         sunk = self._deepest(data)
         if start is not None:
             data.qpos[:count] += self._normal(start)
+            data.qpos[count:] += self._raised(start)
         ended = motion.duration if motion is not None else 0.0
         if motion is not None and motion.vertical is not None:
             ended = max(ended, motion.vertical.duration)
@@ -224,6 +225,14 @@ class BlockModel:
 
     def _normal(self, moved: Reals) -> Reals:
         return (np.asarray(moved) / (self.scene.size, self.scene.size, 1.0)).ravel()
+
+    def _raised(self, moved: Reals) -> Reals:
+        """Return how far blocks raise the floors that lie on them, over the size of the structure."""
+        spots = [(self.names.index(floor.spot.body or ""), floor.spot.at) for floor in self.free.floors]
+        arms = np.array([at - self.free.bodies[k].centroid for k, at in spots])
+        _, rise, turned = np.reshape([moved[k] for k, _ in spots], (-1, 3)).T
+        raised: Reals = (rise + (arms * np.expm1(1j * turned)).imag) / self.scene.size
+        return raised
 
     def _settle(self, data: mujoco.MjData, steps: int) -> None:
         """Let the blocks sink into their contacts at rest."""
