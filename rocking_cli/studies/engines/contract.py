@@ -33,7 +33,7 @@ class Engine(ABC):
         tail: float = TAIL_SECONDS,
         rtol: float = RTOL,
     ) -> Mapping[ModelName, History]:
-        """Simulate one motion of a structure; parameters and errors are those of `exact.respond`.
+        """Simulate one motion of a structure; parameters and errors are those of `Exact.respond`.
 
         The history of free blocks has the model "blocks".
         """

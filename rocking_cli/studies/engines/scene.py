@@ -202,6 +202,8 @@ class _Builder:
             inertia=[1.0] * 3, explicitinertial=True, gravcomp=1 - floor.weight / floor.vertical,
         )  # fmt: skip
         plate.add_joint(type=self.mujoco.mjtJoint.mjJNT_SLIDE, axis=[0, 0, 1])
+        # MuJoCo disregards gravcomp unless one of all bodies is positive.
+        self.spec.worldbody.add_body(gravcomp=1.0)
         self._face(plate, 0j, -1j, self._peg(floor.spot.body or "", floor.spot.at))
 
     def _peg(self, block: str, at: complex) -> str:
