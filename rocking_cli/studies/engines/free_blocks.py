@@ -168,8 +168,6 @@ class _Apart:
 
     def __init__(self, mechanism: Mechanism) -> None:
         self.mechanism, self.sketch = mechanism, mechanism.sketch()
-        self._refuse()
-        self.members = self._members()
         # Contacts of each direction, or hinges and guides where contacts are not known.
         self.contacts = [
             contact
@@ -177,6 +175,8 @@ class _Apart:
             for contact in mechanism.contacts(direction)
             or of_joints(mechanism.guiding_joints(direction), mechanism.friction)
         ]
+        self._refuse()
+        self.members = self._members()
         self.part_of = self._bonded()
         outlines = [z for member in self.members for z in member.polygons]
         low, high = box_around(outlines)
@@ -240,8 +240,7 @@ class _Apart:
                 several = any(spot.body in self.mechanism.alike() for tie in springs for spot in tie.spots)
                 if several or not springs or len(springs) < len(attached.stretched):
                     raise self._cannot(field, f"{attached.name}, {attached.words}: only elastic ties on single bodies")
-        joints = [joint for direction in self.mechanism.directions for joint in self.mechanism.joints(direction)]
-        if any(joint.roll for joint in joints):
+        if any(contact.roll for contact in self.contacts):
             raise self._cannot("corner_radius", "rounded feet")
 
     def _members(self) -> list[_Member]:
