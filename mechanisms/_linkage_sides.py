@@ -94,7 +94,9 @@ class LinkageSide(Described):
     """One direction of rocking: the body whose rotation is phi, and the joints."""
 
     lead: Name = Field(description="the body whose rotation phi is")
-    joints: dict[Name, Connection] = Field(description="what holds the bodies, by names", min_length=1, max_length=1000)
+    joints: dict[Name, Connection] = Field(
+        description="what holds the bodies, by names", min_length=1, max_length=10_000
+    )
     limit_deg: float | None = quantity(
         "where the motion ends at the latest; if omitted, where it locks or the leading body lies flat", unit="deg",
         default=None, gt=0, le=180,

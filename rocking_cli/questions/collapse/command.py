@@ -41,4 +41,5 @@ def command(file: str | Path, output: Output) -> None:
 
     output.keep_apart(file)
     answer = collapse(file, out=output.out, watch=output.watch)
-    replace(output, out=None).show(answer)
+    replace(output, out=None).show(answer)  # it is no table
+    output.watch.end()
