@@ -117,12 +117,15 @@ class PlacedSide:
         Pairs of bodies that do not part, or of a body and `GROUND`.
     end : float or None
         Largest rotation of the motion [rad]; None if not given.
+    given : mapping of str to Connection
+        All joints as in the file, by name.
     """
 
     lead: str
     joints: Sequence[Pin | Guide]
     fixings: Sequence[tuple[str, str]]
     end: float | None
+    given: Mapping[str, Connection]
 
     @property
     def fixed(self) -> list[tuple[str, str]]:
@@ -149,7 +152,7 @@ class PlacedSide:
             else:
                 joints.append(Pin(name, each.bodies, at))
         end = None if side.limit_deg is None else radians(side.limit_deg)
-        return cls(side.lead, joints, fixings, end)
+        return cls(side.lead, joints, fixings, end, side.joints)
 
 
 def mirrored(side: LinkageSide, middle: float, images: Mapping[str, str]) -> LinkageSide:

@@ -43,7 +43,7 @@ from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.fields import Described, Name
 from rocking_cli.core.reactions import Going, loading
-from rocking_cli.errors import MechanismError, StructureError
+from rocking_cli.errors import InputError, MechanismError, StructureError
 from rocking_cli.text import in_short, numbered
 
 SAME_X = 1e-6  # difference in x of hinges above one another, over the width of all hinges
@@ -559,12 +559,15 @@ class Assembly(LinkedBodies):
         if not self.rocks_both_ways:
             kept[self.directions[0].opposite.label] = "none"
 
-        def linkage(faces: Collection[Collection[str | None]]) -> Linkage:
+        def linkage(faces: Collection[Collection[str | None]] | None) -> Linkage:
             sides = {direction.label: self._side(direction, faces) for direction in self.directions}
             return Linkage(**{"bodies": self.blocks, **kept, **sides})
 
-        plain = linkage(())
         # If a drawing is rounded, a linkage does not find in the polygons which faces touch, and how they slope.
+        try:
+            plain = linkage(())
+        except InputError:
+            return linkage(None)
         near = SAME_PLACE * size_of(np.concatenate([shape.corners for shape in self.blocks.values()]))
         faces = {
             pair for direction in self.directions
@@ -572,10 +575,10 @@ class Assembly(LinkedBodies):
         }  # fmt: skip
         return linkage(faces) if faces else plain
 
-    def _side(self, direction: Direction, faces: Collection[Collection[str | None]]) -> LinkageSide:
+    def _side(self, direction: Direction, faces: Collection[Collection[str | None]] | None) -> LinkageSide:
         """Return the joints of a direction as those of a linkage: hinges by their letters, supports, closed joints.
 
-        Joints of the pairs in `faces` state their faces.
+        Joints of the pairs in `faces` state their faces, or all joints if it is None.
         """
         self._linkage(direction)  # raises an error if there is no rocking model
         letters = {(contact, at): letter for letter, contact, at in self._hinges(direction)}
@@ -591,7 +594,9 @@ class Assembly(LinkedBodies):
             turned = turns and contact.a in self.blocks and contact.face_at(ends[0]) == contact.b
             placed = contact.turned() if turned else contact
             one, other = (name if name in self.blocks else None for name in (placed.a, placed.b))
-            fields: dict[str, Any] = {"face": _rounded(placed.ends)} if frozenset((one, other)) in faces else {}
+            fields: dict[str, Any] = {}
+            if faces is None or frozenset((one, other)) in faces:
+                fields["face"] = _rounded(placed.ends)
             if contact.friction != self.friction:
                 fields["friction"] = contact.friction
             if turns:

@@ -15,7 +15,7 @@ from pydantic_core import PydanticCustomError
 
 from mechanisms import _faces as faces
 from mechanisms._cracks import MIN_EDGE_DISTANCE, Crack, Cracked, active, cracked, weakest
-from mechanisms._linkage_checks import beside, closing, face_at, turns_the_wrong_way
+from mechanisms._linkage_checks import beside, closing, face_at, face_of, turns_the_wrong_way
 from mechanisms._linkage_sides import GROUND, Connection, LinkageSide, PlacedSide, mirrored
 from mechanisms._linked_bodies import LinkedBodies
 from mechanisms._shapes import Member, Shape
@@ -330,18 +330,14 @@ class Linkage(LinkedBodies):
         names, letter = each.bodies, self._letter(each.name, direction)
         if isinstance(each, Guide):
             return Joint(letter, each.at, names, slide=each.along / abs(each.along))
-        given = self._cracked.sides[direction].joints[each.name]
-        if given.face is None:
-            face = face_at(self._members, names, each.at)
-            normal = face.normal if face is not None else 1j
-            flat = names[face.inside] if face is not None and face.inside is not None else None
-        else:
-            normal, flat = given.normal, names[0]
+        face = face_of(self._members, each, self._held[direction].given)
+        normal = face.normal if face is not None else 1j
         if len(names) == 1:
             return Joint(letter, each.at, names, normal=normal)
         if any(name in ground for name in names):
             moves = next(name for name in names if name not in ground)
             return Joint(letter, each.at, (moves,), normal=normal if moves == names[1] else -normal)
+        flat = names[face.inside] if face is not None and face.inside is not None else None
         if normal.imag < 0:  # the second body supports the first
             names, normal = names[::-1], -normal
         return Joint(letter, each.at, names, normal=normal, face=flat or names[0])
@@ -354,9 +350,9 @@ class Linkage(LinkedBodies):
     def _closed(self) -> Mapping[Direction, Mapping[tuple[str, str], Sequence[Contact]]]:
         """Fixed joints of a direction, and the faces on which they may open or slide; none if they are not checked."""
         closed: dict[Direction, dict[tuple[str, str], list[Contact]]] = {}
-        for direction, side in self._cracked.sides.items():
+        for direction, held in self._held.items():
             of_pairs = closed.setdefault(direction, {})
-            for each in side.joints.values():
+            for each in held.given.values():
                 if each.fixed is not None:
                     pair = (each.fixed[0], each.fixed[1])
                     others = of_pairs.get(pair, []) if each.face is not None else []  # a pair may have several faces
@@ -368,8 +364,10 @@ class Linkage(LinkedBodies):
         if joint.bonded:
             return []
         contacts = self._closed_faces(pair) if joint.ends is None else [_bearing(pair, joint.ends, joint.normal)]
-        friction = self.friction if joint.friction is None else joint.friction
-        return [replace(each, friction=friction) for each in contacts]
+        return [replace(each, friction=self._friction_of(joint)) for each in contacts]
+
+    def _friction_of(self, joint: Connection) -> float | None:
+        return self.friction if joint.friction is None else joint.friction
 
     def _closed_faces(self, pair: tuple[str, str]) -> Sequence[Contact]:
         """Return the faces between two bodies, or a body and the level ground below it, as closed joints."""
@@ -404,8 +402,7 @@ class Linkage(LinkedBodies):
         bearing, ground = [], self._anchored[direction]
         for joint in self._held[direction].joints:
             if not isinstance(joint, Guide) or len(joint.bodies) == 1:
-                friction = self._cracked.sides[direction].joints[joint.name].friction
-                friction = self.friction if friction is None else friction
+                friction = self._friction_of(self._held[direction].given[joint.name])
                 bearing += of_joints([self._joint(joint, direction, ground)], friction)
                 continue
             # A point of the first body on a line that turns with the second.
