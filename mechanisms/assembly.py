@@ -568,10 +568,10 @@ class Assembly(LinkedBodies):
             plain = linkage(())
         except InputError:
             return linkage(None)
-        near = SAME_PLACE * size_of(np.concatenate([shape.corners for shape in self.blocks.values()]))
+        tolerance = SAME_PLACE * size_of(np.concatenate([shape.corners for shape in self.blocks.values()]))
         faces = {
             pair for direction in self.directions
-            for pair in _different(self.contacts(direction) or (), plain.contacts(direction) or (), near)
+            for pair in _different(self.contacts(direction) or (), plain.contacts(direction) or (), tolerance)
         }  # fmt: skip
         return linkage(faces) if faces else plain
 
@@ -861,8 +861,8 @@ def from_the_left(points: Sequence[complex]) -> list[int]:
     return [k for _, k in pairs]
 
 
-def _different(ours: Sequence[Contact], others: Sequence[Contact], near: float) -> set[frozenset[str | None]]:
-    """Return the pairs of pieces that do not have the same contacts in two lists, to a distance `near` [m]."""
+def _different(ours: Sequence[Contact], others: Sequence[Contact], tolerance: float) -> set[frozenset[str | None]]:
+    """Return the pairs of pieces that do not have the same contacts in two lists, to within a `tolerance` [m]."""
     by_pair: dict[frozenset[str | None], tuple[list[Contact], list[Contact]]] = {}
     for k, contacts in enumerate((ours, others)):
         for each in contacts:
@@ -870,16 +870,16 @@ def _different(ours: Sequence[Contact], others: Sequence[Contact], near: float) 
                 by_pair.setdefault(frozenset(each.pieces), ([], []))[k].append(each)
     return {
         pair for pair, (one, other) in by_pair.items()
-        if len(one) != len(other) or not all(any(_same(a, b, near) for b in other) for a in one)
+        if len(one) != len(other) or not all(any(_same(a, b, tolerance) for b in other) for a in one)
     }  # fmt: skip
 
 
-def _same(one: Contact, other: Contact, near: float) -> bool:
+def _same(one: Contact, other: Contact, tolerance: float) -> bool:
     """Return whether two contacts of the same pieces bear at the same points of the same face."""
     normal = other.normal if one.pieces == other.pieces else -other.normal
     return (
         len(one.points) == len(other.points)
-        and all(min(abs(at - there) for there in other.points) <= near for at in one.points)
+        and all(min(abs(at - there) for there in other.points) <= tolerance for at in one.points)
         and abs(one.normal - normal) <= SAME_PLACE
         and (one.face == other.face or len(one.points) > 1)
     )
