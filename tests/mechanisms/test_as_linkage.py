@@ -155,9 +155,7 @@ def test_friction_of_single_joints():
     [
         # On springings as steep as these a pivot would be taken to bear on the intrados.
         rk.Assembly(density=2e3, depth=1.0, voussoirs={"span": 18.0, "rise": 3.0, "thickness": 1.5, "count": 7}),
-        assembly(
-            {"a": rectangle(0, 0.002, 1, 3), "b": rectangle(0.1, 3.001, 0.9, 5), "c": rectangle(0.1, 5.002, 0.9, 6)}
-        ),
+        assembly({"a": {"polygon": [[-1, 0.002], [2, 0.002], [1, 3], [0, 3]]}, "b": rectangle(-0.1, 3.001, 1.1, 8)}),
         assembly(
             {"plinth": {"polygon": [[0, 0], [3, 0.5], [3, 1.5], [0, 1.5]]}, "pier": rectangle(1, 1.5, 1.5, 4)},
             {"rock": {"polygon": [[-1, -1], [6, -1], [6, 1], [-0.6, -0.1]]}},

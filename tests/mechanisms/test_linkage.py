@@ -464,7 +464,7 @@ class TestGivenFaces:
     def test_several_faces_of_one_pair(self):
         fixed = {
             "sole": {"fixed": ["foot", "post"], "face": [[1.0, 1.0], [2.0, 1.0]]},
-            "back": {"fixed": ["post", "foot"], "face": [[1.0, 1.0], [1.0, 2.0]]},
+            "back": {"fixed": ["foot", "post"], "face": [[1.0, 2.0], [1.0, 1.0]]},
             "A": {"pivot": "foot", "at": [4.0, 0.0]},
         }
         foot = {"polygon": [[0, 0], [4, 0], [4, 1], [1, 1], [1, 2], [0, 2]]}
@@ -474,7 +474,7 @@ class TestGivenFaces:
         faces = {each.normal: each for each in linkage.contacts(Direction.POSITIVE) if len(each.points) == 2}
         assert {normal: (each.pieces, each.points) for normal, each in faces.items()} == {
             1j: (("foot", "post"), (1 + 1j, 2 + 1j)),
-            -1 + 0j: (("post", "foot"), (1 + 1j, 1 + 2j)),
+            1 + 0j: (("foot", "post"), (1 + 2j, 1 + 1j)),
         }
 
     @pytest.mark.parametrize(
