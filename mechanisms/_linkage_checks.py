@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from mechanisms import _faces as faces
-from mechanisms._linkage_sides import PlacedSide
+from mechanisms._linkage_sides import Connection, PlacedSide
 from mechanisms._polygons import size_of
 from mechanisms._shapes import Member
 from rocking_cli.core import Direction, Outline, Pin, RigidMotion
@@ -21,6 +21,15 @@ def face_at(members: Mapping[str, Member], bodies: Sequence[str], at: complex) -
     """Return the face between two bodies, or one body and the ground; None if it does not follow from their shapes."""
     shapes: list[Sequence[Outline]] = [members[name].outlines for name in bodies]
     return faces.under(shapes[0], at) if len(shapes) == 1 else faces.between(shapes[0], shapes[1], at)
+
+
+def face_of(members: Mapping[str, Member], joint: Pin, given: Mapping[str, Connection]) -> faces.BearingFace | None:
+    """Return the face of a hinge: that given in the file, or else as the shapes have it."""
+    connection = given[joint.name]
+    if connection.ends is None:
+        return face_at(members, joint.bodies, joint.at)
+    far = max(connection.ends, key=lambda end: abs(end - joint.at))
+    return faces.BearingFace(connection.normal, far, 0 if len(joint.bodies) > 1 else None)
 
 
 def beside(members: Mapping[str, Member], held: PlacedSide) -> tuple[str, str] | None:
@@ -47,7 +56,7 @@ def closing(
         for z in (each.body.centroid, *(z for shape in each.outlines for z in shape))
     )  # fmt: skip
     for joint in held.joints:
-        face = face_at(members, joint.bodies, joint.at) if isinstance(joint, Pin) else None
+        face = face_of(members, joint, held.given) if isinstance(joint, Pin) else None
         if face is None:
             continue
         velocities = [motions[name].carry(face.far)[1][0] for name in joint.bodies]

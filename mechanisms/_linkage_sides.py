@@ -29,6 +29,13 @@ class Connection(Described):
     bonded: bool = Field(False, description="of fixed: glued or cramped, so that what opens there is not checked")
     at: Vertex | Name | None = point("where it is; at a crack its name and end, such as: crack left", default=None)
     along: Vertex | None = quantity("the direction of the line of a slide, [x, y]", default=None)
+    face: Annotated[list[Vertex], Field(min_length=2, max_length=2)] | None = quantity(
+        "both ends of the face of the first of two bodies, or of the ground, with the last body on the left; if "
+        "omitted, the face follows from the polygons", unit="m", default=None,
+    )  # fmt: skip
+    friction: float | None = quantity(
+        "its coefficient of friction; if omitted, that of the structure", default=None, ge=0, le=10
+    )
 
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
@@ -44,6 +51,11 @@ class Connection(Described):
             raise geometry_error(
                 "bonded", f"cannot be combined with {kind}: it says that bodies that are fixed are glued"
             )
+        for key in ("face", "friction"):
+            if getattr(self, key) is not None and (self.bonded or kind == "slide"):
+                raise geometry_error(key, "is given of a joint that does not bear on a face: leave it out")
+        if self.face is not None and self.face[0] == self.face[1]:
+            raise geometry_error("face", "has both ends at the same point")
         if self.along is not None and not any(self.along):
             raise geometry_error("along", "is not a valid direction: give [x, y], not both zero")
         if len(set(self.bodies)) < len(self.bodies):
@@ -58,6 +70,17 @@ class Connection(Described):
                 return (each,)
         return tuple(self.hinge or self.fixed or self.slide or ())
 
+    @property
+    def ends(self) -> tuple[complex, complex] | None:
+        """Both ends of the given face [m]; None if it is not given."""
+        return None if self.face is None else (complex(*self.face[0]), complex(*self.face[1]))
+
+    @property
+    def normal(self) -> complex:
+        """Unit normal of the given face towards the last body."""
+        start, end = self.ends or (0j, 1 + 0j)
+        return 1j * (end - start) / abs(end - start)
+
     def renamed(self, name: Callable[[str], str], **changed: object) -> Connection:
         """Return the joint with other names of its bodies, and other fields changed too."""
         for key in JOINT_KINDS:
@@ -71,7 +94,9 @@ class LinkageSide(Described):
     """One direction of rocking: the body whose rotation is phi, and the joints."""
 
     lead: Name = Field(description="the body whose rotation phi is")
-    joints: dict[Name, Connection] = Field(description="what holds the bodies, by names", min_length=1, max_length=1000)
+    joints: dict[Name, Connection] = Field(
+        description="what holds the bodies, by names", min_length=1, max_length=10_000
+    )
     limit_deg: float | None = quantity(
         "where the motion ends at the latest; if omitted, where it locks or the leading body lies flat", unit="deg",
         default=None, gt=0, le=180,
@@ -88,16 +113,19 @@ class PlacedSide:
         The body whose rotation is phi.
     joints : sequence of Pin or Guide
         Joints of the bodies.
-    fixings : mapping of pairs of str to bool
-        Pairs of bodies that do not part, or of a body and `GROUND`, and whether they are bonded.
+    fixings : sequence of pairs of str
+        Pairs of bodies that do not part, or of a body and `GROUND`.
     end : float or None
         Largest rotation of the motion [rad]; None if not given.
+    given : mapping of str to Connection
+        All joints as in the file, by name.
     """
 
     lead: str
     joints: Sequence[Pin | Guide]
-    fixings: Mapping[tuple[str, str], bool]
+    fixings: Sequence[tuple[str, str]]
     end: float | None
+    given: Mapping[str, Connection]
 
     @property
     def fixed(self) -> list[tuple[str, str]]:
@@ -113,18 +141,18 @@ class PlacedSide:
     def of(cls, side: LinkageSide) -> PlacedSide:
         """Return a side whose joints all have their points as numbers."""
         joints: list[Pin | Guide] = []
-        fixings: dict[tuple[str, str], bool] = {}
+        fixings: list[tuple[str, str]] = []
         for name, each in side.joints.items():
             at = complex(*each.at) if isinstance(each.at, list) else 0j
             if each.fixed is not None:
                 one, other = each.bodies
-                fixings[one, other] = each.bonded
+                fixings.append((one, other))
             elif each.slide is not None:
                 joints.append(Guide(name, each.bodies, at, complex(*(each.along or ()))))
             else:
                 joints.append(Pin(name, each.bodies, at))
         end = None if side.limit_deg is None else radians(side.limit_deg)
-        return cls(side.lead, joints, fixings, end)
+        return cls(side.lead, joints, fixings, end, side.joints)
 
 
 def mirrored(side: LinkageSide, middle: float, images: Mapping[str, str]) -> LinkageSide:
@@ -148,6 +176,8 @@ def mirrored(side: LinkageSide, middle: float, images: Mapping[str, str]) -> Lin
             swapped = {"left": "right", "right": "left"}
             *words, end = each.at.split(" ")
             changed["at"] = " ".join([*words, swapped.get(end, end)])
+        if each.face is not None:
+            changed["face"] = [image(end) for end in each.face[::-1]]
         if each.along is not None:
             changed["along"] = [-each.along[0], each.along[1]]
         joints[name] = each.renamed(other, **changed)

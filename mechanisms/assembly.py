@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cached_property, wraps
 from math import isclose, isfinite, nan
 from typing import Annotated, Any, ClassVar, Self, TypeVar
@@ -12,9 +12,11 @@ from pydantic import ConfigDict, Field, PrivateAttr, model_validator
 
 from mechanisms import _assembly as analysis
 from mechanisms._laid import Bricks, Voussoirs
+from mechanisms._linkage_sides import GROUND, Connection, LinkageSide
 from mechanisms._linked_bodies import LinkedBodies
-from mechanisms._polygons import fault_of
+from mechanisms._polygons import fault_of, size_of
 from mechanisms._shapes import Member, Shape
+from mechanisms.linkage import Linkage
 from rocking_cli.core import (
     CollapseHinge,
     CollapseMechanism,
@@ -41,8 +43,8 @@ from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.fields import Described, Name
 from rocking_cli.core.reactions import Going, loading
-from rocking_cli.errors import MechanismError, StructureError
-from rocking_cli.text import in_short
+from rocking_cli.errors import InputError, MechanismError, StructureError
+from rocking_cli.text import in_short, numbered
 
 SAME_X = 1e-6  # difference in x of hinges above one another, over the width of all hinges
 SLIDING_DIFFERENCE = 1e-6  # relative difference of the multiplier and the friction at which blocks slide
@@ -51,6 +53,8 @@ GLUE_INCREASE = 0.01  # relative increase of lambda by shear without friction fr
 ZERO_OPENING = 1e-7  # opening of a joint that counts as zero, over its length
 LIGHT_WEIGHT = 1e-9  # weight of blocks that the analysis does not see, over the total weight
 MAX_NAMED_LIGHT = 3  # light blocks in a message
+SAME_PLACE = 1e-6  # difference of equal normals; that of equal points, over the size of the assembly
+JOINT_DECIMALS = 12  # of the points of joints in a file [m]
 ZERO_ROTATION_RATE = 1e-8  # rotation rates that count as zero, over the fastest one
 
 Coefficient = Annotated[float, Field(ge=0, le=10)]
@@ -84,6 +88,11 @@ EXAMPLE_GROUND = {"floor": {"polygon": [[-1.0, -0.5], [5.0, -0.5], [5.0, 0.0], [
 
 def _pairs(corners: Outline) -> list[list[float]]:
     return [[z.real, z.imag] for z in corners]
+
+
+def _rounded(points: Sequence[complex]) -> list[list[float]]:
+    """Return points of joints without their rounding errors."""
+    return [[round(each, JOINT_DECIMALS) + 0.0 for each in pair] for pair in _pairs(points)]
 
 
 class AssemblyGround(Described):
@@ -518,12 +527,7 @@ class Assembly(LinkedBodies):
         if direction not in self.directions:
             return None
         contacts = []
-        for contact, state in zip(self._contacts, self._groups(direction).states, strict=True):
-            ends = {analysis.Opening.CLOSED: (0, 1), analysis.Opening.START: (0,), analysis.Opening.END: (1,)}.get(
-                state, ()
-            )
-            if not ends:
-                continue
+        for contact, ends in self._bearing(direction):
             # A hinge turns with the face that the corner bears on; both bodies of a closed joint turn alike.
             a, b, face = (
                 name if name in self.blocks else None
@@ -535,6 +539,75 @@ class Assembly(LinkedBodies):
             along = guide.along / abs(guide.along)
             contacts.append(Contact((None, guide.bodies[0]), (guide.at,), 1j * along, held="slide", name=guide.name))
         return contacts
+
+    def _bearing(self, direction: Direction) -> Iterator[tuple[analysis.AssemblyContact, Sequence[int]]]:
+        """Yield the joints that still bear in a mechanism, and at which ends: both if closed, one if it hinges."""
+        bear = {analysis.Opening.CLOSED: (0, 1), analysis.Opening.START: (0,), analysis.Opening.END: (1,)}
+        for contact, state in zip(self._contacts, self._groups(direction).states, strict=True):
+            if state in bear:
+                yield contact, bear[state]
+
+    # The mechanism as a linkage
+
+    def as_linkage(self) -> Linkage:
+        """Return the linkage that moves as the weakest mechanisms: its bodies are the blocks.
+
+        Raises `MechanismError` if a mechanism has no rocking model, `InputError` if a linkage cannot have its fields.
+        """
+        common = self.model_fields_set & Linkage.model_fields.keys()
+        kept: dict[str, Any] = {key: value for key in common if (value := getattr(self, key)) is not None}
+        if not self.rocks_both_ways:
+            kept[self.directions[0].opposite.label] = "none"
+
+        def linkage(faces: Collection[Collection[str | None]] | None) -> Linkage:
+            sides = {direction.label: self._side(direction, faces) for direction in self.directions}
+            return Linkage(**{"bodies": self.blocks, **kept, **sides})
+
+        # If a drawing is rounded, a linkage does not find in the polygons which faces touch, and how they slope.
+        try:
+            plain = linkage(())
+        except InputError:
+            return linkage(None)
+        tolerance = SAME_PLACE * size_of(np.concatenate([shape.corners for shape in self.blocks.values()]))
+        faces = {
+            pair for direction in self.directions
+            for pair in _different(self.contacts(direction) or (), plain.contacts(direction) or (), tolerance)
+        }  # fmt: skip
+        return linkage(faces) if faces else plain
+
+    def _side(self, direction: Direction, faces: Collection[Collection[str | None]] | None) -> LinkageSide:
+        """Return the joints of a direction as those of a linkage: hinges by their letters, supports, closed joints.
+
+        Joints of the pairs in `faces` state their faces, or all joints if it is None.
+        """
+        self._linkage(direction)  # raises an error if there is no rocking model
+        letters = {(contact, at): letter for letter, contact, at in self._hinges(direction)}
+        supports = {
+            name: {"slide": each.slide, "at": each.at, "along": each.along}
+            for name, each in (self.supports or {}).items()
+        }
+        hinges: dict[str, dict[str, Any]] = {letter: {} for letter in letters.values()}  # in the order of their letters
+        closed: dict[str, dict[str, Any]] = {}
+        for contact, ends in self._bearing(direction):
+            at, turns = contact.ends[ends[0]], len(ends) == 1
+            # The first body of a joint has the face.
+            turned = turns and contact.a in self.blocks and contact.face_at(ends[0]) == contact.b
+            placed = contact.turned() if turned else contact
+            one, other = (name if name in self.blocks else None for name in (placed.a, placed.b))
+            fields: dict[str, Any] = {}
+            if faces is None or frozenset((one, other)) in faces:
+                fields["face"] = _rounded(placed.ends)
+            if contact.friction != self.friction:
+                fields["friction"] = contact.friction
+            if turns:
+                fields |= {"pivot": other} if one is None else {"hinge": [one, other]}
+                hinges[letters.get((contact, at), _name(contact))] = {**fields, "at": _rounded([at])[0]}
+            else:
+                closed[numbered(_name(contact), "", closed)] = {**fields, "fixed": [one or GROUND, other]}
+        joints: dict[str, Connection] = {}
+        for name, fields in [item for each in (hinges, supports, closed) for item in each.items()]:
+            joints[numbered(name, "", joints)] = Connection(**fields)
+        return LinkageSide(lead=self._lead(direction), joints=joints)
 
     # Cautions and extra results
 
@@ -786,6 +859,30 @@ def from_the_left(points: Sequence[complex]) -> list[int]:
     columns = np.cumsum(np.diff(x[order], prepend=x[order][:1]) > SAME_X * np.ptp(x)) if x.size else x
     pairs = sorted(zip(columns.tolist(), order.tolist(), strict=True), key=lambda pair: (pair[0], points[pair[1]].imag))
     return [k for _, k in pairs]
+
+
+def _different(ours: Sequence[Contact], others: Sequence[Contact], tolerance: float) -> set[frozenset[str | None]]:
+    """Return the pairs of pieces that do not have the same contacts in two lists, to within a `tolerance` [m]."""
+    by_pair: dict[frozenset[str | None], tuple[list[Contact], list[Contact]]] = {}
+    for k, contacts in enumerate((ours, others)):
+        for each in contacts:
+            if each.held is None:
+                by_pair.setdefault(frozenset(each.pieces), ([], []))[k].append(each)
+    return {
+        pair for pair, (one, other) in by_pair.items()
+        if len(one) != len(other) or not all(any(_same(a, b, tolerance) for b in other) for a in one)
+    }  # fmt: skip
+
+
+def _same(one: Contact, other: Contact, tolerance: float) -> bool:
+    """Return whether two contacts of the same pieces bear at the same points of the same face."""
+    normal = other.normal if one.pieces == other.pieces else -other.normal
+    return (
+        len(one.points) == len(other.points)
+        and all(min(abs(at - there) for there in other.points) <= tolerance for at in one.points)
+        and abs(one.normal - normal) <= SAME_PLACE
+        and (one.face == other.face or len(one.points) > 1)
+    )
 
 
 def _name(contact: analysis.AssemblyContact) -> str:

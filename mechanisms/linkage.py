@@ -15,8 +15,8 @@ from pydantic_core import PydanticCustomError
 
 from mechanisms import _faces as faces
 from mechanisms._cracks import MIN_EDGE_DISTANCE, Crack, Cracked, active, cracked, weakest
-from mechanisms._linkage_checks import beside, closing, face_at, turns_the_wrong_way
-from mechanisms._linkage_sides import GROUND, LinkageSide, PlacedSide, mirrored
+from mechanisms._linkage_checks import beside, closing, face_at, face_of, turns_the_wrong_way
+from mechanisms._linkage_sides import GROUND, Connection, LinkageSide, PlacedSide, mirrored
 from mechanisms._linked_bodies import LinkedBodies
 from mechanisms._shapes import Member, Shape
 from rocking_cli.core import (
@@ -330,7 +330,7 @@ class Linkage(LinkedBodies):
         names, letter = each.bodies, self._letter(each.name, direction)
         if isinstance(each, Guide):
             return Joint(letter, each.at, names, slide=each.along / abs(each.along))
-        face = face_at(self._members, names, each.at)
+        face = face_of(self._members, each, self._held[direction].given)
         normal = face.normal if face is not None else 1j
         if len(names) == 1:
             return Joint(letter, each.at, names, normal=normal)
@@ -349,12 +349,25 @@ class Linkage(LinkedBodies):
     @cached_property
     def _closed(self) -> Mapping[Direction, Mapping[tuple[str, str], Sequence[Contact]]]:
         """Fixed joints of a direction, and the faces on which they may open or slide; none if they are not checked."""
-        return {
-            direction: {
-                pair: [] if bonded else self._closed_faces(pair) for pair, bonded in held.fixings.items()
-            }
-            for direction, held in self._held.items()
-        }  # fmt: skip
+        closed: dict[Direction, dict[tuple[str, str], list[Contact]]] = {}
+        for direction, held in self._held.items():
+            of_pairs = closed.setdefault(direction, {})
+            for each in held.given.values():
+                if each.fixed is not None:
+                    pair = (each.fixed[0], each.fixed[1])
+                    others = of_pairs.get(pair, []) if each.face is not None else []  # a pair may have several faces
+                    of_pairs[pair] = [*others, *self._faces_of(pair, each)]
+        return closed
+
+    def _faces_of(self, pair: tuple[str, str], joint: Connection) -> Sequence[Contact]:
+        """Return the faces of a fixed joint, as given or as the shapes have them; none if it is bonded."""
+        if joint.bonded:
+            return []
+        contacts = self._closed_faces(pair) if joint.ends is None else [_bearing(pair, joint.ends, joint.normal)]
+        return [replace(each, friction=self._friction_of(joint)) for each in contacts]
+
+    def _friction_of(self, joint: Connection) -> float | None:
+        return self.friction if joint.friction is None else joint.friction
 
     def _closed_faces(self, pair: tuple[str, str]) -> Sequence[Contact]:
         """Return the faces between two bodies, or a body and the level ground below it, as closed joints."""
@@ -364,12 +377,10 @@ class Linkage(LinkedBodies):
             ends = faces.lowest(shapes[0])
             return [] if ends is None else [Contact((None, body), ends, face=None, friction=self.friction)]
         contacts: list[Contact] = []
-        one, other = pair
         for normal, ends in faces.shared(*shapes):
-            # The second body supports the first if the normal points down.
-            below, above, upwards = (one, other, normal) if normal.imag >= 0 else (other, one, -normal)
-            name = f"{below} and {above}" + (f", face {len(contacts) + 1}" if contacts else "")
-            contacts.append(Contact((below, above), ends, upwards, below, self.friction, name=name))
+            contact = replace(_bearing(pair, ends, normal), friction=self.friction)
+            name = contact.label + (f", face {len(contacts) + 1}" if contacts else "")
+            contacts.append(replace(contact, name=name))
         return contacts
 
     @cached_property
@@ -391,7 +402,8 @@ class Linkage(LinkedBodies):
         bearing, ground = [], self._anchored[direction]
         for joint in self._held[direction].joints:
             if not isinstance(joint, Guide) or len(joint.bodies) == 1:
-                bearing += of_joints([self._joint(joint, direction, ground)], self.friction)
+                friction = self._friction_of(self._held[direction].given[joint.name])
+                bearing += of_joints([self._joint(joint, direction, ground)], friction)
                 continue
             # A point of the first body on a line that turns with the second.
             point, line = (None if name in ground else name for name in joint.bodies)
@@ -476,6 +488,14 @@ class Linkage(LinkedBodies):
             for each in self._held[direction].joints
             if not isinstance(each, Guide)
         ]
+
+
+def _bearing(pair: tuple[str, str], ends: tuple[complex, complex], normal: complex) -> Contact:
+    """Return a face between two bodies, or a body and the ground, as a closed joint; `normal` is out of the first."""
+    one, other = (None if name == GROUND else name for name in pair)
+    if other is None or (one is not None and normal.imag < 0):  # the second body supports the first
+        one, other, normal = other, one, -normal
+    return Contact((one, other), ends, normal, one)
 
 
 def _on_ground(contact: Contact, ground: Collection[str]) -> Contact:

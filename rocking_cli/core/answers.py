@@ -96,6 +96,13 @@ class Kinematics(Given, ABC):
         """Return the weakest mechanism of a direction, if the structure searches for it; by default None."""
         return None
 
+    def as_linkage(self) -> Given | None:
+        """Return the linkage that moves as the weakest mechanisms, if the structure searches for them; by default None.
+
+        Raises `RockingError` if a mechanism has no rocking model, or a linkage cannot have its fields.
+        """
+        return None
+
     def volume(self) -> float:
         """Return the volume to which `density` applies [m3]: by default the area of the outlines times `depth`."""
         deep, sketch = self.given_depth, self.sketch()

@@ -23,6 +23,7 @@ from rocking_cli.short_repr import short_repr
 
 COMPARED_ROTATIONS = (0.21, 0.47)  # rotations at which motions are compared, over the kinematic limit
 EQUAL_MOTION = 1e-9  # largest difference of two motions that count as equal, over the largest displacement
+MAX_SHARED_FORCES = 200  # forces up to which their distribution is estimated; with more it takes minutes
 MAX_IMBALANCE = 1e-6  # largest imbalance at a joint, over the largest force
 UNIT_COUPLE = 0j  # stands for a couple among the unit forces of a joint
 WHOLE_JOINT = Joint("", 0j, ())
@@ -186,8 +187,12 @@ def impulses(mechanism: Mechanism, ended: Direction) -> Reactions | None:
 
 
 def _instead_of_joints(mechanism: Mechanism, direction: Direction) -> Sequence[Contact]:
-    """Return the contacts of a mechanism that gives no joints, because bodies slide or joints are redundant."""
-    return () if mechanism.joints(direction) else mechanism.contacts(direction) or ()
+    """Return the contacts of a mechanism that gives no joints, because bodies slide or joints are redundant.
+
+    None of them if they are many.
+    """
+    contacts = () if mechanism.joints(direction) else mechanism.contacts(direction) or ()
+    return contacts if sum(contact.forces for contact in contacts) <= MAX_SHARED_FORCES else ()
 
 
 def _at_contacts(pieces: Pieces, contacts: Sequence[Contact], demand: Reals) -> Reactions | None:

@@ -1,4 +1,4 @@
-"""Read a structure from its YAML file, with every problem placed at file:line:column."""
+"""Read a structure from its YAML file, with every problem placed at file:line:column, and write one."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from rocking_cli.core import Mechanism
+from rocking_cli.core.given import Given
 from rocking_cli.core.registry import Registry
 from rocking_cli.io.field_problems import problems
-from rocking_cli.io.yaml_file import Document, parse, read_text
+from rocking_cli.io.yaml_file import Document, block, parse, read_text
 from rocking_cli.text import cut, one_line
 
 TEMPLATE_HINT = "`rocking new block` prints a template"
@@ -50,6 +51,13 @@ def parse_structure(text: str, file: str, default_name: str, registry: Registry 
     """Read a structure from YAML text; `file` is its name in messages. Raises as `load_structure`."""
     document = parse(text, file, "structure", TEMPLATE_HINT)
     return of_document(document, default_name, Path(file).parent, registry)
+
+
+def structure_text(mechanism: Given, comment: str) -> str:
+    """Return the YAML text of a structure with the fields that it was given, below a comment."""
+    given = mechanism.model_dump(mode="json", by_alias=True, exclude_unset=True, exclude_none=True)
+    lines = [line for key, value in {"mechanism": mechanism.mechanism, **given}.items() for line in block(key, value)]
+    return "\n".join([f"# {comment}", *lines, ""])
 
 
 def of_document(document: Document, default_name: str, folder: Path, registry: Registry | None = None) -> Mechanism:

@@ -1,10 +1,11 @@
-"""A YAML file as plain data, with the place file:line:column of every problem."""
+"""A YAML file as plain data, with the place file:line:column of every problem, and plain data as YAML."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -60,6 +61,37 @@ for _tag, _first, _pattern in (
     ("null", ["~", "n", "N", ""], r"~|null|Null|NULL|"),
 ):
     _Loader.add_implicit_resolver(f"tag:yaml.org,2002:{_tag}", regex(f"^(?:{_pattern})$"), list(_first))
+
+
+class _Dumper(yaml.SafeDumper):
+    """PyYAML that quotes each text which YAML 1.1 or 1.2 would read as something else."""
+
+    yaml_implicit_resolvers = {  # noqa: RUF012 - so it is declared in PyYAML
+        first: [rule for cls in (yaml.SafeDumper, _Loader) for rule in cls.yaml_implicit_resolvers.get(first, [])]
+        for first in {*yaml.SafeDumper.yaml_implicit_resolvers, *_Loader.yaml_implicit_resolvers}
+    }
+
+    def ignore_aliases(self, data: Any) -> bool:
+        return True
+
+
+def in_a_line(value: Any) -> str:
+    """Return plain data as YAML in one line."""
+    text = yaml.dump([value], Dumper=_Dumper, default_flow_style=True, width=inf, sort_keys=False, allow_unicode=True)
+    return str(text).strip()[1:-1]
+
+
+def is_deep(value: Any) -> bool:
+    """Return whether a value is a mapping of mappings, which is hard to read on one line."""
+    return isinstance(value, dict) and any(isinstance(each, dict) for each in value.values())
+
+
+def block(key: str, value: Any) -> list[str]:
+    """Return the lines of a field in YAML, with nested mappings on lines of their own."""
+    if not is_deep(value):
+        return [f"{in_a_line(key)}: {in_a_line(value)}"]
+    return [f"{in_a_line(key)}:", *(f"  {line}" for name, each in value.items() for line in block(name, each))]
+
 
 SCALARS: dict[str, Callable[[str], Any]] = {
     "int": int,

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
-import yaml
-from pydantic import BaseModel
+from pydantic_core import to_jsonable_python
 
 from rocking_cli.io import starters
-from rocking_cli.io.json_text import json_text
+from rocking_cli.io.yaml_file import block, in_a_line, is_deep
 from rocking_cli.verification.code import Code, Site
 from rocking_cli.views.mechanisms import fields
 
@@ -62,7 +61,7 @@ def starter(code: Code, commands: Sequence[str] = ()) -> str:
     fill_in = [f"# Fill in {', '.join(missing)}: the code gives no example."] if missing else []
     head = [f"# A site, to verify a structure by the {_in_a_line(f'{code.name} ({code.edition})')}."]
     head += [f"#   {each}" for each in commands]
-    return "\n".join([*head, *fill_in, f"# {SITE_UNITS_NOTE}", f"code: {_yaml(code.key)}", *lines]) + "\n"
+    return "\n".join([*head, *fill_in, f"# {SITE_UNITS_NOTE}", f"code: {in_a_line(code.key)}", *lines]) + "\n"
 
 
 def comments(cls: Any, code: Code | None) -> frozenset[str]:
@@ -93,16 +92,16 @@ def _lines(
         symbol = f", {row['symbol']}" if row["symbol"] else ""
         limits = f" ({row['bounds']})" if row["bounds"] else ""
         used = row["required"] or row["field"] in needed
-        value = row["example"] if row["example"] is not None else row["default"]
-        example = usual.get(row["field"], _yaml(value))
+        value = _plain(row["example"] if row["example"] is not None else row["default"])
+        example = usual.get(row["field"], in_a_line(value))
         if used and row["field"] not in usual and row["example"] is None and row["default"] is None:
             missing.append(row["field"])
             example = ""
         entry = f"{'' if used else '# '}{row['field']}: {example}"
         fill_in = "fill in: " if row["field"] in missing else ""
         comment = f"# {fill_in}{_in_a_line(row['description'])}{symbol}{unit}{limits}"
-        if _is_deep(value):
-            lines += [comment, *(f"{'' if used else '# '}{line}" for line in _block(row["field"], value))]
+        if is_deep(value):
+            lines += [comment, *(f"{'' if used else '# '}{line}" for line in block(row["field"], value))]
             continue
         lines += [f"{entry:<32}  {comment}"] if len(entry) <= MAX_INLINE_LENGTH else [comment, entry]
     return lines, missing
@@ -112,32 +111,6 @@ def _in_a_line(text: str) -> str:
     return " ".join(text.split())
 
 
-def _is_deep(value: Any) -> bool:
-    """Return whether a value is a mapping of mappings, which is hard to read on one line."""
-    return isinstance(value, dict) and any(isinstance(each, dict) for each in value.values())
-
-
-def _block(key: str, value: Any) -> list[str]:
-    """Return the lines of a field, with nested mappings on lines of their own."""
-    if not _is_deep(value):
-        return [f"{key}: {_yaml(value)}"]
-    return [f"{key}:", *(f"  {line}" for name, each in value.items() for line in _block(name, each))]
-
-
-def _yaml(value: Any) -> str:
-    if isinstance(value, BaseModel):
-        value = value.model_dump(mode="json", exclude_none=True)
-    if isinstance(value, list | tuple):
-        return f"[{', '.join(_yaml(item) for item in value)}]"
-    if isinstance(value, dict):
-        return f"{{{', '.join(f'{key}: {_yaml(item)}' for key, item in value.items())}}}"
-    return json_text(value) if isinstance(value, str) and _must_be_quoted(value) else str(value)
-
-
-def _must_be_quoted(text: str) -> bool:
-    """Return whether YAML would read a text as something else without quotes, alone or in a list."""
-    try:
-        parsed: object = yaml.safe_load(f"[{text}]  # a comment")
-    except yaml.YAMLError:
-        return True
-    return parsed != [text]
+def _plain(value: Any) -> Any:
+    """Return a value as plain data, without what is not given."""
+    return to_jsonable_python(value, exclude_none=True, by_alias=False, fallback=str)

@@ -70,7 +70,7 @@ OBSERVED = {
 
 CALLS = {
     "equiv": ({"structures": BLOCK}, {"structures": [BLOCK, OTHER]}),
-    "collapse": ({"structure": PORTAL}, {"structure": PORTAL.enlarged(2.0)}),
+    "collapse": ({"structure": PORTAL}, {"structure": PORTAL.enlarged(2.0), "out": "o.yaml"}),
     "draw": ({"structure": BLOCK}, {"structure": OTHER, "at": 0.3}),
     "error": ({"structure": BLOCK}, {"structure": WEAK, "at": [0.3], "a": [3.0]}),
     "respond": (
@@ -416,6 +416,7 @@ OTHERWISE = {
     ("overturning", "--a"): "1:5",
     ("spectrum", "--slenderness"): "0.2",
     ("calibrate", "--out"): "o.yaml",
+    ("collapse", "--out"): "o.yaml",
     ("animate", "--out"): "odd.html",
     ("report", "--out"): "odd.html",
     ("fragility", "--plot"): "odd",

@@ -427,3 +427,66 @@ class TestFiles:
         assert found.uplift(Direction.POSITIVE) == pytest.approx(0.4, rel=1e-12)
         answer = rk.respond(found, rk.GroundMotion("r", 0.01, 4.5 * np.sin(np.linspace(0, 6, 40))))
         assert 0 < answer["nonlinear"].peak_ratio < 1
+
+
+class TestGivenFaces:
+    SLOPE: ClassVar = {"polygon": [[0.0, 0.0], [1.0, 0.2], [1.0, 3.0], [0.0, 3.0]]}
+
+    def made(self, **more):
+        joints = {
+            "A": {"pivot": "low", "at": [1.0, 0.2], **more},
+            "closed": {"fixed": ["low", "high"], "friction": 0.3},
+        }
+        bodies = {"low": self.SLOPE, "high": rectangle(0.0, 3.0, 1.0, 4.0)}
+        side = {"lead": "low", "joints": joints}
+        return rk.Linkage(bodies=bodies, positive=side, negative="none", one_sided="positive", friction=0.6)
+
+    def test_a_face_and_a_friction_are_those_of_the_contact(self):
+        pivot, closed = self.made(face=[[0.0, 0.0], [1.0, 0.1]]).contacts(Direction.POSITIVE)
+        assert pivot.normal == pytest.approx(1j * (1 + 0.1j) / abs(1 + 0.1j)) and pivot.friction == 0.6
+        assert closed.friction == 0.3 and set(closed.points) == {3j, 1 + 3j}
+        pivot, _ = self.made().contacts(Direction.POSITIVE)
+        assert pivot.normal == pytest.approx(1j * (1 + 0.2j) / abs(1 + 0.2j))  # of the polygon
+
+    def test_a_hinge_turns_with_the_first_of_its_bodies(self):
+        joints = {
+            "A": {"pivot": "low", "at": [1.0, 0.0]},
+            "B": {"hinge": ["high", "low"], "at": [0.0, 3.0], "face": [[1.0, 3.0], [0.0, 3.0]]},
+            "C": {"slide": "high", "at": [1.0, 6.0], "along": [0.0, 1.0]},
+        }
+        bodies = {"low": rectangle(0, 0, 1, 3), "high": rectangle(0, 3, 1, 6)}
+        linkage = rk.Linkage(bodies=bodies, positive={"lead": "low", "joints": joints})
+        (hinge,) = (each for each in linkage.contacts(Direction.POSITIVE) if each.letter == "B")
+        assert (hinge.pieces, hinge.face, hinge.normal) == (("low", "high"), "high", 1j)
+        (image,) = (each for each in linkage.contacts(Direction.NEGATIVE) if each.letter == "B'")
+        assert (image.pieces, image.face, image.normal, image.points) == (("low", "high"), "high", 1j, (1 + 3j,))
+
+    def test_several_faces_of_one_pair(self):
+        fixed = {
+            "sole": {"fixed": ["foot", "post"], "face": [[1.0, 1.0], [2.0, 1.0]]},
+            "back": {"fixed": ["foot", "post"], "face": [[1.0, 2.0], [1.0, 1.0]]},
+            "A": {"pivot": "foot", "at": [4.0, 0.0]},
+        }
+        foot = {"polygon": [[0, 0], [4, 0], [4, 1], [1, 1], [1, 2], [0, 2]]}
+        bodies = {"foot": foot, "post": rectangle(1.0, 1.0, 2.0, 5.0)}
+        side = {"lead": "foot", "joints": fixed}
+        linkage = rk.Linkage(bodies=bodies, positive=side, negative="none", one_sided="positive")
+        faces = {each.normal: each for each in linkage.contacts(Direction.POSITIVE) if len(each.points) == 2}
+        assert {normal: (each.pieces, each.points) for normal, each in faces.items()} == {
+            1j: (("foot", "post"), (1 + 1j, 2 + 1j)),
+            1 + 0j: (("foot", "post"), (1 + 2j, 1 + 1j)),
+        }
+
+    @pytest.mark.parametrize(
+        ("joint", "said"),
+        [
+            ({"slide": "low", "along": [0.0, 1.0], "at": [0.5, 4.0], "face": [[0, 0], [1, 0]]}, "face is given"),
+            ({"fixed": ["low", "high"], "bonded": True, "friction": 0.5}, "friction is given of a joint that does not"),
+            ({"fixed": ["low", "high"], "face": [[0, 3], [0, 3]]}, "face has both ends at the same point"),
+        ],
+    )
+    def test_what_has_no_face_is_refused(self, joint, said):
+        bodies = {"low": self.SLOPE, "high": rectangle(0.0, 3.0, 1.0, 4.0)}
+        joints = {"A": {"pivot": "low", "at": [1.0, 0.2]}, "B": joint}
+        with pytest.raises(InputError, match=said):
+            rk.Linkage(bodies=bodies, positive={"lead": "low", "joints": joints})

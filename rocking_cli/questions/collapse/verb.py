@@ -3,22 +3,28 @@
 from __future__ import annotations
 
 from functools import partial
+from pathlib import Path
 
 from rocking_cli.ask.answer import MappingAnswer
 from rocking_cli.ask.given import StructureLike, structure_figure, structure_of
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.core import CollapseMechanism, Direction
+from rocking_cli.core import CollapseMechanism, Direction, Mechanism
+from rocking_cli.errors import InputError, Problem, RockingError
 
 
 @takes_numbers
-def collapse(structure: StructureLike, *, watch: Watcher = SILENT) -> MappingAnswer[Direction, CollapseMechanism]:
+def collapse(
+    structure: StructureLike, *, out: str | Path | None = None, watch: Watcher = SILENT
+) -> MappingAnswer[Direction, CollapseMechanism]:
     """Find the weakest mechanism of an assembly of rigid blocks in each direction, by limit analysis.
 
     Parameters
     ----------
     structure : Mechanism, str or Path
         Assembly, or its YAML file.
+    out : str or Path, optional
+        Write the mechanism to this YAML file, as a `linkage` whose bodies are the blocks: `Assembly.as_linkage`.
     watch : Watcher
         Told what is doubtful about the structure.
 
@@ -31,9 +37,9 @@ def collapse(structure: StructureLike, *, watch: Watcher = SILENT) -> MappingAns
     Raises
     ------
     InputError
-        If the structure is not an assembly, or its file cannot be used.
+        If the structure is not an assembly, or its file cannot be used; if `out` cannot be written.
     MechanismError
-        If the assembly has no mechanism.
+        If the assembly has no mechanism, or with `out` if one of its mechanisms has no rocking model.
 
     Examples
     --------
@@ -46,11 +52,37 @@ def collapse(structure: StructureLike, *, watch: Watcher = SILENT) -> MappingAns
     >>> round(answer[rk.Direction.POSITIVE].lambda_, 12)
     0.25
     """
+    from rocking_cli.io.files import keep_apart
     from rocking_cli.questions.collapse.study import collapses
     from rocking_cli.questions.collapse.view import table, view
 
-    mechanism = structure_of(structure, watch).mechanism
+    ready = structure_of(structure, watch)
+    mechanism = ready.mechanism
     mechanisms = collapses(mechanism)
+    if out is not None:
+        keep_apart([("`out`", Path(out))], [ready.file])
+        try:
+            _write(mechanism, Path(out))
+            watch.note(f"wrote {out}")
+        except RockingError as error:
+            watch.unwritten(error)
 
     columns, figure = partial(table, mechanisms), partial(structure_figure, mechanism, mechanisms)
     return MappingAnswer("weakest mechanism", mechanisms, view(mechanism, mechanisms), columns, figure)
+
+
+def _write(mechanism: Mechanism, out: Path) -> None:
+    """Write the weakest mechanism as a linkage. Raises `RockingError` if it is not one, or cannot be written."""
+    from rocking_cli.core.structure_file import structure_text
+    from rocking_cli.io.files import write_whole
+
+    try:
+        linkage = mechanism.as_linkage()
+    except RockingError as error:
+        raise InputError(Problem(f"cannot be written: {error}", str(out))) from error
+    if linkage is None:
+        raise InputError(Problem(f"cannot be written: {mechanism.mechanism} does not give its linkage", str(out)))
+    name = mechanism.name or mechanism.mechanism
+    comment = f"Weakest mechanism of {name}, by `rocking collapse`. Bodies that are `fixed` stay in contact."
+    text = structure_text(linkage, comment)
+    write_whole(out, lambda file: file.write(text.encode("utf-8")))
