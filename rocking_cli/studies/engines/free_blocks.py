@@ -76,6 +76,10 @@ class FreeBlocks:
         The body of the mechanism with which each block moves (None: none), and how far beside it it stands [m].
     gravity : float
         Gravitational acceleration [m/s2].
+    outlines : mapping of str to sequence of ndarray of complex
+        Polygons of each block at rest, as they are drawn [m].
+    block_of : mapping of str to str
+        The block of which each piece of the mechanism is a part, by the name of the piece.
     """
 
     bodies: Sequence[Body]
@@ -90,6 +94,8 @@ class FreeBlocks:
     leads: Sequence[Lead]
     moves_with: Mapping[str, tuple[str | None, complex]]
     gravity: float
+    outlines: Mapping[str, Sequence[Points]]
+    block_of: Mapping[str, str]
 
     @cached_property
     def box(self) -> tuple[complex, complex]:
@@ -184,9 +190,11 @@ class _Apart:
         """Return all of it."""
         outlines = [z for member in self.members for z in member.polygons]
         shapes, bodies = defaultdict[str, list[Points]](list), defaultdict[str, list[Body]](list)
+        drawn_as = defaultdict[str, list[Points]](list)
         for member in self.members:
             block = self._block(member)
             bodies[block].append(member.body)
+            drawn_as[block] += member.polygons
             for z in member.polygons:
                 shapes[block] += convex_pieces(z, [other for other in outlines if other is not z])
         floors = []
@@ -214,7 +222,8 @@ class _Apart:
         return FreeBlocks(
             [_united(name, each) for name, each in bodies.items()], shapes, [*ground, *feet],
             [piece for line in walls for piece in _below(line, self.size)], self.friction, self._frictions(), guides,
-            floors, ties, self._leads(), moves_with, self.mechanism.gravity,
+            floors, ties, self._leads(), moves_with, self.mechanism.gravity, drawn_as,
+            {member.body.name: self._block(member) for member in self.members},
         )  # fmt: skip
 
     def _cannot(self, field: str, what: str) -> InputError:
