@@ -38,8 +38,8 @@ def command(file: str | Path, asked: GroundMotions, output: Output, **question: 
     outcome and the peak of each, when their rotations part, the friction that each requires, and how far the joints
     open that the mechanism keeps closed. If the exact outcome is unknown, free blocks are the witness.
 
-    Restitution has no effect on free blocks: it is what their contacts give. They overturn when a block falls by 0.15 of
-    the structure's height, or turns by 0.8 rad. The exit code is 0 whatever the comparison finds.
+    Restitution has no effect on free blocks: it is what their contacts give. They overturn when a block falls by 0.15
+    of the structure's height, or turns by 0.8 rad. The exit code is 0 whatever the comparison finds.
 
     Without FILE, the command uses rocking.yaml of this folder, or else a block of 0.7 m x 2.8 m.
 

@@ -12,12 +12,12 @@ from rocking_cli.arrays import Bools, Points, Reals
 from rocking_cli.core import Direction
 from rocking_cli.questions.crosscheck.study import Crosscheck
 from rocking_cli.short_repr import short_repr
+from rocking_cli.structure import Structure
 from rocking_cli.studies.engines.free import MOVED
 from rocking_cli.studies.engines.free_blocks import FreeBlocks
 from rocking_cli.studies.film import Film, Scene
-from rocking_cli.studies.hung import End
+from rocking_cli.studies.hung import End, TiePiece
 from rocking_cli.studies.picture import DrawnPart, Picture, box_around, picture
-from rocking_cli.structure import Structure
 
 NODE_INTERVAL = 0.02  # s between the positions of a page
 
@@ -85,11 +85,10 @@ class BlockPicture(Picture):
                 centroids[end.part] + np.exp(1j * psi[end.part]) * (end.point - self.parts[end.part].centroid)
             )
 
-        longer = [
-            [np.abs(place(piece.end) - place(piece.start)) - abs(piece.end.point - piece.start.point) for piece in tie.pieces]
-            for tie in self.ties
-        ]  # fmt: skip
-        return [tie.slack_at(np.sum(each, axis=0)) for tie, each in zip(self.ties, longer, strict=True)]
+        def longer(piece: TiePiece) -> Reals:
+            return np.asarray(np.abs(place(piece.end) - place(piece.start)) - abs(piece.end.point - piece.start.point))
+
+        return [tie.slack_at(np.sum([longer(piece) for piece in tie.pieces], axis=0)) for tie in self.ties]
 
 
 @short_repr
@@ -140,16 +139,14 @@ def _of_blocks(drawn: Picture, found: Crosscheck) -> BlockPicture:
     def moved(end: End) -> End:
         return end if end.part is None else end._replace(part=_block_at(drawn, drawn.parts[end.part], end.point, free))
 
+    def with_blocks(piece: TiePiece) -> TiePiece:
+        return piece._replace(start=moved(piece.start), end=moved(piece.end))
+
+    loads = [(load, _block_at(drawn, drawn.parts[load.part], load.point, free)) for load in drawn.loads]
     return BlockPicture(
         mechanism, parts, (), drawn.phi_cr, drawn.limit, drawn.ground, drawn.sketch,
-        loads=tuple(
-            replace(load, part=part) for load in drawn.loads
-            if (part := _block_at(drawn, drawn.parts[load.part], load.point, free)) is not None
-        ),
-        ties=tuple(
-            replace(tie, pieces=tuple(each._replace(start=moved(each.start), end=moved(each.end)) for each in tie.pieces))
-            for tie in drawn.ties
-        ),
+        tuple(replace(load, part=part) for load, part in loads if part is not None),
+        tuple(replace(tie, pieces=tuple(map(with_blocks, tie.pieces))) for tie in drawn.ties),
         time=found.moved.time, moved=found.moved.moved,
         tones={
             direction: tuple(of.get(free.moves_with[part.name][0] or "") for part in parts)
