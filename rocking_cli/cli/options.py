@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from rocking_cli.cli import complete
 from rocking_cli.cli.defaults import from_default
@@ -20,6 +21,7 @@ from rocking_cli.processing.reading_options import CORRECTIONS, READING, SCALING
 STANDARD_OUTPUT = "-"
 # The names of the models are repeated here so that `--help` does not import numpy.
 MODELS = ("nonlinear", "linear1", "linear2")
+ENGINES = ("exact", "blocks", "auto")
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 HELP = {
@@ -329,6 +331,23 @@ around: Decorator = in_order(
     ),
 )
 """The neighbours of a motion: `neighbours` and the three deviations."""
+
+engine: Decorator = click.option(
+    "--engine",
+    type=click.Choice(ENGINES),
+    default="exact",
+    show_default=True,
+    help="Engine: exact (one degree of freedom), blocks (free blocks), or auto (blocks if exact tells no outcome).",
+)
+"""Who simulates the motions."""
+
+
+def few_neighbours(given: dict[str, Any], few: int | None) -> None:
+    """Replace the default number of neighbours by another with free blocks, which take long."""
+    typed = click.get_current_context().get_parameter_source("neighbours") is ParameterSource.COMMANDLINE
+    if given["engine"] != "exact" and not typed:
+        given["neighbours"] = few
+
 
 opening: Decorator = click.option(
     "--opening",

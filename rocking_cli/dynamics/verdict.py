@@ -136,4 +136,6 @@ def known_until(histories: Mapping[ModelName, History]) -> float:
 
     After that time the histories of the equivalent blocks are not valid either, as these have no joints.
     """
+    if "blocks" in histories:  # which go on where one degree of freedom ends
+        return inf
     return min((run.known_to for run in histories.values() if run.unknown), default=inf)

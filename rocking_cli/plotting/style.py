@@ -60,6 +60,7 @@ LINES = {
     "nonlinear": {"color": BLACK, "linestyle": "-", "linewidth": 1.9},
     "linear1": {"color": ORANGE, "linestyle": "--", "linewidth": 1.3},
     "linear2": {"color": BLUE, "linestyle": "-.", "linewidth": 0.9},
+    "blocks": {"color": BLUE, "linestyle": "-", "linewidth": 1.3},
 }
 RECORD_COLOUR = "#8a8a8a"  # pale, as bold curves are drawn over it
 PULSES: tuple[dict[str, Any], ...] = (
@@ -67,7 +68,12 @@ PULSES: tuple[dict[str, Any], ...] = (
     {"color": ORANGE, "linestyle": "--", "linewidth": 2.0},
     {"color": BLUE, "linestyle": "-.", "linewidth": 1.6},
 )
-LABELS = {"nonlinear": "nonlinear", "linear1": r"linear, $\kappa_1$", "linear2": r"linear, $\kappa_2$"}
+LABELS = {
+    "nonlinear": "nonlinear",
+    "linear1": r"linear, $\kappa_1$",
+    "linear2": r"linear, $\kappa_2$",
+    "blocks": "free blocks",
+}
 
 # Regions of a plane of pulses, and the boundaries between them.
 # From white to dark, so that the order is visible in grey; blue to orange to brown for the colour-blind.

@@ -45,6 +45,7 @@ class NextStep(StrEnum):
     FIRST_MECHANISM = "verify_first_mechanism"
     SITE_VALUES = "give_site_values"
     RESPOND = "respond"
+    CROSSCHECK = "crosscheck"
     DESIGN = "design"
 
 
@@ -161,6 +162,8 @@ class Conclusion:
         if self.relies:
             steps.append(NextStep.CHECK_HOLD)
         neighbours_differ = self.share is not None and self.share.highest > 0 and self.share.lowest < 1
+        if self.remedy is not None:
+            steps.append(NextStep.CROSSCHECK)
         if self.ratio is None and (self.remedy is not None or neighbours_differ):
             steps.append(NextStep.MARGIN)
         steps += dict.fromkeys(OF_LEFT_OUT[each.what] for each in self.left_out)

@@ -6,6 +6,7 @@ together with its neighbours: the same motion a little stronger or weaker, with 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from statistics import NormalDist
 from typing import NamedTuple
@@ -14,7 +15,7 @@ import numpy as np
 
 from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction
-from rocking_cli.dynamics.batch import Runs, respond_many
+from rocking_cli.dynamics.batch import Runs
 from rocking_cli.dynamics.history import RTOL
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes
@@ -22,6 +23,7 @@ from rocking_cli.errors import InputError, Problem, SolverError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.names import peaks_over
 from rocking_cli.short_repr import short_repr
+from rocking_cli.studies.engines import EXACT, Engine
 
 FRACTILES = (0.16, 0.50, 0.84)
 MIN_AGREEMENT = 0.9  # share of neighbours with the outcome of the history; below it the outcome is sensitive
@@ -198,6 +200,8 @@ def neighbours(
     release: float | None = None,
     release_is_angle: bool = False,
     rtol: float = RTOL,
+    engine: Engine = EXACT,
+    progress: Callable[[int], None] | None = None,
 ) -> Neighbours:
     """Simulate the neighbours of a motion.
 
@@ -213,8 +217,10 @@ def neighbours(
         Start at rest, tilted by this fraction of the critical rotation.
     release_is_angle : bool
         Whether the tilt is given as an angle, which stays the same if the slenderness varies.
-    rtol
+    rtol, progress
         See `respond_many`.
+    engine : Engine
+        Who simulates them.
 
     Raises
     ------
@@ -227,10 +233,11 @@ def neighbours(
     if not around.count:
         raise InputError(Problem("must be at least 1", field="neighbours"))
     draws = around.drawn(model)
-    unchecked = model.joints is None
+    unchecked = model.joints is None and engine.name != "blocks"
     able = draws.slender > 0
     largest_factor = float((draws.amplitude[able] / draws.slender[able]).max(initial=1.0))
-    if release is None and motion is not None and able.all() and not can_lift(model, motion, largest_factor):
+    rests = engine.name != "blocks"  # of free blocks, other joints may open first
+    if rests and release is None and motion is not None and able.all() and not can_lift(model, motion, largest_factor):
         unknown = None if unchecked else 0.0
         still = np.zeros((around.count, 2))
         return Neighbours(around, model.name, 0.0, (0.0, 0.0, 0.0), 1.0, lifted=False, unknown=unknown, rotations=still)
@@ -239,7 +246,7 @@ def neighbours(
     tilts = None
     if release is not None:
         tilts = release / np.where(all_draws.slender > 0, all_draws.slender, 1.0) if release_is_angle else release
-    outcomes = simulate_neighbours(model, motion, all_draws, release=tilts, rtol=rtol)
+    outcomes = simulate_neighbours(model, motion, all_draws, release=tilts, rtol=rtol, engine=engine, progress=progress)
     outcome = np.where(outcomes.unknown, 2, outcomes.fell)
     peaks = np.where(outcome[1:] > 0, np.inf, outcomes.peak_ratio[1:])
     # Quantiles are values of the sample, as interpolation with infinity has no meaning.
@@ -266,6 +273,7 @@ def simulate_neighbours(
     scale: Reals | float = 1.0,
     polarity: int = 1,
     release: Reals | float | None = None,
+    engine: Engine = EXACT,
     **how: object,
 ) -> Outcomes:
     """Simulate neighbours of a motion until their final peaks are known.
@@ -282,6 +290,8 @@ def simulate_neighbours(
         1, or -1 to reverse the motion.
     release : float or ndarray, shape (n,), optional
         Start at rest, tilted by this fraction of the critical rotation.
+    engine : Engine
+        Who simulates them.
     **how
         See `respond_many`.
 
@@ -299,7 +309,7 @@ def simulate_neighbours(
         eta=draws.eta,
         slender=np.where(stands, draws.slender, 1.0),
     )
-    outcomes = respond_many([model], [motion], runs, release=release, only_peaks=True, **how)  # type: ignore[arg-type]
+    outcomes = engine.outcomes([model], [motion], runs, release=release, only_peaks=True, **how)  # type: ignore[arg-type]
     if outcomes.failed.any():
         k = int(outcomes.failed.argmax())
         raise SolverError(f"{model.structure}: the motion scaled by {runs.scale[k]:.6g} could not be simulated")

@@ -16,7 +16,7 @@ from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare, NextStep, are_alike, worst
 from rocking_cli.studies.contact import ContactDemand, Contacts
-from rocking_cli.studies.engines import respond
+from rocking_cli.studies.engines import EngineName, engine_of
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
 
 Histories = Mapping[ModelName, History]
@@ -43,8 +43,13 @@ def concluded(runs: ByPolarity, neighbours: Mapping[int, Neighbours], motion: st
 
 
 def _of_each(runs: ByPolarity, neighbours: Mapping[int, Neighbours], motion: str) -> dict[int, Conclusion]:
-    best: ModelName = "nonlinear" if "nonlinear" in next(iter(runs.values())) else next(iter(next(iter(runs.values()))))
-    return {sign: _of_run(run[best], neighbours.get(sign), motion, sign) for sign, run in runs.items()}
+    return {sign: _of_run(run[best_model(run)], neighbours.get(sign), motion, sign) for sign, run in runs.items()}
+
+
+def best_model(histories: Histories) -> ModelName:
+    """Return the model by which is concluded: free blocks, then the structure itself, then the first of its blocks."""
+    preferred: tuple[ModelName, ...] = ("blocks", "nonlinear")
+    return next((name for name in preferred if name in histories), next(iter(histories)))
 
 
 def _together(each: Mapping[int, Conclusion]) -> Conclusion:
@@ -96,6 +101,8 @@ class Question:
         The neighbours of every motion; a count of 0 for none.
     release_is_angle : bool
         Whether the release was given as an angle.
+    engine : {"exact", "blocks", "auto"}
+        Who simulates the motions.
     """
 
     signs: tuple[int, ...]
@@ -105,6 +112,7 @@ class Question:
     with_pulse: str | None = None
     around: Neighbourhood = field(default_factory=Neighbourhood)
     release_is_angle: bool = False
+    engine: EngineName = "exact"
 
 
 @short_repr
@@ -170,7 +178,10 @@ def response_of(
 ) -> Response:
     """Simulate models of a structure under a motion, or freely from a release, and return all results."""
     contacts = Contacts(structure.mechanism)
-    follow = partial(respond, structure, models=names, release=question.release, tail=question.tail, rtol=question.rtol)
+    engine = engine_of(question.engine, [structure.mechanism])
+    follow = partial(
+        engine.respond, structure, models=names, release=question.release, tail=question.tail, rtol=question.rtol
+    )
     under = {
         sign: scaled.motion.scaled(sign * scaled.factor) if scaled is not None else None for sign in question.signs
     }
@@ -191,6 +202,7 @@ def response_of(
             release=question.release,
             release_is_angle=question.release_is_angle,
             rtol=question.rtol,
+            engine=engine,
         )
         for sign, motion in under.items()
         if question.around.count

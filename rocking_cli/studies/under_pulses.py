@@ -11,7 +11,7 @@ import numpy as np
 
 from rocking_cli.arrays import Bools, Reals
 from rocking_cli.core import Direction, Equivalence, EquivalentBlock
-from rocking_cli.dynamics.batch import Runs, respond_many
+from rocking_cli.dynamics.batch import Runs
 from rocking_cli.dynamics.exact_batch import exact_many
 from rocking_cli.dynamics.model import Model, ModelName, linear_model
 from rocking_cli.dynamics.outcome import Outcomes
@@ -19,6 +19,7 @@ from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD, Pulse, parse_pulse
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
+from rocking_cli.studies.engines import EXACT, Engine
 
 Progress = Callable[[int], None]
 SAME_AMPLITUDE = 1e-9  # relative difference below which both directions uplift together
@@ -41,6 +42,8 @@ class PulsedModel:
         The direction in which the weakest pulse uplifts; its p, lambda and eta make pulses dimensionless.
     eta_given : bool
         Whether the restitution was given; otherwise it is that of the kinematics.
+    engine : Engine
+        Who simulates its nonlinear motions.
     """
 
     name: str
@@ -48,6 +51,7 @@ class PulsedModel:
     equivalence: Equivalence
     direction: Direction
     eta_given: bool = True
+    engine: Engine = EXACT
 
     @property
     def block(self) -> EquivalentBlock:
@@ -249,7 +253,7 @@ def _by_histories(
     different, which = np.unique(periods, return_inverse=True)
     motions = [replace(shape, period=float(period)).sampled(COARSE_POINTS_PER_PERIOD) for period in different]
     runs = Runs.of(0, which, scale=amplitudes / shape.amplitude, polarity=polarity)
-    result = respond_many([structure.model], motions, runs, only_peaks=True, progress=progress)
+    result = structure.engine.outcomes([structure.model], motions, runs, only_peaks=True, progress=progress)
     _check(structure, result.failed, periods, amplitudes)
     return result
 

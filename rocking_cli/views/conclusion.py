@@ -37,6 +37,7 @@ NEXT_STEPS: Mapping[str, str] = {
     NextStep.FIRST_MECHANISM: "describe the mechanism that starts first as a structure, and verify that structure",
     NextStep.SITE_VALUES: "give the values that the code requires in the site file (`rocking new site` prints one)",
     NextStep.RESPOND: "`rocking respond` under this motion names the joint that opens or slides, and when",
+    NextStep.CROSSCHECK: "`rocking crosscheck` simulates what happens from then on, as free blocks",
     NextStep.DESIGN: "`rocking design` finds the value of a field at which the ratio reaches 1",
 }
 

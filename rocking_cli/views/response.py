@@ -27,6 +27,7 @@ from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
 from rocking_cli.views.conclusion import conclusion_data, governing_polarity, headline, next_in_words
 from rocking_cli.views.contact import contact_data, contact_words
+from rocking_cli.views.engines import engines_in_words
 from rocking_cli.views.neighbours import neighbours_data, neighbours_in_words
 from rocking_cli.views.restitution import restitution_data, restitution_used
 from rocking_cli.views.verdict import SENSE, unchecked, verdict, why_unknown
@@ -128,13 +129,13 @@ def histories_data(
     """Return the response of each model under one polarity as plain data; arguments are those of `runs_data`."""
     data: dict[str, Any] = {}
     for name, run in found.runs[sign].items():
-        moved = watched.peaks(run)
+        moved = watched.peaks(run) if name != "blocks" else None  # free blocks do not move as the mechanism does
         data[name] = {
             **data_of(_columns(), run),
             **known_data(run),
-            "impact_velocity": moved.impact_velocity,
-            "points": {each.name: data_of(POINTS, each) for each in moved.points},
-            "ties": {each.name: data_of(TIES, each) for each in moved.ties},
+            "impact_velocity": moved.impact_velocity if moved is not None else None,
+            "points": {each.name: data_of(POINTS, each) for each in moved.points} if moved is not None else {},
+            "ties": {each.name: data_of(TIES, each) for each in moved.ties} if moved is not None else {},
         }
         if etas is not None:
             data[name]["impact_list"] = [data_of(IMPACTS, each) for each in _impacts(run.impacts, etas)]
@@ -147,7 +148,7 @@ def histories_data(
 def models_used(models: Iterable[ModelName]) -> Iterator[str]:
     """Yield a sentence on what the models are; none for the nonlinear model alone."""
     names = list(models)
-    linear = [name for name in names if name != "nonlinear"]
+    linear = [name for name in names if name not in ("nonlinear", "blocks")]
     if linear:
         itself = "nonlinear is the structure itself, " if "nonlinear" in names else ""
         scaled = " and ".join(name.replace("linear", "kappa") for name in linear)
@@ -203,10 +204,11 @@ def _columns(*, unknown: bool = False, over: str = "phi_cr") -> list[Column[Hist
     """
 
     def of_structure(value: Callable[[History], Any]) -> Callable[[History], Any]:
-        return lambda run: None if unknown and not run.unknown else value(run)
+        return lambda run: None if unknown and not (run.unknown or run.by_blocks) else value(run)
 
     until, bound = ("known until", f"lower bound of peak / {over}") if unknown else (None, None)
     return [
+        Column("engine", lambda run: "blocks" if run.by_blocks else "exact"),
         Column("outcome", ending),
         only_shown("outcome", of_structure(of("words"))),
         only_shown(until, of("known_to"), rounded(5), "s"),
@@ -313,12 +315,14 @@ def view(
         ]
     first = next(iter(found.runs.values()))
     caution = [f"Caution: {text}" for text in cautions_of(mechanism)]
-    if structure.misleading and any(name != "nonlinear" for name in first):
+    if structure.misleading and any(name not in ("nonlinear", "blocks") for name in first):
         caution.append(f"Caution: {structure.misleading}.")
     caution += [f"Caution: {text}" for text in apart(watched, found.runs)]
     caution += not_checked(mechanism, first.values())
     joints = ["Joints are named as in `rocking draw`."] if any(each.joint for each in found.contacts.values()) else []
-    sentences = [*parts, *joints, *models_used(first), restitution_used(structure), *notes, *caution]
+    restitution = [restitution_used(structure)] if "nonlinear" in first else []
+    restitution += engines_in_words(asked.engine, sum("blocks" in runs for runs in found.runs.values()), mechanism)
+    sentences = [*parts, *joints, *models_used(first), *restitution, *notes, *caution]
     return View({**data, "notes": [*doubts, *notes, *caution]}, sentences)
 
 
@@ -394,7 +398,10 @@ def outcome_table(title: str, found: Response, sign: int, watched: Watched) -> T
     unknown = any(run.unknown for run in runs)
     free = runs[0].ends_at_limit
     over = "limit" if all(free) else "phi_cr or limit" if any(free) else "phi_cr"
-    columns = [*_columns(unknown=unknown, over=over), *_movements({run.model: watched.peaks(run) for run in runs})]
+    columns = [
+        *_columns(unknown=unknown, over=over),
+        *_movements({run.model: watched.peaks(run) for run in runs if run.model != "blocks"}),
+    ]
     if sign in found.contacts:
         per, unit = force_unit(watched.mechanism)
         shear = found.contacts[sign].base_shear / per
@@ -412,16 +419,22 @@ def outcome_table(title: str, found: Response, sign: int, watched: Watched) -> T
 
 def model_heads(models: Iterable[str], *, unknown: bool) -> list[str]:
     """Return headings of models; if the outcome of the structure is unknown, those of its block state that."""
-    return [f"block,\n{model}" if unknown and model != "nonlinear" else model for model in models]
+    heads = {"nonlinear": "nonlinear", "blocks": "free blocks"}
+    return [heads.get(model, f"block,\n{model}" if unknown else model) for model in models]
 
 
 def _movements(moved: Mapping[str, Movements]) -> Iterator[Column[History]]:
     """Yield the columns of the movements of a structure, given by model."""
+    if not moved:
+        return
 
-    def peak(kind: str, k: int, name: str, factor: float) -> Callable[[History], float]:
-        return lambda run: factor * getattr(getattr(moved[run.model], kind)[k], name)
+    def peak(kind: str, k: int, name: str, factor: float) -> Callable[[History], float | None]:
+        return lambda run: factor * getattr(getattr(moved[run.model], kind)[k], name) if run.model in moved else None
 
-    yield only_shown("peak impact velocity", lambda run: moved[run.model].impact_velocity, rounded(4), "m/s")
+    yield only_shown(
+        "peak impact velocity", lambda run: moved[run.model].impact_velocity if run.model in moved else None,
+        rounded(4), "m/s",
+    )  # fmt: skip
     any_model = next(iter(moved.values()))
     for k, point in enumerate(any_model.points):
         yield only_shown(

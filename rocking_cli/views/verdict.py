@@ -25,7 +25,10 @@ MIN_OPENING = 1e-6  # share of D_cr: a smaller opening is reported as none
 # From a comparison with free blocks: a peak below SMALL_PEAK has an error of some 20 % if a joint opens by more than
 # SMALL_PEAK_OPENING of D_cr.
 SMALL_PEAK, SMALL_PEAK_OPENING, SMALL_PEAK_ERROR = 0.02, 0.001, 0.2
-NEXT_STEP = "Next: `rocking margin` shows up to which scale factor the outcome is known. Under this motion, {}."
+NEXT_STEP = (
+    "Next: `rocking crosscheck` simulates what happens from then on, as free blocks; `rocking margin` shows up to "
+    "which scale factor the outcome is known. Under this motion, {}."
+)
 OVERTURNS = "assume that it overturns"
 REMEDIES = {
     "hinge_at_joint": f"describe the structure as a linkage that hinges at the joint that opens, or {OVERTURNS}",
@@ -162,6 +165,12 @@ def verdict(
     str
         A few sentences.
     """
+    if "blocks" in histories:
+        others: dict[ModelName, History] = {name: run for name, run in histories.items() if name != "blocks"}
+        first = [verdict(others, agreed, assumed_friction)] if others else []
+        run = histories["blocks"]
+        does = f"collapses at {run.overturning_time:.4g} s" if run.fell else ends(run)
+        return " ".join([*first, f"As free blocks, the structure {does}."])
     best: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
     run = histories[best]
     by = "" if best == "nonlinear" or len(histories) == 1 else f"By {best} the"

@@ -209,7 +209,7 @@ def test_the_share_of_a_linear_block_is_that_of_its_islands(varied):
 
 class TestWithoutShaking:
     def test_nothing_is_followed_where_nothing_can_lift(self, monkeypatch):
-        monkeypatch.setattr("rocking_cli.studies.neighbours.respond_many", None)
+        monkeypatch.setattr("rocking_cli.studies.engines.exact.respond_many", None)
         found = neighbours(build_model(BLOCK, "nonlinear"), ACCEL.scaled(0.01))
         assert (found.overturned, found.peak_ratio, found.sensitive) == (0.0, (0.0, 0.0, 0.0), False)
 

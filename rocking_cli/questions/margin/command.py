@@ -19,6 +19,7 @@ from rocking_cli.cli.help import Command
 @options.scaling("1", "-1", "both", default="both")
 @options.around
 @options.opening
+@options.engine
 @options.plot("Plot the shares against the scale factor")
 @options.as_json
 @options.grouped(asked=GroundMotions, output=Output)
@@ -40,10 +41,12 @@ def command(file: str | Path, asked: GroundMotions, output: Output, **around: An
       rocking margin block.yaml --record accel.csv --plot margin.png
       rocking margin frame.yaml --record "records/*.AT2" --polarity 1
       rocking margin --pulse sine:0.5g:0.8s --neighbours 1000
+      rocking margin arch.yaml --record accel.csv --engine auto
     """
     if not asked:
         raise click.UsageError("No ground motion given: add --record PLACE or --pulse PULSE, each repeatable.")
     asked.check()
+    options.few_neighbours(around, None)
     from rocking_cli.questions.margin.verb import margin
 
     output.keep_apart(file, *asked.motions.records)

@@ -20,7 +20,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import LEAST_SHARE, Conclusion, NeighbourShare
-from rocking_cli.studies.engines import respond
+from rocking_cli.studies.engines import EXACT, Engine, EngineName
 from rocking_cli.studies.intervals import wilson
 from rocking_cli.studies.neighbours import Draws, Neighbourhood, least_uplift, simulate_neighbours
 from rocking_cli.studies.response import concluded
@@ -28,6 +28,7 @@ from rocking_cli.studies.response import concluded
 SHARE_LEVELS = (LEAST_SHARE, 0.5, 0.9)
 FACTOR_TOLERANCE = 1e-9  # relative difference of equal factors
 FACTORS: Reals = np.geomspace(0.2, 5.0, 60)
+FEW_FACTORS: Reals = np.geomspace(0.2, 5.0, 15)  # of free blocks
 
 
 @short_repr
@@ -49,6 +50,10 @@ class Margin:
         The additional share of unknown outcome: at most the sum of both overturns, under the worse polarity.
     checked : bool
         Whether the joints of the structure are known; if not, no outcome is unknown.
+    engine : {"exact", "blocks", "auto"}
+        Who simulated them.
+    by_blocks : int
+        Number of neighbours, of all factors and polarities, that were simulated with free blocks.
     pga : float
         Peak ground acceleration of the motion at a factor of 1 [standard gravity].
     polarities : sequence of int
@@ -61,6 +66,8 @@ class Margin:
     overturned: Reals
     unknown: Reals
     checked: bool = True
+    engine: EngineName = "exact"
+    by_blocks: int = 0
     pga: float = field(kw_only=True)
     polarities: Sequence[int] = field(kw_only=True)
 
@@ -120,6 +127,7 @@ def margin(
     factors: Reals = FACTORS,
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
+    engine: Engine = EXACT,
 ) -> Margin:
     """Compute the share of overturning as a function of the factor on a motion.
 
@@ -140,6 +148,8 @@ def margin(
     progress : callable, optional
         Called with the number of histories done since the last call; their total is the product of the numbers of
         factors (with 1), neighbours and polarities.
+    engine : Engine
+        Who simulates them.
 
     Raises
     ------
@@ -156,6 +166,7 @@ def margin(
     factors = np.union1d(factors[np.abs(factors - 1) > FACTOR_TOLERANCE], 1.0)
     # The same neighbours at every factor, so that differences come from the factor alone.
     draws, overturned, at_most = around.drawn(model), np.zeros(factors.size), np.zeros(factors.size)
+    by_blocks = 0
     for k, sign in enumerate(polarities):
         # Neighbours that always overturn cannot do so more often; a symmetric structure has the same shares under the
         # motion reversed.
@@ -165,8 +176,10 @@ def margin(
         some = factors[undecided]
         repeated = Draws(*(np.concatenate([values] * some.size) if some.size else values[:0] for values in draws))
         outcomes = simulate_neighbours(
-            model, motion, repeated, scale=some.repeat(around.count), polarity=sign, threads=threads, progress=progress
-        )
+            model, motion, repeated, scale=some.repeat(around.count), polarity=sign, threads=threads, progress=progress,
+            engine=engine,
+        )  # fmt: skip
+        by_blocks += int(outcomes.by_blocks.sum())
         fell, doubtful = (of.reshape(some.size, around.count).mean(axis=1) for of in (outcomes.fell, outcomes.unknown))
         overturned[undecided] = np.maximum(overturned[undecided], fell)
         at_most[undecided] = np.maximum(at_most[undecided], fell + doubtful)
@@ -174,12 +187,15 @@ def margin(
     uplifts = [least_uplift(model, motion.scaled(sign)) for sign in polarities]
     least = min((uplift for uplift in uplifts if uplift is not None), default=None)
     return Margin(
-        around, least, factors, overturned, at_most - overturned, checked=model.joints is not None,
+        around, least, factors, overturned, at_most - overturned, engine=engine.name, by_blocks=by_blocks,
+        checked=model.joints is not None or engine.name == "blocks",
         pga=motion.of_ground.pga_g, polarities=tuple(polarities),
     )  # fmt: skip
 
 
-def conclusion(structure: Structure, motion: GroundMotion, polarities: Sequence[int], found: Margin) -> Conclusion:
+def conclusion(
+    structure: Structure, motion: GroundMotion, polarities: Sequence[int], found: Margin, engine: Engine = EXACT
+) -> Conclusion:
     """Return the conclusion at a factor of 1, with the share, and the factor from which a tenth may overturn.
 
     Parameters
@@ -192,8 +208,10 @@ def conclusion(structure: Structure, motion: GroundMotion, polarities: Sequence[
         The polarities, 1, -1 or both.
     found : Margin
         The margin.
+    engine : Engine
+        Who simulates the motion itself.
     """
-    runs = {sign: respond(structure, motion.scaled(sign), models=["nonlinear"]) for sign in polarities}
+    runs = {sign: engine.respond(structure, motion.scaled(sign), models=["nonlinear"]) for sign in polarities}
     from_factor = found.first(LEAST_SHARE, unknown=True)
     ratio = inf if from_factor is None else from_factor
     return replace(concluded(runs, {}, motion.name), share=found.share, ratio=ratio)

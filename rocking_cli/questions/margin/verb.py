@@ -12,13 +12,15 @@ import numpy as np
 from rocking_cli.ask.answer import Answer, MappingAnswer, drawn, no_plot
 from rocking_cli.ask.given import StructureLike, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
-from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
 from rocking_cli.names import OPENING, percent
 from rocking_cli.studies.conclusion import Concluding, worst
+from rocking_cli.studies.engines import FREE_NEIGHBOURS, engine_of
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.studies.neighbours import neighbours as neighbours_of
+from rocking_cli.views.engines import cost_in_words
 from rocking_cli.views.view import View, heading
 
 if TYPE_CHECKING:
@@ -32,11 +34,12 @@ def margin(
     motions: Motion | Motions | Sequence[Motion],
     *,
     polarity: str | int = "both",
-    neighbours: int = Neighbourhood.count,
+    neighbours: int | None = None,
     amplitude_deviation: float = Neighbourhood.amplitude,
     slenderness_deviation: float | None = None,
     restitution_deviation: float | None = None,
     opening: float = OPENING,
+    engine: str = "exact",
     watch: Watcher = SILENT,
     **options: Unpack[MotionArguments],
 ) -> MappingAnswer[str, Margin]:
@@ -50,13 +53,17 @@ def margin(
         Ground motions, their files, or pulses as text.
     polarity : {"both", "1", "-1"}
         Polarity of the motions: as given, reversed, or both, of which the worse governs.
-    neighbours : int
-        Number of neighbouring motions to simulate at each scale factor, at least 1.
+    neighbours : int, optional
+        Number of neighbouring motions to simulate at each scale factor, at least 1; by default 200, or 20 with free
+        blocks.
     amplitude_deviation, slenderness_deviation, restitution_deviation : float, optional
         Standard deviations of the neighbours: of ln amplitude, of ln slenderness and of restitution; by default those
         of the structure.
     opening : float
         Largest opening of a joint up to which a history is valid, over D_cr.
+    engine : {"exact", "blocks", "auto"}
+        Who simulates the motions: one degree of freedom, free blocks, or free blocks where one degree of freedom does
+        not tell the outcome. With free blocks there are fewer scale factors, and restitution is what contact gives.
     watch : Watcher
         Told what was read, how far the work is, and which of several motions cannot be used.
     **options
@@ -92,16 +99,24 @@ def margin(
     from rocking_cli.questions.margin.view import MarginRow, view
 
     signs = signs_of(polarity)
+    usual = Neighbourhood.count if engine == "exact" else FREE_NEIGHBOURS
+    neighbours = usual if neighbours is None else neighbours
+    if engine == "blocks":
+        refuse_idle("with free blocks", restitution_deviation=restitution_deviation, opening=opening != OPENING)
     around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
     ready = structure_of(structure, watch, opening)
-    model = ready.model("nonlinear")
+    model, by = ready.model("nonlinear"), engine_of(engine, [ready.mechanism])
+    factors = study.FACTORS if engine == "exact" else study.FEW_FACTORS
     chosen = Motions.of(motions, options).gather(ready.growth, watch)
     rows = []
-    with watch.progress((study.FACTORS.size + 1) * neighbours * len(signs) * len(chosen), "histories") as advance:
+    count = (factors.size + 1) * neighbours * len(signs) * len(chosen)
+    if chosen and (cost := cost_in_words(by, ready, chosen[0].motion, count)):
+        watch.note(cost)
+    with watch.progress(count, "histories") as advance:
         for each in chosen:
             scaled = each.motion.scaled(each.factor)
-            result = study.margin(model, scaled, signs, around=around, progress=advance)
-            end = study.conclusion(ready, scaled, signs, result)
+            result = study.margin(model, scaled, signs, around=around, factors=factors, progress=advance, engine=by)
+            end = study.conclusion(ready, scaled, signs, result, by)
             rows.append(MarginRow(each.motion.name, each.factor, result, end))
     end = replace(worst(row.conclusion for row in rows), motions=[row.name for row in rows])
     margins = Concluding({row.name: row.margin for row in rows}, end)
@@ -169,6 +184,9 @@ def shares(
         of the structure.
     opening : float
         Largest opening of a joint up to which a history is valid, over D_cr.
+    engine : {"exact", "blocks", "auto"}
+        Who simulates the motions: one degree of freedom, free blocks, or free blocks where one degree of freedom does
+        not tell the outcome. With free blocks there are fewer scale factors, and restitution is what contact gives.
     watch : Watcher
         Told what was read, and what is doubtful about it.
     **options

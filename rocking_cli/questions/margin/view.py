@@ -19,6 +19,7 @@ from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.column import Column, of, only_shown, rounded, table_of
 from rocking_cli.views.conclusion import conclusion_data, of_margin
+from rocking_cli.views.engines import engines_in_words
 from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import MAX_DETAILED_MOTIONS, Table, View, heading, number
@@ -97,6 +98,8 @@ def view(
         parts.append(
             f"The row '{GOVERNING_ROW}' governs; the row below it alone does not prove that the structure stands."
         )
+    if rows:
+        parts += engines_in_words(rows[0].margin.engine, sum(row.margin.by_blocks for row in rows), mechanism)
     parts += [f"{row.name}: {in_words(row.margin)}" for row in rows] if len(rows) <= MAX_DETAILED_MOTIONS else []
     parts += [f"Caution: {text}" for text in cautions_of(mechanism)]
     if not all(row.margin.checked for row in rows):
@@ -108,6 +111,7 @@ def _data(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around
     return {
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
         "model": "nonlinear",
+        "engine": rows[0].margin.engine if rows else "exact",
         "polarity": polarity,
         "neighbours": asdict(around),
         "motions": [
@@ -132,6 +136,7 @@ def margin_data(found: Margin) -> dict[str, Any]:
         "factors": found.factors.tolist(),
         "shares": found.overturned.tolist(),
         "unknown": found.unknown.tolist() if found.checked else None,
+        "by_blocks": found.by_blocks,
         "levels": {
             f"{100 * level:g}": {
                 "first": found.first(level),

@@ -51,6 +51,7 @@ MODELS = ("linear2", "linear1", "nonlinear")
     help=f"{options.HELP['points']}  [default: 256; 60 with --compare]",
 )
 @options.opening
+@options.engine
 @options.out(".csv", what="Write the map, one point per line, or the curves.")
 @options.plot("Plot the map, or the curves")
 @options.as_json

@@ -22,6 +22,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.questions.overturning.edges import Edges, edges_of
 from rocking_cli.short_repr import short_repr
+from rocking_cli.studies.engines import EXACT
 from rocking_cli.studies.under_pulses import Progress, PulsedModel, outcomes
 
 SCAN_AMPLITUDES = 200  # amplitudes simulated together, as overturning has islands below amplitudes that do not overturn
@@ -131,9 +132,15 @@ class OverturningMap:
 
     @cached_property
     def edges(self) -> Edges:
-        """Edges between the kinds, and contours of the peak; the first use simulates further pulses near the edges."""
+        """Edges between the kinds, and contours of the peak; the first use simulates further pulses near the edges.
+
+        With free blocks, which take long, edges are half way between the points.
+        """
 
         def simulated(places: Points) -> Integers:
+            if self.structure.engine is not EXACT:
+                nearest: Integers = self.kinds[np.rint(places.imag).astype(int), np.rint(places.real).astype(int)]
+                return nearest
             omega, a = self.at(places)
             return _kinds(
                 outcomes(

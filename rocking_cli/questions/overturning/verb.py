@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from rocking_cli.structure import Structure
 
 MAP_POINTS, CURVE_POINTS = 256, 60  # along each side of a map, and of a curve
+FEW_POINTS = 12  # along each side of a map with free blocks
 ETA = 0.9  # restitution of the linear block
 Range = tuple[float, float]
 
@@ -43,6 +45,7 @@ def overturning(
     a: Range | None = None,
     points: int | None = None,
     opening: float = OPENING,
+    engine: str = "exact",
     watch: Watcher = SILENT,
 ) -> Answer[OverturningMap] | Answer[Comparison]:
     """Map the pulses that overturn a structure, or compare several structures.
@@ -70,9 +73,12 @@ def overturning(
     omega, a : (float, float), optional
         Smallest and largest dimensionless frequency and amplitude, on dimensionless axes.
     points : int, optional
-        Number of points along each side of a map, 256 by default, or of periods, 60 by default.
+        Number of points along each side of a map, 256 by default, or 12 with free blocks; or of periods, 60 by default.
     opening : float
         Largest opening of a joint up to which a history is valid, over D_cr.
+    engine : {"exact", "blocks", "auto"}
+        Who simulates the pulses of a map: one degree of freedom, free blocks, or free blocks where one degree of
+        freedom does not tell the outcome. With free blocks the model is the nonlinear one.
     watch : Watcher
         Shown the progress, and told which structures cannot be used, and for which the linear models mislead.
 
@@ -104,7 +110,11 @@ def overturning(
     axes = {"period": period, "ag": ag, "omega": omega, "a": a}
     ranges = [name for name, ends in axes.items() if ends is not None]
     _check(ready, ranges, compare=compare, dimensionless=dimensionless, model=model)
-    model = model or ("nonlinear" if compare else "linear2")
+    if engine != "exact" and compare:
+        raise InputError("`engine` cannot be combined with `compare`: free blocks take too long")
+    if engine != "exact" and not ready:
+        raise InputError("`engine` requires a structure: give one")
+    model = model or ("nonlinear" if compare or engine != "exact" else "linear2")
     if model != "nonlinear":
         warn_misleading(ready, watch)
     if compare:
@@ -112,9 +122,11 @@ def overturning(
             ready, shape=shape, model=model, eta=eta, period=period, top=ag[1] if ag is not None else None,
             polarity=polarity, points=points or CURVE_POINTS, opening=opening, watch=watch,
         )  # fmt: skip
+    usual = MAP_POINTS if engine == "exact" else FEW_POINTS
     return overturning_map(
         ready[0] if ready else None, shape=shape, model=model, eta=eta, period=period, ag=ag, omega=omega, a=a,
-        dimensionless=dimensionless, polarity=polarity, points=points or MAP_POINTS, opening=opening, watch=watch,
+        dimensionless=dimensionless, polarity=polarity, points=points or usual, opening=opening, engine=engine,
+        watch=watch,
     )  # fmt: skip
 
 
@@ -150,6 +162,7 @@ def overturning_map(
     polarity: str | int = "1",
     points: int = 128,
     opening: float = OPENING,
+    engine: str = "exact",
     watch: Watcher = SILENT,
 ) -> Answer[OverturningMap]:
     """Map the effect of pulses of all periods and amplitudes on a structure, or on the dimensionless linear block.
@@ -177,6 +190,8 @@ def overturning_map(
         Number of points along each side.
     opening : float
         Largest opening of a joint up to which a history is valid, over D_cr.
+    engine : {"exact", "blocks", "auto"}
+        Who simulates the pulses, see `overturning`.
     watch : Watcher
         Shown the progress.
 
@@ -207,7 +222,9 @@ def overturning_map(
     """
     from rocking_cli.questions.overturning import study
     from rocking_cli.questions.overturning import view as views
+    from rocking_cli.studies.engines import engine_of
     from rocking_cli.studies.under_pulses import linear_block, parse_shape, pulsed_model
+    from rocking_cli.views.engines import cost_in_words
 
     form, signs = parse_shape(shape), signs_of(polarity)
     axes = {"period": period, "ag": ag, "omega": omega, "a": a}
@@ -231,6 +248,14 @@ def overturning_map(
         columns = subject.period(np.geomspace(*(period or study.usual_periods([subject], form, signs)), points))
         rows = np.geomspace(*(ag or study.usual_amplitudes([subject])), points) * STANDARD_GRAVITY / subject.unit
     count = study.count_histories([subject], columns.size * rows.size, signs)
+    if engine != "exact":
+        if model != "nonlinear":
+            raise InputError(f"`engine` {engine} simulates the structure itself: leave out `model` {model}")
+        refuse_idle("with free blocks", eta=eta)
+        by = engine_of(engine, [ready.mechanism])
+        longest = replace(form, period=float(subject.period(columns).max())).sampled()
+        watch.note(cost_in_words(by, ready, longest, count))
+        subject = replace(subject, engine=by)
     with watch.progress(count, "histories") as progress:
         result = study.overturning_map(subject, form, columns, rows, polarities=signs, progress=progress)
     shown = views.map_view(result, mechanism, dimensionless=bare)

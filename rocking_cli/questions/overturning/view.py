@@ -16,6 +16,7 @@ from rocking_cli.names import OVERTURNS, UNKNOWN, percent
 from rocking_cli.questions.overturning.study import FALLS, Comparison, OverturningMap, Region
 from rocking_cli.studies.under_pulses import PulsedModel
 from rocking_cli.views.column import only_shown, rounded, table_of
+from rocking_cli.views.engines import engines_in_words
 from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import ABSENT, Table, View, number
 
@@ -81,6 +82,7 @@ def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionles
             "structure although a smaller one does."
         )
     if mechanism is not None:
+        parts += engines_in_words(found.structure.engine.name, int(found.outcome.by_blocks.sum()), mechanism)
         parts += _joints([found.structure], [mechanism])
     return View(_map_data(found, mechanism, dimensionless=dimensionless), parts)
 
@@ -133,6 +135,8 @@ def _map_data(found: OverturningMap, mechanism: Mechanism | None, *, dimensionle
         "structure": _structure(shaken, mechanism) if mechanism is not None else None,
         "pulse": found.shape.name,
         "model": shaken.model.name,
+        "engine": shaken.engine.name,
+        "by_blocks": int(found.outcome.by_blocks.sum()),
         "eta": shaken.eta,
         "polarity": _polarity(found),
         "dimensionless": dimensionless,

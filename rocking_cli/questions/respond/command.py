@@ -77,6 +77,7 @@ def _models(text: str) -> tuple[str, ...]:
 )
 @options.around
 @options.opening
+@options.engine
 @click.option("--impacts", is_flag=True, help="List the impacts: time, and angular velocity before and after.")
 @options.out(".csv", ".parquet", what="Write the time histories (.csv or .parquet).")
 @options.plot("Plot the time histories")
@@ -108,6 +109,7 @@ def command(files: tuple[str, ...], asked: GroundMotions, output: Output, **ques
       rocking respond column.yaml --release 0.05rad
       rocking respond frame.yaml --pulse ricker:0.4g:1.2s --polarity both
       rocking respond frame.yaml --record accel.csv --with-pulse --plot response.png
+      rocking respond arch.yaml --record accel.csv --engine auto
     """
     _check(asked, output, question)
     from rocking_cli.questions.respond.verb import respond
@@ -119,6 +121,7 @@ def command(files: tuple[str, ...], asked: GroundMotions, output: Output, **ques
         as_declared(question, *NEIGHBOUR_OPTIONS)
         if click.get_current_context().get_parameter_source("neighbours") is not ParameterSource.COMMANDLINE:
             question["neighbours"] = 0
+    options.few_neighbours(question, 0)
     if not question["neighbours"]:
         as_declared(question, *NEIGHBOUR_OPTIONS[1:])
     output.keep_apart(*files, *motions.records, question["vertical"])

@@ -27,6 +27,7 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies.contact import ContactDemand
 from rocking_cli.studies.film import SECONDS_AFTER, SECONDS_BEFORE
 from rocking_cli.studies.movements import Watched
+from rocking_cli.studies.response import best_model
 
 MAX_SHOWN_RATIO = 1.6  # largest phi/phi_cr that is shown
 CUT_RATIO = 1.15  # phi/phi_cr at which a curve that overturns is cut off
@@ -281,7 +282,7 @@ def _draw_responses(
     axes: Axes, histories: Runs, scale: _Scale, until: float, watched: Watched | None
 ) -> tuple[list[Line2D], list[Line2D]]:
     """Draw the rotations of the models, with marks on the best one; return the curves, and the marks to be named."""
-    best: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
+    best = best_model(histories)
     free = histories[best].ends_at_limit
     axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
     axes.set_ylim(scale.low, scale.high)
@@ -289,7 +290,8 @@ def _draw_responses(
         _draw_wall(axes, watched.mechanism.directions[0], scale)
     moves = any(run.lifted for run in histories.values())
     curves = [_draw_run(axes, run, scale, until, told=name != best and moves) for name, run in histories.items()]
-    points, limits = list(_points(axes, histories[best], scale, until, watched)), list[Line2D]()
+    moved = watched if best != "blocks" else None  # free blocks do not move as the mechanism does
+    points, limits = list(_points(axes, histories[best], scale, until, moved)), list[Line2D]()
     for k, side in enumerate(Direction):
         level = scale.limit(histories[best], side)
         if scale.low < level < scale.high:
@@ -309,7 +311,9 @@ def _draw_run(axes: Axes, run: History, scale: _Scale, until: float, *, told: bo
     values = scale.of(run)[: _shown(run, until)]
     shown = style.visible(values)
     label = style.LABELS[run.model]
-    if not isfinite(until) and (told or (run.fell and not _leaves(run))):
+    if run.unknown and not isfinite(until):
+        label += f", known until {run.known_to:.4g} s"
+    elif not isfinite(until) and (told or (run.fell and not _leaves(run))):
         label += f": {_fate(run, scale)}"
     (curve,) = axes.plot(run.time[shown], values[shown], label=label, **style.LINES[run.model])  # type: ignore[arg-type]
     return curve
@@ -324,7 +328,8 @@ def _peak(run: History) -> int:
 def _fate(run: History, scale: _Scale) -> str:
     """Return the outcome of a history that is known to its end, with its peak or its time."""
     if run.fell:
-        return f"{names.OVERTURNS} at {run.overturning_time:.4g} s{'' if _leaves(run) else ', after the last sample'}"
+        does = "collapse" if run.by_blocks else names.OVERTURNS
+        return f"{does} at {run.overturning_time:.4g} s{'' if _leaves(run) else ', after the last sample'}"
     if not run.lifted:
         return names.NO_UPLIFT
     peak = run.peak_ratio if scale.factor is None else scale.factor * run.furthest

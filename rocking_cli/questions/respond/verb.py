@@ -63,6 +63,7 @@ def respond(
     slenderness_deviation: float | None = None,
     restitution_deviation: float | None = None,
     opening: float = OPENING,
+    engine: str = "exact",
     impacts: bool = False,
     contact: bool = False,
     title: str | None = None,
@@ -101,6 +102,9 @@ def respond(
         of the structure.
     opening : float
         Largest opening of a joint up to which a history is valid, over D_cr.
+    engine : {"exact", "blocks", "auto"}
+        Who simulates the motion: one degree of freedom, free blocks, or free blocks as well if one degree of freedom
+        does not tell the outcome. The history of free blocks has the model "blocks".
     impacts : bool
         Whether the answer lists the impacts: the first in a table, without chatter, all in the data.
     contact : bool
@@ -147,7 +151,9 @@ def respond(
     'rocks'
     """
     from rocking_cli.questions.respond.several import Several
+    from rocking_cli.studies.engines import engine_of
     from rocking_cli.studies.response import response_of
+    from rocking_cli.views.engines import cost_in_words
     from rocking_cli.views.response import view
 
     _check_rtol(rtol)
@@ -159,7 +165,8 @@ def respond(
     drawn_around = around_of(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
     if motions.reading.azimuth == ALL_AZIMUTHS:
         _refuse_with_all_azimuths(polarity=signs != (1,), with_pulse=with_pulse, impacts=impacts, contact=contact,
-                                  tail=tail != TAIL_SECONDS, neighbours=neighbours)  # fmt: skip
+                                  tail=tail != TAIL_SECONDS, neighbours=neighbours,
+                                  engine=engine != "exact")  # fmt: skip
         around = all_directions(ready, motions, third, models=models, release=tilt, rtol=rtol, watch=watch)
         write_files(around, out, plot, watch)
         return around  # type: ignore[no-any-return]
@@ -171,7 +178,14 @@ def respond(
     if not motions:
         refuse_idle("without a ground motion", neighbours=neighbours)
     ratio = tilt.ratio(ready) if tilt is not None else None
-    question = Question(signs, ratio, tail, rtol, with_pulse, drawn_around, tilt is not None and tilt.is_angle)
+    question = Question(signs, ratio, tail, rtol, with_pulse, drawn_around, tilt is not None and tilt.is_angle,
+                        engine_of(engine).name)  # fmt: skip
+    if engine != "exact":
+        refuse_idle("with free blocks", models=models, with_pulse=with_pulse)
+        models = "nonlinear"
+    if engine == "blocks":
+        idle = {"rtol": rtol != RTOL, "opening": opening != OPENING, "contact": contact}
+        refuse_idle("with free blocks", **idle, restitution_deviation=restitution_deviation)
     names = models_of(models) if models is not None else usual_models(ready, watch)
     if "nonlinear" not in names:
         refuse_idle("on linear blocks, which have no joints", opening=opening != OPENING)
@@ -179,6 +193,9 @@ def respond(
     title, doubts = heading(ready.mechanism) if title is None else title, doubts_of(ready.mechanism)
 
     def one(given: Scaled | None, title: str, table: str | Path | None, picture: str | Path | None) -> ResponseAnswer:
+        count = neighbours * len(signs)
+        if count and given is not None and (cost := cost_in_words(engine_of(engine), ready, given.motion, count)):
+            watch.note(cost)
         response = response_of(ready, names, given, question)
         _note_pulse(response, watch)
         shown = view(response, ready, question, str(polarity), title, doubts, impacts=impacts)

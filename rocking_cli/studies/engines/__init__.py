@@ -4,26 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from rocking_cli.core import Mechanism
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.structure import Structure
 from rocking_cli.studies.engines.contract import Engine as Engine
 from rocking_cli.studies.engines.contract import EngineName as EngineName
 from rocking_cli.studies.engines.exact import EXACT as EXACT
 from rocking_cli.studies.engines.exact import follow as follow
 from rocking_cli.studies.engines.exact import respond as respond
 
+FREE_NEIGHBOURS = 20  # number of neighbours by default if free blocks are simulated
+
 ENGINES: tuple[EngineName, ...] = ("exact", "blocks", "auto")
 
 
-def engine_of(name: str, structures: Sequence[Structure] = ()) -> Engine:
+def engine_of(name: str, mechanisms: Sequence[Mechanism] = ()) -> Engine:
     """Return an engine.
 
     Parameters
     ----------
     name : {"exact", "blocks", "auto"}
         One degree of freedom, free blocks, or free blocks where one degree of freedom does not tell the outcome.
-    structures : sequence of Structure
-        The structures of the models whose outcomes will be asked for.
+    mechanisms : sequence of Mechanism
+        The structures of the models whose outcomes will be requested.
 
     Raises
     ------
@@ -36,4 +38,4 @@ def engine_of(name: str, structures: Sequence[Structure] = ()) -> Engine:
         return EXACT
     from rocking_cli.studies.engines.free import Auto, Blocks
 
-    return Blocks(structures) if name == "blocks" else Auto(structures)
+    return Blocks(mechanisms) if name == "blocks" else Auto(mechanisms)

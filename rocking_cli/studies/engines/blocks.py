@@ -20,7 +20,7 @@ from rocking_cli.dynamics.deck import RELEASE_DT
 from rocking_cli.errors import SolverError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.short_repr import short_repr
-from rocking_cli.studies.engines.free_blocks import FreeBlocks
+from rocking_cli.studies.engines.free_blocks import FALL, TURN, FreeBlocks
 from rocking_cli.studies.engines.scene import scene
 
 if TYPE_CHECKING:
@@ -30,14 +30,11 @@ SOFTNESS = 0.01  # time constant of a contact, over sqrt(size/g) of the smallest
 STEPS = 8  # time steps in this time
 HEAVY = 10.0  # weight on a block over its own, from which the contacts are stiffer
 HOLD = 1e-3  # s; the ground acceleration is held over so long at most
-FALL = 0.15  # of the structure's height
-TURN = 0.8  # rad
 SUNK = 1e-3  # largest depth to which a body may sink into another, over its own size
 SETTLING = 0.3  # s
 LIGHT = 0.1  # normal force over the weight of the lighter block, below which friction is not looked at
-STILL = 1e-9  # kinetic energy of a structure at rest, over m g times its height
-LONGEST = 60.0  # s after the motion for which blocks that still move are followed
-COLLAPSE = f"a block falls by {FALL:g} of the structure's height, or turns by {TURN:g} rad"
+REST_ENERGY = 1e-9  # kinetic energy at rest, over m g times the size; for sqrt(size/g), as blocks also turn back
+LONGEST_TAIL = 60.0  # s after the motion for which blocks that still move are followed
 
 
 @short_repr
@@ -122,7 +119,7 @@ class BlockModel:
     @cached_property
     def digest(self) -> str:
         """A digest of all on which motions of these blocks depend, besides the ground motion."""
-        rules = STEPS, HOLD, FALL, TURN, SUNK, SETTLING, STILL, LONGEST, self.free.height, self.time_constant
+        rules = STEPS, HOLD, FALL, TURN, SUNK, SETTLING, REST_ENERGY, LONGEST_TAIL, self.free.height, self.time_constant
         return self.scene.digest() + repr(rules)
 
     def simulate(
@@ -173,10 +170,11 @@ class BlockModel:
         sunk = self._deepest(data)
         if start is not None:
             data.qpos[:count] += self._normal(start)
+            data.qpos[count:] += self._raised(start)
         ended = motion.duration if motion is not None else 0.0
         if motion is not None and motion.vertical is not None:
             ended = max(ended, motion.vertical.duration)
-        last = min(ended + max(tail, LONGEST), most)
+        last = min(ended + max(tail, LONGEST_TAIL), most)
         pushes, lifts = (
             _held(each, factor_of / self.free.gravity, sample, holds, ended)
             for each, factor_of in (
@@ -190,7 +188,7 @@ class BlockModel:
         if start is not None:
             moved[0] = start
         frictions: dict[tuple[str, str], float] = {}
-        k = 0
+        k = moving = 0  # samples; the last with motion
         while True:
             for hold in range(k * holds, (k + 1) * holds):
                 if hold < len(pushes):
@@ -214,7 +212,9 @@ class BlockModel:
             time = k * sample
             if progress is not None:
                 progress(time)
-            at_rest = time >= ended and self._kinetic(data) < STILL
+            if self._kinetic(data) >= REST_ENERGY:
+                moving = k
+            at_rest = time >= ended and (k - moving) * sample >= self.scene.unit_of_time
             if (at_rest and time >= ended + tail) or time >= last:
                 break
         return BlockMotion(
@@ -225,6 +225,14 @@ class BlockModel:
 
     def _normal(self, moved: Reals) -> Reals:
         return (np.asarray(moved) / (self.scene.size, self.scene.size, 1.0)).ravel()
+
+    def _raised(self, moved: Reals) -> Reals:
+        """Return how far blocks raise the floors that lie on them, over the size of the structure."""
+        spots = [(self.names.index(floor.spot.body or ""), floor.spot.at) for floor in self.free.floors]
+        arms = np.array([at - self.free.bodies[k].centroid for k, at in spots])
+        _, rise, turned = np.reshape([moved[k] for k, _ in spots], (-1, 3)).T
+        raised: Reals = (rise + (arms * np.expm1(1j * turned)).imag) / self.scene.size
+        return raised
 
     def _settle(self, data: mujoco.MjData, steps: int) -> None:
         """Let the blocks sink into their contacts at rest."""

@@ -33,7 +33,7 @@ class Engine(ABC):
         tail: float = TAIL_SECONDS,
         rtol: float = RTOL,
     ) -> Mapping[ModelName, History]:
-        """Simulate one motion of a structure; parameters and errors are those of `exact.respond`.
+        """Simulate one motion of a structure; parameters and errors are those of `Exact.respond`.
 
         The history of free blocks has the model "blocks".
         """
@@ -47,6 +47,7 @@ class Engine(ABC):
         *,
         release: float | Reals | None = None,
         threads: int | None = None,
+        rtol: float = RTOL,
         only_peaks: bool = False,
         progress: Callable[[int], None] | None = None,
     ) -> Outcomes:

@@ -79,33 +79,6 @@ def check_motion(structure: Structure, motion: GroundMotion | None, release: flo
         raise InputError(f"tail must be a time in seconds, 0 or more, got {tail:g}")
 
 
-def respond(
-    structure: Structure,
-    motion: GroundMotion | None = None,
-    *,
-    models: Sequence[ModelName] = MODELS,
-    release: float | None = None,
-    tail: float = TAIL_SECONDS,
-    rtol: float = RTOL,
-) -> dict[ModelName, History]:
-    """Simulate models of a structure; other parameters and errors are those of `follow`.
-
-    Parameters
-    ----------
-    models : sequence of {"nonlinear", "linear1", "linear2"}
-        At least one model.
-
-    Returns
-    -------
-    dict of str to History
-        History of each model, in the order of `models`.
-    """
-    unknown = [name for name in models if name not in MODELS]
-    if unknown or not models:
-        raise InputError(f"models must be of {', '.join(MODELS)}, got {', '.join(unknown) or 'none'}")
-    return {name: follow(structure, motion, model=name, release=release, tail=tail, rtol=rtol) for name in models}
-
-
 class Exact(Engine):
     """The engine of one degree of freedom."""
 
@@ -121,8 +94,22 @@ class Exact(Engine):
         tail: float = TAIL_SECONDS,
         rtol: float = RTOL,
     ) -> dict[ModelName, History]:
-        """Simulate models of a structure, see `respond`."""
-        return respond(structure, motion, models=models, release=release, tail=tail, rtol=rtol)
+        """Simulate models of a structure; other parameters and errors are those of `follow`.
+
+        Parameters
+        ----------
+        models : sequence of {"nonlinear", "linear1", "linear2"}
+            At least one model.
+
+        Returns
+        -------
+        dict of str to History
+            History of each model, in the order of `models`.
+        """
+        unknown = [name for name in models if name not in MODELS]
+        if unknown or not models:
+            raise InputError(f"models must be of {', '.join(MODELS)}, got {', '.join(unknown) or 'none'}")
+        return {name: follow(structure, motion, model=name, release=release, tail=tail, rtol=rtol) for name in models}
 
     def outcomes(
         self,
@@ -132,13 +119,15 @@ class Exact(Engine):
         *,
         release: float | Reals | None = None,
         threads: int | None = None,
+        rtol: float = RTOL,
         only_peaks: bool = False,
         progress: Callable[[int], None] | None = None,
     ) -> Outcomes:
         """Simulate many motions, see `respond_many`."""
         return respond_many(
-            models, motions, runs, release=release, threads=threads, only_peaks=only_peaks, progress=progress
+            models, motions, runs, release=release, threads=threads, rtol=rtol, only_peaks=only_peaks, progress=progress
         )
 
 
 EXACT = Exact()
+respond = EXACT.respond

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from hashlib import sha256
 from math import nan
+from time import perf_counter
 from typing import Any, ClassVar
 
 import numpy as np
@@ -34,6 +35,7 @@ FINER = (
     4.0,
     8.0,
 )  # stiffness of contacts over that of the rule; each after the first if a body sank too deep
+MEASURED = 1.0  # s of a motion that are simulated to measure how long the others will take
 MOVED = 1e-3  # rotation over the critical one from which a structure has uplifted
 
 
@@ -122,9 +124,9 @@ class Blocks(Engine):
 
     name: ClassVar[EngineName] = "blocks"
 
-    def __init__(self, structures: Sequence[Structure] = ()) -> None:
+    def __init__(self, mechanisms: Sequence[Mechanism] = ()) -> None:
         engine_version()
-        self.mechanisms = tuple(structure.mechanism for structure in structures)
+        self.mechanisms = tuple(mechanisms)
 
     def respond(
         self,
@@ -176,6 +178,7 @@ class Blocks(Engine):
         *,
         release: float | Reals | None = None,
         threads: int | None = None,
+        rtol: float = RTOL,
         only_peaks: bool = False,
         progress: Callable[[int], None] | None = None,
     ) -> Outcomes:
@@ -196,9 +199,9 @@ class Blocks(Engine):
             if processes > 1
             else ((k, work(k, k + 1)) for k in range(len(left)))
         )
-        for k, found in parts:
-            memory.remember([(keys[left[k]], found)])
-            known[keys[left[k]]] = found
+        for k, outcome in parts:
+            memory.remember([(keys[left[k]], outcome)])
+            known[keys[left[k]]] = outcome
             if progress is not None:
                 progress(1)
         rows = [known[key] for key in keys]
@@ -213,8 +216,8 @@ class Auto(Engine):
 
     name: ClassVar[EngineName] = "auto"
 
-    def __init__(self, structures: Sequence[Structure] = ()) -> None:
-        self.free = Blocks(structures)
+    def __init__(self, mechanisms: Sequence[Mechanism] = ()) -> None:
+        self.free = Blocks(mechanisms)
 
     def respond(
         self,
@@ -227,10 +230,10 @@ class Auto(Engine):
         rtol: float = RTOL,
     ) -> Mapping[ModelName, History]:
         """Simulate models of a structure, and free blocks if the outcome of the nonlinear one is unknown."""
-        found = EXACT.respond(structure, motion, models=models, release=release, tail=tail, rtol=rtol)
-        if "nonlinear" not in found or not found["nonlinear"].unknown:
-            return found
-        return {**found, **self.free.respond(structure, motion, release=release, tail=tail)}
+        histories = EXACT.respond(structure, motion, models=models, release=release, tail=tail, rtol=rtol)
+        if "nonlinear" not in histories or not histories["nonlinear"].unknown:
+            return histories
+        return {**histories, **self.free.respond(structure, motion, release=release, tail=tail)}
 
     def outcomes(
         self,
@@ -240,11 +243,14 @@ class Auto(Engine):
         *,
         release: float | Reals | None = None,
         threads: int | None = None,
+        rtol: float = RTOL,
         only_peaks: bool = False,
         progress: Callable[[int], None] | None = None,
     ) -> Outcomes:
         """Simulate many motions; each outcome states its engine."""
-        exact = EXACT.outcomes(models, motions, runs, release=release, threads=threads, only_peaks=only_peaks)
+        exact = EXACT.outcomes(
+            models, motions, runs, release=release, threads=threads, rtol=rtol, only_peaks=only_peaks
+        )
         unknown = np.flatnonzero(exact.unknown)
         if progress is not None:
             progress(len(runs) - unknown.size)
@@ -264,6 +270,15 @@ def _put(values: Any, places: Any, others: Any) -> Any:
 
 def _start(mechanism: Mechanism, free: FreeBlocks, phi_cr: tuple[float, float], tilt: float) -> Reals | None:
     return free.tilted(mechanism, tilt * phi_cr[0 if tilt > 0 else 1]) if tilt else None
+
+
+def cost(structure: Structure, motion: GroundMotion) -> tuple[float, int]:
+    """Return how long a history of free blocks will take, measured over a part of it, and how many run at a time."""
+    with structure.named():
+        model = BlockModel(free_blocks(structure.mechanism))
+        began = perf_counter()
+        model.simulate(motion, most=MEASURED)
+    return (perf_counter() - began) * max(motion.duration / MEASURED, 1.0), min(os.cpu_count() or 1, MAX_PROCESSES)
 
 
 class _Work:

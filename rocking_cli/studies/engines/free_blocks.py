@@ -24,13 +24,16 @@ from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.engines.convex import convex_pieces
 from rocking_cli.studies.picture import box_around, picture
 
+FALL = 0.15  # of the structure's height: a block that falls by it has collapsed
+TURN = 0.8  # rad: a block that turns by it has collapsed
+COLLAPSE = f"a block falls by {FALL:g} of the structure's height, or turns by {TURN:g} rad"
 NEAR_SHARE = 1e-6  # distance that counts as zero, over the size of the structure
 LEAD_RATE = 1e-6  # difference of a rate of turning from that of phi that counts as zero
 FLAT_SHARE = 1e-6  # length of a foot, over the size of the structure, below which it is a point
 MARGIN_SHARE = 0.1  # length of the ground beside a foot, over that of the foot
 
 
-class Guide(NamedTuple):
+class HeldPoint(NamedTuple):
     """A point of a block that is held: along one line (`along`), or in place (0)."""
 
     block: str
@@ -68,7 +71,7 @@ class FreeBlocks:
         Coefficient of friction of all contacts but those of `frictions`.
     frictions : mapping of tuple of str to float
         Coefficient of friction of single pairs of blocks; "" is the ground.
-    guides : sequence of Guide
+    guides : sequence of HeldPoint
         Points that are held.
     floors : sequence of PointMass
         Masses that only move up and down, as those of floors that are held sideways elsewhere.
@@ -92,7 +95,7 @@ class FreeBlocks:
     walls: Sequence[Points]
     friction: float
     frictions: Mapping[tuple[str, str], float]
-    guides: Sequence[Guide]
+    guides: Sequence[HeldPoint]
     floors: Sequence[PointMass]
     ties: Sequence[Spring]
     leads: Sequence[Lead]
@@ -181,8 +184,6 @@ class _Apart:
 
     def __init__(self, mechanism: Mechanism) -> None:
         self.mechanism, self.sketch = mechanism, mechanism.sketch()
-        self._refuse()
-        self.members = self._members()
         # Contacts of each direction, or hinges and guides where contacts are not known.
         self.contacts = [
             contact
@@ -190,6 +191,8 @@ class _Apart:
             for contact in mechanism.contacts(direction)
             or of_joints(mechanism.guiding_joints(direction), mechanism.friction)
         ]
+        self._refuse()
+        self.members = self._members()
         self.part_of = self._bonded()
         outlines = [z for member in self.members for z in member.polygons]
         low, high = box_around(outlines)
@@ -243,18 +246,21 @@ class _Apart:
     def _refuse(self) -> None:
         if self.mechanism.crushing is not None:
             raise self._cannot("crushing", "pivots that crush")
-        for loc, thing in self.mechanism.hung.placed:
+        for loc, attached in self.mechanism.hung.placed:
             field = str(loc[0]) if loc else ""
-            if isinstance(thing, ConstantForce):
-                what = "friction of crossing walls" if thing.friction else f"a constant force, as that of {thing.name}"
+            if isinstance(attached, ConstantForce):
+                what = (
+                    "friction of crossing walls"
+                    if attached.friction
+                    else f"a constant force, as that of {attached.name}"
+                )
                 raise self._cannot(field, what)
-            if isinstance(thing, Element):
-                springs = [each for each in thing.stretched if isinstance(each, Spring) and each.stiffness]
+            if isinstance(attached, Element):
+                springs = [each for each in attached.stretched if isinstance(each, Spring) and each.stiffness]
                 several = any(spot.body in self.mechanism.alike() for tie in springs for spot in tie.spots)
-                if several or not springs or len(springs) < len(thing.stretched):
-                    raise self._cannot(field, f"{thing.name}, {thing.words}: only elastic ties on single bodies")
-        joints = [joint for direction in self.mechanism.directions for joint in self.mechanism.joints(direction)]
-        if any(joint.roll for joint in joints):
+                if several or not springs or len(springs) < len(attached.stretched):
+                    raise self._cannot(field, f"{attached.name}, {attached.words}: only elastic ties on single bodies")
+        if any(contact.roll for contact in self.contacts):
             raise self._cannot("corner_radius", "rounded feet")
 
     def _members(self) -> list[_Member]:
@@ -314,9 +320,9 @@ class _Apart:
             *(piece for line in lines for piece in _below(line, self.size)),
         ]
 
-    def _held(self, ground: Sequence[Points]) -> tuple[list[Guide], list[Points]]:
+    def _held(self, ground: Sequence[Points]) -> tuple[list[HeldPoint], list[Points]]:
         """Return the points that are held, and the ground below feet that stand elsewhere than on `ground`."""
-        guides, feet = list[Guide](), defaultdict[tuple[str, complex], list[complex]](list)
+        guides, feet = list[HeldPoint](), defaultdict[tuple[str, complex], list[complex]](list)
         slots = defaultdict[tuple[str, complex], list[complex]](list)
         for contact in self.contacts:
             bears, borne = contact.pieces
@@ -334,9 +340,9 @@ class _Apart:
                 more = MARGIN_SHARE * (end - start)
                 below += _below(np.array([end + more, start - more]), self.size)
             else:  # it always turns about this point
-                guides.append(Guide(block, start, 0j))
+                guides.append(HeldPoint(block, start, 0j))
         # Both directions may guide a block at points of their own; between them, its path is theirs to second order.
-        guides += [Guide(block, complex(np.mean(points)), along) for (block, along), points in slots.items()]
+        guides += [HeldPoint(block, complex(np.mean(points)), along) for (block, along), points in slots.items()]
         return guides, below
 
     def _touches(self, contact: Contact, piece: Points) -> bool:

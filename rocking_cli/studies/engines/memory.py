@@ -23,11 +23,11 @@ def recall(keys: Sequence[str]) -> dict[str, Any]:
         return {}
     try:
         with closing(_opened()) as known:
-            found = {}
+            outcomes = {}
             for key in keys:
                 if row := known.execute("SELECT outcome FROM histories WHERE key = ?", (key,)).fetchone():
-                    found[key] = json.loads(row[0])
-            return found
+                    outcomes[key] = json.loads(row[0])
+            return outcomes
     except sqlite3.Error:
         return {}
 

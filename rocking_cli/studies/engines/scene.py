@@ -20,7 +20,7 @@ from rocking_cli.arrays import Points, Reals
 from rocking_cli.core import PointMass
 from rocking_cli.core.hung.element import Spring
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.studies.engines.free_blocks import FreeBlocks, Guide
+from rocking_cli.studies.engines.free_blocks import FreeBlocks, HeldPoint
 
 if TYPE_CHECKING:
     import mujoco
@@ -29,7 +29,7 @@ IMPEDANCE = (0.95, 0.99, 1e-3)  # share of a force by which a contact resists: a
 SLIP_STIFFNESS = 10.0  # stiffness of friction over that of contact
 DEPTH = 0.1  # of the prisms, over the size; without effect
 PEG = 0.01  # radius of the pegs that guides and floors act on, over the size
-FAR = 1e6  # over the size
+UNBOUNDED = 1e6  # over the size
 
 
 def engine_version() -> str:
@@ -43,7 +43,7 @@ def engine_version() -> str:
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class BlockScene:
     """Free blocks as a model of MuJoCo.
 
     Parameters
@@ -78,7 +78,7 @@ class Scene:
         return sha256(buffer.tobytes() + engine_version().encode()).hexdigest()
 
 
-def scene(free: FreeBlocks, time_constant: float) -> Scene:
+def scene(free: FreeBlocks, time_constant: float) -> BlockScene:
     """Return free blocks as a model of MuJoCo.
 
     Parameters
@@ -119,7 +119,7 @@ class _Builder:
         self.geometries: list[tuple[str, float]] = []  # owner and size
         self.bodies = {body.name: self._block(body.name) for body in free.bodies}
 
-    def built(self) -> Scene:
+    def built(self) -> BlockScene:
         """Return the model, with all that it has besides blocks."""
         for z in self.free.ground:
             self._prism(self.spec.worldbody, z, 0j, "", self.free.friction)
@@ -140,7 +140,7 @@ class _Builder:
         model = self.spec.compile()
         # MuJoCo orders geometries by their bodies.
         owners, sizes = zip(*(self.geometries[int(model.geom(k).name)] for k in range(model.ngeom)), strict=True)
-        return Scene(model, self.size, self.unit_of_time, self.mass, owners, np.array(sizes))
+        return BlockScene(model, self.size, self.unit_of_time, self.mass, owners, np.array(sizes))
 
     def _block(self, name: str) -> mujoco.MjsBody:
         body = next(each for each in self.free.bodies if each.name == name)
@@ -181,7 +181,7 @@ class _Builder:
         away = (at - about) / self.size
         return self.bodies[block] if block else self.spec.worldbody, [away.real, 0.0, away.imag]
 
-    def _hold(self, guide: Guide) -> None:
+    def _hold(self, guide: HeldPoint) -> None:
         """Hold a point in place, or between two smooth faces."""
         if guide.along == 0:
             _, where = self._place(guide.block, guide.at)
@@ -202,6 +202,8 @@ class _Builder:
             inertia=[1.0] * 3, explicitinertial=True, gravcomp=1 - floor.weight / floor.vertical,
         )  # fmt: skip
         plate.add_joint(type=self.mujoco.mjtJoint.mjJNT_SLIDE, axis=[0, 0, 1])
+        # MuJoCo disregards gravcomp unless one of all bodies is positive.
+        self.spec.worldbody.add_body(gravcomp=1.0)
         self._face(plate, 0j, -1j, self._peg(floor.spot.body or "", floor.spot.at))
 
     def _peg(self, block: str, at: complex) -> str:
@@ -224,7 +226,7 @@ class _Builder:
         stiffness = tie.count * tie.stiffness * self.size / (self.mass * self.free.gravity)
         long = sum(abs(there.at - here.at) for here, there in pairwise(tie.spots))
         slack = (long - tie.prestress / tie.stiffness) / self.size
-        spans: Mapping[str | None, list[float]] = {"tension": [0.0, slack], "compression": [slack, FAR]}
+        spans: Mapping[str | None, list[float]] = {"tension": [0.0, slack], "compression": [slack, UNBOUNDED]}
         tendon = self.spec.add_tendon(
             name=f"{len(self.spec.tendons)}", stiffness=[stiffness, 0, 0],
             springlength=[max(each, 0.0) for each in spans.get(tie.only, [slack, slack])],

@@ -1,0 +1,76 @@
+"""Who simulated a result, in words: one degree of freedom, or free blocks."""
+
+from __future__ import annotations
+
+from rocking_cli.core import Mechanism
+from rocking_cli.core.contacts import MASONRY_FRICTION
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.structure import Structure
+from rocking_cli.studies.engines import Engine, EngineName
+from rocking_cli.studies.engines.free_blocks import COLLAPSE
+
+
+def engines_in_words(engine: EngineName, by_blocks: int, mechanism: Mechanism) -> list[str]:
+    """Return sentences on the histories that were simulated with free blocks; none if there are none.
+
+    Parameters
+    ----------
+    engine : {"exact", "blocks", "auto"}
+        The engine that was requested.
+    by_blocks : int
+        Number of histories with free blocks.
+    mechanism : Mechanism
+        The structure.
+    """
+    if engine == "exact":
+        return []
+    if not by_blocks:
+        return ["Engine: one degree of freedom for all histories, as it tells every outcome."]
+    histories = "1 history" if by_blocks == 1 else f"{by_blocks} histories"
+    others = "; one degree of freedom for all others" if engine == "auto" else ""
+    given = mechanism.friction is not None
+    friction = (
+        f"{mechanism.friction:g}, as given" if given else f"{MASONRY_FRICTION:g}, as usual for masonry: none is given"
+    )
+    return [
+        f"Engine: free blocks (MuJoCo) for {histories}{others}. Overturning is collapse: {COLLAPSE}. Impacts lose the "
+        f"energy that contact takes, whatever restitution the file gives. Friction is {friction}."
+    ]
+
+
+def cost_in_words(engine: Engine, structure: Structure, motion: GroundMotion, count: int) -> str:
+    """Return how long many histories will take, measured, as a sentence; empty for one degree of freedom.
+
+    Parameters
+    ----------
+    engine : Engine
+        Who simulates them.
+    structure : Structure
+        The structure.
+    motion : GroundMotion
+        One of the motions.
+    count : int
+        Number of histories.
+
+    Raises
+    ------
+    InputError
+        If the structure has something that free blocks cannot have.
+    """
+    if engine.name == "exact":
+        return ""
+    from rocking_cli.studies.engines.free import cost
+
+    each, processes = cost(structure, motion)
+    most = "up to " if engine.name == "auto" else ""
+    return (
+        f"Free blocks: {most}{count} histories of some {each:.2g} s each, on {processes} processors: {most}"
+        f"{_duration(count * each / processes)}. Histories that are done are kept: an interrupted run goes on."
+    )
+
+
+def _duration(seconds: float) -> str:
+    for unit, long in (("h", 3600.0), ("min", 60.0)):
+        if seconds >= 2 * long:
+            return f"{seconds / long:.0f} {unit}"
+    return f"{max(seconds, 1.0):.0f} s"

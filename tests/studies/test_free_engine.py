@@ -1,0 +1,160 @@
+"""The engine of free blocks: what it says, what it refuses, what it remembers; and who is asked by `auto`."""
+
+import numpy as np
+import pytest
+
+import rocking_cli as rk
+from rocking_cli.ask.given import structure_of
+from rocking_cli.dynamics.batch import Runs
+from rocking_cli.studies.engines import blocks, engine_of, memory, scene
+from tests.conftest import EXAMPLES
+
+pytest.importorskip("mujoco", reason="free blocks need mujoco-core")
+
+BLOCK = structure_of(rk.Block(width=1.0, height=2.0))  # it soon comes to rest
+ACCEL = rk.read_record(EXAMPLES / "accel.csv")
+HALF_SINE = rk.GroundMotion("half sine", 0.01, 8.0 * np.sin(np.pi * np.arange(41) / 40))
+
+
+@pytest.fixture(autouse=True)
+def own_memory(monkeypatch, tmp_path):
+    monkeypatch.setattr(memory, "place", lambda: tmp_path / "blocks.sqlite")
+    return tmp_path / "blocks.sqlite"
+
+
+def peak(structure, factor):
+    history = engine_of("blocks").respond(structure, ACCEL.scaled(factor))["blocks"]
+    assert not history.fell
+    return max(history.peak_positive, history.peak_negative)
+
+
+@pytest.mark.rest
+@pytest.mark.parametrize(("factor", "theirs"), [(1.0, 0.0742), (1.5, 0.1784)])
+def test_a_portal_rocks_as_two_other_programs_have_it(factor, theirs):
+    assert peak(structure_of(EXAMPLES / "masonry" / "portal.yaml"), factor) == pytest.approx(theirs, rel=0.05)
+
+
+@pytest.mark.rest
+@pytest.mark.parametrize(
+    ("friction", "factor", "collapses"),
+    [(None, 0.6, False), (None, 0.7, True), (None, 1.0, True), (1.5, 0.6, False), (1.5, 0.7, True)],
+)
+def test_the_arch_on_buttresses_ends_as_two_other_programs_have_it(friction, factor, collapses):
+    arch = structure_of(EXAMPLES / "masonry" / "buttressed_arch.yaml")
+    if friction is not None:
+        arch = arch.of(arch.mechanism.replace(friction=friction))
+    exact = engine_of("exact").respond(arch, ACCEL.scaled(factor), models=["nonlinear"])["nonlinear"]
+    assert exact.unknown
+    asked = engine_of("auto", [arch.mechanism]).respond(arch, ACCEL.scaled(factor), models=["nonlinear"])
+    assert asked["nonlinear"].known_to == exact.known_to
+    assert asked["blocks"].fell == collapses and asked["blocks"].by_blocks
+    if collapses and factor == 1:
+        assert asked["blocks"].overturning_time == pytest.approx(4.12, abs=0.3)
+
+
+def test_two_runs_are_the_same_to_the_last_bit():
+    one, other = (engine_of("blocks").respond(BLOCK, HALF_SINE)["blocks"] for _ in range(2))
+    assert one.lifted and np.array_equal(one.phi, other.phi)
+
+
+def outcomes(scales, engine="blocks", progress=None, **changed):
+    runs = Runs.of(0, 0, scale=scales)
+    asked = engine_of(engine, [BLOCK.mechanism])
+    return asked.outcomes([BLOCK.model("nonlinear")], [HALF_SINE], runs, threads=1, progress=progress, **changed)
+
+
+def test_runs_that_are_done_are_kept(own_memory, monkeypatch):
+    first = outcomes([0.5, 1.0])
+    monkeypatch.setattr("rocking_cli.studies.engines.free.simulate", None)  # nothing is simulated again
+    again = outcomes([1.0, 0.5])
+    assert np.array_equal(again.peak_ratio, first.peak_ratio[::-1]) and (first.peak_ratio > 0).any()
+    with pytest.raises(TypeError):
+        outcomes([1.1])
+    own_memory.write_bytes(b"not a database")
+    with pytest.raises(TypeError):  # what cannot be read is not known
+        outcomes([1.0])
+
+
+def test_an_interrupted_study_goes_on_where_it_stopped(monkeypatch):
+    done = []
+
+    def stop(count):
+        done.append(count)
+        if len(done) == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        outcomes([0.5, 1.0], progress=stop)
+    counted = []
+    outcomes([0.5, 1.0], progress=counted.append)
+    assert done == [0, 1] and counted == [1, 1]
+
+
+def test_other_blocks_motions_and_scales_have_other_keys():
+    from rocking_cli.studies.engines.free import _Work
+
+    def keys(mechanism, motion=HALF_SINE, **run):
+        return _Work([mechanism], [(0.2, 0.2)], [motion], Runs.of(0, 0, **run), None).keys()[0]
+
+    others = [
+        keys(BLOCK.mechanism), keys(BLOCK.mechanism.replace(width=0.71)), keys(BLOCK.mechanism.replace(friction=0.5)),
+        keys(BLOCK.mechanism, HALF_SINE.scaled(1.1)), keys(BLOCK.mechanism, scale=1.1),
+        keys(BLOCK.mechanism, polarity=-1), keys(BLOCK.mechanism, slender=1.1),
+    ]  # fmt: skip
+    assert len({*others}) == len(others) and keys(BLOCK.mechanism) == others[0]
+    assert keys(BLOCK.mechanism.replace(restitution=0.9)) == others[0]  # contact gives it
+
+
+def test_auto_asks_free_blocks_only_where_one_degree_of_freedom_does_not_tell(monkeypatch):
+    found = outcomes([0.5, 1.0], "auto")
+    exact = outcomes([0.5, 1.0], "exact")
+    assert not found.by_blocks.any() and np.array_equal(found.peak_ratio, exact.peak_ratio)
+
+
+def test_a_body_that_sinks_too_deep_is_a_failed_run_and_never_an_answer(monkeypatch):
+    monkeypatch.setattr(blocks, "SUNK", 1e-9)
+    with pytest.raises(rk.SolverError, match="sink into each other by more than 1 per mille"):
+        engine_of("blocks").respond(BLOCK, HALF_SINE)
+    failed = outcomes([1.0])
+    assert failed.unknown.all() and failed.by_blocks.all() and not failed.fell.any()
+    assert failed.known_to[0] < 1
+
+
+def test_without_the_extra_one_sentence_says_what_to_install(monkeypatch):
+    monkeypatch.setattr(scene, "find_spec", lambda name: None)
+    with pytest.raises(
+        rk.InputError, match=r"MuJoCo, which is not installed[\s\S]*pip install 'rocking-cli\[blocks\]'"
+    ):
+        engine_of("blocks")
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "says"),
+    [
+        (rk.Block(width=0.7, height=2.8, density=2000, depth=1.0, crushing={"strength": 3e6}), "pivots that crush"),
+        (rk.RigidBody(polygon=[[0, 0], [1, 0], [1, 3], [0, 3]], corner_radius=0.05), "rounded feet"),
+        (rk.RigidBody(R=2.0, alpha_deg=15, inertia_ratio=1.4), "a body of unknown shape, as body"),
+        (rk.SymmetricFrame(column_width=1, column_height=6, mass_ratio=2), "beam: give spacing and beam_depth"),
+        (
+            rk.Block(width=1, height=2, mass=1e3, loads=[{"name": "thrust", "force": [10.0, 0.0], "at": [0.0, 2.0]}]),
+            "a constant force, as that of thrust",
+        ),
+    ],
+    ids=["crushing", "rounded", "shapeless", "frame", "force"],
+)  # fmt: skip
+def test_what_free_blocks_cannot_have_is_refused_by_name(mechanism, says):
+    with pytest.raises(rk.InputError, match=says):
+        engine_of("blocks").respond(structure_of(mechanism), HALF_SINE)
+
+
+def test_answers_say_their_engine():
+    answer = rk.respond(BLOCK.mechanism, HALF_SINE, engine="blocks")
+    assert list(answer) == ["blocks"] and answer["blocks"].by_blocks
+    assert answer.view.data["responses"]["blocks"]["engine"] == "blocks"
+    said = " ".join(str(part) for part in answer.view.parts)
+    assert "Overturning is collapse: a block falls by 0.15" in said and "Friction is 0.6, as usual" in said
+    with pytest.raises(rk.InputError, match="`rtol` has no effect with free blocks"):
+        rk.respond(BLOCK.mechanism, HALF_SINE, engine="blocks", rtol=1e-8)
+    margin = rk.margin(rk.Block(width=0.7, height=2.8), HALF_SINE, engine="auto", polarity="1")
+    assert margin.view.data["engine"] == "auto" and margin.view.data["motions"][0]["by_blocks"] == 0
+    assert margin["half sine"].around.count == 20
