@@ -24,7 +24,7 @@ from rocking_cli.studies.film import SECONDS_AFTER, SECONDS_BEFORE
 MAX_SHOWN_RATIO = 1.3  # phi/phi_cr at which curves are cut off
 STILL_SHARE = 0.02  # distance from the last rotation, over the peak, that counts as rest
 ROOM = 0.2  # height of the panel above and below the curves, over that of the curves
-EXACT, BLOCKS = style.LINES["nonlinear"], {"color": style.ORANGE, "linestyle": "-", "linewidth": style.MEDIUM}
+EXACT, BLOCKS = style.LINES["nonlinear"], style.LINES["blocks"]
 UNKNOWN: dict[str, Any] = {"color": style.FAINT, "linestyle": "--"}
 
 

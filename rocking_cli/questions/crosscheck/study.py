@@ -90,7 +90,7 @@ class Crosscheck:
     @cached_property
     def compared(self) -> int:
         """Number of samples at which both are known: until a structure overturns, or the exact outcome is unknown."""
-        return min(self.blocks.time.size, int(np.isfinite(self.at_rest(self.exact.phi)).sum()))
+        return min(self.blocks.time.size, int(np.isfinite(self.extended(self.exact.phi)).sum()))
 
     @property
     def compared_to(self) -> float:
@@ -100,7 +100,7 @@ class Crosscheck:
     @property
     def peaks(self) -> tuple[float, float]:
         """Largest rotation over the critical one of each until `compared_to`."""
-        exact, blocks = (np.abs(each[: self.compared]) for each in (self.at_rest(self.exact.ratio), self.blocks.ratio))
+        exact, blocks = (np.abs(each[: self.compared]) for each in (self.extended(self.exact.ratio), self.blocks.ratio))
         return float(exact.max()), float(blocks.max())
 
     @property
@@ -119,7 +119,7 @@ class Crosscheck:
 
         Both are those until `compared_to`. Smaller differences than free blocks turn by without uplift do not count.
         """
-        exact, blocks = self.at_rest(self.exact.ratio)[: self.compared], self.blocks.ratio[: self.compared]
+        exact, blocks = self.extended(self.exact.ratio)[: self.compared], self.blocks.ratio[: self.compared]
         apart = np.abs(exact - blocks) > max(PARTED * max(self.peaks), MOVED)
         return _first(self.blocks.time[: self.compared], apart)
 
@@ -134,7 +134,7 @@ class Crosscheck:
         far = not self.exact.fell and abs(blocks - exact) > max(SAME_PEAKS * exact, MOVED)
         return "peaks_differ" if far else "agree"
 
-    def at_rest(self, values: Reals) -> Reals:
+    def extended(self, values: Reals) -> Reals:
         """Return samples of the exact history at the times of the free blocks: it stays at rest if it came to rest."""
         after = 0.0 if self.exact.at_rest else nan
         return np.append(values, np.full(max(0, self.blocks.time.size - values.size), after))

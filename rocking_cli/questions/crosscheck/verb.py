@@ -154,7 +154,7 @@ def _columns(found: Crosscheck) -> Columns:
         kept = found.motion.kept
         ground = {"a_g [g]": np.interp(time, kept.time, kept.acceleration, right=0.0) / STANDARD_GRAVITY}
     series = {
-        "exact phi [rad]": found.at_rest(exact.phi), f"exact {over}": found.at_rest(exact.ratio),
+        "exact phi [rad]": found.extended(exact.phi), f"exact {over}": found.extended(exact.ratio),
         "blocks phi [rad]": blocks.phi, f"blocks {over}": blocks.ratio,
     }  # fmt: skip
     return {"t [s]": time, **ground, **{name: _padded(each, time.size) for name, each in series.items()}}

@@ -7,15 +7,15 @@ from math import isnan, nan
 from typing import Any, NamedTuple
 
 from rocking_cli import names
-from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.dynamics.history import History
 from rocking_cli.names import percent
 from rocking_cli.processing.listed import Scaled
 from rocking_cli.questions.crosscheck.study import PARTED, SAME_PEAKS, BlockJoint, Crosscheck
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import EngineName
-from rocking_cli.studies.engines.blocks import COLLAPSE
+from rocking_cli.studies.engines.free import MOVED
 from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
+from rocking_cli.views.engines import engines_in_words
 from rocking_cli.views.response import ending, known_data, not_checked, record_data
 from rocking_cli.views.restitution import restitution_data, restitution_used
 from rocking_cli.views.verdict import ends, unknown_after
@@ -62,7 +62,7 @@ JOINTS: tuple[Column[BlockJoint], ...] = (
     Column("joint", of("name"), "", "joint, by free blocks", text=True),
     Column("opening", of("opening"), "m"),
     Column("slip", of("slip"), "m"),
-    Column("passed", of("passed"), "s", "beyond the limit\nat [s]", rounded(4)),
+    Column("passed", of("passed"), "s"),
     Column("friction", of("friction"), "", "friction", rounded(3)),
 )
 
@@ -91,14 +91,15 @@ def view(structure: Structure, given: Scaled | None, polarity: int, release: flo
     millimetres: list[Column[BlockJoint]] = [
         only_shown("opening\n[mm]", lambda joint: _length(joint.opening, reach)),
         only_shown("slip\n[mm]", lambda joint: _length(joint.slip, reach)),
+        only_shown(f"more than {1000 * structure.opening * reach:.3g} mm\nat [s]", of("passed"), rounded(4)),
     ]
     listed = table_of("", [JOINTS[0], *millimetres, *JOINTS[1:]], found.joints[:MAX_LISTED_JOINTS])
     more = len(found.joints) - MAX_LISTED_JOINTS
     sentences = [
         verdict(found),
         *([f"{more} more joints open and slide by less: the JSON output lists them."] if more > 0 else []),
-        _friction(found),
-        f"{restitution_used(structure)} This applies to the exact engine: in free blocks, their contacts give it.",
+        f"Exact engine: one degree of freedom. {restitution_used(structure)}",
+        *engines_in_words("blocks", 1, mechanism),
         *not_checked(mechanism, [found.exact]),
         MORE,
     ]
@@ -156,8 +157,7 @@ def verdict(found: Crosscheck) -> str:
     """Return whether both engines agree, and when they part, in a few sentences."""
     parts = [_finding(found)]
     if found.moved.block:
-        when = f"{found.blocks.overturning_time:.4g} s"
-        parts.append(f"Free blocks overturn when {COLLAPSE}: here {found.moved.block} does, at {when}.")
+        parts.append(f"Of the free blocks, {found.moved.block} falls first.")
     share = f"more than {percent(PARTED)} of the larger peak"
     if isnan(found.parted):
         parts.append(f"Up to {found.compared_to:.4g} s, their rotations never differ by {share}.")
@@ -187,7 +187,8 @@ def _finding(found: Crosscheck) -> str:
         times = _both(f"{exact.overturning_time:.4g} s", f"{blocks.overturning_time:.4g} s")
         return f"The engines agree: the structure {names.OVERTURNS}, at {times}."
     does = f"{names.ROCKS}, with a peak of {peaks}" if blocks.peak_ratio else ends(exact)
-    return f"The engines agree: the structure {does}."
+    small = f", less than the {percent(MOVED)} from which free blocks count as uplifted"
+    return f"The engines agree: the structure {does}{small if exact.lifted and not blocks.lifted else ''}."
 
 
 def _both(exact: str, blocks: str) -> str:
@@ -196,10 +197,3 @@ def _both(exact: str, blocks: str) -> str:
 
 def _ends(run: History) -> str:
     return f"{ends(run)} at {run.overturning_time:.4g} s" if run.fell else ends(run)
-
-
-def _friction(found: Crosscheck) -> str:
-    given = found.demand.friction
-    if given is None:
-        return f"The file gives no friction: free blocks have {MASONRY_FRICTION:g}, usual for masonry."
-    return f"Free blocks have the friction of the file, {given:g}."
