@@ -98,6 +98,7 @@ class Output:
     as_json: bool
     out: Path | None = None
     plot: Path | None = None
+    animate: Path | None = None
     separator: str | None = None
     decimal: str | None = None
 
@@ -126,7 +127,7 @@ class Output:
         from rocking_cli.io.tables import check_table
 
         files = [str(each.path if isinstance(each, tuple) else each) for each in read if each is not None]
-        keep_apart([("--out", self.out), ("--plot", self.plot)], files)
+        keep_apart([("--out", self.out), ("--plot", self.plot), ("--animate", self.animate)], files)
         check_table(self.out)
 
     def blocks(self, answer: Answer[Any]) -> Iterable[Columns]:

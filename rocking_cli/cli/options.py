@@ -14,7 +14,7 @@ from click.core import ParameterSource
 from rocking_cli.cli import complete
 from rocking_cli.cli.defaults import from_default
 from rocking_cli.cli.help import RecordOption
-from rocking_cli.cli.quantities import FRACTION, PERIOD, PULSE_AMPLITUDE, SHARE, Parsed, quantity_of
+from rocking_cli.cli.quantities import FRACTION, PERIOD, PULSE_AMPLITUDE, SHARE, TILT, Parsed, quantity_of
 from rocking_cli.names import OPENING
 from rocking_cli.processing.reading_options import CORRECTIONS, READING, SCALING, Option
 
@@ -256,6 +256,16 @@ def polarity(*choices: str, default: str = "1") -> Decorator:
 def scaling(*polarities: str, default: str = "1") -> Decorator:
     """Declare the options that scale a motion (`scale`, `target_pga`, `target_pgv`), and those for `polarity`."""
     return in_order(_declared(SCALING), polarity(*polarities, default=default))
+
+
+release: Decorator = click.option(
+    "--release",
+    type=TILT,
+    metavar="TILT",
+    help="Initial tilt of a release from rest: a fraction of phi_cr, or an angle such as 0.05rad; negative is "
+    "anticlockwise.",
+)
+"""The tilt from which a free motion starts: `release`."""
 
 
 site: Decorator = click.option("--site", type=click.Path(), metavar="SITE.yaml", help=HELP["site"])

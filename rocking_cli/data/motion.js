@@ -37,7 +37,8 @@ function roundStep(rough) {
 }
 
 // A structure on its ground. Returns a function for the largest scale [pixels per m] at which it fits, one that redraws it
-// at a scale, and one that moves it to a signed rotation [rad], drawn larger than it is, on ground that has moved [m].
+// at a scale, and one that moves it to a signed rotation [rad], drawn larger than it is, on ground that has moved [m]; its
+// place in the table of positions is the rotation, or a time.
 function structureStage(svg, {picture, shades, middle, box: [low, high]}, enlargement, words) {
   const SIDE = picture.loads.some(load => load.force) ? 52 : 26, TOP = SIDE, BELOW = 18, LINE = 18;
   let moving = [], pins = [], world, moveHung, scale;
@@ -164,11 +165,11 @@ function structureStage(svg, {picture, shades, middle, box: [low, high]}, enlarg
     if (beside) shape(svg, "text", {x: width - 12, y: level, "text-anchor": "end"}, words);
     else lines.forEach((line, k) => shape(svg, "text", {x: 12, y: level + LINE * (k + 1)}, line));
   }
-  function show(rotation, shift) {
-    const side = sideOf(rotation), places = picture.parts.map(part => placed(part, enlargement * rotation));
+  function show(rotation, place, shift) {
+    const side = sideOf(rotation), places = picture.parts.map(part => placed(part, enlargement * place));
     world.setAttribute("transform", `translate(${shift * scale},0)`);
-    // Ties are slack as at the rotation itself; the nodes of the table are far apart, and rest is none of them.
-    const at = nearest(picture.rotation, rotation), still = picture.rotation.indexOf(0);
+    // Ties are slack as at the place itself; the nodes of the table are far apart, and rest is none of them.
+    const at = nearest(picture.rotation, place), still = picture.rotation.indexOf(0);
     moveHung(places, at === still ? clamp(at + Math.sign(rotation), 0, picture.rotation.length - 1) : at, side);
     moving.forEach((group, k) => {
       group.setAttribute("transform", `translate(${places[k].x},${places[k].y}) rotate(${places[k].psi * 180 / Math.PI})`);
@@ -303,9 +304,9 @@ function motionView(root, {start, end, step, enlargement, ground, scale, drawn: 
   }
   function show() {
     const said = `t = ${now.toFixed(2)} s`;
-    for (const {stage, rotation, stops, ratio, digits, figure, read: own} of actors) {
+    for (const {stage, rotation, place = rotation, stops, ratio, digits, figure, read: own} of actors) {
       const until = Math.min(now, stops ?? now), turn = valueAt(rotation, until);  // after that, all of it stands still
-      stage.show(turn, valueAt(ground, until));
+      stage.show(turn, valueAt(place, until), valueAt(ground, until));
       figure.classList.toggle("stopped", !alone && stops !== null && now > stops);
       const values = `φ = ${fixed(turn * 180 / Math.PI, digits > 2 ? 3 : 2)}°, ${ratio} = ${fixed(stage.ratioOf(turn), digits)}`;
       (own ?? read).textContent = alone ? `${said}, ${values}` : values;

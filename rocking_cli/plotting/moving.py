@@ -88,9 +88,7 @@ def moving(
         "ground": [round(value, 5 - floor(log10(size))) for value in scene.shift(time).tolist()],
         "scale": scale_in_words(scene),
         "drawn": drawing_in_words(scene),
-        "stages": [
-            _stage(scene, each, time, label if not beside else f"{name_of(each)}, {label}") for each in scene.films
-        ],
+        "stages": [_stage(scene, each, time, label if not beside else f"{each.name}, {label}") for each in scene.films],
         "charts": list(charts),
         "speed": speed,
         "moment": moment,
@@ -99,25 +97,21 @@ def moving(
 
 def _stage(scene: Scene, film: Film, time: Reals, label: str) -> dict[str, Any]:
     """Return one of the structures, with its rotations [rad] at some times."""
-    picture = film.picture.grouped
+    picture, rotation, place = film.picture.grouped, film.rotation(time), film.place(time)
     return {
-        "name": name_of(film),
+        "name": film.name,
         "label": label,
         "picture": picture.as_dict(),
         "shades": {direction.label: picture.shades[direction] for direction in picture.directions},
         "ratio": style.over(film.history.ends_at_limit),
-        "rotation": _short(film.rotation(time), 5),
+        "rotation": _short(rotation, 5),
+        **({} if np.array_equal(place, rotation) else {"place": _short(place, 6)}),
         "middle": (picture.extent[0] + picture.extent[1]).real / 2,
         "box": [[corner.real, corner.imag] for corner in scene.box(film)],
         "stops": None if film.stops == inf else film.stops,
         "ending": why_it_ends(film),
         "fate": fate(film),
     }
-
-
-def name_of(film: Film) -> str:
-    """Return the name of the structure of a film."""
-    return film.picture.mechanism.name or film.picture.mechanism.mechanism
 
 
 def ratio_chart(histories: Mapping[ModelName, History], bins: int = BINS_ACROSS) -> dict[str, Any]:
@@ -131,7 +125,7 @@ def ratio_chart(histories: Mapping[ModelName, History], bins: int = BINS_ACROSS)
 
 def ratio_charts(films: Sequence[Film], bins: int = BINS_ACROSS) -> dict[str, Any]:
     """Return a chart like `ratio_chart` with a curve for each of several structures, as far as its outcome is known."""
-    return _ratio_chart([(name_of(each), f"curve-{k}", each.history, inf) for k, each in enumerate(films)], bins)
+    return _ratio_chart([(each.name, f"curve-{k}", each.history, inf) for k, each in enumerate(films)], bins)
 
 
 def _ratio_chart(curves: Sequence[tuple[str, str, History, float]], bins: int) -> dict[str, Any]:

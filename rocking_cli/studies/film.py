@@ -41,12 +41,20 @@ class Film:
         The ground motion.
     assumed_friction : float, optional
         Friction that the history assumes, see `ContactDemand`.
+    called : str
+        Name of the film beside others; by default that of the structure.
     """
 
     picture: Picture
     history: History
     motion: GroundMotion
     assumed_friction: float | None = None
+    called: str = ""
+
+    @property
+    def name(self) -> str:
+        """Name of the film beside others."""
+        return self.called or self.picture.mechanism.name or self.picture.mechanism.mechanism
 
     @cached_property
     def _moving(self) -> int:
@@ -80,6 +88,10 @@ class Film:
         """Return the signed rotation at some times, shape (n,) [rad]; after the end the last rotation simulated."""
         moving = slice(0, self._moving)
         return np.interp(time, self.history.time[moving], self.history.phi[moving])
+
+    def place(self, time: Reals) -> Reals:
+        """Return at which number the picture places its parts as they are at some times, shape (n,): the rotation."""
+        return self.rotation(time)
 
     def ratio(self, rotation: Reals) -> Reals:
         """Divide signed rotations [rad], shape (n,), by the critical rotation or kinematic limit of their side."""
@@ -186,11 +198,11 @@ class Scene:
         return self.ground_enlargement * self._ground(time)
 
     def seen(self, film: Film, time: Reals) -> tuple[Reals, Reals]:
-        """Return the rotation of a structure [rad] and the shift of its ground [m] as they are drawn, shapes (n,).
+        """Return the place of a structure, see `Film.place`, and the shift of its ground [m] as drawn, shapes (n,).
 
         Both stand still from the time on at which the film stops.
         """
-        return self.enlargement * film.rotation(time), self.shift(np.minimum(time, film.stops))
+        return self.enlargement * film.place(time), self.shift(np.minimum(time, film.stops))
 
     def box(self, film: Film) -> tuple[complex, complex]:
         """Return the corners of the area that a structure covers in the drawing, with the motion of its ground [m]."""

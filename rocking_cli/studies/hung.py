@@ -114,7 +114,12 @@ class Strand:
         """Mask of the rotations at which the tie is slack, shape (n,)."""
         if not isinstance(self.thing, Stretched) or self.only is None:
             return np.zeros(phi.shape, bool)
-        e, _, _ = self.thing.elongation(mechanism.followed(phi, direction))
+        return self.slack_at(self.thing.elongation(mechanism.followed(phi, direction))[0])
+
+    def slack_at(self, e: Reals) -> Bools:
+        """Mask of the elongations at which the tie is slack, shape (n,) [m]."""
+        if not isinstance(self.thing, Stretched) or self.only is None:
+            return np.zeros(e.shape, bool)
         taut = self.thing.slack_at(e) * (1.0 if self.only == "tension" else -1.0)
         force, stiffness = self.thing.at_rest
         return np.asarray(taut < -1e-9 * (abs(force) + stiffness * float(np.abs(e).max(initial=0.0))))

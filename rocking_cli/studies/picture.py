@@ -427,14 +427,19 @@ class Picture:
         """Side walls behind a structure that rocks to one side only, as lines like those of the ground [m]."""
         return walls(self.mechanism, *self.extent)
 
+    @property
+    def nodes(self) -> Reals:
+        """The rotations at which a table has the positions of the parts, shape (n,)."""
+        ends = [np.linspace(0.0, self.limit.get(direction, 0.0), NODES_PER_SIDE + 1) for direction in Direction]
+        return np.unique(np.concatenate([-ends[1][:0:-1], ends[0]]) + 0.0)
+
     def as_dict(self) -> dict[str, Any]:
         """Return the whole drawing as plain data, for a page: points are [x, y] in m, angles in rad.
 
         `x`, `y` (of its centroid) and `psi` (anticlockwise) place a part at each `rotation`, with linear interpolation;
         its outlines and the points that it carries are relative to its centroid. A `part` of null is the ground.
         """
-        ends = [np.linspace(0.0, self.limit.get(direction, 0.0), NODES_PER_SIDE + 1) for direction in Direction]
-        rotation = np.unique(np.concatenate([-ends[1][:0:-1], ends[0]]) + 0.0)
+        rotation = self.nodes
         centroids, psi = self.at(rotation)
         return {
             "mechanism": self.mechanism.mechanism,

@@ -28,7 +28,15 @@ from PIL import Image, ImageDraw, ImageFont
 from rocking_cli.arrays import Points, Reals
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.plotting import hung, style
-from rocking_cli.plotting.moving import as_script, asset, ground_chart, moving, name_of, ratio_chart, ratio_charts
+from rocking_cli.plotting.moving import (
+    MAX_SHOWN_RATIO,
+    as_script,
+    asset,
+    ground_chart,
+    moving,
+    ratio_chart,
+    ratio_charts,
+)
 from rocking_cli.plotting.panels import PANEL_GAP, Page, Panel, place_row
 from rocking_cli.plotting.structure import colour, draw_scale, hatches, weight
 from rocking_cli.studies.film import Film, Scene
@@ -143,15 +151,15 @@ class _Actor:
     def draw(self, renderer: Any, time: float) -> list[tuple[str, complex]]:
         """Draw ground, parts and hinges; return the letters of the hinges and their positions [pixels]."""
         panel, picture = self.panel, self._picture
-        turns, ways = self._scene.seen(self.film, np.array([time]))
+        places, ways = self._scene.seen(self.film, np.array([time]))
         pen = _Pen(renderer, panel, float(ways[0]))
-        drawn, rotation = float(turns[0]), float(turns[0]) / self._scene.enlargement
+        drawn, rotation = float(places[0]), float(self.film.rotation(np.array([time]))[0])
         for line in (*picture.ground, *picture.walls):
             pen.line(line, style.EARTH, style.BOLD)
             pen.strokes(hatches(line, panel), style.EARTH, style.THIN)
         outlines, pins = picture.placed(drawn)
         direction = picture.side(rotation)
-        shown = hung.symbols(picture, rotation, panel.scale, self._scene.enlargement)
+        shown = hung.symbols(picture, drawn / self._scene.enlargement, panel.scale, self._scene.enlargement)
         self._draw_ties(pen, shown, behind=True)
         thick = weight(picture, panel.scale)
         edge = style.INK if time <= self.film.stops else style.FAINT
@@ -263,7 +271,7 @@ class _Stage:
             )
         looks = [style.family(k) if several else style.TRACE for k in range(len(self._actors))]
         for actor, look in zip(self._actors, looks, strict=True):
-            actor.draw_still(page, name_of(actor.film) if several else "", look)
+            actor.draw_still(page, actor.film.name if several else "", look)
         across = complex(width - LEFT_MARGIN - PANEL_GAP, TRACE_HEIGHT)
         lower = page.add_axes(complex(LEFT_MARGIN, FOOT_HEIGHT), across)
         upper = page.add_axes(complex(LEFT_MARGIN, FOOT_HEIGHT + TRACE_HEIGHT + PANEL_GAP), across)
@@ -369,7 +377,7 @@ def _draw_traces(
     lower.plot(t, ground, **style.TRACE)
     at_limit = [each for film in scene.films for each in film.history.ends_at_limit]
     for axes, most, label in (
-        (upper, reach, style.over(at_limit, math=True)),
+        (upper, min(reach, MAX_SHOWN_RATIO), style.over(at_limit, math=True)),
         (lower, float(np.abs(ground).max()), "ground [g]"),
     ):
         axes.set_xlim(start, max(end, start + 1e-3))
@@ -413,12 +421,13 @@ def animation_page(films: Film | Sequence[Film], title: str, speed: float = 1.0)
     """
     first, *others = [films] if isinstance(films, Film) else films
     model, motion = first.history.model, first.motion
+    models = dict.fromkeys(each.history.model for each in (first, *others))
     ratios = ratio_charts([first, *others]) if others else ratio_chart({model: first.history})
     start = Scene((first, *others)).start
     label = "as it moves" if others else f"{title}, as it moves"
     data = moving(first, [ratios, ground_chart(motion, [])], label=label, speed=speed, moment=start, beside=others)
-    about = f"{motion.name}, PGA {motion.of_ground.pga_g:.3g} g; {model} model"
-    verdicts = [f"{name_of(each)}: {verdict_of(each)}" if others else verdict_of(each) for each in (first, *others)]
+    about = f"{motion.name}, PGA {motion.of_ground.pga_g:.3g} g; {' and '.join(models)} model{'s' * (len(models) > 1)}"
+    verdicts = [f"{each.name}: {verdict_of(each)}" if others else verdict_of(each) for each in (first, *others)]
     parts = {
         "TITLE": html.escape(title),
         "ABOUT": html.escape(about),

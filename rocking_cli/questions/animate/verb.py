@@ -168,7 +168,7 @@ def animate(
     from rocking_cli.views import animation as views
 
     path, (name,), signs = Path(file), models_of(model), signs_of(polarity)
-    _check(path, signs, speed, fps)
+    check_film(path, signs, speed, fps)
     around = around_of(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
     if name != "nonlinear":
         refuse_idle("on a linear block, which has no joints", opening=opening != OPENING)
@@ -217,7 +217,7 @@ def animate(
             watch.leave_out(each)
         scene = Scene(tuple(each.film for each in made.values()))
         under = scene.films[0].motion.name
-        written = _write(path, scene, in_short(list(made), most=MAX_STRUCTURES), under, speed, fps, watch)
+        written = write_film(path, scene, in_short(list(made), most=MAX_STRUCTURES), under, speed, fps, watch)
         shown = [ready for ready in usable if ready.name in made]
         by_name = {ready.name: of(ready, made[ready.name], scene, written) for ready in shown}
         for answer in by_name.values():
@@ -235,7 +235,7 @@ def animate(
     def one(given: Scaled, place: Path) -> Answer[Animation]:
         made = shot(ready, given)
         scene, title = Scene((made.film,)), heading(ready.mechanism)
-        return of(ready, made, scene, _write(place, scene, title, made.film.motion.name, speed, fps, watch))
+        return of(ready, made, scene, write_film(place, scene, title, made.film.motion.name, speed, fps, watch))
 
     if not are_several(motion, motions):
         return one(chosen[0], path)
@@ -253,7 +253,7 @@ def animate(
     return answers("animations", "motion", responses, table.parts)
 
 
-def _check(file: Path, signs: tuple[int, ...], speed: float | None, fps: float) -> None:
+def check_film(file: Path, signs: tuple[int, ...], speed: float | None, fps: float) -> None:
     """Raise `InputError` if an animation cannot be written, or be shown like this."""
     from rocking_cli.io.files import check_writable
 
@@ -283,9 +283,10 @@ class _Written(NamedTuple):
     file: str
 
 
-def _write(
+def write_film(
     file: Path, scene: Scene, title: str, under: str, speed: float | None, fps: float, watch: Watcher
 ) -> _Written:  # fmt: skip
+    """Write films as an animation; a speed of None is 1, or for a GIF so fast that it lasts `MAX_DEFAULT_DURATION`."""
     from rocking_cli.io.files import write_whole
     from rocking_cli.questions.animate import picture
 

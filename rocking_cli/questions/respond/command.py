@@ -12,7 +12,7 @@ from rocking_cli.cli import complete, options, terminal
 from rocking_cli.cli.defaults import as_declared
 from rocking_cli.cli.groups import NEIGHBOUR_OPTIONS, GroundMotions, Output
 from rocking_cli.cli.help import Command
-from rocking_cli.cli.quantities import INTERVAL, POSITIVE, TAIL, TILT, Parsed, quantity_of
+from rocking_cli.cli.quantities import INTERVAL, POSITIVE, TAIL, Parsed, quantity_of
 from rocking_cli.processing.reading_options import ALL_AZIMUTHS
 
 # The names of fitted pulses are repeated here so that `--help` does not import numpy.
@@ -50,13 +50,7 @@ def _models(text: str) -> tuple[str, ...]:
     flag_value=BEST_FIT,
     help="Shape of the pulse in the record whose response is computed as well; without a value, the best-fitting one.",
 )
-@click.option(
-    "--release",
-    type=TILT,
-    metavar="TILT",
-    help="Initial tilt of a release from rest: a fraction of phi_cr, or an angle such as 0.05rad; negative is "
-    "anticlockwise.",
-)
+@options.release
 @click.option(
     "--model",
     "models",

@@ -42,10 +42,14 @@ class HeldPoint(NamedTuple):
 
 
 class Lead(NamedTuple):
-    """The block whose rotation is phi, in a direction."""
+    """The block whose rotation is phi, in a direction, and the motion of all blocks there.
+
+    `rates` are the displacements of the blocks at rest, over phi, shape (blocks, 3) [m, m, rad].
+    """
 
     direction: Direction
     block: str
+    rates: Reals
 
 
 @short_repr
@@ -79,6 +83,10 @@ class FreeBlocks:
         The body of the mechanism with which each block moves (None: none), and how far beside it it stands [m].
     gravity : float
         Gravitational acceleration [m/s2].
+    outlines : mapping of str to sequence of ndarray of complex
+        Polygons of each block at rest, as they are drawn [m].
+    block_of : mapping of str to str
+        The block of which each piece of the mechanism is a part, by the name of the piece.
     """
 
     bodies: Sequence[Body]
@@ -93,6 +101,8 @@ class FreeBlocks:
     leads: Sequence[Lead]
     moves_with: Mapping[str, tuple[str | None, complex]]
     gravity: float
+    outlines: Mapping[str, Sequence[Points]]
+    block_of: Mapping[str, str]
 
     @cached_property
     def box(self) -> tuple[complex, complex]:
@@ -114,14 +124,20 @@ class FreeBlocks:
         return self._signed(moved, rates)
 
     def _signed(self, moved: Reals, values: Reals) -> Reals:
-        """Return the value of the block that leads the direction of larger rotation, clockwise positive."""
+        """Return the value of the block that leads the direction in which the blocks have moved, clockwise positive.
+
+        That is the direction whose motion is nearest to theirs, weighed by mass: in one direction of an arch, the block
+        that leads the other turns too, and farther.
+        """
         names = [body.name for body in self.bodies]
+        weights = np.array([[body.mass, body.mass, body.inertia] for body in self.bodies])
         furthest, signed = np.zeros(len(moved)), np.zeros(len(moved))
-        for direction, block in self.leads:
+        for direction, block, rates in self.leads:
             k = names.index(block)
-            further = -direction * moved[:, k, 2] > furthest
-            furthest = np.where(further, -direction * moved[:, k, 2], furthest)
-            signed = np.where(further, -values[:, k, 2], signed)
+            along = np.einsum("nbc,bc->n", moved, weights * rates) / np.sqrt(np.sum(weights * rates**2))
+            further = along > furthest
+            furthest = np.where(further, along, furthest)
+            signed = np.where(further, np.where(direction * moved[:, k, 2] < 0, -values[:, k, 2], 0.0), signed)
         return signed
 
     def tilted(self, mechanism: Mechanism, phi: float) -> Reals:
@@ -187,9 +203,11 @@ class _Apart:
         """Return all of it."""
         outlines = [z for member in self.members for z in member.polygons]
         shapes, bodies = defaultdict[str, list[Points]](list), defaultdict[str, list[Body]](list)
+        drawn_as = defaultdict[str, list[Points]](list)
         for member in self.members:
             block = self._block(member)
             bodies[block].append(member.body)
+            drawn_as[block] += member.polygons
             for z in member.polygons:
                 shapes[block] += convex_pieces(z, [other for other in outlines if other is not z])
         floors = []
@@ -214,10 +232,12 @@ class _Apart:
         ground = self._ground(drawn.ground)
         guides, feet = self._held(ground)
         moves_with = {self._block(member): (member.of, member.shift) for member in reversed(self.members)}
+        united = [_united(name, each) for name, each in bodies.items()]
         return FreeBlocks(
-            [_united(name, each) for name, each in bodies.items()], shapes, [*ground, *feet],
+            united, shapes, [*ground, *feet],
             [piece for line in walls for piece in _below(line, self.size)], self.friction, self._frictions(), guides,
-            floors, ties, self._leads(), moves_with, self.mechanism.gravity,
+            floors, ties, self._leads(united, moves_with), moves_with, self.mechanism.gravity, drawn_as,
+            {member.body.name: self._block(member) for member in self.members},
         )  # fmt: skip
 
     def _cannot(self, field: str, what: str) -> InputError:
@@ -339,13 +359,21 @@ class _Apart:
                 frictions[one, other] = mu
         return {pair: mu for pair, mu in frictions.items() if mu != self.friction}
 
-    def _leads(self) -> list[Lead]:
-        """Return a block that turns by phi in each direction."""
+    def _leads(self, bodies: Sequence[Body], moves_with: Mapping[str, tuple[str | None, complex]]) -> list[Lead]:
+        """Return a block that turns by phi in each direction, and the rates of all blocks."""
         leads = []
+        names = [body.name for body in self.mechanism.bodies()]
         for direction in self.mechanism.directions:
-            motions = zip(self.mechanism.bodies(), self.mechanism.motion(np.zeros(1), direction), strict=True)
-            turning = {body.name for body, motion in motions if abs(motion.dpsi[0] + direction) < LEAD_RATE}
-            leads.append(Lead(direction, next(self._block(member) for member in self.members if member.of in turning)))
+            motions = dict(zip(names, self.mechanism.motion(np.zeros(1), direction), strict=True))
+            turning = {name for name, motion in motions.items() if abs(motion.dpsi[0] + direction) < LEAD_RATE}
+            rates = np.zeros((len(bodies), 3))
+            for k, body in enumerate(bodies):
+                of, shift = moves_with[body.name]
+                if of is not None:
+                    velocity = motions[of].carry(body.centroid - shift)[1][0]
+                    rates[k] = velocity.real, velocity.imag, motions[of].dpsi[0]
+            block = next(self._block(member) for member in self.members if member.of in turning)
+            leads.append(Lead(direction, block, rates))
         return leads
 
 

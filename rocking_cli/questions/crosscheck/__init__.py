@@ -1,0 +1,3 @@
+"""`crosscheck`: the exact engine and free blocks side by side."""
+
+PLACE = 75
