@@ -19,7 +19,9 @@ FREE_NEIGHBOURS = 20  # number of neighbours by default if free blocks are simul
 ENGINES: tuple[EngineName, ...] = ("exact", "blocks", "auto")
 
 
-def cost_in_words(engine: Engine, structure: Structure, motion: GroundMotion, count: int) -> str:
+def cost_in_words(
+    engine: Engine, structure: Structure, motion: GroundMotion, count: int, processes: int | None = None
+) -> str:
     """Return how long many histories will take, as a sentence; empty for the engine of one degree of freedom.
 
     Parameters
@@ -32,6 +34,8 @@ def cost_in_words(engine: Engine, structure: Structure, motion: GroundMotion, co
         One of the motions.
     count : int
         Number of histories.
+    processes : int, optional
+        Number of histories at a time; by default, one for each processor.
 
     Raises
     ------
@@ -42,7 +46,8 @@ def cost_in_words(engine: Engine, structure: Structure, motion: GroundMotion, co
         return ""
     from rocking_cli.studies.engines.free import cost
 
-    each, processes = cost(structure, motion)
+    each, usual = cost(structure, motion)
+    processes = processes or usual
     most = "up to " if engine.name == "auto" else ""
     return (
         f"Free blocks: {most}{count} histories of some {each:.2g} s each, on {processes} processors: {most}"
