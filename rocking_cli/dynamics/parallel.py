@@ -52,6 +52,7 @@ def in_parts(
 
 
 MAX_PROCESSES = 8  # largest number of processes: each takes some 200 MB of memory
+ENDED = "the system ended a process of this work: is there enough memory?"
 
 _work: Callable[[int, int], Any] | None = None
 
@@ -87,18 +88,18 @@ def in_processes(work: Callable[[int, int], Any], count: int, size: int, process
     from multiprocessing import get_context
 
     # A spawned process inherits no threads or locks.
-    pool = ProcessPoolExecutor(processes, get_context("spawn"), _begin, (work,))
+    pool = ProcessPoolExecutor(processes, get_context("spawn"), begin, (work,))
     try:
         parts = {pool.submit(_part, first, min(first + size, count)): first for first in range(0, count, size)}
         for part in as_completed(parts):
             yield parts.pop(part), part.result()
     except BrokenProcessPool:
-        raise Refused("the system ended a process of this work: is there enough memory?") from None
+        raise Refused(ENDED) from None
     finally:
         pool.shutdown(cancel_futures=True)
 
 
-def _begin(work: Callable[[int, int], Any]) -> None:
+def begin(work: Callable[[int, int], Any] | None = None) -> None:
     """Prepare a process before its first part of the work."""
     global _work
     _work = work

@@ -9,6 +9,8 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import Engine, EngineName
 from rocking_cli.studies.engines.free_blocks import COLLAPSE
 
+ALL_EXACT = "Engine: one degree of freedom for all histories, as it tells every outcome."
+
 
 def engines_in_words(engine: EngineName, by_blocks: int, mechanism: Mechanism) -> list[str]:
     """Return sentences on the histories that were simulated with free blocks; none if there are none.
@@ -25,20 +27,27 @@ def engines_in_words(engine: EngineName, by_blocks: int, mechanism: Mechanism) -
     if engine == "exact":
         return []
     if not by_blocks:
-        return ["Engine: one degree of freedom for all histories, as it tells every outcome."]
+        return [ALL_EXACT]
     histories = "1 history" if by_blocks == 1 else f"{by_blocks} histories"
-    others = "; one degree of freedom for all others" if engine == "auto" else ""
     given = mechanism.friction is not None
     friction = (
         f"{mechanism.friction:g}, as given" if given else f"{MASONRY_FRICTION:g}, as usual for masonry: none is given"
     )
-    return [
+    return [blocks_in_words(engine, histories, friction)]
+
+
+def blocks_in_words(engine: EngineName, histories: str, friction: str) -> str:
+    """Return which histories free blocks give, and how: their collapse, impacts and friction, in words."""
+    others = "; one degree of freedom for all others" if engine == "auto" else ""
+    return (
         f"Engine: free blocks (MuJoCo) for {histories}{others}. Overturning is collapse: {COLLAPSE}. Impacts lose the "
         f"energy that contact takes, whatever restitution the file gives. Friction is {friction}."
-    ]
+    )
 
 
-def cost_in_words(engine: Engine, structure: Structure, motion: GroundMotion, count: int) -> str:
+def cost_in_words(
+    engine: Engine, structure: Structure, motion: GroundMotion, count: int, processes: int | None = None
+) -> str:
     """Return how long many histories will take, measured, as a sentence; empty for one degree of freedom.
 
     Parameters
@@ -51,6 +60,8 @@ def cost_in_words(engine: Engine, structure: Structure, motion: GroundMotion, co
         One of the motions.
     count : int
         Number of histories.
+    processes : int, optional
+        Number of histories at a time; by default, one for each processor.
 
     Raises
     ------
@@ -61,7 +72,8 @@ def cost_in_words(engine: Engine, structure: Structure, motion: GroundMotion, co
         return ""
     from rocking_cli.studies.engines.free import cost
 
-    each, processes = cost(structure, motion)
+    each, usual = cost(structure, motion)
+    processes = processes or usual
     most = "up to " if engine.name == "auto" else ""
     return (
         f"Free blocks: {most}{count} histories of some {each:.2g} s each, on {processes} processors: {most}"

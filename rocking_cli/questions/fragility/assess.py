@@ -45,12 +45,15 @@ class UnknownRuns:
         Number of those with unknown outcome; None if the joints are not known, so that nothing was checked.
     checked : bool
         Whether the joints are known in all runs.
+    by_blocks : int
+        Number of runs that were simulated with free blocks.
     """
 
     structure: str
     runs: int
     unknown: int | None
     checked: bool
+    by_blocks: int = 0
 
     @property
     def share(self) -> float | None:
@@ -211,7 +214,7 @@ def fitted(
 def unknown_runs(found: Mapping[str, Tally]) -> list[UnknownRuns]:
     """Return the number of runs of unknown outcome of each structure that has runs."""
     return [
-        UnknownRuns(name, int(tally.runs.sum()), tally.unknown_if_checked, tally.checked)
+        UnknownRuns(name, int(tally.runs.sum()), tally.unknown_if_checked, tally.checked, tally.by_blocks)
         for name, tally in found.items()
         if tally.runs.any()
     ]

@@ -14,16 +14,19 @@ from rocking_cli.core import Mechanism, NoEquivalentBlock, both_statics, equival
 from rocking_cli.core.mechanism import why_none
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.model import NO_REBOUND, check_elements
-from rocking_cli.errors import InputError, Problem, RockingError
+from rocking_cli.errors import InputError, Problem, RockingError, SolverError
 from rocking_cli.processing.intensity import all_measures, parse_measure
 from rocking_cli.questions.fragility.definition import SLIDING, Definition
 from rocking_cli.questions.fragility.plan import Plan, Trial, complete, weaker
 from rocking_cli.questions.fragility.sources import KeptMotions
-from rocking_cli.questions.fragility.store import Store
+from rocking_cli.questions.fragility.store import UNKNOWN, Store
 from rocking_cli.questions.fragility.study import Sample, Study, digest
-from rocking_cli.questions.fragility.tally import UPLIFT_FACT, accelerations, rotations
+from rocking_cli.questions.fragility.tally import UPLIFT_FACT, accelerations, rotations, samples_of
 from rocking_cli.questions.fragility.work_units import carry_out, unit_size, units
 from rocking_cli.questions.fragility.workers import Workers
+from rocking_cli.structure import Structure
+from rocking_cli.studies.engines import EngineName, cost_in_words, engine_of
+from rocking_cli.studies.engines.scene import engine_version
 from rocking_cli.studies.fragility.quantities import PGA, PGV, ROTATIONS_FACT, displacement_limits
 
 Progress = Callable[[int, int], None]
@@ -31,6 +34,10 @@ Progress = Callable[[int, int], None]
 PARAMETER_TOLERANCE = 1e-9  # relative difference between machines of parameters from the same mechanics
 MAX_NAMED_CHANGES = 10  # changed samples that an error message names
 Examined = Callable[[int], None]
+SIMULATED_BY: dict[EngineName, tuple[EngineName, ...]] = {
+    "exact": ("exact",), "blocks": ("blocks",), "auto": ("exact", "blocks"),
+}  # fmt: skip
+"""The engines that simulate the runs of a study, one after the other: the second those that the first leaves."""
 
 
 @dataclass(frozen=True)
@@ -192,8 +199,12 @@ def _of_one_kind(one: Plan, other: Plan) -> bool:
     )
 
 
-def run(prepared: Prepared, store: Store, workers: Workers, progress: Progress | None = None) -> None:
-    """Simulate the runs that the store lacks, and add them to it.
+def run(
+    prepared: Prepared, store: Store, workers: Workers, progress: Progress | None = None, engine: EngineName = "exact"
+) -> None:
+    """Simulate the runs that the store lacks by one engine, and add them to it.
+
+    In a study by both engines, those of unknown outcome by one degree of freedom are left to free blocks.
 
     Parameters
     ----------
@@ -205,6 +216,8 @@ def run(prepared: Prepared, store: Store, workers: Workers, progress: Progress |
         The processes or threads that simulate; results do not depend on them.
     progress : callable, optional
         See `Progress`.
+    engine : {"exact", "blocks"}
+        Who simulates them.
     """
     study, plan, definition = prepared.study, prepared.plan, prepared.study.definition
     size = unit_size(plan.total - prepared.finished, workers.count)
@@ -216,20 +229,51 @@ def run(prepared: Prepared, store: Store, workers: Workers, progress: Progress |
         definition.model,
         store.finished,
         size,
+        engine=engine,
         checked=checked,
         opening=definition.opening,
     )
-    for rows in workers.map(carry_out, to_do):
+    for done in workers.map(carry_out, to_do):
+        left = engine == "exact" and definition.engine == "auto"
+        rows = done.select(done.outcome != UNKNOWN) if left else done
         store.add(rows)
         if progress is not None:
             progress(len(rows), rows.failed)
 
 
+def cost_of_blocks(prepared: Prepared, store: Store, workers: Workers) -> list[str]:
+    """Return how long the runs that the store lacks will take with free blocks, a sentence for each structure.
+
+    Raises
+    ------
+    InputError
+        If the blocks of a structure do not stand by themselves.
+    """
+    plan, sentences = prepared.plan, []
+    records = [k for k, record in enumerate(plan.records) if record.reason is None]
+    records.sort(key=lambda k: plan.records[k].dt * plan.records[k].npts)
+    motion = prepared.motions[records[len(records) // 2]]
+    usable = [k for k, trial in enumerate(plan.trials) if trial.reason is None]
+    for name in plan.structures:
+        samples, each = samples_of(plan, name), len(plan.records) * plan.block
+        those = [k for k in usable if k in samples]
+        done = store.finished(samples.start * each, samples.stop * each).size
+        if left := plan.total // len(usable) * len(those) - done:
+            structure = Structure(prepared.study.samples[those[0]].mechanism)
+            try:
+                cost = cost_in_words(engine_of("blocks"), structure, motion, left, workers.count)
+            except SolverError as error:
+                raise InputError(Problem(str(error), field=name)) from None
+            sentences.append(f"{name}: {cost}" if len(plan.structures) > 1 else cost)
+    return sentences
+
+
 def versions(study: Study) -> dict[str, str]:
-    """Return the versions of this program and of the packages of the structures' mechanisms."""
+    """Return the versions of this program, of the packages of the structures' mechanisms, and of the free blocks."""
     registry = Registry()
     plugins = {f"mechanism {each.mechanism}": registry.package_of(each.mechanism) for each in study.structures}
-    return {"rocking-cli": __version__, **plugins}
+    blocks = {"mujoco": engine_version()} if study.definition.engine != "exact" else {}
+    return {"rocking-cli": __version__, **plugins, **blocks}
 
 
 def libraries() -> dict[str, str]:

@@ -22,6 +22,7 @@ from rocking_cli.processing.steps import parse_steps
 from rocking_cli.questions.fragility.distributions import Distribution, Positive, in_units_of_fields
 from rocking_cli.questions.fragility.hazard_curve import wrong_points
 from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE
+from rocking_cli.studies.engines import EngineName
 from rocking_cli.studies.file_part import Part, Sound, problems_of
 from rocking_cli.studies.fragility.quantities import (
     PGA,
@@ -34,6 +35,7 @@ from rocking_cli.studies.fragility.quantities import (
 from rocking_cli.studies.fragility.quantities import SCALE as SCALE
 
 UPLIFT, OVERTURNING, SLIDING = "uplift", "overturning", "sliding"
+RESTITUTION = "restitution"
 UPLIFT_MEASURE = "lambda"  # the measure that a motion must exceed to uplift a structure; not a limit state of a study
 MAX_LEVELS = 100_000  # levels of intensity, or samples: more is a typing error
 
@@ -263,6 +265,7 @@ class Definition(Sampling, Common):
         None, min_length=1, description="restitutions, instead of the structures' own"
     )
     model: ModelName = Field("nonlinear", description="equation of motion")
+    engine: EngineName = Field("exact", description="who simulates the runs")
     opening: float = Field(
         OPENING, ge=0, le=1, description="largest opening of a joint over D_cr up to which a run holds"
     )
@@ -291,10 +294,11 @@ class Definition(Sampling, Common):
             yield ("samples",), "is missing: how many structures are drawn from the distributions"
         if not varied and sound("structures") and sound("samples") and given.get("samples", 1) > 1:
             yield ("samples",), "nothing varies: add `vary` to at least one structure"
-        if given.get("eta") is not None and "restitution" in varied:
+        if given.get("eta") is not None and RESTITUTION in varied:
             yield ("eta",), "cannot be combined with a structure that varies its restitution: give one of the two"
         if checks_sliding(given) and sound("model") and given.get("model", "nonlinear") != "nonlinear":
             yield ("limit_states",), "sliding requires `model: nonlinear`: linear models do not give the joint forces"
+        yield from _wrong_with_free_blocks(given, sound)
         for name in ("polarities", "eta", "limit_states", "measures", "bivariate"):
             values = _right(given, name, sound)
             for k, value in enumerate(values):
@@ -338,6 +342,31 @@ def _wrong_sets(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, st
         if level is not None and not any(abs(level - each) <= INTENSITY_TOLERANCE * abs(each) for each in known):
             shown = ", ".join(f"{level:g}" for level in known[:10]) + (", ..." if len(known) > 10 else "")
             yield ("records", k, "level"), f"{level:g} is not one of the levels {shown}"
+
+
+def _wrong_with_free_blocks(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+    """Yield an error for each field that has no meaning, or no effect, if free blocks are simulated."""
+    engine = given.get("engine", "exact")
+    if not sound("engine") or engine == "exact":
+        return
+    if sound("model") and (model := given.get("model", "nonlinear")) != "nonlinear":
+        yield ("model",), f"{model} cannot be combined with `engine: {engine}`: free blocks are no equivalent block"
+    if checks_sliding(given):
+        what = f"sliding cannot be combined with `engine: {engine}`: free blocks slide in the simulation itself"
+        yield ("limit_states",), what
+    if engine == "auto":  # runs of one degree of freedom use these
+        return
+    restitution = "has no effect with `engine: blocks`: contact decides the restitution"
+    if given.get("eta") is not None:
+        yield ("eta",), restitution
+    if given.get("opening") is not None:
+        yield ("opening",), "has no effect with `engine: blocks`: every joint is simulated"
+    entries = given.get("structures")
+    for k, entry in enumerate(entries if isinstance(entries, list) else []):
+        varied = entry.get("vary") if isinstance(entry, dict) else None
+        for name in (RESTITUTION, "rebound"):
+            if isinstance(varied, dict) and name in varied:
+                yield ("structures", k, "vary", name), restitution
 
 
 def checks_sliding(given: dict[str, Any]) -> bool:

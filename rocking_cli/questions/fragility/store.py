@@ -38,6 +38,7 @@ STANDS, FAILED, UNKNOWN = 0, 2, 3  # outcomes; 1 and -1: overturns in the positi
 SEAL = "seal"  # key of the checksum of everything but the runs, in the table `study`
 MAX_NAMED_RUNS = 5  # damaged runs that an error message names
 SLIDE_COLUMN = "slide_time"  # only studies of sliding have this column
+BLOCKS_COLUMN = "by_blocks"  # only studies that may simulate free blocks have this column
 
 CREATE_TABLES = """
 CREATE TABLE study (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -115,6 +116,8 @@ class RunRows:
     slide_time : ndarray, optional
         Time at which a joint first required more friction than available [s]; NaN if never. None if runs were not
         checked for sliding.
+    by_blocks : ndarray, optional
+        1 for runs that were simulated with free blocks, 0 for others. None if no run of the study can be.
     """
 
     id: Integers
@@ -130,6 +133,7 @@ class RunRows:
     lower_bound: Reals
     opening: Reals
     slide_time: Reals | None = None
+    by_blocks: Reals | None = None
 
     def __len__(self) -> int:
         return len(self.id)
@@ -144,8 +148,12 @@ class RunRows:
         """Names of the fields that are not None."""
         return tuple(each.name for each in fields(self) if getattr(self, each.name) is not None)
 
+    def select(self, which: Bools) -> RunRows:
+        """Return the runs that a mask selects."""
+        return RunRows(**{name: getattr(self, name)[which] for name in self.columns})
 
-COLUMNS = tuple(each.name for each in fields(RunRows) if each.name != SLIDE_COLUMN)
+
+COLUMNS = tuple(each.name for each in fields(RunRows) if each.name not in (SLIDE_COLUMN, BLOCKS_COLUMN))
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,7 +161,8 @@ class Endings:
     """The columns of finished runs that fragility needs, with one entry for each run.
 
     `peaks`, shape (n, 2), holds the peak rotations in the positive and the negative direction [rad]; `uplifts`,
-    `slides` and `checked` tell whether a run uplifts, slides, and had its joints checked.
+    `slides`, `checked` and `by_blocks` tell whether a run uplifts, slides, had its joints checked, and was simulated
+    with free blocks, which move in every joint and so count as checked.
     """
 
     id: Integers
@@ -164,6 +173,7 @@ class Endings:
     slides: Bools
     lower_bound: Reals
     checked: Bools
+    by_blocks: Bools
 
     @property
     def overturned(self) -> Bools:
@@ -342,8 +352,8 @@ class Store:
 
     def _fill(self, plan: Plan, facts: Mapping[str, Any]) -> None:
         self.columns = _columns(facts["description"])
-        slides = SLIDE_COLUMN in self.columns
-        for statement in CREATE_TABLES.format(columns=f", {SLIDE_COLUMN} REAL" if slides else "").split(";\n"):
+        optional = self.columns[len(COLUMNS) :]
+        for statement in CREATE_TABLES.format(columns="".join(f", {name} REAL" for name in optional)).split(";\n"):
             self._connection.execute(statement)
         levels, polarities = plan.shape[3:]
         self._connection.execute(
@@ -354,7 +364,7 @@ class Store:
                 level=polarities,
                 levels=levels,
                 polarities=polarities,
-                columns=f", run.{SLIDE_COLUMN}" if slides else "",
+                columns="".join(f", run.{name}" for name in optional),
             )
         )
         self._connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
@@ -566,20 +576,25 @@ class Store:
             Called with the number of runs read since the last call.
         """
         names = "id", "outcome", "peak_ratio", "peak_positive", "peak_negative", "uplift_time", "lower_bound", "opening"
-        slides = SLIDE_COLUMN in self.columns
+        optional = self.columns[len(COLUMNS) :]
         for start in range(first, stop, RUNS_PER_READ):
             end = min(start + RUNS_PER_READ, stop)
-            table = self._table((*names, SLIDE_COLUMN) if slides else names, start, end)
+            table = self._table((*names, *optional), start, end)
             number, outcome = table[:2].astype(np.int64)
-            uplifts, checked = np.isfinite(table[5]), np.isfinite(table[7])
-            slips = np.isfinite(table[8]) if slides else np.zeros(len(uplifts), dtype=bool)
-            yield Endings(number, outcome, table[2], table[3:5].T, uplifts, slips, table[6], checked)
+            uplifts, checked, never = np.isfinite(table[5]), np.isfinite(table[7]), np.zeros(table.shape[1], dtype=bool)
+            slips = np.isfinite(table[8]) if SLIDE_COLUMN in optional else never
+            by_blocks = table[8] == 1 if BLOCKS_COLUMN in optional else never
+            yield Endings(
+                number, outcome, table[2], table[3:5].T, uplifts, slips, table[6], checked | by_blocks, by_blocks
+            )
             counted(end - start)
 
 
 def _columns(description: Mapping[str, Any]) -> tuple[str, ...]:
     """Return the names of the columns of a study's runs."""
-    return (*COLUMNS, SLIDE_COLUMN) if SLIDING in description else COLUMNS
+    # No study has both, as sliding is not a limit state of free blocks.
+    optional = {SLIDING: SLIDE_COLUMN, "engine": BLOCKS_COLUMN}
+    return *COLUMNS, *(column for key, column in optional.items() if key in description)
 
 
 def _numbers(found: Sequence[tuple[Any, ...]], columns: int) -> Reals:

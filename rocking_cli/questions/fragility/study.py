@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import nan
 from pathlib import Path
@@ -29,6 +29,7 @@ from rocking_cli.processing.listed import is_list
 from rocking_cli.processing.record_list import read_list
 from rocking_cli.questions.fragility.definition import (
     HINT,
+    RESTITUTION,
     SLIDING,
     Common,
     Definition,
@@ -46,9 +47,10 @@ from rocking_cli.questions.fragility.hazard_curve import HazardCurve, read_hazar
 from rocking_cli.questions.fragility.plan import Sets
 from rocking_cli.questions.fragility.sources import Source
 from rocking_cli.short_repr import short_repr
+from rocking_cli.studies.engines.free_blocks import free_blocks
+from rocking_cli.studies.engines.scene import engine_version
 from rocking_cli.text import did_you_mean, numbered, one_line
 
-RESTITUTION = "restitution"
 OF_MOTIONS = frozenset({"processing", "factor", "floor", "weight", "level", "event", "station"})
 """Items of a record's entry that do not describe a file."""
 
@@ -149,6 +151,7 @@ class Study:
             "polarities": list(definition.polarities),
             "eta": definition.eta,
             "model": definition.model,
+            **({"engine": definition.engine} if definition.engine != "exact" else {}),
             "opening": definition.opening,
             "samples": definition.samples,
             "sampling": definition.sampling,
@@ -226,6 +229,9 @@ def load_study(given: str | Path | Mapping[str, Any], name: str = "study") -> St
                 what = "is missing: the limit state sliding is whether joints need more friction than there is"
                 hint = "give that of its joints, such as `friction: 0.6`"
                 document.problems.append(Problem(what, str(path.parent / entry.file), field="friction", hint=hint))
+    if document.data.get("engine") in ("blocks", "auto"):
+        files = [path.parent / entry.file for _, entry in entries]
+        document.problems += _wrong_as_free_blocks(document, files, structures)
     hazard = _hazard(document, path.parent)
     sampling = usable_part(Sampling, {key: document.data[key] for key in Sampling.model_fields if key in document.data})
     samples: list[Sample] = []
@@ -463,6 +469,22 @@ def _refuse_repeated(document: Document, field: str, names: Sequence[str]) -> No
     for name in dict.fromkeys(name for name in names if names.count(name) > 1):
         hint = "give one of them a `name`" if field == "structures" else None
         document.problems.append(document.at((field,), f"two of them are called {name}", hint, key=True))
+
+
+def _wrong_as_free_blocks(
+    document: Document, files: Sequence[Path], structures: Sequence[Mechanism | None]
+) -> Iterator[Problem]:
+    """Yield why free blocks cannot be simulated at all, or what of a structure they cannot have."""
+    try:
+        engine_version()
+    except InputError as error:
+        yield from (document.at(("engine",), each.message, each.hint) for each in error.problems)
+    for file, structure in zip(files, structures, strict=True):
+        try:
+            if structure is not None:
+                free_blocks(structure)
+        except InputError as error:
+            yield from (replace(each, file=str(file)) for each in error.problems)
 
 
 def _hazard(document: Document, folder: Path) -> HazardCurve | None:

@@ -120,4 +120,5 @@ def _of_runs(plan: Plan, rows: RunRows, measures: Sequence[str]) -> dict[str, Se
         "uplift [s]": rows.uplift_time.tolist(),
         "overturning [s]": rows.overturning_time.tolist(),
         **{HEADINGS[name]: getattr(rows, name).tolist() for name in rows.columns if name in HEADINGS},
+        **({} if rows.by_blocks is None else {"engine": np.where(rows.by_blocks == 1, "blocks", "exact").tolist()}),
     }  # fmt: skip

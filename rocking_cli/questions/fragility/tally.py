@@ -19,11 +19,11 @@ from rocking_cli.core import Direction, Mechanism, both_statics, equivalent_bloc
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.processing.intensity import parse_measure
-from rocking_cli.questions.fragility.definition import OVERTURNING, SLIDING, UPLIFT, Limit
+from rocking_cli.questions.fragility.definition import OVERTURNING, RESTITUTION, SLIDING, UPLIFT, Limit
 from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE
 from rocking_cli.questions.fragility.plan import Plan, Trial
 from rocking_cli.questions.fragility.store import FAILED, STANDS, Endings, Store
-from rocking_cli.questions.fragility.study import RESTITUTION, Sample, Study
+from rocking_cli.questions.fragility.study import Sample, Study
 from rocking_cli.studies.fragility.quantities import PGA, displacement_limits, kept, metres, of_the_motion, proportional
 from rocking_cli.studies.movements import is_held, top
 from rocking_cli.studies.under_pulses import uplift
@@ -57,6 +57,8 @@ class Tally:
         Number of runs of unknown outcome.
     checked : bool
         Whether the joints of all runs are known; if not, no outcome is unknown because of a joint.
+    by_blocks : int
+        Number of runs that were simulated with free blocks.
     lower : Tally or None
         The counts with undecided runs as not exceeding; None if no outcome is unknown.
     uplift : (float or None, float or None), optional
@@ -70,6 +72,7 @@ class Tally:
     ladders: Ladders | None
     unknown: int = 0
     checked: bool = True
+    by_blocks: int = 0
     lower: Tally | None = None
     uplift: Pair | None = None
 
@@ -236,7 +239,7 @@ def count(
     there = np.zeros((len(samples), records, etas, levels, polarities) if ladders else 0, dtype=bool)
     rungs = (len(samples), records, etas, polarities)
     upper, lower = _Counts(limits, shape, rungs if ladders else None, levels), None
-    checked = True
+    checked, by_blocks = True, 0
     each = records * plan.block
     start = samples.start * each
     for endings in store.endings(start, samples.stop * each, counted):
@@ -249,6 +252,7 @@ def count(
         if ladders:
             there.ravel()[endings.id - start] = True
         checked &= bool(endings.checked.all())
+        by_blocks += int(endings.by_blocks.sum())
         doubtful = int(endings.unknown.sum())
         unknown += doubtful
         if doubtful and lower is None:  # up to the first unknown outcome, both counts are equal
@@ -260,11 +264,12 @@ def count(
                 known = known_to_exceed(endings, limit, rotations, phi_cr[sample])
                 lower.add(limit, known, cell, ladder, level)
 
-    uplifts = store.facts().get(UPLIFT_FACT, {}).get(structure)
+    # Free blocks may move in other ways than the mechanism, from other accelerations.
+    uplifts = store.facts().get(UPLIFT_FACT, {}).get(structure) if not by_blocks else None
 
     def tally(counts: _Counts, of_known: Tally | None) -> Tally:
         of_ladders = Ladders(counts.first, there) if ladders else None
-        return Tally(plan, samples, runs, counts.exceeding, of_ladders, unknown, checked, of_known, uplifts)
+        return Tally(plan, samples, runs, counts.exceeding, of_ladders, unknown, checked, by_blocks, of_known, uplifts)
 
     checked |= store.fact("description")["model"] != "nonlinear"  # equivalent blocks have no joints
     return tally(upper, tally(lower, None) if lower is not None else None)

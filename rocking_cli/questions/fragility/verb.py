@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from rocking_cli.questions.fragility.plan import Plan
     from rocking_cli.questions.fragility.study import Study
     from rocking_cli.questions.fragility.workers import Workers
+    from rocking_cli.studies.engines import EngineName
 
     Structures = Mechanism | str | Path | Mapping[str, Any] | Sequence[Mechanism | str | Path | Mapping[str, Any]]
     Shaking = GroundMotion | Pulse | str | Path | Mapping[str, Any]
@@ -47,6 +48,7 @@ def fragility(
     sampling: Literal["random", "latin hypercube"] | None = None,
     seed: int | None = None,
     model: Literal["nonlinear", "linear1", "linear2"] | None = None,
+    engine: Literal["exact", "blocks", "auto"] | None = None,
     opening: float | None = None,
     limit_states: Sequence[str | float] | None = None,
     measures: Sequence[str] | None = None,
@@ -92,6 +94,9 @@ def fragility(
         How they are drawn.
     model : {"nonlinear", "linear1", "linear2"}
         Equation of motion.
+    engine : {"exact", "blocks", "auto"}
+        Who simulates the runs: one degree of freedom, free blocks, or free blocks where one degree of freedom does not
+        tell the outcome.
     opening : float
         Largest opening of a joint over D_cr up to which a run holds.
     limit_states : sequence of str or float
@@ -164,9 +169,9 @@ def fragility(
 
     fields: dict[str, Any] = {
         "structures": structures, "records": records, "method": method, "levels": levels, "polarities": polarities,
-        "eta": eta, "samples": samples, "sampling": sampling, "seed": seed, "model": model, "opening": opening,
-        "limit_states": limit_states, "measures": measures, "bivariate": bivariate, "confidence": confidence,
-        "hazard": hazard, "processing": processing, "floor": floor, "name": name,
+        "eta": eta, "samples": samples, "sampling": sampling, "seed": seed, "model": model, "engine": engine,
+        "opening": opening, "limit_states": limit_states, "measures": measures, "bivariate": bivariate,
+        "confidence": confidence, "hazard": hazard, "processing": processing, "floor": floor, "name": name,
     }  # fmt: skip
     fields = {key: value for key, value in fields.items() if value is not None}
     fields |= {key: each_of(fields[key]) for key in ("structures", "records") if key in fields}
@@ -201,7 +206,7 @@ def fragility(
         else:
             folder = TemporaryDirectory(prefix="rocking-", ignore_cleanup_errors=True)
             place = Path(stack.enter_context(folder)) / "study.db"
-        workers = workers_of(jobs, scheduler)
+        workers = workers_of(jobs, scheduler, loaded.definition.engine)
         _bring_up_to_date(loaded, place, workers, watch, restart=restart, rank_measures=rank_measures)
         answer = results(place, quantiles=quantiles, rank_measures=rank_measures, nrml=nrml, watch=watch)
         if store is None and file is None:
@@ -210,12 +215,14 @@ def fragility(
     return answer
 
 
-def workers_of(jobs: int | None, scheduler: str | None) -> AbstractContextManager[Workers]:
-    """Return the workers that simulate the runs: a cluster, or threads of this machine."""
+def workers_of(
+    jobs: int | None, scheduler: str | None, engine: EngineName = "exact"
+) -> AbstractContextManager[Workers]:
+    """Return the workers that simulate the runs: a cluster, or threads or processes of this machine."""
     from rocking_cli.questions.fragility import workers
 
     if scheduler is None:
-        return workers.threads(jobs)
+        return workers.threads(jobs) if engine == "exact" or jobs == 1 else workers.processes(jobs)
     if jobs is not None:
         raise InputError("`jobs` cannot be combined with `scheduler`: a cluster has its own number of workers")
     return workers.cluster(scheduler)
@@ -245,7 +252,7 @@ def _bring_up_to_date(
     rank_measures: bool,
 ) -> None:
     """Simulate the runs that the store lacks; on a restart simulate all, and keep the old store."""
-    from rocking_cli.questions.fragility.campaign import count_steps, prepare, run
+    from rocking_cli.questions.fragility.campaign import SIMULATED_BY, cost_of_blocks, count_steps, prepare, run
     from rocking_cli.questions.fragility.store import Store
 
     with ExitStack() as stack:
@@ -265,11 +272,16 @@ def _bring_up_to_date(
             watch.note(f"{name}: could not be used when the study was started; it is run now")
         if prepared.finished:
             watch.note(f"{prepared.finished} of {plan.total} runs are in the store already")
-        if prepared.finished == plan.total:
-            return
-        hands = hands or stack.enter_context(workers)
-        with watch.progress(plan.total, "runs", done=prepared.finished, failed=prepared.failed) as advance:
-            run(prepared, store, hands, advance)
+        for engine in SIMULATED_BY[study.definition.engine]:
+            finished, failed = store.count()
+            if finished == plan.total:
+                return
+            hands = hands or stack.enter_context(workers)
+            if engine == "blocks":
+                for sentence in cost_of_blocks(prepared, store, hands):
+                    watch.note(sentence)
+            with watch.progress(plan.total, "runs", done=finished, failed=failed) as advance:
+                run(prepared, store, hands, advance, engine)
 
 
 def _leave_out(plan: Plan, watch: Watcher) -> None:

@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.names import UNKNOWN, percent
 from rocking_cli.questions.fragility.definition import UPLIFT_MEASURE
 from rocking_cli.studies.fragility.quantities import kept, label, metres
 from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
+from rocking_cli.views.engines import ALL_EXACT, blocks_in_words
 from rocking_cli.views.view import Table, View, number
 
 if TYPE_CHECKING:  # avoids importing scipy, which only fits need
@@ -24,6 +26,7 @@ if TYPE_CHECKING:  # avoids importing scipy, which only fits need
     from rocking_cli.questions.fragility.plan import Plan
     from rocking_cli.questions.fragility.store import Store
     from rocking_cli.questions.fragility.study import Study
+    from rocking_cli.studies.engines import EngineName
     from rocking_cli.studies.fit import Estimate
 
 Fitted = TypeVar("Fitted", "Fragility", "Bivariate")
@@ -67,12 +70,13 @@ def left_out(plan: Plan) -> list[str]:
     ]
 
 
-def without_block(plan: Plan) -> list[str]:
+def without_block(plan: Plan, engine: EngineName) -> list[str]:
     """Return a sentence on each structure without an equivalent block, on the meaning of phi_cr there."""
     structures = dict.fromkeys(each.structure for each in plan.trials if each.reason is None and not each.p)
+    counts = ", and reaching it counts as overturning" if engine != "blocks" else ""
     return [
         f"{structure}: no equivalent single block exists, and therefore no p. In a direction without a critical "
-        "rotation, phi_cr stands for the kinematic limit, and reaching it counts as overturning."
+        f"rotation, phi_cr stands for the kinematic limit{counts}."
         for structure in structures
     ]
 
@@ -126,10 +130,11 @@ def view(
     records = f"{good} record{'s' * (good != 1)}" + (f" ({bad} more cannot be used)" if bad else "")
     so_far = "" if finished == plan.total else f" of {plan.total:,}, so far"
     doubtful = sum(each.unknown or 0 for each in outcomes)
-    of_them = f" ({doubtful:,} of {UNKNOWN} outcome)" if doubtful else ""
-    parts: list[Table | str] = [
-        f"{name}: {definition.method}, {records}, {finished:,} runs{so_far}{of_them}, seed {definition.seed}"
-    ]
+    by_blocks = sum(each.by_blocks for each in outcomes)
+    of_them = [f"{doubtful:,} of {UNKNOWN} outcome"] if doubtful else []
+    of_them += [f"{by_blocks:,} with free blocks"] if by_blocks else []
+    counts = f"{finished:,} runs{so_far}" + (f" ({', '.join(of_them)})" if of_them else "")
+    parts: list[Table | str] = [f"{name}: {definition.method}, {records}, {counts}, seed {definition.seed}"]
     parts += sets_in_words(plan)
     for structure, measure in dict.fromkeys((each.structure, each.measure) for each in curves):
         these = [each for each in curves if (each.structure, each.measure) == (structure, measure)]
@@ -137,8 +142,10 @@ def view(
     for structure, measures in dict.fromkeys((each.structure, each.measures) for each in surfaces):
         those = [each for each in surfaces if (each.structure, each.measures) == (structure, measures)]
         parts += _surfaces(structure, measures, those, confidence)
-    parts += [*without_block(plan), *out_of_reach(store, plan, definition)]
-    parts += (notes := [*_unknown_in_words(outcomes), *_unchecked_in_words(outcomes)])
+    blockless = without_block(plan, definition.engine)
+    parts += [*blockless, *out_of_reach(store, plan, definition)]
+    notes = [*_unknown_in_words(outcomes, definition.engine), *_unchecked_in_words(outcomes)]
+    parts += (notes := [*notes, *_engines_in_words(outcomes, definition.engine)])
     parts += (nowhere := _nowhere(plan, definition, curves) if finished else [])
     data = {
         "study": name,
@@ -150,10 +157,12 @@ def view(
         "runs": plan.total,
         "finished": finished,
         "failed": failed,
+        "engine": definition.engine,
+        "by_blocks": by_blocks,
         "outcomes": [{**asdict(each), "share": each.share} for each in outcomes],
         "notes": notes,
         "left_out": left_out(plan),
-        "without_block": without_block(plan),
+        "without_block": blockless,
         "out_of_reach": out_of_reach(store, plan, definition),
         "without_curve": nowhere,
         "records": _records(plan),
@@ -269,13 +278,15 @@ def undecided(found: Sequence[Fragility | Bivariate], *, capacities: bool) -> It
         )
 
 
-def _unknown_in_words(outcomes: Sequence[UnknownRuns]) -> list[str]:
+def _unknown_in_words(outcomes: Sequence[UnknownRuns], engine: EngineName) -> list[str]:
     """Return a sentence on each structure with runs of unknown outcome."""
+    why, when = "a joint opens or slides that the model keeps closed", "the first joint opens or slides"
+    if engine != "exact":  # free blocks have simulated all runs with such a joint
+        why, when = "free blocks failed: a step diverged, or a body sank too deep into another", "the failure"
     return [
         f"{each.structure}: {each.unknown:,} of {each.runs:,} runs ({percent(each.share or 0.0)}) "
-        f"{'are' if each.unknown != 1 else 'is'} of {UNKNOWN} outcome, because a joint opens or slides that the model "
-        "keeps closed. They are known to exceed a limit only if they exceed it before the first joint opens or slides; "
-        "until more is known, use the upper curves."
+        f"{'are' if each.unknown != 1 else 'is'} of {UNKNOWN} outcome, because {why}. They are known to exceed a limit "
+        f"only if they exceed it before {when}; until more is known, use the upper curves."
         for each in outcomes
         if each.unknown
     ]
@@ -290,6 +301,17 @@ def _unchecked_in_words(outcomes: Sequence[UnknownRuns]) -> list[str]:
         f"Caution: the joints of {' and '.join(unchecked)} are not checked: the mechanism does not say which of them "
         "stay closed."
     ]
+
+
+def _engines_in_words(outcomes: Sequence[UnknownRuns], engine: EngineName) -> list[str]:
+    """Return a sentence on the runs that were simulated with free blocks; empty if the study did not allow any."""
+    counts = {each.structure: f"{each.by_blocks:,} of {each.runs:,}" for each in outcomes if each.by_blocks}
+    if not counts:
+        return [ALL_EXACT] if engine == "auto" else []
+    several = len(outcomes) > 1
+    named = [f"{count}{f' runs of {structure}' if several else ' runs'}" for structure, count in counts.items()]
+    friction = f"that of the structure's file, or {MASONRY_FRICTION:g}, as usual for masonry, if it gives none"
+    return [blocks_in_words(engine, " and ".join(named), friction)]
 
 
 def without_logarithm(measure: str, runs: int) -> Iterator[str]:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from math import ceil, isnan
 
 import numpy as np
 
 from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.core import Mechanism
-from rocking_cli.dynamics.batch import Runs, respond_many
+from rocking_cli.dynamics.batch import Runs
 from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes
@@ -19,13 +20,15 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.names import OPENING
 from rocking_cli.questions.fragility.plan import Plan
 from rocking_cli.questions.fragility.sources import KeptMotions
-from rocking_cli.questions.fragility.store import FAILED, UNKNOWN, RunRows
+from rocking_cli.questions.fragility.store import COLUMNS, FAILED, UNKNOWN, RunRows
 from rocking_cli.questions.fragility.study import Sample
 from rocking_cli.structure import Structure, with_restitution
 from rocking_cli.studies.contact import Contacts
+from rocking_cli.studies.engines import EngineName, engine_of
 
 MIN_RUNS, MAX_RUNS = 64, 4096  # runs of a unit: some 10 ms to 1 s of work, against 1 to 10 ms for handing it out
 MAX_CHECKED_RUNS = 256  # runs of a unit that is checked for sliding: each run takes some ms
+MAX_BLOCK_RUNS = 2  # runs of a unit of free blocks: each run takes seconds
 MIN_UNITS_PER_WORKER = 16  # units for each worker, so that all workers end together
 MAX_SAMPLES = 4_000_000  # samples of the records of a unit: 64 megabytes
 MAX_MODELS = 16  # models of a unit: some 30 megabytes, 120 for arches
@@ -43,20 +46,35 @@ class WorkUnit:
         The runs; their models and records are indices into the tuples below.
     models : tuple of Model
     motions : tuple of GroundMotion
-    checked : tuple of Mechanism
-        The structures of the models if runs are checked for sliding; otherwise empty.
+    mechanisms : tuple of Mechanism
+        The structures of the models if free blocks are simulated or runs are checked for sliding; otherwise empty.
+    engine : {"exact", "blocks"}
+        Who simulates the runs.
+    checked : bool
+        Whether the runs are checked for sliding.
     """
 
     id: Integers
     runs: Runs
     models: tuple[Model, ...]
     motions: tuple[GroundMotion, ...]
-    checked: tuple[Mechanism, ...] = ()
+    mechanisms: tuple[Mechanism, ...] = ()
+    engine: EngineName = "exact"
+    checked: bool = False
 
 
 def carry_out(unit: WorkUnit) -> RunRows:
-    """Simulate a unit on one processor; the results are the same to the last bit on every machine."""
-    outcomes = respond_many(unit.models, unit.motions, unit.runs, threads=1, only_peaks=True)
+    """Simulate a unit on one processor; the results are the same to the last bit on every machine.
+
+    Those of free blocks are the same on machines of one kind.
+    """
+    engine = engine_of(unit.engine, unit.mechanisms)
+    try:
+        outcomes = engine.outcomes(unit.models, unit.motions, unit.runs, threads=1, only_peaks=True)
+    except SolverError:  # as free blocks, the structure does not stand by itself
+        missing, each = dict.fromkeys(COLUMNS[4:], np.full(len(unit.id), np.nan)), np.ones(len(unit.id))
+        outcome = np.full(len(unit.id), FAILED)
+        return RunRows(unit.id, unit.runs.scale, unit.runs.eta, outcome, **missing, by_blocks=each)
     slides = None
     if unit.checked:
         slides, lost = _slide_times(unit, outcomes)
@@ -80,6 +98,7 @@ def carry_out(unit: WorkUnit) -> RunRows:
         lower_bound=known(np.where(outcomes.unknown, outcomes.lower_bound, np.nan)),
         opening=known(outcomes.opening),
         slide_time=slides,
+        by_blocks=outcomes.by_blocks.astype(np.float64),
     )
 
 
@@ -92,9 +111,9 @@ def _slide_times(unit: WorkUnit, found: Outcomes) -> tuple[Reals, Bools]:
         model, eta = int(runs.model[k]), float(runs.eta[k])
         restitution = None if isnan(eta) else eta
         if (model, restitution) not in checks:
-            checked = unit.checked[model]
+            mechanism = unit.mechanisms[model]
             checks[model, restitution] = Contacts(
-                checked if restitution is None else with_restitution(checked, restitution)
+                mechanism if restitution is None else with_restitution(mechanism, restitution)
             )
         motion = unit.motions[runs.record[k]].scaled(float(runs.scale[k] * runs.polarity[k]))
         try:
@@ -114,6 +133,7 @@ def units(
     finished: Callable[[int, int], Integers],
     size: int,
     *,
+    engine: EngineName = "exact",
     checked: bool = False,
     opening: float = OPENING,
 ) -> Iterator[WorkUnit]:
@@ -133,6 +153,8 @@ def units(
         Function (first, stop) that returns the numbers of the finished runs from `first` to before `stop`.
     size : int
         Largest number of runs of a unit.
+    engine : {"exact", "blocks"}
+        Who simulates them.
     checked : bool
         Whether the runs are checked for sliding.
     opening : float
@@ -140,14 +162,18 @@ def units(
     """
     models = _Models(samples, plan.etas, model, opening)
     size = min(size, MAX_CHECKED_RUNS) if checked else size
+    most_models = MAX_MODELS
+    if engine == "blocks":
+        size, most_models = MAX_BLOCK_RUNS, 1
+    unit = partial(_unit, plan, models=models, motions=motions, engine=engine, checked=checked)
     waiting: list[Integers] = []
     trials: set[int] = set()
     records: set[int] = set()
     held, npts = 0, 0
     for sample, record, part in _parts(plan, finished, size):
         more = plan.records[record].npts if record not in records else 0
-        if waiting and (held + len(part) > size or len(trials | {sample}) > MAX_MODELS or npts + more > MAX_SAMPLES):
-            yield _unit(plan, np.concatenate(waiting), models, motions, checked=checked)
+        if waiting and (held + len(part) > size or len(trials | {sample}) > most_models or npts + more > MAX_SAMPLES):
+            yield unit(np.concatenate(waiting))
             waiting, trials, records, held, npts = [], set(), set(), 0, 0
             more = plan.records[record].npts
         waiting.append(part)
@@ -155,7 +181,7 @@ def units(
         records.add(record)
         held, npts = held + len(part), npts + more
     if waiting:
-        yield _unit(plan, np.concatenate(waiting), models, motions, checked=checked)
+        yield unit(np.concatenate(waiting))
 
 
 def _parts(
@@ -182,7 +208,9 @@ def unit_size(runs: int, workers: int) -> int:
     return min(max(ceil(runs / (MIN_UNITS_PER_WORKER * workers)), MIN_RUNS), MAX_RUNS)
 
 
-def _unit(plan: Plan, runs: Integers, models: _Models, motions: KeptMotions, *, checked: bool) -> WorkUnit:
+def _unit(
+    plan: Plan, runs: Integers, *, models: _Models, motions: KeptMotions, engine: EngineName, checked: bool
+) -> WorkUnit:
     sample, record, eta, level, polarity = plan.places(runs)
     trials, model = np.unique(sample, return_inverse=True)
     records, motion = np.unique(record, return_inverse=True)
@@ -199,7 +227,9 @@ def _unit(plan: Plan, runs: Integers, models: _Models, motions: KeptMotions, *, 
         ),
         tuple(models[int(k)] for k in trials),
         tuple(motions[int(k)] for k in records),
-        tuple(models.samples[k].mechanism for k in trials) if checked else (),
+        tuple(models.samples[k].mechanism for k in trials) if checked or engine == "blocks" else (),
+        engine,
+        checked,
     )
 
 

@@ -6,13 +6,24 @@ import logging
 import os
 import warnings
 from collections.abc import Callable, Generator, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ThreadPoolExecutor, wait
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    CancelledError,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+    wait,
+)
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
+from multiprocessing import get_context
 from typing import TYPE_CHECKING, TypeVar
 
 from rocking_cli import __version__
-from rocking_cli.errors import InputError, RockingError
+from rocking_cli.dynamics.parallel import ENDED, MAX_PROCESSES, begin
+from rocking_cli.errors import InputError, Refused, RockingError
 
 if TYPE_CHECKING:
     import distributed
@@ -79,6 +90,30 @@ def threads(jobs: int | None = None) -> Iterator[Workers]:
     workers = jobs or os.cpu_count() or 1
     with ThreadPoolExecutor(workers) as executor:
         yield Workers(executor, workers)
+
+
+@contextmanager
+def processes(jobs: int | None = None) -> Iterator[Workers]:
+    """Provide processes of this machine as workers, for work that holds the interpreter, as that of free blocks.
+
+    Parameters
+    ----------
+    jobs : int, optional
+        Number of processes; by default one for each processor, up to 8.
+
+    Raises
+    ------
+    Refused
+        If the system ended a process.
+    """
+    workers = jobs or min(os.cpu_count() or 1, MAX_PROCESSES)
+    pool = ProcessPoolExecutor(workers, get_context("spawn"), begin)
+    try:
+        yield Workers(pool, workers)
+    except BrokenProcessPool:
+        raise Refused(ENDED) from None
+    finally:
+        pool.shutdown(cancel_futures=True)
 
 
 class ClusterError(RockingError):
