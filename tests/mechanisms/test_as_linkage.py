@@ -83,7 +83,7 @@ def test_histories_and_checks_of_joints_are_those_of_the_assembly(name):
         for each in (found, written(found))
     )
     ours, theirs = ({**each, **each["contact"]} for each in (ours, theirs))
-    assert ours["peak_ratio"] > 0 and ours["friction_needed"] > 0
+    assert ours["peak_ratio"] > 0
     for key, value in ours.items():
         if isinstance(value, float):
             assert theirs[key] == approx(value, rel=1e-6), key
