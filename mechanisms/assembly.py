@@ -601,7 +601,9 @@ class Assembly(LinkedBodies):
                 fields["friction"] = contact.friction
             if turns:
                 fields |= {"pivot": other} if one is None else {"hinge": [one, other]}
-                hinges[letters.get((contact, at), _name(contact))] = {**fields, "at": _rounded([at])[0]}
+                # Another hinge about a point at which hinges with letters imply it has no letter of its own.
+                name = letters.get((contact, at)) or numbered(_name(contact), "", hinges)
+                hinges[name] = {**fields, "at": _rounded([at])[0]}
             else:
                 closed[numbered(_name(contact), "", closed)] = {**fields, "fixed": [one or GROUND, other]}
         joints: dict[str, Connection] = {}

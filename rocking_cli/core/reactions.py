@@ -189,7 +189,7 @@ def impulses(mechanism: Mechanism, ended: Direction) -> Reactions | None:
 def _instead_of_joints(mechanism: Mechanism, direction: Direction) -> Sequence[Contact]:
     """Return the contacts of a mechanism that gives no joints, because bodies slide or joints are redundant.
 
-    None of them if they are many.
+    Empty if there are too many.
     """
     contacts = () if mechanism.joints(direction) else mechanism.contacts(direction) or ()
     return contacts if sum(contact.forces for contact in contacts) <= MAX_SHARED_FORCES else ()

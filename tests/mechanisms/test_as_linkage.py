@@ -74,16 +74,16 @@ def test_of_many_assemblies(name):
 
 
 @pytest.mark.rest
-@pytest.mark.parametrize("name", ["assembly", "masonry/wall_of_three"])
-def test_histories_and_checks_of_joints_are_those_of_the_assembly(name):
+@pytest.mark.parametrize(("name", "scale"), [("assembly", 1.0), ("masonry/wall_of_three", 3.0)])
+def test_histories_and_checks_of_joints_are_those_of_the_assembly(name, scale):
     # The springings of the first are drawn to whole millimetres: without their faces, joints would be taken as level.
     found = load_structure(EXAMPLES / f"{name}.yaml")
     ours, theirs = (
-        rk.respond(each, ACCEL, models="nonlinear", neighbours=0).to_dict()["responses"]["nonlinear"]
+        rk.respond(each, ACCEL, models="nonlinear", neighbours=0, scale=scale).to_dict()["responses"]["nonlinear"]
         for each in (found, written(found))
     )
     ours, theirs = ({**each, **each["contact"]} for each in (ours, theirs))
-    assert ours["peak_ratio"] > 0 and ours["friction_needed"] > 0
+    assert ours["peak_ratio"] > 0
     for key, value in ours.items():
         if isinstance(value, float):
             assert theirs[key] == approx(value, rel=1e-6), key

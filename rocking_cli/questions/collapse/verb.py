@@ -37,9 +37,10 @@ def collapse(
     Raises
     ------
     InputError
-        If the structure is not an assembly, or its file cannot be used; if `out` cannot be written.
+        If the structure is not an assembly, or its file cannot be used; if `out` cannot be written, also because one of
+        the mechanisms has no rocking model.
     MechanismError
-        If the assembly has no mechanism, or with `out` if one of its mechanisms has no rocking model.
+        If the assembly has no mechanism.
 
     Examples
     --------
