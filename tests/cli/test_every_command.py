@@ -311,7 +311,7 @@ OF_ALL = ("equiv", "draw", "collapse", "mechanisms")
 """Commands that are asked of all examples but the large ones; the others are asked of one."""
 LARGE = ("cracked_facade", "buttressed_arch", "wall_of_three", "wall_with_openings", "examples/assembly")
 LONG = (
-    "--trim",
+    "--trim 1:11",
     "--slenderness",
     '--until "peak_ratio',
     "--compare examples/block.yaml examples/frame.yaml examples/wall.yaml --json",

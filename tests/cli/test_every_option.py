@@ -398,7 +398,8 @@ COMMAND_LINES = {
 }
 """A command line of each command."""
 ODD = {
-    "--animate": "odd.html", "--a": "3", "--ag": "0.4g", "--amplitude-deviation": "30%", "--at": "0.3", "--author": "odd", "--azimuth": "30",
+    "--animate": "odd.html",
+    "--a": "3", "--ag": "0.4g", "--amplitude-deviation": "30%", "--at": "0.3", "--author": "odd", "--azimuth": "30",
     "--band": "0.3:1", "--baseline": "linear", "--channel": "2", "--code": "", "--control": "0.3,2",
     "--count": "1", "--curves": "c.csv", "--damping": "10%", "--dt": "0.1", "--eta": "0.7", "--factors": "0.5:2",
     "--floor": "T1=0.4,xi=0.05,z/H=0.67,gamma=1.29", "--fps": "30", "--fractiles": "0.3,0.7",

@@ -176,10 +176,11 @@ def crosscheck(
     tail = max(0.0, float(exact.time[np.isfinite(exact.phi)][-1]) - lasts)
     blocks, moved, free = engine.follow(structure, motion, release=release, tail=tail, progress=progress)
     limit = exact.check.limit * exact.check.reach if exact.check is not None else nan
+    demand = Contacts(structure.mechanism).check(exact, motion)
+    joints = joints_of(structure.mechanism, free, moved, limit)
     return Crosscheck(
-        exact=exact, of_blocks=blocks, demand=Contacts(structure.mechanism).check(exact, motion), moved=moved, free=free,
-        motion=motion, joints=joints_of(structure.mechanism, free, moved, limit),
-    )  # fmt: skip
+        exact=exact, of_blocks=blocks, demand=demand, moved=moved, free=free, motion=motion, joints=joints
+    )
 
 
 def joints_of(mechanism: Mechanism, free: FreeBlocks, moved: BlockMotion, limit: float) -> list[BlockJoint]:

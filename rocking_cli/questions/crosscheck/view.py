@@ -171,10 +171,8 @@ def _finding(found: Crosscheck) -> str:
     peaks = _both(f"{exact.peak_ratio:.4g} of its {exact.reference}", f"{blocks.peak_ratio:.4g}")
     match found.finding:
         case "exact_unknown":
-            return (
-                f"{unknown_after(exact)} Free blocks, the witness from then on, find that the structure "
-                f"{_ends(blocks)}."
-            )
+            witness = f"Free blocks are the witness from then on: by them, it {_ends(blocks)}."
+            return f"{unknown_after(exact)} {witness}"
         case "outcomes_differ":
             return (
                 f"The engines disagree: by the exact engine the structure {_ends(exact)}; by free blocks it "
