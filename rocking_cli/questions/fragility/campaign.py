@@ -25,9 +25,10 @@ from rocking_cli.questions.fragility.tally import UPLIFT_FACT, accelerations, ro
 from rocking_cli.questions.fragility.work_units import carry_out, unit_size, units
 from rocking_cli.questions.fragility.workers import Workers
 from rocking_cli.structure import Structure
-from rocking_cli.studies.engines import EngineName, cost_in_words, engine_of
+from rocking_cli.studies.engines import EngineName, engine_of
 from rocking_cli.studies.engines.scene import engine_version
 from rocking_cli.studies.fragility.quantities import PGA, PGV, ROTATIONS_FACT, displacement_limits
+from rocking_cli.views.engines import cost_in_words
 
 Progress = Callable[[int, int], None]
 """Called with the numbers of runs that have finished and failed since the last call."""
