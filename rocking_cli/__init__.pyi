@@ -53,6 +53,7 @@ from rocking_cli.processing.reading import turned as turned
 from rocking_cli.questions.animate.verb import animate as animate
 from rocking_cli.questions.calibrate.verb import calibrate as calibrate
 from rocking_cli.questions.collapse.verb import collapse as collapse
+from rocking_cli.questions.crosscheck.verb import crosscheck as crosscheck
 from rocking_cli.questions.demand.verb import demand as demand
 from rocking_cli.questions.design.verb import design as design
 from rocking_cli.questions.draw.verb import draw as draw

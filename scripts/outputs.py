@@ -93,6 +93,7 @@ FOR_KEYS = (
     "selfcheck --quick --json",
     "completion bash --json",
     "new block --json",
+    "crosscheck examples/masonry/portal.yaml --record examples/accel.csv --trim 1:1.5 --json",
     "animate examples/block.yaml --pulse ricker:0.4g:1s --out moving.html --json",
     "select examples/accel.csv --target examples/target.csv --count 1 --band 0.2:2 --json",
     "overturning examples/block.yaml --points 5 --json",

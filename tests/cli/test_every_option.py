@@ -32,7 +32,7 @@ from rocking_cli.cli.main import main
 from rocking_cli.plugins.rooms import commands
 from rocking_cli.questions.fragility.results import StudyAnswer
 from rocking_cli.views.view import View
-from tests.conftest import EXAMPLES
+from tests.conftest import EXAMPLES, NEEDS_MUJOCO
 
 BLOCK = rk.Block(width=0.7, height=2.8, name="block", friction=0.6)
 OTHER = rk.Block(width=0.5, height=2.0, name="other")
@@ -43,6 +43,8 @@ LEANING = WEAK.model_copy(update={"one_sided": "positive", "rebound": 0.5})
 PORTAL = rk.load_structure(EXAMPLES / "assembly.yaml")
 TIME = 0.01 * np.arange(200)
 RECORD = rk.GroundMotion("record", 0.01, 3.0 * np.sin(2 * np.pi * TIME / 0.8) * np.exp(-TIME))
+SHORT = rk.Block(width=1.0, height=2.0, name="short")
+BRIEF = rk.GroundMotion("brief", 0.01, 8.0 * np.sin(np.pi * np.arange(41) / 40))
 AROUND = {"neighbours": 3, "amplitude_deviation": 0.3, "slenderness_deviation": 0.3, "restitution_deviation": 0.3}
 SITE = EXAMPLES / "verify" / "site.yaml"
 ACCEL, ACROSS, BLOCK_FILE = EXAMPLES / "accel.csv", EXAMPLES / "accel_transverse.csv", EXAMPLES / "block.yaml"
@@ -93,6 +95,11 @@ CALLS = {
         {"structure": WEAK, "motion": STRONG, "file": "a.html", "neighbours": 2},
         {"structure": BLOCK, "motion": PULSE, "file": "b.html", "model": "linear2", "polarity": -1, "speed": 3.0,
          "fps": 0.1, "opening": 1.0} | AROUND,
+    ),
+    "crosscheck": (
+        {"structure": SHORT, "motion": BRIEF},
+        {"structure": OTHER, "motion": BRIEF.scaled(0.5), "polarity": -1, "release": 0.3, "opening": 0.1,
+         "animate": "b.html"},
     ),
     "pulse": (
         {"structure": WEAK, "ag": 0.9, "period": 0.5},
@@ -284,7 +291,13 @@ def here(tmp_path, monkeypatch):
 
 
 @pytest.mark.every(4)
-@pytest.mark.parametrize("name", [pytest.param(each, marks=[pytest.mark.rest] * (each in LONG)) for each in CALLS])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(each, marks=[NEEDS_MUJOCO] if each == "crosscheck" else [pytest.mark.rest] * (each in LONG))
+        for each in CALLS
+    ],
+)
 def test_every_argument_has_an_effect_or_is_refused(name):
     verb, (call, odd) = getattr(rk, name), CALLS[name]
     known = {each for each in inspect.signature(verb).parameters if each != "options"} - WITHOUT_EFFECT
@@ -362,6 +375,7 @@ COMMAND_LINES = {
     "select": f"{ACCEL} {ACROSS} --target {EXAMPLES / 'target.csv'} --band 0.2:2 --count 2",
     "respond": UNDER,
     "margin": UNDER,
+    "crosscheck": UNDER,
     "verify": f"{UNDER} --site {SITE}",
     "demand": f"{SITE}",
     "survey": f"{EXAMPLES / 'survey' / 'parapets.csv'} --record {ACCEL}",
@@ -385,7 +399,7 @@ COMMAND_LINES = {
 }
 """A command line of each command."""
 ODD = {
-    "--a": "3", "--ag": "0.4g", "--amplitude-deviation": "30%", "--at": "0.3", "--author": "odd", "--azimuth": "30",
+    "--animate": "odd.html", "--a": "3", "--ag": "0.4g", "--amplitude-deviation": "30%", "--at": "0.3", "--author": "odd", "--azimuth": "30",
     "--band": "0.3:1", "--baseline": "linear", "--channel": "2", "--code": "", "--control": "0.3,2",
     "--count": "1", "--curves": "c.csv", "--damping": "10%", "--dt": "0.1", "--eta": "0.7", "--factors": "0.5:2",
     "--floor": "T1=0.4,xi=0.05,z/H=0.67,gamma=1.29", "--fps": "30", "--fractiles": "0.3,0.7",

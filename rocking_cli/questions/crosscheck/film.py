@@ -121,7 +121,7 @@ def scene_of(structure: Structure, found: Crosscheck) -> Scene:
     assert found.motion is not None
     drawn = picture(structure.mechanism)
     exact = Film(drawn, found.exact, found.motion, found.demand.assumed_friction, "exact engine")
-    return Scene((exact, BlockFilm(_of_blocks(drawn, found), found.blocks, found.motion, called="free blocks")))
+    return Scene((exact, BlockFilm(_of_blocks(drawn, found), found.of_blocks, found.motion, called="free blocks")))
 
 
 def _of_blocks(drawn: Picture, found: Crosscheck) -> BlockPicture:

@@ -45,7 +45,7 @@ def draw_crosscheck(found: Crosscheck, title: str) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    motion, runs = found.motion, (found.exact, found.blocks)
+    motion, runs = found.motion, (found.exact, found.of_blocks)
     heights = [1.5, 3.2] if motion is not None else [3.2]
     figure, every = style.panels(sum(heights), len(heights), sharex=True, height_ratios=heights)
     panels = list(every[:, 0])
@@ -78,15 +78,15 @@ def draw_crosscheck(found: Crosscheck, title: str) -> Figure:
 def _span(found: Crosscheck) -> tuple[float, float]:
     """Return the times between which something moves [s], with some time before and after."""
     first, last = [], []
-    for run in (found.exact, found.blocks):
+    for run in (found.exact, found.of_blocks):
         ratio = run.ratio[np.isfinite(run.ratio)]
         least = max(MOVED, STILL_SHARE * float(np.abs(ratio).max()))
         first += run.time[: ratio.size][np.abs(ratio) > MOVED][:1].tolist()
         last += run.time[: ratio.size][np.abs(ratio - ratio[-1]) > least][-1:].tolist()
     if not (first and last):
-        return 0.0, float(found.blocks.time[-1])
-    end = max(last) + (0.0 if found.blocks.fell else SECONDS_AFTER)
-    return max(0.0, min(first) - SECONDS_BEFORE), min(end, float(found.blocks.time[-1]))
+        return 0.0, float(found.of_blocks.time[-1])
+    end = max(last) + (0.0 if found.of_blocks.fell else SECONDS_AFTER)
+    return max(0.0, min(first) - SECONDS_BEFORE), min(end, float(found.of_blocks.time[-1]))
 
 
 def _draw(axes: Axes, run: History, label: str, look: dict[str, Any]) -> Line2D:

@@ -58,7 +58,7 @@ class Crosscheck:
 
     Parameters
     ----------
-    exact, blocks : History
+    exact, of_blocks : History
         The history by the exact engine, and that of the same rotation by free blocks.
     demand : ContactDemand
         Check of the contacts in the exact history.
@@ -73,7 +73,7 @@ class Crosscheck:
     """
 
     exact: History
-    blocks: History
+    of_blocks: History
     demand: ContactDemand
     moved: BlockMotion
     free: FreeBlocks
@@ -90,17 +90,19 @@ class Crosscheck:
     @cached_property
     def compared(self) -> int:
         """Number of samples at which both are known: until a structure overturns, or the exact outcome is unknown."""
-        return min(self.blocks.time.size, int(np.isfinite(self.extended(self.exact.phi)).sum()))
+        return min(self.of_blocks.time.size, int(np.isfinite(self.extended(self.exact.phi)).sum()))
 
     @property
     def compared_to(self) -> float:
         """Time until which both are compared [s]."""
-        return float(self.blocks.time[self.compared - 1])
+        return float(self.of_blocks.time[self.compared - 1])
 
     @property
     def peaks(self) -> tuple[float, float]:
         """Largest rotation over the critical one of each until `compared_to`."""
-        exact, blocks = (np.abs(each[: self.compared]) for each in (self.extended(self.exact.ratio), self.blocks.ratio))
+        exact, blocks = (
+            np.abs(each[: self.compared]) for each in (self.extended(self.exact.ratio), self.of_blocks.ratio)
+        )
         return float(exact.max()), float(blocks.max())
 
     @property
@@ -110,7 +112,7 @@ class Crosscheck:
         NaN if either overturns by then, or if the exact one does not rotate.
         """
         exact, blocks = self.peaks
-        ended = self.exact.fell or (self.blocks.fell and self.blocks.time.size == self.compared)
+        ended = self.exact.fell or (self.of_blocks.fell and self.of_blocks.time.size == self.compared)
         return nan if ended or not exact else blocks / exact
 
     @property
@@ -119,25 +121,25 @@ class Crosscheck:
 
         Both are those until `compared_to`. Smaller differences than free blocks turn by without uplift do not count.
         """
-        exact, blocks = self.extended(self.exact.ratio)[: self.compared], self.blocks.ratio[: self.compared]
+        exact, blocks = self.extended(self.exact.ratio)[: self.compared], self.of_blocks.ratio[: self.compared]
         apart = np.abs(exact - blocks) > max(PARTED * max(self.peaks), MOVED)
-        return _first(self.blocks.time[: self.compared], apart)
+        return _first(self.of_blocks.time[: self.compared], apart)
 
     @property
     def finding(self) -> Finding:
         """Whether both engines agree: on whether the structure overturns, and on its peak within `SAME_PEAKS`."""
         if self.exact.unknown:
             return "exact_unknown"
-        if self.exact.fell != self.blocks.fell:
+        if self.exact.fell != self.of_blocks.fell:
             return "outcomes_differ"
-        exact, blocks = self.exact.peak_ratio, self.blocks.peak_ratio
+        exact, blocks = self.exact.peak_ratio, self.of_blocks.peak_ratio
         far = not self.exact.fell and abs(blocks - exact) > max(SAME_PEAKS * exact, MOVED)
         return "peaks_differ" if far else "agree"
 
     def extended(self, values: Reals) -> Reals:
         """Return samples of the exact history at the times of the free blocks: it stays at rest if it came to rest."""
         after = 0.0 if self.exact.at_rest else nan
-        return np.append(values, np.full(max(0, self.blocks.time.size - values.size), after))
+        return np.append(values, np.full(max(0, self.of_blocks.time.size - values.size), after))
 
 
 def crosscheck(
@@ -175,7 +177,7 @@ def crosscheck(
     blocks, moved, free = engine.follow(structure, motion, release=release, tail=tail, progress=progress)
     limit = exact.check.limit * exact.check.reach if exact.check is not None else nan
     return Crosscheck(
-        exact=exact, blocks=blocks, demand=Contacts(structure.mechanism).check(exact, motion), moved=moved, free=free,
+        exact=exact, of_blocks=blocks, demand=Contacts(structure.mechanism).check(exact, motion), moved=moved, free=free,
         motion=motion, joints=joints_of(structure.mechanism, free, moved, limit),
     )  # fmt: skip
 

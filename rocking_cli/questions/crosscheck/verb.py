@@ -65,7 +65,7 @@ def crosscheck(
     Returns
     -------
     Answer of Crosscheck
-        `exact` and `blocks` are the time histories, `finding` states whether they agree, `parted` is the time from
+        `exact` and `of_blocks` are the time histories, `finding` states whether they agree, `parted` is the time from
         which they differ, and `joints` has the openings that free blocks find. Its frame has both rotations over time.
 
     Raises
@@ -146,7 +146,7 @@ def _in_seconds(advance: Advance) -> Callable[[float], None]:
 def _columns(found: Crosscheck) -> Columns:
     from rocking_cli.questions.crosscheck.view import divisor
 
-    exact, blocks = found.exact, found.blocks
+    exact, blocks = found.exact, found.of_blocks
     time = max(exact.time, blocks.time, key=len)
     over = f"phi/{divisor(exact)}"
     ground = {}

@@ -113,7 +113,7 @@ def view(structure: Structure, given: Scaled | None, polarity: int, release: flo
         "peaks": dict(zip(("exact", "blocks"), found.peaks, strict=True)),
         "peak_quotient": found.peak_quotient,
         "parted": found.parted,
-        "friction": {"given": found.demand.friction, "blocks": found.free.friction},
+        "friction": {"given": mechanism.friction, "blocks": found.free.friction},
         "block": found.moved.block or None,
         "limit": None if isnan(reach) else structure.opening * reach,
         "joints": [data_of(JOINTS, each) for each in found.joints],
@@ -138,7 +138,7 @@ def _sides(found: Crosscheck) -> list[_Side]:
             nan if check is None else check.largest, "" if check is None else check.largest_joint, reach,
         ),
         _Side(
-            "blocks", found.blocks, friction, "" if isnan(friction) else _between(pair),
+            "blocks", found.of_blocks, friction, "" if isnan(friction) else _between(pair),
             nan if widest is None else max(widest.opening, widest.slip), "" if widest is None else widest.name, reach,
         ),
     ]  # fmt: skip
@@ -167,7 +167,7 @@ def verdict(found: Crosscheck) -> str:
 
 
 def _finding(found: Crosscheck) -> str:
-    exact, blocks = found.exact, found.blocks
+    exact, blocks = found.exact, found.of_blocks
     peaks = _both(f"{exact.peak_ratio:.4g} of its {exact.reference}", f"{blocks.peak_ratio:.4g}")
     match found.finding:
         case "exact_unknown":

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from importlib.metadata import version
 from math import isclose, isnan, nan
@@ -14,7 +14,8 @@ from rocking_cli.core import Mechanism, NoEquivalentBlock, both_statics, equival
 from rocking_cli.core.mechanism import why_none
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.model import NO_REBOUND, check_elements
-from rocking_cli.errors import InputError, Problem, RockingError, SolverError
+from rocking_cli.errors import InputError, Problem, RockingError
+from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.intensity import all_measures, parse_measure
 from rocking_cli.questions.fragility.definition import SLIDING, Definition
 from rocking_cli.questions.fragility.plan import Plan, Trial, complete, weaker
@@ -25,10 +26,9 @@ from rocking_cli.questions.fragility.tally import UPLIFT_FACT, accelerations, ro
 from rocking_cli.questions.fragility.work_units import carry_out, unit_size, units
 from rocking_cli.questions.fragility.workers import Workers
 from rocking_cli.structure import Structure
-from rocking_cli.studies.engines import EngineName, engine_of
+from rocking_cli.studies.engines import EngineName
 from rocking_cli.studies.engines.scene import engine_version
 from rocking_cli.studies.fragility.quantities import PGA, PGV, ROTATIONS_FACT, displacement_limits
-from rocking_cli.views.engines import cost_in_words
 
 Progress = Callable[[int, int], None]
 """Called with the numbers of runs that have finished and failed since the last call."""
@@ -242,15 +242,9 @@ def run(
             progress(len(rows), rows.failed)
 
 
-def cost_of_blocks(prepared: Prepared, store: Store, workers: Workers) -> list[str]:
-    """Return how long the runs that the store lacks will take with free blocks, a sentence for each structure.
-
-    Raises
-    ------
-    InputError
-        If the blocks of a structure do not stand by themselves.
-    """
-    plan, sentences = prepared.plan, []
+def left_of_each(prepared: Prepared, store: Store) -> Iterator[tuple[str, Structure, GroundMotion, int]]:
+    """Yield each structure, one of its samples, a motion of usual length, and the number of runs that are left."""
+    plan = prepared.plan
     records = [k for k, record in enumerate(plan.records) if record.reason is None]
     records.sort(key=lambda k: plan.records[k].dt * plan.records[k].npts)
     motion = prepared.motions[records[len(records) // 2]]
@@ -260,13 +254,7 @@ def cost_of_blocks(prepared: Prepared, store: Store, workers: Workers) -> list[s
         those = [k for k in usable if k in samples]
         done = store.finished(samples.start * each, samples.stop * each).size
         if left := plan.total // len(usable) * len(those) - done:
-            structure = Structure(prepared.study.samples[those[0]].mechanism)
-            try:
-                cost = cost_in_words(engine_of("blocks"), structure, motion, left, workers.count)
-            except SolverError as error:
-                raise InputError(Problem(str(error), field=name)) from None
-            sentences.append(f"{name}: {cost}" if len(plan.structures) > 1 else cost)
-    return sentences
+            yield name, Structure(prepared.study.samples[those[0]].mechanism), motion, left
 
 
 def versions(study: Study) -> dict[str, str]:

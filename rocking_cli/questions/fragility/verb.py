@@ -16,6 +16,8 @@ from rocking_cli.ask.ground_motions import each_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.studies.engines import engine_of
+from rocking_cli.views.engines import cost_in_words
 from rocking_cli.views.view import View
 
 if TYPE_CHECKING:
@@ -253,7 +255,7 @@ def _bring_up_to_date(
     rank_measures: bool,
 ) -> None:
     """Simulate the runs that the store lacks; on a restart simulate all, and keep the old store."""
-    from rocking_cli.questions.fragility.campaign import SIMULATED_BY, cost_of_blocks, count_steps, prepare, run
+    from rocking_cli.questions.fragility.campaign import SIMULATED_BY, count_steps, left_of_each, prepare, run
     from rocking_cli.questions.fragility.store import Store
 
     with ExitStack() as stack:
@@ -279,8 +281,9 @@ def _bring_up_to_date(
                 return
             hands = hands or stack.enter_context(workers)
             if engine == "blocks":
-                for sentence in cost_of_blocks(prepared, store, hands):
-                    watch.note(sentence)
+                for name, structure, motion, left in left_of_each(prepared, store):
+                    cost = cost_in_words(engine_of("blocks"), structure, motion, left, hands.count)
+                    watch.note(f"{name}: {cost}" if len(plan.structures) > 1 else cost)
             with watch.progress(plan.total, "runs", done=finished, failed=failed) as advance:
                 run(prepared, store, hands, advance, engine)
 
