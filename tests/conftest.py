@@ -97,6 +97,15 @@ def _no_defaults_of_a_user(tmp_path_factory, monkeypatch):
 
 
 @pytest.fixture(autouse=True, scope="module")
+def _no_histories_of_a_user(tmp_path_factory):
+    """No test takes the histories of free blocks that whoever runs it has simulated, or leaves its own there."""
+    file = tmp_path_factory.getbasetemp() / "user" / f"blocks{next(_MADE)}.sqlite"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("rocking_cli.studies.engines.memory.place", lambda: file)
+        yield
+
+
+@pytest.fixture(autouse=True, scope="module")
 def _pages_without_pictures(request):
     """Pages leave out their pictures, which take most of their time, except in modules that look at them: `drawn`."""
     with pytest.MonkeyPatch.context() as patch:

@@ -52,7 +52,10 @@ def in_parts(
 
 
 MAX_PROCESSES = 8  # largest number of processes: each takes some 200 MB of memory
-ENDED = "the system ended a process of this work: is there enough memory?"
+ENDED = (
+    "the system ended a process of this work: is there enough memory? "
+    'A script that starts processes requires `if __name__ == "__main__":`'
+)
 
 _work: Callable[[int, int], Any] | None = None
 

@@ -74,9 +74,10 @@ def cost_in_words(
 
     each, usual = cost(structure, motion)
     processes = processes or usual
+    histories = "history" if count == 1 else "histories"
     most = "up to " if engine.name == "auto" else ""
     return (
-        f"Free blocks: {most}{count} histories of some {each:.2g} s each, {processes} at a time: {most}"
+        f"Free blocks: {most}{count} {histories} of some {each:.2g} s each, {processes} at a time: {most}"
         f"{_duration(count * each / processes)}. Histories that are done are kept: an interrupted run goes on."
     )
 

@@ -350,17 +350,17 @@ def _wrong_with_free_blocks(given: dict[str, Any], sound: Sound) -> Iterator[tup
     if not sound("engine") or engine == "exact":
         return
     if sound("model") and (model := given.get("model", "nonlinear")) != "nonlinear":
-        yield ("model",), f"{model} cannot be combined with `engine: {engine}`: free blocks are no equivalent block"
+        yield ("model",), f"{model} cannot be combined with `engine: {engine}`: leave it out"
     if checks_sliding(given):
-        what = f"sliding cannot be combined with `engine: {engine}`: free blocks slide in the simulation itself"
+        what = f"sliding cannot be combined with `engine: {engine}`, as free blocks slide by themselves: leave it out"
         yield ("limit_states",), what
     if engine == "auto":  # runs of one degree of freedom use these
         return
-    restitution = "has no effect with `engine: blocks`: contact decides the restitution"
+    restitution = "has no effect with `engine: blocks`, as contact decides the restitution: leave it out"
     if given.get("eta") is not None:
         yield ("eta",), restitution
     if given.get("opening") is not None:
-        yield ("opening",), "has no effect with `engine: blocks`: every joint is simulated"
+        yield ("opening",), "has no effect with `engine: blocks`, which simulates every joint: leave it out"
     entries = given.get("structures")
     for k, entry in enumerate(entries if isinstance(entries, list) else []):
         varied = entry.get("vary") if isinstance(entry, dict) else None

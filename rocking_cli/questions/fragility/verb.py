@@ -98,7 +98,8 @@ def fragility(
         Equation of motion.
     engine : {"exact", "blocks", "auto"}
         Who simulates the runs: one degree of freedom, free blocks, or free blocks where one degree of freedom does not
-        tell the outcome.
+        tell the outcome. Free blocks run in processes unless `jobs` is 1: a script then needs
+        `if __name__ == "__main__"`.
     opening : float
         Largest opening of a joint over D_cr up to which a run holds.
     limit_states : sequence of str or float

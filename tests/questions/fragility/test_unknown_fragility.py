@@ -144,7 +144,9 @@ def test_what_is_known_of_a_run_is_known_of_the_side_on_which_it_was_seen():
     peaks = np.array([[0.15, 0.02], [0.04, 0.06], [0.15, 0.06], [0.15, 0.06]])
     outcome, flags = np.array([UNKNOWN, UNKNOWN, UNKNOWN, 0]), np.array([True, True, False, True])
     bound = np.array([0.5, 0.5, 0.5, np.nan])
-    found = Endings(np.arange(4), outcome, np.full(4, 0.75), peaks, flags, flags & (np.arange(4) != 1), bound, flags)
+    found = Endings(
+        np.arange(4), outcome, np.full(4, 0.75), peaks, flags, flags & (np.arange(4) != 1), bound, flags, ~flags
+    )
     phi_cr, reach = np.tile([0.2, 0.1], (4, 1)), np.tile([0.09, 0.055], (4, 1))
     known = {limit: tally.known_to_exceed(found, limit, None, phi_cr).tolist() for limit in (*LIMITS[:2], 0.6)}
     assert known == {"uplift": flags.tolist(), 0.1: [True] * 4, 0.6: [False, False, False, True]}
@@ -159,7 +161,9 @@ def test_what_is_known_of_a_run_is_known_of_the_side_on_which_it_was_seen():
 def test_a_bound_that_is_the_peak_itself_is_known_of_its_side():
     """Nothing larger came after the first warning: .5 of the critical rotation .2 is the peak of .1 that way."""
     peaks, flags = np.array([[0.1, 0.04]]), np.ones(1, bool)
-    found = Endings(np.arange(1), np.array([UNKNOWN]), np.full(1, 0.5), peaks, flags, flags, np.array([0.5]), flags)
+    found = Endings(
+        np.arange(1), np.array([UNKNOWN]), np.full(1, 0.5), peaks, flags, flags, np.array([0.5]), flags, ~flags
+    )
     phi_cr = np.array([[0.2, 0.1]])
     for reach, known in (([0.09, 0.01], True), ([0.09, 0.045], True), ([0.11, 0.01], False)):
         assert tally.known_to_exceed(found, "40 mm", np.array([reach]), phi_cr).tolist() == [known], reach
@@ -208,8 +212,8 @@ def test_words_and_json_state_a_band_and_how_many_runs_are_unknown(whole):
     unknown = int((whole.rows.outcome == UNKNOWN).sum())
     assert f"{whole.plan.size} runs ({unknown} of unknown outcome)" in shown.stdout
     size = whole.plan.size
-    expected = {"structure": "portal", "runs": size, "unknown": unknown, "checked": True, "share": unknown / size}
-    assert data["outcomes"] == [expected]
+    expected = {"structure": "portal", "runs": size, "unknown": unknown, "checked": True, "by_blocks": 0}
+    assert data["outcomes"] == [expected | {"share": unknown / size}]
     assert f"portal: {unknown} of {whole.plan.size} runs" in data["notes"][0]
     lines = [line.strip() for line in shown.stdout.splitlines()]
     for curve in data["curves"]:
