@@ -47,8 +47,8 @@ def _filled(z: Points, others: Sequence[Points]) -> Points | None:
     if distance(z, hull).max() > SHALLOW_SHARE * size:
         return None
     for other in others:
-        reaching = other[inside(other, hull) & ~inside(other, z)]
-        if reaching.size and distance(reaching, z).max() > TOUCHING_SHARE * size:
+        reaching = other[inside(other, hull) & (~inside(other, z) | (distance(other, z) < TOUCHING_SHARE * size))]
+        if reaching.size and distance(reaching, hull).max() > TOUCHING_SHARE * size:
             return None
     return hull
 

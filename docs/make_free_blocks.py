@@ -1,0 +1,326 @@
+"""Write docs/free_blocks_evidence.md: what the contacts of free blocks do, beside what they should. Ten minutes.
+
+python docs/make_free_blocks.py
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from functools import cache
+from itertools import pairwise
+from math import atan, ceil, sin
+from pathlib import Path
+from time import perf_counter
+from typing import NamedTuple
+
+import numpy as np
+
+from rocking_cli import Block, GroundMotion, Registry, load_structure, parse_pulse, read_record
+from rocking_cli.arrays import Reals
+from rocking_cli.core import Mechanism
+from rocking_cli.structure import Structure
+from rocking_cli.studies.engines import follow
+from rocking_cli.studies.engines.blocks import HEAVY, SOFTNESS, STEPS, SUNK, BlockModel, BlockMotion
+from rocking_cli.studies.engines.free_blocks import FreeBlocks, free_blocks
+
+DOCS = Path(__file__).resolve().parent
+PAGE, EXAMPLES = DOCS / "free_blocks_evidence.md", DOCS.parent / "examples"
+G = 9.80665
+RECOVERED = 10  # time constants in which contacts give back what they stored in an impact
+
+# Motions whose peak is no chance: that of every neighbour, with 1 % of amplitude and .01 of restitution, is within 15 %.
+HALVED = [
+    (name, motion)
+    for name, motions in {
+        "block.yaml": ("accel.csv x 1", "sine:0.45g:0.5s", "cosine:0.45g:0.6s"),
+        "masonry/portal.yaml": ("accel.csv x 1", "accel.csv x 1.5", "sine:0.42g:0.8s"),
+        "wall.yaml": ("sine:0.9g:0.3s", "sine:1.1g:0.3s", "cosine:1.1g:0.3s"),
+    }.items()
+    for motion in motions
+]
+# Structures with hinges, guides, loads, floors and ties that turn back from .3 of the critical rotation by themselves.
+FALLING = (
+    "block.yaml", "rigid_body.yaml", "cone.yaml", "wall.yaml", "frame.yaml", "symmetric_frame.yaml",
+    "masonry/portal.yaml", "masonry/wall_of_three.yaml", "walls/column_with_tendon.yaml", "walls/floor_wall.yaml",
+    "linkages/beam_on_pier.yaml", "linkages/pinnacle_on_buttress.yaml", "linkages/portico.yaml",
+    "linkages/two_storeys.yaml",
+)  # fmt: skip
+FREE = ("block.yaml", "wall.yaml", "masonry/portal.yaml", "arch.yaml", "masonry/buttressed_arch.yaml")
+COSTS = ("block.yaml", "masonry/portal.yaml", "masonry/buttressed_arch.yaml", "masonry/wall_with_openings.yaml")
+
+
+class Free(NamedTuple):
+    """Free blocks, their model, and their motion."""
+
+    blocks: FreeBlocks
+    model: BlockModel
+    motion: BlockMotion
+
+    @property
+    def phi(self) -> Reals:
+        """Rotation [rad]."""
+        return self.blocks.rotation(self.motion.moved)
+
+    @property
+    def energy(self) -> Reals:
+        """Kinetic and potential energy, without that of contacts and ties [J]."""
+        masses, inertias = (
+            np.array([getattr(body, key) for body in self.blocks.bodies]) for key in ("mass", "inertia")
+        )
+        moved, rates = self.motion.moved, self.motion.rates
+        return np.asarray(
+            (masses * (self.blocks.gravity * moved[..., 1] + (rates[..., :2] ** 2).sum(axis=-1) / 2)).sum(axis=-1)
+            + (inertias * rates[..., 2] ** 2 / 2).sum(axis=-1)
+        )
+
+    def growth(self, start: float = 0.0) -> float:
+        """Return the largest growth of energy after a time, over its largest value.
+
+        What contacts store in an impact they give back at once: the least energy is that of whole intervals.
+        """
+        dt = self.motion.time[1]
+        count = ceil(RECOVERED * self.model.time_constant / dt) + 2
+        energy = self.energy[ceil(start / dt) :]
+        most = np.lib.stride_tricks.sliding_window_view(energy, count).max(axis=1)
+        return float((most - np.minimum.accumulate(most)).max() / self.energy.max())
+
+
+@cache
+def structure(name: str) -> Structure:
+    """Return an example."""
+    return Structure(load_structure(EXAMPLES / name))
+
+
+def motion_of(name: str) -> GroundMotion:
+    """Return a scaled record, or a pulse."""
+    record, _, factor = name.partition(" x ")
+    return read_record(EXAMPLES / record).scaled(float(factor)) if factor else parse_pulse(name).sampled()
+
+
+def simulated(mechanism: Mechanism, motion: GroundMotion | None, finer: float = 1.0, **how: float) -> Free:
+    """Simulate a structure as free blocks."""
+    blocks = free_blocks(mechanism)
+    model = BlockModel(blocks, finer)
+    return Free(blocks, model, model.simulate(motion, **how))
+
+
+def released(mechanism: Mechanism, phi: float, finer: float = 1.0, **how: float) -> Free:
+    """Simulate a structure as free blocks, let go from a tilt."""
+    blocks = free_blocks(mechanism)
+    model = BlockModel(blocks, finer)
+    return Free(blocks, model, model.simulate(None, start=blocks.tilted(mechanism, phi), **how))
+
+
+def halves(time: Reals, phi: Reals) -> list[tuple[float, float, int]]:
+    """Return time at the end, peak, and place of the peak, of each half-cycle."""
+    turns = [0, *(np.flatnonzero(np.diff(np.sign(phi)) != 0) + 1).tolist()]
+    found = []
+    for first, stop in pairwise(turns):
+        place = first + int(np.abs(phi[first:stop]).argmax())
+        share = phi[stop - 1] / (phi[stop - 1] - phi[stop]) if phi[stop] != phi[stop - 1] else 0.0
+        found.append((float(time[stop - 1] + share * (time[stop] - time[stop - 1])), float(abs(phi[place])), place))
+    return found
+
+
+class Bounce(NamedTuple):
+    """The first half-cycles of a block: what its contact does, and by how much the exact history differs."""
+
+    kinematic: float
+    eta: float
+    times: float
+    peaks: float
+
+
+def bounce(slenderness: float, height: float, tilt: float) -> Bounce:
+    """Let a block go from a share of its slenderness, and follow it exactly with the restitution that it shows."""
+    alpha, how_long = atan(1 / slenderness), 9 * (height * slenderness / 30) ** 0.5
+    block = Block(width=height / slenderness, height=height)
+    free = released(block, tilt * alpha, most=how_long)
+    first = halves(free.motion.time, free.phi)[:4]
+    energies = free.energy[[place for _, _, place in first]]
+    # Of the impacts between these half-cycles, by what is left of the energy.
+    eta = float((energies[-1] / energies[0]) ** (0.5 / (len(energies) - 1)))
+    history = follow(Structure(Block(width=height / slenderness, height=height, restitution=eta)), release=tilt)
+    exact = halves(history.time, history.phi)[:3]
+    times, peaks = (
+        max(abs(one[k] / other[k] - 1) for one, other in zip(first[:3], exact, strict=True)) for k in (0, 1)
+    )
+    return Bounce(1 - 1.5 * sin(alpha) ** 2, eta, times, peaks)
+
+
+def halved(name: str, motion: str, finer: Sequence[float] = (1.0, 2.0)) -> tuple[float, list[float]]:
+    """Return the exact peak of a structure, and that of free blocks by the rule and with stiffer contacts [rad]."""
+    history = follow(structure(name), motion_of(motion))
+    peaks = [float(np.abs(simulated(structure(name).mechanism, motion_of(motion), each).phi).max()) for each in finer]
+    return max(history.peak_positive, history.peak_negative), peaks
+
+
+def fall(name: str, share: float = 0.3) -> tuple[float, float]:
+    """Return the time from release to the first impact, exact and of free blocks [s]."""
+    of = structure(name)
+    history = follow(of, release=share)
+    first = float(history.impacts[0][0])
+    free = released(of.mechanism, share * of.model("nonlinear").phi_cr[0], most=1.2 * first)
+    return first, halves(free.motion.time, free.phi)[0][0]
+
+
+def slide(push: float, friction: float, finer: float = 1.0) -> tuple[float, float]:
+    """Return how far a stout block slides in a second under a steady acceleration [g], and how far it should [m]."""
+    motion = GroundMotion("steady", 0.01, G * np.r_[np.full(100, push), 0.0])
+    free = simulated(Block(width=2.0, height=0.5, friction=friction), motion, finer, most=0.99)
+    ended = free.motion.time[-1]
+    return -float(free.motion.moved[-1, 0, 0]), max(push - friction, 0.0) * G * float(ended) ** 2 / 2
+
+
+def laden(ratio: float) -> Mechanism:
+    """Return a portal whose lintel carries a mass, over that of a pier."""
+    boxes = {"left": (0, 0, 0.5, 2), "right": (2.5, 0, 3, 2), "lintel": (-0.1, 2, 3.1, 2.4), "floor": (-2, -1, 5, 0)}
+    polygons = {
+        name: {"polygon": [[left, low], [right, low], [right, high], [left, high]]}
+        for name, (left, low, right, high) in boxes.items()
+    }
+    ground = {"floor": polygons.pop("floor")}
+    load = {"name": "deck", "mass": ratio * 2000.0, "at": [1.5, 2.2], "body": "lintel"}
+    fields = {"density": 2000.0, "depth": 1.0, "friction": 0.7, "blocks": polygons, "ground": ground, "loads": [load]}
+    return Registry()["assembly"](**fields)
+
+
+def heavy(ratio: float, finer: float = 1.0) -> tuple[float, float, float]:
+    """Return the second maximum of a laden portal that is let go, exact and of free blocks, and the time constant."""
+    of = Structure(laden(ratio))
+    history = follow(of, release=0.4)
+    exact = halves(history.time, history.phi)[1][1]
+    how_long = 1.1 * float(history.impacts[1][0])
+    free = released(of.mechanism, 0.4 * of.model("nonlinear").phi_cr[0], finer, most=how_long)
+    return exact, halves(free.motion.time, free.phi)[1][1], free.model.time_constant
+
+
+def cost(name: str, most: float = 0.5) -> tuple[int, float, float]:
+    """Return the number of blocks, the step [s], and the seconds that a second of strong motion takes."""
+    free = simulated(structure(name).mechanism, None, most=0.01)
+    motion, start = motion_of("accel.csv x 1"), perf_counter()
+    ended = free.model.simulate(
+        GroundMotion("strong", motion.dt, motion.acceleration[round(3.0 / motion.dt) :]), most=most
+    ).time[-1]
+    return len(free.model.names), free.model.step, (perf_counter() - start) / float(ended)
+
+
+def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Return a table."""
+    return "\n".join(f"| {' | '.join(row)} |" for row in (heads, ["---"] * len(heads), *rows))
+
+
+def page() -> str:
+    """Return the text of the page."""
+    halving = [
+        (name, motion, f"{exact:.5f}", f"{one:.5f}", f"{two:.5f}", f"{100 * abs(two / one - 1):.2f} %")
+        for name, motion in HALVED
+        for exact, (one, two) in [halved(name, motion)]
+    ]
+    bounces = [
+        (f"{slenderness}", f"{height:g} m", f"{tilt:g}", f"{found.kinematic:.4f}", f"{found.eta:.4f}",
+         f"{100 * found.times:.2f} %", f"{100 * found.peaks:.2f} %")
+        for slenderness in (3, 5, 10) for height in (0.1, 1.0, 10.0) for tilt in (0.3, 0.6)
+        for found in [bounce(slenderness, height, tilt)]
+    ]  # fmt: skip
+    falls = [
+        (name, f"{exact:.4f} s", f"{free:.4f} s", f"{100 * abs(free / exact - 1):.2f} %")
+        for name in FALLING for exact, free in [fall(name)]
+    ]  # fmt: skip
+    growths = [
+        (name, f"{share:g}", f"{max(released(of.mechanism, share * of.model('nonlinear').phi_cr[0]).growth(), 0):.0e}")
+        for name in FREE for share in (0.2, 0.4) for of in [structure(name)]
+    ]  # fmt: skip
+    slides = [
+        (f"{push:g} g", f"{friction:g}", f"{exact:.5f} m", f"{free:.5f} m" if exact else f"{1e6 * free:.1f} um")
+        for push, friction in ((0.3, 0.4), (0.39, 0.4), (0.5, 0.4), (0.7, 0.4), (0.7, 0.6))
+        for free, exact in [slide(push, friction)]
+    ]
+    ladens = [
+        (f"{ratio:g}", f"{1e3 * by_rule[2]:.2g} ms", f"{100 * abs(by_rule[1] / by_rule[0] - 1):.2f} %",
+         f"{100 * abs(without[1] / without[0] - 1):.2f} %")
+        for ratio in (1.0, 10.0, 100.0, 1000.0)
+        for by_rule in [heavy(ratio)]
+        for without in [heavy(ratio, by_rule[2] / heavy(1.0)[2])]
+    ]  # fmt: skip
+    costs = [
+        (name, f"{count}", f"{1e3 * step:.2f} ms", f"{seconds:.1f} s")
+        for name in COSTS for count, step, seconds in [cost(name)]
+    ]  # fmt: skip
+    return f"""# Evidence of free blocks
+
+What contacts of free blocks do, beside what they should: `docs/make_free_blocks.py` writes this page, and tests of the
+same functions hold its limits. [The scoreboard](scoreboard.md) has forty assemblies by both engines.
+
+**The rule.** A contact recovers within {SOFTNESS:g} sqrt(size/g), its time constant. The size is the area of the
+smallest convex piece of a block over its largest width; below more than {HEAVY:g} times its own weight, a block counts
+as smaller in proportion. There are {STEPS} steps or more in a time constant. A body that sinks deeper than {SUNK:g} of
+its size fails the run, and is simulated again with stiffer contacts.
+
+## Stiffer contacts and shorter steps
+
+Peaks by the rule, and with half the time constant and half the step [rad]. The motions are no chance: neighbours with
+1 % of amplitude and .01 of restitution have peaks within 15 %.
+
+{table(("structure", "motion", "exact", "by the rule", "halved", "change"), halving)}
+
+## Restitution
+
+The file's restitution plays no part: contacts are without rebound, and the impulse of a foot that strikes is what stops
+it. A rectangular block so keeps the share of its rate that kinematics say, 1 - 1.5 sin^2 alpha. The block is let go
+from a share of alpha; its restitution is that of the energy left after the first three impacts. With this restitution,
+the exact history has its first three half-cycles end, and peak, within the last two columns.
+
+{
+        table(
+            ("slenderness", "height", "release", "kinematic", "of contact", "times differ", "peaks differ"),
+            bounces,
+        )
+    }
+
+## Forces
+
+Time from a release, at .3 of the critical rotation, to the first impact: it has the effect of hinges, guides, floors,
+loads and ties, and none of restitution.
+
+{table(("structure", "exact", "free blocks", "difference"), falls)}
+
+A stout block under a steady acceleration slides or holds. Distance after .99 s, in closed form and of free blocks; what
+holds creeps.
+
+{table(("acceleration", "friction", "closed form", "free blocks"), slides)}
+
+## Energy
+
+Largest growth of kinetic and potential energy in free motion after a release, over the energy of the release. What
+contacts store in an impact they return within {RECOVERED} time constants: it is no growth.
+
+{table(("structure", "release over phi_cr", "growth"), growths)}
+
+## Weight on small blocks
+
+A portal whose lintel carries a mass, over that of a pier: error of the second maximum after a release, by the rule and
+with the time constant of the bare portal.
+
+{table(("mass over that of a pier", "time constant", "error", "without the rule of weight"), ladens)}
+
+## Time
+
+On one processor, for scale:
+
+{table(("structure", "blocks", "longest step", "time for a second of strong motion"), costs)}
+"""
+
+
+def main() -> int:
+    """Write the page."""
+    if len(sys.argv) != 1:
+        print(__doc__)
+        return 2
+    PAGE.write_text(page(), encoding="utf-8", newline="\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
