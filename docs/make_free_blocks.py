@@ -29,7 +29,7 @@ PAGE, EXAMPLES = DOCS / "free_blocks_evidence.md", DOCS.parent / "examples"
 G = 9.80665
 RECOVERED = 10  # time constants in which contacts give back what they stored in an impact
 
-# Motions whose peak is no chance: that of every neighbour, with 1 % of amplitude and .01 of restitution, is within 15 %.
+# Motions whose peak is no chance: that of every neighbour (1 % of amplitude, .01 of restitution) is within 15 %.
 HALVED = [
     (name, motion)
     for name, motions in {
