@@ -27,6 +27,7 @@ from rocking_cli.studies.engines.free_blocks import FreeBlocks, free_blocks
 DOCS = Path(__file__).resolve().parent
 PAGE, EXAMPLES = DOCS / "free_blocks_evidence.md", DOCS.parent / "examples"
 G = 9.80665
+AFTER = 1.5  # s after a motion for which its peak is looked for
 RECOVERED = 10  # time constants in which contacts give back what they stored in an impact
 
 # Motions whose peak is no chance: that of every neighbour (1 % of amplitude, .01 of restitution) is within 15 %.
@@ -149,10 +150,11 @@ def bounce(slenderness: float, height: float, tilt: float) -> Bounce:
     return Bounce(1 - 1.5 * sin(alpha) ** 2, eta, times, peaks)
 
 
-def halved(name: str, motion: str, finer: Sequence[float] = (1.0, 2.0)) -> tuple[float, list[float]]:
-    """Return the exact peak of a structure, and that of free blocks by the rule and with stiffer contacts [rad]."""
-    history = follow(structure(name), motion_of(motion))
-    peaks = [float(np.abs(simulated(structure(name).mechanism, motion_of(motion), each).phi).max()) for each in finer]
+def halved(name: str, motion: str) -> tuple[float, list[float]]:
+    """Return the exact peak of a structure, and that of free blocks by the rule and with half of both [rad]."""
+    of, given = structure(name), motion_of(motion)
+    history, most = follow(of, given), given.duration + AFTER
+    peaks = [float(np.abs(simulated(of.mechanism, given, finer, most=most).phi).max()) for finer in (1.0, 2.0)]
     return max(history.peak_positive, history.peak_negative), peaks
 
 

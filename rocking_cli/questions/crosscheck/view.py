@@ -23,8 +23,8 @@ from rocking_cli.views.view import View, heading, number
 
 MAX_LISTED_JOINTS = 8
 MORE = (
-    "One history is one sample, as rocking is chaotic: `rocking margin --engine blocks` gives shares of neighbouring "
-    "motions."
+    "One history is one sample, as rocking is chaotic: `rocking margin` with the engine `blocks` gives shares of "
+    "neighbouring motions."
 )
 
 

@@ -35,6 +35,7 @@ SETTLING = 0.3  # s
 LIGHT = 0.1  # normal force over the weight of the lighter block, below which friction is not looked at
 REST_ENERGY = 1e-9  # kinetic energy at rest, over m g times the size; for sqrt(size/g), as blocks also turn back
 LONGEST_TAIL = 60.0  # s after the motion for which blocks that still move are followed
+ROUNDING = 1e-6  # samples
 
 
 @short_repr
@@ -159,8 +160,7 @@ class BlockModel:
 
         model, count = self.scene.model, 3 * len(self.names)
         data = mujoco.MjData(model)
-        every = motion.every if motion is not None else 1
-        sample = motion.dt if motion is not None else RELEASE_DT
+        sample = motion.dt * motion.every if motion is not None else RELEASE_DT
         holds = ceil(sample / HOLD)
         steps = ceil(sample / holds / self.step)
         model.opt.timestep = sample / holds / steps / self.scene.unit_of_time
@@ -202,10 +202,9 @@ class BlockModel:
                 break
             k += 1
             now = (data.qpos[:count] - rest).reshape(-1, 3) * scale
-            if k % every == 0:
-                moved.append(now)
-                rates.append(data.qvel[:count].reshape(-1, 3) * scale / self.scene.unit_of_time)
-                self._note_friction(data, frictions)
+            moved.append(now)
+            rates.append(data.qvel[:count].reshape(-1, 3) * scale / self.scene.unit_of_time)
+            self._note_friction(data, frictions)
             fallen = self._fallen(now)
             if fallen is not None:
                 break
@@ -218,7 +217,7 @@ class BlockModel:
             if (at_rest and time >= ended + tail) or time >= last:
                 break
         return BlockMotion(
-            time=sample * every * np.arange(len(moved), dtype=np.float64), moved=np.array(moved), rates=np.array(rates),
+            time=sample * np.arange(len(moved), dtype=np.float64), moved=np.array(moved), rates=np.array(rates),
             collapsed=k * sample if fallen is not None else nan, failed=failed, at_rest=at_rest, friction=frictions,
             block=self.names[fallen] if fallen is not None else "",
         )  # fmt: skip
@@ -307,7 +306,7 @@ def _diverged() -> list[int]:
 
 def _held(motion: GroundMotion | None, factor: float, sample: float, holds: int, ended: float) -> list[float]:
     """Return the ground acceleration in the middle of each hold, over g, until the motion ends."""
-    count = round(ended / sample) * holds
+    count = ceil(ended / sample - ROUNDING) * holds
     if motion is None:
         return [0.0] * count
     middles = (np.arange(count) + 0.5) * (sample / holds)
