@@ -207,11 +207,11 @@ def joints_of(mechanism: Mechanism, free: FreeBlocks, moved: BlockMotion, limit:
             opening, slip = np.maximum(opening, before[0]), np.maximum(slip, before[1])
         one, other = sorted(free.block_of[name] if name else "" for name in contact.pieces)
         joints[contact.label] = opening, slip, float(moved.friction.get((one, other), nan))
-    joints = []
+    seen = []
     for name, (opening, slip, friction) in joints.items():
         passed = _first(moved.time, np.maximum(opening, slip) > limit)
-        joints.append(BlockJoint(name, float(opening.max()), float(slip.max()), passed, friction))
-    return sorted(joints, key=lambda joint: -max(joint.opening, joint.slip))
+        seen.append(BlockJoint(name, float(opening.max()), float(slip.max()), passed, friction))
+    return sorted(seen, key=lambda joint: -max(joint.opening, joint.slip))
 
 
 def _closed(mechanism: Mechanism, free: FreeBlocks) -> Iterator[tuple[Direction, Contact]]:

@@ -107,13 +107,13 @@ def crosscheck(
     ratio = tilt.ratio(ready) if tilt is not None else None
     lasts = ceil(scaled.duration if scaled is not None else TAIL_SECONDS)
     with watch.progress(lasts, "seconds of motion by free blocks") as advance:
-        compared = study.crosscheck(ready, scaled, release=ratio, progress=_in_seconds(advance))
-    shown = view(ready, given, signs[0], ratio, compared)
+        both = study.crosscheck(ready, scaled, release=ratio, progress=_in_seconds(advance))
+    shown = view(ready, given, signs[0], ratio, both)
     title = heading(ready.mechanism)
     if animate is not None and scaled is not None:
-        write_film(Path(animate), scene_of(ready, compared), title, scaled.name, None, FRAMES_PER_SECOND, watch)
-    figure = drawn("questions.crosscheck.picture.draw_crosscheck", compared, title)
-    return Answer("crosscheck", compared, shown, partial(_columns, compared), figure)
+        write_film(Path(animate), scene_of(ready, both), title, scaled.name, None, FRAMES_PER_SECOND, watch)
+    figure = drawn("questions.crosscheck.picture.draw_crosscheck", both, title)
+    return Answer("crosscheck", both, shown, partial(_columns, both), figure)
 
 
 def _check(motions: Motions, signs: tuple[int, ...], release: object, animate: object) -> None:

@@ -7,6 +7,7 @@ from math import isnan, nan
 from typing import Any, NamedTuple
 
 from rocking_cli import names
+from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.dynamics.history import History
 from rocking_cli.names import percent
 from rocking_cli.processing.listed import Scaled
@@ -18,7 +19,7 @@ from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, t
 from rocking_cli.views.engines import engines_in_words
 from rocking_cli.views.response import ending, known_data, not_checked, record_data
 from rocking_cli.views.restitution import restitution_data, restitution_used
-from rocking_cli.views.verdict import ends, unknown_after
+from rocking_cli.views.verdict import ASSUMED, ends, unknown_after
 from rocking_cli.views.view import View, heading, number
 
 MAX_LISTED_JOINTS = 8
@@ -83,7 +84,7 @@ def view(structure: Structure, given: Scaled | None, polarity: int, release: flo
     found : Crosscheck
         The motion by both engines.
     """
-    mechanism, sides = structure.mechanism, _sides(found)
+    mechanism, sides, assumed = structure.mechanism, _sides(found), found.demand.assumed_friction
     reach = sides[0].reach
     peak = only_shown(f"peak rotation / {divisor(found.exact)}", of("run.peak_ratio"), rounded(4))
     columns = [*COLUMNS[:4], peak, *COLUMNS[4:]]
@@ -101,6 +102,7 @@ def view(structure: Structure, given: Scaled | None, polarity: int, release: flo
         f"Exact engine: one degree of freedom. {restitution_used(structure)}",
         *engines_in_words("blocks", 1, mechanism),
         *not_checked(mechanism, [found.exact]),
+        *([] if assumed is None else [ASSUMED.format(assumed, MASONRY_FRICTION)]),
         MORE,
     ]
     data: dict[str, Any] = {
