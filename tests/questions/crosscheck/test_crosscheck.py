@@ -30,6 +30,11 @@ BRIEF = rk.GroundMotion("brief", 0.01, 8.0 * np.sin(np.pi * np.arange(41) / 40))
 ACCEL = EXAMPLES / "accel.csv"
 PORTAL = EXAMPLES / "masonry" / "portal.yaml"
 
+LOADS = {
+    "symmetric_frame": {"body": "columns", "at": [0.2, 3.0], "each": True},
+    "arch": {"body": "segment 1", "at": [-7.0, 6.4]},  # on the second voussoir of this link
+}
+
 
 @pytest.fixture(scope="module")
 def answer():
@@ -163,8 +168,8 @@ class TestFilm:
     @pytest.mark.parametrize("sign", [1, -1])
     def test_blocks_loads_and_ties_are_where_the_mechanism_has_them(self, found, file, sign):
         structure = structure_of(EXAMPLES / f"{file}.yaml")
-        if file == "symmetric_frame":  # with a load on each column
-            load = {"name": "statue", "mass": 500.0, "body": "columns", "at": [0.2, 3.0], "each": True}
+        if file in LOADS:
+            load = {"name": "statue", "mass": 500.0, **LOADS[file]}
             structure = structure_of(structure.mechanism.replace(density=2500.0, depth=1.0, loads=[load]))
         if Direction(sign) not in structure.mechanism.directions:
             return
