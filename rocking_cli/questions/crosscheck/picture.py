@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from rocking_cli import names
+from rocking_cli.arrays import Reals
 from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import percent
@@ -21,7 +22,7 @@ from rocking_cli.questions.crosscheck.study import PARTED, Crosscheck
 from rocking_cli.studies.engines.free import MOVED
 from rocking_cli.studies.film import SECONDS_AFTER, SECONDS_BEFORE
 
-MAX_SHOWN_RATIO = 1.3  # phi/phi_cr at which curves are cut off
+MAX_SHOWN_RATIO = 1.3  # phi/phi_cr at which curves that overturn are cut off
 STILL_SHARE = 0.02  # distance from the last rotation, over the peak, that counts as rest
 ROOM = 0.2  # height of the panel above and below the curves, over that of the curves
 EXACT, BLOCKS = style.LINES["nonlinear"], style.LINES["blocks"]
@@ -90,30 +91,32 @@ def _span(found: Crosscheck) -> tuple[float, float]:
 
 
 def _draw(axes: Axes, run: History, label: str, look: dict[str, Any]) -> Line2D:
-    """Draw a history as far as it is known, and no farther than `MAX_SHOWN_RATIO`."""
-    known = run.ratio[np.isfinite(run.ratio)]
-    beyond = np.abs(known) > MAX_SHOWN_RATIO
-    if run.fell and beyond.any():
-        known = known[: beyond.argmax() + 1]
-    known = known.clip(-MAX_SHOWN_RATIO, MAX_SHOWN_RATIO)
-    shown = style.visible(known)
-    return axes.plot(run.time[shown], known[shown], label=label, **look)[0]
+    """Draw a history as far as it is shown."""
+    ratio = _shown(run)
+    points = style.visible(ratio)
+    return axes.plot(run.time[points], ratio[points], label=label, **look)[0]
+
+
+def _shown(run: History) -> Reals:
+    """Return the first samples of phi/phi_cr of a history: as far as it is known, and not far beyond overturning."""
+    ratio = run.ratio[np.isfinite(run.ratio)]
+    beyond = np.abs(ratio) > MAX_SHOWN_RATIO
+    return ratio[: beyond.argmax()] if run.fell and beyond.any() else ratio
 
 
 def _marks(axes: Axes, run: History, look: dict[str, Any]) -> Iterator[Line2D]:
     """Mark where a history overturns, or its peak, with a label."""
-    known = np.abs(run.ratio[np.isfinite(run.ratio)])
     if run.unknown or not run.lifted:
         return
-    if run.fell:
-        k = min(int((known > MAX_SHOWN_RATIO).argmax()) or known.size - 1, known.size - 1)
-        label, shape = f"{names.OVERTURNS} at {run.overturning_time:.4g} s", "x"
-    else:
-        k = int(known.argmax())
-        label, shape = f"peak {run.peak_ratio:.4g} at {run.time[k]:.4g} s", "o"
-    value = float(np.clip(run.ratio[k], -MAX_SHOWN_RATIO, MAX_SHOWN_RATIO))
-    style_of = {"marker": shape, "markersize": 4.5, "linestyle": "none", "color": look["color"], "zorder": 6}
-    yield axes.plot([run.time[k]], [value], label=label, **style_of)[0]
+    ratio = _shown(run)
+    k, shape = int(np.abs(ratio).argmax()), "o"
+    label = f"peak {run.peak_ratio:.4g} at {run.time[k]:.4g} s"
+    if run.fell:  # at the time of overturning, or at the edge, beyond which the curve goes on
+        k = min(int(np.searchsorted(run.time, run.overturning_time)), ratio.size - 1)
+        shape = "x" if k < ratio.size - 1 else "^" if ratio[k] > 0 else "v"
+        label = f"{names.OVERTURNS} at {run.overturning_time:.4g} s"
+    mark = {"marker": shape, "markersize": 4.5, "linestyle": "none", "color": look["color"]}
+    yield axes.plot(run.time[k], ratio[k], label=label, zorder=6, **mark)[0]
 
 
 def _times(panels: list[Axes], found: Crosscheck) -> Iterator[Line2D]:
