@@ -79,7 +79,8 @@ CALLS = {
         {"structure": WEAK, "motion": RECORD, "neighbours": 2, "opening": 1.0},
         {"structure": BLOCK, "motion": PULSE, "models": "nonlinear", "polarity": "both", "vertical": RECORD,
          "vertical_dt": 0.1, "vertical_channel": "2", "with_pulse": "sine", "release": 0.2,
-         "opening": 0.0, "impacts": True, "title": "odd", "out": "o.csv", "plot": "p.svg"} | AROUND,
+         "opening": 0.0, "engine": "auto", "impacts": True, "title": "odd", "out": "o.csv",
+         "plot": "p.svg"} | AROUND,
     ),
     "respond_each": (
         {"structures": WEAK, "motions": STRONG},
@@ -114,13 +115,14 @@ CALLS = {
     "overturning_map": (
         {"structure": WEAK, "model": "nonlinear", "points": 3, "period": (0.3, 2.0), "ag": (0.2, 1.5)},
         {"structure": BLOCK, "shape": "cosine", "model": "linear1", "eta": 0.7, "period": (0.2, 1.0), "ag": (0.3, 2.0),
-         "omega": (1.0, 3.0), "a": (1.0, 3.0), "dimensionless": True, "polarity": "both", "points": 4, "opening": 1.0},
+         "omega": (1.0, 3.0), "a": (1.0, 3.0), "dimensionless": True, "polarity": "both", "points": 4, "opening": 1.0,
+         "engine": "auto"},
     ),
     "overturning": (
         {"structures": WEAK, "model": "nonlinear", "points": 3, "period": (0.3, 2.0), "ag": (0.2, 1.5)},
         {"structures": BLOCK, "compare": True, "shape": "cosine", "model": "linear1", "eta": 0.7, "period": (0.2, 1.0),
          "ag": (0.3, 2.0), "omega": (1.0, 3.0), "a": (1.0, 3.0), "dimensionless": True, "polarity": "both", "points": 4,
-         "opening": 1.0},
+         "opening": 1.0, "engine": "auto"},
     ),
     "overturning_curves": (
         {"structures": [WEAK, BLOCK], "points": 2, "period": (0.4, 1.0)},
@@ -129,7 +131,7 @@ CALLS = {
     ),
     "margin": (
         {"structure": WEAK, "motions": STRONG, "neighbours": 2, "polarity": "1"},
-        {"structure": BLOCK, "motions": PULSE, "polarity": "-1", "opening": 1.0} | AROUND,
+        {"structure": BLOCK, "motions": PULSE, "polarity": "-1", "opening": 1.0, "engine": "auto"} | AROUND,
     ),
     "shares": (
         {"structure": FRAME, "motion": RECORD.scaled(3.0), "neighbours": 20},
