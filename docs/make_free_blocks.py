@@ -1,4 +1,4 @@
-"""Write docs/free_blocks_evidence.md: what the contacts of free blocks do, beside what they should. Ten minutes.
+"""Write the end of docs/free_blocks.md: what the contacts of free blocks do, beside what they should. Some minutes.
 
 python docs/make_free_blocks.py
 """
@@ -21,11 +21,12 @@ from rocking_cli.arrays import Reals
 from rocking_cli.core import Mechanism
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import follow
-from rocking_cli.studies.engines.blocks import HEAVY, SOFTNESS, STEPS, SUNK, BlockModel, BlockMotion
+from rocking_cli.studies.engines.blocks import BlockModel, BlockMotion
 from rocking_cli.studies.engines.free_blocks import FreeBlocks, free_blocks
 
 DOCS = Path(__file__).resolve().parent
-PAGE, EXAMPLES = DOCS / "free_blocks_evidence.md", DOCS.parent / "examples"
+PAGE, EXAMPLES = DOCS / "free_blocks.md", DOCS.parent / "examples"
+MARK = "<!-- evidence -->\n"  # from here on the page is written by this script
 G = 9.80665
 AFTER = 1.5  # s after a motion for which its peak is looked for
 RECOVERED = 10  # time constants in which contacts give back what they stored in an impact
@@ -213,8 +214,8 @@ def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     return "\n".join(f"| {' | '.join(row)} |" for row in (heads, ["---"] * len(heads), *rows))
 
 
-def page() -> str:
-    """Return the text of the page."""
+def evidence() -> str:
+    """Return the end of the page."""
     halving = [
         (name, motion, f"{exact:.5f}", f"{one:.5f}", f"{two:.5f}", f"{100 * abs(two / one - 1):.2f} %")
         for name, motion in HALVED
@@ -250,24 +251,14 @@ def page() -> str:
         (name, f"{count}", f"{1e3 * step:.2f} ms", f"{seconds:.1f} s")
         for name in COSTS for count, step, seconds in [cost(name)]
     ]  # fmt: skip
-    return f"""# Evidence of free blocks
-
-What contacts of free blocks do, beside what they should: `docs/make_free_blocks.py` writes this page, and tests of the
-same functions hold its limits. [The scoreboard](scoreboard.md) has forty assemblies by both engines.
-
-**The rule.** A contact recovers within {SOFTNESS:g} sqrt(size/g), its time constant. The size is the area of the
-smallest convex piece of a block over its largest width; below more than {HEAVY:g} times its own weight, a block counts
-as smaller in proportion. There are {STEPS} steps or more in a time constant. A body that sinks deeper than {SUNK:g} of
-its size fails the run, and is simulated again with stiffer contacts.
-
-## Stiffer contacts and shorter steps
+    return f"""### Stiffer contacts and shorter steps
 
 Peaks by the rule, and with half the time constant and half the step [rad]. The motions are no chance: neighbours with
 1 % of amplitude and .01 of restitution have peaks within 15 %.
 
 {table(("structure", "motion", "exact", "by the rule", "halved", "change"), halving)}
 
-## Restitution
+### Restitution
 
 The file's restitution plays no part: contacts are without rebound, and the impulse of a foot that strikes is what stops
 it. A rectangular block so keeps the share of its rate that kinematics say, 1 - 1.5 sin^2 alpha. The block is let go
@@ -281,7 +272,7 @@ the exact history has its first three half-cycles end, and peak, within the last
         )
     }
 
-## Forces
+### Forces
 
 Time from a release, at .3 of the critical rotation, to the first impact: it has the effect of hinges, guides, floors,
 loads and ties, and none of restitution.
@@ -293,21 +284,21 @@ holds creeps.
 
 {table(("acceleration", "friction", "closed form", "free blocks"), slides)}
 
-## Energy
+### Energy
 
 Largest growth of kinetic and potential energy in free motion after a release, over the energy of the release. What
 contacts store in an impact they return within {RECOVERED} time constants: it is no growth.
 
 {table(("structure", "release over phi_cr", "growth"), growths)}
 
-## Weight on small blocks
+### Weight on small blocks
 
 A portal whose lintel carries a mass, over that of a pier: error of the second maximum after a release, by the rule and
 with the time constant of the bare portal.
 
 {table(("mass over that of a pier", "time constant", "error", "without the rule of weight"), ladens)}
 
-## Time
+### Time
 
 On one processor, for scale:
 
@@ -320,7 +311,8 @@ def main() -> int:
     if len(sys.argv) != 1:
         print(__doc__)
         return 2
-    PAGE.write_text(page(), encoding="utf-8", newline="\n")
+    text, mark, _ = PAGE.read_text(encoding="utf-8").partition(MARK)
+    PAGE.write_text(f"{text}{mark}\n{evidence()}", encoding="utf-8", newline="\n")
     return 0
 
 

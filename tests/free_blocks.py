@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from cmath import exp
 from contextlib import suppress
-from dataclasses import dataclass
 from itertools import pairwise
 from math import pi
 from pathlib import Path
@@ -170,8 +169,7 @@ def forty() -> list[Case]:
     return [case(kind, number) for kind in KINDS for number in range(1, 9)]
 
 
-@dataclass(frozen=True)
-class Pair:
+class Pair(NamedTuple):
     """The outcome of a case by both engines.
 
     Parameters
@@ -195,6 +193,11 @@ class Pair:
     peak: float
     free_peak: float
     range: tuple[float, float]
+
+    @property
+    def known(self) -> bool:
+        """Whether one degree of freedom knows the outcome."""
+        return self.exact is not None
 
     @property
     def chaotic(self) -> bool:
@@ -240,3 +243,43 @@ def side_by_side(cases: list[Case], threads: int) -> list[Pair]:
             )
         )
     return pairs
+
+
+class Agreement(NamedTuple):
+    """On how many cases both engines agree.
+
+    Parameters
+    ----------
+    cases, known : int
+        All cases, and those whose outcome one degree of freedom knows.
+    sure, outcomes : int
+        Of these, those of which neighbours agree on the outcome, and those of them in which free blocks have it too.
+    peaks, near, close : int
+        Known cases that overturn by neither engine, those whose peaks agree, and those whose peaks are close.
+    stand, collapse, failed : int
+        Of the others, those that stand, collapse, and could not be simulated as free blocks.
+    """
+
+    cases: int
+    known: int
+    sure: int
+    outcomes: int
+    peaks: int
+    near: int
+    close: int
+    stand: int
+    collapse: int
+    failed: int
+
+
+def agreement(pairs: list[Pair]) -> Agreement:
+    """Count on what both engines agree."""
+    known = [pair for pair in pairs if pair.known]
+    sure = [pair for pair in known if not pair.chaotic]
+    peaks = [pair for pair in known if pair.stands]
+    others = [pair.free for pair in pairs if not pair.known]
+    return Agreement(
+        len(pairs), len(known), len(sure), sum(pair.free == pair.exact for pair in sure), len(peaks),
+        sum(pair.agree for pair in peaks), sum(pair.close for pair in peaks), others.count(False), others.count(True),
+        others.count(None),
+    )  # fmt: skip
