@@ -233,7 +233,7 @@ whether this is the cause has not been shown. So good scores are known of one se
 def witness() -> str:
     """Return on what free blocks and one degree of freedom agree."""
     _, _, known, outcomes, peaks, close, _, unknown, stand, collapse, _ = last("forty assemblies")
-    return f"""Of {known} assemblies one degree of freedom knows the outcome. Where neighbours agree on it,
+    return f"""One degree of freedom knows the outcome of {known} assemblies. Where their neighbours agree on it,
 [free blocks](free_blocks.md) have the same outcome in {outcomes}. The peaks agree in {peaks}, and are within 5 % in
 {close}. Of the other {unknown} assemblies, {stand} stand and {collapse} collapse as free blocks: `unknown` means
 neither. [The scoreboard](scoreboard.md#free-blocks) says how this was counted."""
