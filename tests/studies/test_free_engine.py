@@ -112,7 +112,7 @@ def test_auto_asks_free_blocks_only_where_one_degree_of_freedom_does_not_tell(mo
 
 
 def test_a_body_that_sinks_too_deep_is_a_failed_run_and_never_an_answer(monkeypatch):
-    monkeypatch.setattr(blocks, "SUNK", 1e-9)
+    monkeypatch.setattr(blocks.BlockModel, "_limits", -np.ones(2))  # any contact is too deep
     with pytest.raises(rk.SolverError, match="sink into each other by more than 1 per mille"):
         engine_of("blocks").respond(BLOCK, HALF_SINE)
     failed = outcomes([1.0])

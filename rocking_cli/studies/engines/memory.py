@@ -6,8 +6,11 @@ import json
 import sqlite3
 from collections.abc import Iterable, Sequence
 from contextlib import closing
+from math import nan
 from pathlib import Path
 from typing import Any
+
+from rocking_cli.io.json_text import json_text
 
 
 def place() -> Path:
@@ -26,7 +29,8 @@ def recall(keys: Sequence[str]) -> dict[str, Any]:
             outcomes = {}
             for key in keys:
                 if row := known.execute("SELECT outcome FROM histories WHERE key = ?", (key,)).fetchone():
-                    outcomes[key] = json.loads(row[0])
+                    read = json.loads(row[0])
+                    outcomes[key] = {name: nan if value is None else value for name, value in read.items()}
             return outcomes
     except sqlite3.Error:
         return {}
@@ -37,7 +41,7 @@ def remember(outcomes: Iterable[tuple[str, Any]]) -> None:
     try:
         place().parent.mkdir(parents=True, exist_ok=True)
         with closing(_opened()) as known, known:
-            rows = [(key, json.dumps(outcome)) for key, outcome in outcomes]
+            rows = [(key, json_text(outcome)) for key, outcome in outcomes]
             known.executemany("INSERT OR REPLACE INTO histories VALUES (?, ?)", rows)
     except (OSError, sqlite3.Error):
         pass

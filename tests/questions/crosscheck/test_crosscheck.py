@@ -261,7 +261,7 @@ def test_without_mujoco_it_says_what_to_install(monkeypatch):
 
 
 def test_free_blocks_that_fail_end_with_an_error(monkeypatch):
-    monkeypatch.setattr("rocking_cli.studies.engines.blocks.SUNK", 1e-9)
+    monkeypatch.setattr("rocking_cli.studies.engines.blocks.BlockModel._fault", lambda *state: "a step diverged")
     assert "free blocks failed" in run("crosscheck", "--release", "0.3", code=4).stderr
 
 

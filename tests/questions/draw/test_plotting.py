@@ -9,6 +9,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 
 from mechanisms.block import Block
+from rocking_cli.dynamics.model import MODELS
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.measures import measure
 from rocking_cli.excitation.pulses import parse_pulse
@@ -166,11 +167,12 @@ def grey(color):
 
 
 def test_the_lines_differ_in_grey_by_tone_dash_and_weight():
-    looks = list(style.LINES.values())
+    looks = [style.LINES[name] for name in MODELS]  # free blocks are drawn beside the nonlinear model alone
     for key in ("linestyle", "linewidth"):
         assert len({look[key] for look in looks}) == len(looks)
     tones = sorted(grey(look["color"]) for look in looks)
     assert np.diff(tones).min() > 0.15 and tones[-1] < 0.7
+    assert abs(grey(style.LINES["blocks"]["color"]) - grey(style.LINES["nonlinear"]["color"])) > 0.15
 
 
 def test_a_record_is_drawn_with_its_integrals_and_the_build_up():

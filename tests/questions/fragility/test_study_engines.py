@@ -117,7 +117,8 @@ def test_another_engine_is_another_study(whole, tmp_path):
 
 @NEEDS_BLOCKS
 def test_free_blocks_that_fail_are_of_unknown_outcome(tmp_path, monkeypatch):
-    monkeypatch.setattr("rocking_cli.studies.engines.blocks.SUNK", -1.0)
+    monkeypatch.setattr("rocking_cli.studies.engines.memory.recall", lambda keys: {})
+    monkeypatch.setattr("rocking_cli.studies.engines.blocks.BlockModel._fault", lambda *state: "a step diverged")
     monkeypatch.setattr("rocking_cli.studies.engines.free.FINER", (1.0,))
     answer = rk.fragility(write(tmp_path), jobs=1)
     assert rows_in(tmp_path / "study.db").outcome.tolist() == [0, UNKNOWN]

@@ -492,7 +492,7 @@ class TestStarter:
         assert "\nsoil:                             # fill in: class of the soil: of the code\n" in made.stdout
         assert "\ntable: [[0.0, 1.0], [1.0, 0.5]]   # rows of period and acceleration\n" in made.stdout
         assert "\n# zone:                           # zone\n" in made.stdout
-        assert '\n# class: "II: normal"             # class\n' in made.stdout
+        assert "\n# class: 'II: normal'             # class\n" in made.stdout
         assert "\ncode: no example\n" in made.stdout and "--code 'no example' > site.yaml" in made.stdout
         assert "the examples of the code no example are not a valid site: this file does not work" in made.stderr
         assert "soil must be text, got nothing" in made.stderr
