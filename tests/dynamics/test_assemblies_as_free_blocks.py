@@ -13,7 +13,7 @@ from tests.conftest import NEEDS_MUJOCO, SHARED
 from tests.free_blocks import CHAOTIC, Pair, agreement, case, forty, side_by_side
 
 pytestmark = NEEDS_MUJOCO
-SAME_EVERYWHERE = [(2100.0, 0.732), (2300.0, 0.818), (2500.0, 0.727)]  # of the three below
+SAME_EVERYWHERE = [(2100.0, 0.732), (2200.0, 0.712)]  # of the two below
 BLOCKS = SHARED / "blocks" / "assemblies.json"
 
 
@@ -54,14 +54,13 @@ def test_forty_assemblies_as_one_degree_of_freedom_has_them_where_it_knows():
     assert found.near >= 0.9 * found.peaks and found.peaks >= 20
 
 
-def test_three_of_the_forty():
-    cases = [case(kind, number) for kind, number in (("stack", 2), ("rider", 8), ("stack", 8))]
+def test_two_of_the_forty():
+    cases = [case("stack", number) for number in (2, 6)]
     assert [(of.density, of.friction) for of in (each.structure.mechanism for each in cases)] == SAME_EVERYWHERE
-    rocks, overturns, opens = pairs = side_by_side(cases, 1)
+    rocks, opens = pairs = side_by_side(cases, 1)
     assert rocks.stands and rocks.agree and not rocks.chaotic
-    assert overturns.exact is overturns.free is True
-    assert opens.exact is None and opens.free is True
-    assert agreement(pairs)[:6] == (3, 2, 2, 2, 1, 1)
+    assert opens.exact is None and opens.free is False
+    assert agreement(pairs)[:6] == (2, 1, 1, 1, 1, 1)
 
 
 def test_what_counts_as_agreement():

@@ -10,7 +10,7 @@ import pytest
 import rocking_cli as rk
 from rocking_cli import GroundMotion, Registry
 from rocking_cli.errors import SolverError
-from rocking_cli.studies.engines.blocks import BlockModel
+from rocking_cli.studies.engines.blocks import SOFTNESS, BlockModel, time_constant
 from rocking_cli.studies.engines.free_blocks import free_blocks
 from tests.conftest import EXAMPLES, PROJECT
 from tests.penalty import Plate, stacked
@@ -107,6 +107,13 @@ def test_energy_does_not_grow_after_a_pulse(name):
     pulse = rk.parse_pulse(f"sine:{1.5 * min(of.model('nonlinear').lambda_):.3g}g:0.5s").sampled()
     free = simulated(of.mechanism, pulse)
     assert free.motion.at_rest and free.growth(start=pulse.duration) < 1e-3
+
+
+def test_weight_beside_a_small_block_does_not_stiffen_contacts():
+    free = free_blocks(assembly(tower=box(0, 2, 0, 6), pebble=box(5, 5.2, 0, 0.2)))
+    assert time_constant(free) == pytest.approx(SOFTNESS * sqrt(0.2 / sqrt(2) / 9.80665))
+    on_top = free_blocks(assembly(tower=box(0, 2, 0.2, 6), pebble=box(0, 2, 0, 0.2)))
+    assert time_constant(on_top) == pytest.approx(SOFTNESS * sqrt(0.4 / sqrt(4.04) * 10 / 29 / 9.80665))
 
 
 @rest

@@ -20,15 +20,16 @@ from rocking_cli.dynamics.deck import RELEASE_DT
 from rocking_cli.errors import SolverError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.short_repr import short_repr
-from rocking_cli.studies.engines.free_blocks import FALL, TURN, FreeBlocks
+from rocking_cli.studies.engines.free_blocks import FALL, NEAR_SHARE, TURN, FreeBlocks
 from rocking_cli.studies.engines.scene import scene
+from rocking_cli.studies.picture import box_around
 
 if TYPE_CHECKING:
     import mujoco
 
 SOFTNESS = 0.01  # time constant of a contact, over sqrt(size/g) of the smallest block
 STEPS = 8  # time steps in this time
-HEAVY = 10.0  # weight on a block over its own, from which the contacts are stiffer
+HEAVY = 10.0  # weight straight above a block over its own, from which the contacts are stiffer
 HOLD = 1e-3  # s; the ground acceleration is held over so long at most
 SUNK = 1e-3  # largest depth to which a body may sink into another, over its size; as far it may move at rest
 SETTLING = 0.3  # s
@@ -77,8 +78,19 @@ class BlockMotion:
 def time_constant(free: FreeBlocks) -> float:
     """Return the time in which a contact recovers, by size and weight of the blocks [s]."""
     each, floors = [], sum(load.mass for load in free.floors)
+    boxes = {body.name: box_around(free.shapes[body.name]) for body in free.bodies}
+
+    def overlap(one: str, other: str) -> float:
+        (low, high), (lower, upper) = boxes[one], boxes[other]
+        return min(high.real, upper.real) - max(low.real, lower.real)
+
     for body in free.bodies:
-        above = floors + sum(other.mass for other in free.bodies if other.centroid.imag > body.centroid.imag)
+        least = NEAR_SHARE * overlap(body.name, body.name)
+        above = floors + sum(
+            other.mass
+            for other in free.bodies
+            if other.centroid.imag > body.centroid.imag and overlap(body.name, other.name) > least
+        )
         size = max(thickness_of(z) for z in free.shapes[body.name])
         each.append(size * min(1.0, HEAVY * body.mass / (above or body.mass)))
     return SOFTNESS * sqrt(min(each) / free.gravity)
