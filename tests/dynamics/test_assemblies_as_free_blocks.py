@@ -13,7 +13,7 @@ from tests.conftest import NEEDS_MUJOCO, SHARED
 from tests.free_blocks import CHAOTIC, Pair, agreement, case, forty, side_by_side
 
 pytestmark = NEEDS_MUJOCO
-SAME_EVERYWHERE = [(2100.0, 0.732), (2200.0, 0.712)]  # of the two below
+SAME_EVERYWHERE = 2100.0, 0.732  # what the generator gives the one below
 BLOCKS = SHARED / "blocks" / "assemblies.json"
 
 
@@ -54,13 +54,11 @@ def test_forty_assemblies_as_one_degree_of_freedom_has_them_where_it_knows():
     assert found.near >= 0.9 * found.peaks and found.peaks >= 20
 
 
-def test_two_of_the_forty():
-    cases = [case("stack", number) for number in (2, 6)]
-    assert [(of.density, of.friction) for of in (each.structure.mechanism for each in cases)] == SAME_EVERYWHERE
-    rocks, opens = pairs = side_by_side(cases, 1)
-    assert rocks.stands and rocks.agree and not rocks.chaotic
-    assert opens.exact is None and opens.free is False
-    assert agreement(pairs)[:6] == (2, 1, 1, 1, 1, 1)
+def test_one_of_the_forty_by_both_engines():
+    one = case("stack", 2)
+    assert (one.structure.mechanism.density, one.structure.mechanism.friction) == SAME_EVERYWHERE
+    pair = side_by_side([one], 1)[0]
+    assert pair.stands and pair.agree and not pair.chaotic
 
 
 def test_what_counts_as_agreement():
