@@ -16,7 +16,7 @@ PYTEST := -m pytest -n auto --dist worksteal
 LATER := rest or docs or types or kernels
 
 .PHONY: setup constraints demo selfcheck test test-all test-newest test-oldest test-kernels test-versions test-elsewhere damage soak fuzz fields \
-	properties lint type contracts check bench kernels same-kernels validation scoreboard trust trust-check pages pictures \
+	properties lint type contracts check bench kernels same-kernels validation free-blocks scoreboard trust trust-check pages pictures \
 	docs release clean
 
 setup: $(STAMP)  ## Create the environment and install the package with its development tools
@@ -111,8 +111,11 @@ soak: setup  ## What takes too long for the tests, an hour: damaged stores, race
 validation: setup  ## Write docs/validation.md anew
 	$(BIN)/python docs/make_validation.py
 
+free-blocks: setup  ## Write the evidence of docs/free_blocks.md anew, ten minutes
+	$(BIN)/python docs/make_free_blocks.py
+
 EXPERIMENTS := $(or $(ROCKING_EXPERIMENTS),../shared/experiments)
-scoreboard: setup  ## Write the line of this version into docs/scoreboard.md; ROCKING_EXPERIMENTS is the folder of the tests
+scoreboard: setup  ## Write the lines of this version into docs/scoreboard.md; ROCKING_EXPERIMENTS is the folder of the tests
 	$(BIN)/python docs/make_scoreboard.py "$(EXPERIMENTS)"
 
 trust: setup  ## Write docs/how_far_to_trust_it.md and its parts anew, an hour

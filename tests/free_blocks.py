@@ -146,7 +146,7 @@ def _written(polygons: dict[str, Polygon]) -> dict[str, Any]:
 
 
 def case(kind: str, number: int) -> Case:
-    """An assembly that rocks before it slides, and the motion that goes with it."""
+    """Return an assembly that rocks before it slides, with its motion."""
     dice = _Dice(SEED, kind, number)
     while True:
         made = Structure(Registry()["assembly"](name=f"{kind} {number}", **assembly(kind, dice)))

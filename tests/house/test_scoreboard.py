@@ -7,6 +7,7 @@ import pytest
 from rocking_cli.questions.score.study import Stated, scored
 from rocking_cli.questions.score.table import ObservedTest
 from rocking_cli.studies.neighbours import Neighbourhood
+from tests import free_blocks
 from tests.conftest import PROJECT
 
 PAGE = PROJECT / "docs" / "scoreboard.md"
@@ -37,6 +38,19 @@ def test_a_line_has_the_scores_and_their_drift_since_another_version(made, found
     older = made["Row"]((name, "0.0.9", "2", "2", "0.081 [0.060 0.106]", *first.cells[5:]))
     newer = made["Row"]((name, "0.0.10", "2", "2", "0.021 [0.010 0.106]", *first.cells[5:]))
     assert row(name, found, [older, newer, first]).cells[5] == "+0.010 since 0.0.10"
+
+
+def test_the_line_of_assemblies_has_what_both_engines_agree_on(made, monkeypatch):
+    alike = free_blocks.Pair("a", False, False, 0.0, 1.0, 1.04, (0.9, 1.1))
+    pairs = [alike, alike._replace(free_peak=1.2), alike._replace(exact=None, free=True)]
+    monkeypatch.setattr(free_blocks, "forty", list)
+    monkeypatch.setattr(free_blocks, "side_by_side", lambda cases, processes: pairs)
+    line = made["assemblies"]([])
+    counts = ("2 of 3", "2 of 2", "1 of 2", "1")
+    assert line.cells == (made["ASSEMBLIES"], made["__version__"], *counts, "first", "1", "0", "1", "0")
+    older = made["Row"]((line.cells[0], "0.0.9", "2 of 3", "2 of 2", "2 of 2", *line.cells[5:]))
+    assert made["assemblies"]([older, line]).cells[6] == "-1 since 0.0.9"
+    assert made["kept"](made["page"]([older, line])) == [older, line]
 
 
 def test_lines_are_replaced_or_stay(made, found):
