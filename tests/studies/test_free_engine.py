@@ -158,3 +158,17 @@ def test_answers_say_their_engine():
     margin = rk.margin(rk.Block(width=0.7, height=2.8), HALF_SINE, engine="auto", polarity="1")
     assert margin.view.data["engine"] == "auto" and margin.view.data["motions"][0]["by_blocks"] == 0
     assert margin["half sine"].around.count == 20
+
+
+def test_a_foot_is_one_whatever_rounding_does_to_its_normal():
+    from rocking_cli.core.contacts import Contact
+    from rocking_cli.studies.engines.free_blocks import _hold
+
+    held = []
+    for normal, at in ((1j, -1.0), (1j * np.exp(1e-15j), 1.0), (1.0 + 0j, 2.0)):
+        _hold(held, "wall", Contact((None, "wall"), (complex(at),), normal))
+    assert [each.points for each in held] == [[-1.0, 1.0], [2.0]]
+    guides = []
+    for normal in (1.0 + 0j, -1.0 + 0j):
+        _hold(guides, "wall", Contact((None, "wall"), (3j,), normal, held="slide"))
+    assert len(guides) == 1 and len(guides[0].points) == 2

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -196,7 +197,8 @@ def respond(
         count = neighbours * len(signs)
         if count and given is not None and (cost := cost_in_words(engine_of(engine), ready, given.motion, count)):
             watch.note(cost)
-        response = response_of(ready, names, given, question)
+        with watch.working("simulating free blocks") if engine != "exact" else nullcontext():
+            response = response_of(ready, names, given, question)
         _note_pulse(response, watch)
         shown = view(response, ready, question, str(polarity), title, doubts, impacts=impacts)
         figure = partial(_figure, response, ready, title, contact=contact or ready.mechanism.friction is not None)

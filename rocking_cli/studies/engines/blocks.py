@@ -62,7 +62,8 @@ class BlockMotion:
     at_rest : bool
         Whether all blocks came to rest in the end.
     friction : mapping of tuple of str to float
-        Largest shear over normal force of each pair of blocks that touch, at the samples; "" is the ground.
+        Largest shear over normal force of each pair of blocks that touch, at the samples; "" is the ground. Empty if it
+        was not looked at.
     """
 
     time: Reals
@@ -133,20 +134,8 @@ class BlockModel:
     @cached_property
     def digest(self) -> str:
         """A digest of all on which motions of these blocks depend, besides the ground motion."""
-        rules = (
-            READ_AS,
-            STEPS,
-            HOLD,
-            FALL,
-            TURN,
-            SUNK,
-            SETTLING,
-            REST_ENERGY,
-            LONGEST_TAIL,
-            self.free.height,
-            self.time_constant,
-        )
-        return self.scene.digest() + repr(rules)
+        rules = READ_AS, STEPS, HOLD, FALL, TURN, SUNK, SETTLING, REST_ENERGY, LONGEST_TAIL
+        return self.scene.digest() + repr((rules, self.free.height, self.time_constant))
 
     def simulate(
         self,
@@ -157,6 +146,7 @@ class BlockModel:
         start: Reals | None = None,
         tail: float = 0.0,
         most: float = inf,
+        friction: bool = False,
         progress: Callable[[float], None] | None = None,
     ) -> BlockMotion:
         """Simulate the blocks until they are at rest after the motion, or one of them has fallen.
@@ -173,6 +163,8 @@ class BlockModel:
             Time after the motion for which they are followed also at rest [s].
         most : float
             Time after which they are not followed [s].
+        friction : bool
+            Whether to look at the friction of all pairs that touch.
         progress : callable, optional
             Called with the time reached [s].
 
@@ -229,7 +221,8 @@ class BlockModel:
             now = (data.qpos[:count] - rest).reshape(-1, 3) * scale
             moved.append(now)
             rates.append(data.qvel[:count].reshape(-1, 3) * scale / self.scene.unit_of_time)
-            self._note_friction(data, frictions)
+            if friction:
+                self._note_friction(data, frictions)
             fallen = self._fallen(now)
             if fallen is not None:
                 break

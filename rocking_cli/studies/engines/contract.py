@@ -4,17 +4,36 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, TypedDict, Unpack
 
 from rocking_cli.arrays import Reals
 from rocking_cli.dynamics.batch import Runs
-from rocking_cli.dynamics.history import RTOL, TAIL_SECONDS, History
-from rocking_cli.dynamics.model import MODELS, Model, ModelName
+from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import Structure
 
 EngineName = Literal["exact", "blocks", "auto"]
+
+
+class MotionOptions(TypedDict, total=False):
+    """Options of one motion, see `exact.respond`."""
+
+    models: Sequence[ModelName]
+    release: float | None
+    tail: float
+    rtol: float
+
+
+class RunOptions(TypedDict, total=False):
+    """Options of many motions, see `respond_many`."""
+
+    release: float | Reals | None
+    threads: int | None
+    rtol: float
+    only_peaks: bool
+    progress: Callable[[int], None] | None
 
 
 class Engine(ABC):
@@ -24,16 +43,9 @@ class Engine(ABC):
 
     @abstractmethod
     def respond(
-        self,
-        structure: Structure,
-        motion: GroundMotion | None = None,
-        *,
-        models: Sequence[ModelName] = MODELS,
-        release: float | None = None,
-        tail: float = TAIL_SECONDS,
-        rtol: float = RTOL,
+        self, structure: Structure, motion: GroundMotion | None = None, **options: Unpack[MotionOptions]
     ) -> Mapping[ModelName, History]:
-        """Simulate one motion of a structure; parameters and errors are those of `Exact.respond`.
+        """Simulate one motion of a structure; parameters and errors are those of `exact.respond`.
 
         The history of free blocks has the model "blocks".
         """
@@ -44,11 +56,6 @@ class Engine(ABC):
         models: Sequence[Model],
         motions: Sequence[GroundMotion | None],
         runs: Runs,
-        *,
-        release: float | Reals | None = None,
-        threads: int | None = None,
-        rtol: float = RTOL,
-        only_peaks: bool = False,
-        progress: Callable[[int], None] | None = None,
+        **options: Unpack[RunOptions],
     ) -> Outcomes:
         """Simulate many motions; parameters and errors are those of `respond_many`."""

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from math import isfinite
-from typing import ClassVar
+from typing import ClassVar, Unpack
 
-from rocking_cli.arrays import Reals
 from rocking_cli.dynamics import history
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import RTOL, TAIL_SECONDS, History, check_rtol
@@ -15,7 +14,7 @@ from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import Structure
-from rocking_cli.studies.engines.contract import Engine, EngineName
+from rocking_cli.studies.engines.contract import Engine, EngineName, RunOptions
 
 
 def follow(
@@ -116,17 +115,10 @@ class Exact(Engine):
         models: Sequence[Model],
         motions: Sequence[GroundMotion | None],
         runs: Runs,
-        *,
-        release: float | Reals | None = None,
-        threads: int | None = None,
-        rtol: float = RTOL,
-        only_peaks: bool = False,
-        progress: Callable[[int], None] | None = None,
+        **options: Unpack[RunOptions],
     ) -> Outcomes:
         """Simulate many motions, see `respond_many`."""
-        return respond_many(
-            models, motions, runs, release=release, threads=threads, rtol=rtol, only_peaks=only_peaks, progress=progress
-        )
+        return respond_many(models, motions, runs, **options)
 
 
 EXACT = Exact()

@@ -8,15 +8,15 @@ from dataclasses import replace
 from hashlib import sha256
 from math import nan
 from time import perf_counter
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Unpack
 
 import numpy as np
 
 from rocking_cli.arrays import Bools, Reals
 from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.batch import Runs
-from rocking_cli.dynamics.history import RTOL, TAIL_SECONDS, History, contact_lost
-from rocking_cli.dynamics.model import MODELS, Model, ModelName
+from rocking_cli.dynamics.history import TAIL_SECONDS, History, contact_lost
+from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcome, Outcomes
 from rocking_cli.dynamics.parallel import MAX_PROCESSES, in_processes
 from rocking_cli.errors import SolverError
@@ -24,24 +24,17 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import memory
 from rocking_cli.studies.engines.blocks import BlockModel, BlockMotion
-from rocking_cli.studies.engines.contract import Engine, EngineName
+from rocking_cli.studies.engines.contract import Engine, EngineName, MotionOptions, RunOptions
 from rocking_cli.studies.engines.exact import EXACT, check_motion
 from rocking_cli.studies.engines.free_blocks import FreeBlocks, free_blocks
 from rocking_cli.studies.engines.scene import engine_version
 
-FINER = (
-    1.0,
-    2.0,
-    4.0,
-    8.0,
-)  # stiffness of contacts over that of the rule; each after the first if a body sank too deep
+FINER = (1.0, 2.0, 4.0)  # by how much contacts are stiffer than by the rule: the next if a body sank too deep
 MEASURED = 1.0  # s of a motion that are simulated to measure how long the others will take
 MOVED = 1e-3  # rotation over the critical one from which a structure has uplifted
 
 
-def simulate(
-    free: FreeBlocks, models: dict[float, BlockModel], motion: GroundMotion | None, **how: Any
-) -> tuple[BlockModel, BlockMotion]:
+def simulate(free: FreeBlocks, models: dict[float, BlockModel], motion: GroundMotion | None, **how: Any) -> BlockMotion:
     """Simulate free blocks, with stiffer contacts if a body sinks too deep.
 
     Parameters
@@ -59,7 +52,7 @@ def simulate(
         moved = models[finer].simulate(motion, **how)
         if not moved.failed:
             break
-    return models[finer], moved
+    return moved
 
 
 def outcome_of(moved: BlockMotion, free: FreeBlocks, phi_cr: Sequence[float]) -> dict[str, Any]:
@@ -129,16 +122,10 @@ class Blocks(Engine):
         self.mechanisms = tuple(mechanisms)
 
     def respond(
-        self,
-        structure: Structure,
-        motion: GroundMotion | None = None,
-        *,
-        models: Sequence[ModelName] = MODELS,
-        release: float | None = None,
-        tail: float = TAIL_SECONDS,
-        rtol: float = RTOL,
+        self, structure: Structure, motion: GroundMotion | None = None, **options: Unpack[MotionOptions]
     ) -> dict[ModelName, History]:
-        """Simulate one motion of a structure as free blocks; there is one model, so that `models` has no effect."""
+        """Simulate one motion of a structure as free blocks, which are one model and need no tolerance."""
+        release, tail = options.get("release"), options.get("tail", TAIL_SECONDS)
         check_motion(structure, motion, release, tail)
         history, _, _ = self.follow(structure, motion, release=release, tail=tail)
         return {"blocks": history}
@@ -165,7 +152,7 @@ class Blocks(Engine):
             free = free_blocks(structure.mechanism)
             model = structure.model("nonlinear")
             start = _start(structure.mechanism, free, model.phi_cr, release or 0.0)
-            _, moved = simulate(free, {}, motion, start=start, tail=tail, progress=progress)
+            moved = simulate(free, {}, motion, start=start, tail=tail, friction=True, progress=progress)
         if moved.failed:
             raise SolverError(f"{structure.name}: free blocks failed at {moved.time[-1]:.4g} s: {moved.failed}")
         return history_of(moved, free, model, motion), moved, free
@@ -175,25 +162,21 @@ class Blocks(Engine):
         models: Sequence[Model],
         motions: Sequence[GroundMotion | None],
         runs: Runs,
-        *,
-        release: float | Reals | None = None,
-        threads: int | None = None,
-        rtol: float = RTOL,
-        only_peaks: bool = False,
-        progress: Callable[[int], None] | None = None,
+        **options: Unpack[RunOptions],
     ) -> Outcomes:
         """Simulate many motions in processes; those that fail are of unknown outcome.
 
         Restitution is what contact gives: that of a run has no effect.
         """
-        work = _Work(self.mechanisms, [model.phi_cr for model in models], motions, runs, release)
+        progress = options.get("progress")
+        work = _Work(self.mechanisms, [model.phi_cr for model in models], motions, runs, options.get("release"))
         keys = work.keys()
         known = memory.recall(keys)
         left = [k for k, key in enumerate(keys) if key not in known]
         if progress is not None:
             progress(len(runs) - len(left))
         work.left = left
-        processes = min(threads or os.cpu_count() or 1, MAX_PROCESSES, len(left))
+        processes = min(options.get("threads") or os.cpu_count() or 1, MAX_PROCESSES, len(left))
         parts = (
             in_processes(work, len(left), 1, processes)
             if processes > 1
@@ -220,45 +203,34 @@ class Auto(Engine):
         self.free = Blocks(mechanisms)
 
     def respond(
-        self,
-        structure: Structure,
-        motion: GroundMotion | None = None,
-        *,
-        models: Sequence[ModelName] = MODELS,
-        release: float | None = None,
-        tail: float = TAIL_SECONDS,
-        rtol: float = RTOL,
+        self, structure: Structure, motion: GroundMotion | None = None, **options: Unpack[MotionOptions]
     ) -> Mapping[ModelName, History]:
         """Simulate models of a structure, and free blocks if the outcome of the nonlinear one is unknown."""
-        histories = EXACT.respond(structure, motion, models=models, release=release, tail=tail, rtol=rtol)
+        histories = EXACT.respond(structure, motion, **options)
         if "nonlinear" not in histories or not histories["nonlinear"].unknown:
             return histories
-        return {**histories, **self.free.respond(structure, motion, release=release, tail=tail)}
+        return {**histories, **self.free.respond(structure, motion, **options)}
 
     def outcomes(
         self,
         models: Sequence[Model],
         motions: Sequence[GroundMotion | None],
         runs: Runs,
-        *,
-        release: float | Reals | None = None,
-        threads: int | None = None,
-        rtol: float = RTOL,
-        only_peaks: bool = False,
-        progress: Callable[[int], None] | None = None,
+        **options: Unpack[RunOptions],
     ) -> Outcomes:
         """Simulate many motions; each outcome states its engine."""
-        exact = EXACT.outcomes(
-            models, motions, runs, release=release, threads=threads, rtol=rtol, only_peaks=only_peaks
-        )
+        progress, release = options.pop("progress", None), options.get("release")
+        exact = EXACT.outcomes(models, motions, runs, **options)
         unknown = np.flatnonzero(exact.unknown)
         if progress is not None:
             progress(len(runs) - unknown.size)
         if not unknown.size:
             return exact
         some = replace(runs, **{name: getattr(runs, name)[unknown] for name in vars(runs)})
-        tilts = release if release is None or np.ndim(release) == 0 else np.asarray(release)[unknown]
-        free = self.free.outcomes(models, motions, some, release=tilts, threads=threads, progress=progress)
+        if isinstance(release, np.ndarray):
+            options["release"] = release[unknown]
+        options["progress"] = progress
+        free = self.free.outcomes(models, motions, some, **options)
         return exact.by_field(lambda one, other: _put(one, unknown, other), free)
 
 
@@ -328,7 +300,7 @@ class _Work:
         free, models = self._of(of)
         scale, slender = float(self.runs.scale[k]), float(self.runs.slender[k])
         start = _start(self.mechanisms[of], free, self.phi_cr[of], float(self.tilts[k]))
-        _, moved = simulate(
+        moved = simulate(
             free, models, self.motions[int(self.runs.record[k])], start=start,
             factor=scale * int(self.runs.polarity[k]) / slender, vertical_factor=abs(scale),
         )  # fmt: skip

@@ -29,6 +29,7 @@ TURN = 0.8  # rad: a block that turns by it has collapsed
 COLLAPSE = f"a block falls by {FALL:g} of the structure's height, or turns by {TURN:g} rad"
 NEAR_SHARE = 1e-6  # distance that counts as zero, over the size of the structure
 LEAD_RATE = 1e-6  # difference of a rate of turning from that of phi that counts as zero
+SAME_TURN = 1e-6  # turn from one normal to another that counts as none
 FLAT_SHARE = 1e-6  # length of a foot, over the size of the structure, below which it is a point
 MARGIN_SHARE = 0.1  # length of the ground beside a foot, over that of the foot
 
@@ -179,6 +180,14 @@ class _Member(NamedTuple):
     polygons: Sequence[Points]
 
 
+class _Held(NamedTuple):
+    """Points of a block at which what does not move holds it, and the unit normal of that."""
+
+    block: str
+    normal: complex
+    points: list[complex]
+
+
 class _Apart:
     """A structure that is taken apart."""
 
@@ -322,19 +331,19 @@ class _Apart:
 
     def _held(self, ground: Sequence[Points]) -> tuple[list[HeldPoint], list[Points]]:
         """Return the points that are held, and the ground below feet that stand elsewhere than on `ground`."""
-        guides, feet = list[HeldPoint](), defaultdict[tuple[str, complex], list[complex]](list)
-        slots = defaultdict[tuple[str, complex], list[complex]](list)
+        guides = list[HeldPoint]()
+        feet, slots = list[_Held](), list[_Held]()
         for contact in self.contacts:
             bears, borne = contact.pieces
             if bears is not None or borne is None:
                 continue
             block = self.part_of.get(borne, borne)
             if contact.held == "slide":
-                slots[block, 1j * contact.normal].append(contact.points[0])
+                _hold(slots, block, contact)
             elif contact.held is None and not any(self._touches(contact, piece) for piece in ground):
-                feet[block, contact.normal] += contact.points
+                _hold(feet, block, contact)
         below = []
-        for (block, normal), points in feet.items():
+        for block, normal, points in feet:
             start, end = sorted(points, key=lambda point: (point / normal).imag)[:: len(points) - 1 or 1][:2]
             if abs(end - start) > FLAT_SHARE * self.size:
                 more = MARGIN_SHARE * (end - start)
@@ -342,7 +351,7 @@ class _Apart:
             else:  # it always turns about this point
                 guides.append(HeldPoint(block, start, 0j))
         # Both directions may guide a block at points of their own; between them, its path is theirs to second order.
-        guides += [HeldPoint(block, complex(np.mean(points)), along) for (block, along), points in slots.items()]
+        guides += [HeldPoint(block, complex(np.mean(points)), 1j * normal) for block, normal, points in slots]
         return guides, below
 
     def _touches(self, contact: Contact, piece: Points) -> bool:
@@ -375,6 +384,17 @@ class _Apart:
             block = next(self._block(member) for member in self.members if member.of in turning)
             leads.append(Lead(direction, block, rates))
         return leads
+
+
+def _hold(known: list[_Held], block: str, contact: Contact) -> None:
+    """Add the points of a contact to those on the same block and face, or as the first of another."""
+    for held in known:
+        turned = contact.normal / held.normal
+        off = min(abs(turned - 1), abs(turned + 1)) if contact.held == "slide" else abs(turned - 1)
+        if held.block == block and off < SAME_TURN:
+            held.points.extend(contact.points)
+            return
+    known.append(_Held(block, contact.normal, list(contact.points)))
 
 
 def _below(line: Points, size: float) -> list[Points]:
