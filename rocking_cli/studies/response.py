@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 
@@ -46,10 +46,10 @@ def _of_each(runs: ByPolarity, neighbours: Mapping[int, Neighbours], motion: str
     return {sign: _of_run(run[best_model(run)], neighbours.get(sign), motion, sign) for sign, run in runs.items()}
 
 
-def best_model(histories: Histories) -> ModelName:
+def best_model(models: Collection[ModelName]) -> ModelName:
     """Return the model by which is concluded: free blocks, then the structure itself, then the first of its blocks."""
     preferred: tuple[ModelName, ...] = ("blocks", "nonlinear")
-    return next((name for name in preferred if name in histories), next(iter(histories)))
+    return next((name for name in preferred if name in models), next(iter(models)))
 
 
 def _together(each: Mapping[int, Conclusion]) -> Conclusion:

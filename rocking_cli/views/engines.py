@@ -9,6 +9,7 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import Engine, EngineName
 from rocking_cli.studies.engines.free_blocks import COLLAPSE
 
+BLOCKS_FAILED = "free blocks failed: a step diverged, or a body sank too deep into another"
 ALL_EXACT = "Engine: one degree of freedom for all histories, as it tells every outcome."
 
 

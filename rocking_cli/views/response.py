@@ -112,7 +112,7 @@ def runs_data(found: Response, watched: Watched, etas: tuple[float, float] | Non
             "agreement": {
                 name: data_of(AGREEMENT, found.agreement[sign][name]) if name in found.agreement[sign] else None
                 for name in histories
-                if name != "nonlinear" and "nonlinear" in histories
+                if name not in ("nonlinear", "blocks") and "nonlinear" in histories
             },
             "neighbours": neighbours_data(found.neighbours[sign]) if sign in found.neighbours else None,
             "verdict": verdict(histories, found.agreement[sign], found.assumed_friction(sign)),
@@ -137,7 +137,7 @@ def histories_data(
             "points": {each.name: data_of(POINTS, each) for each in moved.points} if moved is not None else {},
             "ties": {each.name: data_of(TIES, each) for each in moved.ties} if moved is not None else {},
         }
-        if etas is not None:
+        if etas is not None and not run.by_blocks:
             data[name]["impact_list"] = [data_of(IMPACTS, each) for each in _impacts(run.impacts, etas)]
         # Linear models have no joints.
         checked = found.contacts[sign] if name == "nonlinear" and sign in found.contacts else None
@@ -384,7 +384,7 @@ def _tables(
         if sign in found.contacts and (sentences := contact_words(found.contacts[sign], watched.mechanism)):
             parts.append(sentences)
         if etas is not None:
-            for name, run in histories.items():
+            for name, run in ((name, run) for name, run in histories.items() if not run.by_blocks):
                 parts += ["", *_impact_table(f"{under}: impacts, {name}", run, etas)]
         parts += [""] if len(found.runs) > 1 else []
     if len(found.runs) > 1:

@@ -1,5 +1,7 @@
 """The engine of free blocks: what it says, what it refuses, what it remembers; and who is asked by `auto`."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ import rocking_cli as rk
 from rocking_cli.ask.given import structure_of
 from rocking_cli.dynamics.batch import Runs
 from rocking_cli.studies.engines import blocks, engine_of, memory, scene
+from rocking_cli.views.view import Table
 from tests.conftest import EXAMPLES
 
 pytest.importorskip("mujoco", reason="free blocks need mujoco-core")
@@ -172,3 +175,36 @@ def test_a_foot_is_one_whatever_rounding_does_to_its_normal():
     for normal in (1.0 + 0j, -1.0 + 0j):
         _hold(guides, "wall", Contact((None, "wall"), (3j,), normal, held="slide"))
     assert len(guides) == 1 and len(guides[0].points) == 2
+
+
+def test_several_motions_have_a_row_each_and_say_who_gave_it():
+    twice = [HALF_SINE, replace(HALF_SINE.scaled(0.5), name="half of it")]
+    for engine, head in (("blocks", ["free blocks"]), ("auto", ["nonlinear", "free blocks"])):
+        answers = rk.respond(BLOCK.mechanism, twice, engine=engine)
+        said = answers.view.parts[0]
+        assert ("By free blocks, " if engine == "blocks" else "and free blocks where it does not tell") in said
+        (table,) = (part for part in answers.view.parts if isinstance(part, Table))
+        assert [each.replace("\n", " ") for each in table.columns][2 : 2 + len(head)] == head
+
+
+def test_what_follows_from_the_mechanism_is_not_said_of_free_blocks():
+    facade = EXAMPLES / "walls" / "facade.yaml"
+    answer = rk.respond(facade, HALF_SINE, engine="blocks")
+    assert [name for name in answer.columns() if "force" in name or "u_x" in name] == []
+    told = answer.view.data["responses"]["blocks"]
+    assert told["points"] == {} and told["ties"] == {} and told["impact_velocity"] is None
+    assert answer.view.data["agreement"] == {}
+    with pytest.raises(rk.InputError, match="`impacts` has no effect with free blocks"):
+        rk.respond(facade, HALF_SINE, engine="blocks", impacts=True)
+
+
+def test_unknown_outcomes_of_free_blocks_are_said_to_be_failures(monkeypatch):
+    monkeypatch.setattr(blocks.BlockModel, "_limits", -np.ones(2))
+    monkeypatch.setattr(
+        "rocking_cli.studies.engines.free.in_processes", lambda work, n, *_: ((k, work(k, k + 1)) for k in range(n))
+    )
+    found = rk.overturning_map(
+        BLOCK.mechanism, model="nonlinear", engine="blocks", points=2, period=(0.4, 0.8), ag=(0.8, 0.9)
+    )
+    said = " ".join(str(part) for part in found.view.parts)
+    assert "unknown where free blocks failed: a step diverged" in said and "joint opens" not in said

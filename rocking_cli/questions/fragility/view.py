@@ -15,7 +15,7 @@ from rocking_cli.names import UNKNOWN, percent
 from rocking_cli.questions.fragility.definition import UPLIFT_MEASURE
 from rocking_cli.studies.fragility.quantities import kept, label, metres
 from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
-from rocking_cli.views.engines import ALL_EXACT, blocks_in_words
+from rocking_cli.views.engines import ALL_EXACT, BLOCKS_FAILED, blocks_in_words
 from rocking_cli.views.view import Table, View, number
 
 if TYPE_CHECKING:  # avoids importing scipy, which only fits need
@@ -282,7 +282,7 @@ def _unknown_in_words(outcomes: Sequence[UnknownRuns], engine: EngineName) -> li
     """Return a sentence on each structure with runs of unknown outcome."""
     why, when = "a joint opens or slides that the model keeps closed", "the first joint opens or slides"
     if engine != "exact":  # free blocks have simulated all runs with such a joint
-        why, when = "free blocks failed: a step diverged, or a body sank too deep into another", "the failure"
+        why, when = BLOCKS_FAILED, "the failure"
     return [
         f"{each.structure}: {each.unknown:,} of {each.runs:,} runs ({percent(each.share or 0.0)}) "
         f"{'are' if each.unknown != 1 else 'is'} of {UNKNOWN} outcome, because {why}. They are known to exceed a limit "

@@ -19,7 +19,7 @@ from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.column import Column, of, only_shown, rounded, table_of
 from rocking_cli.views.conclusion import conclusion_data, of_margin
-from rocking_cli.views.engines import engines_in_words
+from rocking_cli.views.engines import BLOCKS_FAILED, engines_in_words
 from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import MAX_DETAILED_MOTIONS, Table, View, heading, number
@@ -165,9 +165,9 @@ def in_words(found: Margin) -> str:
     if not doubt:
         return sentence
     first = float(found.factors[(found.unknown > 0).argmax()])
+    why = "the model no longer holds (see `rocking respond`)" if found.engine == "exact" else BLOCKS_FAILED
     sentence += (
-        f" From a factor of {at(first)} on, some outcomes are unknown, as the model no longer holds (see `rocking "
-        "respond`): there, the structure may overturn."
+        f" From a factor of {at(first)} on, some outcomes are unknown, as {why}: there, the structure may overturn."
     )
     known = [
         f"{percent(level)} from {at(least)}" for level in SHARE_LEVELS if (least := found.first(level)) is not None

@@ -40,7 +40,8 @@ def blocks(
     rows : int
         Largest number of samples in a block.
     watched : Watched, optional
-        Points and ties: with them, further columns are displacements, elongations and forces in each history.
+        Points and ties: with them, further columns are displacements, elongations and forces in each history but that
+        of free blocks, which do not move as the mechanism does.
     base_shear : mapping of str to ndarray, optional
         The horizontal force of the ground at each sample of some histories [N], without the impulses of impacts, as
         last columns; NaN at rest. [N/kg] if the `watched` structure has no masses.
@@ -63,7 +64,7 @@ def blocks(
             series = {"phi [rad]": run.phi, "phi_dot [rad/s]": run.rate, _ratio(run): run.ratio}
             columns |= {f"{name} {what}": _padded(values, part, _after(run)) for what, values in series.items()}
         if watched is not None:
-            for name, run in histories.items():
+            for name, run in ((name, run) for name, run in histories.items() if not run.by_blocks):
                 phi = _padded(run.phi, part, _after(run))
                 columns |= {f"{name} {what}": values for what, values in watched.columns(phi)}
         columns |= {f"{name} {sheared}": _padded(values, part, np.nan) for name, values in base_shear.items()}

@@ -87,7 +87,7 @@ def draw_history(
     if pulse is not None:
         responses = {"record": histories, "its pulse alone": pulse[1]}
     watched = Watched(structure.mechanism) if structure is not None else None
-    tied = watched is not None and bool(watched.ties)
+    tied = watched is not None and bool(watched.ties) and any(not run.by_blocks for run in histories.values())
     each_has = [1.8, 1.0] if tied else [1.8]
     shaken, rubs = motion is not None, bool(contacts)
     height = 1.5 * shaken + (3.2 + 1.8 * tied) * len(responses) + 1.7 * rubs

@@ -16,19 +16,21 @@ from rocking_cli.names import digits_apart, peaks_over
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Conclusion
 from rocking_cli.studies.contact import ContactDemand
+from rocking_cli.studies.engines import EngineName
 from rocking_cli.studies.movements import Movements, Watched
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours
-from rocking_cli.studies.response import Histories, Response
+from rocking_cli.studies.response import Histories, Response, best_model
 from rocking_cli.text import in_short
 from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.column import Column, frame_of, of, only_shown, table_of
 from rocking_cli.views.conclusion import MAX_NAMED_MOTIONS, counted
 from rocking_cli.views.contact import contact_words
+from rocking_cli.views.engines import engines_in_words
 from rocking_cli.views.neighbours import deviations, neighbour_columns
 from rocking_cli.views.response import apart, model_heads, models_used
 from rocking_cli.views.restitution import restitution_used
 from rocking_cli.views.verdict import unchecked, unknown_after
-from rocking_cli.views.view import Table, heading, number
+from rocking_cli.views.view import ABSENT, Table, heading, number
 
 
 class MotionRow(NamedTuple):
@@ -55,14 +57,19 @@ class Several:
         The models simulated.
     asked : int
         Number of motions that were given, with those that could not be used.
+    engine : {"exact", "blocks", "auto"}
+        Who simulated them.
     """
 
-    def __init__(self, structure: Structure, models: Sequence[ModelName], asked: int) -> None:
+    def __init__(
+        self, structure: Structure, models: Sequence[ModelName], asked: int, engine: EngineName = "exact"
+    ) -> None:
         self._title = heading(structure.mechanism)
         self._free = [side.phi_cr is None for side in structure.statics]
         self._restitution = restitution_used(structure)
-        self._models = models
-        self._best: ModelName = "nonlinear" if "nonlinear" in models else models[0]
+        by_engine: Mapping[EngineName, Sequence[ModelName]] = {"blocks": ["blocks"], "auto": ["nonlinear", "blocks"]}
+        self._engine, self._by_blocks = engine, 0
+        self._models = by_engine.get(engine, models)
         self._rows: list[MotionRow] = []
         self._ends: list[Conclusion] = []
         self._asked = asked
@@ -85,7 +92,8 @@ class Several:
             neighbours = found.neighbours.get(sign)
             name = f"{found.given.motion.name}{reversed_}"
             self._row(name, pga, histories, neighbours)
-            run = histories[self._best]
+            run = histories[best_model(histories)]
+            self._by_blocks += run.by_blocks
             self._doubtful |= neighbours is not None and bool(neighbours.unknown)
             if run.unknown:
                 self._until[name] = unknown_after(run).replace("The", "the", 1)
@@ -101,8 +109,9 @@ class Several:
             self._torn.setdefault(text, []).append(found.given.motion.name)
 
     def _row(self, name: str, pga: float, histories: Histories, near: Neighbours | None) -> None:
-        fates, run = {model: _fate(histories[model]) for model in self._models}, histories[self._best]
-        moved = None if run.unknown else self._watched.peaks(run)
+        fates = {model: _fate(histories[model]) for model in self._models if model in histories}
+        run = histories[best_model(histories)]
+        moved = None if run.unknown or run.by_blocks else self._watched.peaks(run)
         self._rows.append(MotionRow(name, pga, fates, near, moved))
 
     def _columns(self) -> Iterator[Column[MotionRow]]:
@@ -110,7 +119,8 @@ class Several:
         yield only_shown("PGA\n[g]", of("pga"))
         for model, head in zip(self._models, model_heads(self._models, unknown=bool(self._until)), strict=True):
             yield only_shown(head, partial(_fate_of, model))
-        yield from self._peaks()
+        if self._engine != "blocks":  # which do not move as the mechanism does
+            yield from self._peaks()
         if self._around is not None:
             yield from neighbour_columns(of("near"), doubtful=self._doubtful)
 
@@ -130,7 +140,9 @@ class Several:
 
     def parts(self, left_out: Sequence[str] = ()) -> Iterator[Table | str]:
         """Yield how many motions overturn the structure, which governs and which are left out, and the table."""
-        yield f"By the {self._best} model, {counted(self._ends, peaks_over(self._free))}"
+        best = "free blocks" if self._engine == "blocks" else f"the {best_model(self._models)} model"
+        by = "the nonlinear model, and free blocks where it does not tell" if self._engine == "auto" else best
+        yield f"By {by}, {counted(self._ends, peaks_over(self._free))}"
         if (lost := self._asked - len(self._ends)) > 0:
             named = f" ({in_short(left_out, most=MAX_NAMED_MOTIONS)})" if left_out else ""
             yield f"Not counted: {lost} of {self._asked} motions{named}, which could not be used."
@@ -139,7 +151,9 @@ class Several:
             yield f"Neighbours: {self._around.count} neighbouring motions for each motion, {deviations(self._around)}."
         yield from self._joints()
         yield from models_used(self._models)
-        yield self._restitution
+        if self._engine != "blocks":
+            yield self._restitution
+        yield from engines_in_words(self._engine, self._by_blocks, self._mechanism)
         yield from (f"Caution: {text}" for text in self._cautions)
         yield from (
             f"Caution: under {in_short(each, most=MAX_NAMED_MOTIONS)}, {text}" for text, each in self._torn.items()
@@ -155,7 +169,10 @@ class Several:
         for name, until in self._until.items():
             yield f"{name}: {until}"
         if self._until:
-            yield "Next: `rocking margin` shows up to which scale factor the outcomes are known."
+            yield (
+                "Next: `rocking crosscheck` simulates what happens from then on, as free blocks; `rocking margin` "
+                "shows up to which scale factor the outcomes are known."
+            )
         asks = {name: demand for name, demand in self._contacts.items() if demand.friction_needed >= 0}
         order = sorted(asks, key=lambda name: -asks[name].friction_needed)
         if len(order) > 1:
@@ -182,7 +199,7 @@ class Several:
 
 
 def _fate_of(model: ModelName, row: MotionRow) -> str:
-    return row.fates[model]
+    return row.fates.get(model, ABSENT)
 
 
 def _peak(kind: str, place: int, of: str, row: MotionRow) -> float | None:

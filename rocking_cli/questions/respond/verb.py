@@ -185,7 +185,7 @@ def respond(
         refuse_idle("with free blocks", models=models, with_pulse=with_pulse)
         models = "nonlinear"
     if engine == "blocks":
-        idle = {"rtol": rtol != RTOL, "opening": opening != OPENING, "contact": contact}
+        idle = {"rtol": rtol != RTOL, "opening": opening != OPENING, "impacts": impacts, "contact": contact}
         refuse_idle("with free blocks", **idle, restitution_deviation=restitution_deviation)
     names = models_of(models) if models is not None else usual_models(ready, watch)
     if "nonlinear" not in names:
@@ -210,7 +210,7 @@ def respond(
 
     if not several:
         return one(chosen[0], title, out, plot)
-    table, details = Several(ready, names, motions.count), list[Table | str]()
+    table, details = Several(ready, names, motions.count, question.engine), list[Table | str]()
     scaled = [each for each in chosen if each is not None]
     read = [ready.file, *(each.path for each in motions.records)]
     outs, plots = places_of("out", out, scaled, read), places_of("plot", plot, scaled, read)
