@@ -10,6 +10,8 @@ from matplotlib.text import Text
 
 import rocking_cli as rk
 from rocking_cli.documents import sheet_page
+from rocking_cli.questions.report.words import language_of
+from rocking_cli.studies.conclusion import NextStep
 from tests.conftest import EXAMPLES
 from tests.questions.draw.test_hung import TIED_FILE
 from tests.questions.verify.test_sheet_italian import PACKAGES, english_words, rest_of, words
@@ -76,6 +78,11 @@ def text_of(tmp_path, monkeypatch):
         return rest_of(page, *sources)
 
     return made
+
+
+def test_every_next_step_is_italian():
+    texts = language_of("it").texts
+    assert [step for step in NextStep if f"next_{step}" not in texts] == []
 
 
 @pytest.mark.usefixtures("small_maps")
