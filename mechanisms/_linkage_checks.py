@@ -8,10 +8,10 @@ import numpy as np
 
 from mechanisms import _faces as faces
 from mechanisms._linkage_sides import Connection, PlacedSide
-from mechanisms._polygons import size_of
 from mechanisms._shapes import Member
 from rocking_cli.core import Direction, Outline, Pin, RigidMotion
 from rocking_cli.core.kinematics import distance, inside
+from rocking_cli.core.polygons import size_of
 
 MAX_JOINT_DISTANCE = 1e-2  # largest distance of a joint from its body, over width plus height of the body
 ZERO_CLOSING_RATE = 1e-9  # closing rates of faces that count as zero, over the fastest velocity

@@ -10,7 +10,6 @@ from typing import Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from mechanisms._polygons import fault_of, gap, lies_within, overlap, pierced, size_of
 from rocking_cli.core import (
     Body,
     Outline,
@@ -25,6 +24,7 @@ from rocking_cli.core import (
 )
 from rocking_cli.core.fields import Described
 from rocking_cli.core.kinematics import Points, area_of, distance, inside
+from rocking_cli.core.polygons import fault_of, gap, lies_within, overlap, pierced, size_of
 
 SHAPES = ("polygon", "parts", "disc", "masses")
 

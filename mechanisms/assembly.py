@@ -14,7 +14,6 @@ from mechanisms import _assembly as analysis
 from mechanisms._laid import Bricks, Voussoirs
 from mechanisms._linkage_sides import GROUND, Connection, LinkageSide
 from mechanisms._linked_bodies import LinkedBodies
-from mechanisms._polygons import fault_of, size_of
 from mechanisms._shapes import Member, Shape
 from mechanisms.linkage import Linkage
 from rocking_cli.core import (
@@ -42,6 +41,7 @@ from rocking_cli.core import (
 from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.fields import Described, Name
+from rocking_cli.core.polygons import fault_of, size_of
 from rocking_cli.core.reactions import Going, loading
 from rocking_cli.errors import InputError, MechanismError, StructureError
 from rocking_cli.text import in_short, numbered

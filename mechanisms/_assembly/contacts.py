@@ -13,9 +13,9 @@ from dataclasses import replace
 import numpy as np
 
 from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact, ContactFault, listed
-from mechanisms._polygons import nearby, overlap, size_of, thickness_of
 from rocking_cli.core import Reals
 from rocking_cli.core.kinematics import Points, distance, inside
+from rocking_cli.core.polygons import nearby, overlap, size_of, thickness_of
 
 MAX_GAP = 2e-3  # largest gap of a joint over width plus height of the smaller block: 2 mm for 0.5 m x 0.5 m
 MAX_SINE = 0.05  # sine of the largest angle between two edges in contact

@@ -22,8 +22,8 @@ from mechanisms._assembly import (
 from mechanisms._assembly.problem import AssemblyProblem
 from mechanisms._assembly.programme import MIN_INTERIOR_EQUATIONS
 from mechanisms._assembly.unique import kept_rays, velocity_space
-from mechanisms._polygons import nearby
 from rocking_cli.core import Direction
+from rocking_cli.core.polygons import nearby
 from tests.mechanisms.test_assembly import assembly
 from tests.mechanisms.test_assembly_limit import FLOOR, cut, greatest, rectangle, unbalanced
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.core import Reals
+from rocking_cli.arrays import Reals
 from rocking_cli.core.kinematics import Points, area_of, distance, inside, squared
 
 POINT_DISTANCE = 1e-9  # distance below which points coincide, over the size of the polygon

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from mechanisms._polygons import any_alike, any_meet
 from mechanisms.block import Block
 from mechanisms.rigid_body import MAX_CORNERS, RigidBody
 from rocking_cli.core import Direction, equivalent_block
+from rocking_cli.core.polygons import any_alike, any_meet
 from rocking_cli.errors import FieldError, MechanismError
 from rocking_cli.questions.error.study import compare
 from rocking_cli.structure import Structure
@@ -88,11 +88,11 @@ def test_ten_thousand_corners_are_a_structure_and_more_are_refused():
 
 
 def test_the_sides_of_many_corners_are_not_compared_one_by_one(monkeypatch):
-    from mechanisms import _polygons
+    from rocking_cli.core import polygons
 
     calls = []
-    meet = _polygons._meet
-    monkeypatch.setattr(_polygons, "_meet", lambda *sides: calls.append(len(sides[0])) or meet(*sides))
+    meet = polygons._meet
+    monkeypatch.setattr(polygons, "_meet", lambda *sides: calls.append(len(sides[0])) or meet(*sides))
     assert not any_meet(plane(tower(3000)))
     assert sum(calls) < 10 * 3000
 
