@@ -109,7 +109,7 @@ def read_sheet(path: Path) -> Spreadsheet:
 
 def parse_sheet(raw: bytes, file: str) -> Spreadsheet:
     """Return the table in the content of a file; `file` is its name in messages. Raises as `read_sheet`."""
-    (text, encoding), skipped = _decoded(raw, file), 0
+    (text, encoding), skipped = decoded(raw, file), 0
     if declared := re.match(r"(?i)\s*\"?sep=(.)\"?\r?\n", text):  # some spreadsheets declare their separator
         text, skipped = text[declared.end() :], declared[0].count("\n")
     first = next((line for line in _LINE_END.split(text[:100_000]) if line.strip(" \t,;")), "")
@@ -129,7 +129,7 @@ def parse_sheet(raw: bytes, file: str) -> Spreadsheet:
     return Spreadsheet(file, line, tuple(headings), rows, comma, separator, encoding)
 
 
-def _decoded(raw: bytes, file: str) -> tuple[str, str]:
+def decoded(raw: bytes, file: str) -> tuple[str, str]:
     """Return the text of a file and its encoding. Raises `InputError` if it is not text."""
     encoding = "UTF-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "UTF-8"
     try:

@@ -1,0 +1,88 @@
+"""Drawings and meshes as they are given: the reader of a file, by its content."""
+
+from __future__ import annotations
+
+from importlib.metadata import EntryPoint
+from pathlib import Path
+from typing import cast
+
+from rocking_cli.errors import MechanismError
+from rocking_cli.io.drawings.contract import DrawingError, DrawingReader, LineDrawing, MeshSurface
+from rocking_cli.io.files import read_bytes
+from rocking_cli.plugins.errors import blame
+from rocking_cli.plugins.registry import Plugins, leave_out, origin
+
+MAX_BYTES = 500_000_000
+DWG = b"AC10"
+
+
+class DrawingReaders(Plugins[DrawingReader]):
+    """Readers of drawings and meshes by name."""
+
+    group = "rocking.drawings"
+    kind = "reader of drawings"
+
+    @staticmethod
+    def accept(loaded: object, point: EntryPoint) -> DrawingReader:
+        """Return the loaded object if it is a reader."""
+        missing = [word for word in ("sniff", "read") if not callable(getattr(loaded, word, None))]
+        missing += [word for word in ("TITLE", "ENDINGS") if not hasattr(loaded, word)]
+        if missing:
+            raise MechanismError(f"{origin(point)} is not a reader of drawings: it has no {', '.join(missing)}")
+        return cast("DrawingReader", loaded)
+
+
+def reader_of(path: str | Path) -> tuple[DrawingReader, bytes]:
+    """Return the reader that knows the content of a file, and the content. Raises as `read_drawing`."""
+    data, file = read_bytes(path, "drawing", MAX_BYTES), str(path)
+    if data[:4] == DWG:
+        raise DrawingError("not_dxf", "this is a DWG file: save it as DXF", file)
+    if not data:
+        raise DrawingError("empty", "the file is empty", file)
+    readers, titles = DrawingReaders(), []
+    for name in readers:
+        try:
+            reader = readers[name]
+        except MechanismError as error:
+            leave_out(error)
+            continue
+        with blame(
+            f"the reader of drawings {name} failed on {file}", getattr(reader, "__name__", type(reader).__module__)
+        ):
+            if reader.sniff(data, Path(file).suffix.lower()):
+                return reader, data
+        titles.append(reader.TITLE)
+    known = ", ".join(sorted(titles, key=str.lower))
+    raise DrawingError("unknown", f"not a drawing or mesh that can be read; known formats: {known}", file)
+
+
+def read_drawing(path: str | Path) -> tuple[LineDrawing | MeshSurface, bytes]:
+    """Read a drawing or a mesh by the reader that knows its content.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+
+    Returns
+    -------
+    LineDrawing or MeshSurface
+        What the reader makes of it.
+    bytes
+        The content of the file.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read; a `DrawingError` if it is not of a known format.
+    PluginError
+        If a reader fails.
+    """
+    reader, data = reader_of(path)
+    with blame(f"the reader of {reader.TITLE} failed on {path}", getattr(reader, "__name__", type(reader).__module__)):
+        return reader.read(data, str(path)), data
+
+
+def is_mesh(path: str | Path) -> bool:
+    """Return whether a file is read as a mesh. Raises as `read_drawing`."""
+    return bool(getattr(reader_of(path)[0], "MESH", False))
