@@ -9,6 +9,7 @@ from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.ground_motions import type_in_words
 from rocking_cli.ask.numbers import refuse_idle
 from rocking_cli.ask.watcher import SILENT, Watcher
@@ -33,8 +34,8 @@ if TYPE_CHECKING:
 
     from rocking_cli.verification.code import SiteFile
 
-StructureLike = Mechanism | Structure | str | Path
-"""Mechanism, or its YAML file, "-" for standard input; or a structure that was opened before."""
+StructureLike = Mechanism | Structure | Answer[Any] | str | Path
+"""Mechanism, or its YAML file, "-" for standard input; a structure that was opened before, or an import of one."""
 SiteLike = Mapping[str, Any] | str | Path
 """Fields of a site file, or the file."""
 LOCAL_FILE = Path("rocking.yaml")
@@ -63,6 +64,8 @@ def structure_of(given: StructureLike, watch: Watcher = SILENT, opening: float =
     MechanismError
         If the plugin of the mechanism cannot be used.
     """
+    if isinstance(given, Answer):
+        given = getattr(given.result, "structure", given)
     if isinstance(given, Structure):
         return given if given.opening == opening else replace(given, opening=opening, _models={})
     if isinstance(given, Mechanism):

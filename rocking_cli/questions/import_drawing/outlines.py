@@ -1,0 +1,424 @@
+"""The bodies, openings and ground of a drawing: which lines mean what, and what encloses what."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnPoint, DrawnText, LineDrawing
+from rocking_cli.questions.import_drawing.loops import Loop, Placed, loops
+from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, length_in_words, many
+from rocking_cli.questions.import_drawing.rings import ArcRing, PlaneMoments
+from rocking_cli.questions.import_drawing.roles import Role, Roles, counted
+from rocking_cli.text import in_short, seen
+from rocking_cli.units import UnitError, mass_of_weight, read
+
+FLATNESS = 1e-9  # area up to which an outline encloses nothing, over the square of its size
+MEETING = 1e-3  # distance of ends that may be one point, over the size of their layer
+LEAST_ENDS = 4  # of lines that may enclose something
+ROW = 0.5  # share of its height by which a body must be above the first one of a row to begin another row
+RESERVED = {"ground"}
+CHORD = 0.1  # share of the closing distance to which shapes are compared
+
+
+@dataclass(eq=False)
+class DrawnBody:
+    """A body as it is drawn: its outline, its openings, its name, its density, and the lines of the drawing."""
+
+    ring: ArcRing
+    sources: Sequence[DrawnLine]
+    openings: list[ArcRing] = field(default_factory=list)
+    name: str = ""
+    density: float | None = None
+
+    @property
+    def layer(self) -> str:
+        """Layer of the body."""
+        return self.sources[0].layer
+
+    @property
+    def moments(self) -> PlaneMoments:
+        """Exact moments without the openings."""
+        return PlaneMoments.of_sum([self.ring.moments, *(each.moments.negative() for each in self.openings)])
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether all sides are straight, and there are no openings."""
+        return not self.ring.arcs and not self.openings
+
+
+@dataclass(frozen=True)
+class Sorted:
+    """The chains of a drawing by role, without those of layers that mean nothing."""
+
+    chains: Mapping[Role, Sequence[DrawnLine]]
+    labels: Sequence[DrawnText]
+    roles: Roles
+    notes: Sequence[ImportNote]
+
+
+def by_role(drawing: LineDrawing, roles: Roles, file: str) -> Sorted:
+    """Sort the lines of a drawing by the roles of their layers.
+
+    Raises
+    ------
+    DrawingError
+        "layers", if it is not clear which layers are bodies; "empty", if nothing is drawn.
+    """
+    unknown: dict[str, list[DrawnLine]] = {}
+    chains: dict[Role, list[DrawnLine]] = {role: [] for role in Role}
+    for chain in drawing.chains:
+        role = roles(chain.layer)
+        (unknown.setdefault(chain.layer, []) if role is None else chains[role]).append(chain)
+    counts = {layer: count for layer, of in unknown.items() if (count := outline_count(of))}
+    notes = []
+    if counts and not chains[Role.BODIES]:
+        if len(counts) > 1:
+            raise _which(counts, file)
+        (layer,) = counts
+        roles = Roles({**roles.given, layer: Role.BODIES})
+        chains[Role.BODIES] = unknown.pop(layer)
+        words = f"the layer {seen(layer) or '(none)'} has the only outlines: they are bodies"
+        notes.append(ImportNote("layers", 1, words))
+    elif counts:
+        known = Counter(chain.layer for chain in chains[Role.BODIES])
+        strange = ",".join(sorted(counts))
+        counts |= {layer: outline_count([c for c in chains[Role.BODIES] if c.layer == layer]) for layer in known}
+        says = "do not say what they are" if "," in strange else "does not say what it is"
+        what = f"which layers are bodies? {counted(counts)}, and {seen(strange)} {says}"
+        raise DrawingError("layers", f"{what}: give `layers` bodies={seen(strange)} or nothing={seen(strange)}", file)
+    if not chains[Role.BODIES]:
+        held: list[DrawnLine | DrawnText | DrawnPoint] = [*drawing.chains, *drawing.labels, *drawing.spots]
+        kinds = Counter(each.kind for each in held)
+        for each in drawing.left_out:
+            kinds[each.kind] += each.count
+        what = in_short([f"{count:,} {kind}" for kind, count in kinds.most_common()]) or "nothing"
+        where = in_short([f"{seen(layer) or 'no layer'} ({len(lines)} lines)" for layer, lines in unknown.items()])
+        if where:
+            what += f"; lines that do not close are on {where}: give `layers` bodies=LAYER if they are bodies"
+        raise DrawingError("empty", f"there is no outline in it, only {what}", file)
+    left = Counter((chain.kind, layer) for layer, of in unknown.items() for chain in of)
+    left |= Counter((chain.kind, chain.layer) for chain in chains[Role.NOTHING])
+    notes += [
+        ImportNote("left out", count, f"left out: {count:,} {kind} on {seen(layer) or 'no layer'}")
+        for (kind, layer), count in left.items()
+    ]
+    notes += [
+        ImportNote(
+            "left out",
+            each.count,
+            f"left out: {each.count:,} {each.kind} on {seen(each.layer) or 'no layer'}, {each.why}",
+        )
+        for each in drawing.left_out
+    ]
+    return Sorted(chains, drawing.labels, roles, notes)
+
+
+def outline_count(chains: Sequence[DrawnLine]) -> int:
+    """Return how many outlines chains make, at least: closed ones, and one of open lines all of whose ends meet."""
+    from scipy.spatial import cKDTree
+
+    closed = sum(chain.closed and not chain.is_fill for chain in chains)
+    fills = len({chain.shape for chain in chains if chain.is_fill})
+    open_ = [chain for chain in chains if not chain.closed and len(chain.points) > 1]
+    if len(open_) > 1:
+        z = np.array([[chain.points[0], chain.points[-1]] for chain in open_]).ravel()
+        ends = np.stack([z.real, z.imag], axis=1)
+        size = max(float(np.ptp(z.real)), float(np.ptp(z.imag)))
+        away = cKDTree(ends).query(ends, k=2)[0][:, 1]
+        closed += int(size > 0 and np.count_nonzero(away <= MEETING * size) >= LEAST_ENDS)
+    return closed or fills
+
+
+def _which(counts: Mapping[str, int], file: str) -> DrawingError:
+    first = max(counts, key=counts.__getitem__)
+    what = f"which layers are bodies? {counted(counts)}: give `layers` bodies={seen(first)}"
+    return DrawingError("layers", what, file)
+
+
+def placed(chains: Sequence[DrawnLine], frame: DrawingFrame, close: float, file: str) -> list[Placed]:
+    """Return chains in metres. Raises `DrawingError` "not_plane" for one that is not level in z."""
+    lines = []
+    for chain in chains:
+        if (chain.heights[1] - chain.heights[0]) * frame.per > close:
+            depth = length_in_words((chain.heights[1] - chain.heights[0]) * frame.per)
+            what = f"{described(chain)} is not plane: its corners differ by {depth} in z. Draw the section in one plane"
+            raise DrawingError("not_plane", what, file, at=frame.pairs(frame.to_metres(chain.points[:1]).tolist()))
+        if len(chain.points) > 1:
+            lines.append(Placed(frame.to_metres(chain.points), chain.bulges, chain.closed, chain))
+    return lines
+
+
+def described(chain: DrawnLine) -> str:
+    """Return what a line is in the file: "LWPOLYLINE 2F on MURO"."""
+    return f"{chain.kind}{f' {seen(chain.handle)}' if chain.handle else ''} on {seen(chain.layer) or 'no layer'}"
+
+
+def polygons_of(rings: Sequence[ArcRing], close: float) -> Any:
+    """Return rings as polygons of shapely, their arcs as chords; an array of objects, shape (n,)."""
+    import shapely
+
+    if not rings:
+        return np.array([], dtype=object)
+    corners = [ring.chords(CHORD * close) for ring in rings]
+    z = np.concatenate(corners)
+    of = np.repeat(np.arange(len(corners)), [len(each) for each in corners])
+    return shapely.polygons(shapely.linearrings(np.stack([z.real, z.imag], axis=1), indices=of))
+
+
+def bodies_of(
+    of: Sorted, frame: DrawingFrame, close: float, nested: str | None, file: str
+) -> tuple[list[DrawnBody], list[ImportNote], list[complex]]:
+    """Return the bodies of a drawing with their openings, in reading order, and what was mended and where [m].
+
+    Raises
+    ------
+    DrawingError
+        "unclosed", "thin", "crosses", "nested", "opening" or "not_plane".
+    """
+    drawn = [chain for chain in of.chains[Role.BODIES] if not chain.is_fill]
+    fills = [chain for chain in of.chains[Role.BODIES] if chain.is_fill]
+    made, mended = loops(placed(drawn, frame, close, file), close, frame, file)
+    notes, rings = mended.notes(frame), [*mended.doubles, *mended.joined, *mended.split]
+    if fills:
+        more, _ = loops(placed(fills, frame, close, file), close, frame, file)
+        made, used = _with_fills(made, more, close)
+        if len(more) > used:
+            notes.append(
+                ImportNote("left out", len(more) - used, f"{many(len(more) - used, 'edge')} of hatches left out")
+            )
+    _check_each(made, frame, close, file)
+    outer, inner = _by_shape(made, close)
+    straightened = sum(chain.is_straightened for loop in made for chain in loop.sources)
+    if straightened:
+        notes.append(ImportNote("straightened", straightened, f"{many(straightened, 'curve')} made straight sides"))
+    if arcs := sum(chain.arcs_found for loop in made for chain in loop.sources):
+        notes.append(ImportNote("arcs", arcs, f"{many(arcs, 'arc')} recognised in the curves of the file"))
+    bodies, count = _nested(outer, frame, close, nested, file)
+    openings = [loop.ring for loop in inner]
+    if of.chains[Role.OPENINGS]:
+        drawn_openings, others = loops(placed(of.chains[Role.OPENINGS], frame, close, file), close, frame, file)
+        _check_each(drawn_openings, frame, close, file)
+        notes += others.notes(frame)
+        openings += [loop.ring for loop in drawn_openings]
+    _cut(bodies, openings, frame, close, file)
+    if total := len(openings) + count:
+        notes.append(ImportNote("openings", total, many(total, "opening") + " cut out"))
+    return in_rows(bodies), notes, rings
+
+
+def _with_fills(made: list[Loop], fills: list[Loop], close: float) -> tuple[list[Loop], int]:
+    """Return loops and those edges of hatches that lie where nothing else is drawn, and how many of these there are."""
+    import shapely
+
+    if not made:
+        return fills, len(fills)
+    tree = shapely.STRtree(polygons_of([loop.ring for loop in made], close))
+    inside = shapely.point_on_surface(polygons_of([loop.ring for loop in fills], close))
+    hit = set(tree.query(inside, predicate="within")[0].tolist())
+    hatched = [loop for k, loop in enumerate(fills) if k not in hit]
+    return made + hatched, len(hatched)
+
+
+def _check_each(made: Sequence[Loop], frame: DrawingFrame, close: float, file: str) -> None:
+    """Raise `DrawingError` for an outline that crosses itself or encloses nothing."""
+    import shapely
+
+    polygons = polygons_of([loop.ring for loop in made], close)
+    valid = shapely.is_valid(polygons)
+    for k, loop in enumerate(made):
+        at, name = complex(loop.ring.z[0]), f"outline {k + 1} ({described(loop.sources[0])})"
+        if not loop.ring.arcs and _is_flat(loop.ring):
+            raise DrawingError("thin", f"{name} encloses nothing, at {frame.place(at)}", file, at=frame.pairs([at]))
+        if not valid[k]:
+            reason = shapely.is_valid_reason(polygons[k])
+            numbers = re.findall(r"[-+0-9.eE]+", reason.partition("[")[2])
+            at = complex(float(numbers[0]), float(numbers[1])) if len(numbers) >= 2 else at
+            raise DrawingError("crosses", f"{name} crosses itself at {frame.place(at)}", file, at=frame.pairs([at]))
+
+
+def _is_flat(ring: ArcRing) -> bool:
+    """Return whether all corners are on one line."""
+    along = ring.z - ring.z[0]
+    far = along[np.abs(along).argmax()]
+    return bool(np.abs((along * far.conjugate()).imag).max() <= FLATNESS * abs(far) ** 2) if far else True
+
+
+def _by_shape(made: Sequence[Loop], close: float) -> tuple[list[Loop], list[Loop]]:
+    """Return the outer rings, and the inner ones: those inside an odd number of rings of the same shape."""
+    import shapely
+
+    shapes: dict[str, list[int]] = {}
+    for k, loop in enumerate(made):
+        if loop.sources[0].shape:
+            shapes.setdefault(loop.sources[0].shape, []).append(k)
+    inner: set[int] = set()
+    for members in shapes.values():
+        if len(members) < 2:
+            continue
+        polygons = polygons_of([made[k].ring for k in members], close)
+        tree = shapely.STRtree(polygons)
+        points = shapely.point_on_surface(polygons)
+        point, within = tree.query(points, predicate="within")
+        for j, k in enumerate(members):
+            around = [other for other in within[point == j] if other != j and _larger(polygons[other], polygons[j])]
+            if len(around) % 2:
+                inner.add(k)
+    return (
+        [loop for k, loop in enumerate(made) if k not in inner],
+        [loop for k, loop in enumerate(made) if k in inner],
+    )
+
+
+def _larger(one: Any, other: Any) -> bool:
+    return bool(one.area > other.area)
+
+
+def _nested(
+    outer: Sequence[Loop], frame: DrawingFrame, close: float, nested: str | None, file: str
+) -> tuple[list[DrawnBody], int]:
+    """Return the bodies; outlines inside others are refused, or are openings if the user says so."""
+    import shapely
+
+    polygons = polygons_of([loop.ring for loop in outer], close)
+    tree = shapely.STRtree(polygons)
+    inside, around = tree.query(shapely.point_on_surface(polygons), predicate="within")
+    holes: dict[int, int] = {}
+    for i, j in sorted(zip(inside.tolist(), around.tolist(), strict=True)):
+        if i == j or polygons[i].area >= polygons[j].area:
+            continue
+        if shapely.area(shapely.difference(polygons[i], polygons[j])) > close * shapely.length(polygons[i]):
+            continue  # they overlap, which is said later
+        if nested is None:
+            one, other = (f"outline {k + 1} ({described(outer[k].sources[0])})" for k in (i, j))
+            what = (
+                f"{one} lies within {other}: is it an opening (`nested` openings), or is the outer one a frame? Put a "
+                "frame on a layer of its hatched"
+            )
+            raise DrawingError("nested", what, file, at=frame.pairs([outer[i].ring.moments.centroid]))
+        if i in holes or j in holes:
+            what = f"outline {i + 1} lies within an outline that is itself an opening, at "
+            raise DrawingError("nested", what + frame.place(outer[i].ring.moments.centroid), file)
+        holes[i] = j
+    bodies = {k: DrawnBody(loop.ring, loop.sources) for k, loop in enumerate(outer) if k not in holes}
+    for i, j in holes.items():
+        bodies[j].openings.append(outer[i].ring)
+    return list(bodies.values()), len(holes)
+
+
+def _cut(
+    bodies: Sequence[DrawnBody], openings: Sequence[ArcRing], frame: DrawingFrame, close: float, file: str
+) -> None:
+    """Give each opening to the body that it lies in. Raises `DrawingError` "opening" if there is not just one."""
+    import shapely
+
+    if not openings:
+        return
+    polygons = polygons_of([body.ring for body in bodies], close)
+    tree = shapely.STRtree(polygons)
+    for ring, hole in zip(openings, polygons_of(openings, close), strict=True):
+        hits = tree.query(hole, predicate="intersects")
+        shares = {int(k): shapely.area(shapely.intersection(hole, polygons[k])) for k in hits}
+        home = max(shares, key=shares.__getitem__, default=None)
+        if home is None or hole.area - shares[home] > close * hole.length:
+            at = ring.moments.centroid
+            what = f"the opening at {frame.place(at)} lies in no body, or across several"
+            raise DrawingError("opening", what, file, at=frame.pairs([at]))
+        bodies[home].openings.append(ring)
+
+
+def in_rows(bodies: Sequence[DrawnBody]) -> list[DrawnBody]:
+    """Return bodies by rows from below, each from the left."""
+    left = sorted(bodies, key=lambda body: body.ring.moments.centroid.imag)
+    ordered: list[DrawnBody] = []
+    while left:
+        first = left[0]
+        height = float(np.ptp(first.ring.z.imag))
+        top = first.ring.moments.centroid.imag + ROW * height
+        row = [body for body in left if body.ring.moments.centroid.imag <= top]
+        ordered += sorted(row, key=lambda body: body.ring.moments.centroid.real)
+        left = left[len(row) :]
+    return ordered
+
+
+def name_and_weigh(
+    bodies: Sequence[DrawnBody],
+    of: Sorted,
+    densities: Mapping[str, float],
+    frame: DrawingFrame,
+    close: float,
+    file: str,
+) -> list[ImportNote]:
+    """Give each body its name and density: by the texts inside it, its layer, or its number.
+
+    Parameters
+    ----------
+    bodies : sequence of DrawnBody
+        The bodies, which are changed.
+    of : Sorted
+        The drawing.
+    densities : mapping of str to float
+        Density of each layer [kg/m3]; "" is that of all others.
+    frame : DrawingFrame
+        Unit of the drawing.
+    close : float
+        Closing distance [m].
+    file : str
+        Name of the file in messages.
+    """
+    import shapely
+
+    layers = {body.layer for body in bodies}
+    if unknown := [layer for layer in densities if layer and layer not in layers]:
+        where = in_short(sorted(layers))
+        what = f"`density` names the layer {seen(unknown[0])!r}, which has no bodies: they are on {where}"
+        raise DrawingError("density", what, file)
+    for body in bodies:
+        body.density = densities.get(body.layer, densities.get(""))
+    texts = [
+        label for label in of.labels if of.roles(label.layer) not in (Role.LOADS, Role.TIES) and label.text.strip()
+    ]
+    names: dict[int, list[str]] = {}
+    if texts:
+        at = frame.to_metres(np.array([label.at for label in texts]))
+        tree = shapely.STRtree(polygons_of([body.ring for body in bodies], close))
+        for k, home in tree.query(shapely.points(at.real, at.imag), predicate="within").T.tolist():
+            for text in filter(None, map(seen, texts[k].text.splitlines())):
+                if (density := density_in(text)) is not None:
+                    bodies[home].density = density
+                elif any(each.isalpha() for each in text):
+                    names.setdefault(home, []).append(text)
+    notes = []
+    taken, count = set(RESERVED), Counter[str]()
+    for k, body in enumerate(bodies):
+        wished = cleaned(names[k][0]) if k in names else ""
+        body.name = wished = wished or f"b{k + 1}"
+        while body.name.casefold() in taken:
+            count[wished] += 1
+            body.name = f"{wished}-{count[wished] + 1}"
+        taken.add(body.name.casefold())
+    if spare := sum(len(each) - 1 for each in names.values()):
+        notes.append(
+            ImportNote("texts", spare, f"{many(spare, 'more text')} inside bodies than names: the first counts")
+        )
+    return notes
+
+
+def density_in(text: str) -> float | None:
+    """Return the density [kg/m3] that a text such as `2200 kg/m3` gives; None if it gives none."""
+    try:
+        weight = mass_of_weight(text, "kg/m3")
+        return weight if weight is not None else read(text, "kg/m3")
+    except UnitError:
+        return None
+
+
+def cleaned(text: str) -> str:
+    """Return a text as a name: no colon and no `and`, which mean something in files."""
+    words = [word for word in re.split(r"[\s:]+", text) if word and word.casefold() != "and"]
+    return " ".join(words)[:60].strip()

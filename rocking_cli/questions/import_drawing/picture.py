@@ -1,0 +1,106 @@
+"""Picture of an import: bodies with their names, joints, the ground, what was mended and what was left out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.patches import Polygon
+
+from rocking_cli.arrays import Points
+from rocking_cli.plotting import style
+from rocking_cli.questions.import_drawing.study import Imported
+from rocking_cli.text import cut
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+MAX_NAMED = 150  # bodies with names; of more, only every so many
+LONGEST_NAME = 12
+TICK = 0.012  # length of the tick of a joint over the size drawn
+ROOM = 0.08
+
+
+def draw_import(found: Imported, title: str, tolerance: float) -> Figure:
+    """Draw the bodies that a drawing gave, to check them against it."""
+    outlines = [body.ring.chords(tolerance) for body in found.bodies]
+    z = np.concatenate(outlines)
+    width, height = float(np.ptp(z.real)), float(np.ptp(z.imag))
+    size = max(width, height)
+    shape = min(max(height / max(width, 1e-9), 0.35), 1.4)
+    figure, axes = style.one_panel(style.page_width() * shape * 0.8 + 0.8, title)
+    for ground in found.ground:
+        axes.add_patch(_patch(ground, facecolor="none", edgecolor=style.EARTH, hatch="////", linewidth=style.THIN))
+    for line in found.grey:
+        axes.plot(line.real, line.imag, color=style.FAINT, linewidth=style.THIN, zorder=1)
+    for k, (body, outline) in enumerate(zip(found.bodies, outlines, strict=True)):
+        fill = style.BODIES[k % len(style.BODIES)]
+        axes.add_patch(_patch(outline, facecolor=fill, edgecolor=style.INK, linewidth=style.THIN, zorder=2))
+        for hole in body.openings:
+            edge = hole.chords(tolerance)
+            axes.add_patch(_patch(edge, facecolor=style.PAPER, edgecolor=style.INK, linewidth=style.THIN, zorder=2))
+    _draw_joints(axes, found, TICK * size)
+    every = -(-len(found.bodies) // MAX_NAMED)
+    points = style.TICK if len(found.bodies) <= 12 else style.SMALL if len(found.bodies) <= 40 else style.TINY
+    for body in found.bodies[::every]:
+        at = body.moments.centroid
+        axes.text(
+            at.real, at.imag, cut(body.name, LONGEST_NAME), ha="center", va="center", fontsize=points, zorder=5,
+            color=style.INK, path_effects=style.HALO, clip_on=True,
+        )  # fmt: skip
+    _draw_attached(axes, found)
+    if found.mended:
+        at_mended = np.array(found.mended)
+        axes.plot(
+            at_mended.real, at_mended.imag, linestyle="none", marker="o", markersize=7, markerfacecolor="none",
+            markeredgecolor=style.CURSOR, markeredgewidth=style.MEDIUM, zorder=4, label="mended",
+        )  # fmt: skip
+    if found.grey:
+        axes.plot([], [], color=style.FAINT, linewidth=style.THIN, label="left out")
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(**style.LEGEND, loc="upper right", bbox_to_anchor=(1.0, -0.08), ncols=5)
+    room = ROOM * size
+    axes.set(
+        xlim=(z.real.min() - room, z.real.max() + room), ylim=(z.imag.min() - room, z.imag.max() + room),
+        aspect="equal", xlabel="x [m]", ylabel="y [m]",
+    )  # fmt: skip
+    return figure
+
+
+def _draw_attached(axes: Axes, found: Imported) -> None:
+    """Draw ties as lines, and masses, forces and supports as marks."""
+
+    def points(places: Sequence[Mapping[str, Any]]) -> list[list[float]]:
+        return [place.get("at") or place["ground"] for place in places]
+
+    for tie in found.fields.get("ties", ()):
+        x, y = zip(*points(tie.get("path") or (tie["from"], tie["to"])), strict=True)
+        axes.plot(x, y, **style.TIE, zorder=3)
+    loads = found.fields.get("loads", ())
+    marks = {
+        "mass": ("o", [load["at"] for load in loads if "mass" in load]),
+        "force": ("v", [load["at"] for load in loads if "force" in load]),
+        "support": (">", [[at.real, at.imag] for at in found.supports]),
+    }
+    for name, (mark, places) in marks.items():
+        if places:
+            x, y = zip(*places, strict=True)
+            axes.plot(x, y, linestyle="none", marker=mark, markersize=6, color=style.BLACK, zorder=6, label=name)
+
+
+def _patch(outline: Points, **look: Any) -> Polygon:
+    return Polygon(np.stack([outline.real, outline.imag], axis=1), closed=True, **look)
+
+
+def _draw_joints(axes: Axes, found: Imported, length: float) -> None:
+    """Draw a tick across the middle of each joint."""
+    ticks = []
+    for joint in found.joints:
+        start, end = joint.ends
+        middle, along = (start + end) / 2, (end - start) / abs(end - start)
+        step = 1j * along * length
+        ticks.append([((middle - step).real, (middle - step).imag), ((middle + step).real, (middle + step).imag)])
+    axes.add_collection(LineCollection(ticks, colors=style.MEASURE, linewidths=style.BOLD, zorder=3))

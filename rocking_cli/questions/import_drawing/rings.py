@@ -1,0 +1,223 @@
+"""Closed lines with arcs: their exact area, centroid and moment, and polygons in their place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import acos, atan, cbrt, ceil, pi, sin, sqrt, tan
+from typing import NamedTuple, Self, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.arrays import Points, Reals
+
+Number = TypeVar("Number", bound=np.generic)
+SIDES_PER_HALF_TURN = (
+    128  # with the area kept: 1e-6 in lambda, phi_cr and inertia, also of outlines that are mostly arcs
+)
+STRAIGHT_BULGE = 1e-9  # bulge up to which a side counts as straight
+SMALL_TURN = 0.3  # turn below which differences of sines are taken from their series
+MAX_ARC_SIDES = 2000
+SAME_DIRECTION = 1e-6  # sine between two sides of one line
+SAME_CIRCLE = 1e-6  # distance of the centres of arcs of one circle, over its radius
+MAX_TURN = 2 * pi - 0.1  # of one arc [rad]
+Sides = Callable[[float, float], int]
+"""Function that gives the number of straight sides of an arc from its radius [m] and its turn [rad]."""
+
+
+def following(values: NDArray[Number]) -> NDArray[Number]:
+    """Return the value at the next corner of each corner; `np.roll` takes five times as long."""
+    return np.concatenate((values[1:], values[:1]))
+
+
+def preceding(values: NDArray[Number]) -> NDArray[Number]:
+    """Return the value at the corner before each corner."""
+    return np.concatenate((values[-1:], values[:-1]))
+
+
+class PlaneMoments(NamedTuple):
+    """Area [m2], centroid x + iy [m] and polar moment about the centroid [m4] of a plane shape."""
+
+    area: float
+    centroid: complex
+    polar: float
+
+    @classmethod
+    def of_sum(cls, parts: Sequence[PlaneMoments]) -> PlaneMoments:
+        """Return the moments of a sum; areas and polar moments of openings are negative."""
+        area = sum(each.area for each in parts)
+        centroid = sum(each.area * each.centroid for each in parts) / area
+        polar = sum(each.polar + each.area * abs(each.centroid - centroid) ** 2 for each in parts)
+        return cls(area, centroid, polar)
+
+    def negative(self) -> PlaneMoments:
+        """Return the moments of an opening of this shape."""
+        return PlaneMoments(-self.area, self.centroid, -self.polar)
+
+
+@dataclass(frozen=True, eq=False)
+class ArcRing:
+    """A closed line that runs anticlockwise.
+
+    Parameters
+    ----------
+    z : ndarray of complex, shape (n,)
+        Corners, x + iy [m].
+    bulges : ndarray, shape (n,)
+        tan(turn/4) of the arc from each corner to the next; 0 is a straight side.
+    """
+
+    z: Points
+    bulges: Reals
+
+    @classmethod
+    def of(cls, z: Points, bulges: Reals) -> Self:
+        """Return the ring of a closed line in either sense."""
+        ring = cls(z, np.where(np.abs(bulges) > STRAIGHT_BULGE, bulges, 0.0) if bulges.any() else bulges)
+        return ring if ring.moments.area >= 0 else cls(z[::-1], -np.roll(ring.bulges[::-1], -1))
+
+    @cached_property
+    def arcs(self) -> int:
+        """Number of sides that are arcs."""
+        return int(np.count_nonzero(self.bulges))
+
+    @cached_property
+    def moments(self) -> PlaneMoments:
+        """Exact moments: those of the polygon of the corners, and of the segment between each arc and its chord."""
+        middle = self.z.mean()  # first, as drawings may be far from their origin
+        z = self.z - middle
+        w = following(z)
+        twice_area = (z.conj() * w).imag
+        area, first = twice_area.sum() / 2, (twice_area * (z + w)).sum() / 6
+        polar = (twice_area * (np.abs(z) ** 2 + np.abs(w) ** 2 + (z.conj() * w).real)).sum() / 12
+        curved = self.bulges != 0
+        if curved.any():
+            start, chord, b = z[curved], (w - z)[curved], self.bulges[curved]
+            turn, radius = 4 * np.arctan(b), np.abs(chord) * (1 + b**2) / (4 * np.abs(b))
+            centre = start + chord / 2 + 1j * chord * (1 - b**2) / (4 * b)
+            to_middle = (start + chord / 2 - 1j * chord * b / 2 - centre) / radius
+            segment = radius**2 * _less_sine(turn) / 2
+            # 4 r sin^3(t/2)/[3 (t - sin t)] times the area: the first moment has no difference of sines.
+            along = 2 / 3 * radius**3 * np.sin(np.abs(turn) / 2) ** 3 * np.sign(turn)
+            about_centre = radius**4 * _polar(turn)
+            area += segment.sum()
+            first += (segment * centre + along * to_middle).sum()
+            polar += (about_centre + 2 * along * (centre.conj() * to_middle).real + segment * np.abs(centre) ** 2).sum()
+        if not area:
+            return PlaneMoments(0.0, complex(middle), 0.0)
+        centroid = first / area
+        return PlaneMoments(float(area), complex(middle + centroid), float(polar - area * abs(centroid) ** 2))
+
+    def placed(self, factor: float, shift: complex) -> ArcRing:
+        """Return the ring shifted and then scaled."""
+        return ArcRing((self.z + shift) * factor, self.bulges)
+
+    def tidied(self, close: float) -> ArcRing:
+        """Return the ring without corners between two parts of one side, from its lower left corner on.
+
+        So a file does not depend on where its lines were cut, and in which order they were drawn.
+        """
+        ring = self._merged()
+        z = ring.z
+        low = np.flatnonzero(z.imag <= z.imag.min() + close)
+        left = low[z.real[low] <= z.real[low].min() + close]
+        first = int(left[z.imag[left].argmin()])
+        return ArcRing(np.roll(z, -first), np.roll(ring.bulges, -first)) if first else ring
+
+    def _merged(self) -> ArcRing:
+        """Return the ring with consecutive sides of one line, or arcs of one circle, as one."""
+        z, b = self.z, self.bulges
+        before, after = z - preceding(z), following(z) - z
+        across = (before.conj() * after).imag
+        with np.errstate(divide="ignore", invalid="ignore"):
+            sine = np.abs(across) / (np.abs(before) * np.abs(after))
+        ahead = (before.conj() * after).real > 0
+        spare = (b == 0) & (preceding(b) == 0) & ahead & (sine < SAME_DIRECTION)
+        arcs = [k for k in np.flatnonzero((b != 0) & (preceding(b) != 0)).tolist() if self._goes_on(k)]
+        if not spare.any() and not arcs:
+            return self
+        turn = 4 * np.arctan(b)
+        for k in arcs:  # each arc takes the turn of the next one
+            previous = next(j % len(z) for j in range(k - 1, k - 1 - len(z), -1) if not spare[j % len(z)])
+            if abs(turn[previous] + turn[k]) < MAX_TURN:
+                turn[previous] += turn[k]
+                spare[k] = True
+        if np.count_nonzero(~spare) < 2 or (np.count_nonzero(~spare) == 2 and not b.any()):
+            return self  # it encloses nothing
+        return ArcRing(z[~spare], np.tan(turn / 4)[~spare])
+
+    def _goes_on(self, k: int) -> bool:
+        """Return whether the arc from a corner has the circle and the sense of the one before."""
+        n = len(self.z)
+        (centre, radius), (other, _) = (arc_circle(*self._arc(j)) for j in (k, (k - 1) % n))
+        return bool(self.bulges[k] * self.bulges[k - 1] > 0 and abs(centre - other) < SAME_CIRCLE * radius)
+
+    def _arc(self, k: int) -> tuple[complex, complex, float]:
+        return complex(self.z[k]), complex(self.z[(k + 1) % len(self.z)]), float(self.bulges[k])
+
+    def level(self) -> Points:
+        """Return a polygon of the same area, whose arcs have 128 sides to a half turn, and flat arcs more."""
+        return self._with(_level_count, keeps_area=True)
+
+    def chords(self, tolerance: float) -> Points:
+        """Return a polygon whose corners are on the arcs, and no side farther from them than a tolerance [m]."""
+        return self._with(lambda radius, turn: chord_count(radius, turn, tolerance), keeps_area=False)
+
+    def _with(self, count: Sides, *, keeps_area: bool) -> Points:
+        if not self.arcs:
+            return self.z
+        parts = []
+        for start, end, bulge in zip(self.z, following(self.z), self.bulges, strict=True):
+            parts.append(np.array([start]))
+            if bulge:
+                parts.append(inner_points(complex(start), complex(end), float(bulge), count, keeps_area=keeps_area))
+        return np.concatenate(parts)
+
+
+def arc_circle(start: complex, end: complex, bulge: float) -> tuple[complex, float]:
+    """Return the centre and the radius of an arc."""
+    centre = (start + end) / 2 + 1j * (end - start) * (1 - bulge**2) / (4 * bulge)
+    return centre, abs(start - centre)
+
+
+def inner_points(start: complex, end: complex, bulge: float, count: Sides, *, keeps_area: bool = False) -> Points:
+    """Return points along an arc between its ends; `count` gives the number of sides from radius and turn."""
+    turn = 4 * atan(bulge)
+    centre, radius = arc_circle(start, end, bulge)
+    n = count(radius, turn)
+    out = _area_kept(abs(turn), n) if keeps_area else 1.0
+    points: Points = centre + out * (start - centre) * np.exp(1j * turn * np.arange(1, n) / n)
+    return points
+
+
+def chord_count(radius: float, turn: float, tolerance: float) -> int:
+    """Return the number of chords of an arc that keep within a tolerance of it."""
+    step = 2 * acos(1 - tolerance / radius) if tolerance < radius else pi / 2
+    return min(max(ceil(abs(turn) / step - 1e-9), 2), MAX_ARC_SIDES)
+
+
+def _level_count(radius: float, turn: float) -> int:
+    """Return the number of sides of an arc in a polygon that keeps the area."""
+    bulge = abs(tan(turn / 4))
+    return max(ceil(SIDES_PER_HALF_TURN * abs(turn) / pi), ceil(SIDES_PER_HALF_TURN * min(cbrt(bulge), 1.0)), 2)
+
+
+def _area_kept(turn: float, n: int) -> float:
+    """Return q, the distance of the inner points over the radius at which n sides have the area of the arc."""
+    right = turn / sin(turn / n)
+    return right / 2 if n == 2 else (sqrt(1 + (n - 2) * right) - 1) / (n - 2)  # (n - 2) q^2 + 2 q = right
+
+
+def _less_sine(turn: Reals) -> Reals:
+    """Return t - sin t."""
+    series = turn**3 / 6 * (1 - turn**2 / 20 * (1 - turn**2 / 42 * (1 - turn**2 / 72)))
+    return np.where(np.abs(turn) < SMALL_TURN, series, turn - np.sin(turn))
+
+
+def _polar(turn: Reals) -> Reals:
+    """Return t/4 - sin t (2 + cos t)/12."""
+    t = turn
+    series = t**3 / 12 - t**5 / 80 + t**7 * 11 / 10080 - t**9 * 43 / 725760
+    return np.where(np.abs(t) < SMALL_TURN, series, t / 4 - np.sin(t) * (2 + np.cos(t)) / 12)

@@ -1,0 +1,122 @@
+"""What the layers of a drawing mean: by their names, or as the user says."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import lru_cache
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.io.drawings.contract import DrawnLine, DrawnPoint, DrawnText, LineDrawing, OmittedKind
+from rocking_cli.text import cut, in_short
+
+
+class Role(StrEnum):
+    """What counts on a layer."""
+
+    NOTHING = "nothing"
+    HINGES = "hinges"
+    LOADS = "loads"
+    TIES = "ties"
+    OPENINGS = "openings"
+    SUPPORTS = "supports"
+    GROUND = "ground"
+    BODIES = "bodies"
+
+
+WORDS: Mapping[Role, str] = {
+    Role.NOTHING: "defpoints dim dimension quota quote asse assi testo testi text frame border squadratur cartigli "
+    "retin tratteggi hatch displaced thrust names",
+    Role.HINGES: "hinge cernier",
+    Role.LOADS: "load caric forza forze",
+    Role.TIES: "tie caten tirant",
+    Role.OPENINGS: "opening hole window foro fori apertur finestr",
+    Role.SUPPORTS: "support floor solai carrell",
+    Role.GROUND: "ground soil rock terren suolo",
+    Role.BODIES: "body bodies block stone voussoir masonry brick corpo corpi blocc concio conci pietr murat matton "
+    "parament",
+}
+"""Beginnings of words in the names of layers, in the order in which they count: TESTO_PIETRE has texts, no stones."""
+SHORT_WORD = 5  # letters; shorter words, or their plurals, must be whole words of a name: TIE is no part of PROPERTIES
+
+
+def plain(name: str) -> str:
+    """Return a name in small letters and without accents."""
+    parts = unicodedata.normalize("NFKD", name)
+    return "".join(each for each in parts if not unicodedata.combining(each)).casefold()
+
+
+@lru_cache(maxsize=4096)
+def role_of(layer: str) -> Role | None:
+    """Return the role that the name of a layer says; None if it says none."""
+    name = plain(layer)
+    words = set(re.findall(r"[^\W\d_]+", name))
+    for role, stems in WORDS.items():
+        for stem in stems.split():
+            if not words.isdisjoint((stem, f"{stem}s")) if len(stem) < SHORT_WORD else stem in name:
+                return role
+    return None
+
+
+def parse_layers(given: Sequence[str]) -> dict[str, list[str]]:
+    """Return the layers of each role from texts such as `bodies=CONCI,PILE`."""
+    layers: dict[str, list[str]] = {}
+    for text in given:
+        role, sign, names = text.partition("=")
+        if not sign or role.strip().lower() not in {*Role}:
+            hint = f"write ROLE=LAYER,LAYER with a role among {', '.join(Role)}"
+            raise InputError(Problem(f"{cut(repr(text))} is not a role and its layers", field="`layers`", hint=hint))
+        layers.setdefault(role.strip().lower(), []).extend(each.strip() for each in names.split(",") if each.strip())
+    return layers
+
+
+@dataclass(frozen=True)
+class Roles:
+    """The role of each layer: as given, or by its name.
+
+    Parameters
+    ----------
+    given : mapping of str to Role
+        Roles that the user gives, by layer.
+    """
+
+    given: Mapping[str, Role]
+
+    @classmethod
+    def of(cls, drawing: LineDrawing, layers: Mapping[str, Sequence[str]]) -> Roles:
+        """Make the roles of the layers of a drawing. Raises `InputError` if it has no layer of a given name."""
+        held: list[DrawnLine | DrawnText | DrawnPoint | OmittedKind] = [
+            *drawing.chains, *drawing.labels, *drawing.spots, *drawing.left_out
+        ]  # fmt: skip
+        known = {each.layer for each in held}
+        given: dict[str, Role] = {}
+        for role, names in layers.items():
+            for name in names:
+                alike = [each for each in known if each == name] or [
+                    each for each in known if plain(each) == plain(name)
+                ]
+                if not alike:
+                    hint = f"its layers are {in_short(sorted(known))}" if known else "it has no layers"
+                    raise InputError(
+                        Problem(f"the drawing has no layer {cut(repr(name))}", field="`layers`", hint=hint)
+                    )
+                for each in alike:
+                    if given.setdefault(each, Role(role)) != role:
+                        raise InputError(Problem(f"{cut(repr(name))} has two roles", field="`layers`"))
+        return cls(given)
+
+    def __call__(self, layer: str) -> Role | None:
+        """Return the role of a layer; None if neither its name nor the user says one."""
+        return self.given[layer] if layer in self.given else role_of(layer)
+
+
+def counted(layers: Mapping[str, int]) -> str:
+    """Return how many outlines each layer has: "MURO has 3 outlines, 0 has 1"."""
+    most = [name for name, _ in Counter(layers).most_common()]
+    named = [f"{cut(name) or 'no layer'} has {layers[name]}" for name in most]
+    first = f"{named[0]} outline{'' if layers[most[0]] == 1 else 's'}"
+    return in_short([first, *named[1:]])

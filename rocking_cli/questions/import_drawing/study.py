@@ -1,0 +1,524 @@
+"""A structure from a drawing: the fields of its file, and what was mended, assumed and left out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from rocking_cli.arrays import Points
+from rocking_cli.core import Mechanism
+from rocking_cli.core.registry import Registry
+from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, LineDrawing
+from rocking_cli.questions.import_drawing import mortar
+from rocking_cli.questions.import_drawing.attached import DECIMALS, BodyFinder, DrawnAttachments, attached, rounded
+from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, length_in_words, many
+from rocking_cli.questions.import_drawing.outlines import (
+    DrawnBody,
+    bodies_of,
+    by_role,
+    name_and_weigh,
+    placed,
+    polygons_of,
+)
+from rocking_cli.questions.import_drawing.rings import ArcRing
+from rocking_cli.questions.import_drawing.roles import Role, Roles
+from rocking_cli.questions.import_drawing.scaling import metres_per_unit
+
+GROUND_ROOM = 0.1  # depth of the ground below its lowest point, and its room at the sides, over the size drawn
+KINDS = ("rigid_body", "assembly", "linkage")
+LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+SAME_NORMAL = 1e-6
+MASS_DIGITS = 12
+EXTENT = 1e-5  # to which width and height are known [m]
+MAX_CHECKED = 300  # bodies up to which the mechanism checks its fields; of more, this study alone
+
+
+@dataclass(frozen=True)
+class ImportOptions:
+    """How a drawing is read.
+
+    Parameters
+    ----------
+    units, scale : str or None
+        Its unit and its scale, `mm` and `1:50`.
+    layers : mapping of str to sequence of str
+        Layers of each role.
+    densities : mapping of str to float
+        Density of each layer [kg/m3]; "" is that of all others.
+    depth : float or None
+        Depth of the structure [m].
+    merge_gap : float
+        Width of mortar joints that are closed [m].
+    close : float
+        Distance up to which ends are one point, and depth up to which overlaps are mended [m].
+    nested : str or None
+        "openings" if outlines inside others are openings.
+    kind : str or None
+        Mechanism of the structure; None for the one that fits what is drawn.
+    tolerance : float
+        Largest distance of the sides of a curved block from its arcs [m].
+    """
+
+    units: str | None = None
+    scale: str | None = None
+    layers: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    densities: Mapping[str, float] = field(default_factory=dict)
+    depth: float | None = None
+    merge_gap: float = 0.0
+    close: float = 1e-3
+    nested: str | None = None
+    kind: str | None = None
+    tolerance: float = 1e-4
+
+
+@dataclass(frozen=True)
+class DrawnJoint:
+    """A joint between two bodies, or a body and the ground: their names, and both ends of the face [m]."""
+
+    between: tuple[str, str]
+    ends: tuple[complex, complex]
+
+
+@dataclass(frozen=True, eq=False)
+class Imported:
+    """A structure made from a drawing.
+
+    Parameters
+    ----------
+    kind : str
+        Its mechanism.
+    fields : mapping
+        Fields of the structure file.
+    bodies : sequence of DrawnBody
+        The bodies in metres, from the origin of the file.
+    ground : sequence of ndarray of complex
+        Outlines of the ground [m].
+    joints : sequence of DrawnJoint
+        Where the bodies touch.
+    units : str
+        Where the size comes from, in words.
+    per_unit : float
+        Metres to a unit of the drawing.
+    shift : complex
+        Origin of the file in the drawing [units].
+    notes : sequence of ImportNote
+        What was mended, assumed and left out.
+    comments : sequence of str
+        Comments for the end of the file.
+    mended : sequence of complex
+        Where something was mended [m].
+    grey : sequence of ndarray of complex
+        Lines that were left out [m].
+    supports : sequence of complex
+        Points that supports hold [m].
+    text : str
+        The structure file.
+    """
+
+    kind: str
+    fields: Mapping[str, Any]
+    bodies: Sequence[DrawnBody]
+    ground: Sequence[Points]
+    joints: Sequence[DrawnJoint]
+    units: str
+    per_unit: float
+    shift: complex
+    notes: Sequence[ImportNote]
+    comments: Sequence[str]
+    mended: Sequence[complex]
+    grey: Sequence[Points]
+    supports: Sequence[complex]
+    text: str = ""
+
+    @cached_property
+    def structure(self) -> Mechanism:
+        """The structure. Raises `InputError` if its mechanism refuses it."""
+        return Registry()[self.kind](**self.fields)
+
+
+def structure_from(drawing: LineDrawing, options: ImportOptions, name: str, file: str) -> Imported:
+    """Make a structure of a drawing.
+
+    Parameters
+    ----------
+    drawing : LineDrawing
+        What a reader made of the file.
+    options : ImportOptions
+        How it is read.
+    name : str
+        Name of the structure.
+    file : str
+        Name of the file in messages.
+
+    Raises
+    ------
+    DrawingError
+        If it cannot be made, with the class of the reason and the places.
+    InputError
+        If an option is not valid.
+    """
+    of = by_role(drawing, Roles.of(drawing, options.layers), file)
+    drawn = np.concatenate([chain.points for chain in of.chains[Role.BODIES]])
+    size = max(float(np.ptp(drawn.real)), float(np.ptp(drawn.imag)))
+    if not np.isfinite(size):
+        raise DrawingError("empty", "it has coordinates that are not finite", file)
+    per, units = metres_per_unit(drawing, size, options.units, options.scale, file)
+    middle = complex((drawn.real.min() + drawn.real.max()) / 2, (drawn.imag.min() + drawn.imag.max()) / 2)
+    frame = DrawingFrame(per, middle)
+    close = options.close
+    bodies, notes, mended = bodies_of(of, frame, close, options.nested, file)
+    notes = [*of.notes, *notes, *name_and_weigh(bodies, of, options.densities, frame, close, file)]
+    low = min(float(body.ring.z.imag.min()) for body in bodies)
+    left = min(float(body.ring.z.real.min()) for body in bodies)
+    shift = -complex(left, low)
+    ground, is_drawn = _ground(of.chains[Role.GROUND], bodies, frame, close, file)
+    closed = mortar.close_gaps([body.ring for body in bodies], ground, options.merge_gap, close)
+    notes += _closing_notes(closed, frame)
+    mended = [z + shift for z in (*mended, *closed.at)]
+    for body, ring in zip(bodies, closed.rings, strict=True):
+        body.ring = ring
+    _check_overlaps(bodies, ground if is_drawn else [], frame, close, file)
+    for body in bodies:
+        body.ring = body.ring.placed(1.0, shift)
+        body.openings = [each.placed(1.0, shift) for each in body.openings]
+    ground = [each.placed(1.0, shift) for each in ground]
+    if not is_drawn:
+        notes.append(ImportNote("ground", 1, "no ground is drawn: it is level, at the lowest point"))
+    origin = frame.to_drawing(-shift)
+    x, y = (round(each * frame.per, DECIMALS) / frame.per + 0.0 for each in (origin.real, origin.imag))
+    notes.append(ImportNote("origin", 1, f"the origin of the file is at ({x:.9g}, {y:.9g}) of the drawing"))
+    width, height = (float(np.ptp(part)) for part in _extent(bodies))
+    notes.append(ImportNote("units", 1, f"{units}: the structure is {width:.4g} m wide and {height:.4g} m high"))
+    places = BodyFinder(bodies, ground, frame, shift, close, file)
+    extra = attached(drawing, of, places)
+    kind = options.kind or _kind(bodies, ground, is_drawn, extra, close)
+    made = replace(options, kind=kind)
+    if kind == "rigid_body":
+        notes += _levelled(bodies, close, frame, shift)
+    fields = FIELDS[kind](name, bodies, ground, is_drawn, extra, made, file)
+    grey = [
+        frame.to_metres(chain.points) + shift
+        for chain in drawing.chains
+        if of.roles(chain.layer) in (None, Role.NOTHING) and len(chain.points) > 1
+    ]
+    result = Imported(
+        kind, fields, bodies, [ring.chords(options.tolerance) for ring in ground], _joints(bodies, ground), units, per,
+        origin, [*notes, *extra.notes], extra.comments, mended, grey, [at for _, at, _, _ in extra.supports],
+    )  # fmt: skip
+    _check(result, file)
+    return result
+
+
+def _extent(bodies: Sequence[DrawnBody]) -> tuple[Any, Any]:
+    z = np.concatenate([body.ring.chords(EXTENT) for body in bodies])
+    return z.real, z.imag
+
+
+def _ground(
+    chains: Sequence[DrawnLine], bodies: Sequence[DrawnBody], frame: DrawingFrame, close: float, file: str
+) -> tuple[list[ArcRing], bool]:
+    """Return the outlines of the ground, and whether it is drawn; if not, it is a level floor at the lowest point."""
+    x, y = _extent(bodies)
+    width, height = float(np.ptp(x)), float(np.ptp(y))
+    if not chains:
+        room, depth = GROUND_ROOM * max(width, height), GROUND_ROOM * height
+        low, left, right = float(y.min()), float(x.min()) - room, float(x.max()) + room
+        corners = [complex(left, low - depth), complex(right, low - depth), complex(right, low), complex(left, low)]
+        return [ArcRing(np.array(corners), np.zeros(4))], False
+    rings = []
+    for line in placed(chains, frame, close, file):
+        if line.closed:
+            rings.append(ArcRing.of(line.z, line.bulges))
+        else:
+            rings.append(_below(line.z, line.bulges, float(y.min()), GROUND_ROOM * height))
+    return rings, True
+
+
+def _below(z: Points, bulges: Any, lowest: float, depth: float) -> ArcRing:
+    """Return the ground below an open line, to a depth below it and below the lowest body."""
+    if z[0].real > z[-1].real:
+        z, bulges = z[::-1], np.append(-bulges[:-1][::-1], 0.0)
+    low = min(float(z.imag.min()), lowest) - depth
+    corners = np.concatenate([z, [complex(z[-1].real, low), complex(z[0].real, low)]])
+    return ArcRing.of(corners, np.append(bulges, [0.0, 0.0]))
+
+
+def _closing_notes(closed: mortar.Closed, frame: DrawingFrame) -> list[ImportNote]:
+    if not closed.gaps:
+        return []
+    at = [frame.to_drawing(z) for z in closed.at]
+    least, most = (length_in_words(edge) for edge in (min(closed.gaps), max(closed.gaps)))
+    span = least if least == most else f"{least} to {most}"
+    notes = [ImportNote("closed", len(at), f"{many(len(at), 'side')} moved to close gaps or overlaps of {span}", at)]
+    if closed.uneven:
+        words = f"{many(len(closed.uneven), 'side')} faced two different gaps: the larger was closed"
+        notes.append(ImportNote("two gaps", len(closed.uneven), words, [frame.to_drawing(z) for z in closed.uneven]))
+    return notes
+
+
+def _check_overlaps(
+    bodies: Sequence[DrawnBody], ground: Sequence[ArcRing], frame: DrawingFrame, close: float, file: str
+) -> None:
+    """Raise `DrawingError` "overlap" or "below" for bodies that overlap, or reach into the ground, too deeply."""
+    import shapely
+
+    solid = polygons_of([body.ring for body in bodies], close)
+    tree = shapely.STRtree(solid)
+    ones, others = tree.query(solid, predicate="intersects")
+    ones, others = ones[ones < others], others[ones < others]
+    shared = shapely.intersection(solid[ones], solid[others])
+    for k in np.flatnonzero(shapely.area(shared) > 0).tolist():
+        i, j, common = ones[k], others[k], shared[k]
+        if (depth := depth_of(common)) > close:
+            at = complex(common.centroid.x, common.centroid.y)
+            one, other = bodies[i].name, bodies[j].name
+            what = (
+                f"{one} and {other} overlap by {common.area:.3g} m2 at {frame.place(at)}, {length_in_words(depth)} deep"
+            )
+            what += f": draw them side by side, or give a larger `close` than {length_in_words(close)}"
+            raise DrawingError("overlap", what, file, at=frame.pairs([at]))
+    for floor in polygons_of(ground, close):
+        for k in tree.query(floor, predicate="intersects").tolist():
+            common = shapely.intersection(floor, solid[k])
+            if (depth := depth_of(common)) > close:
+                deep = length_in_words(depth)
+                what = f"{bodies[k].name} reaches {deep} into the ground: the ground line must be below it"
+                at = complex(common.centroid.x, common.centroid.y)
+                raise DrawingError("below", what, file, at=frame.pairs([at]))
+
+
+def depth_of(common: Any) -> float:
+    """Return the narrow side of what two outlines share [m]."""
+    import shapely
+
+    if not common.area:
+        return 0.0
+    box = shapely.get_coordinates(shapely.minimum_rotated_rectangle(common))
+    z = box[:, 0] + 1j * box[:, 1]
+    return float(min(abs(z[1] - z[0]), abs(z[2] - z[1])))
+
+
+def _joints(bodies: Sequence[DrawnBody], ground: Sequence[ArcRing]) -> list[DrawnJoint]:
+    """Return where bodies touch one another or the ground, within the gap that `assembly` allows."""
+    rings = [*(body.ring for body in bodies), *ground]
+    names = [*(body.name for body in bodies), *("ground" for _ in ground)]
+    size = [float(np.ptp(ring.z.real) + np.ptp(ring.z.imag)) for ring in rings]
+    sides = mortar.Sides.from_rings(rings)
+    most = mortar.JOINT_GAP * max(size[: len(bodies)])
+    pairs = mortar.facing(sides, -most, most)
+    joints = []
+    for i, j, gap, ends in zip(pairs.one.tolist(), pairs.other.tolist(), pairs.gap.tolist(), pairs.ends, strict=True):
+        k, m = int(sides.ring[i]), int(sides.ring[j])
+        if k > m or min(k, m) >= len(bodies):
+            continue
+        if abs(gap) <= mortar.JOINT_GAP * min(size[k], size[m] if m < len(bodies) else size[k]):
+            joints.append(DrawnJoint((names[k], names[m]), (complex(ends[0]), complex(ends[1]))))
+    return joints
+
+
+def _kind(
+    bodies: Sequence[DrawnBody], ground: Sequence[ArcRing], is_drawn: bool, extra: DrawnAttachments, close: float
+) -> str:
+    if extra.hinges:
+        return "linkage"
+    if len(bodies) == 1 and not extra.supports and (not is_drawn or _is_level(bodies[0].ring, ground, close)):
+        return "rigid_body"
+    return "assembly"
+
+
+def _is_level(ring: ArcRing, ground: Sequence[ArcRing], close: float) -> bool:
+    """Return whether the ground is level under the feet of a body, and nowhere above them."""
+    low = float(ring.z.imag.min())
+    feet = ring.z[ring.z.imag <= low + close]
+    left, right = float(feet.real.min()), float(feet.real.max())
+    tops = np.concatenate([each.z for each in ground])
+    under = tops[(tops.real > left - close) & (tops.real < right + close) & (tops.imag > low - 10 * close)]
+    sides = mortar.Sides.from_rings(ground)
+    flat = (np.abs(sides.normal - 1j) < SAME_NORMAL) & (np.abs(sides.start.imag - low) <= close)
+    ends = sides.start[flat], sides.start[flat] + sides.along[flat]
+    lies = (np.minimum(ends[0].real, ends[1].real) <= left + close) & (
+        np.maximum(ends[0].real, ends[1].real) >= right - close
+    )
+    return bool(lies.any() and (under.imag <= low + close).all())
+
+
+def _levelled(bodies: Sequence[DrawnBody], close: float, frame: DrawingFrame, shift: complex) -> list[ImportNote]:
+    """Put corners within the closing distance of the level ground onto it, and say so."""
+    at: list[complex] = []
+    for body in bodies:
+        z = body.ring.z
+        off = (z.imag != 0) & (np.abs(z.imag) <= close)
+        if off.any():
+            at += [frame.to_drawing(each - shift) for each in z[off]]
+            body.ring = ArcRing(np.where(off, z.real, z), body.ring.bulges)
+    if not at:
+        return []
+    return [ImportNote("levelled", len(at), f"{many(len(at), 'corner')} put onto the level ground", at)]
+
+
+# The fields of each kind of structure
+
+
+def _common(name: str, extra: DrawnAttachments, options: ImportOptions, *, of_one: bool) -> dict[str, Any]:
+    fields: dict[str, Any] = {"name": name}
+    if "" in options.densities:
+        fields["density"] = options.densities[""]
+    if options.depth is not None:
+        fields["depth"] = options.depth
+    if extra.loads:
+        fields["loads"] = [{k: v for k, v in load.items() if not (of_one and k == "body")} for load in extra.loads]
+    if extra.ties:
+        fields["ties"] = [_of_one(tie) if of_one else tie for tie in extra.ties]
+    return fields
+
+
+def _of_one(tie: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a tie of a structure with one body, whose ends name no body."""
+
+    def end(place: Any) -> Any:
+        return {key: value for key, value in place.items() if key != "body"} if isinstance(place, dict) else place
+
+    return {key: [end(each) for each in value] if key == "path" else end(value) for key, value in tie.items()}
+
+
+def _corners(z: Points) -> list[list[float]]:
+    return [rounded(complex(each)) for each in z]
+
+
+def _rigid_body(
+    name: str, bodies: Sequence[DrawnBody], ground: Sequence[ArcRing], is_drawn: bool, extra: DrawnAttachments,
+    options: ImportOptions, file: str,
+) -> dict[str, Any]:  # fmt: skip
+    fields = _common(name, extra, options, of_one=True)
+    if extra.supports or extra.hinges:
+        raise DrawingError("hinge", "a rigid_body has no hinges and supports: leave out `kind`", file)
+    if len(bodies) == 1 and not bodies[0].openings:
+        if bodies[0].density is not None:
+            fields["density"] = bodies[0].density
+        return fields | {"polygon": _corners(bodies[0].ring.level())}
+    alike = len({body.density for body in bodies}) == 1
+    if alike and bodies[0].density is not None:
+        fields["density"] = bodies[0].density
+    parts: list[dict[str, Any]] = []
+    for body in bodies:
+        own_density = {} if alike or body.density is None else {"density": body.density}
+        parts.append({"polygon": _corners(body.ring.level()), **own_density})
+    parts += [{"polygon": _corners(hole.level()), "opening": True} for body in bodies for hole in body.openings]
+    if not alike and any(body.density is not None for body in bodies) and None in {body.density for body in bodies}:
+        raise DrawingError("density", "some bodies have a density and some have none: give `density` for all", file)
+    return fields | {"parts": parts}
+
+
+def _shapes(bodies: Sequence[DrawnBody], options: ImportOptions, file: str) -> dict[str, dict[str, Any]]:
+    """Return the blocks: polygons, beside exact mass, centroid and inertia where there are arcs or openings."""
+    shapes: dict[str, dict[str, Any]] = {}
+    default = options.densities.get("")
+    for body in bodies:
+        shape: dict[str, Any] = {"polygon": _corners(body.ring.chords(options.tolerance))}
+        if not body.is_plain:
+            if body.density is None or options.depth is None:
+                what = f"{body.name} has {'arcs' if body.ring.arcs else 'openings'}, so that it is given by mass, "
+                what += "centroid and inertia: give `density` and `depth`"
+                raise DrawingError("density", what, file)
+            moments = body.moments
+            per_area = body.density * options.depth
+            shape |= {
+                "mass": float(f"{per_area * moments.area:.{MASS_DIGITS}g}"),
+                "centroid": rounded_fully(moments.centroid),
+                "inertia": float(f"{per_area * moments.polar:.{MASS_DIGITS}g}"),
+            }
+        elif body.density is not None and body.density != default:
+            shape["density"] = body.density
+        shapes[body.name] = shape
+    known = {body.density is not None for body in bodies if body.is_plain}
+    if known == {True, False}:
+        raise DrawingError("density", "some bodies have a density and some have none: give `density` for all", file)
+    return shapes
+
+
+def rounded_fully(z: complex) -> list[float]:
+    """Return a centroid as it stands in a file."""
+    return [round(z.real, 10) + 0.0, round(z.imag, 10) + 0.0]
+
+
+def _assembly(
+    name: str, bodies: Sequence[DrawnBody], ground: Sequence[ArcRing], is_drawn: bool, extra: DrawnAttachments,
+    options: ImportOptions, file: str,
+) -> dict[str, Any]:  # fmt: skip
+    fields = _common(name, extra, options, of_one=False)
+    fields["blocks"] = _shapes(bodies, options, file)
+    names = ["floor"] if not is_drawn else [f"ground {k + 1}" for k in range(len(ground))]
+    fields["ground"] = {
+        key: {"polygon": _corners(ring.chords(options.tolerance))} for key, ring in zip(names, ground, strict=True)
+    }
+    if extra.supports:
+        fields["joints"] = {
+            LETTERS[k] if k < len(LETTERS) else f"S{k + 1}": _slide(*each[:3]) for k, each in enumerate(extra.supports)
+        }
+    return fields
+
+
+def _slide(body: str, at: complex, along: complex) -> dict[str, Any]:
+    return {"slide": body, "at": rounded(at), "along": rounded(along)}
+
+
+def _linkage(
+    name: str, bodies: Sequence[DrawnBody], ground: Sequence[ArcRing], is_drawn: bool, extra: DrawnAttachments,
+    options: ImportOptions, file: str,
+) -> dict[str, Any]:  # fmt: skip
+    if not extra.hinges:
+        what = "a linkage needs hinges: draw points on a layer such as HINGES, or leave out `kind`"
+        raise DrawingError("hinge", what, file)
+    fields = _common(name, extra, options, of_one=False)
+    fields["bodies"] = _shapes(bodies, options, file)
+    touching = dict.fromkeys(joint.between for joint in _joints(bodies, ground))
+    sides: dict[str, dict[str, Any]] = {}
+    for direction, sign in (("positive", "+"), ("negative", "-")):
+        hinges = [each for each in extra.hinges if each[2] in ("", sign)]
+        if not hinges:
+            continue
+        joints: dict[str, Any] = {}
+        lead = ""
+        for at, on, _ in sorted(hinges, key=lambda each: (len(each[1]), each[0].imag, each[0].real)):
+            key = LETTERS[len(joints)] if len(joints) < len(LETTERS) else f"J{len(joints) + 1}"
+            joints[key] = (
+                {"pivot": on[0], "at": rounded(at)} if len(on) == 1 else {"hinge": list(on), "at": rounded(at)}
+            )
+            lead = lead or (on[0] if len(on) == 1 else "")
+        if not lead:
+            what = f"no hinge of the {direction} direction is on the ground: one must be on a single body"
+            raise DrawingError("hinge", what, file)
+        for body, at, along, sense in extra.supports:
+            if sense in ("", sign):
+                key = LETTERS[len(joints)] if len(joints) < len(LETTERS) else f"J{len(joints) + 1}"
+                joints[key] = _slide(body, at, along)
+        hinged = {frozenset(on) if len(on) == 2 else frozenset([on[0], "ground"]) for _, on, _ in hinges}
+        for pair in touching:  # what touches and has no hinge stays together
+            if frozenset(pair) not in hinged:
+                joints[f"{pair[0]} on {pair[1]}"] = {"fixed": list(pair)}
+        sides[direction] = {"lead": lead, "joints": joints}
+    for direction in ("positive", "negative"):
+        fields[direction] = sides.get(direction, "mirror")
+    return fields
+
+
+FIELDS = {"rigid_body": _rigid_body, "assembly": _assembly, "linkage": _linkage}
+
+
+def _check(result: Imported, file: str) -> None:
+    """Raise `DrawingError` "mechanism" if the mechanism refuses the fields, by what can be seen without its motion."""
+    from pydantic import ValidationError
+
+    joined = {name for joint in result.joints for name in joint.between}
+    if len(result.bodies) > MAX_CHECKED and all(body.name in joined for body in result.bodies):
+        return  # commands check it when they read the file, which takes seconds
+    try:
+        Registry()[result.kind].model_validate(dict(result.fields), context={"folder": None, "weights": []})
+    except ValidationError as error:
+        faults = error.errors(include_url=False)
+        words = [f"{'.'.join(map(str, fault['loc'])) or result.kind}: {fault['msg']}" for fault in faults[:3]]
+        raise DrawingError("mechanism", f"{result.kind} cannot take it: {'; '.join(words)}", file) from None

@@ -1,0 +1,249 @@
+"""The body that a mesh encloses: its corners merged, its shells sorted, its volume, centre of mass and inertia."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.arrays import Bools, Reals
+from rocking_cli.io.drawings.contract import DrawingError
+
+Triangles = NDArray[np.int64]
+Names = NDArray[np.intp]
+CRUMB = 1e-3  # volume of a shell over that of the largest, below which it is left out
+MAX_SHELLS = 100  # larger ones
+PROBES = 5  # points of a shell at which it is looked whether it lies in another
+PER_BATCH = 1 << 18  # triangles whose integrals are summed at once
+LEAST_VOLUME = 1e-9  # volume over the cube of the size, below which there is no inside
+MIX, HALF = np.uint64(0x9E3779B97F4A7C15), np.uint64(32)  # of the keys by which equal points are found
+
+
+@dataclass(frozen=True)
+class MeshNote:
+    """What was done to a mesh, or left out of it.
+
+    Parameters
+    ----------
+    kind : str
+        A word for it.
+    count : int
+        How many times.
+    words : str
+        A sentence without a full stop.
+    at : sequence of sequence of float
+        Where, [x, y, z] [m], in the coordinates of the file.
+    """
+
+    kind: str
+    count: int
+    words: str
+    at: Sequence[Sequence[float]] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Moments:
+    """Volume [m3], its centroid [m], and its inertia about this point over the density [m5], shape (3, 3)."""
+
+    volume: float
+    centroid: Reals
+    inertia: Reals
+
+
+def merged(points: Reals, triangles: Triangles) -> tuple[Reals, Triangles]:
+    """Return corners without those at one place, and triangles that name these; triangles without area are dropped."""
+    points = np.ascontiguousarray(points + 0.0)  # turns -0 into 0
+    key = np.zeros(len(points), np.uint64)
+    for bits in points.view(np.uint64).T:  # of numbers in single precision, the lower half is zero
+        key = (key ^ (bits >> HALF) ^ bits) * MIX
+        key ^= key >> HALF
+    order = key.argsort()
+    new = np.append(True, np.diff(key[order]) != 0)
+    names, first = np.empty(len(key), np.intp), np.minimum.reduceat(order, np.flatnonzero(new))
+    names[order] = np.cumsum(new) - 1
+    # In the order of the file, neighbours are near in memory, so that all that follows takes half the time.
+    kept = np.argsort(first)
+    first, names = first[kept], np.argsort(kept)[names]
+    if (points[first][names] != points).any():  # two places have one key
+        _, first, names = np.unique(points, axis=0, return_index=True, return_inverse=True)
+    triangles = names.ravel()[triangles]
+    a, b, c = triangles.T
+    return points[first], triangles[(a != b) & (b != c) & (c != a)]
+
+
+def loose_sides(triangles: Triangles, count: int) -> tuple[Triangles, int]:
+    """Return the sides of triangles that are not passed as often there as back, and how many of them lie in pairs.
+
+    Parameters
+    ----------
+    triangles : ndarray of int, shape (m, 3)
+        Corners of the triangles, below `count`.
+    count : int
+        Number of corners.
+
+    Returns
+    -------
+    ndarray of int, shape (k, 2)
+        The sides, in the sense in which they are passed once too often.
+    int
+        How many of these are passed twice in one sense: there, a triangle is turned over.
+    """
+    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    there, back = (
+        np.sort(np.minimum(start, end)[way] * count + np.maximum(start, end)[way]) for way in (start < end, start > end)
+    )
+    if np.array_equal(there, back):
+        return np.zeros((0, 2), np.int64), 0
+    sides, names = np.unique(np.concatenate([there, back]), return_inverse=True)
+    of_each = np.bincount(names, np.repeat([1.0, -1.0], [there.size, back.size])).astype(np.int64)
+    passes = np.bincount(names)[of_each != 0]
+    ends = np.stack(np.divmod(sides, count), axis=1)[of_each != 0]
+    ends = np.where(of_each[of_each != 0, None] > 0, ends, ends[:, ::-1])
+    return ends, int((passes % 2 == 0).sum())
+
+
+def joined(sides: Triangles, count: int) -> NDArray[np.int32]:
+    """Return a number for each of `count` corners: the same for those that sides, or triangles, join."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    pairs = np.concatenate([sides[:, [k, k + 1]] for k in range(sides.shape[1] - 1)])
+    graph = coo_array((np.ones(len(pairs), np.int8), (pairs[:, 0], pairs[:, 1])), (count, count))
+    labels: NDArray[np.int32] = connected_components(graph, directed=False)[1]
+    return labels
+
+
+def six_volumes(points: Reals, triangles: Triangles) -> Reals:
+    """Return six times the signed volume between each triangle and the origin [m3]."""
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    return np.asarray(np.einsum("ij,ij->i", a, np.cross(b, c)))
+
+
+def moments(points: Reals, triangles: Triangles) -> Moments:
+    """Return the moments of the volume that a closed surface encloses."""
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    points = points - middle
+    volume, first, second = 0.0, np.zeros(3), np.zeros((3, 3))
+    for k in range(0, len(triangles), PER_BATCH):
+        some = triangles[k : k + PER_BATCH]
+        six = six_volumes(points, some)
+        corners = [points[some[:, j]] for j in range(3)]
+        total = corners[0] + corners[1] + corners[2]
+        volume += six.sum() / 6
+        first += six @ total / 24
+        for each in (*corners, total):
+            second += (each * six[:, None]).T @ each / 120
+    centroid = first / volume
+    second -= volume * np.outer(centroid, centroid)
+    return Moments(float(volume), centroid + middle, np.trace(second) * np.eye(3) - second)
+
+
+def closed(points: Reals, triangles: Triangles, file: str) -> None:
+    """Raise `DrawingError` if a surface has holes."""
+    ends, turned = loose_sides(triangles, len(points))
+    if not len(ends):
+        return
+    at = [points[ends[0, 0]].tolist()]
+    if turned == len(ends):
+        what = f"its surface is closed, but {turned:,} sides lie between triangles of which one is turned over"
+        raise DrawingError("open", what, file, at, "turn its faces the same way out, or `hull`, the convex hull")
+    labels = joined(ends, len(points))[ends[:, 0]]
+    boxes = [
+        (float(np.linalg.norm(size)), np.sort(size)[::-1])
+        for each in np.unique(labels)[:MAX_SHELLS]
+        for size in [np.ptp(points[ends[labels == each]].reshape(-1, 3), axis=0)]
+    ]
+    long, wide = max(boxes, key=lambda box: box[0])[1][:2]
+    what = f"its surface is not closed: {len(ends):,} loose sides, the largest hole {long:.3g} x {wide:.3g} m"
+    raise DrawingError("open", what, file, at, "close its holes, or `hull`, the convex hull, which weighs more")
+
+
+def hull_of(points: Reals, file: str) -> tuple[Reals, Triangles]:
+    """Return the convex hull of points as corners and triangles that face outwards."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        hull = ConvexHull(points - points.mean(axis=0))
+    except (QhullError, ValueError):
+        raise DrawingError("thin", "encloses nothing: all its points lie in one plane", file) from None
+    triangles = hull.simplices.astype(np.int64)
+    a, b, c = (hull.points[triangles[:, k]] for k in range(3))
+    inwards = np.einsum("ij,ij->i", np.cross(b - a, c - a), hull.equations[:, :3]) < 0
+    triangles[inwards] = triangles[inwards, ::-1]
+    return merged(points, triangles)
+
+
+def solid(points: Reals, triangles: Triangles, file: str) -> tuple[Triangles, list[MeshNote]]:
+    """Return the triangles of one body: outer surfaces face outwards, cavities inwards, and crumbs are left out.
+
+    Raises `DrawingError` if they enclose nothing, or have too many shells.
+    """
+    points = points - (points.min(axis=0) + points.max(axis=0)) / 2
+    shell = joined(triangles, len(points))[triangles[:, 0]].astype(np.intp)
+    names, shell = np.unique(shell, return_inverse=True)
+    volumes = np.bincount(shell, six_volumes(points, triangles)) / 6
+    size = float(np.abs(volumes).max())
+    if not size > LEAST_VOLUME * float(np.ptp(points, axis=0).max()) ** 3:
+        raise DrawingError("thin", "encloses nothing: its surface has no inside", file)
+    notes = list[MeshNote]()
+
+    def note(kind: str, which: Bools, one: str, many: str) -> None:
+        count = int(which.sum())
+        if count:
+            at = [points[triangles[(shell == k).argmax(), 0]].tolist() for k in np.flatnonzero(which)[:MAX_SHELLS]]
+            words = f"{one if count == 1 else many.format(count)}, {np.abs(volumes[which]).sum():.3g} m3"
+            notes.append(MeshNote(kind, count, words, at))
+
+    if inside_out := bool(volumes[np.abs(volumes).argmax()] < 0):
+        triangles, volumes = triangles[:, ::-1], -volumes
+    counts = np.abs(volumes) >= CRUMB * size
+    if counts.sum() > MAX_SHELLS:
+        raise DrawingError("shells", f"has {counts.sum():,} closed surfaces", file, hint="keep those of one body")
+    within = _depths(points, triangles, shell, np.flatnonzero(counts), len(names)) % 2 == 1
+    turned = counts & ~within & (volumes < 0)
+    note("crumbs", ~counts, "1 crumb is left out", "{} crumbs are left out")
+    note("cavities", counts & within & (volumes < 0), "1 cavity is cut out", "{} cavities are cut out")
+    swallowed = counts & within & (volumes > 0)
+    note("within", swallowed, "1 part inside the body, which faces outwards as no cavity does, is left out",
+         "{} parts inside the body, which face outwards as no cavity does, are left out")  # fmt: skip
+    note("parts", counts & ~within & (np.abs(volumes) < size), "1 more part counts as of the body",
+         "{} more parts count as of the body")  # fmt: skip
+    note("turned", turned | inside_out & counts, "1 surface is turned outwards", "{} surfaces are turned outwards")
+    triangles = np.where(turned[shell, None], triangles[:, ::-1], triangles)
+    return triangles[(counts & ~swallowed)[shell]], notes
+
+
+def _depths(points: Reals, triangles: Triangles, shell: Names, which: Names, count: int) -> Names:
+    """Return in how many of some shells each of them lies, by rays upwards from some of its points."""
+    depths = np.zeros(count, np.intp)
+    if len(which) == 1:
+        return depths
+    corners = points[triangles]
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    for k in which:
+        mine = np.flatnonzero(shell == k)
+        probes = corners[mine[np.linspace(0, len(mine) - 1, PROBES).astype(np.intp)]].mean(axis=1)
+        contains = np.zeros(count)
+        for p in probes:
+            over = (low[:, :2] <= p[:2]).all(axis=1) & (high[:, :2] >= p[:2]).all(axis=1) & (high[:, 2] >= p[2])
+            over &= shell != k
+            crossed = np.bincount(shell[over], _crossings(corners[over], p), minlength=count)
+            contains += crossed != 0
+        depths[k] = (contains[which] > PROBES / 2).sum()
+    return depths
+
+
+def _crossings(corners: Reals, p: Reals) -> Reals:
+    """Return for each triangle whether a ray upwards from a point crosses it: 1 on the way out, -1 on the way in."""
+    ends = np.roll(corners, -1, axis=1)
+    swap = (corners[..., 1] > ends[..., 1])[..., None]
+    a, b = np.where(swap, ends, corners), np.where(swap, corners, ends)  # a side crosses alike in both its triangles
+    spans = (a[..., 1] > p[1]) != (b[..., 1] > p[1])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = (p[1] - a[..., 1]) / (b[..., 1] - a[..., 1])
+        right = spans & (a[..., 0] + share * (b[..., 0] - a[..., 0]) > p[0])
+        normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        z = corners[:, 0, 2] - ((p - corners[:, 0])[:, :2] * normal[:, :2]).sum(axis=1) / normal[:, 2]
+    return np.asarray(np.where((right.sum(axis=1) % 2 == 1) & (z > p[2]), np.sign(normal[:, 2]), 0.0))

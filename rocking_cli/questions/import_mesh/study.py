@@ -1,0 +1,271 @@
+"""A mesh as a rigid body that rocks about the edges of its foot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from rocking_cli.arrays import Reals
+from rocking_cli.core import Mechanism
+from rocking_cli.core.registry import Registry
+from rocking_cli.io.drawings.contract import DrawingError, MeshSurface
+from rocking_cli.questions.import_mesh.foot import (
+    AzimuthRow,
+    FootEdge,
+    LevelRow,
+    edges_of,
+    foot_of,
+    levels_of,
+    settled,
+    towards,
+    weakest_of,
+)
+from rocking_cli.questions.import_mesh.silhouette import sides_of, silhouette
+from rocking_cli.questions.import_mesh.solid import (
+    MeshNote,
+    Moments,
+    Triangles,
+    closed,
+    hull_of,
+    merged,
+    moments,
+    solid,
+)
+from rocking_cli.short_repr import short_repr
+from rocking_cli.units import KINDS, STANDARD_GRAVITY
+
+UPWARDS = {"z": np.eye(3), "y": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])}
+"""Turns from the axes of a file to z upwards, by the axis that points upwards there."""
+GRAVITY = float(STANDARD_GRAVITY)
+DIGITS = 7  # decimals of lengths in a file [m]
+ROLLS = 12  # sides of a foot from which it is called round
+GUESSES = ("mm", "cm", "m")
+
+
+@dataclass(frozen=True)
+class MeshOptions:
+    """How a mesh becomes a structure; see `rocking_cli.import_mesh`."""
+
+    units: str | None = None
+    density: float | None = None
+    level: float = 0.001
+    settle: bool = False
+    hull: bool = False
+    up: str = "z"
+
+
+@short_repr
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ImportedMesh:
+    """The body of a mesh, its foot, and how it starts to rock.
+
+    Parameters
+    ----------
+    file : str
+        The file.
+    format : str
+        Its format.
+    options : MeshOptions
+        How it was read.
+    points : ndarray, shape (n, 3)
+        Its points as it stands: z from the ground, x and y from below its centre of mass [m].
+    triangles : ndarray of int, shape (m, 3)
+        The triangles of its surface.
+    shift : sequence of float
+        Position of the origin, turned as the body is, from that of the file [m].
+    whole : Moments
+        Its volume, its centre of mass in these coordinates, and its inertia over the density.
+    turned : float
+        Angle by which it was laid down [deg].
+    foot : sequence of complex
+        Corners of its foot in plan, anticlockwise [m].
+    edges : sequence of FootEdge
+        The edges of its foot.
+    azimuths : sequence of AzimuthRow
+        How it starts to rock in the directions that were given.
+    weakest : FootEdge
+        The edge of least lambda.
+    levels : sequence of LevelRow
+        Its foot by other heights up to which points count as standing on the ground.
+    notes : sequence of MeshNote
+        What was done to the mesh.
+    """
+
+    file: str
+    format: str
+    options: MeshOptions
+    points: Reals
+    triangles: Triangles
+    shift: Sequence[float]
+    whole: Moments
+    turned: float
+    foot: Sequence[complex]
+    edges: Sequence[FootEdge]
+    azimuths: Sequence[AzimuthRow]
+    weakest: FootEdge
+    levels: Sequence[LevelRow]
+    notes: Sequence[MeshNote]
+
+    @property
+    def height(self) -> float:
+        """Height of the centre of mass [m]."""
+        return float(self.whole.centroid[2])
+
+    @property
+    def mass(self) -> float | None:
+        """Mass [kg]; None without a density."""
+        return None if self.options.density is None else self.options.density * self.whole.volume
+
+    @property
+    def is_round(self) -> bool:
+        """Whether the foot has so many sides that it rolls."""
+        return len(self.edges) >= ROLLS
+
+    @cached_property
+    def _sides(self) -> Triangles:
+        return sides_of(self.triangles)
+
+    @cached_property
+    def structures(self) -> Sequence[Mechanism]:
+        """The structure of each azimuth, or that of the weakest edge if none is given.
+
+        Raises `DrawingError` without a density.
+        """
+        return [self.structure(row) for row in self.azimuths] or [self.structure(None)]
+
+    def structure(self, row: AzimuthRow | None, name: str | None = None) -> Mechanism:
+        """Return the structure that rocks as the body does towards an azimuth, or over its weakest edge."""
+        if self.mass is None:
+            raise DrawingError("density", "the mass of the body is not known: give `density`", self.file)
+        edge, drive = (self.weakest, 1.0) if row is None else (row.edge, row.drive)
+        back = (row or towards(self.edges, edge.azimuth, self.height)).back
+        outline = silhouette(self.points, self._sides, np.radians(edge.azimuth))
+        fields: dict[str, Any] = {
+            "mass": _short(self.mass),
+            "centroid": [0.0, round(self.height, DIGITS)],
+            "inertia": _short(edge.inertia * self.mass),
+            "left_foot": [-round(back, DIGITS), 0.0],
+            "right_foot": [round(edge.c, DIGITS), 0.0],
+            "polygon": [[round(z.real, DIGITS) + 0.0, round(z.imag, DIGITS) + 0.0] for z in outline.tolist()],
+        }
+        if _short(drive) < 1:
+            fields["drive"] = _short(drive)
+        if name is not None:
+            fields["name"] = name
+        return Registry()["rigid_body"](**fields)
+
+
+def imported(surface: MeshSurface, file: str, options: MeshOptions, azimuths: Sequence[float] = ()) -> ImportedMesh:
+    """Return the body that a mesh encloses, as it stands on the ground.
+
+    Parameters
+    ----------
+    surface : MeshSurface
+        The mesh, as the file has it.
+    file : str
+        Name of the file, for messages.
+    options : MeshOptions
+        Units, density, and how it stands.
+    azimuths : sequence of float
+        Directions of the motion, anticlockwise from the x axis of the mesh [deg].
+
+    Raises
+    ------
+    DrawingError
+        If the units are missing; if the surface is not closed or encloses nothing; if the body does not stand.
+    """
+    scale = _scale(surface, file, options.units)
+    turn = UPWARDS[options.up]
+    points, notes = surface.points @ turn.T * scale, list[MeshNote]()
+    points, triangles = merged(points, surface.triangles) if len(surface.triangles) else (points, surface.triangles)
+    if options.hull:
+        enclosed = _volume(points, triangles)
+        points, triangles = hull_of(points, file)
+    elif not len(triangles):
+        what = f"is a cloud of {len(points):,} points without faces, which encloses nothing"
+        advice = "make a surface of it, or `hull`, the convex hull, which weighs more"
+        raise DrawingError("open", what, file, hint=advice)
+    else:
+        closed(points, triangles, file)
+    triangles, shells = solid(points, triangles, file)
+    notes += [replace(each, at=(np.array(each.at) @ turn).tolist()) for each in shells]
+    points, triangles = _used(points, triangles)
+    whole, turned = moments(points, triangles), 0.0
+    if options.hull:
+        notes.append(_hull_note(whole.volume, enclosed))
+    if options.settle:
+        way, turned = settled(*((points, triangles) if options.hull else hull_of(points, file)), whole.centroid)
+        notes.append(MeshNote("settled", 1, f"laid down on the facet of its hull by a turn of {turned:.3g} degrees"))
+        points = points @ way.T
+        whole = Moments(whole.volume, way @ whole.centroid, way @ whole.inertia @ way.T)
+    shift = np.array([*whole.centroid[:2], points[:, 2].min()])
+    points = points - shift
+    whole = Moments(whole.volume, whole.centroid - shift, whole.inertia)
+    height = float(whole.centroid[2])
+    corners = foot_of(points, options.level)
+    edges = _standing(points, whole, corners, options.level, file)
+    return ImportedMesh(
+        file=file, format=surface.format, options=options, points=points, triangles=triangles, shift=shift.tolist(),
+        whole=whole, turned=turned, foot=corners, edges=edges,
+        azimuths=[towards(edges, azimuth, height) for azimuth in azimuths], weakest=weakest_of(edges),
+        levels=levels_of(points, height, whole, GRAVITY), notes=notes,
+    )  # fmt: skip
+
+
+def _scale(surface: MeshSurface, file: str, units: str | None) -> float:
+    """Return the size of a unit of a mesh [m]. Raises `DrawingError` if it is not given."""
+    if units is not None:
+        return float(KINDS["length"][units])
+    size = float(np.ptp(surface.points, axis=0).max())
+    sizes = ", ".join(f"{size * float(KINDS['length'][unit]):.4g} m if {unit}" for unit in GUESSES)
+    what = f"a mesh does not say its units: give `units` (it is {size:.4g} units large: {sizes})"
+    raise DrawingError("units", what, file)
+
+
+def _short(number: float) -> float:
+    """Return a number without the digits of rounding errors."""
+    return float(f"{number:.12g}")
+
+
+def _used(points: Reals, triangles: Triangles) -> tuple[Reals, Triangles]:
+    """Return the points that triangles use, and the triangles by these."""
+    used = np.zeros(len(points), np.bool_)
+    used[triangles.ravel()] = True
+    return points[used], (np.cumsum(used) - 1)[triangles]
+
+
+def _volume(points: Reals, triangles: Triangles) -> float | None:
+    """Return the volume that a surface encloses [m3]; None if it encloses none."""
+    try:
+        closed(points, triangles, "")
+        return moments(points, solid(points, triangles, "")[0]).volume if len(triangles) else None
+    except DrawingError:
+        return None
+
+
+def _hull_note(hull: float, enclosed: float | None) -> MeshNote:
+    words = "the body is the convex hull of the mesh, which weighs more than what it encloses"
+    if enclosed is not None:
+        words = f"the body is the convex hull of the mesh, which weighs {100 * (hull / enclosed - 1):.2g} % more"
+    return MeshNote("hull", 1, words)
+
+
+def _standing(points: Reals, whole: Moments, corners: Sequence[complex], level: float, file: str) -> Sequence[FootEdge]:
+    """Return the edges of a foot. Raises `DrawingError` if the body does not stand on it."""
+    within = f"within {1000 * level:g} mm"
+    if len(corners) < 3:
+        angle = settled(*hull_of(points, file), whole.centroid)[1]
+        on = "one point" if len(corners) < 2 else "a line"
+        what = f"stands on {on} {within} of the ground, {angle:.2f} degrees from a facet of its hull"
+        at = [[each.real, each.imag] for each in corners]
+        raise DrawingError("point", what, file, at, "`settle` lays it down; a larger `level` takes in more points")
+    edges = edges_of(corners, float(whole.centroid[2]), whole, GRAVITY)
+    least = min(each.c for each in edges)
+    if not least > 0:
+        what = f"its centre of mass is not above its foot {within} of the ground, but {-least:.3g} m beside it"
+        raise DrawingError("falls", what, file, [[0.0, 0.0]], "`settle` lays it down; check `up` and `level`")
+    return edges

@@ -1,0 +1,240 @@
+"""`rk.import_mesh`: make a structure of the mesh of a body, such as the scan of a statue."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from hashlib import sha256
+from pathlib import Path
+from textwrap import wrap
+from typing import TYPE_CHECKING
+
+from rocking_cli.ask.answer import Answer, drawn
+from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.errors import InputError, Problem, RockingError
+from rocking_cli.text import one_line
+
+if TYPE_CHECKING:
+    from rocking_cli.core import Mechanism
+    from rocking_cli.io.drawings.contract import MeshSurface
+    from rocking_cli.questions.import_mesh.foot import AzimuthRow
+    from rocking_cli.questions.import_mesh.study import ImportedMesh, MeshOptions
+
+LEVEL = 0.001
+MAX_AZIMUTHS = 720
+COMMENT_WIDTH = 110
+AZIMUTH_HINT = "give an angle in degrees such as 30, or FROM:TO:STEP such as 0:350:10"
+
+
+@takes_numbers
+def import_mesh(
+    path: str | Path,
+    *,
+    units: str | None = None,
+    density: float | None = None,
+    azimuth: str | float | Sequence[float] | None = None,
+    level: float = LEVEL,
+    settle: bool = False,
+    hull: bool = False,
+    up: str = "z",
+    north: float | None = None,
+    out: str | Path | None = None,
+    page: str | Path | None = None,
+    watch: Watcher = SILENT,
+) -> Answer[ImportedMesh]:
+    """Make a structure of the mesh of a body, such as the scan of a statue: OBJ, PLY or STL.
+
+    Parameters
+    ----------
+    path : str or Path
+        The mesh, a closed surface.
+    units : str
+        Unit of its coordinates, such as "mm"; a mesh does not say it.
+    density : float, optional
+        Density [kg/m3]; needed for a structure, not for its uplift.
+    azimuth : float, str or sequence of float, optional
+        Direction of the motion, anticlockwise from the x axis of the mesh [deg]; several make a structure each, also
+        as text "FROM:TO:STEP". By default the body rocks over its weakest edge, driven by the whole motion.
+    level : float
+        Height above the ground up to which points bear [m]: they make the foot.
+    settle : bool
+        Lay the body down on the facet of its convex hull below its centre of mass.
+    hull : bool
+        Take the convex hull of the mesh, which need not be closed then.
+    up : {"z", "y"}
+        Axis of the mesh that points upwards.
+    north : float, optional
+        Azimuth of the north, for the plot and the page [deg].
+    out : str or Path, optional
+        Write the structure to this YAML file; of several azimuths one each, such as `statue-030.yaml`.
+    page : str or Path, optional
+        Write a page of HTML on which the body can be turned.
+    watch : Watcher
+        Told what was read and written.
+
+    Returns
+    -------
+    Answer of ImportedMesh
+        The foot, its edges, how the body starts to rock at each azimuth, what was done to the mesh, and `structures`.
+
+    Raises
+    ------
+    InputError
+        If a value is not valid, or a file cannot be read or written. A `DrawingError` has the reason in `refused`, such
+        as "units", "open", "point" or "falls".
+
+    Notes
+    -----
+    In a direction a, lambda is t(a)/h: the way from below the centre of mass to the rim of the foot, over the height of
+    the centre of mass. The body rocks over the edge it meets there, with the critical rotation of this edge.
+
+    Examples
+    --------
+    A tetrahedron on the ground, towards one of its sides and away from it:
+
+    >>> import rocking_cli as rk
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> mesh = "v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nv 0 0 4\\nf 1 3 2\\nf 1 2 4\\nf 2 3 4\\nf 1 4 3\\n"
+    >>> with TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "spire.obj"
+    ...     _ = path.write_text(mesh)
+    ...     answer = rk.import_mesh(path, units="m", azimuth=[270, 90])
+    >>> [round(row.lambda_, 12) for row in answer.azimuths]
+    [0.25, 0.5]
+    """
+    from rocking_cli.ask.drawings import read_drawing
+    from rocking_cli.io.drawings.contract import MeshSurface
+    from rocking_cli.io.files import check_writable, keep_apart
+    from rocking_cli.questions.import_mesh.study import MeshOptions
+    from rocking_cli.units import KINDS
+
+    for field, value, known in (("units", units, tuple(KINDS["length"])), ("up", up, ("z", "y"))):
+        if value is not None and value not in known:
+            raise InputError(Problem(f"must be one of {', '.join(known)}, got {value!r}", field=f"`{field}`"))
+    if density is not None and not 0 < density <= 1e6:
+        raise InputError(Problem(f"must be above 0 and at most 1e6 kg/m3, got {density:g}", field="`density`"))
+    if not 0 <= level < 100:
+        raise InputError(Problem(f"must be a height of at least 0 m, got {level:g}", field="`level`"))
+    azimuths = azimuths_of(azimuth)
+    options = MeshOptions(units, density, level, settle, hull, up)
+    places = [] if out is None else places_of(Path(out), azimuths)
+    pages = [] if page is None else [Path(page)]
+    if pages and pages[0].suffix.lower() != ".html":
+        raise InputError(Problem("give a file name that ends in .html", str(page), field="`page`"))
+    outputs = [*(("`out`", place) for place in places), *(("`page`", place) for place in pages)]
+    keep_apart(outputs, [str(path)])
+    for _, place in outputs:
+        check_writable(place)
+    surface, content = read_drawing(path)
+    if not isinstance(surface, MeshSurface):
+        raise InputError(Problem("this is a drawing, not a mesh", str(path), hint="use rk.import_drawing"))
+    return of_surface(
+        surface, str(path), sha256(content).hexdigest(), options, azimuths, north, places, pages, watch
+    )  # fmt: skip
+
+
+def of_surface(
+    surface: MeshSurface,
+    file: str,
+    digest: str,
+    options: MeshOptions,
+    azimuths: Sequence[float],
+    north: float | None,
+    places: Sequence[Path],
+    pages: Sequence[Path],
+    watch: Watcher,
+) -> Answer[ImportedMesh]:
+    """Return the answer of a mesh that was read, and write its files; `digest` is the SHA-256 of the file."""
+    from rocking_cli.questions.import_mesh.study import imported
+    from rocking_cli.questions.import_mesh.view import columns, sentences, view
+
+    body = imported(surface, file, options, azimuths)
+    title = f"{one_line(Path(file).name)}: foot from below the centre of mass, over its height"
+    command = command_of(body, azimuths)
+    written = list[str]()
+    rows: list[AzimuthRow | None] = [*body.azimuths] or [None]
+    for place, structure, row in zip(places, body.structures if places else (), rows if places else (), strict=True):
+        edge = body.weakest if row is None else row.edge
+        where = "over its weakest edge" if row is None else f"towards {row.azimuth:g} degrees"
+        at = ", ".join(f"{each:.7g}" for each in body.shift)
+        head = [
+            f"The body of {Path(file).name}, rocking {where}, by: {command}",
+            f"SHA-256 of the mesh: {digest}",
+            f"It turns over edge {edge.number} of {len(body.edges)}, whose normal, here to the right, is at "
+            f"{edge.azimuth:.6g} degrees. x = 0 is below its centre of mass, at ({at}) m in the mesh.",
+            *sentences(body),
+        ]
+        written += _write(place, _text(structure, head), watch)
+    for place in pages:
+        from rocking_cli.questions.import_mesh.page import render
+
+        written += _write(place, render(body, f"{Path(file).name} as a rocking body", [command], north), watch)
+    figure = drawn("questions.import_mesh.picture.draw_compass", body, title, north)
+    return Answer("imported mesh", body, view(body, written), partial(columns, body), figure)
+
+
+def azimuths_of(given: str | float | Sequence[float] | None) -> list[float]:
+    """Return azimuths from a number, several, or text such as 0:350:10 [deg]. Raises `InputError`."""
+    if given is None:
+        return []
+    if not isinstance(given, str):
+        azimuths = [float(each) for each in (given if isinstance(given, Sequence) else [given])]
+    else:
+        try:
+            start, *more = [float(each) for each in given.split(":")]
+            end, step = more or (start, 1.0)
+        except ValueError:
+            raise InputError(Problem(f"is not a direction: {given!r}", field="`azimuth`", hint=AZIMUTH_HINT)) from None
+        if not step > 0 or not start <= end < start + 360 * MAX_AZIMUTHS:
+            raise InputError(Problem(f"{given!r} is not increasing", field="`azimuth`", hint=AZIMUTH_HINT))
+        if (end - start) / step >= MAX_AZIMUTHS:
+            raise InputError(Problem(f"{given!r} has more than {MAX_AZIMUTHS} directions", field="`azimuth`"))
+        azimuths = [start + k * step for k in range(int((end - start) / step + 1e-9) + 1)]
+    if not all(abs(each) <= 1e6 for each in azimuths) or len(azimuths) > MAX_AZIMUTHS:
+        raise InputError(Problem("must be at most 720 finite angles", field="`azimuth`", hint=AZIMUTH_HINT))
+    return azimuths
+
+
+def places_of(out: Path, azimuths: Sequence[float]) -> list[Path]:
+    """Return the files of the structures: one name, or several with the azimuths in them."""
+    if len(azimuths) < 2:
+        return [out]
+    names = [f"{each % 360:07.3f}".rstrip("0").rstrip(".") for each in azimuths]
+    return [out.with_name(f"{out.stem}-{name}{out.suffix}") for name in names]
+
+
+def command_of(found: ImportedMesh, azimuths: Sequence[float]) -> str:
+    """Return the command that imports a mesh in this way."""
+    options = found.options
+    given = {
+        "units": options.units,
+        "density": None if options.density is None else f"{options.density:g}",
+        "azimuth": f"{azimuths[0]:g}" if len(azimuths) == 1 else None,
+        "level": None if options.level == LEVEL else f"{options.level:g}m",
+        "up": None if options.up == "z" else options.up,
+    }
+    words = [f"--{name} {value}" for name, value in given.items() if value is not None]
+    words += [f"--{name}" for name in ("settle", "hull") if getattr(options, name)]
+    return " ".join(["rocking import", one_line(Path(found.file).name), *words])
+
+
+def _text(structure: Mechanism, head: Sequence[str]) -> str:
+    from rocking_cli.core.structure_file import structure_text
+
+    lines = [line for each in head for line in wrap(one_line(each), COMMENT_WIDTH, break_on_hyphens=False)]
+    return structure_text(structure, "\n# ".join(lines))
+
+
+def _write(place: Path, text: str, watch: Watcher) -> list[str]:
+    """Write a file, and return its name; an error is told to the watcher."""
+    from rocking_cli.io.files import write_whole
+
+    try:
+        write_whole(place, lambda stream: stream.write(text.encode("utf-8")))
+    except RockingError as error:
+        watch.unwritten(error)
+        return []
+    watch.note(f"wrote {place}")
+    return [str(place)]
