@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from rocking_cli.cli import options
+from rocking_cli.cli import complete, options
 from rocking_cli.cli.groups import Output
 from rocking_cli.cli.quantities import NUMBER
 
@@ -18,10 +18,14 @@ from rocking_cli.cli.quantities import NUMBER
     help="Rotation to draw, as a multiple of phi_cr, or of the kinematic limit if there is no phi_cr.  "
     "[default: 1, 0.1]",
 )  # fmt: skip
-@options.plot("Output file", "[default: FILE with .png, in this folder; none with --json]")
+@options.plot("Output file", "[default: FILE with .png, in this folder; none with --json or --dxf]")
+@click.option(
+    "--dxf", callback=options.output_path(".dxf"), metavar="FILE.dxf", shell_complete=complete.files,
+    help="Write the drawing as DXF, in metres, from which `rocking import` makes the structure again.",
+)  # fmt: skip
 @options.as_json
 @options.grouped(output=Output)
-def command(file: str | Path, at: float | None, output: Output) -> None:
+def command(file: str | Path, at: float | None, dxf: Path | None, output: Output) -> None:
     """Draw a structure at rest with its dimensions, and displaced in both directions, to scale.
 
     Check the drawing before you trust a number: is this the intended mechanism, and were the dimensions read correctly?
@@ -35,12 +39,13 @@ def command(file: str | Path, at: float | None, output: Output) -> None:
     Example:
       rocking draw frame.yaml
       rocking draw arch.yaml --at 0.5 --plot arch.svg
+      rocking draw wall.yaml --dxf wall.dxf
     """
     from rocking_cli.io.files import check_writable
     from rocking_cli.questions.draw.verb import draw
 
-    if output.plot is None and not output.as_json:
+    if output.plot is None and dxf is None and not output.as_json:
         output = Output(as_json=False, plot=(plot := Path(f"{options.stem(file)}.png")))
         check_writable(plot)
     output.keep_apart(file)
-    output.show(draw(file, at=at, watch=output.watch))
+    output.show(draw(file, at=at, dxf=dxf, watch=output.watch))

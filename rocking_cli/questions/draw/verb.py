@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rocking_cli.ask.answer import Answer, drawn
@@ -18,7 +19,9 @@ if TYPE_CHECKING:
 
 
 @takes_numbers
-def draw(structure: StructureLike, *, at: float | None = None, watch: Watcher = SILENT) -> Answer[Picture]:
+def draw(
+    structure: StructureLike, *, at: float | None = None, dxf: str | Path | None = None, watch: Watcher = SILENT
+) -> Answer[Picture]:
     """Draw a structure at rest with its dimensions, and displaced in both directions.
 
     Parameters
@@ -28,8 +31,11 @@ def draw(structure: StructureLike, *, at: float | None = None, watch: Watcher = 
     at : float, optional
         Rotation to draw, as a multiple of phi_cr, or of the kinematic limit if there is no phi_cr; at most the
         kinematic limit. By default 1, or a rotation that is easy to see.
+    dxf : str or Path, optional
+        File .dxf to write the drawing to as well, in metres, from which `rocking import` makes the structure again.
+        Needs ezdxf.
     watch : Watcher
-        Told what is doubtful about the structure.
+        Told what is doubtful about the structure, what the file cannot hold, and that it was written.
 
     Returns
     -------
@@ -66,8 +72,24 @@ def draw(structure: StructureLike, *, at: float | None = None, watch: Watcher = 
         of = "the limit" if None in drawing.phi_cr.values() else "phi_cr"
         what = f"{at:g} times {of} is beyond the kinematic limit of the mechanism"
         raise InputError(Problem(what, field="`at`", hint=f"at most {drawing.furthest:.4g} times {of}"))
+    if dxf is not None:
+        _write(Path(dxf), drawing, at, watch)
     figure = drawn("plotting.structure.draw_structure", drawing, heading(ready.mechanism), at)
     return Answer("drawing", drawing, view(drawing), partial(_columns, drawing), figure)
+
+
+def _write(file: Path, drawing: Picture, at: float | None, watch: Watcher) -> None:
+    """Write a drawing as a DXF file, and tell what it cannot hold."""
+    from rocking_cli.io.files import write_whole
+    from rocking_cli.questions.draw.drawing_file import dxf_of, unsaid
+
+    if file.suffix.lower() != ".dxf":
+        raise InputError(Problem("give a file name that ends in .dxf", str(file)))
+    content = dxf_of(drawing, at)
+    write_whole(file, lambda stream: stream.write(content))
+    watch.note(f"wrote {file}")
+    if lacking := unsaid(drawing):
+        watch.warn(f"{file} does not tell {', '.join(lacking)}: add it to the structure that you import")
 
 
 def _columns(found: Picture) -> Columns:
