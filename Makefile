@@ -95,6 +95,7 @@ bench: setup  ## Ratios within one run; see docs/performance.md. RECORD=FILE for
 	$(BIN)/python benchmarks/linkages.py
 	$(BIN)/python benchmarks/joints.py
 	$(BIN)/python benchmarks/walls.py
+	$(BIN)/python benchmarks/importing.py
 
 fuzz: setup  ## Hostile records, structures and command lines; INPUTS=100000 is how many
 	$(BIN)/python -c "import os, sys, pytest; os.environ['ROCKING_FUZZ'] = '$(or $(INPUTS),10000)'; sys.exit(pytest.main(['-q', 'tests/cli/test_fuzz.py']))"

@@ -1,4 +1,4 @@
-"""Runs what docs/python.md shows, line by line, in a folder of its own with the examples in it.
+"""Runs what docs/python.md and docs/import.md show, line by line, in a folder of its own with the examples in it.
 
 python docs/make_python.py            # part of make docs
 """
@@ -15,26 +15,29 @@ from tempfile import TemporaryDirectory
 
 from rocking_cli import DoubtWarning
 
-PAGE = Path(__file__).resolve().parent / "python.md"
+DOCS = Path(__file__).resolve().parent
+PAGES = ("python.md", "import.md")
 
 
-def run(folder: Path) -> int:
-    """Count the lines of the page whose output differs from the page; pictures and files are left in the folder."""
-    shutil.copytree(PAGE.parents[1] / "examples", folder / "examples")
+def run(folder: Path, page: str) -> int:
+    """Count the lines of a page whose output differs from the page; pictures and files are left in the folder."""
+    shutil.copytree(DOCS.parent / "examples", folder / "examples")
     with chdir(folder), warnings.catch_warnings():
-        warnings.simplefilter("ignore", DoubtWarning)  # the mechanism that the page makes is unverified
-        return doctest.testfile(str(PAGE), module_relative=False, optionflags=doctest.NORMALIZE_WHITESPACE).failed
+        warnings.simplefilter("ignore", DoubtWarning)  # the mechanism that a page makes is unverified
+        return doctest.testfile(
+            str(DOCS / page), module_relative=False, optionflags=doctest.NORMALIZE_WHITESPACE
+        ).failed
 
 
 def script() -> str:
-    """Return the lines of the page without their output, for a type checker."""
-    return doctest.script_from_examples(PAGE.read_text(encoding="utf-8"))
+    """Return the lines of the pages without their output, for a type checker."""
+    return "\n".join(doctest.script_from_examples((DOCS / page).read_text(encoding="utf-8")) for page in PAGES)
 
 
 def main() -> None:
-    """Run it; the exit code tells whether all is as shown."""
+    """Run them; the exit code tells whether all is as shown."""
     with TemporaryDirectory() as folder:
-        sys.exit(bool(run(Path(folder))))
+        sys.exit(sum(run(Path(folder) / page, page) for page in PAGES) > 0)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,136 @@
+"""What an import of a drawing or a mesh costs, against half as many lines, outlines or triangles.
+
+    python benchmarks/importing.py
+
+Processor time of the verb, files included; the growth is the time over that of half the size.
+"""
+
+from __future__ import annotations
+
+import struct
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+import rocking_cli as rk
+
+SIDE, GAP = 1000.0, 2.0  # of a stone and between stones [mm]
+COLUMNS = 70
+
+
+def corners(count: int) -> list[list[tuple[float, float]]]:
+    """Return the corners of stones in rows [mm]."""
+    stones = []
+    for k in range(count):
+        x, y = (k % COLUMNS) * (SIDE + GAP), (k // COLUMNS) * (SIDE + GAP)
+        stones.append([(x, y), (x + SIDE, y), (x + SIDE, y + SIDE), (x, y + SIDE)])
+    return stones
+
+
+def lines(path: Path, count: int) -> None:
+    """Write stones of four lines each as DXF."""
+    from ezdxf.filemanagement import new
+
+    drawing = new("R2010", units=4)
+    for stone in corners(count // 4):
+        for start, end in zip(stone, [*stone[1:], stone[0]], strict=True):
+            drawing.modelspace().add_line(start, end, dxfattribs={"layer": "STONES"})
+    drawing.saveas(path)
+
+
+def outlines(path: Path, count: int) -> None:
+    """Write stones as closed polylines in DXF."""
+    from ezdxf.filemanagement import new
+
+    drawing = new("R2010", units=4)
+    for stone in corners(count):
+        drawing.modelspace().add_lwpolyline(stone, close=True, dxfattribs={"layer": "STONES"})
+    drawing.saveas(path)
+
+
+def surface(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return corners and triangles of a wavy column on a flat foot."""
+    around = max(int((count / 4) ** 0.5), 8)
+    up = max(count // (2 * around), 2)
+    angle = 2 * np.pi * np.arange(around) / around
+    height = np.linspace(0.0, 3.0, up + 1)
+    radius = 0.5 + 0.05 * np.sin(4 * height)[:, None] * np.cos(3 * angle)
+    rings = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.repeat(height[:, None], around, 1)], axis=2)
+    points = np.concatenate([rings.reshape(-1, 3), [[0, 0, 0], [0, 0, 3.0]]])
+    k, j = np.meshgrid(np.arange(up), np.arange(around), indexing="ij")
+    a, b = (k * around + j).ravel(), (k * around + (j + 1) % around).ravel()
+    ring, last = np.arange(around), len(points) - 1
+    after = (ring + 1) % around
+    top = up * around
+    faces = [
+        np.stack([a, b, b + around], axis=1), np.stack([a, b + around, a + around], axis=1),
+        np.stack([np.full(around, last - 1), after, ring], axis=1),
+        np.stack([np.full(around, last), top + ring, top + after], axis=1),
+    ]  # fmt: skip
+    return points, np.concatenate(faces)
+
+
+def stl(path: Path, count: int) -> None:
+    """Write a column as binary STL."""
+    points, faces = surface(count)
+    rows = np.zeros(len(faces), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")])
+    rows["corners"] = points[faces]
+    path.write_bytes(bytes(80) + struct.pack("<I", len(faces)) + rows.tobytes())
+
+
+def ply(path: Path, count: int) -> None:
+    """Write a column as binary PLY."""
+    points, faces = surface(count)
+    rows = np.zeros(len(faces), dtype=[("count", "u1"), ("corners", "<i4", 3)])
+    rows["count"], rows["corners"] = 3, faces
+    head = (
+        f"ply\nformat binary_little_endian 1.0\nelement vertex {len(points)}\nproperty float x\nproperty float y\n"
+        f"property float z\nelement face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    path.write_bytes(head.encode() + points.astype("<f4").tobytes() + rows.tobytes())
+
+
+def obj(path: Path, count: int) -> None:
+    """Write a column as OBJ."""
+    points, faces = surface(count)
+    with path.open("w") as file:
+        np.savetxt(file, points, "v %.6f %.6f %.6f")
+        np.savetxt(file, faces + 1, "f %d %d %d")
+
+
+CASES: dict[str, tuple[str, int, Callable[[Path, int], None]]] = {
+    "lines of DXF": ("lines.dxf", 20_000, lines),
+    "closed outlines of DXF": ("outlines.dxf", 2_000, outlines),
+    "triangles, binary STL": ("mesh.stl", 1_000_000, stl),
+    "triangles, binary PLY": ("mesh.ply", 1_000_000, ply),
+    "triangles, OBJ": ("mesh.obj", 1_000_000, obj),
+}
+
+
+def spent(path: Path) -> float:
+    """Return the processor time of an import [s]."""
+    start = time.process_time()
+    if path.suffix == ".dxf":
+        rk.import_drawing(path, close="0.5 mm")
+    else:
+        rk.import_mesh(path, units="m")
+    return time.process_time() - start
+
+
+def main() -> None:
+    """Print the table."""
+    print("| what | number | s | over half as many |\n| --- | --- | --- | --- |")
+    with tempfile.TemporaryDirectory() as folder:
+        for name, (file, count, write) in CASES.items():
+            times = []
+            for size in (count // 100, count // 2, count):  # the first one loads the libraries
+                write(Path(folder) / file, size)
+                times.append(spent(Path(folder) / file))
+            print(f"| {name} | {count:,} | {times[2]:.2f} | {times[2] / times[1]:.1f} |")
+
+
+if __name__ == "__main__":
+    main()
