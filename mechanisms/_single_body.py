@@ -64,7 +64,7 @@ class SingleBody(Mechanism):
     def guiding_joints(self, direction: Direction) -> Sequence[Joint]:
         return (self._foot_joint(direction),)
 
-    def contacts(self, direction: Direction) -> Sequence[Contact]:
+    def contacts(self, direction: Direction) -> Sequence[Contact] | None:
         foot = Contact((None, self.bodies()[0].name), (self.centre(direction),), friction=self.friction)
         return [replace(foot, roll=self.rolls(direction))]
 

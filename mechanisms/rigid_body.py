@@ -11,14 +11,15 @@ from typing import ClassVar, Self
 import numpy as np
 from pydantic import model_validator
 
-from mechanisms._polygons import POINT_DISTANCE, Bools, fault_of, size_of
 from mechanisms._shapes import ROUNDING_OVERLAP, BodyPart, Fillet, Plate, fillet, foot_is_cut, plates, united
 from mechanisms._single_body import SingleBody
 from rocking_cli.core import (
     Body,
+    Contact,
     Direction,
     Length,
     Outline,
+    Reals,
     Sketch,
     Solid,
     Vertex,
@@ -28,6 +29,7 @@ from rocking_cli.core import (
     quantity,
 )
 from rocking_cli.core.kinematics import Points
+from rocking_cli.core.polygons import POINT_DISTANCE, Bools, fault_of, size_of
 
 LEVEL_DIFFERENCE = 1e-6  # height difference of corners that count as level, over the smaller of width and height
 MAX_CORNERS = 10_000
@@ -66,7 +68,8 @@ class RigidBody(SingleBody):
         le=1e6,
     )
     polygon: list[Vertex] | None = quantity(
-        "corners [x, y] in order around it; it stands on the two lowest",
+        "corners [x, y] in order around it; it stands on the two lowest, or is the silhouette of a body given by its "
+        "mass, centroid, inertia and feet",
         unit="m",
         example=[[0.0, 0.0], [1.0, 0.0], [0.8, 3.0], [0.0, 3.0]],
         default=None,
@@ -98,6 +101,13 @@ class RigidBody(SingleBody):
     right_foot: Vertex | None = quantity(
         "where it turns to the right, [x, y]; on a step at another height", unit="m", example=[0.35, 0.0], default=None
     )
+    drive: float = quantity(
+        "share of the horizontal ground motion that acts in its plane: the cosine of the angle between the two",
+        example=0.866,
+        default=1.0,
+        gt=0,
+        le=1,
+    )
     corner_radius: float | None = length(
         "radius of its rounded feet, on which it rolls", symbol="r", example=0.02, default=None
     )
@@ -110,6 +120,10 @@ class RigidBody(SingleBody):
         elif description == "centroid":
             self._check_feet()
         self._check_radius(description)
+        for key in ("friction", "strength"):
+            if self.drive < 1 and getattr(self, key) is not None:
+                why = "the ground motion along the edge shears its foot too, so that its foot is not checked"
+                raise geometry_error(key, f"cannot be combined with a drive below 1: {why}")
         return self
 
     @cached_property
@@ -122,6 +136,8 @@ class RigidBody(SingleBody):
                 "is missing: give R, alpha_deg and inertia_ratio, or a polygon, or parts, or mass, centroid, inertia, "
                 "left_foot and right_foot",
             )
+        if begun == [("polygon",), SHAPE_OPTIONS[-1]]:
+            begun = begun[1:]  # the polygon is then its silhouette
         if len(begun) > 1:
             second = next(key for key in begun[1] if getattr(self, key) is not None and key != "mass")
             raise geometry_error(
@@ -155,6 +171,8 @@ class RigidBody(SingleBody):
                 )
 
     def _check_feet(self) -> None:
+        if self.polygon and (fault := fault_of(self._corners)):
+            raise geometry_error("polygon", fault)
         left, right = self._feet
         if not right.real > left.real:
             raise geometry_error("right_foot", "is not to the right of left_foot")
@@ -323,24 +341,34 @@ class RigidBody(SingleBody):
         return super().pivot(direction) - direction * self.rolls(direction)
 
     def limit(self, direction: Direction) -> float:
-        if self._way not in ("polygon", "parts"):
-            # Without an outline, the centroid meets the ground.
-            return self._meets_the_ground(np.array([self.arm(direction)]), direction)
-        return self._meets_the_ground(self._corners[~self._stands] - self.centre(direction), direction)
+        if self._way in ("polygon", "parts"):
+            return float(self._meets_the_ground(self._corners[~self._stands], direction).min())
+        # The centroid meets the ground, or before it a corner of the silhouette, after the body has overturned.
+        meets = self._meets_the_ground(np.append(self._corners, self._body.centroid), direction)
+        return float(meets[meets > self.alpha(direction)].min())
 
-    def _meets_the_ground(self, away: Points, direction: Direction) -> float:
-        """Return the rotation at which the first of some points reaches the ground [rad].
-
-        The points are given relative to the centre of rotation.
-        """
+    def _meets_the_ground(self, points: Points, direction: Direction) -> Reals:
+        """Return the rotations at which some points reach the ground [rad]."""
+        away = points - self.centre(direction)
         turns = np.angle(away) if direction > 0 else pi - np.angle(away)
         if r := self.rolls(direction):
             turns = turns + np.array([asin(min(r / abs(each), 1.0)) for each in away])
-        return float(turns.min())
+        return np.asarray(turns)
+
+    @property
+    def driven(self) -> float:
+        return self.drive
+
+    def contacts(self, direction: Direction) -> Sequence[Contact] | None:
+        return super().contacts(direction) if self.drive == 1 else None
+
+    @property
+    def unchecked(self) -> str:
+        return "the ground motion along the edge, which `drive` leaves out, shears its foot too"
 
     def outlines(self) -> Sequence[Outline]:
         if self._way not in ("polygon", "parts"):
-            return ()
+            return [self._corners.tolist()] if self.polygon else ()
         outlines = []
         for plate in self._plates:
             outline = plate.outline
@@ -349,8 +377,25 @@ class RigidBody(SingleBody):
             outlines.append(outline)
         return outlines
 
+    def own_caution(self) -> str:
+        if self._way != "centroid" or self.polygon is None:
+            return ""
+        early: dict[Direction, float] = {}
+        for side in self.directions:
+            ahead = side * (self._corners - self.centre(side)).real > self._level
+            first = self._meets_the_ground(self._corners[ahead], side).min(initial=pi)
+            if first <= self.alpha(side):
+                early[side] = max(float(first), 0.0)
+        if not early:
+            return ""
+        when = " and ".join(f"at {phi:.3g} rad in the {side.label} direction" for side, phi in early.items())
+        return (
+            f"its polygon reaches the ground beyond its foot {when}, before the critical rotation: it is taken to turn "
+            "on about the same foot, although it would roll on to the next point."
+        )
+
     def lengths(self) -> Sequence[Length]:
-        if self._way not in ("polygon", "parts"):
+        if self.polygon is None and self.parts is None:
             return ()
         # Label only size and foot, as there may be many corners.
         z = self._corners
@@ -362,6 +407,12 @@ class RigidBody(SingleBody):
         )
 
     def sketch(self) -> Sketch:
+        if self._way == "centroid" and self.polygon:
+            low = self._corners[self._stands]
+            ends = low[low.real.argmin()], low[low.real.argmax()]
+            elsewhere = np.abs(np.subtract(ends, self._feet)).max() > self._level
+            note = f"drawn as its silhouette{', which stands elsewhere than on its feet' if elsewhere else ''}"
+            return replace(super().sketch(), notes=[note], at_will=["body"] if elsewhere else [])
         if self._way not in ("polygon", "parts"):
             return replace(super().sketch(), notes=["its shape is not given: a disc of the same mass and inertia"])
         per_area = [plate.per_area for plate in self._plates]

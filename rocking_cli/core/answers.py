@@ -56,6 +56,11 @@ class Kinematics(Given, ABC):
         """Return what a drawing shows beside the bodies and their motion; by default nothing."""
         return Sketch()
 
+    @property
+    def driven(self) -> float:
+        """Share of the horizontal ground motion that acts in the plane of motion, a factor on B; by default 1."""
+        return 1.0
+
     def critical_rotation_alone(self, direction: Direction) -> float | None:
         """Return phi_cr without masses, loads and ties in closed form [rad]; by default None, for the solver."""
         return None

@@ -187,6 +187,8 @@ class Mechanism(Jointed):
         total = coefficients(phi, direction, bodies, motions)
         if self.hung.placed:
             self.hung.act(total, direction, followed(bodies, motions, phi.shape))
+        total.B[:] *= self.driven
+        total.dB[:] *= self.driven
         return total
 
     @final

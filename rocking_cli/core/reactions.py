@@ -93,7 +93,7 @@ def reactions(
     phi, rate : ndarray, shape (n,)
         Rotations in this direction [rad], >= 0, and their rates [rad/s].
     ground : ndarray of complex, shape (n,)
-        Ground acceleration u_g'' + i v_g'' [m/s2].
+        Ground acceleration u_g'' + i v_g'' [m/s2], of which the plane of motion takes the share `driven` sideways.
 
     Notes
     -----
@@ -101,7 +101,9 @@ def reactions(
     body is m (z'' + u_g'' + i (g + v_g'')), and their moment about its centroid is I psi''.
     """
     ground = np.broadcast_to(np.asarray(ground, np.complex128), phi.shape)
-    going = Going(acceleration(mechanism, direction, phi, rate, ground), rate, ground)
+    turning = acceleration(mechanism, direction, phi, rate, ground)
+    ground = mechanism.driven * ground.real + 1j * ground.imag
+    going = Going(turning, rate, ground)
     moving = _Moving(mechanism, direction, phi)
     bodies = mechanism.weighed()
     loads = loading(bodies, moving.motions, mechanism.attached, direction, mechanism.gravity, going)

@@ -201,6 +201,8 @@ class Contacts:
             The ground motion it is the response to.
         """
         states = _states(self.mechanism, history, motion)
+        if self.mechanism.driven < 1:  # the ground motion along the edge, which is not simulated, shears the foot too
+            return ContactDemand(times=states.time, demand=np.zeros(states.time.size))
         # For each state, the largest friction required, pull and use of strength of all joints, and the joint of each.
         largest = np.full((3, states.time.size), -np.inf)
         largest[DEMAND] = 0.0
@@ -220,10 +222,12 @@ class Contacts:
     def base_shear(self, history: History, motion: GroundMotion | None) -> Reals:
         """The horizontal force of the ground on the structure at each sample, to the right [N]; NaN at rest.
 
-        Impacts are left out: their impulses are not part of it.
+        Impacts are left out: their impulses are not part of it. NaN as well if only a share of the motion drives it.
         """
-        states = _samples(self.mechanism, history, motion)
         shear = np.full(history.time.size, np.nan)
+        if self.mechanism.driven < 1:
+            return shear
+        states = _samples(self.mechanism, history, motion)
         for direction, part in self._parts(states):
             shear[part] = _base(self._forces(direction, states, part), self._rest[direction])
         return shear

@@ -383,7 +383,7 @@ def carries_what_hangs_on_it(structure: Mechanism) -> None:
         for name, added, big in (
             ("I", inertia, bare_ones.I.max()),
             ("G", _quotient([each[0] for each in around], step).real, moment),
-            ("B", direction * share["horizontal"] * mass * moved.real, moment),
+            ("B", direction * bare.driven * share["horizontal"] * mass * moved.real, moment),
             ("V", here[0], moment),
             ("Q", _quotient([each[1] for each in around], step).real, bare.gravity * moment),
             ("U", here[1], bare.gravity * moment),

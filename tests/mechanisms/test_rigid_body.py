@@ -6,14 +6,20 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from mechanisms._polygons import lies_within, overlap, pierced
 from mechanisms.block import Block
 from mechanisms.rigid_body import RigidBody
+from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.core.kinematics import area_of
+from rocking_cli.core.polygons import lies_within, overlap, pierced
+from rocking_cli.core.reactions import reactions
 from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.errors import InputError
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.studies.contact import Contacts
+from rocking_cli.studies.engines.free_blocks import free_blocks
 from rocking_cli.testing import contract
+from tests.following import respond
 from tests.reference_mechanics import polygon_moments
 
 POSITIVE, NEGATIVE = Direction
@@ -68,6 +74,70 @@ def test_by_its_own_numbers_it_is_the_block_of_that_mass():
         assert one == pytest.approx(other, rel=1e-12)
     larger = equivalent_block(found.enlarged(3.0)).positive
     assert larger.p == pytest.approx(equivalent_block(found).positive.p / np.sqrt(3), rel=1e-12)
+
+
+def numbers(width=0.6, height=2.4, **fields):
+    """Return a block of 1 kg given by its numbers."""
+    inertia = (width**2 + height**2) / 12
+    feet = {"left_foot": [-width / 2, 0.0], "right_foot": [width / 2, 0.0]}
+    return RigidBody(**{"mass": 1.0, "centroid": [0.0, height / 2], "inertia": inertia, **feet, **fields})
+
+
+def test_drive_is_the_share_of_the_motion_that_moves_it():
+    """A body under a motion at 30 degrees to its plane moves as under cos 30 of the motion in its plane."""
+    share = 3**0.5 / 2
+    plain = RigidBody(**numbers().model_dump(exclude_unset=True), loads=[{"name": "n", "mass": 0.1, "at": [0, 2]}])
+    driven = plain.replace(drive=share)
+    one, other = (equivalent_block(each).positive for each in (driven, plain))
+    assert one.lambda_ == pytest.approx(other.lambda_ / share, rel=1e-14)
+    assert one.v_imp == pytest.approx(other.v_imp / share, rel=1e-14)
+    assert (one.p, one.phi_cr, one.eta) == (other.p, other.phi_cr, other.eta)
+    time = 0.01 * np.arange(300)
+    up = GroundMotion("up", 0.01, 2.0 * np.sin(9 * time))
+    motions = [GroundMotion("m", 0.01, each * 4.0 * np.sin(9 * time), vertical=up) for each in (1.0, share)]
+    histories = [respond(each, motion) for each, motion in zip((driven, plain), motions, strict=True)]
+    for model, history in histories[0].items():
+        assert history.peak_ratio == pytest.approx(histories[1][model].peak_ratio, rel=1e-5)
+        assert 0.2 < history.peak_ratio < 1
+    phi, rate = np.array([0.0, 0.1]), np.array([0.0, -0.3])
+    one = reactions(driven, POSITIVE, phi, rate, -4.0 + 1j)
+    other = reactions(plain, POSITIVE, phi, rate, -4.0 * share + 1j)
+    assert one.force == pytest.approx(other.force, rel=1e-13)
+
+
+def test_what_a_share_of_the_motion_leaves_open_is_refused_or_not_known():
+    driven = numbers(drive=0.9, polygon=box(-0.3, 0.0, 0.6, 2.4))
+    motion = GroundMotion("m", 0.01, 4.0 * np.sin(0.04 * np.arange(300)))
+    history = respond(driven, motion)["nonlinear"]
+    assert history.check is None
+    demand = Contacts(driven).check(history, motion)
+    assert np.isnan([demand.friction_needed, demand.base_shear]).all()
+    assert np.isnan(Contacts(driven).base_shear(history, motion)).all()
+    with pytest.raises(InputError, match="free blocks cannot have a drive below 1"):
+        free_blocks(driven)
+    with pytest.raises(InputError, match="cannot be verified by the code"):
+        Chain(driven, POSITIVE)
+    assert [each.why for each in contract(driven) if not each.passed] == []
+    whole = driven.replace(drive=1)
+    assert not np.isnan(Contacts(whole).check(respond(whole, motion)["nonlinear"], motion).friction_needed)
+    assert free_blocks(whole).bodies[0].inertia == whole.inertia
+
+
+def test_a_silhouette_is_drawn_and_ends_the_motion():
+    bare = numbers()
+    whole = bare.replace(polygon=box(-0.3, 0.0, 0.6, 2.4))
+    assert equivalent_block(whole).positive.as_dict() == pytest.approx(equivalent_block(bare).positive.as_dict())
+    assert bare.limit(POSITIVE) == pytest.approx(pi / 2 + atan2(0.3, 1.2))
+    assert whole.limit(POSITIVE) == pytest.approx(pi / 2)
+    assert whole.sketch().outlines == {"body": [[complex(*each) for each in box(-0.3, 0.0, 0.6, 2.4)]]}
+    assert not whole.own_caution()
+    # An arm that hangs out 0.6 m at a height of 0.9 m; a corner that is 0.02 m high and 0.4 m before the left foot.
+    arm = bare.replace(polygon=[[-0.7, 0.02], [-0.3, 0], [0.3, 0], [0.3, 0.8], [0.9, 0.9], [0.3, 1.0], [-0.3, 2.4]])
+    assert arm.limit(POSITIVE) == pytest.approx(atan2(0.9, 0.6))
+    assert "reaches the ground beyond its foot at 0.05 rad in the negative direction, before" in arm.own_caution()
+    assert arm.limit(NEGATIVE) == pytest.approx(pi / 2)  # its upper left corner
+    assert not arm.sketch().at_will
+    assert bare.replace(polygon=box(-0.4, 0.0, 0.8, 2.4)).sketch().at_will == ["body"]
 
 
 def test_feet_may_stand_on_a_step():
@@ -183,6 +253,7 @@ def test_polygons_touch_overlap_and_lie_within():
 
 
 BODY = "mechanism: rigid_body\n"
+NUMBERS = BODY + "mass: 3\ncentroid: [0.5, 1]\ninertia: 1\nleft_foot: [0, 0]\nright_foot: [1, 0]\n"
 PARTS = BODY + "parts:\n  - polygon: [[0, 0], [2, 0], [2, 3], [0, 3]]\n"
 
 
@@ -199,6 +270,10 @@ PARTS = BODY + "parts:\n  - polygon: [[0, 0], [2, 0], [2, 3], [0, 3]]\n"
             BODY + "mass: 3\ncentroid: [2, 1]\ninertia: 1\nleft_foot: [0, 0]\nright_foot: [0.5, 0]\n",
             "b.yaml:3:11: centroid: it cannot stand: its centroid (x = 2 m) is not above its foot",
         ),
+        (NUMBERS + "polygon: [[0, 0], [1, 1], [1, 0], [0, 1]]\n", "polygon: its sides cross or enclose nothing"),
+        (NUMBERS + "drive: 0\n", "b.yaml:7:8: drive must be more than 0"),
+        (NUMBERS + "drive: 1.1\n", "b.yaml:7:8: drive must be at most 1"),
+        (NUMBERS + "drive: 0.9\nfriction: 0.5\n", "friction cannot be combined with a drive below 1"),
         (PARTS + "R: 1\n", "parts cannot be combined with R: describe the body in one of the two ways"),
         (PARTS + "  - polygon: [[0, 2], [2, 2], [1, 5]]\n", "b.yaml:4:14: parts[2].polygon: it overlaps part 1"),
         (PARTS + "  - polygon: [[0, 4], [2, 4], [1, 5]]\n", "parts[2].polygon: it is joined to no other part: the"),

@@ -13,7 +13,7 @@ from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.hung.attached import Attached, Follow, PointMass, Spot
 from rocking_cli.core.kinematics import Reals
 from rocking_cli.core.reactions import parts
-from rocking_cli.errors import InputError
+from rocking_cli.errors import InputError, Problem
 from rocking_cli.short_repr import short_repr
 from rocking_cli.verification.results import Control
 
@@ -100,6 +100,12 @@ class Chain:
 
     mechanism: Mechanism
     direction: Direction
+
+    def __post_init__(self) -> None:
+        if self.mechanism.driven < 1:
+            what = "below 1 cannot be verified by the code, whose forces act in the plane of the mechanism"
+            hint = "leave it out, so that the whole motion acts in this plane, which is conservative"
+            raise InputError(Problem(what, field="drive", hint=hint))
 
     @cached_property
     def weights(self) -> Sequence[Weight]:

@@ -255,6 +255,8 @@ class _Apart:
     def _refuse(self) -> None:
         if self.mechanism.crushing is not None:
             raise self._cannot("crushing", "pivots that crush")
+        if self.mechanism.driven < 1:
+            raise self._cannot("drive", "a drive below 1: they are plane, and their ground motion is that of the plane")
         for loc, attached in self.mechanism.hung.placed:
             field = str(loc[0]) if loc else ""
             if isinstance(attached, ConstantForce):
