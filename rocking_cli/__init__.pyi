@@ -63,6 +63,8 @@ from rocking_cli.questions.error.verb import error as error
 from rocking_cli.questions.fragility.own_data import fit_fragility as fit_fragility
 from rocking_cli.questions.fragility.results import results as results
 from rocking_cli.questions.fragility.verb import fragility as fragility
+from rocking_cli.questions.import_drawing.verb import import_drawing as import_drawing
+from rocking_cli.questions.import_mesh.verb import import_mesh as import_mesh
 from rocking_cli.questions.margin.verb import margin as margin
 from rocking_cli.questions.margin.verb import shares as shares
 from rocking_cli.questions.overturning.verb import overturning as overturning

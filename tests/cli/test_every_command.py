@@ -213,7 +213,7 @@ AS_TEXT = ("record R --fit-pulse --plot p.svg", "equiv A N --csv")
 # tests were observed.
 WITHOUT = {
     "calibrate", "draw", "equiv", "collapse", "error", "record", "select", "demand", "mechanisms", "measures", "new",
-    "info", "selfcheck", "completion",
+    "info", "selfcheck", "completion", "import",
 }  # fmt: skip
 BARE = re.compile(r"\bkN\b|\[N\]|\bN m\b|\d N[ ,.;<]")
 """A force that is not per unit mass."""

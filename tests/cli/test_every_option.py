@@ -33,6 +33,7 @@ from rocking_cli.plugins.rooms import commands
 from rocking_cli.questions.fragility.results import StudyAnswer
 from rocking_cli.views.view import View
 from tests.conftest import EXAMPLES, NEEDS_MUJOCO
+from tests.meshes import box, obj, ply
 
 BLOCK = rk.Block(width=0.7, height=2.8, name="block", friction=0.6)
 OTHER = rk.Block(width=0.5, height=2.0, name="other")
@@ -70,11 +71,38 @@ OBSERVED = {
     "record": ["sine:0.3g:1.5s", "sine:0.5g:1.5s", "sine:0.4g:2s", "sine:0.9g:1s"],
 }
 
+DRAWN = "outline,layer,x,y,bulge\n" + "".join(
+    f"{name},{layer},{x},{y},{bulge}\n"
+    for name, layer, corners in (
+        ("low", "PIETRA", [(0, 0, 0), (1000, 0, 0), (1000, 900, 0), (0, 900, 0)]),
+        ("top", "PIETRA", [(0, 903, 0), (1000, 903, 0), (1000, 2000, 0.2), (0, 2000, 0)]),
+        ("side", "PIETRA", [(999.5, 0, 0), (1400, 0, 0), (1400, 500, 0), (999.5, 500, 0)]),
+        ("hole", "FORI", [(300, 1300, 0), (500, 1300, 0), (500, 1500, 0), (300, 1500, 0)]),
+        ("inner", "PIETRA", [(600, 300, 0), (700, 300, 0), (700, 400, 0), (600, 400, 0)]),
+    )
+    for x, y, bulge in corners
+)
+"""Two blocks with a joint of 3 mm, one beside them that overlaps, and openings of both kinds [mm]."""
+
+DRAWN_FILE = EXAMPLES / "drawings" / "church.dxf"
+
 CALLS = {
     "equiv": ({"structures": BLOCK}, {"structures": [BLOCK, OTHER]}),
     "collapse": ({"structure": PORTAL}, {"structure": PORTAL.enlarged(2.0), "out": "o.yaml"}),
-    "draw": ({"structure": BLOCK}, {"structure": OTHER, "at": 0.3}),
+    "draw": ({"structure": BLOCK}, {"structure": OTHER, "at": 0.3, "dxf": "odd.dxf"}),
+    "import_drawing": (
+        {"file": "in.csv", "units": "mm", "depth": 1.0, "density": 2000.0, "merge_gap": "6 mm", "nested": "openings",
+         "out": "o.yaml"},
+        {"file": "pillar.csv", "units": "km", "scale": "1:99999", "layers": {"nothing": ["FORI"]}, "density": 2500.0,
+         "depth": 2.0, "merge_gap": 0.0, "close": "0.2 mm", "nested": None, "kind": "rigid_body", "tolerance": "9 mm",
+         "out": "odd.yaml", "command": "odd"},
+    ),
     "error": ({"structure": BLOCK}, {"structure": WEAK, "at": [0.3], "a": [3.0]}),
+    "import_mesh": (
+        {"path": "in.obj", "units": "m", "density": 2000.0},
+        {"path": "in.ply", "units": "ft", "density": 1800.0, "azimuth": 40.0, "level": 0.01, "settle": True,
+         "hull": True, "up": "y", "north": 30.0, "out": "o.yaml", "page": "p.html"},
+    ),
     "respond": (
         {"structure": WEAK, "motion": RECORD, "neighbours": 2, "opening": 1.0},
         {"structure": BLOCK, "motion": PULSE, "models": "nonlinear", "polarity": "both", "vertical": RECORD,
@@ -289,6 +317,10 @@ def here(tmp_path, monkeypatch):
     Path("in.yaml").write_text("mechanism: block\nwidth: 0.7\nheight: 2.8\nfriction: 0.2\n")
     rows = zip(TIME, RECORD.acceleration, strict=True)
     Path("in.txt").write_text("time,a\n" + "".join(f"{t},{a}\n" for t, a in rows))
+    Path("in.csv").write_text(DRAWN)
+    Path("pillar.csv").write_text("0,0\n600,0\n600,2400\n0,2400\n")
+    Path("in.obj").write_bytes(obj(box((0.0, 0.0, 0.0), (0.6, 0.8, 2.4))))
+    Path("in.ply").write_bytes(ply(box((0.0, 0.0, 0.0), (0.5, 0.9, 2.0))))
     Path("in.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"/>')
 
 
@@ -372,6 +404,7 @@ COMMAND_LINES = {
     "draw": f"{BLOCK_FILE}",
     "equiv": f"{BLOCK_FILE}",
     "collapse": f"{BLOCK_FILE}",
+    "import": f"{DRAWN_FILE} --merge-gap 12mm --depth 1 --density 2000",
     "error": f"{BLOCK_FILE}",
     "record": f"{ACCEL}",
     "select": f"{ACCEL} {ACROSS} --target {EXAMPLES / 'target.csv'} --band 0.2:2 --count 2",
@@ -404,7 +437,8 @@ ODD = {
     "--animate": "odd.html",
     "--a": "3", "--ag": "0.4g", "--amplitude-deviation": "30%", "--at": "0.3", "--author": "odd", "--azimuth": "30",
     "--band": "0.3:1", "--baseline": "linear", "--channel": "2", "--code": "", "--control": "0.3,2",
-    "--count": "1", "--curves": "c.csv", "--damping": "10%", "--dt": "0.1", "--eta": "0.7", "--factors": "0.5:2",
+    "--count": "1", "--curves": "c.csv", "--damping": "10%", "--dt": "0.1", "--dxf": "odd.dxf", "--eta": "0.7",
+    "--factors": "0.5:2",
     "--floor": "T1=0.4,xi=0.05,z/H=0.67,gamma=1.29", "--fps": "30", "--fractiles": "0.3,0.7",
     "--free": f"{EXAMPLES / 'calibrate' / 'trace.csv'}", "--from": "velocity", "--gain": "0.05m/V", "--highpass": "0.5",
     "--jobs": "1", "--logo": "logo.png", "--lowpass": "20", "--measures": "CAV", "--neighbours": "3", "--nrml": "n.xml",
@@ -412,6 +446,8 @@ ODD = {
     "--plot": "p.svg", "--points": "7", "--project": "odd", "--pulse": PULSE, "--record": f"{ACROSS}",
     "--release": "0.3", "--resample": "0.02", "--restitution": "0.8:0.9", "--restitution-deviation": "0.3",
     "--rtol": "1e-6", "--scale": "2", "--scheduler": "tcp://odd:1", "--seed": "3", "--shape": "cosine",
+    "--close": "2mm", "--depth": "2m", "--layers": "nothing=FORI", "--level": "1mm", "--merge-gap": "4mm",
+    "--north": "10", "--tolerance": "9mm",
     "--map": "m.png", "--sheets": "odd",
     "--sheet": "s.html", "--site": f"{SITE}2", "--sizes": "1:2", "--slenderness": "0.2:0.3",
     "--slenderness-deviation": "30%", "--spectrum": "s.csv", "--speed": "3", "--state": "SLC", "--store": "odd.db",
@@ -436,6 +472,11 @@ OTHERWISE = {
     ("calibrate", "--out"): "o.yaml",
     ("collapse", "--out"): "o.yaml",
     ("animate", "--out"): "odd.html",
+    ("import", "--out"): "o.yaml",
+    ("import", "--units"): "mm",
+    ("import", "--merge-gap"): "13mm",
+    ("import", "--scale"): "1:1",
+    ("import", "--density"): "PIETRA=2500",
     ("report", "--out"): "odd.html",
     ("fragility", "--plot"): "odd",
     ("results", "--plot"): "odd",
@@ -446,6 +487,7 @@ BESIDE = {
     ("record", "--period"): "--spectrum s.csv",
     ("record", "--damping"): "--spectrum s.csv",
     ("respond", "--contact"): "--plot p.svg",
+    ("import", "--azimuth"): "",
     **dict.fromkeys(("--with", "--with-channel", "--azimuth"), f"--with {ACCEL} --azimuth 10"),
     **dict.fromkeys(("--vertical-dt", "--vertical-channel"), f"--vertical {ACROSS}"),
     **dict.fromkeys([("verify", each) for each in HEAD], "--sheet s.html"),

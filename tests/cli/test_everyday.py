@@ -176,9 +176,18 @@ class TestInfo:
 
         found = run_json("info")
         assert found["version"] == version("rocking-cli") and found["libraries"]["numpy"] == version("numpy")
-        assert {"blocks", "cluster", "docx", "parquet", "pdf", "seismo", "spreadsheet", "xarray"} == set(
-            found["extras"]
-        )
+        assert {
+            "blocks",
+            "cluster",
+            "docx",
+            "drawing",
+            "mesh",
+            "parquet",
+            "pdf",
+            "seismo",
+            "spreadsheet",
+            "xarray",
+        } == set(found["extras"])
         names = {kind: {each["name"] for each in plugins} for kind, plugins in found["plugins"].items()}
         assert "arch" in names["mechanisms"] and "peer_at2" in names["records"] and "ricker" in names["pulses"]
         assert found["processors"] >= found["threads"] >= 1

@@ -25,6 +25,10 @@ DIFFERENT = {
     "--out": "the text names what is written",
     "--period": "of `record` it is that of a spectrum, of the others that of a pulse",
     "--plot": "the text names what is plotted",
+    "--azimuth": "of `import` it is that of a mesh, of the others that of the structure between two components",
+    "--page": "of `import` it shows a mesh, of `survey` a table",
+    "--scale": "of `import` it is that of a drawing, of the others a factor on motions",
+    "--units": "of `import` it is that of a drawing or mesh, of the others that of a record",
     "--state": "of `select` it is that of the target, of the others that of the records",
 }
 """Options whose meaning differs between commands, and why one text would be false."""

@@ -24,6 +24,7 @@ WITHOUT = {
     "new": "prints starters",
     "info": "describes the installation",
     "completion": "prints a script for a shell",
+    "import": "a word of Python: `rk.import_drawing` and `rk.import_mesh`, held in test_every_option",
 }
 """Commands that ask nothing about a structure or a motion."""
 OF_THE_TERMINAL = {

@@ -447,14 +447,16 @@ def test_a_mechanism_stands_for_the_file_of_an_entry(tmp_path):
 # --- what the documentation shows
 
 
-def test_the_page_on_python_does_what_it_shows(maker, tmp_path):
-    assert maker("make_python").run(tmp_path) == 0
-    assert {path.name for path in tmp_path.glob("*.png")} == {
-        "scatter.png",
-        "response.png",
-        "spectrum.png",
-        "fragility.png",
-    }
+PICTURES = {"scatter.png", "response.png", "spectrum.png", "fragility.png"}
+
+
+@pytest.mark.parametrize(
+    ("page", "pictures"),
+    [("python.md", PICTURES), pytest.param("import.md", {"import.png"}, marks=pytest.mark.docs)],
+)
+def test_the_pages_on_python_do_what_they_show(page, pictures, maker, tmp_path):
+    assert maker("make_python").run(tmp_path, page) == 0
+    assert {path.name for path in tmp_path.glob("*.png")} == pictures
 
 
 @pytest.mark.types

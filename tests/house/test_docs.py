@@ -392,7 +392,7 @@ def test_the_guide_to_plugins_gives_the_signature_of_every_helper():
     bare = {name for name, (called, _) in listed.items() if not called}
     assert bare == {
         "Attached", "Mechanism", "NoEquivalentBlock", "NoMotion", "bends", "smooth", "has_mass", "directions",
-        "unchecked", "propped",
+        "unchecked", "propped", "driven",
     }  # fmt: skip
     for name, (called, said) in listed.items():
         each = HELPERS.get(name) or getattr(core.Mechanism, name)
