@@ -117,6 +117,24 @@ class DrawnEdges:
             np.append(self.of, other.of),
         )  # fmt: skip
 
+    def curves(self, close: float) -> Any:
+        """Return the sides as lines of shapely, arcs by chords; an array of objects, shape (n,)."""
+        import shapely
+
+        count = np.full(len(self), 2)
+        inner: dict[int, Points] = {}
+        for k in np.flatnonzero(self.bulge).tolist():
+            ends = complex(self.a[k]), complex(self.b[k])
+            inner[k] = inner_points(*ends, float(self.bulge[k]), lambda r, turn: chord_count(r, turn, CHORD * close))
+            count[k] += len(inner[k])
+        last = np.cumsum(count)
+        z = np.empty(int(last[-1]) if len(last) else 0, np.complex128)
+        z[last - count], z[last - 1] = self.a, self.b
+        for k, points in inner.items():
+            z[last[k] - count[k] + 1 : last[k] - 1] = points
+        of = np.repeat(np.arange(len(self)), count)
+        return shapely.linestrings(np.stack([z.real, z.imag], axis=1), indices=of)
+
     @property
     def middle(self) -> Points:
         """Middle of each side, on its arc."""
@@ -299,7 +317,7 @@ def _split(
     """Split edges at nodes of others that lie on them."""
     import shapely
 
-    pairs = _near(shapely.STRtree(_lines(edges, close)), nodes, close)
+    pairs = _near(shapely.STRtree(edges.curves(close)), nodes, close)
     node, edge = pairs
     inner = (node != start[edge]) & (node != end[edge])
     z = nodes[node]
@@ -351,30 +369,11 @@ def _share(edges: DrawnEdges, k: int, z: complex) -> float:
     return float(way % (2 * np.pi / abs(turn)))
 
 
-def _lines(edges: DrawnEdges, close: float) -> Any:
-    """Return edges as lines of shapely, arcs by chords; an array of objects, shape (n,)."""
-    import shapely
-
-    count = np.full(len(edges), 2)
-    inner: dict[int, Points] = {}
-    for k in np.flatnonzero(edges.bulge).tolist():
-        ends = complex(edges.a[k]), complex(edges.b[k])
-        inner[k] = inner_points(*ends, float(edges.bulge[k]), lambda r, turn: chord_count(r, turn, CHORD * close))
-        count[k] += len(inner[k])
-    last = np.cumsum(count)
-    z = np.empty(int(last[-1]) if len(last) else 0, np.complex128)
-    z[last - count], z[last - 1] = edges.a, edges.b
-    for k, points in inner.items():
-        z[last[k] - count[k] + 1 : last[k] - 1] = points
-    of = np.repeat(np.arange(len(edges)), count)
-    return shapely.linestrings(np.stack([z.real, z.imag], axis=1), indices=of)
-
-
 def _crossing(edges: DrawnEdges, close: float) -> list[tuple[int, int]]:
     """Return pairs of edges that cross between their ends."""
     import shapely
 
-    lines = _lines(edges, close)
+    lines = edges.curves(close)
     pairs = shapely.STRtree(lines).query(lines, predicate="crosses")
     return [(i, j) for i, j in pairs.T.tolist() if i < j]
 
@@ -464,7 +463,7 @@ def _faces(
     import shapely
 
     chosen = np.flatnonzero(crossed[part])
-    lines = _lines(edges.chosen(chosen), close)
+    lines = edges.chosen(chosen).curves(close)
     faces, cuts, dangles, _ = shapely.polygonize_full([shapely.node(shapely.multilinestrings(lines))])
     loose = [*shapely.get_parts(dangles), *shapely.get_parts(cuts)]
     loose = [each for each in loose if shapely.length(each) > close]
@@ -500,7 +499,7 @@ def _unclosed(edges: DrawnEdges, close: float, frame: DrawingFrame, file: str) -
     loose = ends[alone] if alone.any() else ends[:2]
     apart = np.abs(loose[:, None] - loose[None, :])
     apart[apart <= close] = np.inf
-    merged = shapely.get_parts(shapely.line_merge(shapely.multilinestrings(_lines(edges, close))))
+    merged = shapely.get_parts(shapely.line_merge(shapely.multilinestrings(edges.curves(close))))
     z = shapely.get_coordinates(merged[0])
     one, other = complex(*z[0]), complex(*z[-1])
     gap = float(apart.min())

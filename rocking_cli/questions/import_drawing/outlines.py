@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnPoint, DrawnText, LineDrawing
-from rocking_cli.questions.import_drawing.loops import Loop, Placed, loops
+from rocking_cli.questions.import_drawing.loops import DrawnEdges, Loop, Placed, loops
 from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, length_in_words, many
 from rocking_cli.questions.import_drawing.rings import ArcRing, PlaneMoments
 from rocking_cli.questions.import_drawing.roles import Role, Roles, counted
@@ -21,6 +21,8 @@ from rocking_cli.units import UnitError, mass_of_weight, read
 FLATNESS = 1e-9  # area up to which an outline encloses nothing, over the square of its size
 MEETING = 1e-3  # distance of ends that may be one point, over the size of their layer
 LEAST_ENDS = 4  # of lines that may enclose something
+MEETING_SHARE = 0.75  # of the ends of a layer that lie on other lines, from which it may hold outlines
+MAX_MEETING = 20_000  # lines up to which this is looked for
 ROW = 0.5  # share of its height by which a body must be above the first one of a row to begin another row
 RESERVED = {"ground"}
 CHORD = 0.1  # share of the closing distance to which shapes are compared
@@ -75,7 +77,14 @@ def by_role(drawing: LineDrawing, roles: Roles, file: str) -> Sorted:
     for chain in drawing.chains:
         role = roles(chain.layer)
         (unknown.setdefault(chain.layer, []) if role is None else chains[role]).append(chain)
-    counts = {layer: count for layer, of in unknown.items() if (count := outline_count(of))}
+    of_bodies = chains[Role.BODIES]
+    counts = {layer: count for layer, of in unknown.items() if (count := outline_count(of, of_bodies))}
+    if counts:  # lines of one layer may close outlines with those of another
+        beside = {layer: [each for other in unknown if other != layer for each in unknown[other]] for layer in unknown}
+        counts |= {
+            layer: count for layer, of in unknown.items()
+            if layer not in counts and (count := outline_count(of, [*of_bodies, *beside[layer]]))
+        }  # fmt: skip
     notes = []
     if counts and not chains[Role.BODIES]:
         if len(counts) > 1:
@@ -119,20 +128,42 @@ def by_role(drawing: LineDrawing, roles: Roles, file: str) -> Sorted:
     return Sorted(chains, drawing.labels, roles, notes)
 
 
-def outline_count(chains: Sequence[DrawnLine]) -> int:
-    """Return how many outlines chains make, at least: closed ones, and one of open lines all of whose ends meet."""
-    from scipy.spatial import cKDTree
+def outline_count(chains: Sequence[DrawnLine], beside: Sequence[DrawnLine] = ()) -> int:
+    """Return how many outlines chains make, at least: closed ones, and one of open lines whose ends mostly meet others.
 
+    Parameters
+    ----------
+    chains : sequence of DrawnLine
+        Lines of a layer.
+    beside : sequence of DrawnLine
+        Lines of other layers that may close outlines with them.
+    """
     closed = sum(chain.closed and not chain.is_fill for chain in chains)
     fills = len({chain.shape for chain in chains if chain.is_fill})
     open_ = [chain for chain in chains if not chain.closed and len(chain.points) > 1]
-    if len(open_) > 1:
-        z = np.array([[chain.points[0], chain.points[-1]] for chain in open_]).ravel()
-        ends = np.stack([z.real, z.imag], axis=1)
-        size = max(float(np.ptp(z.real)), float(np.ptp(z.imag)))
-        away = cKDTree(ends).query(ends, k=2)[0][:, 1]
-        closed += int(size > 0 and np.count_nonzero(away <= MEETING * size) >= LEAST_ENDS)
+    if len(open_) > 1 and len(chains) + len(beside) <= MAX_MEETING:
+        closed += _mostly_meet(open_, [*chains, *beside])
     return closed or fills
+
+
+def _mostly_meet(open_: Sequence[DrawnLine], around: Sequence[DrawnLine]) -> bool:
+    """Return whether most ends of open lines lie on other lines, so that these may enclose something."""
+    import shapely
+
+    lines = [Placed(chain.points, chain.bulges, chain.closed, chain) for chain in around if len(chain.points) > 1]
+    z = np.concatenate([chain.points for chain in open_])
+    near = MEETING * max(float(np.ptp(z.real)), float(np.ptp(z.imag)))
+    if not near > 0:
+        return False
+    edges = DrawnEdges.from_lines(lines)
+    ends = np.array([[chain.points[0], chain.points[-1]] for chain in open_])
+    point, edge = shapely.STRtree(edges.curves(near)).query(
+        shapely.points(ends.real.ravel(), ends.imag.ravel()), predicate="dwithin", distance=near
+    )
+    of = np.array([id(line.source) for line in lines])[edges.of[edge]]
+    others = of != np.array([id(chain) for chain in open_])[point // 2]
+    met = len(np.unique(point[others]))
+    return met >= LEAST_ENDS and met >= MEETING_SHARE * ends.size
 
 
 def _which(counts: Mapping[str, int], file: str) -> DrawingError:

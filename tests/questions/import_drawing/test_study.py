@@ -223,6 +223,15 @@ class TestLayers:
         found = imported(box(0, 0, 1, 1, "PIETRA"), box(0, 1, 1, 1, "MATTE"), layers={"nothing": ["MATTE"]})
         assert len(found.bodies) == 1 and "left out: 1 LWPOLYLINE on MATTE" in words(found)
 
+    def test_lines_that_close_only_with_those_of_another_layer_are_not_left_out(self):
+        walls = [box(0, 0, 1, 2, "SPALLE"), box(3, 0, 1, 2, "SPALLE")]
+        lintel = [line((0, 2.5), (4, 2.5), "ARCO"), line((0, 2), (0, 2.5), "ARCO"), line((4, 2), (4, 2.5), "ARCO")]
+        with pytest.raises(DrawingError, match="ARCO has 1") as caught:
+            imported(*walls, *lintel)
+        assert caught.value.refused == "layers"
+        axes = [line((0.5, -1), (0.5, 3), "A1"), line((3.5, -1), (3.5, 3), "A1"), line((-1, 1), (5, 1), "A1")]
+        assert "3 LINE on A1" in words(imported(*walls, *axes))
+
     def test_the_only_layer_with_outlines_is_taken_and_this_is_said(self):
         found = imported(box(0, 0, 1, 2, "0"), line((0, 3), (1, 3), "ROTTO"))
         assert "the layer 0 has the only outlines" in words(found) and "1 LINE on ROTTO" in words(found)
