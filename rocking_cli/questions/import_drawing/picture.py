@@ -65,8 +65,9 @@ def draw_import(found: Imported, title: str, tolerance: float) -> Figure:
     room = ROOM * size
     axes.set(
         xlim=(z.real.min() - room, z.real.max() + room), ylim=(z.imag.min() - room, z.imag.max() + room),
-        aspect="equal", xlabel="x [m]", ylabel="y [m]",
+        xlabel="x [m]", ylabel="y [m]",
     )  # fmt: skip
+    axes.set_aspect("equal", adjustable="datalim")
     return figure
 
 
