@@ -152,13 +152,13 @@ def _mostly_meet(open_: Sequence[DrawnLine], around: Sequence[DrawnLine]) -> boo
 
     lines = [Placed(chain.points, chain.bulges, chain.closed, chain) for chain in around if len(chain.points) > 1]
     z = np.concatenate([chain.points for chain in open_])
-    near = MEETING * max(float(np.ptp(z.real)), float(np.ptp(z.imag)))
-    if not near > 0:
+    reach = MEETING * max(float(np.ptp(z.real)), float(np.ptp(z.imag)))
+    if not reach > 0:
         return False
     edges = DrawnEdges.from_lines(lines)
     ends = np.array([[chain.points[0], chain.points[-1]] for chain in open_])
-    point, edge = shapely.STRtree(edges.curves(near)).query(
-        shapely.points(ends.real.ravel(), ends.imag.ravel()), predicate="dwithin", distance=near
+    point, edge = shapely.STRtree(edges.curves(reach)).query(
+        shapely.points(ends.real.ravel(), ends.imag.ravel()), predicate="dwithin", distance=reach
     )
     of = np.array([id(line.source) for line in lines])[edges.of[edge]]
     others = of != np.array([id(chain) for chain in open_])[point // 2]
