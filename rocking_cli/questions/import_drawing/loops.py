@@ -43,11 +43,6 @@ class Loop:
     ring: ArcRing
     sources: Sequence[DrawnLine]
 
-    @property
-    def layer(self) -> str:
-        """Layer of its first line."""
-        return self.sources[0].layer
-
 
 @dataclass
 class Mended:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -196,10 +196,9 @@ def structure_from(drawing: LineDrawing, options: ImportOptions, name: str, file
     places = BodyFinder(bodies, ground, frame, shift, close, file)
     extra = attached(drawing, of, places)
     kind = options.kind or _kind(bodies, ground, is_drawn, extra, close)
-    made = replace(options, kind=kind)
     if kind == "rigid_body":
         notes += _levelled(bodies, close, frame, shift)
-    fields = FIELDS[kind](name, bodies, ground, is_drawn, extra, made, file)
+    fields = FIELDS[kind](name, bodies, ground, is_drawn, extra, options, file)
     grey = [
         frame.to_metres(chain.points) + shift
         for chain in drawing.chains

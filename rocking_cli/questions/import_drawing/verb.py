@@ -85,7 +85,7 @@ def import_drawing(
 
     Notes
     -----
-    Areas, centroids and inertias of outlines with arcs are exact; a `rigid_body` gets 64 straight sides to a half turn
+    Areas, centroids and inertias of outlines with arcs are exact; a `rigid_body` gets 128 straight sides to a half turn
     that keep the area.
 
     Examples
