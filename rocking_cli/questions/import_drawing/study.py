@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -34,6 +34,8 @@ LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 SAME_NORMAL = 1e-6
 MASS_DIGITS = 12
 EXTENT = 1e-5  # to which width and height are known [m]
+MAX_ANALYSED = 60  # bodies up to which it is checked too that they stand, by limit analysis
+TOGETHER = "several mechanisms start"  # what an assembly says that only a change of its sizes mends
 MAX_CHECKED = 300  # bodies up to which the mechanism checks its fields; of more, this study alone
 
 
@@ -208,8 +210,7 @@ def structure_from(drawing: LineDrawing, options: ImportOptions, name: str, file
         kind, fields, bodies, [ring.chords(options.tolerance) for ring in ground], _joints(bodies, ground), units, per,
         origin, [*notes, *extra.notes], extra.comments, mended, grey, [at for _, at, _, _ in extra.supports],
     )  # fmt: skip
-    _check(result, file)
-    return result
+    return replace(result, notes=[*result.notes, *_refused_together(result, file)])
 
 
 def _extent(bodies: Sequence[DrawnBody]) -> tuple[Any, Any]:
@@ -508,16 +509,31 @@ def _linkage(
 FIELDS = {"rigid_body": _rigid_body, "assembly": _assembly, "linkage": _linkage}
 
 
-def _check(result: Imported, file: str) -> None:
-    """Raise `DrawingError` "mechanism" if the mechanism refuses the fields, by what can be seen without its motion."""
+def _refused_together(result: Imported, file: str) -> list[ImportNote]:
+    """Return a note if several mechanisms start together; such a file is written, as only its user can change it.
+
+    Of many bodies the joints are checked, but not whether they stand, as the limit analysis takes long.
+
+    Raises
+    ------
+    DrawingError
+        "mechanism", if the mechanism refuses the fields for any other reason.
+    """
     from pydantic import ValidationError
 
     joined = {name for joint in result.joints for name in joint.between}
     if len(result.bodies) > MAX_CHECKED and all(body.name in joined for body in result.bodies):
-        return  # commands check it when they read the file, which takes seconds
+        return []  # commands check it when they read the file, which takes seconds
+    mechanism = Registry()[result.kind]
     try:
-        Registry()[result.kind].model_validate(dict(result.fields), context={"folder": None, "weights": []})
+        if len(result.bodies) > MAX_ANALYSED:
+            mechanism.model_validate(dict(result.fields), context={"folder": None, "weights": []})
+        else:
+            mechanism.from_fields(result.fields)
     except ValidationError as error:
         faults = error.errors(include_url=False)
         words = [f"{'.'.join(map(str, fault['loc'])) or result.kind}: {fault['msg']}" for fault in faults[:3]]
-        raise DrawingError("mechanism", f"{result.kind} cannot take it: {'; '.join(words)}", file) from None
+        if not all(TOGETHER in fault["msg"] for fault in faults):
+            raise DrawingError("mechanism", f"{result.kind} cannot take it: {'; '.join(words)}", file) from None
+        return [ImportNote("together", 1, f"commands refuse the file as it is: {'; '.join(words)}")]
+    return []

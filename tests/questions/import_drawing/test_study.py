@@ -301,7 +301,7 @@ class TestMended:
 class TestAttached:
     def test_masses_forces_ties_and_supports(self):
         found = imported(
-            *PORTAL, line((2, 4.5), (2, 3.6), "CARICHI"), line((0.4, 2.5), (3.6, 2.5), "CATENE"),
+            *PORTAL, line((2, 4.5), (2, 3.6), "CARICHI"), line((0.4, 2.5), (3.6, 0.5), "CATENE"),
             spots=[spot(1, 3.3, "CARICHI")],
             labels=[
                 text("roof 3 t", 1, 3.4, "CARICHI"), text("12 kN", 2.05, 4, "CARICHI"),
@@ -314,7 +314,7 @@ class TestAttached:
         assert force["force"] == approx([0.0, -12000.0]) and force["body"] == "b3" and force["at"] == [2.0, 3.6]
         (tie,) = found.fields["ties"]
         assert tie["name"] == "chain" and tie["area"] == "452 mm2" and tie["modulus"] == "210 GPa"
-        assert tie["from"]["body"] == "b1" and tie["to"] == {"body": "b2", "at": [3.6, 2.5]}
+        assert tie["from"]["body"] == "b1" and tie["to"] == {"body": "b2", "at": [3.6, 0.5]}
 
     def test_a_tie_without_text_is_a_comment(self):
         found = imported(*PORTAL, line((0.4, 2.5), (3.6, 2.5), "CATENE"))
@@ -343,6 +343,15 @@ class TestAttached:
         )  # fmt: skip
         assert list(found.fields["blocks"]) == ["pier left", "pier left-2", "b3"]
         assert found.fields["blocks"]["pier left"]["density"] == 2200
+
+    def test_a_file_that_no_command_takes_is_refused(self):
+        ends = ((-1, -0.1), (0.9, 3.1), (4.1, 5))  # the ground stops beside the piers
+        gaps = [line((start, 0), (end, 0), "TERRENO") for start, end in ends]
+        with pytest.raises(DrawingError, match=r"does not stand by itself|touch nothing") as caught:
+            imported(*PORTAL, *gaps)
+        assert caught.value.refused == "mechanism"
+        pair = imported(box(0, 0, 1, 3), box(3, 0, 1, 3))  # two columns alike, side by side
+        assert "commands refuse the file as it is" in words(pair) and "several mechanisms start" in words(pair)
 
     def test_the_origin_is_at_the_lower_left_and_said(self):
         found = imported(box(1.5e9, 5e9, 600, 2400), units="mm")
