@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 from pathlib import Path
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -53,11 +55,17 @@ def parse_structure(text: str, file: str, default_name: str, registry: Registry 
     return of_document(document, default_name, Path(file).parent, registry)
 
 
-def structure_text(mechanism: Given, comment: str) -> str:
-    """Return the YAML text of a structure with the fields that it was given, below a comment."""
+def structure_text(mechanism: Given, *comments: str) -> str:
+    """Return the YAML text of a structure with the fields that it was given, below comments of a line each."""
     given = mechanism.model_dump(mode="json", by_alias=True, exclude_unset=True, exclude_none=True)
-    lines = [line for key, value in {"mechanism": mechanism.mechanism, **given}.items() for line in block(key, value)]
-    return "\n".join([f"# {comment}", *lines, ""])
+    return fields_text(mechanism.mechanism, given, comments)
+
+
+def fields_text(mechanism: str, fields: Mapping[str, Any], above: Sequence[str], below: Sequence[str] = ()) -> str:
+    """Return the YAML text of the fields of a mechanism, between comments of a line each above and below."""
+    lines = [line for key, value in {"mechanism": mechanism, **fields}.items() for line in block(key, value)]
+    above, below = ([f"# {one_line(each)}" for each in comments] for comments in (above, below))
+    return "\n".join([*above, *lines, *below, ""])
 
 
 def of_document(document: Document, default_name: str, folder: Path, registry: Registry | None = None) -> Mechanism:

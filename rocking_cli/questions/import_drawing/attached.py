@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from rocking_cli.io.drawings.contract import DrawingError, DrawnText, LineDrawing
+from rocking_cli.io.yaml_file import in_a_line
 from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, many
 from rocking_cli.questions.import_drawing.outlines import DrawnBody, Sorted, polygons_of
 from rocking_cli.questions.import_drawing.rings import ArcRing
@@ -239,7 +240,7 @@ def _ties(of: Sorted, places: BodyFinder, made: DrawnAttachments) -> None:
         if fields:
             made.ties.append(tie | fields)
             continue
-        made.comments.append(f"ties: {tie}  # give it area and modulus")
+        made.comments.append(f"ties: {in_a_line([tie])}")
         at = complex(chain.points[0])
         words = (
             f"the tie {tie['name']} has no text such as `area 452 mm2, modulus 210 GPa`: it is a comment in the file"

@@ -23,6 +23,7 @@ MEETING = 1e-3  # distance of ends that may be one point, over the size of their
 LEAST_ENDS = 4  # of lines that may enclose something
 MEETING_SHARE = 0.75  # of the ends of a layer that lie on other lines, from which it may hold outlines
 MAX_MEETING = 20_000  # lines up to which this is looked for
+SAME_HEIGHT = 1e-6  # difference of heights of bodies of which the left one comes first [m]
 ROW = 0.5  # share of its height by which a body must be above the first one of a row to begin another row
 RESERVED = {"ground"}
 CHORD = 0.1  # share of the closing distance to which shapes are compared
@@ -368,7 +369,11 @@ def in_rows(bodies: Sequence[DrawnBody]) -> list[DrawnBody]:
     left = sorted(bodies, key=lambda body: body.ring.moments.centroid.imag)
     ordered: list[DrawnBody] = []
     while left:
-        first = left[0]
+        low = left[0].ring.moments.centroid.imag + SAME_HEIGHT
+        first = min(
+            (body for body in left if body.ring.moments.centroid.imag <= low),
+            key=lambda body: body.ring.moments.centroid.real,
+        )
         height = float(np.ptp(first.ring.z.imag))
         top = first.ring.moments.centroid.imag + ROW * height
         row = [body for body in left if body.ring.moments.centroid.imag <= top]

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from math import ceil
 from typing import Any
 
 import numpy as np
@@ -34,6 +35,7 @@ LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 SAME_NORMAL = 1e-6
 MASS_DIGITS = 12
 EXTENT = 1e-5  # to which width and height are known [m]
+MAX_MORTAR = 0.05  # width of gaps that may be joints [m]
 MAX_ANALYSED = 60  # bodies up to which it is checked too that they stand, by limit analysis
 TOGETHER = "several mechanisms start"  # what an assembly says that only a change of its sizes mends
 MAX_CHECKED = 300  # bodies up to which the mechanism checks its fields; of more, this study alone
@@ -351,10 +353,9 @@ def _levelled(bodies: Sequence[DrawnBody], close: float, frame: DrawingFrame, sh
     at: list[complex] = []
     for body in bodies:
         z = body.ring.z
-        off = (z.imag != 0) & (np.abs(z.imag) <= close)
-        if off.any():
-            at += [frame.to_drawing(each - shift) for each in z[off]]
-            body.ring = ArcRing(np.where(off, z.real, z), body.ring.bulges)
+        off = np.abs(z.imag) <= close
+        at += [frame.to_drawing(each - shift) for each in z[off & (np.abs(z.imag) > mortar.NO_GAP)]]
+        body.ring = ArcRing(np.where(off, z.real, z), body.ring.bulges)
     if not at:
         return []
     return [ImportNote("levelled", len(at), f"{many(len(at), 'corner')} put onto the level ground", at)]
@@ -534,6 +535,20 @@ def _refused_together(result: Imported, file: str) -> list[ImportNote]:
         faults = error.errors(include_url=False)
         words = [f"{'.'.join(map(str, fault['loc'])) or result.kind}: {fault['msg']}" for fault in faults[:3]]
         if not all(TOGETHER in fault["msg"] for fault in faults):
-            raise DrawingError("mechanism", f"{result.kind} cannot take it: {'; '.join(words)}", file) from None
+            gap = _nearest_gap(result, joined)
+            raise DrawingError("mechanism", f"{result.kind} cannot take it: {'; '.join(words)}{gap}", file) from None
         return [ImportNote("together", 1, f"commands refuse the file as it is: {'; '.join(words)}")]
     return []
+
+
+def _nearest_gap(result: Imported, joined: Collection[str]) -> str:
+    """Return a hint on the widest of the gaps beside bodies without a joint; empty if none is narrow enough."""
+    apart = [k for k, body in enumerate(result.bodies) if body.name not in joined]
+    ground = [ArcRing.of(z, np.zeros(len(z))) for z in result.ground]
+    sides = mortar.Sides.from_rings([*(body.ring for body in result.bodies), *ground])
+    pairs = mortar.facing(sides, 0.0, MAX_MORTAR)
+    gaps = pairs.gap[np.isin(sides.ring[pairs.one], apart)]
+    if not len(gaps):
+        return ""
+    widest = ceil(1e4 * float(gaps.max()) - 1e-6) / 10  # tenths of a millimetre
+    return f"; faces beside them are up to {widest:.4g} mm apart: give `merge_gap` {widest:.4g} mm"

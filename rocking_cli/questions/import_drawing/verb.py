@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -101,10 +102,9 @@ def import_drawing(
     0.25
     """
     from rocking_cli.ask.drawings import read_drawing
-    from rocking_cli.core.structure_file import default_name
+    from rocking_cli.core.structure_file import default_name, fields_text
     from rocking_cli.io.drawings.contract import MeshSurface
     from rocking_cli.io.files import keep_apart, write_whole
-    from rocking_cli.questions.import_drawing.structure_file import head, text_of
     from rocking_cli.questions.import_drawing.study import ImportOptions, structure_from
     from rocking_cli.questions.import_drawing.view import sentences, view
 
@@ -121,7 +121,8 @@ def import_drawing(
         raise InputError(Problem("this is a mesh", str(file), hint="use rk.import_mesh"))
     name = default_name(file)
     made = structure_from(drawing, options, name, str(file))
-    text = text_of(made.kind, made.fields, head(Path(file).name, data, command, sentences(made.notes)), made.comments)
+    source = f"From {Path(file).name}, SHA-256 {sha256(data).hexdigest()}, by `{command}`"
+    text = fields_text(made.kind, made.fields, [source, *sentences(made.notes)], made.comments)
     made = replace(made, text=text)
     if out is not None:
         write_whole(Path(out), lambda stream: stream.write(text.encode("utf-8")))

@@ -135,9 +135,14 @@ class ImportedMesh:
 
         Raises `DrawingError` without a density.
         """
-        return [self.structure(row) for row in self.azimuths] or [self.structure(None)]
+        return [self.structure_of(row) for row in self.azimuths] or [self.structure_of(None)]
 
-    def structure(self, row: AzimuthRow | None, name: str | None = None) -> Mechanism:
+    @property
+    def structure(self) -> Mechanism:
+        """The structure of the first azimuth, or that of the weakest edge. Raises `DrawingError` without a density."""
+        return self.structures[0]
+
+    def structure_of(self, row: AzimuthRow | None, name: str | None = None) -> Mechanism:
         """Return the structure that rocks as the body does towards an azimuth, or over its weakest edge."""
         if self.mass is None:
             raise DrawingError("density", "the mass of the body is not known: give `density`", self.file)

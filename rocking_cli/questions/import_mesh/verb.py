@@ -224,7 +224,7 @@ def _text(structure: Mechanism, head: Sequence[str]) -> str:
     from rocking_cli.core.structure_file import structure_text
 
     lines = [line for each in head for line in wrap(one_line(each), COMMENT_WIDTH, break_on_hyphens=False)]
-    return structure_text(structure, "\n# ".join(lines))
+    return structure_text(structure, *lines)
 
 
 def _write(place: Path, text: str, watch: Watcher) -> list[str]:

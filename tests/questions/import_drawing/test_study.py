@@ -4,6 +4,7 @@ from math import pi, radians, sqrt, tan
 
 import numpy as np
 import pytest
+import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pytest import approx
@@ -318,7 +319,9 @@ class TestAttached:
 
     def test_a_tie_without_text_is_a_comment(self):
         found = imported(*PORTAL, line((0.4, 2.5), (3.6, 2.5), "CATENE"))
-        assert "ties" not in found.fields and "tie 1" in found.comments[0] and "it is a comment" in words(found)
+        (given,) = yaml.safe_load(found.comments[0])["ties"]
+        assert given["name"] == "tie 1" and given["to"] == {"body": "b2", "at": [3.6, 2.5]}
+        assert "ties" not in found.fields and "it is a comment" in words(found)
 
     def test_points_on_hinge_layers_make_a_linkage(self):
         wall = [box(-0.15, 0, 0.3, 1.5), box(-0.15, 1.5, 0.3, 1.5), line((0.15, 3), (1, 3), "SOLAIO")]
@@ -343,6 +346,17 @@ class TestAttached:
         )  # fmt: skip
         assert list(found.fields["blocks"]) == ["pier left", "pier left-2", "b3"]
         assert found.fields["blocks"]["pier left"]["density"] == 2200
+
+    def test_open_joints_are_refused_with_their_width(self):
+        with pytest.raises(DrawingError, match=r"up to 8\.1 mm apart: give `merge_gap` 8\.1 mm"):
+            imported(box(0, 0, 1, 1), box(0, 1.00805, 1, 1))
+        assert len(imported(box(0, 0, 1, 1), box(0, 1.00805, 1, 1), merge_gap=0.0081).joints) == 2
+
+    def test_curves_are_counted(self):
+        curved = outline([(0, 0), (1, 0), (1, 2), (0, 2)], arcs_found=2, is_straightened=True)
+        found = imported(curved)
+        assert "2 arcs recognised in the curves of the file" in words(found)
+        assert "1 curve made straight sides" in words(found)
 
     def test_a_file_that_no_command_takes_is_refused(self):
         ends = ((-1, -0.1), (0.9, 3.1), (4.1, 5))  # the ground stops beside the piers
@@ -418,7 +432,7 @@ def test_cut_shuffled_turned_and_repeated_drawings_give_one_file(data):
     found = imported(*data.draw(st.permutations(shaken)), **options)
     assert found.kind == plain.kind and [body.name for body in found.bodies] == [body.name for body in plain.bodies]
     areas = [body.moments.area for body in plain.bodies]
-    assert [body.moments.area for body in found.bodies] == approx(areas, rel=0.01)
+    assert [body.moments.area for body in found.bodies] == approx(areas, rel=4e-3)
 
 
 def assert_close(found, expected, tolerance):

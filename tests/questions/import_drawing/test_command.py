@@ -1,0 +1,69 @@
+"""`rocking import`: what it prints and writes, and what it refuses, as JSON too."""
+
+import hashlib
+import json
+
+import pytest
+import yaml
+from click.testing import CliRunner
+
+import rocking_cli as rk
+from rocking_cli.cli.main import main
+from tests.meshes import box, obj
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "pillar.csv").write_text("0,0\n600,0\n600,2400\n0,2400\n")
+    (tmp_path / "cross.csv").write_text("0,0\n1000,1000\n1000,0\n0,1000\n")
+    (tmp_path / "box.obj").write_bytes(obj(box((0.0, 0.0, 0.0), (0.6, 0.8, 2.4))))
+    (tmp_path / "zero.dxf").write_bytes(b"")
+    (tmp_path / "old.dwg").write_bytes(b"AC1032" + bytes(100))
+
+
+def run(*words):
+    return CliRunner().invoke(main, ["import", *words])
+
+
+def test_the_file_names_its_source_and_is_the_one_printed(tmp_path):
+    printed = run("pillar.csv", "--units", "mm")
+    done = run("pillar.csv", "--units", "mm", "-o", "pillar.yaml")
+    assert printed.exit_code == done.exit_code == 0
+    text = (tmp_path / "pillar.yaml").read_text("utf-8")
+    digest = hashlib.sha256((tmp_path / "pillar.csv").read_bytes()).hexdigest()
+    assert f"# From pillar.csv, SHA-256 {digest}, by `rocking import pillar.csv --units mm`" in text
+    assert "no ground is drawn" in text.lower() and "600" not in yaml.safe_dump(yaml.safe_load(text))
+    assert printed.stdout == text
+    assert rk.load_structure("pillar.yaml").uplift(rk.Direction.POSITIVE) == 0.25
+
+
+@pytest.mark.parametrize(
+    ("words", "refused", "what"),
+    [
+        (["pillar.csv"], "units", "give --units"),
+        (["cross.csv", "--units", "mm"], "crosses", "crosses itself at (500, 500)"),
+        (["zero.dxf"], "empty", "the file is empty"),
+        (["old.dwg"], "not_dxf", "save it as DXF"),
+        (["box.obj"], "units", "give --units"),
+    ],
+)
+def test_a_refusal_is_one_object_and_writes_nothing(tmp_path, words, refused, what):
+    before = sorted(tmp_path.iterdir())
+    done = run(*words, "--json", "-o", "out.yaml", "--plot", "out.png")
+    told = json.loads(done.stdout)
+    assert done.exit_code == 2 and told["refused"] == refused and what in told["message"]
+    assert sorted(tmp_path.iterdir()) == before
+    plain = run(*words)
+    assert plain.exit_code == 2 and what in " ".join(plain.stderr.split()) and not plain.stdout
+
+
+def test_options_of_the_other_kind_are_refused():
+    assert "--settle reads a mesh" in run("pillar.csv", "--units", "mm", "--settle").stderr
+    assert "--scale reads a drawing" in run("box.obj", "--units", "m", "--scale", "1:50").stderr
+
+
+def test_the_answers_of_imports_stand_for_structures():
+    drawn, scanned = rk.import_drawing("pillar.csv", units="mm"), rk.import_mesh("box.obj", units="m", density=2000)
+    for answer in (drawn, scanned):
+        assert rk.equiv(answer).to_dict()["directions"]["positive"]["lambda"] == pytest.approx(0.25)
