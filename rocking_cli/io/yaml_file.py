@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import cache
-from math import inf
+from functools import lru_cache
+from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +21,7 @@ from rocking_cli.text import cut, printable, regex
 MAX_BYTES = 10_000_000  # most structures take a few hundred, a wall of ten thousand blocks two million
 MIN_FAST_CHARACTERS = 100_000  # longer texts take seconds without the parser in C
 MAX_DEPTH = 20
+NUMBERED_WORD = regex("[A-Za-z]+[0-9]+")
 MAX_VALUES = 500_000  # repeats by aliases count, as a few lines of them stand for billions
 
 
@@ -64,9 +65,6 @@ for _tag, _first, _pattern in (
     _Loader.add_implicit_resolver(f"tag:yaml.org,2002:{_tag}", regex(f"^(?:{_pattern})$"), list(_first))
 
 
-MAX_COLUMNS = 2**31 - 1
-
-
 class _Dumper(yaml.SafeDumper):
     """PyYAML that quotes each text which YAML 1.1 or 1.2 would read as something else."""
 
@@ -79,25 +77,32 @@ class _Dumper(yaml.SafeDumper):
         return True
 
 
-@cache
-def _fast_dumper() -> type[yaml.SafeDumper]:
-    """Return a dumper in C, eight times as fast, which is made when a large file is written."""
-
-    class FastDumper(yaml.CSafeDumper):
-        yaml_implicit_resolvers = _Dumper.yaml_implicit_resolvers
-        ignore_aliases = _Dumper.ignore_aliases
-
-    return FastDumper  # type: ignore[return-value]
-
-
 def in_a_line(value: Any) -> str:
     """Return plain data as YAML in one line."""
-    how: Any = {"default_flow_style": True, "sort_keys": False, "allow_unicode": True}
-    if yaml.__with_libyaml__ and isinstance(value, dict | list):
-        text = str(yaml.dump([value], Dumper=_fast_dumper(), width=MAX_COLUMNS, **how))
-        if text.isascii() and "\\" not in text:  # other characters are escaped more than need be
-            return text.strip()[1:-1]
-    return str(yaml.dump([value], Dumper=_Dumper, width=inf, **how)).strip()[1:-1]
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{in_a_line(key)}: {in_a_line(each)}" for key, each in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(in_a_line, value)) + "]"
+    if type(value) is float and isfinite(value):
+        return _with_point(repr(value))
+    if isinstance(value, str) and NUMBERED_WORD.fullmatch(value):
+        return value  # as most names of bodies are
+    return _scalar(value)
+
+
+def _with_point(digits: str) -> str:
+    """Return a number with a point before its exponent, without which YAML 1.1 reads a text."""
+    return digits if "." in digits else digits.replace("e", ".0e")
+
+
+@lru_cache(maxsize=4096, typed=True)  # 1 and True are equal
+def _scalar(value: Any) -> str:
+    """Return a scalar as PyYAML writes it in a list, a text of several lines in quotes and one line."""
+    style = '"' if "\n" in str(value) else None
+    text = yaml.dump(
+        [value], Dumper=_Dumper, width=inf, default_flow_style=True, default_style=style, allow_unicode=True
+    )
+    return str(text).strip()[1:-1]
 
 
 def is_deep(value: Any) -> bool:

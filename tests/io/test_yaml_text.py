@@ -9,7 +9,7 @@ TEXTS = [
     "plain", "two words",
     "1e3", "012", "0x1F", "1_000", "12:30", "on", "No", "~", "null", "<<", "=", "- x", "? y", "a: b",
     "a # b", "#", "it's", 'say "x"', "[a, b]", "{a}", "*x", "&x", "!x", "%x", "@x", "`x`", "|", ">", "né", "\U0001f600",
-    " edge ", "a,b", "x:", "2026-01-01", ".nan", "\\", "---", "...",
+    " edge ", "", "two\nlines", "a,b", "x:", "2026-01-01", ".nan", "\\", "---", "...",
 ]  # fmt: skip
 
 
@@ -17,9 +17,15 @@ TEXTS = [
 def test_texts_stay_texts_as_values_and_as_names(text):
     data = {"a": text, text: {text: {"list": [text, {text: [1, 2.5, True, None, 1e-7]}], "b": text}}}
     written = "\n".join(line for key, value in data.items() for line in block(key, value))
+    assert len(written.splitlines()) == 3
     document = parse(written, "a.yaml", "file", "")
     assert document.data == data and not document.problems
     assert yaml.safe_load(written) == data
+
+
+@pytest.mark.parametrize("number", [0.1, -0.0, 1e22, 1e-7, 1.5e300, -3.0, 7, 10**30, float("inf")])
+def test_numbers_are_spelled_as_by_pyyaml(number):
+    assert f"[{in_a_line(number)}]\n" == yaml.safe_dump([number], default_flow_style=True)
 
 
 def test_long_lists_stay_in_one_line_and_repeated_ones_are_written_out():

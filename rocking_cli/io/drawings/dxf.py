@@ -35,6 +35,7 @@ FROZEN, XREF, HIDDEN = 1, 4 | 8, 1  # flags of a layer, a block and an attribute
 FILLED = ("HATCH", "SOLID", "TRACE")
 MODEL_SPACE = ("*model_space", "$model_space")
 PAPER_SPACE = ("*paper_space", "$paper_space")
+NO_BULGES = np.zeros(2)
 SCREEN_CODE = re.compile(r"%%([0-9]{3}|.)", re.DOTALL)
 SIGNS = {"c": "\u2300", "d": "\u00b0", "p": "\u00b1", "%": "%"}
 NO_LENGTH, ON_PAPER = "without length", "in paper space"
@@ -142,6 +143,8 @@ class _ModelSpace:
                 elif entity.kind == "POINT":
                     at = self._carried(entity.point(10), None, placing)
                     self.spots.append(DrawnPoint(at, layer, entity.kind, self.dxf.name(entity, 5)))
+                elif entity.kind == "LINE" and placing is None:
+                    self._line(entity, layer)
                 else:
                     self._lines(entity, placing, layer)
             except (ValueError, IndexError):
@@ -177,6 +180,19 @@ class _ModelSpace:
         if state[0] == "0" and inserted_on is not None:
             return self._spelling.get(inserted_on.lower(), (inserted_on, ""))
         return state
+
+    def _line(self, entity: DxfEntity, layer: str) -> None:
+        """Take a straight line that no block places: the most frequent entity, in half the time of `_lines`."""
+        (x, y, z), (u, v, w) = entity.point(10), entity.point(11)
+        start, end = complex(x, y), complex(u, v)
+        if start == end or not isfinite(start + end):
+            return self._lines(entity, None, layer)
+        self._corners += 2
+        handle = self.dxf.name(entity, 5)
+        self.chains.append(DrawnLine(
+            np.array([start, end]), NO_BULGES, False, layer, "LINE", handle, heights=(min(z, w), max(z, w))
+        ))  # fmt: skip
+        return None
 
     def _lines(self, entity: DxfEntity, placing: Placing | None, layer: str) -> None:
         if id(entity) not in self._shapes:

@@ -13,7 +13,14 @@ from numpy.typing import NDArray
 from rocking_cli.arrays import Points, Reals
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine
 from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, length_in_words, many
-from rocking_cli.questions.import_drawing.rings import ArcRing, arc_circle, chord_count, following, inner_points
+from rocking_cli.questions.import_drawing.rings import (
+    ArcRing,
+    RingsInRow,
+    chord_count,
+    following,
+    inner_points,
+    tidied,
+)
 
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
@@ -164,7 +171,8 @@ def loops(lines: Sequence[Placed], close: float, frame: DrawingFrame, file: str)
     made = [Loop(ArcRing.of(line.z, line.bulges), [line.source]) for line in closed]
     if open_:
         made = _with_open(made, closed, open_, close, mended, frame, file)
-    made = [Loop(loop.ring.tidied(close), loop.sources) for loop in made]
+    rings = tidied([loop.ring for loop in made], close)
+    made = [Loop(ring, loop.sources) for ring, loop in zip(rings, made, strict=True)]
     return _once(made, close, mended), mended
 
 
@@ -267,8 +275,7 @@ def _followed(
     parts, part_of = connected_components(graph, directed=False)
     part = part_of[start]
     crossed = np.zeros(parts, bool)
-    for pair in _crossing(edges, close):
-        crossed[part[list(pair)]] = True
+    crossed[part[_crossing(edges, start, end, close)]] = True
     made, loose = _traced(edges, start, end, sources, ~crossed[part], mended)
     if crossed.any():
         more, open_parts = _faces(edges, part, crossed, sources, close, mended)
@@ -364,13 +371,18 @@ def _share(edges: DrawnEdges, k: int, z: complex) -> float:
     return float(way % (2 * np.pi / abs(turn)))
 
 
-def _crossing(edges: DrawnEdges, close: float) -> list[tuple[int, int]]:
-    """Return pairs of edges that cross between their ends."""
+def _crossing(edges: DrawnEdges, start: Integers, end: Integers, close: float) -> Integers:
+    """Return pairs of edges that cross between their ends, shape (2, n)."""
     import shapely
 
     lines = edges.curves(close)
-    pairs = shapely.STRtree(lines).query(lines, predicate="crosses")
-    return [(i, j) for i, j in pairs.T.tolist() if i < j]
+    one, other = shapely.STRtree(lines).query(lines)
+    ends = np.stack([start, end])
+    meet = (ends[:, None, one] == ends[None, :, other]).any(axis=(0, 1))
+    both = (one < other) & ~(meet & (edges.bulge[one] == 0) & (edges.bulge[other] == 0))  # straight ones meet once
+    one, other = one[both], other[both]
+    cross = shapely.crosses(lines[one], lines[other])
+    return np.stack([one[cross], other[cross]])
 
 
 def _traced(
@@ -385,42 +397,46 @@ def _traced(
 
     Returns the loops, each with the number of an edge, and edges with the same face on both sides, which close nothing.
     """
-    chosen = np.flatnonzero(which)
-    n = len(edges)
+    chosen, n = np.flatnonzero(which), len(edges)
+    if not len(chosen):
+        return [], set()
     # A half edge k runs from start to end, k + n back. The next one of a face is the first to the right at its end.
     tail, ways = np.concatenate([start[chosen], end[chosen]]), np.concatenate([chosen, chosen + n])
-    reach = _reach(edges, start, end)
-    away = np.array([_away(edges, k, n, float(reach[k % n])) for k in ways.tolist()])
-    order = np.lexsort((np.angle(away), tail))
+    order = np.lexsort((np.angle(_away(edges, start, end)[ways]), tail))
     tail, ways = tail[order], ways[order]
-    firsts = np.flatnonzero(np.append(True, tail[1:] != tail[:-1])) if len(tail) else np.zeros(0, np.intp)
-    lasts = np.append(firsts[1:], len(tail)) - 1
-    right: dict[int, int] = {}
-    for first, last in zip(firsts.tolist(), lasts.tolist(), strict=True):
-        around = ways[first : last + 1].tolist()
-        right.update(zip(around, [around[-1], *around[:-1]], strict=True))
-    face_of: dict[int, int] = {}
+    firsts = np.flatnonzero(np.append(True, tail[1:] != tail[:-1]))
+    to_the_right = np.arange(-1, len(ways) - 1)
+    to_the_right[firsts] = np.append(firsts[1:], len(ways)) - 1
+    following_way = np.empty(2 * n, np.intp)
+    following_way[(ways + n) % (2 * n)] = ways[to_the_right]
+    face_of, around, faces = _cycles(following_way.tolist(), ways.tolist())
+    k, forward = around % n, around < n
+    z = np.where(forward, edges.a[k], edges.b[k])
+    bulges = np.where(forward, edges.bulge[k], -edges.bulge[k])
     made: list[tuple[Loop, int]] = []
-    branches = np.bincount(np.append(start, end))
-    for first in ways.tolist():
-        if first in face_of:
-            continue
-        face, way = [], first
-        while way not in face_of:
-            face_of[way] = first
-            face.append(way)
-            way = right[way - n if way >= n else way + n]
-        at = np.array(face)
-        k = at % n
-        forward = at < n
-        z = np.where(forward, edges.a[k], edges.b[k])
-        bulges = np.where(forward, edges.bulge[k], -edges.bulge[k])
-        ring = ArcRing(z, bulges)
+    is_branch = (np.bincount(np.append(start, end)) > 2)[start[k]]
+    rings = RingsInRow(z, bulges, np.array(faces[:-1])).rings()
+    for ring, (first, last) in zip(rings, pairwise(faces), strict=True):
         if ring.moments.area > 0:
-            made.append((Loop(ring, [sources[j] for j in dict.fromkeys(edges.of[k].tolist())]), int(k[0])))
-            mended.faces += bool((branches[start[k]] > 2).any())
+            of = dict.fromkeys(edges.of[k[first:last]].tolist())
+            made.append((Loop(ring, [sources[j] for j in of]), int(k[first])))
+            mended.faces += bool(is_branch[first:last].any())
     loose = {k for k in chosen.tolist() if face_of[k] == face_of[k + n]}
     return made, loose
+
+
+def _cycles(following_way: Sequence[int], ways: Sequence[int]) -> tuple[Sequence[int], Integers, Sequence[int]]:
+    """Return the cycle of each way, the ways cycle by cycle, and where in them each cycle begins, and the last ends."""
+    cycle_of, around, begins = [-1] * len(following_way), [], [0]
+    for first in ways:
+        way = first
+        while cycle_of[way] < 0:
+            cycle_of[way] = first
+            around.append(way)
+            way = following_way[way]
+        if len(around) > begins[-1]:
+            begins.append(len(around))
+    return cycle_of, np.array(around, np.intp), begins
 
 
 def _reach(edges: DrawnEdges, start: Integers, end: Integers) -> Reals:
@@ -432,18 +448,14 @@ def _reach(edges: DrawnEdges, start: Integers, end: Integers) -> Reals:
     return np.asarray(np.minimum(shortest[start], shortest[end]) / 100)
 
 
-def _away(edges: DrawnEdges, way: int, n: int, reach: float) -> complex:
-    """Return the direction of a half edge from its node: of the point of its arc at a distance."""
-    k = way % n
-    a, b, bulge = complex(edges.a[k]), complex(edges.b[k]), float(edges.bulge[k])
-    if way >= n:
-        a, b, bulge = b, a, -bulge
-    if not bulge:
-        return b - a
-    _, radius = arc_circle(a, b, bulge)
-    turn = 4 * np.arctan(bulge)
-    to_chord = np.sign(turn) * 2 * np.arcsin(min(reach / (2 * radius), 1.0))  # turn of the arc up to the distance
-    return complex((b - a) * np.exp(-0.5j * (turn - to_chord)))
+def _away(edges: DrawnEdges, start: Integers, end: Integers) -> Points:
+    """Return the direction of each half edge from its node: that of the point of its arc at a distance."""
+    chord = np.concatenate([edges.b - edges.a, edges.a - edges.b])
+    turn = 4 * np.arctan(np.concatenate([edges.bulge, -edges.bulge]))
+    diameter = np.abs(chord) / np.sin(np.where(turn == 0, 1.0, np.abs(turn) / 2))
+    reach = np.tile(_reach(edges, start, end), 2)
+    to_chord = np.sign(turn) * 2 * np.arcsin(np.minimum(reach / diameter, 1.0))  # turn of the arc up to the distance
+    return np.asarray(chord * np.exp(-0.5j * (turn - to_chord)))
 
 
 def _faces(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -19,6 +20,7 @@ from rocking_cli.text import in_short, seen
 from rocking_cli.units import UnitError, mass_of_weight, read
 
 FLATNESS = 1e-9  # area up to which an outline encloses nothing, over the square of its size
+SLIVER = 1e-6  # area up to which an outline may enclose nothing, over the square of its length
 MEETING = 1e-3  # distance of ends that may be one point, over the size of their layer
 LEAST_ENDS = 4  # of lines that may enclose something
 MEETING_SHARE = 0.75  # of the ends of a layer that lie on other lines, from which it may hold outlines
@@ -175,14 +177,18 @@ def _which(counts: Mapping[str, int], file: str) -> DrawingError:
 
 def placed(chains: Sequence[DrawnLine], frame: DrawingFrame, close: float, file: str) -> list[Placed]:
     """Return chains in metres. Raises `DrawingError` "not_plane" for one that is not level in z."""
-    lines = []
+    chains = [chain for chain in chains if len(chain.points) > 1]
+    if not chains:
+        return []
+    z = frame.to_metres(np.concatenate([chain.points for chain in chains]))
+    lines, end = [], 0
     for chain in chains:
+        begin, end = end, end + len(chain.points)
         if (chain.heights[1] - chain.heights[0]) * frame.per > close:
             depth = length_in_words((chain.heights[1] - chain.heights[0]) * frame.per)
             what = f"{described(chain)} is not plane: its corners differ by {depth} in z. Draw the section in one plane"
-            raise DrawingError("not_plane", what, file, at=frame.pairs(frame.to_metres(chain.points[:1]).tolist()))
-        if len(chain.points) > 1:
-            lines.append(Placed(frame.to_metres(chain.points), chain.bulges, chain.closed, chain))
+            raise DrawingError("not_plane", what, file, at=frame.pairs(z[begin : begin + 1].tolist()))
+        lines.append(Placed(z[begin:end], chain.bulges, chain.closed, chain))
     return lines
 
 
@@ -263,9 +269,11 @@ def _check_each(made: Sequence[Loop], frame: DrawingFrame, close: float, file: s
 
     polygons = polygons_of([loop.ring for loop in made], close)
     valid = shapely.is_valid(polygons)
-    for k, loop in enumerate(made):
-        at, name = complex(loop.ring.z[0]), f"outline {k + 1} ({described(loop.sources[0])})"
-        if not loop.ring.arcs and _is_flat(loop.ring):
+    slivers = shapely.area(polygons) < SLIVER * shapely.length(polygons) ** 2
+    for k in np.flatnonzero(~valid | slivers).tolist():
+        ring, name = made[k].ring, f"outline {k + 1} ({described(made[k].sources[0])})"
+        at = complex(ring.z[0])
+        if not ring.arcs and _is_flat(ring):
             raise DrawingError("thin", f"{name} encloses nothing, at {frame.place(at)}", file, at=frame.pairs([at]))
         if not valid[k]:
             reason = shapely.is_valid_reason(polygons[k])
@@ -330,7 +338,7 @@ def _nested(
             one, other = (f"outline {k + 1} ({described(outer[k].sources[0])})" for k in (i, j))
             what = (
                 f"{one} lies within {other}: is it an opening (`nested` openings), or is the outer one a frame? Put a "
-                "frame on a layer of its hatched"
+                "frame on a layer of its own"
             )
             raise DrawingError("nested", what, file, at=frame.pairs([outer[i].ring.moments.centroid]))
         if i in holes or j in holes:
@@ -367,18 +375,15 @@ def _cut(
 def in_rows(bodies: Sequence[DrawnBody]) -> list[DrawnBody]:
     """Return bodies by rows from below, each from the left."""
     left = sorted(bodies, key=lambda body: body.ring.moments.centroid.imag)
+    height = [body.ring.moments.centroid.imag for body in left]
     ordered: list[DrawnBody] = []
-    while left:
-        low = left[0].ring.moments.centroid.imag + SAME_HEIGHT
-        first = min(
-            (body for body in left if body.ring.moments.centroid.imag <= low),
-            key=lambda body: body.ring.moments.centroid.real,
-        )
-        height = float(np.ptp(first.ring.z.imag))
-        top = first.ring.moments.centroid.imag + ROW * height
-        row = [body for body in left if body.ring.moments.centroid.imag <= top]
+    while len(ordered) < len(left):
+        begin = len(ordered)
+        lowest = left[begin : bisect_right(height, height[begin] + SAME_HEIGHT)]
+        first = min(lowest, key=lambda body: body.ring.moments.centroid.real)
+        top = first.ring.moments.centroid.imag + ROW * float(np.ptp(first.ring.z.imag))
+        row = left[begin : bisect_right(height, top)]
         ordered += sorted(row, key=lambda body: body.ring.moments.centroid.real)
-        left = left[len(row) :]
     return ordered
 
 

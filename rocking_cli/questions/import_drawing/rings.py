@@ -86,67 +86,25 @@ class ArcRing:
     @cached_property
     def moments(self) -> PlaneMoments:
         """Exact moments: those of the polygon of the corners, and of the segment between each arc and its chord."""
-        middle = self.z.mean()  # first, as drawings may be far from their origin
-        z = self.z - middle
-        w = following(z)
-        twice_area = (z.conj() * w).imag
-        area, first = twice_area.sum() / 2, (twice_area * (z + w)).sum() / 6
-        polar = (twice_area * (np.abs(z) ** 2 + np.abs(w) ** 2 + (z.conj() * w).real)).sum() / 12
-        curved = self.bulges != 0
-        if curved.any():
-            start, chord, b = z[curved], (w - z)[curved], self.bulges[curved]
-            turn, radius = 4 * np.arctan(b), np.abs(chord) * (1 + b**2) / (4 * np.abs(b))
-            centre = start + chord / 2 + 1j * chord * (1 - b**2) / (4 * b)
-            to_middle = (start + chord / 2 - 1j * chord * b / 2 - centre) / radius
-            segment = radius**2 * _less_sine(turn) / 2
-            # 4 r sin^3(t/2)/[3 (t - sin t)] times the area: the first moment has no difference of sines.
-            along = 2 / 3 * radius**3 * np.sin(np.abs(turn) / 2) ** 3 * np.sign(turn)
-            about_centre = radius**4 * _polar(turn)
-            area += segment.sum()
-            first += (segment * centre + along * to_middle).sum()
-            polar += (about_centre + 2 * along * (centre.conj() * to_middle).real + segment * np.abs(centre) ** 2).sum()
-        if not area:
-            return PlaneMoments(0.0, complex(middle), 0.0)
-        centroid = first / area
-        return PlaneMoments(float(area), complex(middle + centroid), float(polar - area * abs(centroid) ** 2))
+        return _moments(RingsInRow(self.z, self.bulges, np.array([0])))[0]
 
     def placed(self, factor: float, shift: complex) -> ArcRing:
         """Return the ring shifted and then scaled."""
         return ArcRing((self.z + shift) * factor, self.bulges)
 
-    def tidied(self, close: float) -> ArcRing:
-        """Return the ring without corners between two parts of one side, from its lower left corner on.
-
-        So a file does not depend on where its lines were cut, and in which order they were drawn.
-        """
-        ring = self._merged()
-        z = ring.z
-        low = np.flatnonzero(z.imag <= z.imag.min() + close)
-        left = low[z.real[low] <= z.real[low].min() + close]
-        first = int(left[z.imag[left].argmin()])
-        return ArcRing(np.roll(z, -first), np.roll(ring.bulges, -first)) if first else ring
-
-    def _merged(self) -> ArcRing:
-        """Return the ring with consecutive sides of one line, or arcs of one circle, as one."""
-        z, b = self.z, self.bulges
-        before, after = z - preceding(z), following(z) - z
-        across = (before.conj() * after).imag
-        with np.errstate(divide="ignore", invalid="ignore"):
-            sine = np.abs(across) / (np.abs(before) * np.abs(after))
-        ahead = (before.conj() * after).real > 0
-        spare = (b == 0) & (preceding(b) == 0) & ahead & (sine < SAME_DIRECTION)
-        arcs = [k for k in np.flatnonzero((b != 0) & (preceding(b) != 0)).tolist() if self._goes_on(k)]
-        if not spare.any() and not arcs:
-            return self
+    def merged(self, spare: NDArray[np.bool_]) -> ArcRing:
+        """Return the ring without spare corners, and with consecutive arcs of one circle as one."""
+        z, b, spare = self.z, self.bulges, spare.copy()
         turn = 4 * np.arctan(b)
-        for k in arcs:  # each arc takes the turn of the next one
-            previous = next(j % len(z) for j in range(k - 1, k - 1 - len(z), -1) if not spare[j % len(z)])
-            if abs(turn[previous] + turn[k]) < MAX_TURN:
-                turn[previous] += turn[k]
-                spare[k] = True
+        for k in np.flatnonzero((b != 0) & (preceding(b) != 0)).tolist():  # each arc takes the turn of the next one
+            if self._goes_on(k):
+                previous = next(j % len(z) for j in range(k - 1, k - 1 - len(z), -1) if not spare[j % len(z)])
+                if abs(turn[previous] + turn[k]) < MAX_TURN:
+                    turn[previous] += turn[k]
+                    spare[k] = True
         if np.count_nonzero(~spare) < 2 or (np.count_nonzero(~spare) == 2 and not b.any()):
             return self  # it encloses nothing
-        return ArcRing(z[~spare], np.tan(turn / 4)[~spare])
+        return ArcRing(z[~spare], np.tan(turn / 4)[~spare]) if spare.any() else self
 
     def _goes_on(self, k: int) -> bool:
         """Return whether the arc from a corner has the circle and the sense of the one before."""
@@ -174,6 +132,113 @@ class ArcRing:
             if bulge:
                 parts.append(inner_points(complex(start), complex(end), float(bulge), count, keeps_area=keeps_area))
         return np.concatenate(parts)
+
+
+@dataclass(frozen=True, eq=False)
+class RingsInRow:
+    """The corners of many rings one after another, as numpy takes as long for one ring as for hundreds.
+
+    Parameters
+    ----------
+    z, bulges : ndarray, shape (n,)
+        Their corners and bulges, see `ArcRing`.
+    begins : ndarray of int, shape (m,)
+        First corner of each ring.
+    """
+
+    z: Points
+    bulges: Reals
+    begins: NDArray[np.intp]
+
+    @classmethod
+    def of(cls, rings: Sequence[ArcRing]) -> Self:
+        """Return rings as a row."""
+        begins = np.cumsum([0, *(len(ring.z) for ring in rings[:-1])])
+        return cls(np.concatenate([ring.z for ring in rings]), np.concatenate([ring.bulges for ring in rings]), begins)
+
+    @cached_property
+    def ring(self) -> NDArray[np.intp]:
+        """Number of the ring of each corner."""
+        return np.repeat(np.arange(len(self.begins)), np.diff(self.begins, append=len(self.z)))
+
+    @cached_property
+    def after(self) -> NDArray[np.intp]:
+        """Number of the next corner of each corner."""
+        after = np.arange(1, len(self.z) + 1)
+        after[np.append(self.begins[1:], len(self.z)) - 1] = self.begins
+        return after
+
+    def rings(self) -> list[ArcRing]:
+        """Return the rings, whose moments are known."""
+        made = []
+        for first, last, moments in zip(self.begins, [*self.begins[1:], len(self.z)], _moments(self), strict=True):
+            ring = ArcRing(self.z[first:last], self.bulges[first:last])
+            ring.__dict__["moments"] = moments
+            made.append(ring)
+        return made
+
+
+def tidied(rings: Sequence[ArcRing], close: float) -> list[ArcRing]:
+    """Return rings without corners between two parts of one side, from their lower left corners on.
+
+    So a file does not depend on where its lines were cut, and in which order they were drawn.
+    """
+    if not rings:
+        return []
+    row = RingsInRow.of(rings)
+    side = row.z[row.after] - row.z
+    before, was_straight = np.empty_like(side), np.empty(len(side), bool)
+    before[row.after], was_straight[row.after] = side, row.bulges == 0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        sine = np.abs((before.conj() * side).imag) / (np.abs(before) * np.abs(side))
+    ahead = (before.conj() * side).real > 0
+    spare = (row.bulges == 0) & was_straight & ahead & (sine < SAME_DIRECTION)
+    merges = set(row.ring[spare | ((row.bulges != 0) & ~was_straight)].tolist())
+    ends = row.begins + [len(ring.z) for ring in rings]
+    row = RingsInRow.of([
+        ring.merged(spare[row.begins[k] : ends[k]]) if k in merges else ring for k, ring in enumerate(rings)
+    ])  # fmt: skip
+    first = row.begins.copy()
+    low = row.z.imag <= (np.minimum.reduceat(row.z.imag, row.begins) + close)[row.ring]
+    x = np.where(low, row.z.real, np.inf)
+    left = x <= (np.minimum.reduceat(x, row.begins) + close)[row.ring]
+    y = np.where(left, row.z.imag, np.inf)
+    lowest = np.flatnonzero(y == np.minimum.reduceat(y, row.begins)[row.ring])
+    first[row.ring[lowest[::-1]]] = lowest[::-1]  # of equal ones the first
+    count = np.diff(row.begins, append=len(row.z))
+    order = (
+        row.begins[row.ring] + (np.arange(len(row.z)) - 2 * row.begins[row.ring] + first[row.ring]) % count[row.ring]
+    )
+    return RingsInRow(row.z[order], row.bulges[order], row.begins).rings()
+
+
+def _moments(row: RingsInRow) -> list[PlaneMoments]:
+    """Return the exact moments of each ring."""
+    count = np.diff(row.begins, append=len(row.z))
+    middle = np.add.reduceat(row.z, row.begins) / count  # first, as drawings may be far from their origin
+    z = row.z - middle[row.ring]
+    w = z[row.after]
+    area = (z.conj() * w).imag / 2
+    first = area * (z + w) / 3
+    polar = area * (np.abs(z) ** 2 + np.abs(w) ** 2 + (z.conj() * w).real) / 6
+    curved = row.bulges != 0
+    if curved.any():
+        start, chord, b = z[curved], (w - z)[curved], row.bulges[curved]
+        turn, radius = 4 * np.arctan(b), np.abs(chord) * (1 + b**2) / (4 * np.abs(b))
+        centre = start + chord / 2 + 1j * chord * (1 - b**2) / (4 * b)
+        to_middle = (start + chord / 2 - 1j * chord * b / 2 - centre) / radius
+        segment = radius**2 * _less_sine(turn) / 2
+        # 4 r sin^3(t/2)/[3 (t - sin t)] times the area: the first moment has no difference of sines.
+        along = 2 / 3 * radius**3 * np.sin(np.abs(turn) / 2) ** 3 * np.sign(turn)
+        area[curved] += segment
+        first[curved] += segment * centre + along * to_middle
+        polar[curved] += (
+            radius**4 * _polar(turn) + 2 * along * (centre.conj() * to_middle).real + segment * np.abs(centre) ** 2
+        )
+    total, sums, squares = (np.add.reduceat(each, row.begins) for each in (area, first, polar))
+    centroid = np.divide(sums, total, out=np.zeros_like(sums), where=total != 0)
+    about = np.where(total != 0, squares - total * np.abs(centroid) ** 2, 0.0)
+    return list(map(PlaneMoments, total.tolist(), (middle + centroid).tolist(), about.tolist()))
 
 
 def arc_circle(start: complex, end: complex, bulge: float) -> tuple[complex, float]:

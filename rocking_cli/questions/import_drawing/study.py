@@ -308,18 +308,16 @@ def _joints(bodies: Sequence[DrawnBody], ground: Sequence[ArcRing]) -> list[Draw
     """Return where bodies touch one another or the ground, within the gap that `assembly` allows."""
     rings = [*(body.ring for body in bodies), *ground]
     names = [*(body.name for body in bodies), *("ground" for _ in ground)]
-    size = [float(np.ptp(ring.z.real) + np.ptp(ring.z.imag)) for ring in rings]
+    size = np.array([np.ptp(ring.z.real) + np.ptp(ring.z.imag) for ring in rings])
+    size[len(bodies) :] = np.inf
     sides = mortar.Sides.from_rings(rings)
-    most = mortar.JOINT_GAP * max(size[: len(bodies)])
+    most = mortar.JOINT_GAP * size[: len(bodies)].max()
     pairs = mortar.facing(sides, -most, most)
-    joints = []
-    for i, j, gap, ends in zip(pairs.one.tolist(), pairs.other.tolist(), pairs.gap.tolist(), pairs.ends, strict=True):
-        k, m = int(sides.ring[i]), int(sides.ring[j])
-        if k > m or min(k, m) >= len(bodies):
-            continue
-        if abs(gap) <= mortar.JOINT_GAP * min(size[k], size[m] if m < len(bodies) else size[k]):
-            joints.append(DrawnJoint((names[k], names[m]), (complex(ends[0]), complex(ends[1]))))
-    return joints
+    one, other = sides.ring[pairs.one], sides.ring[pairs.other]
+    is_joint = (one <= other) & (np.abs(pairs.gap) <= mortar.JOINT_GAP * np.minimum(size[one], size[other]))
+    is_joint &= one < len(bodies)
+    ends = zip(one[is_joint].tolist(), other[is_joint].tolist(), pairs.ends[is_joint].tolist(), strict=True)
+    return [DrawnJoint((names[i], names[j]), (start, end)) for i, j, (start, end) in ends]
 
 
 def _kind(
