@@ -118,7 +118,7 @@ def test_every_kind_of_picture_is_in_the_gallery(made):
     drawing = {what.split()[1] for kind, what in made.parts.asked(text_of("gallery.md"))}
     assert drawing == {
         "draw", "collapse", "error", "record", "respond", "animate", "margin", "overturning", "equivalent_pulses",
-        "spectrum", "fragility", "docs/make_figures.py", "report", "select",
+        "spectrum", "fragility", "docs/make_figures.py", "report", "select", "import",
     }  # fmt: skip
 
 

@@ -44,7 +44,8 @@ def draw_import(found: Imported, title: str, tolerance: float) -> Figure:
             axes.add_patch(_patch(edge, facecolor=style.PAPER, edgecolor=style.INK, linewidth=style.THIN, zorder=2))
     _draw_joints(axes, found, TICK * size)
     every = -(-len(found.bodies) // MAX_NAMED)
-    points = style.TICK if len(found.bodies) <= 12 else style.SMALL if len(found.bodies) <= 40 else style.TINY
+    crowd = len(found.bodies) * (3 if style.is_narrow() else 1)
+    points = style.TICK if crowd <= 12 else style.SMALL if crowd <= 40 else style.TINY
     for body in found.bodies[::every]:
         at = body.moments.centroid
         axes.text(
@@ -60,14 +61,14 @@ def draw_import(found: Imported, title: str, tolerance: float) -> Figure:
         )  # fmt: skip
     if found.grey:
         axes.plot([], [], color=style.FAINT, linewidth=style.THIN, label="left out")
-    if axes.get_legend_handles_labels()[0]:
-        axes.legend(**style.LEGEND, loc="upper right", bbox_to_anchor=(1.0, -0.08), ncols=5)
-    room = ROOM * size
-    axes.set(
-        xlim=(z.real.min() - room, z.real.max() + room), ylim=(z.imag.min() - room, z.imag.max() + room),
-        xlabel="x [m]", ylabel="y [m]",
-    )  # fmt: skip
+    axes.set(xlabel="x [m]", ylabel="y [m]")
     axes.set_aspect("equal", adjustable="datalim")
+    room = ROOM * size
+    low, high = complex(z.real.min(), z.imag.min()), complex(z.real.max(), z.imag.max())
+    axes.dataLim.set_points(np.array([[low.real - room, low.imag - room], [high.real + room, high.imag + room]]))
+    axes.margins(0.0)
+    if axes.get_legend_handles_labels()[0]:
+        style.legend_below(figure, ncols=5, grows=True)
     return figure
 
 

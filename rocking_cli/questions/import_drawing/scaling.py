@@ -11,6 +11,7 @@ from rocking_cli.text import cut
 from rocking_cli.units import KINDS
 
 MIN_SIZE, MAX_SIZE = 0.1, 100.0  # sizes between which the unit of a file is believed [m]
+SAME_SIZE = 0.01  # difference from the size on paper that a scale cannot be
 SHOWN = ("mm", "cm", "m")  # units in which a size without one is shown
 
 
@@ -58,6 +59,8 @@ def metres_per_unit(
     times = scale_of(scale) if scale is not None else 1.0
     if units is not None:
         per, words = metres(units) * times, f"1 unit = 1 {units}" + (f", at {scale}" if scale else "")
+        if drawing.paper is not None and abs(per / drawing.paper - 1) < SAME_SIZE:
+            words += ", the size on paper: give `scale` if it is drawn to a scale"
     elif scale is not None and drawing.paper is not None:
         per, words = drawing.paper * times, f"the paper's size, at {scale}"
     elif drawing.unit is not None:

@@ -58,6 +58,15 @@ def test_a_refusal_is_one_object_and_writes_nothing(tmp_path, words, refused, wh
     assert plain.exit_code == 2 and what in " ".join(plain.stderr.split()) and not plain.stdout
 
 
+def test_a_plot_fills_its_page_without_warnings(tmp_path, caplog):
+    assert run("pillar.csv", "--units", "mm", "-o", "out.yaml", "--plot", "out.png").exit_code == 0
+    figure = rk.import_drawing("pillar.csv", units="mm").plot()
+    figure.canvas.draw()
+    (axes,) = figure.axes
+    assert not caplog.records
+    assert axes.get_ylim()[0] < 0 and axes.get_ylim()[1] > 2.4 and axes.get_aspect() == 1
+
+
 def test_options_of_the_other_kind_are_refused():
     assert "--settle reads a mesh" in run("pillar.csv", "--units", "mm", "--settle").stderr
     assert "--scale reads a drawing" in run("box.obj", "--units", "m", "--scale", "1:50").stderr
