@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rocking_cli.arrays import Points, Reals
+from rocking_cli.io.drawings.arcs import STRAIGHT_BULGE, inner_points
 from rocking_cli.io.drawings.dxf_groups import DxfEntity, Groups, library
 
 SIDE_TURN = pi / 128  # turn of each straight side that stands for a piece of an ellipse
@@ -101,15 +102,16 @@ class DxfShape:
 def straightened(points: Points, bulges: Reals) -> Points:
     """Return corners whose straight sides enclose the area of a line with arcs; its own corners stay."""
     corners = []
-    for start, end, turn in zip(points, np.roll(points, -1), 4 * np.arctan(bulges), strict=True):
+    for start, end, bulge in zip(points.tolist(), np.roll(points, -1).tolist(), bulges.tolist(), strict=True):
         corners.append(np.array([start]))
-        count = ceil(abs(turn) / SIDE_TURN)
-        if count > 1:
-            share = abs(turn) / np.sin(abs(turn) / count)  # (count - 2) out^2 + 2 out = share
-            out = share / (1 + np.sqrt(1 + (count - 2) * share))
-            centre = (start + end) / 2 + 0.5j * (end - start) / np.tan(turn / 2)
-            corners.append(centre + out * (start - centre) * np.exp(1j * turn * np.arange(1, count) / count))
+        if abs(bulge) > STRAIGHT_BULGE:
+            corners.append(inner_points(start, end, bulge, _count, keeps_area=True))
     return np.concatenate(corners)
+
+
+def _count(_: float, turn: float) -> int:
+    """Return the number of straight sides that stand for an arc."""
+    return max(ceil(abs(turn) / SIDE_TURN), 2)
 
 
 def shapes_of(entity: DxfEntity) -> Sequence[DxfShape] | None:

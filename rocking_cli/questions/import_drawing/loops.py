@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.arrays import Points, Reals
+from rocking_cli.io.drawings.arcs import inner_points
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine
 from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, length_in_words, many
 from rocking_cli.questions.import_drawing.rings import (
@@ -18,7 +19,6 @@ from rocking_cli.questions.import_drawing.rings import (
     RingsInRow,
     chord_count,
     following,
-    inner_points,
     tidied,
 )
 

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from rocking_cli.arrays import Points, Reals
 from rocking_cli.core.polygons import nearby
-from rocking_cli.questions.import_drawing.rings import ArcRing, arc_circle, following
+from rocking_cli.io.drawings.arcs import arc_circle
+from rocking_cli.questions.import_drawing.rings import ArcRing, following
 
 PARALLEL = cos(radians(3.0))
 LEAST_SHARE = 0.02  # of the length of a side, over which it must face another one

@@ -2,29 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import acos, atan, cbrt, ceil, pi, sin, sqrt, tan
+from math import acos, cbrt, ceil, pi, tan
 from typing import NamedTuple, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.arrays import Points, Reals
+from rocking_cli.io.drawings.arcs import STRAIGHT_BULGE, Sides, arc_circle, inner_points
 
 Number = TypeVar("Number", bound=np.generic)
-SIDES_PER_HALF_TURN = (
-    128  # with the area kept: 1e-6 in lambda, phi_cr and inertia, also of outlines that are mostly arcs
-)
-STRAIGHT_BULGE = 1e-9  # bulge up to which a side counts as straight
+SIDES_PER_HALF_TURN = 128  # with the area kept: 1e-6 in lambda, phi_cr and inertia, even if all sides are arcs
 SMALL_TURN = 0.3  # turn below which differences of sines are taken from their series
 MAX_ARC_SIDES = 2000
 SAME_DIRECTION = 1e-6  # sine between two sides of one line
 SAME_CIRCLE = 1e-6  # distance of the centres of arcs of one circle, over its radius
 MAX_TURN = 2 * pi - 0.1  # of one arc [rad]
-Sides = Callable[[float, float], int]
-"""Function that gives the number of straight sides of an arc from its radius [m] and its turn [rad]."""
 
 
 def following(values: NDArray[Number]) -> NDArray[Number]:
@@ -241,22 +237,6 @@ def _moments(row: RingsInRow) -> list[PlaneMoments]:
     return list(map(PlaneMoments, total.tolist(), (middle + centroid).tolist(), about.tolist()))
 
 
-def arc_circle(start: complex, end: complex, bulge: float) -> tuple[complex, float]:
-    """Return the centre and the radius of an arc."""
-    centre = (start + end) / 2 + 1j * (end - start) * (1 - bulge**2) / (4 * bulge)
-    return centre, abs(start - centre)
-
-
-def inner_points(start: complex, end: complex, bulge: float, count: Sides, *, keeps_area: bool = False) -> Points:
-    """Return points along an arc between its ends; `count` gives the number of sides from radius and turn."""
-    turn = 4 * atan(bulge)
-    centre, radius = arc_circle(start, end, bulge)
-    n = count(radius, turn)
-    out = _area_kept(abs(turn), n) if keeps_area else 1.0
-    points: Points = centre + out * (start - centre) * np.exp(1j * turn * np.arange(1, n) / n)
-    return points
-
-
 def chord_count(radius: float, turn: float, tolerance: float) -> int:
     """Return the number of chords of an arc that keep within a tolerance of it."""
     step = 2 * acos(1 - tolerance / radius) if tolerance < radius else pi / 2
@@ -267,12 +247,6 @@ def _level_count(radius: float, turn: float) -> int:
     """Return the number of sides of an arc in a polygon that keeps the area."""
     bulge = abs(tan(turn / 4))
     return max(ceil(SIDES_PER_HALF_TURN * abs(turn) / pi), ceil(SIDES_PER_HALF_TURN * min(cbrt(bulge), 1.0)), 2)
-
-
-def _area_kept(turn: float, n: int) -> float:
-    """Return q, the distance of the inner points over the radius at which n sides have the area of the arc."""
-    right = turn / sin(turn / n)
-    return right / 2 if n == 2 else (sqrt(1 + (n - 2) * right) - 1) / (n - 2)  # (n - 2) q^2 + 2 q = right
 
 
 def _less_sine(turn: Reals) -> Reals:
