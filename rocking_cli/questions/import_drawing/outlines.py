@@ -7,6 +7,7 @@ from bisect import bisect_right
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from shlex import quote
 from typing import Any
 
 import numpy as np
@@ -99,11 +100,12 @@ def by_role(drawing: LineDrawing, roles: Roles, file: str) -> Sorted:
         notes.append(ImportNote("layers", 1, words))
     elif counts:
         known = Counter(chain.layer for chain in chains[Role.BODIES])
-        strange = ",".join(sorted(counts))
+        strange = sorted(map(seen, counts))
         counts |= {layer: outline_count([c for c in chains[Role.BODIES] if c.layer == layer]) for layer in known}
-        says = "do not say what they are" if "," in strange else "does not say what it is"
-        what = f"which layers are bodies? {counted(counts)}, and {seen(strange)} {says}"
-        raise DrawingError("layers", f"{what}: give `layers` bodies={seen(strange)} or nothing={seen(strange)}", file)
+        some = f"{strange[0]} has" if len(strange) == 1 else f"{len(strange)} of them have"
+        take, leave = (quote(f"{role}={','.join(strange)}") for role in (Role.BODIES, Role.NOTHING))
+        what = f"which layers are bodies? {counted(counts)}; {some} no known role: give `layers` {take}"
+        raise DrawingError("layers", f"{what}, or {leave}" if len(strange) == 1 else what, file)
     if not chains[Role.BODIES]:
         held: list[DrawnLine | DrawnText | DrawnPoint] = [*drawing.chains, *drawing.labels, *drawing.spots]
         kinds = Counter(each.kind for each in held)
@@ -171,7 +173,7 @@ def _mostly_meet(open_: Sequence[DrawnLine], around: Sequence[DrawnLine]) -> boo
 
 def _which(counts: Mapping[str, int], file: str) -> DrawingError:
     first = max(counts, key=counts.__getitem__)
-    what = f"which layers are bodies? {counted(counts)}: give `layers` bodies={seen(first)}"
+    what = f"which layers are bodies? {counted(counts)}: give `layers` {quote(f'bodies={seen(first)}')}"
     return DrawingError("layers", what, file)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import ceil
+from string import ascii_uppercase as LETTERS
 from typing import Any
 
 import numpy as np
@@ -31,7 +32,6 @@ from rocking_cli.questions.import_drawing.scaling import metres_per_unit
 
 GROUND_ROOM = 0.1  # depth of the ground below its lowest point, and its room at the sides, over the size drawn
 KINDS = ("rigid_body", "assembly", "linkage")
-LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 SAME_NORMAL = 1e-6
 MASS_DIGITS = 12
 EXTENT = 1e-5  # to which width and height are known [m]
@@ -455,10 +455,13 @@ def _assembly(
         key: {"polygon": _corners(ring.chords(options.tolerance))} for key, ring in zip(names, ground, strict=True)
     }
     if extra.supports:
-        fields["joints"] = {
-            LETTERS[k] if k < len(LETTERS) else f"S{k + 1}": _slide(*each[:3]) for k, each in enumerate(extra.supports)
-        }
+        fields["joints"] = {_key(k): _slide(*each[:3]) for k, each in enumerate(extra.supports)}
     return fields
+
+
+def _key(k: int) -> str:
+    """Return the name of joint number k, from 0."""
+    return LETTERS[k] if k < len(LETTERS) else f"J{k + 1}"
 
 
 def _slide(body: str, at: complex, along: complex) -> dict[str, Any]:
@@ -483,8 +486,7 @@ def _linkage(
         joints: dict[str, Any] = {}
         lead = ""
         for at, on, _ in sorted(hinges, key=lambda each: (len(each[1]), each[0].imag, each[0].real)):
-            key = LETTERS[len(joints)] if len(joints) < len(LETTERS) else f"J{len(joints) + 1}"
-            joints[key] = (
+            joints[_key(len(joints))] = (
                 {"pivot": on[0], "at": rounded(at)} if len(on) == 1 else {"hinge": list(on), "at": rounded(at)}
             )
             lead = lead or (on[0] if len(on) == 1 else "")
@@ -493,8 +495,7 @@ def _linkage(
             raise DrawingError("hinge", what, file)
         for body, at, along, sense in extra.supports:
             if sense in ("", sign):
-                key = LETTERS[len(joints)] if len(joints) < len(LETTERS) else f"J{len(joints) + 1}"
-                joints[key] = _slide(body, at, along)
+                joints[_key(len(joints))] = _slide(body, at, along)
         hinged = {frozenset(on) if len(on) == 2 else frozenset([on[0], "ground"]) for _, on, _ in hinges}
         for pair in touching:  # what touches and has no hinge stays together
             if frozenset(pair) not in hinged:

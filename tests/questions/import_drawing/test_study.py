@@ -215,7 +215,7 @@ def test_a_refusal_has_its_class_its_words_and_its_place(refused):
 
 class TestLayers:
     def test_a_layer_without_a_role_beside_bodies_is_not_left_out(self):
-        with pytest.raises(DrawingError, match="MATTE does not say what it is") as caught:
+        with pytest.raises(DrawingError, match="MATTE has no known role") as caught:
             imported(box(0, 0, 1, 1, "PIETRA"), box(0, 1, 1, 1, "MATTE"))
         assert caught.value.refused == "layers"
         assert (
