@@ -30,6 +30,7 @@ TITLE, ENDINGS = "DXF", (".dxf",)
 UNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 14: "dm"}
 IMPERIAL = {"in": "inches", "ft": "feet"}
 MAX_CORNERS = 300_000
+MAX_BULGE = 1e6  # of a full turn but for 4e-6 rad
 MAX_DEPTH = 32  # of blocks within blocks
 FROZEN, XREF, HIDDEN = 1, 4 | 8, 1  # flags of a layer, a block and an attribute
 FILLED = ("HATCH", "SOLID", "TRACE")
@@ -210,7 +211,7 @@ class _ModelSpace:
             what = f"the drawing has more than {MAX_CORNERS} corners"
             raise self._refusal("too_large", what, "save what is needed as a drawing of its own")
         for each in placed:
-            if not isfinite((each.points + each.bulges).sum()):
+            if not isfinite((each.points + each.bulges).sum()) or np.abs(each.bulges).max() > MAX_BULGE:
                 raise ValueError
             drawn = each.tidied()
             if drawn is None:

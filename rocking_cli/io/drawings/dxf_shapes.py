@@ -10,16 +10,15 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain, islice, pairwise, product
-from math import ceil, floor, pi
+from math import floor, pi
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from rocking_cli.arrays import Points, Reals
-from rocking_cli.io.drawings.arcs import STRAIGHT_BULGE, inner_points
+from rocking_cli.io.drawings.arcs import STRAIGHT_BULGE, inner_points, level_count
 from rocking_cli.io.drawings.dxf_groups import DxfEntity, Groups, library
 
-SIDE_TURN = pi / 128  # turn of each straight side that stands for a piece of an ellipse
 FULL_TURN = 1e-6  # rad that a full circle may be short of
 SAME_SHARE = 1e-9  # share of its size within which points of a line coincide, and a placing keeps circles
 MEETING_SHARE = 1e-6  # share of its size within which the edges of a hatch meet
@@ -105,13 +104,8 @@ def straightened(points: Points, bulges: Reals) -> Points:
     for start, end, bulge in zip(points.tolist(), np.roll(points, -1).tolist(), bulges.tolist(), strict=True):
         corners.append(np.array([start]))
         if abs(bulge) > STRAIGHT_BULGE:
-            corners.append(inner_points(start, end, bulge, _count, keeps_area=True))
+            corners.append(inner_points(start, end, bulge, level_count, keeps_area=True))
     return np.concatenate(corners)
-
-
-def _count(_: float, turn: float) -> int:
-    """Return the number of straight sides that stand for an arc."""
-    return max(ceil(abs(turn) / SIDE_TURN), 2)
 
 
 def shapes_of(entity: DxfEntity) -> Sequence[DxfShape] | None:

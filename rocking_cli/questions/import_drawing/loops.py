@@ -285,6 +285,19 @@ def _followed(
     return [loop for loop, k in made if not is_open[part[k]]], edges.chosen(is_open[part])
 
 
+def joined_lines(lines: Sequence[Placed], close: float) -> list[Points]:
+    """Return the corners of open lines, as one where one ends and another begins; arcs as chords."""
+    import shapely
+
+    if not lines:
+        return []
+    edges = DrawnEdges.from_lines(lines)
+    start, end, nodes = _nodes(edges, close, Mended())
+    edges.a, edges.b = nodes[start], nodes[end]
+    merged = shapely.line_merge(shapely.multilinestrings(edges.chosen(start != end).curves(close)))
+    return [shapely.get_coordinates(each) @ [1, 1j] for each in shapely.get_parts(merged)]
+
+
 def _nodes(edges: DrawnEdges, close: float, mended: Mended) -> tuple[Integers, Integers, Points]:
     """Return the nodes at both ends of each edge, and the nodes: ends within the closing distance are one point."""
     from scipy.sparse import coo_array

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from shlex import quote
 from typing import Any
@@ -22,13 +22,16 @@ from rocking_cli.units import UnitError, mass_of_weight, read
 
 FLATNESS = 1e-9  # area up to which an outline encloses nothing, over the square of its size
 SLIVER = 1e-6  # area up to which an outline may enclose nothing, over the square of its length
+OF_LINES = {Role.LOADS, Role.TIES, Role.SUPPORTS}  # what is drawn as lines, points and texts
+ROUND = {"CIRCLE", "circle", "ellipse"}  # marks of points
+MAX_BODIES, MAX_CORNERS = 10_000, 10_000  # of a structure file, and of each body in it
 MEETING = 1e-3  # distance of ends that may be one point, over the size of their layer
+AT_A_TIME = 100  # outlines compared with all others at a time, as one of 20,000 may lie within all others
 LEAST_ENDS = 4  # of lines that may enclose something
 MEETING_SHARE = 0.75  # of the ends of a layer that lie on other lines, from which it may hold outlines
-MAX_MEETING = 20_000  # lines up to which this is looked for
+MAX_MEETING = 4_000  # lines up to which this is looked for; more may hold outlines
 SAME_HEIGHT = 1e-6  # difference of heights of bodies of which the left one comes first [m]
 ROW = 0.5  # share of its height by which a body must be above the first one of a row to begin another row
-RESERVED = {"ground"}
 CHORD = 0.1  # share of the closing distance to which shapes are compared
 
 
@@ -80,6 +83,10 @@ def by_role(drawing: LineDrawing, roles: Roles, file: str) -> Sorted:
     chains: dict[Role, list[DrawnLine]] = {role: [] for role in Role}
     for chain in drawing.chains:
         role = roles(chain.layer)
+        if role in OF_LINES and _is_shape(chain) and chain.layer not in roles.given:
+            take, leave = (quote(f"{each}={seen(chain.layer)}") for each in (Role.BODIES, role))
+            what = f"{described(chain)} is closed, and the name of its layer says {role}, which are drawn as lines"
+            raise DrawingError("layers", f"{what}: give `layers` {take}, or {leave}", file)
         (unknown.setdefault(chain.layer, []) if role is None else chains[role]).append(chain)
     of_bodies = chains[Role.BODIES]
     counts = {layer: count for layer, of in unknown.items() if (count := outline_count(of, of_bodies))}
@@ -133,6 +140,11 @@ def by_role(drawing: LineDrawing, roles: Roles, file: str) -> Sorted:
     return Sorted(chains, drawing.labels, roles, notes)
 
 
+def _is_shape(chain: DrawnLine) -> bool:
+    """Return whether a line is an outline: no hatch, and no circle that marks a point."""
+    return chain.closed and not chain.is_fill and chain.kind not in ROUND
+
+
 def outline_count(chains: Sequence[DrawnLine], beside: Sequence[DrawnLine] = ()) -> int:
     """Return how many outlines chains make, at least: closed ones, and one of open lines whose ends mostly meet others.
 
@@ -143,12 +155,19 @@ def outline_count(chains: Sequence[DrawnLine], beside: Sequence[DrawnLine] = ())
     beside : sequence of DrawnLine
         Lines of other layers that may close outlines with them.
     """
-    closed = sum(chain.closed and not chain.is_fill for chain in chains)
+    closed = sum((chain.closed or _nearly_closed(chain)) and not chain.is_fill for chain in chains)
     fills = len({chain.shape for chain in chains if chain.is_fill})
     open_ = [chain for chain in chains if not chain.closed and len(chain.points) > 1]
-    if len(open_) > 1 and len(chains) + len(beside) <= MAX_MEETING:
-        closed += _mostly_meet(open_, [*chains, *beside])
+    if len(open_) > 1:
+        around = [*chains, *beside]
+        closed += len(around) > MAX_MEETING or _mostly_meet(open_, around)
     return closed or fills
+
+
+def _nearly_closed(chain: DrawnLine) -> bool:
+    """Return whether an open line of several sides ends next to where it begins."""
+    z = chain.points
+    return len(z) > 3 and abs(z[0] - z[-1]) <= MEETING * max(float(np.ptp(z.real)), float(np.ptp(z.imag)))
 
 
 def _mostly_meet(open_: Sequence[DrawnLine], around: Sequence[DrawnLine]) -> bool:
@@ -225,13 +244,19 @@ def bodies_of(
     fills = [chain for chain in of.chains[Role.BODIES] if chain.is_fill]
     made, mended = loops(placed(drawn, frame, close, file), close, frame, file)
     notes, rings = mended.notes(frame), [*mended.doubles, *mended.joined, *mended.split]
+    cut: list[Loop] = []
+    if of.chains[Role.OPENINGS]:
+        cut, others = loops(placed(of.chains[Role.OPENINGS], frame, close, file), close, frame, file)
+        _check_each(cut, frame, close, file)
+        notes += others.notes(frame)
     if fills:
-        more, _ = loops(placed(fills, frame, close, file), close, frame, file)
-        made, used = _with_fills(made, more, close)
-        if len(more) > used:
-            notes.append(
-                ImportNote("left out", len(more) - used, f"{many(len(more) - used, 'edge')} of hatches left out")
-            )
+        hatched, holes = _by_shape(loops(placed(fills, frame, close, file), close, frame, file)[0], close)
+        hatched, spare = _apart(hatched, made, close)
+        islands, drawn_too = _apart(holes, [*made, *cut], close, same=True)
+        made, cut = made + hatched, cut + islands
+        if left := len(spare) + len(drawn_too):
+            notes.append(ImportNote("left out", left, f"{many(left, 'edge')} of hatches left out, as lines are drawn"))
+    _check_size(made, file)
     _check_each(made, frame, close, file)
     outer, inner = _by_shape(made, close)
     straightened = sum(chain.is_straightened for loop in made for chain in loop.sources)
@@ -240,29 +265,28 @@ def bodies_of(
     if arcs := sum(chain.arcs_found for loop in made for chain in loop.sources):
         notes.append(ImportNote("arcs", arcs, f"{many(arcs, 'arc')} recognised in the curves of the file"))
     bodies, count = _nested(outer, frame, close, nested, file)
-    openings = [loop.ring for loop in inner]
-    if of.chains[Role.OPENINGS]:
-        drawn_openings, others = loops(placed(of.chains[Role.OPENINGS], frame, close, file), close, frame, file)
-        _check_each(drawn_openings, frame, close, file)
-        notes += others.notes(frame)
-        openings += [loop.ring for loop in drawn_openings]
+    openings = [loop.ring for loop in (*inner, *cut)]
     _cut(bodies, openings, frame, close, file)
     if total := len(openings) + count:
         notes.append(ImportNote("openings", total, many(total, "opening") + " cut out"))
     return in_rows(bodies), notes, rings
 
 
-def _with_fills(made: list[Loop], fills: list[Loop], close: float) -> tuple[list[Loop], int]:
-    """Return loops and those edges of hatches that lie where nothing else is drawn, and how many of these there are."""
+def _apart(
+    hatched: Sequence[Loop], made: Sequence[Loop], close: float, *, same: bool = False
+) -> tuple[list[Loop], list[Loop]]:
+    """Return edges of hatches that lie within nothing drawn, or are the same as nothing drawn, and the others."""
     import shapely
 
-    if not made:
-        return fills, len(fills)
-    tree = shapely.STRtree(polygons_of([loop.ring for loop in made], close))
-    inside = shapely.point_on_surface(polygons_of([loop.ring for loop in fills], close))
-    hit = set(tree.query(inside, predicate="within")[0].tolist())
-    hatched = [loop for k, loop in enumerate(fills) if k not in hit]
-    return made + hatched, len(hatched)
+    if not hatched or not made:
+        return list(hatched), []
+    drawn, edges = (polygons_of([loop.ring for loop in each], close) for each in (made, hatched))
+    edge, other = shapely.STRtree(drawn).query(shapely.point_on_surface(edges), predicate="within")
+    if same:
+        apart = np.abs(shapely.area(drawn[other]) - shapely.area(edges[edge]))
+        edge = edge[apart <= 2 * close * shapely.length(edges[edge])]
+    spare = set(edge.tolist())
+    return [loop for k, loop in enumerate(hatched) if k not in spare], [hatched[k] for k in sorted(spare)]
 
 
 def _check_each(made: Sequence[Loop], frame: DrawingFrame, close: float, file: str) -> None:
@@ -282,6 +306,17 @@ def _check_each(made: Sequence[Loop], frame: DrawingFrame, close: float, file: s
             numbers = re.findall(r"[-+0-9.eE]+", reason.partition("[")[2])
             at = complex(float(numbers[0]), float(numbers[1])) if len(numbers) >= 2 else at
             raise DrawingError("crosses", f"{name} crosses itself at {frame.place(at)}", file, at=frame.pairs([at]))
+
+
+def _check_size(made: Sequence[Loop], file: str) -> None:
+    """Raise `DrawingError` "too_large" for more bodies or corners than a structure file holds."""
+    if len(made) > MAX_BODIES:
+        what = f"it has {len(made):,} outlines, and a structure has {MAX_BODIES:,} bodies at most: import a part of it"
+        raise DrawingError("too_large", what, file)
+    largest = max(made, key=lambda loop: len(loop.ring.z))
+    if (corners := len(largest.ring.z)) > MAX_CORNERS:
+        what = f"{described(largest.sources[0])} has {corners:,} corners: simplify it to {MAX_CORNERS:,} at most"
+        raise DrawingError("too_large", what, file)
 
 
 def _is_flat(ring: ArcRing) -> bool:
@@ -321,6 +356,16 @@ def _larger(one: Any, other: Any) -> bool:
     return bool(one.area > other.area)
 
 
+def pairs_within(polygons: Any) -> Iterator[tuple[int, int]]:
+    """Yield pairs of polygons of which one has a point of the other within, some at a time."""
+    import shapely
+
+    tree, points = shapely.STRtree(polygons), shapely.point_on_surface(polygons)
+    for first in range(0, len(points), AT_A_TIME):
+        inside, around = tree.query(points[first : first + AT_A_TIME], predicate="within")
+        yield from sorted(zip((first + inside).tolist(), around.tolist(), strict=True))
+
+
 def _nested(
     outer: Sequence[Loop], frame: DrawingFrame, close: float, nested: str | None, file: str
 ) -> tuple[list[DrawnBody], int]:
@@ -328,10 +373,8 @@ def _nested(
     import shapely
 
     polygons = polygons_of([loop.ring for loop in outer], close)
-    tree = shapely.STRtree(polygons)
-    inside, around = tree.query(shapely.point_on_surface(polygons), predicate="within")
     holes: dict[int, int] = {}
-    for i, j in sorted(zip(inside.tolist(), around.tolist(), strict=True)):
+    for i, j in pairs_within(polygons):
         if i == j or polygons[i].area >= polygons[j].area:
             continue
         if shapely.area(shapely.difference(polygons[i], polygons[j])) > close * shapely.length(polygons[i]):
@@ -437,7 +480,8 @@ def name_and_weigh(
                 elif any(each.isalpha() for each in text):
                     names.setdefault(home, []).append(text)
     notes = []
-    taken, count = set(RESERVED), Counter[str]()
+    taken = {"ground", "floor", *(f"ground {k + 1}" for k in range(len(of.chains[Role.GROUND])))}
+    count = Counter[str]()
     for k, body in enumerate(bodies):
         wished = cleaned(names[k][0]) if k in names else ""
         body.name = wished = wished or f"b{k + 1}"
@@ -454,6 +498,8 @@ def name_and_weigh(
 
 def density_in(text: str) -> float | None:
     """Return the density [kg/m3] that a text such as `2200 kg/m3` gives; None if it gives none."""
+    if "/" not in text:
+        return None
     try:
         weight = mass_of_weight(text, "kg/m3")
         return weight if weight is not None else read(text, "kg/m3")

@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import acos, cbrt, ceil, pi, tan
+from math import acos, ceil, pi
 from typing import NamedTuple, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.arrays import Points, Reals
-from rocking_cli.io.drawings.arcs import STRAIGHT_BULGE, Sides, arc_circle, inner_points
+from rocking_cli.io.drawings.arcs import STRAIGHT_BULGE, Sides, arc_circle, inner_points, level_count
 
 Number = TypeVar("Number", bound=np.generic)
-SIDES_PER_HALF_TURN = 128  # with the area kept: 1e-6 in lambda, phi_cr and inertia, even if all sides are arcs
 SMALL_TURN = 0.3  # turn below which differences of sines are taken from their series
 MAX_ARC_SIDES = 2000
 SAME_DIRECTION = 1e-6  # sine between two sides of one line
@@ -113,7 +112,7 @@ class ArcRing:
 
     def level(self) -> Points:
         """Return a polygon of the same area, whose arcs have 128 sides to a half turn, and flat arcs more."""
-        return self._with(_level_count, keeps_area=True)
+        return self._with(level_count, keeps_area=True)
 
     def chords(self, tolerance: float) -> Points:
         """Return a polygon whose corners are on the arcs, and no side farther from them than a tolerance [m]."""
@@ -241,12 +240,6 @@ def chord_count(radius: float, turn: float, tolerance: float) -> int:
     """Return the number of chords of an arc that keep within a tolerance of it."""
     step = 2 * acos(1 - tolerance / radius) if tolerance < radius else pi / 2
     return min(max(ceil(abs(turn) / step - 1e-9), 2), MAX_ARC_SIDES)
-
-
-def _level_count(radius: float, turn: float) -> int:
-    """Return the number of sides of an arc in a polygon that keeps the area."""
-    bulge = abs(tan(turn / 4))
-    return max(ceil(SIDES_PER_HALF_TURN * abs(turn) / pi), ceil(SIDES_PER_HALF_TURN * min(cbrt(bulge), 1.0)), 2)
 
 
 def _less_sine(turn: Reals) -> Reals:

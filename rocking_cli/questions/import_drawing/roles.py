@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from fnmatch import fnmatchcase
 from functools import lru_cache
 
 from rocking_cli.errors import InputError, Problem
@@ -29,19 +30,18 @@ class Role(StrEnum):
 
 
 WORDS: Mapping[Role, str] = {
-    Role.NOTHING: "defpoints dim dimension quota quote asse assi testo testi text frame border squadratur cartigli "
-    "retin tratteggi hatch displaced thrust names",
-    Role.HINGES: "hinge cernier",
-    Role.LOADS: "load caric forza forze",
-    Role.TIES: "tie caten tirant",
-    Role.OPENINGS: "opening hole window foro fori apertur finestr",
-    Role.SUPPORTS: "support floor solai carrell",
-    Role.GROUND: "ground soil rock terren suolo",
-    Role.BODIES: "body bodies block stone voussoir masonry brick corpo corpi blocc concio conci pietr murat matton "
-    "parament",
+    Role.NOTHING: "defpoints dim dims dimension* quota quote quotat* asse assi testo testi text texts frame frames "
+    "border* squadratur* cartigli* retin* tratteggi* hatch* displaced thrust names",
+    Role.HINGES: "hinge* cernier*",
+    Role.LOADS: "load loads caric* forza forze",
+    Role.TIES: "tie ties caten? tirant*",
+    Role.OPENINGS: "opening* hole holes window* foro fori apertur* finestr*",
+    Role.SUPPORTS: "support supports floor floors solai* carrell*",
+    Role.GROUND: "ground soil* rock rocks terren* suolo suoli",
+    Role.BODIES: "body bodies *block* *stone* voussoir* masonry *brick* corpo corpi *blocc* conci* *pietr* *murat* "
+    "*matton* parament*",
 }
-"""Beginnings of words in the names of layers, in the order in which they count: TESTO_PIETRE has texts, no stones."""
-SHORT_WORD = 5  # letters; shorter words, or their plurals, must be whole words of a name: TIE is no part of PROPERTIES
+"""Patterns of words in the names of layers, in the order in which they count: TESTO_PIETRE has texts, no stones."""
 
 
 def plain(name: str) -> str:
@@ -53,12 +53,10 @@ def plain(name: str) -> str:
 @lru_cache(maxsize=4096)
 def role_of(layer: str) -> Role | None:
     """Return the role that the name of a layer says; None if it says none."""
-    name = plain(layer)
-    words = set(re.findall(r"[^\W\d_]+", name))
-    for role, stems in WORDS.items():
-        for stem in stems.split():
-            if not words.isdisjoint((stem, f"{stem}s")) if len(stem) < SHORT_WORD else stem in name:
-                return role
+    words = re.findall(r"[^\W\d_]+", plain(layer))
+    for role, patterns in WORDS.items():
+        if any(fnmatchcase(word, pattern) for pattern in patterns.split() for word in words):
+            return role
     return None
 
 

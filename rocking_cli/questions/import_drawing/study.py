@@ -17,8 +17,10 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, LineDrawing
 from rocking_cli.questions.import_drawing import mortar
 from rocking_cli.questions.import_drawing.attached import DECIMALS, BodyFinder, DrawnAttachments, attached, rounded
+from rocking_cli.questions.import_drawing.loops import joined_lines
 from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, length_in_words, many
 from rocking_cli.questions.import_drawing.outlines import (
+    AT_A_TIME,
     DrawnBody,
     bodies_of,
     by_role,
@@ -35,6 +37,7 @@ KINDS = ("rigid_body", "assembly", "linkage")
 SAME_NORMAL = 1e-6
 MASS_DIGITS = 12
 EXTENT = 1e-5  # to which width and height are known [m]
+CIRCLE_SHARE = 0.05  # of the closing distance, to which depths of overlaps are known
 MAX_MORTAR = 0.05  # width of gaps that may be joints [m]
 MAX_ANALYSED = 60  # bodies up to which it is checked too that they stand, by limit analysis
 TOGETHER = "several mechanisms start"  # what an assembly says that only a change of its sizes mends
@@ -201,6 +204,10 @@ def structure_from(drawing: LineDrawing, options: ImportOptions, name: str, file
     extra = attached(drawing, of, places)
     kind = options.kind or _kind(bodies, ground, is_drawn, extra, close)
     if kind == "rigid_body":
+        lowest = min(bodies, key=lambda body: float(body.ring.z.imag.min()))
+        if is_drawn and not _is_level(lowest.ring, ground, close):
+            what = f"the ground below {lowest.name} is not level or does not meet it, as a rigid_body needs"
+            raise DrawingError("below", f"{what}: leave out `kind`, or the ground", file)
         notes += _levelled(bodies, close, frame, shift)
     fields = FIELDS[kind](name, bodies, ground, is_drawn, extra, options, file)
     grey = [
@@ -231,22 +238,18 @@ def _ground(
         low, left, right = float(y.min()), float(x.min()) - room, float(x.max()) + room
         corners = [complex(left, low - depth), complex(right, low - depth), complex(right, low), complex(left, low)]
         return [ArcRing(np.array(corners), np.zeros(4))], False
-    rings = []
-    for line in placed(chains, frame, close, file):
-        if line.closed:
-            rings.append(ArcRing.of(line.z, line.bulges))
-        else:
-            rings.append(_below(line.z, line.bulges, float(y.min()), GROUND_ROOM * height))
+    lines = placed(chains, frame, close, file)
+    rings = [ArcRing.of(line.z, line.bulges) for line in lines if line.closed]
+    for z in joined_lines([line for line in lines if not line.closed], close):
+        rings.append(_below(z, float(y.min()), GROUND_ROOM * height))
     return rings, True
 
 
-def _below(z: Points, bulges: Any, lowest: float, depth: float) -> ArcRing:
+def _below(z: Points, lowest: float, depth: float) -> ArcRing:
     """Return the ground below an open line, to a depth below it and below the lowest body."""
-    if z[0].real > z[-1].real:
-        z, bulges = z[::-1], np.append(-bulges[:-1][::-1], 0.0)
     low = min(float(z.imag.min()), lowest) - depth
     corners = np.concatenate([z, [complex(z[-1].real, low), complex(z[0].real, low)]])
-    return ArcRing.of(corners, np.append(bulges, [0.0, 0.0]))
+    return ArcRing.of(corners, np.zeros(len(corners)))
 
 
 def _closing_notes(closed: mortar.Closed, frame: DrawingFrame) -> list[ImportNote]:
@@ -270,38 +273,41 @@ def _check_overlaps(
 
     solid = polygons_of([body.ring for body in bodies], close)
     tree = shapely.STRtree(solid)
-    ones, others = tree.query(solid, predicate="intersects")
-    ones, others = ones[ones < others], others[ones < others]
-    shared = shapely.intersection(solid[ones], solid[others])
-    for k in np.flatnonzero(shapely.area(shared) > 0).tolist():
-        i, j, common = ones[k], others[k], shared[k]
-        if (depth := depth_of(common)) > close:
-            at = complex(common.centroid.x, common.centroid.y)
-            one, other = bodies[i].name, bodies[j].name
-            what = (
-                f"{one} and {other} overlap by {common.area:.3g} m2 at {frame.place(at)}, {length_in_words(depth)} deep"
-            )
-            what += f": draw them side by side, or give a larger `close` than {length_in_words(close)}"
-            raise DrawingError("overlap", what, file, at=frame.pairs([at]))
+    for first in range(0, len(solid), AT_A_TIME):
+        ones, others = tree.query(solid[first : first + AT_A_TIME], predicate="intersects")
+        ones, others = ones[first + ones < others] + first, others[first + ones < others]
+        shared = shapely.intersection(solid[ones], solid[others])
+        for k in np.flatnonzero(shapely.area(shared) > 0).tolist():
+            i, j, common = ones[k], others[k], shared[k]
+            if depth := depth_of(common, close):
+                at = complex(common.centroid.x, common.centroid.y)
+                one, other = bodies[i].name, bodies[j].name
+                what = (
+                    f"{one} and {other} overlap by {common.area:.3g} m2 at {frame.place(at)}, {length_in_words(depth)}"
+                )
+                what += f" deep: draw them side by side, or give a larger `close` than {length_in_words(close)}"
+                raise DrawingError("overlap", what, file, at=frame.pairs([at]))
     for floor in polygons_of(ground, close):
         for k in tree.query(floor, predicate="intersects").tolist():
             common = shapely.intersection(floor, solid[k])
-            if (depth := depth_of(common)) > close:
+            if depth := depth_of(common, close):
                 deep = length_in_words(depth)
                 what = f"{bodies[k].name} reaches {deep} into the ground: the ground line must be below it"
                 at = complex(common.centroid.x, common.centroid.y)
                 raise DrawingError("below", what, file, at=frame.pairs([at]))
 
 
-def depth_of(common: Any) -> float:
-    """Return the narrow side of what two outlines share [m]."""
+def depth_of(common: Any, close: float) -> float:
+    """Return how deep outlines overlap by what they share [m]: the largest circle in it; 0 if that is below `close`."""
     import shapely
 
-    if not common.area:
+    if 2 * np.sqrt(common.area / np.pi) <= close:
         return 0.0
-    box = shapely.get_coordinates(shapely.minimum_rotated_rectangle(common))
-    z = box[:, 0] + 1j * box[:, 1]
-    return float(min(abs(z[1] - z[0]), abs(z[2] - z[1])))
+    circles = [
+        shapely.maximum_inscribed_circle(part, CIRCLE_SHARE * close) for part in shapely.get_parts(common) if part.area
+    ]
+    depth = 2 * max(shapely.length(circles))
+    return float(depth) if depth > close * (1 + CIRCLE_SHARE) else 0.0
 
 
 def _joints(bodies: Sequence[DrawnBody], ground: Sequence[ArcRing]) -> list[DrawnJoint]:
