@@ -19,6 +19,7 @@ LEAST_SHARE = 0.02  # of the length of a side, over which it must face another o
 NO_GAP = 1e-9  # gap that needs no mending [m]
 SAME_GAP = 1e-6  # difference of gaps up to which they count as equal [m]
 JOINT_GAP = 2e-3  # gap across which faces are a joint, over width plus height of the smaller body
+IN_GAP = 0.01  # share of a gap from its sides within which nothing is looked for between them
 LEAST_SINE = 0.02  # sine between sides below which they count as one line
 Integers = NDArray[np.intp]
 
@@ -112,7 +113,7 @@ def close_gaps(rings: Sequence[ArcRing], ground: Sequence[ArcRing], most: float,
     """
     sides = Sides.from_rings([*rings, *ground])
     pairs = facing(sides, -overlap, most + SAME_GAP if most else 0.0)
-    moved = sides.ring[pairs.one] < len(rings)
+    moved = (sides.ring[pairs.one] < len(rings)) & ~_across_others(sides, pairs, [*rings, *ground])
     one, gap = pairs.one[moved], pairs.gap[moved]
     with_ground = sides.ring[pairs.other[moved]] >= len(rings)
     wide = np.abs(gap) > NO_GAP
@@ -134,6 +135,22 @@ def close_gaps(rings: Sequence[ArcRing], ground: Sequence[ArcRing], most: float,
     closed = [_shifted(ring, shifts[k]) if k in shifts else ring for k, ring in enumerate(rings)]
     middles = sides.start + sides.along / 2
     return Closed(closed, np.abs(gap).tolist(), middles[chosen].tolist(), middles[uneven].tolist())
+
+
+def _across_others(sides: Sides, pairs: Facing, rings: Sequence[ArcRing]) -> NDArray[np.bool_]:
+    """Return which pairs of sides have another ring between them."""
+    import shapely
+
+    middle = pairs.ends.mean(axis=1)
+    way = sides.normal[pairs.one] * pairs.gap
+    z = np.stack([middle + IN_GAP * way, middle + (1 - IN_GAP) * way], axis=1)
+    lines = shapely.linestrings(np.stack([z.real, z.imag], axis=2))
+    tree = shapely.STRtree([shapely.Polygon(np.stack([ring.z.real, ring.z.imag], axis=1)) for ring in rings])
+    pair, ring = tree.query(lines, predicate="intersects")
+    other = (ring != sides.ring[pairs.one[pair]]) & (ring != sides.ring[pairs.other[pair]]) & (pairs.gap[pair] > NO_GAP)
+    between = np.zeros(len(middle), bool)
+    between[pair[other]] = True
+    return between
 
 
 def _shifted(ring: ArcRing, by: dict[int, float]) -> ArcRing:

@@ -32,6 +32,7 @@ MEETING_SHARE = 0.75  # of the ends of a layer that lie on other lines, from whi
 MAX_MEETING = 4_000  # lines up to which this is looked for; more may hold outlines
 SAME_HEIGHT = 1e-6  # difference of heights of bodies of which the left one comes first [m]
 ROW = 0.5  # share of its height by which a body must be above the first one of a row to begin another row
+GRID = 1e-3  # share of the closing distance to which shapes are cut; without a grid GEOS has errors at common sides
 CHORD = 0.1  # share of the closing distance to which shapes are compared
 
 
@@ -377,7 +378,9 @@ def _nested(
     for i, j in pairs_within(polygons):
         if i == j or polygons[i].area >= polygons[j].area:
             continue
-        if shapely.area(shapely.difference(polygons[i], polygons[j])) > close * shapely.length(polygons[i]):
+        if shapely.area(shapely.difference(polygons[i], polygons[j], grid_size=GRID * close)) > close * shapely.length(
+            polygons[i]
+        ):
             continue  # they overlap, which is said later
         if nested is None:
             one, other = (f"outline {k + 1} ({described(outer[k].sources[0])})" for k in (i, j))

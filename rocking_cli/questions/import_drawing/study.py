@@ -21,6 +21,7 @@ from rocking_cli.questions.import_drawing.loops import joined_lines
 from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, length_in_words, many
 from rocking_cli.questions.import_drawing.outlines import (
     AT_A_TIME,
+    GRID,
     DrawnBody,
     bodies_of,
     by_role,
@@ -276,7 +277,7 @@ def _check_overlaps(
     for first in range(0, len(solid), AT_A_TIME):
         ones, others = tree.query(solid[first : first + AT_A_TIME], predicate="intersects")
         ones, others = ones[first + ones < others] + first, others[first + ones < others]
-        shared = shapely.intersection(solid[ones], solid[others])
+        shared = shapely.intersection(solid[ones], solid[others], grid_size=GRID * close)
         for k in np.flatnonzero(shapely.area(shared) > 0).tolist():
             i, j, common = ones[k], others[k], shared[k]
             if depth := depth_of(common, close):
@@ -289,7 +290,7 @@ def _check_overlaps(
                 raise DrawingError("overlap", what, file, at=frame.pairs([at]))
     for floor in polygons_of(ground, close):
         for k in tree.query(floor, predicate="intersects").tolist():
-            common = shapely.intersection(floor, solid[k])
+            common = shapely.intersection(floor, solid[k], grid_size=GRID * close)
             if depth := depth_of(common, close):
                 deep = length_in_words(depth)
                 what = f"{bodies[k].name} reaches {deep} into the ground: the ground line must be below it"
