@@ -27,7 +27,8 @@ from rocking_cli.studies.hung import Carried, Strand
 from rocking_cli.studies.picture import DrawnPart, Picture, picture
 from rocking_cli.text import in_short
 
-METRES, CIRCLED, MIDDLE = 6, 33, 5  # $INSUNITS; $PDMODE, a dot in a circle; attachment of texts
+METRES, CIRCLED = 6, 33  # $INSUNITS; $PDMODE, a dot in a circle
+AROUND, ABOVE, BELOW = 5, 7, 1  # attachment of texts: around a point, or to the right of it
 COLOURS = {"BLOCKS": 7, "OPENINGS": 5, "GROUND": 34, "HINGES": 1, "SUPPORTS": 34, "LOADS": 6, "TIES": 4, "NAMES": 3,
            "ASSUMED": 9, "DISPLACED": 8, "THRUST": 30}  # fmt: skip
 """Colours of the layers, by the first word of their names: numbers of AutoCAD."""
@@ -134,9 +135,6 @@ def _compared(drawing: Picture, content: bytes, options: ImportOptions) -> tuple
     lost = sorted(set(names) - {body.name for body in again.mechanism.bodies()}) if len(names) > 1 else []
     words = [f"the name of {in_short([f'`{name}`' for name in lost])}"] if lost else []
     for side in sides:
-        leads = [_leads(each, side) for each in (mechanism, again.mechanism)]
-        if len(names) > 1 and not set(leads[0]) & set(leads[1]):
-            words.append(f"that phi is the rotation of `{'+'.join(leads[0])}`")
         numbers = [("lambda", "g", mechanism.uplift(side), lambdas[side])]
         numbers += [("phi_cr", "rad", drawing.phi_cr[side] or 0.0, again.phi_cr[side] or 0.0)]
         differ = [
@@ -144,6 +142,9 @@ def _compared(drawing: Picture, content: bytes, options: ImportOptions) -> tuple
             for symbol, unit, one, other in numbers if not isclose(one, other, rel_tol=SAME_SHARE)
         ]  # fmt: skip
         if differ:
+            leads = [_leads(each, side) for each in (mechanism, again.mechanism)]
+            if len(names) > 1 and not set(leads[0]) & set(leads[1]):
+                words.append(f"that phi is the rotation of `{leads[0][0]}`")
             return f"its import has {' and '.join(differ)} in the {side.label} direction", words
     return "", words
 
@@ -168,10 +169,10 @@ def _unsaid(drawing: Picture, odd: Sequence[str], still: Collection[str]) -> lis
         "": [key for key in UNSAID if key in mechanism.model_fields_set and getattr(mechanism, key) is not None],
         "the outline of ": [part.name for part in drawing.parts if part.assumed],
         "the mass of ": odd,
-        "on which body slides ": slides,
+        "the body that guides ": slides,
         "the load ": at_rest,
         "the tie ": [tie.name for tie in drawing.ties if tie.name and _path(tie) is None],
-        "all data of ": [each.name for each in given if each.model_fields_set - DRAWN_FIELDS],
+        "the further data of ": [each.name for each in given if each.model_fields_set - DRAWN_FIELDS],
     }
     return [what + in_short([f"`{name}`" for name in dict.fromkeys(names)]) for what, names in groups.items() if names]
 
@@ -207,9 +208,9 @@ class _Drawn:
         """Draw a point."""
         self.space.add_point((at.real, at.imag), dxfattribs=self.on(layer))
 
-    def text(self, layer: str, text: str, at: complex) -> None:
-        """Write lines of text whose middle is at a point."""
-        style = {"char_height": TEXT_SHARE * self.size, "insert": (at.real, at.imag), "attachment_point": MIDDLE}
+    def text(self, layer: str, text: str, at: complex, side: int) -> None:
+        """Write lines of text beside a point."""
+        style = {"char_height": TEXT_SHARE * self.size, "insert": (at.real, at.imag), "attachment_point": side}
         self.space.add_mtext(text, dxfattribs=self.on(layer) | style)
 
 
@@ -230,8 +231,8 @@ def _bodies(
             if layer == "BLOCKS":
                 copies[part.name] += 1
                 name = f"{part.name} {copies[part.name]}" if copies[part.name] > 1 else part.name
-                density = "" if depth is None else f"\n{float(f'{plate.per_area / depth:.9g}')!r} kg/m3"
-                drawn.text("NAMES", name + density, plate.inside)
+                density = "" if depth is None else f"\n{plate.per_area / depth:.9g} kg/m3"
+                drawn.text("NAMES", name + density, plate.inside, AROUND)
 
 
 def _joints(drawn: _Drawn, drawing: Picture, hinges: str) -> None:
@@ -256,14 +257,13 @@ def _load(drawn: _Drawn, drawing: Picture, load: Carried) -> None:
     given = next((each for each in drawing.mechanism.loads or [] if each.name == load.name), None)
     words = _in_words(given, LOAD_FIELDS) if given is not None else []
     words += [f"body {drawing.parts[load.part].name}"] if len(drawing.parts) > 1 else []
-    start = load.point
     if load.force:
         start = load.point - ARROW_SHARE * drawn.size * load.force / abs(load.force)
         drawn.line("LOADS", np.array([start, load.point]))
     else:
-        drawn.spot("LOADS", load.point)
-    size = f"{abs(load.force)!r} N" if load.force else f"{load.mass!r} kg"
-    drawn.text("LOADS", ", ".join([f"{load.name} {size}".strip(), *words]), start)
+        drawn.spot("LOADS", start := load.point)
+    size = f"{abs(load.force):.9g} N" if load.force else f"{load.mass:.9g} kg"
+    drawn.text("LOADS", ", ".join([f"{load.name} {size}".strip(), *words]), start, BELOW if load.force else ABOVE)
 
 
 def _tie(drawn: _Drawn, drawing: Picture, tie: Strand) -> None:
@@ -281,8 +281,8 @@ def _tie(drawn: _Drawn, drawing: Picture, tie: Strand) -> None:
         words = _in_words(given, TIE_FIELDS)
     else:
         force, stiffness = (tie.thing.count * each for each in tie.thing.at_rest)
-        words = [f"stiffness {stiffness!r} N/m", f"prestress {force!r} N", *([f"only {tie.only}"] if tie.only else [])]
-    drawn.text("TIES", (f"{tie.name}: " if tie.name else "") + ", ".join(words), complex(ends[:2].mean()))
+        words = [f"stiffness {stiffness:.9g} N/m", f"prestress {force:.9g} N"] + [f"only {tie.only}"] * bool(tie.only)
+    drawn.text("TIES", (f"{tie.name}: " if tie.name else "") + ", ".join(words), complex(ends[:2].mean()), ABOVE)
 
 
 def _in_words(given: Load | Tie, known: Mapping[str, str]) -> list[str]:
