@@ -290,7 +290,7 @@ def _in_words(given: Load | Tie, known: Mapping[str, str]) -> list[str]:
     model = type(given)
     names = {key: model.model_fields[key].alias or key for key in model.model_fields if key in given.model_fields_set}
     return [
-        f"{name} {getattr(given, key)} {unit_at(model, (key,))}".strip() for key, name in names.items()
+        f"{name} {getattr(given, key)} {unit_at(model, (name,))}".strip() for key, name in names.items()
         if name in known and name != "body" and getattr(given, key) is not None
     ]  # fmt: skip
 

@@ -22,7 +22,7 @@ from rocking_cli.questions.import_drawing.roles import Role, plain
 from rocking_cli.text import in_short, seen
 from rocking_cli.units import UnitError, read
 
-NUMBER = r"[-+]?\d[\d.]*(?:e[-+]?\d+)?"
+NUMBER = r"(?i:[-+]?\d[\d.]*(?:e[-+]?\d+)?)"
 QUANTITY, SHARE = rf"{NUMBER}\s*[a-z][^\s,;]*", rf"{NUMBER}(?=\s*(?:[,;]|$))"
 TIE_FIELDS = {
     "area": QUANTITY, "modulus": QUANTITY, "stiffness": QUANTITY, "prestress": QUANTITY, "length": QUANTITY,
@@ -177,8 +177,12 @@ def _fields_in(text: str, known: Mapping[str, str]) -> tuple[dict[str, Any], lis
     """
     pieces = (rf"\b{key}\s*[:=]?\s*(?P<{key}>{value})(?!\w)" for key, value in known.items())
     pattern = re.compile("|".join(pieces), re.IGNORECASE)
-    fields = {key: value.strip() for each in pattern.finditer(text) for key, value in each.groupdict().items() if value}
-    return fields, [other for each in re.split("[,;]", pattern.sub(";", text)) if (other := each.strip(" :="))]
+    found = {key: value.strip() for each in pattern.finditer(text) for key, value in each.groupdict().items() if value}
+    fields = {
+        key: int(value) if value.isdigit() else float(value) if re.fullmatch(NUMBER, value) else value
+        for key, value in found.items()
+    }
+    return fields, [other for each in re.split("[,;:]", pattern.sub(";", text)) if (other := each.strip(" ="))]
 
 
 def _quantity(text: str) -> tuple[str, str, str]:
@@ -260,7 +264,6 @@ def _ties(of: Sorted, places: BodyFinder, made: DrawnAttachments) -> None:
         ends = [_end_of_tie(complex(z), places) for z in chain.points]
         text = seen(texts[k].text) if k in texts else ""
         fields, others = _fields_in(text, TIE_FIELDS)
-        fields |= {"bars": int(fields["bars"])} if "bars" in fields else {}
         name, *unread = others or [""]
         tie: dict[str, Any] = {"name": name or f"tie {k + 1}"}
         tie |= {"from": ends[0], "to": ends[1]} if len(ends) == 2 else {"path": ends}
