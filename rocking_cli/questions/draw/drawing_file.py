@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
 from math import isclose
 from typing import Any, NamedTuple
 
@@ -43,19 +42,6 @@ DRAWN_FIELDS = {*LOAD_FIELDS, *TIE_FIELDS, "yield_stress", "name", "mass", "mass
 """Fields of loads and ties that it has."""
 
 
-@dataclass(frozen=True)
-class DrawnFile:
-    """A structure as a DXF file: its content, the options that its import needs, and what it does not tell, in words.
-
-    `difference` states how the import differs from the structure; it is empty if lambda and phi_cr are the same.
-    """
-
-    content: bytes
-    options: ImportOptions
-    unsaid: Sequence[str]
-    difference: str
-
-
 class _Plate(NamedTuple):
     """A uniform plate: its edge and openings [m], a point inside, and its mass per area [kg/m2]."""
 
@@ -71,7 +57,7 @@ class _Plate(NamedTuple):
         return PlaneMoments.of_sum([outer, *(each.negative() for each in inner)])
 
 
-def drawn_file(drawing: Picture, ratio: float | None) -> DrawnFile:
+def drawn_file(drawing: Picture, ratio: float | None) -> tuple[bytes, str, str]:
     """Return a structure at rest, displaced, and with its hinges, loads and ties as a DXF file.
 
     Parameters
@@ -80,6 +66,15 @@ def drawn_file(drawing: Picture, ratio: float | None) -> DrawnFile:
         The drawing of the structure.
     ratio : float or None
         Rotation of the displaced structure over the reference rotation; None for one that is well visible.
+
+    Returns
+    -------
+    content : bytes
+        The file.
+    options : str
+        The options that its import needs, as they are typed.
+    doubt : str
+        What the file does not tell, and how its import differs from the structure; empty if it is the same.
 
     Raises
     ------
@@ -120,7 +115,11 @@ def drawn_file(drawing: Picture, ratio: float | None) -> DrawnFile:
     options = ImportOptions(depth=depth if counts else None, kind=kind)
     odd = [part.name for part, (_, fits) in zip(drawing.parts, plates, strict=True) if not fits and not part.assumed]
     difference, lost = _compared(drawing, content, options)
-    return DrawnFile(content, options, [*_unsaid(drawing, odd, still), *lost], difference)
+    untold = "; ".join([*_unsaid(drawing, odd, still), *lost])
+    doubt = f"does not tell {untold}" if untold else "does not hold the same structure" if difference else ""
+    doubt += f": {difference or 'add it to the structure that you import'}" if doubt else ""
+    typed = ["--as rigid_body"] * (kind is not None) + [f"--depth {depth!r}m"] * counts
+    return content, " ".join(typed), doubt
 
 
 def _compared(drawing: Picture, content: bytes, options: ImportOptions) -> tuple[str, list[str]]:
@@ -143,7 +142,7 @@ def _compared(drawing: Picture, content: bytes, options: ImportOptions) -> tuple
         ]  # fmt: skip
         if differ:
             leads = [_leads(each, side) for each in (mechanism, again.mechanism)]
-            if len(names) > 1 and not set(leads[0]) & set(leads[1]):
+            if len(names) > 1 and leads[0] and not set(leads[0]) & set(leads[1]):
                 words.append(f"that phi is the rotation of `{leads[0][0]}`")
             return f"its import has {' and '.join(differ)} in the {side.label} direction", words
     return "", words
@@ -183,6 +182,7 @@ class _Drawn:
     def __init__(self, document: Any, size: float) -> None:
         self.layers, self.space, self.size = document.layers, document.modelspace(), size
         self.ground: list[Points] = []
+        self.names: list[str] = []  # of the parts, in their order; those of copies are numbered
         document.header["$PDMODE"], document.header["$PDSIZE"] = CIRCLED, TEXT_SHARE * size
 
     def on(self, layer: str) -> dict[str, Any]:
@@ -223,14 +223,15 @@ def _bodies(
     """
     copies = Counter[str]()
     for part, each in zip(drawing.parts, plates, strict=True):
+        drawn.names.append(part.name + f" {copies[part.name] + 1}" * (copies[part.name] > 0))
         layer = "ASSUMED" if part.assumed else "GROUND" if part.name in still else "BLOCKS"
-        for plate in each:
+        for k, plate in enumerate(each):
             drawn.line(layer, plate.edge, closed=True)
             for opening in plate.openings:
                 drawn.line("OPENINGS" if layer == "BLOCKS" else layer, opening, closed=True)
             if layer == "BLOCKS":
                 copies[part.name] += 1
-                name = f"{part.name} {copies[part.name]}" if copies[part.name] > 1 else part.name
+                name = f"{part.name} {copies[part.name]}" if k else drawn.names[-1]
                 density = "" if depth is None else f"\n{plate.per_area / depth:.9g} kg/m3"
                 drawn.text("NAMES", name + density, plate.inside, AROUND)
 
@@ -256,7 +257,7 @@ def _load(drawn: _Drawn, drawing: Picture, load: Carried) -> None:
         return
     given = next((each for each in drawing.mechanism.loads or [] if each.name == load.name), None)
     words = _in_words(given, LOAD_FIELDS) if given is not None else []
-    words += [f"body {drawing.parts[load.part].name}"] if len(drawing.parts) > 1 else []
+    words += [f"body {drawn.names[load.part]}"] if len(drawn.names) > 1 else []
     if load.force:
         start = load.point - ARROW_SHARE * drawn.size * load.force / abs(load.force)
         drawn.line("LOADS", np.array([start, load.point]))
@@ -309,6 +310,8 @@ def _plates(part: DrawnPart, body: Body, drawing: Picture) -> tuple[list[_Plate]
     """
     mass = body.mass / sum(each.name == part.name for each in drawing.parts)
     together = _enclosed(part.outlines)
+    if not together:
+        return [], False
     for plates in (together, [plate for each in part.outlines for plate in _enclosed([each])]):
         moments = [plate.moments for plate in plates]
         size = max(abs(plate.edge - part.centroid).max() for plate in plates)

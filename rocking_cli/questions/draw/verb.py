@@ -79,20 +79,17 @@ def draw(
 
 
 def _write(file: Path, drawing: Picture, at: float | None, watch: Watcher) -> None:
-    """Write a drawing as a DXF file, and tell what it cannot hold."""
+    """Write a drawing as a DXF file, and tell before what it cannot hold."""
     from rocking_cli.io.files import write_whole
     from rocking_cli.questions.draw.drawing_file import drawn_file
 
     if file.suffix.lower() != ".dxf":
         raise InputError(Problem("give a file name that ends in .dxf", str(file)))
-    made = drawn_file(drawing, at)
-    if made.unsaid or made.difference:
-        lacking = f"does not tell {'; '.join(made.unsaid)}" if made.unsaid else "does not hold the same structure"
-        watch.warn(f"{file} {lacking}: {made.difference or 'add it to the structure that you import'}")
-    write_whole(file, lambda stream: stream.write(made.content))
-    kind = "" if made.options.kind is None else f" --as {made.options.kind}"
-    depth = "" if made.options.depth is None else f" --depth {made.options.depth!r}m"
-    watch.note(f"wrote {file}" + (f": import it with{kind}{depth}" if kind or depth else ""))
+    content, options, doubt = drawn_file(drawing, at)
+    if doubt:
+        watch.warn(f"{file} {doubt}")
+    write_whole(file, lambda stream: stream.write(content))
+    watch.note(f"wrote {file}" + (f": import it with {options}" if options else ""))
 
 
 def _columns(found: Picture) -> Columns:

@@ -75,9 +75,14 @@ def test_hinges_and_supports_of_each_direction(tmp_path):
 
 
 def test_copies_have_names_of_their_own(tmp_path):
-    frame = rk.SymmetricFrame(column_width=1.0, column_height=6.0, columns=3, mass_ratio=1.0)
+    loads = [{"name": "statue", "mass": 300.0, "at": [0.0, 3.0], "body": "columns", "each": True}]
+    frame = rk.SymmetricFrame(column_width=1.0, column_height=6.0, columns=3, mass_ratio=1.0, mass=6e4, loads=loads)
     names = [each.partition("\n")[0] for each in texts(drawn(frame, tmp_path), "NAMES")]
     assert names == ["columns", "columns 2", "columns 3", "beam"]
+    again = rk.import_drawing(tmp_path / "drawn.dxf", depth=1.0).structure
+    assert [load.body for load in again.loads] == names[:3]
+    for side in Direction:
+        assert again.uplift(side) == pytest.approx(frame.uplift(side), rel=1e-8)
 
 
 def test_densities_are_those_of_unequal_bodies(tmp_path):
