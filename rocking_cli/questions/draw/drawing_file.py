@@ -72,7 +72,7 @@ def drawn_file(drawing: Picture, ratio: float | None) -> tuple[bytes, str, str]:
     content : bytes
         The file.
     options : str
-        The options that its import needs, as they are typed.
+        The options that its import needs, in words.
     doubt : str
         What the file does not tell, and how its import differs from the structure; empty if it is the same.
 
@@ -118,8 +118,8 @@ def drawn_file(drawing: Picture, ratio: float | None) -> tuple[bytes, str, str]:
     untold = "; ".join([*_unsaid(drawing, odd, still), *lost])
     doubt = f"does not tell {untold}" if untold else "does not hold the same structure" if difference else ""
     doubt += f": {difference or 'add it to the structure that you import'}" if doubt else ""
-    typed = ["--as rigid_body"] * (kind is not None) + [f"--depth {depth!r}m"] * counts
-    return content, " ".join(typed), doubt
+    needed = ["`kind` rigid_body"] * (kind is not None) + [f"`depth` {depth!r} m"] * counts
+    return content, " and ".join(needed), doubt
 
 
 def _compared(drawing: Picture, content: bytes, options: ImportOptions) -> tuple[str, list[str]]:
@@ -137,7 +137,7 @@ def _compared(drawing: Picture, content: bytes, options: ImportOptions) -> tuple
         numbers = [("lambda", "g", mechanism.uplift(side), lambdas[side])]
         numbers += [("phi_cr", "rad", drawing.phi_cr[side] or 0.0, again.phi_cr[side] or 0.0)]
         differ = [
-            " instead of ".join(f"{symbol} = {each:.6g} {unit}" if each else f"no {symbol}" for each in (other, one))
+            f"{symbol} = " + " instead of ".join(f"{each:.6g} {unit}" if each else "none" for each in (other, one))
             for symbol, unit, one, other in numbers if not isclose(one, other, rel_tol=SAME_SHARE)
         ]  # fmt: skip
         if differ:

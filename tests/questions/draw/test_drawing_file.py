@@ -211,7 +211,7 @@ WAY_BACK = {
     "verify/parapet.yaml": "",
     "verify/tied_facade.yaml": "`one_sided`, `rebound`; the further data of `bar`: `rocking import` refuses it",
     "wall.yaml": "",
-    "walls/column_with_tendon.yaml": "the tie `tendon`: its import has lambda .* instead of no phi_cr",
+    "walls/column_with_tendon.yaml": "the tie `tendon`: its import has lambda .* instead of none",
     "walls/facade.yaml": "does not tell `one_sided`: add it",
     "walls/floor_wall.yaml": "",
     "walls/gable.yaml": "does not tell `one_sided`, `rebound`: add it",
@@ -243,7 +243,7 @@ def test_the_way_back_of_each_example(name, tmp_path):
     (told,) = [each for each in listener.warnings if "drawn.dxf" in each] or [""]
     assert re.search(WAY_BACK[name], told) if WAY_BACK[name] else not told
     (wrote,) = [each for each in listener.notes if "wrote" in each]
-    options = {{"as": "kind"}.get(key, key): value for key, value in re.findall(r"--(as|depth) (\S+)", wrote)}
+    options = dict(re.findall(r"`(kind|depth)` (\w+\b(?:\.\d+ m)?)", wrote))
     if "refuses" in told:
         with pytest.raises(rk.InputError):
             rk.import_drawing(file, **options).structure  # noqa: B018
