@@ -27,7 +27,7 @@ from rocking_cli.studies.picture import DrawnPart, Picture, picture
 from rocking_cli.text import in_short
 
 METRES, CIRCLED = 6, 33  # $INSUNITS; $PDMODE, a dot in a circle
-AROUND, ABOVE, BELOW = 5, 7, 1  # attachment of texts: around a point, or to the right of it
+TEXT_AROUND, TEXT_ABOVE, TEXT_BELOW = 5, 7, 1  # attachment of texts: around a point, or to the right of it
 COLOURS = {"BLOCKS": 7, "OPENINGS": 5, "GROUND": 34, "HINGES": 1, "SUPPORTS": 34, "LOADS": 6, "TIES": 4, "NAMES": 3,
            "ASSUMED": 9, "DISPLACED": 8, "THRUST": 30}  # fmt: skip
 """Colours of the layers, by the first word of their names: numbers of AutoCAD."""
@@ -84,8 +84,10 @@ def drawn_file(drawing: Picture, ratio: float | None) -> tuple[bytes, str, str]:
     mechanism, weighed = drawing.mechanism, {body.name: body for body in drawing.mechanism.weighed()}
     document = library().new("R2000", units=METRES)
     drawn = _Drawn(document, abs(drawing.reach[1] - drawing.reach[0]))
-    found = any(mechanism.collapse(side) for side in drawing.directions) or bool(drawing.sketch.lines)
-    given = len(weighed) > 1 and not found  # the hinges: they are not the feet of a body, and no search has found them
+    searched = any(mechanism.collapse(side) for side in drawing.directions) or bool(drawing.sketch.lines)
+    given = (
+        len(weighed) > 1 and not searched
+    )  # the hinges: they are not the feet of a body, and no search has found them
     links = drawing.links.values() if given else ()
     still = {part.name for part in drawing.parts if links and all(each[part.name] is None for each in links)}
     plates = [_plates(part, weighed[part.name], drawing) for part in drawing.parts]
@@ -233,7 +235,7 @@ def _bodies(
                 copies[part.name] += 1
                 name = f"{part.name} {copies[part.name]}" if k else drawn.names[-1]
                 density = "" if depth is None else f"\n{plate.per_area / depth:.9g} kg/m3"
-                drawn.text("NAMES", name + density, plate.inside, AROUND)
+                drawn.text("NAMES", name + density, plate.inside, TEXT_AROUND)
 
 
 def _joints(drawn: _Drawn, drawing: Picture, hinges: str) -> None:
@@ -264,7 +266,9 @@ def _load(drawn: _Drawn, drawing: Picture, load: Carried) -> None:
     else:
         drawn.spot("LOADS", start := load.point)
     size = f"{abs(load.force):.9g} N" if load.force else f"{load.mass:.9g} kg"
-    drawn.text("LOADS", ", ".join([f"{load.name} {size}".strip(), *words]), start, BELOW if load.force else ABOVE)
+    drawn.text(
+        "LOADS", ", ".join([f"{load.name} {size}".strip(), *words]), start, TEXT_BELOW if load.force else TEXT_ABOVE
+    )
 
 
 def _tie(drawn: _Drawn, drawing: Picture, tie: Strand) -> None:
@@ -283,7 +287,7 @@ def _tie(drawn: _Drawn, drawing: Picture, tie: Strand) -> None:
     else:
         force, stiffness = (tie.thing.count * each for each in tie.thing.at_rest)
         words = [f"stiffness {stiffness:.9g} N/m", f"prestress {force:.9g} N"] + [f"only {tie.only}"] * bool(tie.only)
-    drawn.text("TIES", (f"{tie.name}: " if tie.name else "") + ", ".join(words), complex(ends[:2].mean()), ABOVE)
+    drawn.text("TIES", (f"{tie.name}: " if tie.name else "") + ", ".join(words), complex(ends[:2].mean()), TEXT_ABOVE)
 
 
 def _in_words(given: Load | Tie, known: Mapping[str, str]) -> list[str]:

@@ -149,7 +149,7 @@ def _hinges(drawing: LineDrawing, of: Sorted, places: BodyFinder, made: DrawnAtt
         places.require(len(on) <= 2, "hinge", "the hinge is on more than two bodies", at)
         made.hinges.append((z, tuple(on), direction_of(layer)))
     for chain in of.chains[Role.HINGES]:
-        what = "a line is no hinge: draw a point or a circle. It is"
+        what = "a line is not a hinge (draw a point or a circle instead):"
         places.require(chain.closed, "hinge", what, complex(chain.points[0]))
 
 
@@ -177,10 +177,10 @@ def _fields_in(text: str, known: Mapping[str, str]) -> tuple[dict[str, Any], lis
     """
     pieces = (rf"\b{key}\s*[:=]?\s*(?P<{key}>{value})(?!\w)" for key, value in known.items())
     pattern = re.compile("|".join(pieces), re.IGNORECASE)
-    found = {key: value.strip() for each in pattern.finditer(text) for key, value in each.groupdict().items() if value}
+    texts = {key: value.strip() for each in pattern.finditer(text) for key, value in each.groupdict().items() if value}
     fields = {
         key: int(value) if value.isdigit() else float(value) if re.fullmatch(NUMBER, value) else value
-        for key, value in found.items()
+        for key, value in texts.items()
     }
     return fields, [other for each in re.split("[,;:]", pattern.sub(";", text)) if (other := each.strip(" ="))]
 
@@ -207,8 +207,8 @@ def _nearest_texts(
     text_of: dict[int, DrawnText] = {}
     away = [np.array([_distance(label.at, *line) for line in lines]) for label in labels if lines]
     for reach, label in sorted(zip(away, labels, strict=False), key=lambda each: float(each[0].min())):
-        near = np.flatnonzero(np.isclose(reach, reach.min()))
-        free = next((k for k in near.tolist() if k not in text_of), None)
+        closest = np.flatnonzero(np.isclose(reach, reach.min()))
+        free = next((k for k in closest.tolist() if k not in text_of), None)
         if free is not None:
             text_of[free] = label
         else:
