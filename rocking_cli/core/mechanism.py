@@ -364,7 +364,7 @@ def check_stretched(mechanism: Mechanism) -> None:
         if parts and not any(stretches(mechanism, part, side) for part in parts for side in mechanism.directions):
             sense = f" in {parts[0].only}" if parts[0].only else ""
             reason = f"nothing stretches {tie.name!r}{sense}: no motion of the structure changes its length"
-            raise RefusedFields(loc, "name", reason)
+            raise RefusedFields(loc, "name", f"{reason}: move an end, or leave it out")
 
 
 def stretches(mechanism: Mechanism, tie: Stretched, direction: Direction) -> bool:

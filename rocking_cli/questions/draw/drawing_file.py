@@ -3,82 +3,179 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections import Counter
+from collections.abc import Collection, Mapping, Sequence
+from math import isclose
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from rocking_cli.arrays import Points
-from rocking_cli.core import Body, polygon
+from rocking_cli.core import Body, Direction, Mechanism
 from rocking_cli.core.hung.element import Load, Stretched
 from rocking_cli.core.hung.ties import Tie
-from rocking_cli.core.kinematics import area_of, distance
+from rocking_cli.core.kinematics import distance
+from rocking_cli.errors import RockingError
+from rocking_cli.io.drawings import dxf
 from rocking_cli.io.drawings.dxf_groups import library
+from rocking_cli.io.field_problems import unit_at
+from rocking_cli.questions.import_drawing.attached import LOAD_FIELDS, TIE_FIELDS
+from rocking_cli.questions.import_drawing.rings import ArcRing, PlaneMoments
+from rocking_cli.questions.import_drawing.study import ImportOptions, structure_from
 from rocking_cli.studies.hung import Carried, Strand
-from rocking_cli.studies.picture import DrawnPart, Picture
+from rocking_cli.studies.picture import DrawnPart, Picture, picture
+from rocking_cli.text import in_short
 
-METRES, CIRCLED = 6, 33  # of $INSUNITS; of $PDMODE, a dot in a circle
+METRES, CIRCLED = 6, 33  # $INSUNITS; $PDMODE, a dot in a circle
+TEXT_AROUND, TEXT_ABOVE, TEXT_BELOW = 5, 7, 1  # attachment of texts: around a point, or to the right of it
 COLOURS = {"BLOCKS": 7, "OPENINGS": 5, "GROUND": 34, "HINGES": 1, "SUPPORTS": 34, "LOADS": 6, "TIES": 4, "NAMES": 3,
            "ASSUMED": 9, "DISPLACED": 8, "THRUST": 30}  # fmt: skip
 """Colours of the layers, by the first word of their names: numbers of AutoCAD."""
+READ_AS = "the drawing"  # in messages of its import
 TEXT_SHARE, ARROW_SHARE, ANCHOR_SHARE = 0.02, 0.15, 0.02  # sizes of texts, arrows and anchorages over the size
-SAME_SHARE = 1e-6  # share by which a body may differ from a uniform plate of its outline
-NAME_HEIGHT, DENSITY_HEIGHT = 0.53, 0.37  # heights of the texts in a body over that of the body
-UNSAID = ("friction", "restitution", "one_sided", "rebound", "crushing", "interlock", "corner_radius", "gap", "gravity")
+SAME_SHARE = 1e-6  # relative difference of equal numbers; that of equal points, over the size
+UNSAID = ("friction", "friction_of", "restitution", "one_sided", "rebound", "crushing", "interlock", "corner_radius",
+          "gap", "gravity", "strength", "uncertainty")  # fmt: skip
 """Fields of structures that a drawing does not have."""
-DRAWN_FIELDS = {"name", "mass", "force", "at", "body", "start", "end", "path", "stiffness", "area", "modulus", "length",
-                "prestress"}  # fmt: skip
+DRAWN_FIELDS = {*LOAD_FIELDS, *TIE_FIELDS, "yield_stress", "name", "mass", "mass_per_metre", "force", "at", "start",
+                "end", "path", "each"}  # fmt: skip
 """Fields of loads and ties that it has."""
 
 
-def unsaid(picture: Picture) -> list[str]:
-    """Return what a drawing does not tell of a structure, in words."""
-    mechanism = picture.mechanism
-    fields = [f"`{key}`" for key in UNSAID if key in mechanism.model_fields_set and getattr(mechanism, key) is not None]
-    bodies = {body.name: body for body in mechanism.bodies()}
-    odd = dict.fromkeys(part.name for part in picture.parts if not _is_plate(part, bodies[part.name]))
-    given: list[Load | Tie] = [*(mechanism.loads or []), *(mechanism.ties or [])]
-    acts = [f"how `{each.name}` acts" for each in given if each.model_fields_set - DRAWN_FIELDS]
-    lost = [f"the tie `{tie.name}`" for tie in picture.ties if tie.name and _path(tie) is None]
-    return [*fields, *(f"the mass of `{name}`" for name in odd), *lost, *acts]
+class _Plate(NamedTuple):
+    """A uniform plate: its edge and openings [m], a point inside, and its mass per area [kg/m2]."""
+
+    edge: Points
+    openings: Sequence[Points]
+    inside: complex
+    per_area: float = 0.0
+
+    @property
+    def moments(self) -> PlaneMoments:
+        """Area, centroid and polar moment."""
+        outer, *inner = (ArcRing.of(ring, np.zeros(len(ring))).moments for ring in (self.edge, *self.openings))
+        return PlaneMoments.of_sum([outer, *(each.negative() for each in inner)])
 
 
-def dxf_of(picture: Picture, ratio: float | None) -> bytes:
+def drawn_file(drawing: Picture, ratio: float | None) -> tuple[bytes, str, str]:
     """Return a structure at rest, displaced, and with its hinges, loads and ties as a DXF file.
 
     Parameters
     ----------
-    picture : Picture
+    drawing : Picture
         The drawing of the structure.
     ratio : float or None
         Rotation of the displaced structure over the reference rotation; None for one that is well visible.
+
+    Returns
+    -------
+    content : bytes
+        The file.
+    options : str
+        The options that its import needs, in words.
+    doubt : str
+        What the file does not tell, and how its import differs from the structure; empty if it is the same.
 
     Raises
     ------
     InputError
         If ezdxf is not installed.
     """
-    ezdxf = library()
-    document = ezdxf.new("R2000", units=METRES)
-    drawn = _Drawn(document, abs(picture.reach[1] - picture.reach[0]))
-    _bodies(drawn, picture)
-    for line in picture.sketch.ground or picture.ground:
+    mechanism, weighed = drawing.mechanism, {body.name: body for body in drawing.mechanism.weighed()}
+    document = library().new("R2000", units=METRES)
+    drawn = _Drawn(document, abs(drawing.reach[1] - drawing.reach[0]))
+    searched = any(mechanism.collapse(side) for side in drawing.directions) or bool(drawing.sketch.lines)
+    given = (
+        len(weighed) > 1 and not searched
+    )  # the hinges: they are not the feet of a body, and no search has found them
+    links = drawing.links.values() if given else ()
+    still = {part.name for part in drawing.parts if links and all(each[part.name] is None for each in links)}
+    plates = [_plates(part, weighed[part.name], drawing) for part in drawing.parts]
+    per_area = [plate.per_area for each, _ in plates for plate in each if plate.per_area]
+    counts = bool(per_area) and max(per_area) > (1 + SAME_SHARE) * min(per_area)
+    counts |= bool(mechanism.attached) or mechanism.total_mass() is not None or mechanism.density is not None
+    depth = mechanism.depth or 1.0
+    _bodies(drawn, drawing, [each for each, _ in plates], still, depth if counts else None)
+    for line in drawing.sketch.ground or drawing.ground:
         drawn.line("GROUND", np.asarray(line, np.complex128))
-    _hinges(drawn, picture)
-    for load in picture.loads:
-        _load(drawn, load)
-    for tie in picture.ties:
-        _tie(drawn, picture, tie)
-    for side in picture.directions:
-        turn = side * (picture.usual[side] if ratio is None else ratio) * picture.reference[side]
-        for outline in (each for part in picture.placed(turn)[0] for each in part):
+    _joints(drawn, drawing, "HINGES" if given else "")
+    for load in drawing.loads:
+        if drawing.parts[load.part].name not in still:
+            _load(drawn, drawing, load)
+    for tie in drawing.ties:
+        _tie(drawn, drawing, tie)
+    for side in drawing.directions:
+        turn = side * (drawing.usual[side] if ratio is None else ratio) * drawing.reference[side]
+        for outline in (each for part in drawing.placed(turn)[0] for each in part):
             drawn.line(f"DISPLACED_{side.label.upper()}", outline, closed=True)
-    for thrust in (np.asarray(each.points) for each in picture.sketch.lines):
+    for thrust in (np.asarray(each.points) for each in drawing.sketch.lines):
         if np.abs(thrust - thrust[0]).max() > 0:  # in a single block it may be a point
             drawn.line("THRUST", thrust)
     document.write(stream := io.StringIO())
     content: bytes = document.encode(stream.getvalue())
-    return content
+    kind = "rigid_body" if len(weighed) == 1 and len(plates[0][0]) > 1 else None
+    options = ImportOptions(depth=depth if counts else None, kind=kind)
+    odd = [part.name for part, (_, fits) in zip(drawing.parts, plates, strict=True) if not fits and not part.assumed]
+    difference, lost = _compared(drawing, content, options)
+    untold = "; ".join([*_unsaid(drawing, odd, still), *lost])
+    doubt = f"does not tell {untold}" if untold else "does not hold the same structure" if difference else ""
+    doubt += f": {difference or 'add it to the structure that you import'}" if doubt else ""
+    needed = ["`kind` rigid_body"] * (kind is not None) + [f"`depth` {depth!r} m"] * counts
+    return content, " and ".join(needed), doubt
+
+
+def _compared(drawing: Picture, content: bytes, options: ImportOptions) -> tuple[str, list[str]]:
+    """Return how the import of a file differs from the structure, and which names and which meaning of phi it loses."""
+    mechanism, sides = drawing.mechanism, drawing.directions
+    try:
+        again = picture(structure_from(dxf.read(content, READ_AS), options, "drawn", READ_AS).structure)
+        lambdas = {side: again.mechanism.uplift(side) for side in sides}
+    except RockingError as error:
+        return f"`rocking import` refuses it ({' '.join(str(error).split()).removeprefix(f'{READ_AS}: ')})", []
+    names = [body.name for body in mechanism.bodies()]
+    lost = sorted(set(names) - {body.name for body in again.mechanism.bodies()}) if len(names) > 1 else []
+    words = [f"the name of {in_short([f'`{name}`' for name in lost])}"] if lost else []
+    for side in sides:
+        numbers = [("lambda", "g", mechanism.uplift(side), lambdas[side])]
+        numbers += [("phi_cr", "rad", drawing.phi_cr[side] or 0.0, again.phi_cr[side] or 0.0)]
+        differ = [
+            f"{symbol} = " + " instead of ".join(f"{each:.6g} {unit}" if each else "none" for each in (other, one))
+            for symbol, unit, one, other in numbers if not isclose(one, other, rel_tol=SAME_SHARE)
+        ]  # fmt: skip
+        if differ:
+            leads = [_leads(each, side) for each in (mechanism, again.mechanism)]
+            if len(names) > 1 and leads[0] and not set(leads[0]) & set(leads[1]):
+                words.append(f"that phi is the rotation of `{leads[0][0]}`")
+            return f"its import has {' and '.join(differ)} in the {side.label} direction", words
+    return "", words
+
+
+def _leads(mechanism: Mechanism, side: Direction) -> list[str]:
+    """Return the bodies whose rotation is phi."""
+    motions = mechanism.motion(np.zeros(1), side)
+    return [
+        body.name for body, motion in zip(mechanism.bodies(), motions, strict=True)
+        if isclose(motion.dpsi[0], -side, rel_tol=SAME_SHARE)
+    ]  # fmt: skip
+
+
+def _unsaid(drawing: Picture, odd: Sequence[str], still: Collection[str]) -> list[str]:
+    """Return what a drawing does not tell of a structure, in words."""
+    mechanism = drawing.mechanism
+    guides = [each for side in drawing.directions for each in mechanism.contacts(side) or () if each.held == "slide"]
+    slides = [each.pieces[1] for each in guides if None not in each.pieces]
+    given: list[Load | Tie] = [*(mechanism.loads or []), *(mechanism.ties or [])]
+    at_rest = [load.name for load in drawing.loads if drawing.parts[load.part].name in still]
+    groups = {
+        "": [key for key in UNSAID if key in mechanism.model_fields_set and getattr(mechanism, key) is not None],
+        "the outline of ": [part.name for part in drawing.parts if part.assumed],
+        "the mass of ": odd,
+        "the body that guides ": slides,
+        "the load ": at_rest,
+        "the tie ": [tie.name for tie in drawing.ties if tie.name and _path(tie) is None],
+        "the further data of ": [each.name for each in given if each.model_fields_set - DRAWN_FIELDS],
+    }
+    return [what + in_short([f"`{name}`" for name in dict.fromkeys(names)]) for what, names in groups.items() if names]
 
 
 class _Drawn:
@@ -87,9 +184,10 @@ class _Drawn:
     def __init__(self, document: Any, size: float) -> None:
         self.layers, self.space, self.size = document.layers, document.modelspace(), size
         self.ground: list[Points] = []
+        self.names: list[str] = []  # of the parts, in their order; those of copies are numbered
         document.header["$PDMODE"], document.header["$PDSIZE"] = CIRCLED, TEXT_SHARE * size
 
-    def on(self, layer: str) -> dict[str, str]:
+    def on(self, layer: str) -> dict[str, Any]:
         """Return the attributes of a thing on a layer, which is made if it is new."""
         if layer not in self.layers:
             self.layers.add(layer, color=COLOURS[layer.partition("_")[0]])
@@ -112,87 +210,69 @@ class _Drawn:
         """Draw a point."""
         self.space.add_point((at.real, at.imag), dxfattribs=self.on(layer))
 
-    def text(self, layer: str, text: str, at: complex) -> None:
-        """Write a text whose middle is at a point."""
-        from ezdxf.enums import TextEntityAlignment
-
-        drawn = self.space.add_text(text, height=TEXT_SHARE * self.size, dxfattribs=self.on(layer))
-        drawn.set_placement((at.real, at.imag), align=TextEntityAlignment.MIDDLE_CENTER)
+    def text(self, layer: str, text: str, at: complex, side: int) -> None:
+        """Write lines of text beside a point."""
+        style = {"char_height": TEXT_SHARE * self.size, "insert": (at.real, at.imag), "attachment_point": side}
+        self.space.add_mtext(text, dxfattribs=self.on(layer) | style)
 
 
-def _bodies(drawn: _Drawn, picture: Picture) -> None:
-    """Draw the outlines and openings of the bodies, with names, and densities where they count.
+def _bodies(
+    drawn: _Drawn, drawing: Picture, plates: Sequence[Sequence[_Plate]], still: Collection[str], depth: float | None
+) -> None:
+    """Draw the plates of the bodies, with names, and densities at a depth if they count.
 
     Bodies that are always at rest are ground, so that hinges on them are pivots.
     """
-    densities = _densities(picture)
-    links = picture.links.values() if _has_given_hinges(picture) else ()
-    still = {part.name for part in picture.parts if links and all(each[part.name] is None for each in links)}
-    copies: dict[str, int] = {}
-    for part in picture.parts:
-        copies[part.name] = copies.get(part.name, 0) + 1
+    copies = Counter[str]()
+    for part, each in zip(drawing.parts, plates, strict=True):
+        drawn.names.append(part.name + f" {copies[part.name] + 1}" * (copies[part.name] > 0))
         layer = "ASSUMED" if part.assumed else "GROUND" if part.name in still else "BLOCKS"
-        for edge, openings in _rings(part.outlines):
-            drawn.line(layer, edge, closed=True)
-            for opening in openings:
+        for k, plate in enumerate(each):
+            drawn.line(layer, plate.edge, closed=True)
+            for opening in plate.openings:
                 drawn.line("OPENINGS" if layer == "BLOCKS" else layer, opening, closed=True)
             if layer == "BLOCKS":
-                count = f" {copies[part.name]}" if copies[part.name] > 1 else ""
-                drawn.text("NAMES", f"{part.name}{count}", _within([edge, *openings], NAME_HEIGHT))
-                if part.name in densities:
-                    at = _within([edge, *openings], DENSITY_HEIGHT)
-                    drawn.text("NAMES", f"{densities[part.name]!r} kg/m3", at)
+                copies[part.name] += 1
+                name = f"{part.name} {copies[part.name]}" if k else drawn.names[-1]
+                density = "" if depth is None else f"\n{plate.per_area / depth:.9g} kg/m3"
+                drawn.text("NAMES", name + density, plate.inside, TEXT_AROUND)
 
 
-def _has_given_hinges(picture: Picture) -> bool:
-    """Return whether hinges are part of a structure: they are not its feet, and no search has found them."""
-    mechanism = picture.mechanism
-    is_result = picture.sketch.lines or any(mechanism.collapse(side) for side in mechanism.directions)
-    return len(mechanism.bodies()) > 1 and not is_result
-
-
-def _densities(picture: Picture) -> Mapping[str, float]:
-    """Return the densities of the bodies [kg/m3], at a depth of 1 m if none is given; empty if they do not count."""
-    mechanism = picture.mechanism
-    area: dict[str, float] = {}
-    for part in picture.parts:
-        area[part.name] = area.get(part.name, 0.0) + sum(abs(area_of(each)) for each in part.outlines)
-    per_area = {body.name: body.mass / area[body.name] for body in mechanism.weighed() if area.get(body.name)}
-    differ = per_area and max(per_area.values()) > (1 + SAME_SHARE) * min(per_area.values())
-    weighs = mechanism.total_mass() is not None or mechanism.density is not None or mechanism.attached
-    if not (differ or weighs):
-        return {}
-    return {name: float(f"{each / (mechanism.depth or 1.0):.9g}") for name, each in per_area.items()}
-
-
-def _hinges(drawn: _Drawn, picture: Picture) -> None:
-    """Draw hinges and supports; hinges that are not given are results."""
-    given = _has_given_hinges(picture)
+def _joints(drawn: _Drawn, drawing: Picture, hinges: str) -> None:
+    """Draw supports, and hinges on a layer; without one they are results."""
+    for pin in drawing.pins:
+        if not pin.slide:
+            drawn.spot(f"{hinges}_{pin.direction.label.upper()}" if hinges else "THRUST", pin.point)
     supports: dict[tuple[complex, complex], list[str]] = {}
-    for pin in picture.pins:
-        if pin.slide:
-            supports.setdefault((pin.point, pin.slide), []).append(f"_{pin.direction.label.upper()}")
-        else:
-            drawn.spot(f"HINGES_{pin.direction.label.upper()}" if given else "THRUST", pin.point)
-    for (at, slide), sides in supports.items():
-        across = ARROW_SHARE * drawn.size * 1j * slide / abs(slide)
-        for side in sides if len(sides) < len(picture.directions) else [""]:
-            drawn.line(f"SUPPORTS{side}", np.array([at, at + across]))
+    for side in drawing.directions:
+        for each in drawing.mechanism.contacts(side) or ():
+            if each.held == "slide" and each.pieces[0] is None:
+                supports.setdefault((each.points[0], each.normal), []).append(f"_{side.label.upper()}")
+    for (at, normal), sides in supports.items():
+        for layer in sides if len(sides) < len(drawing.directions) else [""]:
+            drawn.line(f"SUPPORTS{layer}", np.array([at, at + ARROW_SHARE * drawn.size * normal]))
 
 
-def _load(drawn: _Drawn, load: Carried) -> None:
+def _load(drawn: _Drawn, drawing: Picture, load: Carried) -> None:
     """Draw a mass as a point, and a force as an arrow to its point, with their sizes."""
-    if load.mass is not None:
-        drawn.spot("LOADS", load.point)
-        drawn.text("LOADS", f"{load.name} {load.mass!r} kg".strip(), load.point)
-    elif load.force:
+    if load.friction or not (load.mass or load.force):
+        return
+    given = next((each for each in drawing.mechanism.loads or [] if each.name == load.name), None)
+    words = _in_words(given, LOAD_FIELDS) if given is not None else []
+    words += [f"body {drawn.names[load.part]}"] if len(drawn.names) > 1 else []
+    if load.force:
         start = load.point - ARROW_SHARE * drawn.size * load.force / abs(load.force)
         drawn.line("LOADS", np.array([start, load.point]))
-        drawn.text("LOADS", f"{load.name} {abs(load.force)!r} N".strip(), start)
+    else:
+        drawn.spot("LOADS", start := load.point)
+    size = f"{abs(load.force):.9g} N" if load.force else f"{load.mass:.9g} kg"
+    drawn.text(
+        "LOADS", ", ".join([f"{load.name} {size}".strip(), *words]), start, TEXT_BELOW if load.force else TEXT_ABOVE
+    )
 
 
-def _tie(drawn: _Drawn, picture: Picture, tie: Strand) -> None:
-    """Draw a tie as a line over its points, with area and modulus, or with its stiffness."""
+def _tie(drawn: _Drawn, drawing: Picture, tie: Strand) -> None:
+    """Draw a tie as a line over its points, with its data; with its force and stiffness if a text cannot hold them."""
     ends = _path(tie)
     if ends is None or not isinstance(tie.thing, Stretched):
         return
@@ -201,15 +281,23 @@ def _tie(drawn: _Drawn, picture: Picture, tie: Strand) -> None:
         if any(end == anchor.point for anchor in tie.ground) and not drawn.is_on_ground(complex(end)):
             away = ANCHOR_SHARE * drawn.size * (end - other) / abs(end - other)
             drawn.line("GROUND", np.array([end, end + away * (1 - 0.5j), end + away * (1 + 0.5j)]), closed=True)
-    given = next((each for each in picture.mechanism.ties or [] if each.name == tie.name), None)
-    force, stiffness = tie.thing.at_rest
-    fields = {"stiffness": f"{tie.thing.count * stiffness!r} N/m"}
-    if given is not None and given.area is not None and given.modulus is not None:
-        fields = {"area": f"{given.area!r} m2", "modulus": f"{given.modulus!r} Pa"}
-        fields |= {"length": f"{given.length!r} m"} if given.length is not None else {}
-    fields |= {"prestress": f"{tie.thing.count * force!r} N"} if force else {}
-    words = ", ".join(f"{key} {value}" for key, value in fields.items())
-    drawn.text("TIES", f"{tie.name}: {words}" if tie.name else words, complex(ends[:2].mean()))
+    given = next((each for each in drawing.mechanism.ties or [] if each.name == tie.thing.name), None)
+    if given is not None and not given.model_fields_set - DRAWN_FIELDS:
+        words = _in_words(given, TIE_FIELDS)
+    else:
+        force, stiffness = (tie.thing.count * each for each in tie.thing.at_rest)
+        words = [f"stiffness {stiffness:.9g} N/m", f"prestress {force:.9g} N"] + [f"only {tie.only}"] * bool(tie.only)
+    drawn.text("TIES", (f"{tie.name}: " if tie.name else "") + ", ".join(words), complex(ends[:2].mean()), TEXT_ABOVE)
+
+
+def _in_words(given: Load | Tie, known: Mapping[str, str]) -> list[str]:
+    """Return the fields of a load or a tie that a text may give, as the import reads them."""
+    model = type(given)
+    names = {key: model.model_fields[key].alias or key for key in model.model_fields if key in given.model_fields_set}
+    return [
+        f"{name} {getattr(given, key)} {unit_at(model, (name,))}".strip() for key, name in names.items()
+        if name in known and name != "body" and getattr(given, key) is not None
+    ]  # fmt: skip
 
 
 def _path(tie: Strand) -> Points | None:
@@ -218,44 +306,46 @@ def _path(tie: Strand) -> Points | None:
     return path if not tie.is_bed and np.abs(path - path[0]).max() > 0 else None
 
 
-def _is_plate(part: DrawnPart, body: Body) -> bool:
-    """Return whether a body is a uniform plate of one outline, as which it is imported."""
-    if part.assumed or len(_rings(part.outlines)) != 1:
-        return False
-    plates = [polygon(body.name, abs(area_of(each)), each.tolist()) for each in part.outlines]
-    mass = sum(plate.mass for plate in plates)
-    centroid = sum(plate.mass * plate.centroid for plate in plates) / mass
-    inertia = sum(plate.inertia + plate.mass * abs(plate.centroid - centroid) ** 2 for plate in plates)
-    size = max(abs(each - centroid).max() for each in part.outlines)
-    turned = body.inertia / (body.mass or 1.0) - inertia / mass
-    return bool(abs(centroid - part.centroid) <= SAME_SHARE * size and abs(turned) <= SAME_SHARE * size**2)
+def _plates(part: DrawnPart, body: Body, drawing: Picture) -> tuple[list[_Plate], bool]:
+    """Return the plates as which a body is drawn, and whether they have its centroid and its moment of inertia.
+
+    They are what its outlines enclose together or, if the body is not uniform, each outline alone: the masses are then
+    those that give the mass, the centroid and the moment of inertia of the body.
+    """
+    mass = body.mass / sum(each.name == part.name for each in drawing.parts)
+    together = _enclosed(part.outlines)
+    if not together:
+        return [], False
+    for plates in (together, [plate for each in part.outlines for plate in _enclosed([each])]):
+        moments = [plate.moments for plate in plates]
+        size = max(abs(plate.edge - part.centroid).max() for plate in plates)
+        area = np.array([each.area for each in moments])
+        away = (np.array([each.centroid for each in moments]) - part.centroid) / size
+        turning = np.array([each.polar for each in moments]) / size**2 + area * np.abs(away) ** 2
+        rows = np.array([area, area * away.real, area * away.imag, turning])
+        wanted = np.array([1.0, 0.0, 0.0, body.inertia / (body.mass or 1.0) / size**2])
+        share = np.linalg.lstsq(rows, wanted)[0]
+        if np.abs(rows @ share - wanted).max() <= SAME_SHARE and share.min() > 0:
+            return [each._replace(per_area=k * mass) for each, k in zip(plates, share.tolist(), strict=True)], True
+    whole = sum(plate.moments.area for plate in together)
+    return [each._replace(per_area=mass / whole) for each in together], False
 
 
-def _rings(outlines: Sequence[Points]) -> list[tuple[Points, list[Points]]]:
-    """Return what outlines enclose together: edges, each with its openings."""
+def _enclosed(outlines: Sequence[Points]) -> list[_Plate]:
+    """Return what outlines enclose together."""
     import shapely
 
     pieces = [shapely.make_valid(shapely.Polygon(np.stack([z.real, z.imag], axis=1))) for z in outlines]
     united = shapely.get_parts(shapely.get_parts(shapely.union_all(pieces)))
 
     def corners(ring: Any) -> Points:
-        z: Points = shapely.get_coordinates(ring)[:-1] @ np.array([1.0, 1.0j])
+        z: Points = shapely.get_coordinates(ring) @ np.array([1.0, 1.0j])
         return z
 
-    polygons = [each for each in united if each.geom_type == "Polygon"]
-    return [(corners(each.exterior), [corners(hole) for hole in each.interiors]) for each in polygons]
-
-
-def _within(rings: Sequence[Points], share: float) -> complex:
-    """Return a point inside an outline but not in its openings, at a share of its height."""
-    low, high = (end(ring.imag.min() if end is min else ring.imag.max() for ring in rings) for end in (min, max))
-    y = low + share * (high - low)
-    crossings = []
-    for ring in rings:
-        other = np.roll(ring, -1)
-        cut = (ring.imag > y) != (other.imag > y)
-        one, along = ring[cut], (other - ring)[cut]
-        crossings += (one.real + along.real * (y - one.imag) / along.imag).tolist()
-    crossings.sort()
-    left, right = max(zip(crossings[::2], crossings[1::2], strict=True), key=lambda ends: ends[1] - ends[0])
-    return complex((left + right) / 2, y)
+    return [
+        _Plate(
+            corners(each.exterior)[:-1], [corners(hole)[:-1] for hole in each.interiors],
+            complex(corners(each.representative_point())[0]),
+        )
+        for each in united if each.geom_type == "Polygon"
+    ]  # fmt: skip

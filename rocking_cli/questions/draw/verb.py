@@ -79,17 +79,17 @@ def draw(
 
 
 def _write(file: Path, drawing: Picture, at: float | None, watch: Watcher) -> None:
-    """Write a drawing as a DXF file, and tell what it cannot hold."""
+    """Write a drawing as a DXF file, and tell before what it cannot hold."""
     from rocking_cli.io.files import write_whole
-    from rocking_cli.questions.draw.drawing_file import dxf_of, unsaid
+    from rocking_cli.questions.draw.drawing_file import drawn_file
 
     if file.suffix.lower() != ".dxf":
         raise InputError(Problem("give a file name that ends in .dxf", str(file)))
-    content = dxf_of(drawing, at)
+    content, options, doubt = drawn_file(drawing, at)
+    if doubt:
+        watch.warn(f"{file} {doubt}")
     write_whole(file, lambda stream: stream.write(content))
-    watch.note(f"wrote {file}")
-    if lacking := unsaid(drawing):
-        watch.warn(f"{file} does not tell {', '.join(lacking)}: add it to the structure that you import")
+    watch.note(f"wrote {file}" + (f": import it with {options}" if options else ""))
 
 
 def _columns(found: Picture) -> Columns:

@@ -3,22 +3,37 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from pydantic import ValidationError
 
-from rocking_cli.io.drawings.contract import DrawingError, DrawnText, LineDrawing
+from rocking_cli.arrays import Reals
+from rocking_cli.core.hung.ties import Tie
+from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnText, LineDrawing
+from rocking_cli.io.field_problems import of_arguments
 from rocking_cli.io.yaml_file import in_a_line
 from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, many
 from rocking_cli.questions.import_drawing.outlines import DrawnBody, Sorted, polygons_of
 from rocking_cli.questions.import_drawing.rings import ArcRing
 from rocking_cli.questions.import_drawing.roles import Role, plain
-from rocking_cli.text import seen
-from rocking_cli.units import UnitError, read, split
+from rocking_cli.text import in_short, seen
+from rocking_cli.units import UnitError, read
 
-TIE_FIELDS = ("area", "modulus", "stiffness", "prestress", "length", "yield", "diameter")
+NUMBER = r"(?i:[-+]?\d[\d.]*(?:e[-+]?\d+)?)"
+QUANTITY, SHARE = rf"{NUMBER}\s*[a-z][^\s,;]*", rf"{NUMBER}(?=\s*(?:[,;]|$))"
+TIE_FIELDS = {
+    "area": QUANTITY, "modulus": QUANTITY, "stiffness": QUANTITY, "prestress": QUANTITY, "length": QUANTITY,
+    "yield": QUANTITY, "diameter": QUANTITY, "spacing": QUANTITY, "bars": r"\d+", "steel": r"\w*\d\w*",
+    "only": "tension|compression",
+}  # fmt: skip
+LOAD_FIELDS = {
+    "floor": "borne|sliding|dragged", "seat": QUANTITY, "horizontal": SHARE, "vertical": SHARE, "weight": SHARE,
+    "body": "[^,;]+",
+}  # fmt: skip
+"""Fields of ties and loads that texts may give, with the patterns of their values."""
 DECIMALS = 7  # of coordinates in a file [m]
 
 
@@ -55,37 +70,44 @@ class BodyFinder:
 
         self.names = [body.name for body in bodies]
         self.solid = polygons_of([body.ring for body in bodies], close)
+        self.edges = shapely.get_exterior_ring(self.solid)
         self.ground = polygons_of(ground, close)
         self.frame, self.shift, self.close, self.file = frame, shift, close, file
-        self._points = shapely.points
 
     def at(self, z: complex) -> complex:
         """Return a point of the drawing in metres, from the origin of the file."""
         return complex(self.frame.to_metres(np.array([z]))[0] + self.shift)
 
+    def away(self, shapes: Any, z: complex) -> Reals:
+        """Return the distance of each of `shapes` from a point [m]."""
+        import shapely
+
+        distances: Reals = shapely.distance(shapes, shapely.points(z.real, z.imag))
+        return distances
+
     def bodies(self, z: complex) -> list[str]:
         """Return the bodies whose material or edge is at a point [m], the nearest first."""
-        away = {
-            name: each.distance(self._points(z.real, z.imag)) for name, each in zip(self.names, self.solid, strict=True)
-        }
-        return sorted((name for name in away if away[name] <= self.close), key=away.__getitem__)
+        away = self.away(self.solid, z)
+        return [self.names[k] for k in np.argsort(away, kind="stable").tolist() if away[k] <= self.close]
 
     def on_edges(self, z: complex) -> list[str]:
         """Return the bodies on whose edge a point is [m]."""
-        point = self._points(z.real, z.imag)
-        return [
-            name
-            for name, each in zip(self.names, self.solid, strict=True)
-            if each.exterior.distance(point) <= self.close
-        ]
+        return [self.names[k] for k in np.flatnonzero(self.away(self.edges, z) <= self.close).tolist()]
 
     def is_ground(self, z: complex) -> bool:
         """Return whether a point is in or on the ground."""
-        return any(each.distance(self._points(z.real, z.imag)) <= self.close for each in self.ground)
+        return bool((self.away(self.ground, z) <= self.close).any())
 
-    def refused(self, kind: str, what: str, z: complex) -> DrawingError:
-        """Return the error of something at a point of the drawing."""
-        return DrawingError(kind, f"{what} at ({z.real:.7g}, {z.imag:.7g})", self.file, at=[[z.real, z.imag]])
+    def require(self, holds: object, kind: str, what: str, z: complex) -> None:
+        """Raise `DrawingError` on something at a point of the drawing if a condition does not hold."""
+        if not holds:
+            raise DrawingError(kind, f"{what} at ({z.real:.7g}, {z.imag:.7g})", self.file, at=[[z.real, z.imag]])
+
+    def straight(self, chain: DrawnLine, kind: str, name: str) -> tuple[complex, complex]:
+        """Return both ends of a line of two points. Raises `DrawingError` for other lines."""
+        is_straight = len(chain.points) == len(set(chain.points.tolist())) == 2 and not chain.closed
+        self.require(is_straight, kind, f"{name} is one straight line; something else is", complex(chain.points[0]))
+        return complex(chain.points[0]), complex(chain.points[-1])
 
 
 def attached(drawing: LineDrawing, of: Sorted, places: BodyFinder) -> DrawnAttachments:
@@ -122,63 +144,77 @@ def _spots(drawing: LineDrawing, of: Sorted, role: Role) -> list[tuple[complex, 
 
 def _hinges(drawing: LineDrawing, of: Sorted, places: BodyFinder, made: DrawnAttachments) -> None:
     for at, layer in _spots(drawing, of, Role.HINGES):
-        z = places.at(at)
-        on = places.on_edges(z)
-        if not 1 <= len(on) <= 2:
-            what = "the hinge is on no edge of a body" if not on else "the hinge is on more than two bodies"
-            raise places.refused("hinge", what, at)
+        on = places.on_edges(z := places.at(at))
+        places.require(on, "hinge", "the hinge is on no edge of a body", at)
+        places.require(len(on) <= 2, "hinge", "the hinge is on more than two bodies", at)
         made.hinges.append((z, tuple(on), direction_of(layer)))
     for chain in of.chains[Role.HINGES]:
-        if not chain.closed:
-            raise places.refused(
-                "hinge", "a line is no hinge: draw a point or a circle. It is", complex(chain.points[0])
-            )
+        what = "a line is not a hinge (draw a point or a circle instead):"
+        places.require(chain.closed, "hinge", what, complex(chain.points[0]))
 
 
 def _supports(of: Sorted, places: BodyFinder, made: DrawnAttachments) -> None:
     for chain in of.chains[Role.SUPPORTS]:
-        if chain.closed or len(chain.points) != 2:
-            raise places.refused(
-                "support", "a support is one straight line; something else is", complex(chain.points[0])
-            )
-        z = [places.at(complex(each)) for each in chain.points]
-        along = (z[1] - z[0]) / abs(z[1] - z[0])
+        ends = places.straight(chain, "support", "a support")
+        z = [places.at(end) for end in ends]
         held = [(on[0], end) for end in z if (on := places.bodies(end))]
-        if not held:
-            raise places.refused("support", "the support ends on no body", complex(chain.points[0]))
-        normal = 1j * along
+        nearest = min(ends, key=lambda end: float(places.away(places.solid, places.at(end)).min()))
+        places.require(held, "support", "the support ends on no body: its end next to a body is", nearest)
+        normal = 1j * (z[1] - z[0]) / abs(z[1] - z[0])
         normal *= 1 if (normal.imag, normal.real) > (0, 0) else -1
         made.supports += [(name, end, normal, direction_of(chain.layer)) for name, end in held]
 
 
+def _fields_in(text: str, known: Mapping[str, str]) -> tuple[dict[str, Any], list[str]]:
+    """Return the known fields that a text such as `chain: area 452 mm2, modulus 210 GPa` gives, and what else it says.
+
+    Parameters
+    ----------
+    text : str
+        The text.
+    known : mapping of str to str
+        Pattern of the value of each field.
+    """
+    pieces = (rf"\b{key}\s*[:=]?\s*(?P<{key}>{value})(?!\w)" for key, value in known.items())
+    pattern = re.compile("|".join(pieces), re.IGNORECASE)
+    texts = {key: value.strip() for each in pattern.finditer(text) for key, value in each.groupdict().items() if value}
+    fields = {
+        key: int(value) if value.isdigit() else float(value) if re.fullmatch(NUMBER, value) else value
+        for key, value in texts.items()
+    }
+    return fields, [other for each in re.split("[,;:]", pattern.sub(";", text)) if (other := each.strip(" ="))]
+
+
 def _quantity(text: str) -> tuple[str, str, str]:
     """Return the words before the last quantity of a text, this quantity, and its kind: mass, force or ""."""
-    match = re.search(r"[-+]?[0-9][0-9.]*(?:[eE][-+]?[0-9]+)?\s*[a-zA-Z]+\s*$", text.strip())
-    if match is None:
-        return text.strip(), "", ""
-    quantity = match[0].strip()
-    parts = split(quantity)
+    quantity = match[0] if (match := re.search(rf"{NUMBER}\s*[a-zA-Z]+$", text)) else ""
     for kind, unit in (("mass", "kg"), ("force", "N")):
         try:
-            if parts is not None:
-                read(quantity, unit)
-                return text.strip()[: match.start()].strip(" :=,;"), quantity, kind
+            read(quantity, unit)
         except UnitError:
             continue
-    return text.strip(), "", ""
+        return text.removesuffix(quantity).strip(" :=,;"), quantity, kind
+    return text, "", ""
 
 
-def _nearest_texts(labels: Sequence[DrawnText], lines: Sequence[tuple[complex, complex]]) -> dict[int, DrawnText]:
-    """Return the text of each symbol: each text is of the nearest one. Symbols are points, or lines with two ends."""
-    text_of: dict[int, tuple[float, DrawnText]] = {}
-    for label in labels:
-        away = [_distance(label.at, *line) for line in lines]
-        if not away:
-            break
-        k = int(np.argmin(away))
-        if k not in text_of or away[k] < text_of[k][0]:
-            text_of[k] = away[k], label
-    return {k: label for k, (_, label) in text_of.items()}
+def _nearest_texts(
+    labels: Sequence[DrawnText], lines: Sequence[tuple[complex, complex]], made: DrawnAttachments
+) -> dict[int, DrawnText]:
+    """Return the text of each symbol: each text is of the nearest one, or of another at the same place.
+
+    Symbols are points, or lines with two ends. Texts for which none is left are noted.
+    """
+    text_of: dict[int, DrawnText] = {}
+    away = [np.array([_distance(label.at, *line) for line in lines]) for label in labels if lines]
+    for reach, label in sorted(zip(away, labels, strict=False), key=lambda each: float(each[0].min())):
+        closest = np.flatnonzero(np.isclose(reach, reach.min()))
+        free = next((k for k in closest.tolist() if k not in text_of), None)
+        if free is not None:
+            text_of[free] = label
+        else:
+            words = f"the text {seen(label.text)!r} on {seen(label.layer)} has no symbol of its own: it is left out"
+            made.notes.append(ImportNote("texts", 1, words, [label.at]))
+    return text_of
 
 
 def _distance(z: complex, start: complex, end: complex) -> float:
@@ -190,79 +226,76 @@ def _distance(z: complex, start: complex, end: complex) -> float:
 def _loads(drawing: LineDrawing, of: Sorted, places: BodyFinder, made: DrawnAttachments) -> None:
     points = [at for at, _ in _spots(drawing, of, Role.LOADS)]
     arrows = [chain for chain in of.chains[Role.LOADS] if not chain.closed]
-    for chain in arrows:
-        if len(chain.points) != 2:
-            raise places.refused(
-                "load", "an arrow of a load is one straight line; something else is", complex(chain.points[0])
-            )
-    ends = [(complex(each.points[0]), complex(each.points[1])) for each in arrows]
-    symbols = [*((at, at) for at in points), *ends]
-    labels = [label for label in of.labels if of.roles(label.layer) is Role.LOADS]
-    texts = _nearest_texts(labels, symbols)
+    symbols = [
+        *((at, at) for at in points),
+        *(places.straight(chain, "load", "an arrow of a load") for chain in arrows),
+    ]
+    texts = _nearest_texts([label for label in of.labels if of.roles(label.layer) is Role.LOADS], symbols, made)
     for k, (start, end) in enumerate(symbols):
-        if k not in texts:
-            raise places.refused("load", "a load has no text, such as 3 t or 12 kN, beside it", end)
-        name, quantity, kind = _quantity(seen(texts[k].text))
+        places.require(k in texts, "load", "a load has no text, such as 3 t or 12 kN, beside it", end)
+        text = seen(texts[k].text)
+        fields, others = _fields_in(text, LOAD_FIELDS)
+        name, quantity, kind = _quantity(", ".join(others))
+        places.require(kind, "load", f"the text {text!r} of a load is neither a mass nor a force", end)
         is_point = k < len(points)
-        if not kind:
-            raise places.refused(
-                "load", f"the text {seen(texts[k].text)!r} of a load is neither a mass nor a force", end
-            )
-        if is_point and kind == "force":
-            what = (
-                f"{quantity} at a point: is it the weight of a mass (write its mass) or a force (draw an arrow)? It is"
-            )
-            raise places.refused("load", what, end)
-        if not is_point and kind == "mass":
-            raise places.refused("load", f"{quantity} is a mass: draw it as a point, not as an arrow", end)
+        what = f"{quantity} at a point: is it the weight of a mass (write its mass) or a force (draw an arrow)? It is"
+        places.require(not is_point or kind == "mass", "load", what, end)
+        what = f"{quantity} is a mass: draw it as a point, not as an arrow"
+        places.require(is_point or kind == "force", "load", what, end)
         tip, tail = places.at(end), places.at(start)
         at, on = next(((z, on) for z in (tip, tail) if (on := places.bodies(z))), (tip, []))
-        if not on:
-            raise places.refused("load", "a load is on no body", end)
+        on = [fields.pop("body")] if "body" in fields else on
+        places.require(on, "load", "a load is on no body", end)
+        places.require(on[0] in places.names, "load", f"no body has the name {on[0]!r} that a load states", end)
         load: dict[str, Any] = {"name": name or f"load {k + 1}"}
         if kind == "mass":
             load["mass"] = quantity
         else:
             way = (tip - tail) / abs(tip - tail) * read(quantity, "N")
             load["force"] = [round(way.real, 6) + 0.0, round(way.imag, 6) + 0.0]
-        made.loads.append(load | {"at": rounded(at), "body": on[0]})
+        made.loads.append(load | {"at": rounded(at), "body": on[0]} | fields)
 
 
 def _ties(of: Sorted, places: BodyFinder, made: DrawnAttachments) -> None:
     chains = [chain for chain in of.chains[Role.TIES] if not chain.closed]
     labels = [label for label in of.labels if of.roles(label.layer) is Role.TIES]
-    texts = _nearest_texts(labels, [(complex(each.points[0]), complex(each.points[-1])) for each in chains])
+    texts = _nearest_texts(labels, [(complex(each.points[0]), complex(each.points[-1])) for each in chains], made)
     for k, chain in enumerate(chains):
         ends = [_end_of_tie(complex(z), places) for z in chain.points]
-        name, fields = _tie_fields(seen(texts[k].text)) if k in texts else ("", {})
+        text = seen(texts[k].text) if k in texts else ""
+        fields, others = _fields_in(text, TIE_FIELDS)
+        name, *unread = others or [""]
         tie: dict[str, Any] = {"name": name or f"tie {k + 1}"}
         tie |= {"from": ends[0], "to": ends[1]} if len(ends) == 2 else {"path": ends}
-        if fields:
-            made.ties.append(tie | fields)
-            continue
-        made.comments.append(f"ties: {in_a_line([tie])}")
         at = complex(chain.points[0])
-        words = (
-            f"the tie {tie['name']} has no text such as `area 452 mm2, modulus 210 GPa`: it is a comment in the file"
-        )
-        made.notes.append(ImportNote("tie", 1, words, [at]))
+        if unread:
+            words = f"of the text {text!r} of the tie {tie['name']}, {in_short(unread)} was not understood"
+            made.notes.append(ImportNote("tie", 1, words, [at]))
+        if fault := _fault_of(tie | fields, bool(fields)):
+            made.comments.append(f"ties: {in_a_line([tie | fields])}")
+            made.notes.append(ImportNote("tie", 1, f"the tie {tie['name']} {fault}: it is a comment in the file", [at]))
+        else:
+            made.ties.append(tie | fields)
+
+
+def _fault_of(tie: dict[str, Any], described: bool) -> str:
+    """Return why a tie cannot act, in words after its name; empty if it can."""
+    if not described:
+        return "has no text such as `area 452 mm2, modulus 210 GPa`"
+    ends = {end.get("body") for end in tie.get("path", [tie.get("from"), tie.get("to")])}
+    if len(ends) == 1:
+        return f"has all its points on {ends.pop() or 'the ground'}, so that nothing stretches it"
+    try:
+        Tie.model_validate(tie)
+    except ValidationError as error:
+        problem = of_arguments(Tie, error.errors(include_url=False), "tie")[0]
+        return f"lacks data ({str(problem).partition(chr(10))[0]})"
+    return ""
 
 
 def _end_of_tie(at: complex, places: BodyFinder) -> dict[str, Any]:
     z = places.at(at)
     if on := places.bodies(z):
         return {"body": on[0], "at": rounded(z)}
-    if places.is_ground(z):
-        return {"ground": rounded(z)}
-    raise places.refused("tie", "a tie ends on no body and not on the ground", at)
-
-
-def _tie_fields(text: str) -> tuple[str, dict[str, str]]:
-    """Return the name and the fields of a tie from a text such as `chain: area 452 mm2, modulus 210 GPa`."""
-    fields: dict[str, str] = {}
-    for part in re.split(r"[,;]", text):
-        for key in TIE_FIELDS:
-            if match := re.search(rf"\b{key}\s*[:=]?\s*([-+0-9.]+\s*\S+)\s*$", part.strip(), re.IGNORECASE):
-                fields[key] = match[1].strip()
-    name = re.split(rf"[:,;]|\b(?:{'|'.join(TIE_FIELDS)})\b", text, maxsplit=1, flags=re.IGNORECASE)[0].strip()
-    return name, fields
+    places.require(places.is_ground(z), "tie", "a tie ends on no body and not on the ground", at)
+    return {"ground": rounded(z)}
