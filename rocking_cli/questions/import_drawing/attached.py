@@ -117,6 +117,10 @@ def attached(drawing: LineDrawing, of: Sorted, places: BodyFinder) -> DrawnAttac
     _supports(of, places, made)
     _loads(drawing, of, places, made)
     _ties(of, places, made)
+    for role in (Role.SUPPORTS, Role.TIES):
+        for at, layer in _spots(drawing, of, role):
+            words = f"left out: a point or circle on {seen(layer)}, as {role} are lines"
+            made.notes.append(ImportNote("left out", 1, words, [at]))
     counts = {"hinge": len(made.hinges), "support": len(made.supports), "load": len(made.loads), "tie": len(made.ties)}
     if named := [many(count, name) for name, count in counts.items() if count]:
         made.notes.append(ImportNote("attached", sum(counts.values()), f"it has {', '.join(named)}"))
@@ -205,9 +209,9 @@ def _nearest_texts(
     Symbols are points, or lines with two ends. Texts for which none is left are noted.
     """
     text_of: dict[int, DrawnText] = {}
-    away = [np.array([_distance(label.at, *line) for line in lines]) for label in labels if lines]
-    for reach, label in sorted(zip(away, labels, strict=False), key=lambda each: float(each[0].min())):
-        closest = np.flatnonzero(np.isclose(reach, reach.min()))
+    away = [np.array([_distance(label.at, *line) for line in lines]) for label in labels]
+    for reach, label in sorted(zip(away, labels, strict=True), key=lambda each: float(each[0].min(initial=np.inf))):
+        closest = np.flatnonzero(np.isclose(reach, reach.min(initial=np.inf)))
         free = next((k for k in closest.tolist() if k not in text_of), None)
         if free is not None:
             text_of[free] = label
