@@ -189,7 +189,7 @@ def structure_from(drawing: LineDrawing, options: ImportOptions, name: str, file
     mended = [z + shift for z in (*mended, *closed.at)]
     for body, ring in zip(bodies, closed.rings, strict=True):
         body.ring = ring
-    _check_overlaps(bodies, ground if is_drawn else [], frame, close, file)
+    check_overlaps(bodies, ground if is_drawn else [], frame, close, file)
     for body in bodies:
         body.ring = body.ring.placed(1.0, shift)
         body.openings = [each.placed(1.0, shift) for each in body.openings]
@@ -266,7 +266,7 @@ def _closing_notes(closed: mortar.Closed, frame: DrawingFrame) -> list[ImportNot
     return notes
 
 
-def _check_overlaps(
+def check_overlaps(
     bodies: Sequence[DrawnBody], ground: Sequence[ArcRing], frame: DrawingFrame, close: float, file: str
 ) -> None:
     """Raise `DrawingError` "overlap" or "below" for bodies that overlap, or reach into the ground, too deeply."""

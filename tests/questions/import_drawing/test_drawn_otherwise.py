@@ -1,0 +1,140 @@
+"""Drawings that are right in another way than expected, or wrong in a way that is easily missed."""
+
+from math import pi, tan
+
+import numpy as np
+import pytest
+
+from rocking_cli.io.drawings.contract import DrawingError
+from rocking_cli.questions.import_drawing.mortar import close_gaps
+from rocking_cli.questions.import_drawing.notes import DrawingFrame
+from rocking_cli.questions.import_drawing.outlines import MAX_BODIES, MAX_CORNERS, MAX_MEETING, DrawnBody
+from rocking_cli.questions.import_drawing.rings import ArcRing, PlaneMoments, RingsInRow, tidied
+from rocking_cli.questions.import_drawing.roles import Role, role_of
+from rocking_cli.questions.import_drawing.study import check_overlaps
+from tests.questions.import_drawing.sheets import box, imported, lambdas, line, outline, sides, text, words
+
+WALL = box(0, 0, 0.6, 2.4)
+WEIGHED = {"densities": {"": 2000.0}, "depth": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("layer", "role"),
+    [("MURATURA RINFORZATA", Role.BODIES), ("Background", None), ("TESTIMONE", None), ("SANDSTONE", Role.BODIES),
+     ("MURO INCATENATO", None), ("TIE", Role.TIES), ("PROPERTIES", None), ("CATENE_2", Role.TIES)],
+)  # fmt: skip
+def test_a_word_of_a_role_begins_a_word_of_the_name(layer, role):
+    assert role_of(layer) is role
+
+
+@pytest.mark.parametrize("layer", ["CATENE", "CARICHI", "SOLAIO"])
+def test_a_closed_line_on_a_layer_of_lines_is_asked_about(layer):
+    with pytest.raises(DrawingError, match="is closed, and the name of its layer says") as caught:
+        imported(WALL, box(2, 0, 1, 1, layer))
+    assert caught.value.refused == "layers"
+    if layer == "CATENE":
+        assert len(imported(WALL, box(0, 2.4, 0.6, 1, layer), layers={"bodies": [layer]}).bodies) == 2
+
+
+def test_a_line_that_nearly_closes_on_an_unknown_layer_is_asked_about():
+    nearly = outline([(2, 0), (3, 0), (3, 1), (2, 1), (2, 0.0005)], "MURO")
+    with pytest.raises(DrawingError, match="MURO has no known role"):
+        imported(WALL, type(nearly)(nearly.points, nearly.bulges, False, "MURO", "LWPOLYLINE"))
+
+
+def test_an_island_of_a_hatch_is_an_opening_in_a_drawn_outline_once():
+    edges = [
+        box(0, 0, 0.6, 2.4, is_fill=True, shape="HATCH 1"), box(0.2, 1, 0.2, 0.5, is_fill=True, shape="HATCH 1")
+    ]  # fmt: skip
+    for drawn in ([WALL, *edges], edges, [WALL, *edges, box(0.2, 1, 0.2, 0.5, "FORI")]):
+        (body,) = imported(*drawn).bodies
+        assert body.moments.area == pytest.approx(1.44 - 0.1)
+
+
+def test_ground_of_several_lines_is_one():
+    step = [line(a, b, "TERRENO") for a, b in [((1.5, 0), (1.5, 0.5)), ((4, 0.5), (1.5, 0.5)), ((-1, 0), (1.5, 0))]]
+    found = imported(WALL, box(2, 0.5, 0.7, 2.4), *step, **WEIGHED)
+    (ground,) = found.fields["ground"].values()
+    assert len(ground["polygon"]) == 6 and [1.5, 0.5] in ground["polygon"] and len(found.joints) == 2
+
+
+def test_a_rigid_body_on_ground_that_is_not_level_below_it_is_refused():
+    assert imported(WALL, line((-1, 0), (2, 0), "TERRENO"), kind="rigid_body").kind == "rigid_body"
+    for ends in (((-1, 0.1), (2, -0.2)), ((-1, -0.5), (2, -0.5))):
+        with pytest.raises(DrawingError, match="not level or does not meet it") as caught:
+            imported(WALL, line(*ends, "TERRENO"), kind="rigid_body")
+        assert caught.value.refused == "below"
+
+
+def test_faces_along_one_arc_and_corners_of_an_l_do_not_overlap():
+    bulge = tan(pi / 16)
+    below = outline([(0, 0), (2, 0), (2, 2), (0, 2)], bulges=[0, 0, bulge, 0])
+    above = outline([(0, 2), (2, 2), (2, 4), (0, 4)], bulges=[-bulge, 0, 0, 0])
+    assert len(imported(below, above, **WEIGHED).bodies) == 2
+    seat = outline([(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)])
+    assert len(imported(seat, box(0.9995, 0.9995, 1, 1.5), **WEIGHED).bodies) == 2
+    with pytest.raises(DrawingError, match=r"2\.3\d* mm deep"):
+        imported(seat, box(0.998, 0.998, 1, 1.5), **WEIGHED)
+
+
+def test_a_turned_bond_closes_without_overlaps():
+    turn = np.exp(-1j * pi / 60)
+
+    def brick(i, j):
+        z = turn * (np.array([0, 0.25, 0.25 + 0.06j, 0.06j]) + 0.26 * i + 0.13 * (j % 2) + 0.07j * j)
+        return ArcRing(z, np.zeros(4))
+
+    rings = [brick(i, j) for j in range(6) for i in range(10)]
+    closed = close_gaps(rings, [], 0.010, 1e-3).rings
+    bricks = [DrawnBody(ring, [WALL], name=f"b{k + 1}") for k, ring in enumerate(closed)]
+    check_overlaps(bricks, [], DrawingFrame(1.0, 0j), 1e-3, "drawn.dxf")
+    with pytest.raises(DrawingError, match=r"b2 and b60 overlap by 0\.0169 m2"):
+        check_overlaps([*bricks[:59], DrawnBody(closed[1], [WALL], name="b60")], [], DrawingFrame(1.0, 0j), 1e-3, "")
+
+
+def test_a_gap_is_not_closed_across_a_third_body():
+    found = imported(box(0, 0, 1, 0.5), box(0, 0.51, 1, 0.03), box(0, 0.55, 1, 0.5), merge_gap=0.06)
+    heights = [sorted({y for _, y in block["polygon"]}) for block in found.fields["blocks"].values()]
+    assert heights == [[0, 0.505], [0.505, 0.545], [0.545, 1.05]]
+
+
+def test_bodies_may_have_the_names_of_the_ground():
+    stones = [box(0, 0, 1, 1), box(0, 1, 1, 1)]
+    found = imported(*stones, labels=[text("floor", 0.5, 0.5), text("ground", 0.5, 1.5)])
+    assert [*found.fields["blocks"]] == ["floor-2", "ground-2"] and "floor" in found.fields["ground"]
+
+
+def test_a_size_on_paper_taken_as_real_is_said():
+    assert "size on paper" not in words(imported(WALL))
+
+
+def test_more_than_a_structure_file_holds_is_refused_at_once():
+    many = [box(0.01 * k, 0, 0.009, 1) for k in range(MAX_BODIES + 1)]
+    round_ = np.exp(2j * pi * np.arange(MAX_CORNERS + 1) / (MAX_CORNERS + 1))
+    for drawn, what in ((many, "10,001 outlines"), ([outline([(z.real, z.imag) for z in round_])], "10,001 corners")):
+        with pytest.raises(DrawingError, match=what) as caught:
+            imported(*drawn)
+        assert caught.value.refused == "too_large"
+
+
+def test_so_many_open_lines_that_they_are_not_searched_are_asked_about():
+    lines = [line((k, 0), (k + 0.5, 1), "RILIEVO") for k in range(MAX_MEETING + 1)]
+    with pytest.raises(DrawingError, match="RILIEVO"):
+        imported(WALL, *lines)
+    assert "left out" in words(imported(WALL, *lines[:20]))
+
+
+def test_many_rings_have_the_moments_and_corners_of_each():
+    rings = [
+        ArcRing(np.array([1, 1j, -1, -1j]) * (k + 1) + 3 * k, np.array([0.1 * k, 0, -0.2, 0.05])) for k in range(5)
+    ]
+    row = RingsInRow.of(rings)
+    for each, alone in zip(row.rings(), rings, strict=True):
+        assert each.moments == pytest.approx(PlaneMoments(*alone.moments), rel=1e-12)
+    cut = ArcRing(np.array([2 + 2j, 1 + 2j, 2j, 0, 1, 2]), np.zeros(6))
+    for made in tidied([cut, rings[0], cut], 1e-3)[::2]:
+        assert made.z.tolist() == [0, 2, 2 + 2j, 2j]
+
+
+def test_sides_of_a_box_drawn_as_lines_have_its_lambda():
+    assert lambdas(imported(*sides([(0, 0), (0.6, 0), (0.6, 2.4), (0, 2.4)]))) == pytest.approx([0.25, 0.25])
