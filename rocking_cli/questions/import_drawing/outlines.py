@@ -393,7 +393,7 @@ def _check_openings(bodies: Sequence[DrawnBody], frame: DrawingFrame, close: flo
         left = shapely.get_parts(shapely.difference(solid, shapely.union_all(holes)))
         left = left[_wider(left, close)]
         if not len(left):
-            raise _refused("openings leave nothing of the body", solid.centroid, "leave out one of them", frame, file)
+            raise _refused("openings leave nothing of the body", solid.centroid, "draw them smaller", frame, file)
         if len(left) > 1:
             what = f"openings cut a body into {len(left)} pieces"
             remedy = "draw each piece as a body, without the opening"
