@@ -120,8 +120,10 @@ def command(file: str, output: Output, **asked: Any) -> None:
     except DrawingError as error:
         if not output.as_json:
             raise
-        message = terminal.as_typed(error.problems[0].message)
-        terminal.print_json({"refused": error.refused, "message": message, "at": error.at})
+        (problem,) = error.problems
+        hint = problem.hint and terminal.as_typed(problem.hint)
+        told = {"message": terminal.as_typed(problem.message), "hint": hint, "line": problem.line, "at": error.at}
+        terminal.print_json({"refused": error.refused, **told})
         raise click.exceptions.Exit(error.exit_code) from None
     replace(output, out=None).show(answer)
 

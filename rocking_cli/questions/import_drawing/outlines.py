@@ -33,6 +33,7 @@ MAX_MEETING = 4_000  # lines up to which this is looked for; more may hold outli
 SAME_HEIGHT = 1e-6  # difference of heights of bodies of which the left one comes first [m]
 ROW = 0.5  # share of its height by which a body must be above the first one of a row to begin another row
 GRID = 1e-3  # share of the closing distance to which shapes are cut; without a grid GEOS has errors at common sides
+TOUCHES = 4  # length of an outline that the corner of an opening alone may reach, over the closing distance
 CHORD = 0.1  # share of the closing distance to which shapes are compared
 
 
@@ -268,6 +269,7 @@ def bodies_of(
     bodies, count = _nested(outer, frame, close, nested, file)
     openings = [loop.ring for loop in (*inner, *cut)]
     _cut(bodies, openings, frame, close, file)
+    _check_openings(bodies, frame, close, file)
     if total := len(openings) + count:
         notes.append(ImportNote("openings", total, many(total, "opening") + " cut out"))
     return in_rows(bodies), notes, rings
@@ -390,8 +392,9 @@ def _nested(
             )
             raise DrawingError("nested", what, file, at=frame.pairs([outer[i].ring.moments.centroid]))
         if i in holes or j in holes:
-            what = f"outline {i + 1} lies within an outline that is itself an opening, at "
-            raise DrawingError("nested", what + frame.place(outer[i].ring.moments.centroid), file)
+            at = outer[i].ring.moments.centroid
+            what = f"outline {i + 1} lies within an outline that is itself an opening, at {frame.place(at)}"
+            raise DrawingError("nested", what, file, at=frame.pairs([at]))
         holes[i] = j
     bodies = {k: DrawnBody(loop.ring, loop.sources) for k, loop in enumerate(outer) if k not in holes}
     for i, j in holes.items():
@@ -418,6 +421,56 @@ def _cut(
             what = f"the opening at {frame.place(at)} lies in no body, or across several"
             raise DrawingError("opening", what, file, at=frame.pairs([at]))
         bodies[home].openings.append(ring)
+
+
+def _check_openings(bodies: Sequence[DrawnBody], frame: DrawingFrame, close: float, file: str) -> None:
+    """Raise `DrawingError` "opening" if two openings overlap, or leave nothing of a body, or several pieces."""
+    import shapely
+
+    for body in bodies:
+        if not body.openings:
+            continue
+        (solid,), holes = polygons_of([body.ring], close), polygons_of(body.openings, close)
+        one, other = shapely.STRtree(holes).query(holes, predicate="intersects")
+        shared = shapely.intersection(holes[one[one < other]], holes[other[one < other]])
+        for common in shared[_wider(shared, close)]:
+            what = f"openings overlap by {common.area:.3g} m2"
+            raise _refused(what, common.centroid, "draw one outline around both", frame, file)
+        left = shapely.get_parts(shapely.difference(solid, shapely.union_all(holes)))
+        left = left[_wider(left, close)]
+        if not len(left):
+            raise _refused("openings leave nothing of the body", solid.centroid, "draw them smaller", frame, file)
+        if len(left) > 1:
+            what = f"openings cut a body into {len(left)} pieces"
+            remedy = "draw each piece as a body, without the opening"
+            raise _refused(what, shapely.shortest_line(left[0], left[1]).centroid, remedy, frame, file)
+
+
+def check_notches(bodies: Sequence[DrawnBody], frame: DrawingFrame, close: float, file: str) -> None:
+    """Raise `DrawingError` "opening" if an opening reaches the outline of its body, as a polygon cannot show it."""
+    import shapely
+
+    for body in bodies:
+        if body.openings:
+            (solid,), holes = polygons_of([body.ring], close), polygons_of(body.openings, close)
+            for met in shapely.intersection(shapely.boundary(solid), shapely.buffer(holes, close)):
+                if met.length > TOUCHES * close:
+                    what = f"an opening reaches the outline of {body.name}"
+                    remedy = "draw the outline with this notch, without the opening"
+                    raise _refused(what, shapely.point_on_surface(met), remedy, frame, file)
+
+
+def _wider(shapes: Any, close: float) -> Any:
+    """Return which shapes are wider than the closing distance."""
+    import shapely
+
+    return shapely.area(shapes) > close * shapely.length(shapes) / 2
+
+
+def _refused(what: str, point: Any, remedy: str, frame: DrawingFrame, file: str) -> DrawingError:
+    """Return the refusal of an opening at a point of shapely."""
+    at = complex(point.x, point.y)
+    return DrawingError("opening", f"{what} at {frame.place(at)}: {remedy}", file, at=frame.pairs([at]))
 
 
 def in_rows(bodies: Sequence[DrawnBody]) -> list[DrawnBody]:

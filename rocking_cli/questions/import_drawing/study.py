@@ -25,6 +25,7 @@ from rocking_cli.questions.import_drawing.outlines import (
     DrawnBody,
     bodies_of,
     by_role,
+    check_notches,
     name_and_weigh,
     placed,
     polygons_of,
@@ -210,6 +211,9 @@ def structure_from(drawing: LineDrawing, options: ImportOptions, name: str, file
             what = f"the ground below {lowest.name} is not level or does not meet it, as a rigid_body needs"
             raise DrawingError("below", f"{what}: leave out `kind`, or the ground", file)
         notes += _levelled(bodies, close, frame, shift)
+    _check_weights(kind, bodies, options, DrawingFrame(per, origin), file)
+    if kind != "rigid_body":  # which cuts notches out of its parts
+        check_notches(bodies, DrawingFrame(per, origin), close, file)
     fields = FIELDS[kind](name, bodies, ground, is_drawn, extra, options, file)
     grey = [
         frame.to_metres(chain.points) + shift
@@ -414,8 +418,6 @@ def _rigid_body(
         own_density = {} if alike or body.density is None else {"density": body.density}
         parts.append({"polygon": _corners(body.ring.level()), **own_density})
     parts += [{"polygon": _corners(hole.level()), "opening": True} for body in bodies for hole in body.openings]
-    if not alike and any(body.density is not None for body in bodies) and None in {body.density for body in bodies}:
-        raise DrawingError("density", "some bodies have a density and some have none: give `density` for all", file)
     return fields | {"parts": parts}
 
 
@@ -426,11 +428,8 @@ def _shapes(bodies: Sequence[DrawnBody], options: ImportOptions, file: str) -> d
     for body in bodies:
         shape: dict[str, Any] = {"polygon": _corners(body.ring.chords(options.tolerance))}
         if not body.is_plain:
-            if body.density is None or options.depth is None:
-                what = f"{body.name} has {'arcs' if body.ring.arcs else 'openings'}, so that it is given by mass, "
-                what += "centroid and inertia: give `density` and `depth`"
-                raise DrawingError("density", what, file)
             moments = body.moments
+            assert body.density is not None and options.depth is not None  # see _check_weights
             per_area = body.density * options.depth
             shape |= {
                 "mass": float(f"{per_area * moments.area:.{MASS_DIGITS}g}"),
@@ -440,9 +439,6 @@ def _shapes(bodies: Sequence[DrawnBody], options: ImportOptions, file: str) -> d
         elif body.density is not None and body.density != default:
             shape["density"] = body.density
         shapes[body.name] = shape
-    known = {body.density is not None for body in bodies if body.is_plain}
-    if known == {True, False}:
-        raise DrawingError("density", "some bodies have a density and some have none: give `density` for all", file)
     return shapes
 
 
@@ -516,6 +512,22 @@ def _linkage(
 FIELDS = {"rigid_body": _rigid_body, "assembly": _assembly, "linkage": _linkage}
 
 
+def _check_weights(
+    kind: str, bodies: Sequence[DrawnBody], options: ImportOptions, frame: DrawingFrame, file: str
+) -> None:
+    """Raise `DrawingError` "density" if some bodies have none, or if blocks with arcs or openings have no mass."""
+    what, blamed = "", [body for body in bodies if body.density is None]
+    if 0 < len(blamed) < len(bodies):
+        what = "some bodies have a density and some have none: give `density` for all"
+    elif kind != "rigid_body" and (blamed or options.depth is None):
+        blamed = [body for body in bodies if not body.is_plain][:1]
+        for body in blamed:
+            what = f"{body.name} has {'arcs' if body.ring.arcs else 'openings'}, so that it is given by mass, "
+            what += "centroid and inertia: give `density` and `depth`"
+    if what:
+        raise DrawingError("density", what, file, frame.pairs([body.ring.moments.centroid for body in blamed]))
+
+
 def _refused_together(result: Imported, file: str) -> list[ImportNote]:
     """Return a note if several mechanisms start together; such a file is written, as only its user can change it.
 
@@ -524,7 +536,7 @@ def _refused_together(result: Imported, file: str) -> list[ImportNote]:
     Raises
     ------
     DrawingError
-        "mechanism", if the mechanism refuses the fields for any other reason.
+        "density", if the depth is missing; "mechanism", if the mechanism refuses the fields for any other reason.
     """
     from pydantic import ValidationError
 
@@ -541,8 +553,16 @@ def _refused_together(result: Imported, file: str) -> list[ImportNote]:
         faults = error.errors(include_url=False)
         words = [f"{'.'.join(map(str, fault['loc'])) or result.kind}: {fault['msg']}" for fault in faults[:3]]
         if not all(TOGETHER in fault["msg"] for fault in faults):
-            gap = _nearest_gap(result, joined)
-            raise DrawingError("mechanism", f"{result.kind} cannot take it: {'; '.join(words)}{gap}", file) from None
+            blamed = [
+                body.ring.moments.centroid for body in result.bodies
+                if len(result.bodies) == 1 or any(body.name in f["loc"] or repr(body.name) in f["msg"] for f in faults)
+            ]  # fmt: skip
+            at = DrawingFrame(result.per_unit, result.shift).pairs(blamed)
+            if any(fault.get("ctx", {}).get("field") == ("depth",) for fault in faults):
+                what = "a density needs the depth of the structure: give `depth`"
+                raise DrawingError("density", what, file, at) from None
+            what = f"{result.kind} cannot take it: {'; '.join(words)}{_nearest_gap(result, joined)}"
+            raise DrawingError("mechanism", what, file, at) from None
         return [ImportNote("together", 1, f"commands refuse the file as it is: {'; '.join(words)}")]
     return []
 

@@ -187,10 +187,11 @@ def azimuths_of(given: str | float | Sequence[float] | None) -> list[float]:
             end, step = more or (start, 1.0)
         except ValueError:
             raise InputError(Problem(f"is not a direction: {given!r}", field="`azimuth`", hint=AZIMUTH_HINT)) from None
-        if not step > 0 or not start <= end < start + 360 * MAX_AZIMUTHS:
+        if not step > 0 or end < start:
             raise InputError(Problem(f"{given!r} is not increasing", field="`azimuth`", hint=AZIMUTH_HINT))
-        if (end - start) / step >= MAX_AZIMUTHS:
-            raise InputError(Problem(f"{given!r} has more than {MAX_AZIMUTHS} directions", field="`azimuth`"))
+        if not (end - start) / step < MAX_AZIMUTHS:
+            what = f"{given!r} has more than {MAX_AZIMUTHS} directions, or not finite ones"
+            raise InputError(Problem(what, field="`azimuth`", hint=AZIMUTH_HINT))
         azimuths = [start + k * step for k in range(int((end - start) / step + 1e-9) + 1)]
     if not all(abs(each) <= 1e6 for each in azimuths) or len(azimuths) > MAX_AZIMUTHS:
         raise InputError(Problem("must be at most 720 finite angles", field="`azimuth`", hint=AZIMUTH_HINT))

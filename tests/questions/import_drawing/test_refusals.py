@@ -68,7 +68,7 @@ REFUSED = [  # class, ending, content, options, words, and place
     ("not_plane", "geojson", drawing(body([300, 0, 0], [301, 0, 0], [301, 2, 0.4])), M, "differ by 400 mm in z",
      [[300, 0]]),
     ("density", "geojson", drawing(WALL, box(101, 0, 1, 1, "MATTONE")), [*M, "--density", "PIETRA=1800"],
-     "some have none: give --density for all", []),
+     "some have none: give --density for all", [[101.5, 0.5]]),
     ("density", "obj", meshes.obj(MESH), [*M, "--page", "out.html"],
      "mass of the body is not known: give --density", []),
     ("hinge", "geojson", drawing(WALL, shape("Point", [105, 0], "CERNIERE")), M, "on no edge of a body", [[105, 0]]),
@@ -77,7 +77,7 @@ REFUSED = [  # class, ending, content, options, words, and place
      "12 kN at a point: is it the weight of a mass", [[100.5, 2]]),
     ("tie", "geojson", drawing(WALL, line([100.5, 1], [106, 1], layer="CATENE")), M,
      "a tie ends on no body", [[106, 1]]),
-    ("mechanism", "geojson", drawing(WALL, box(105, 3, 1, 1)), M, "'b2' touches nothing", []),
+    ("mechanism", "geojson", drawing(WALL, box(105, 3, 1, 1)), M, "'b2' touches nothing", [[105.5, 3.5]]),
     ("xref", "dxf", INSERT.format(4).encode(), M, "refers to another file, other.dwg", []),
     ("external", "svg", b'<svg><use href="b.svg#a"/></svg>', M, "another file, b.svg#a", []),
     ("degrees", "geojson", drawing(body([12.49, 41.89], [12.4901, 41.89], [12.49, 41.8902])), M, "look like degrees",
@@ -100,6 +100,12 @@ REFUSED = [  # class, ending, content, options, words, and place
     ("damaged", "obj", b"v 0 0 0\nv 1 0 0\nf 1 2 9\n", D, "cannot be read as OBJ", []),
     ("large", "ply", PLY.encode(), D, "announces 5,000,000 triangles", []),
 ]  # fmt: skip
+HINTS = {
+    "xref": "bind it", "external": "put its content into", "degrees": "save it in a projection", "cut": "save it again",
+    "too_large": "save what is needed", "not_svg": "save the drawing as SVG", "open": "close its holes, or --hull",
+    "point": "--settle", "falls": "--settle", "shells": "keep those of one body", "large": "reduce the mesh",
+}  # fmt: skip
+LINES = {"external": 1, "number": 2, "not_svg": 1, "not_geojson": 1, "not_csv": 2}
 NOT_REACHED = {"not_mesh"}  # by the command line, where the reader of meshes is chosen by the same test
 
 
@@ -119,6 +125,8 @@ def test_a_file_is_refused_with_class_words_and_place_and_nothing_is_written(
     told = json.loads(done.stdout)
     assert (told["refused"], bool(re.search(words, told["message"]))) == (refused, True), told
     assert [pytest.approx(place) for place in at] == told["at"]
+    assert (told["hint"] or "").startswith(HINTS.get(refused, "")) and bool(told["hint"]) == (refused in HINTS)
+    assert told["line"] == LINES.get(refused)
     assert [each.name for each in tmp_path.iterdir()] == [f"drawn.{ending}"]
 
 

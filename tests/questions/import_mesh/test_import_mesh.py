@@ -286,6 +286,8 @@ class TestFiles:
             ({"azimuth": "north"}, "`azimuth` is not a direction: 'north'"),
             ({"azimuth": "90:0:10"}, "`azimuth`"),
             ({"azimuth": "0:350:0.01"}, "has more than 720 directions"),
+            ({"azimuth": "0:1e6:1"}, "has more than 720 directions"),
+            ({"azimuth": "inf"}, "or not finite ones"),
             ({"azimuth": "0:inf:1"}, "`azimuth`"),
             ({"page": "a.pdf"}, "ends in .html"),
             ({"out": "statue.obj"}, "would overwrite an input file"),
