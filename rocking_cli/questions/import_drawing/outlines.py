@@ -414,7 +414,7 @@ def _cut(
     tree = shapely.STRtree(polygons)
     for ring, hole in zip(openings, polygons_of(openings, close), strict=True):
         hits = tree.query(hole, predicate="intersects")
-        shares = {int(k): shapely.area(shapely.intersection(hole, polygons[k])) for k in hits}
+        shares = {int(k): shapely.area(shapely.intersection(hole, polygons[k], grid_size=GRID * close)) for k in hits}
         home = max(shares, key=shares.__getitem__, default=None)
         if home is None or hole.area - shares[home] > close * hole.length:
             at = ring.moments.centroid
@@ -432,11 +432,11 @@ def _check_openings(bodies: Sequence[DrawnBody], frame: DrawingFrame, close: flo
             continue
         (solid,), holes = polygons_of([body.ring], close), polygons_of(body.openings, close)
         one, other = shapely.STRtree(holes).query(holes, predicate="intersects")
-        shared = shapely.intersection(holes[one[one < other]], holes[other[one < other]])
+        shared = shapely.intersection(holes[one[one < other]], holes[other[one < other]], grid_size=GRID * close)
         for common in shared[_wider(shared, close)]:
             what = f"openings overlap by {common.area:.3g} m2"
             raise _refused(what, common.centroid, "draw one outline around both", frame, file)
-        left = shapely.get_parts(shapely.difference(solid, shapely.union_all(holes)))
+        left = shapely.get_parts(shapely.difference(solid, shapely.union_all(holes), grid_size=GRID * close))
         left = left[_wider(left, close)]
         if not len(left):
             raise _refused("openings leave nothing of the body", solid.centroid, "draw them smaller", frame, file)
