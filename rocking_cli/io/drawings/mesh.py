@@ -64,9 +64,9 @@ def read(data: bytes, file: str, /) -> MeshSurface:
             raise _cut(file, counts, 0, max(len(data) - STL_HEAD, 0) // STL_TRIANGLE)
     as_text = known == "OBJ" or (known == "STL" and not counts) or b"\nformat ascii" in head
     if len(data) > (MAX_TEXT_BYTES if as_text else MAX_BYTES):
-        raise DrawingError("large", f"has {len(data) / 1e6:.0f} MB", file, hint=FEWER)
+        raise DrawingError("too_large", f"has {len(data) / 1e6:.0f} MB", file, hint=FEWER)
     if counts.get("face", 0) > MAX_TRIANGLES:
-        raise DrawingError("large", f"announces {counts['face']:,} triangles", file, hint=FEWER)
+        raise DrawingError("too_large", f"announces {counts['face']:,} triangles", file, hint=FEWER)
     if known == "STL" and as_text and b"endsolid" not in data[-_SNIFFED:].lower():
         raise DrawingError("cut", "is cut short: its last line does not end the solid", file, hint="save it again")
     try:
@@ -81,7 +81,7 @@ def read(data: bytes, file: str, /) -> MeshSurface:
     if len(points) < counts.get("vertex", 0) or len(triangles) < counts.get("face", 0):
         raise _cut(file, counts, len(points), len(triangles))
     if len(triangles) > MAX_TRIANGLES:
-        raise DrawingError("large", f"has {len(triangles):,} triangles", file, hint=FEWER)
+        raise DrawingError("too_large", f"has {len(triangles):,} triangles", file, hint=FEWER)
     if not len(points):
         raise DrawingError("empty", "has no points", file)
     if not np.isfinite(points).all():

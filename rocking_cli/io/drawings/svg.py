@@ -314,7 +314,7 @@ class _SvgReader:
         reference = (node.get("href") or node.get(_HREF)).strip()
         if reference and not reference.startswith("#"):
             message = f"`{node.tag}` refers to another file, {cut(reference)}"
-            raise DrawingError("external", message, self.file, hint="put its content into the drawing", line=node.line)
+            raise DrawingError("xref", message, self.file, hint="put its content into the drawing", line=node.line)
         return reference[1:], self.named.get(reference[1:])
 
     def _use(self, node: SvgElement, place: SvgPlace) -> None:
