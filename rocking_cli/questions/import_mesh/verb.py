@@ -10,6 +10,7 @@ from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from rocking_cli.ask.answer import Answer, drawn
+from rocking_cli.ask.drawings import density_of, length_of, read_drawing
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem, RockingError
@@ -32,9 +33,9 @@ def import_mesh(
     path: str | Path,
     *,
     units: str | None = None,
-    density: float | None = None,
+    density: float | str | None = None,
     azimuth: str | float | Sequence[float] | None = None,
-    level: float = LEVEL,
+    level: float | str = LEVEL,
     settle: bool = False,
     hull: bool = False,
     up: str = "z",
@@ -51,12 +52,12 @@ def import_mesh(
         The mesh, a closed surface.
     units : str
         Unit of its coordinates, such as "mm"; a mesh does not say it.
-    density : float, optional
+    density : float or str, optional
         Density [kg/m3]; needed for a structure, not for its uplift.
     azimuth : float, str or sequence of float, optional
         Direction of the motion, anticlockwise from the x axis of the mesh [deg]; several make a structure each, also
         as text "FROM:TO:STEP". By default the body rocks over its weakest edge, driven by the whole motion.
-    level : float
+    level : float or str
         Height above the ground up to which points bear [m]: they make the foot.
     settle : bool
         Lay the body down on the facet of its convex hull below its centre of mass.
@@ -104,7 +105,6 @@ def import_mesh(
     >>> [round(row.lambda_, 12) for row in answer.azimuths]
     [0.25, 0.5]
     """
-    from rocking_cli.ask.drawings import read_drawing
     from rocking_cli.io.drawings.contract import MeshSurface
     from rocking_cli.io.files import check_writable, keep_apart
     from rocking_cli.questions.import_mesh.study import MeshOptions
@@ -113,12 +113,10 @@ def import_mesh(
     for field, value, known in (("units", units, tuple(KINDS["length"])), ("up", up, ("z", "y"))):
         if value is not None and value not in known:
             raise InputError(Problem(f"must be one of {', '.join(known)}, got {value!r}", field=f"`{field}`"))
-    if density is not None and not 0 < density <= 1e6:
-        raise InputError(Problem(f"must be above 0 and at most 1e6 kg/m3, got {density:g}", field="`density`"))
-    if not 0 <= level < 100:
-        raise InputError(Problem(f"must be a height of at least 0 m, got {level:g}", field="`level`"))
     azimuths = azimuths_of(azimuth)
-    options = MeshOptions(units, density, level, settle, hull, up)
+    options = MeshOptions(
+        units, None if density is None else density_of(density), length_of(level, "level"), settle, hull, up
+    )
     places = [] if out is None else places_of(Path(out), azimuths)
     pages = [] if page is None else [Path(page)]
     if pages and pages[0].suffix.lower() != ".html":

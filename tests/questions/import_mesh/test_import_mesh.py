@@ -257,7 +257,9 @@ class TestFiles:
         assert rk.draw("a.yaml").sketch.outlines["body"]
 
     def test_several_azimuths_have_a_file_each(self):
-        rk.import_mesh("statue.obj", units="m", density=2000.0, azimuth="0:350:10", out="s.yaml")
+        given = {"units": "m", "density": "2 t/m3", "level": "2mm"}
+        answer = rk.import_mesh("statue.obj", azimuth="0:350:10", out="s.yaml", **given)
+        assert (answer.options.density, answer.options.level) == (2000.0, 0.002)
         names = sorted(path.name for path in Path().glob("s-*.yaml"))
         assert (len(names), names[:2], names[-1]) == (36, ["s-000.yaml", "s-010.yaml"], "s-350.yaml")
         assert rk.equiv("s-090.yaml").positive.lambda_ == pytest.approx(1 / 3, rel=1e-7)
@@ -282,7 +284,8 @@ class TestFiles:
             ({"units": "foot"}, "`units` must be one of m, mm"),
             ({"up": "x"}, "`up` must be one of z, y"),
             ({"density": -1.0}, "`density` must be above 0"),
-            ({"level": -0.1}, "`level`"),
+            ({"level": "-1 mm"}, "`level` must be a length"),
+            ({"level": "2 kg"}, "`level`"),
             ({"azimuth": "north"}, "`azimuth` is not a direction: 'north'"),
             ({"azimuth": "90:0:10"}, "`azimuth`"),
             ({"azimuth": "0:350:0.01"}, "has more than 720 directions"),
