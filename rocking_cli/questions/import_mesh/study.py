@@ -189,7 +189,7 @@ def imported(surface: MeshSurface, file: str, options: MeshOptions, azimuths: Se
     points, triangles = merged(points, surface.triangles) if len(surface.triangles) else (points, surface.triangles)
     if options.hull:
         enclosed = _volume(points, triangles)
-        points, triangles = hull_of(points, file)
+        points, triangles, planes = hull_of(points, file)
     elif not len(triangles):
         what = f"is a cloud of {len(points):,} points without faces, which encloses nothing"
         advice = "make a surface of it, or `hull`, the convex hull, which weighs more"
@@ -203,7 +203,7 @@ def imported(surface: MeshSurface, file: str, options: MeshOptions, azimuths: Se
     if options.hull:
         notes.append(_hull_note(whole.volume, enclosed))
     if options.settle:
-        way, turned = settled(*((points, triangles) if options.hull else hull_of(points, file)), whole.centroid)
+        way, turned = settled(planes if options.hull else hull_of(points, file)[2], whole.centroid)
         notes.append(MeshNote("settled", 1, f"laid down on the facet of its hull by a turn of {turned:.3g} degrees"))
         points = points @ way.T
         whole = Moments(whole.volume, way @ whole.centroid, way @ whole.inertia @ way.T)
@@ -263,7 +263,7 @@ def _standing(points: Reals, whole: Moments, corners: Sequence[complex], level: 
     """Return the edges of a foot. Raises `DrawingError` if the body does not stand on it."""
     within = f"within {1000 * level:g} mm"
     if len(corners) < 3:
-        angle = settled(*hull_of(points, file), whole.centroid)[1]
+        angle = settled(hull_of(points, file)[2], whole.centroid)[1]
         on = "one point" if len(corners) < 2 else "a line"
         what = f"stands on {on} {within} of the ground, {angle:.2f} degrees from a facet of its hull"
         at = [[each.real, each.imag] for each in corners]

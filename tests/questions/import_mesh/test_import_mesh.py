@@ -226,6 +226,18 @@ def test_a_resting_facet_that_is_a_sliver_has_the_turn_of_its_face():
     assert sorted(each.c for each in found.edges) == pytest.approx([0.3, 0.3, 0.4, 0.4], rel=1e-5)
 
 
+def test_hulls_take_time_as_their_points_and_are_bounded(monkeypatch):
+    """A rim of many corners took minutes by the usual way of joining faces in one plane."""
+    rim = 0.5 * np.exp(2j * np.pi * np.arange(20_000) / 20_000)
+    drum = np.array([(z.real, z.imag, h) for h in (0.0, 2.0) for z in rim])
+    found = taken((drum, np.zeros((0, 3), int)), hull=True, settle=True)
+    assert (found.whole.volume, found.turned) == (pytest.approx(np.pi / 2, rel=1e-6), 0)
+    for limit in ("MAX_HULL_POINTS", "MAX_HULL_CORNERS"):
+        with monkeypatch.context() as patch:
+            patch.setattr(solid, limit, 10)
+            assert refusal((drum[::1000], np.zeros((0, 3), int)), hull=True).refused == "too_large"
+
+
 def test_round_feet_are_said_to_roll():
     drum = upright([(cos(k), np.sin(k)) for k in np.linspace(0, 2 * np.pi, 24, endpoint=False)], 2.0)
     found = taken(drum)
