@@ -146,7 +146,10 @@ def _of_mesh(file: str, output: Output, asked: dict[str, Any]) -> Answer[Any]:
         raise click.UsageError("A mesh has one density: give --density once, without a layer.")
     given = {name: value for name, value in asked.items() if name in OF_MESHES and value is not None}
     density = asked["density"][0] if asked["density"] else None
-    return import_mesh(file, units=asked["units"], density=density, out=output.out, watch=output.watch, **given)
+    return import_mesh(
+        file, units=asked["units"], density=density, out=output.out, command=_typed(file, asked), watch=output.watch,
+        **given,
+    )  # fmt: skip
 
 
 def _refuse(asked: dict[str, Any], names: Mapping[str, Any], why: str) -> None:
@@ -175,5 +178,5 @@ def _typed(file: str, asked: dict[str, Any]) -> str:
         option = "--as" if name == "kind" else f"--{name.replace('_', '-')}"
         for each in value if isinstance(value, tuple) else (value,):
             if each is not None and each is not False and defaults.get(name) != each:
-                words += [option, each]
+                words += [option] if each is True else [option, str(each)]
     return shlex.join(words)

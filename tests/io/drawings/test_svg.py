@@ -1,7 +1,6 @@
 """SVG drawings: layers, texts, what is not drawn, units, and files that are refused."""
 
 import gzip
-from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -137,7 +136,7 @@ def test_texts_are_labels_at_their_place(content, text, at):
 def test_the_size_of_a_unit_on_paper_is_exact(head, paper):
     over, _, under = paper.partition("/")
     drawing = drawn("", head)
-    assert drawing.paper == float(Fraction(over) / Fraction(under or 1))
+    assert drawing.paper == pytest.approx(float(over) / float(under or 1), rel=1e-14)
     assert (drawing.unit, drawing.doubt) == (None, "")
 
 
@@ -149,6 +148,11 @@ def test_the_size_of_a_unit_on_paper_is_exact(head, paper):
 def test_a_px_has_no_size(head):
     drawing = drawn(BOX, head)
     assert drawing.paper is None and "72, 90, 96 or 300 px per inch" in drawing.doubt
+
+
+def test_sizes_out_of_range_are_refused():
+    with pytest.raises(svg.DrawingError, match="out of range"):
+        drawn(BOX, 'width="1e999mm" viewBox="0 0 1 1"')
 
 
 def test_a_drawing_that_its_size_stretches_is_as_on_paper():

@@ -7,11 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 import rocking_cli as rk
+from rocking_cli.cli.main import main
 from rocking_cli.core.polygons import fault_of
 from rocking_cli.io.drawings.contract import DrawingError, MeshSurface
 from rocking_cli.questions.import_mesh import solid
+from rocking_cli.questions.import_mesh.foot import settled
 from rocking_cli.questions.import_mesh.page import MAX_DRAWN, drawn_triangles, scene
 from rocking_cli.questions.import_mesh.picture import draw_compass
 from rocking_cli.questions.import_mesh.study import MeshOptions, imported
@@ -230,8 +233,9 @@ def test_hulls_take_time_as_their_points_and_are_bounded(monkeypatch):
     """A rim of many corners took minutes by the usual way of joining faces in one plane."""
     rim = 0.5 * np.exp(2j * np.pi * np.arange(20_000) / 20_000)
     drum = np.array([(z.real, z.imag, h) for h in (0.0, 2.0) for z in rim])
-    found = taken((drum, np.zeros((0, 3), int)), hull=True, settle=True)
-    assert (found.whole.volume, found.turned) == (pytest.approx(np.pi / 2, rel=1e-6), 0)
+    points, triangles, planes = solid.hull_of(drum, "")
+    whole = solid.moments(points, triangles)
+    assert (whole.volume, settled(planes, whole.centroid)[1]) == (pytest.approx(np.pi / 2, rel=1e-6), 0)
     for limit in ("MAX_HULL_POINTS", "MAX_HULL_CORNERS"):
         with monkeypatch.context() as patch:
             patch.setattr(solid, limit, 10)
@@ -260,13 +264,19 @@ class TestFiles:
     def test_the_file_of_an_azimuth_is_a_structure(self):
         answer = rk.import_mesh("statue.obj", units="m", density=2000.0, azimuth="30", out="a.yaml")
         text = Path("a.yaml").read_text("utf-8").replace("\n# ", " ")
-        assert "rocking towards 30 degrees, by: rocking import statue.obj --units m --density 2000 --azimuth 30" in text
+        assert "rocking towards 30 degrees, by: rk.import_mesh SHA-256" in text
         assert re.search(r"SHA-256 of the mesh: [0-9a-f]{64} ", text)
         assert "Not modelled: rolling from one edge to the next" in text
         found = rk.equiv("a.yaml")
         assert found.positive.lambda_ == pytest.approx(0.28867513, abs=1e-8)
         assert answer.to_dict()["written"] == ["a.yaml"]
         assert rk.draw("a.yaml").sketch.outlines["body"]
+
+    def test_the_file_names_the_command_that_made_it(self):
+        words = "statue.obj --units m --density 2000 --azimuth 30 --level 2mm --settle"
+        done = CliRunner().invoke(main, ["import", *words.split(), "-o", "c.yaml"])
+        assert done.exit_code == 0
+        assert f"by: rocking import {words}\n" in Path("c.yaml").read_text("utf-8").replace("\n# ", " ", 1)
 
     def test_several_azimuths_have_a_file_each(self):
         given = {"units": "m", "density": "2 t/m3", "level": "2mm"}
