@@ -57,6 +57,7 @@ def test_bulges_make_arcs():
     assert area(top) == pytest.approx(3.392699082, rel=1e-9)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(("text", "refused", "words"), [
     ("", "empty", "the file is empty"), ("\n \n# 1,2\n", "empty", "no rows"), ("x,y\n", "empty", "no rows of numbers"),
     ("a,b\n1,2\n", "not_csv", "x.csv:1: the headings have no x and y: `a, b`"),

@@ -70,6 +70,7 @@ CRS84 = {"type": "name", "properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}
 UTM = {"type": "name", "properties": {"name": "WGS 84 / UTM zone 32N"}}
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(("shape", "crs", "degrees"), [
     (moved(0, 0), None, False), (moved(40, 12), None, False), (moved(0, 0, 0.001), None, False),
     (moved(2, 3, 0.015), None, False), (moved(11.25, 43.77, METRE), None, True),
@@ -89,6 +90,7 @@ def test_degrees_are_refused_and_metres_are_not(shape, crs, degrees):
     assert caught.value.refused == "degrees" and len(caught.value.at) == 1
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(("text", "refused", "words"), [
     ("", "empty", "empty"), ("\ufeff \n", "empty", "empty"),
     ('{"type": "Point",\n', "not_geojson", "x:2: the file is cut short"),

@@ -167,6 +167,7 @@ def nested_uses(levels, count):
     return "".join(f"<defs>{each}</defs>" for each in groups) + f'<use href="#g{levels}"/>'
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(("content", "refused", "words"), [
     (nested_uses(8, 10), "too_large", "more than 2,000 elements, with those that are used again"),
     (nested_uses(60, 1), "too_large", "nested more than 100 deep"),
@@ -196,6 +197,7 @@ def test_bad_drawings_are_refused_with_class_and_place(content, refused, words, 
     assert caught.value.refused == refused
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(("data", "refused", "words"), [
     (b"", "empty", "the file is empty"),
     (b"\xff\xfe \0", "empty", "the file is empty"),
