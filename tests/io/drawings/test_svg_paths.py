@@ -153,7 +153,7 @@ PIECES = st.one_of(*(
 ))  # fmt: skip
 
 
-@settings(max_examples=15)
+@settings(max_examples=10)
 @given(POINTS, st.lists(PIECES, min_size=1, max_size=6), st.booleans(), st.data())
 def test_a_path_is_the_same_in_every_spelling(start, pieces, closed, data):
     spelled = [written(start, pieces, closed, data.draw), written(start, pieces, closed, None)]
@@ -220,7 +220,7 @@ def matrix(name, v):
     return skew
 
 
-@settings(max_examples=15)
+@settings(max_examples=10)
 @given(st.lists(st.sampled_from(sorted(TRANSFORMS)), min_size=1, max_size=4), st.data())
 def test_transforms_are_those_of_the_standard(names, data):
     steps = [(name, [data.draw(st.integers(1, 30)) / 8 for _ in range(TRANSFORMS[name])]) for name in names]

@@ -280,6 +280,7 @@ class TestMended:
         assert "2 sides moved to close gaps or overlaps of 0.9 mm" in words(found)
         assert found.bodies[0].ring.z.imag.max() == approx(0.05455) == found.bodies[1].ring.z.imag.min()
 
+    @pytest.mark.rest
     def test_voussoirs_with_mortar_keep_their_arcs(self):
         found = oppenheims_arch()
         shrunk = []
