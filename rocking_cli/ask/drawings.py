@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
 from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import cast
@@ -47,14 +48,16 @@ def reader_of(path: str | Path) -> tuple[DrawingReader, bytes]:
         except MechanismError as error:
             leave_out(error)
             continue
-        with blame(
-            f"the reader of drawings {name} failed on {file}", getattr(reader, "__name__", type(reader).__module__)
-        ):
+        with _blamed(reader, file):
             if reader.sniff(data, Path(file).suffix.lower()):
                 return reader, data
         titles.append(reader.TITLE)
     known = ", ".join(sorted(titles, key=str.lower))
     raise DrawingError("unknown", f"not a drawing or mesh that can be read; known formats: {known}", file)
+
+
+def _blamed(reader: DrawingReader, file: str) -> AbstractContextManager[None]:
+    return blame(f"the reader of {reader.TITLE} failed on {file}", getattr(reader, "__name__", type(reader).__module__))
 
 
 def read_drawing(path: str | Path) -> tuple[LineDrawing | MeshSurface, bytes]:
@@ -80,7 +83,7 @@ def read_drawing(path: str | Path) -> tuple[LineDrawing | MeshSurface, bytes]:
         If a reader fails.
     """
     reader, data = reader_of(path)
-    with blame(f"the reader of {reader.TITLE} failed on {path}", getattr(reader, "__name__", type(reader).__module__)):
+    with _blamed(reader, str(path)):
         return reader.read(data, str(path)), data
 
 

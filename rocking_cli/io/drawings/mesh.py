@@ -114,17 +114,14 @@ def _loaded(data: bytes, known: str, as_text: bool) -> list[Mapping[str, Any]]:
 
 def _joined(parts: list[Mapping[str, Any]]) -> tuple[Any, Any]:
     """Return the points and triangles of all parts of a file; faces of more corners are cut into triangles."""
-    points, triangles, before = list[Any](), list[Any](), 0
+    points, triangles, before = [np.zeros((0, 3))], [np.zeros((0, 3), np.int64)], 0
     for part in parts:
         z = np.asarray(part["vertices"], np.float64).reshape(-1, 3)
-        faces = np.asarray(part.get("faces", np.zeros((0, 3))), np.int64)
+        faces = np.asarray(part.get("faces", triangles[0]), np.int64)
         if faces.size:
             if faces.min() < 0 or faces.max() >= len(z):
                 raise ValueError(f"a face names a point that does not exist, of {len(z)}")
-            fan = [faces] if faces.shape[1] == 3 else [faces[:, [0, k, k + 1]] for k in range(1, faces.shape[1] - 1)]
-            triangles += [each + before for each in fan]
+            triangles += [faces[:, [0, k, k + 1]] + before for k in range(1, faces.shape[1] - 1)]
         points.append(z)
         before += len(z)
-    if len(points) == len(triangles) == 1:
-        return points[0], triangles[0]
-    return np.concatenate([*points, np.zeros((0, 3))]), np.concatenate([*triangles, np.zeros((0, 3), np.int64)])
+    return np.concatenate(points), np.concatenate(triangles)

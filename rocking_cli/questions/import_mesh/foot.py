@@ -118,10 +118,9 @@ def foot_of(points: Reals, level: float) -> Sequence[complex]:
     level : float
         Height [m].
     """
-    low = points[points[:, 2] <= level + SINGLE * np.abs(points).max()]
-    z = np.unique(low[:, 0] + 1j * low[:, 1])
-    tolerance = STRAIGHT * float(np.abs(points).max())
-    return _convex(z.tolist(), tolerance)
+    size = float(np.abs(points).max())
+    low = points[points[:, 2] <= level + SINGLE * size]
+    return _convex(np.unique(low[:, 0] + 1j * low[:, 1]).tolist(), STRAIGHT * size)
 
 
 def _convex(z: Sequence[complex], tolerance: float) -> list[complex]:

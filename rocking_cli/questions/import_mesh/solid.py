@@ -151,12 +151,8 @@ def closed(points: Reals, triangles: Triangles, file: str) -> None:
         what = f"its surface is closed, but {turned:,} sides lie between triangles of which one is turned over"
         raise DrawingError("open", what, file, at, "turn its faces the same way out, or `hull`, the convex hull")
     labels = joined(ends, len(points))[ends[:, 0]]
-    boxes = [
-        (float(np.linalg.norm(size)), np.sort(size)[::-1])
-        for each in np.unique(labels)[:MAX_SHELLS]
-        for size in [np.ptp(points[ends[labels == each]].reshape(-1, 3), axis=0)]
-    ]
-    long, wide = max(boxes, key=lambda box: box[0])[1][:2]
+    holes = [np.ptp(points[ends[labels == each]].reshape(-1, 3), axis=0) for each in np.unique(labels)[:MAX_SHELLS]]
+    _, wide, long = np.sort(max(holes, key=np.linalg.norm))
     what = f"its surface is not closed: {len(ends):,} loose sides, the largest hole {long:.3g} x {wide:.3g} m"
     raise DrawingError("open", what, file, at, "close its holes, or `hull`, the convex hull, which weighs more")
 
