@@ -136,7 +136,7 @@ def test_texts_are_labels_at_their_place(content, text, at):
 def test_the_size_of_a_unit_on_paper_is_exact(head, paper):
     over, _, under = paper.partition("/")
     drawing = drawn("", head)
-    assert drawing.paper == pytest.approx(float(over) / float(under or 1), rel=1e-14)
+    assert drawing.paper == pytest.approx(float(over) / float(under or 1), rel=1e-14, abs=0)
     assert (drawing.unit, drawing.doubt) == (None, "")
 
 
