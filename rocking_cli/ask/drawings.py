@@ -1,16 +1,18 @@
-"""Drawings and meshes as they are given: the reader of a file, by its content."""
+"""Drawings and meshes as they are given: the reader of a file, by its content, and lengths and densities."""
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
 from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import cast
 
-from rocking_cli.errors import MechanismError
+from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.io.drawings.contract import DrawingError, DrawingReader, LineDrawing, MeshSurface
 from rocking_cli.io.files import read_bytes
 from rocking_cli.plugins.errors import blame
 from rocking_cli.plugins.registry import Plugins, leave_out, origin
+from rocking_cli.units import UnitError, mass_of_weight, number_of
 
 MAX_BYTES = 500_000_000
 DWG = b"AC10"
@@ -46,14 +48,16 @@ def reader_of(path: str | Path) -> tuple[DrawingReader, bytes]:
         except MechanismError as error:
             leave_out(error)
             continue
-        with blame(
-            f"the reader of drawings {name} failed on {file}", getattr(reader, "__name__", type(reader).__module__)
-        ):
+        with _blamed(reader, file):
             if reader.sniff(data, Path(file).suffix.lower()):
                 return reader, data
         titles.append(reader.TITLE)
     known = ", ".join(sorted(titles, key=str.lower))
     raise DrawingError("unknown", f"not a drawing or mesh that can be read; known formats: {known}", file)
+
+
+def _blamed(reader: DrawingReader, file: str) -> AbstractContextManager[None]:
+    return blame(f"the reader of {reader.TITLE} failed on {file}", getattr(reader, "__name__", type(reader).__module__))
 
 
 def read_drawing(path: str | Path) -> tuple[LineDrawing | MeshSurface, bytes]:
@@ -79,10 +83,33 @@ def read_drawing(path: str | Path) -> tuple[LineDrawing | MeshSurface, bytes]:
         If a reader fails.
     """
     reader, data = reader_of(path)
-    with blame(f"the reader of {reader.TITLE} failed on {path}", getattr(reader, "__name__", type(reader).__module__)):
+    with _blamed(reader, str(path)):
         return reader.read(data, str(path)), data
 
 
 def is_mesh(path: str | Path) -> bool:
     """Return whether a file is read as a mesh. Raises as `read_drawing`."""
     return bool(getattr(reader_of(path)[0], "MESH", False))
+
+
+def length_of(value: float | str, name: str, *, zero: bool = True) -> float:
+    """Return a length [m] from a number or a text with a unit. Raises `InputError` if it is not a valid one."""
+    try:
+        length = number_of(value, "m")
+    except UnitError as error:
+        raise InputError(Problem(error.message, field=f"`{name}`", hint=error.hint)) from None
+    if not 0 <= length <= 1000 or not (zero or length):
+        raise InputError(Problem(f"must be a length up to 1000 m, got {value}", field=f"`{name}`"))
+    return length
+
+
+def density_of(value: float | str) -> float:
+    """Return a density [kg/m3] from a number or a text with a unit. Raises `InputError` if it is not a valid one."""
+    try:
+        weight = mass_of_weight(value, "kg/m3") if isinstance(value, str) else None
+        density = weight if weight is not None else number_of(value, "kg/m3")
+    except UnitError as error:
+        raise InputError(Problem(error.message, field="`density`", hint=error.hint)) from None
+    if not 0 < density <= 1e6:
+        raise InputError(Problem(f"must be above 0 and at most 1e6 kg/m3, got {value}", field="`density`"))
+    return density

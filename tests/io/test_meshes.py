@@ -59,12 +59,12 @@ def test_points_without_faces_are_a_cloud(name):
         ("a.obj", b"hello\n", "empty", "has no points"),
         ("a.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 9\n", "damaged", "is damaged or cut short"),
         ("a.obj", b"v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", "damaged", "coordinates that are not numbers"),
-        ("a.ply", ply(BOX).replace(b"face 12", b"face 999999999999"), "large", "announces 999,999,999,999 triangles"),
+        ("a.ply", ply(BOX).replace(b"face 12", b"face 999999999999"), "too_large", "announces 999,999,999,999"),
         ("a.ply", ply(BOX).rsplit(b"\n", 3)[0], "cut", "announces 8 and 12, and has 8 points and 10 faces"),
         ("a.stl", stl(BOX)[:-60], "cut", "announces 12, and has 10 faces"),
         ("a.stl", b"x" * 80 + struct.pack("<I", 4 * 10**9) + b"x" * 999, "cut", "announces 4,000,000,000"),
         ("a.stl", ascii_stl(BOX).rsplit(b"\n", 9)[0], "cut", "does not end the solid"),
-        ("a.obj", b"v 0 0 0\n".ljust(mesh.MAX_TEXT_BYTES + 1), "large", "has 64 MB"),
+        ("a.obj", b"v 0 0 0\n".ljust(mesh.MAX_TEXT_BYTES + 1), "too_large", "has 64 MB"),
     ],
 )
 def test_what_is_no_mesh_is_refused(name, content, refused, words):

@@ -13,14 +13,14 @@ import csv
 import io
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
-from itertools import chain
+from itertools import chain, groupby
+from typing import NamedTuple
 
 import numpy as np
 
 from rocking_cli.errors import InputError
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnText, LineDrawing, OmittedKind
-from rocking_cli.io.drawings.rings import MAX_ELEMENTS, MAX_NUMBER, MAX_SIDES, inside
+from rocking_cli.io.drawings.limits import MAX_ELEMENTS, MAX_NUMBER, MAX_SIDES, check_content, check_count, inside
 from rocking_cli.io.spreadsheet import NUMBER, decoded, unit_in
 from rocking_cli.text import cut
 from rocking_cli.units import KINDS
@@ -31,27 +31,18 @@ ENDINGS = (".csv", ".tsv", ".txt")
 MAX_BYTES = 20_000_000
 SNIFFED_LINES = 50
 
-_COLUMNS = {
-    "x": "x",
-    "y": "y",
-    "outline": "outline",
-    "body": "outline",
-    "name": "outline",
-    "layer": "layer",
-    "bulge": "bulge",
-}
+_COLUMNS = {each: each for each in ("x", "y", "outline", "layer", "bulge")} | {"body": "outline", "name": "outline"}
 _TWO_NUMBERS = re.compile(r"\s*[-+]?[\d.]+(?:,\d+)?(?:[eE][-+]?\d+)?[\s,;]+[-+]?[\d.]*\d", re.ASCII)
 
 
-@dataclass
-class _OutlineRows:
-    """Rows of one outline."""
+class _Corner(NamedTuple):
+    """A row: its line, the name of its outline, or else how many blank lines are before it, and its values."""
 
-    name: str
-    layer: str
     line: int
-    points: list[complex] = field(default_factory=list)
-    bulges: list[float] = field(default_factory=list)
+    outline: str | int
+    layer: str
+    at: complex
+    bulge: float
 
 
 def sniff(data: bytes, ending: str) -> bool:
@@ -63,33 +54,38 @@ def sniff(data: bytes, ending: str) -> bool:
 
 def read(data: bytes, file: str) -> LineDrawing:
     """Return the drawing in a file. Raises `DrawingError`."""
-    if len(data) > MAX_BYTES:
-        raise DrawingError("too_large", f"the drawing has more than {MAX_BYTES / 1e6:g} MB", file)
+    check_content(data, MAX_BYTES, file)
     try:
         text, _ = decoded(data, file)
     except InputError as error:
         (problem,) = error.problems
         raise DrawingError("not_csv", problem.message, file, hint=problem.hint, line=problem.line) from None
-    lines = enumerate(io.StringIO(text, newline=None), start=1)
-    rows = ((k, line) for k, line in lines if not line.lstrip().startswith("#"))
-    first = next(((k, line) for k, line in rows if line.strip()), None)
-    if first is None:
-        raise DrawingError("empty", "the file has no rows", file)
-    table = _Table(first, rows, file)
-    outlines = list(table.outlines())
-    if not outlines:
+    table = _Table(text, file)
+    chains: list[DrawnLine] = []
+    labels: list[DrawnText] = []
+    done: set[str | int] = set()
+    for name, rows in groupby(table.corners(), lambda corner: corner.outline):
+        first, *more = rows
+        if name in done:
+            raise table.fault(f"the outline `{cut(str(name))}` begins a second time", first.line)
+        done.add(name)
+        check_count(len(done), MAX_ELEMENTS, "outlines", file)
+        for each in more:
+            if each.layer != first.layer:
+                message = f"the outline is on two layers, `{cut(first.layer)}` and `{cut(each.layer)}`"
+                raise table.fault(message, each.line)
+        corners = [first, *more]
+        if more and first.at == more[-1].at:
+            del corners[-1]
+        if len(corners) < 2:
+            raise table.fault("the outline that starts here has one corner", first.line)
+        points, bulges = np.array([each.at for each in corners]), np.array([each.bulge for each in corners])
+        is_closed, handle = len(points) > 2 or bool(bulges.any()), name if isinstance(name, str) else ""
+        chains.append(DrawnLine(points, bulges, is_closed, first.layer, "outline", handle))
+        if handle:
+            labels.append(DrawnText(handle, inside([points]), first.layer, "name"))
+    if not chains:
         raise DrawingError("empty", "the file has no rows of numbers", file)
-    chains, labels = [], []
-    for each in outlines:
-        points, bulges = np.array(each.points), np.array(each.bulges)
-        if len(points) > 1 and points[0] == points[-1]:
-            points, bulges = points[:-1], bulges[:-1]
-        if len(points) < 2:
-            raise DrawingError("not_csv", "the outline that starts here has one corner", file, line=each.line)
-        is_closed = len(points) > 2 or bool(bulges.any())
-        chains.append(DrawnLine(points, bulges, is_closed, each.layer, "outline", each.name))
-        if each.name:
-            labels.append(DrawnText(each.name, inside([points]) if is_closed else points.mean(), each.layer, "name"))
     why = "it is not x, y, outline, layer or bulge"
     left = [OmittedKind(f"column `{cut(name)}`", "", why, 1) for name in table.unknown]
     return LineDrawing(TITLE, chains, labels, (), left)
@@ -98,74 +94,50 @@ def read(data: bytes, file: str) -> LineDrawing:
 class _Table:
     """The cells of a file, and what its columns are."""
 
-    def __init__(self, first: tuple[int, str], rows: Iterator[tuple[int, str]], file: str) -> None:
+    def __init__(self, text: str, file: str) -> None:
+        lines = enumerate(io.StringIO(text, newline=None), start=1)
+        self.rows: Iterator[tuple[int, str]] = ((line, row) for line, row in lines if not row.lstrip().startswith("#"))
         self.file = file
-        line, row = first
+        line, row = first = next(((line, row) for line, row in self.rows if row.strip()), (0, ""))
         self.separator = _separator(row)
         cells = self._cells(line, row)
         self.unknown: list[str] = []
-        self.places = {"x": 0, "y": 1}
-        self.width = 2
-        if not cells or self._number(cells[0]) is None:
+        self.places, self.width = {"x": 0, "y": 1}, 2
+        if cells and self._number(cells[0]) is None:
             self._head(cells, line)
-            self.rows = rows
         else:
-            self.rows = chain([first], rows)
+            self.rows = chain([first], self.rows)
 
     def _head(self, cells: Sequence[str], line: int) -> None:
         """Take the headings."""
         self.places, self.width = {}, len(cells)
         for k, cell in enumerate(cells):
-            heading = unit_in(cell, KINDS["length"])[0].lower()
-            meaning = _COLUMNS.get(heading)
+            meaning = _COLUMNS.get(unit_in(cell, KINDS["length"])[0].lower())
             if meaning is None:
                 self.unknown.append(cell)
-            elif meaning in self.places:
-                raise self._fault(f"two columns, `{cut(cell)}` is the second, mean the same: rename one", line)
-            else:
-                self.places[meaning] = k
+            elif self.places.setdefault(meaning, k) != k:
+                raise self.fault(f"two columns, `{cut(cell)}` is the second, mean the same: rename one", line)
         if not {"x", "y"} <= self.places.keys():
-            raise self._fault(f"the headings have no x and y: `{cut(', '.join(cells))}`", line)
+            raise self.fault(f"the headings have no x and y: `{cut(', '.join(cells))}`", line)
 
-    def outlines(self) -> Iterator[_OutlineRows]:
-        """Yield the outlines."""
-        current: _OutlineRows | None = None
-        done: set[str] = set()
-        is_named, count, rings = "outline" in self.places, 0, 0
+    def corners(self) -> Iterator[_Corner]:
+        """Yield the corners of all outlines."""
+        count = blanks = 0
         for line, row in self.rows:
             cells = self._cells(line, row)
             if not any(cells):
-                if current and not is_named:
-                    yield current
-                    current = None
+                blanks += 1
                 continue
+            count += 1
+            check_count(count, MAX_SIDES, "sides", self.file)
             cells += [""] * (self.width - len(cells))
             if any(cells[self.width :]):
                 hint = "separate cells with semicolons if numbers have decimal commas; more columns need headings"
-                raise self._fault(f"the row has {len(cells)} cells instead of {self.width}", line, hint)
-            name, layer = (cells[self.places[key]] if key in self.places else "" for key in ("outline", "layer"))
-            if current and name != current.name:
-                yield current
-                done.add(current.name)
-                current = None
-            if current is None:
-                if name in done:
-                    raise self._fault(f"the outline `{cut(name)}` begins a second time", line)
-                current = _OutlineRows(name, layer, line)
-                rings += 1
-                if rings > MAX_ELEMENTS:
-                    raise DrawingError("too_large", f"the drawing has more than {MAX_ELEMENTS:,} outlines", self.file)
-            elif layer != current.layer:
-                message = f"the outline is on two layers, `{cut(current.layer)}` and `{cut(layer)}`"
-                raise self._fault(message, line)
-            count += 1
-            if count > MAX_SIDES:
-                raise DrawingError("too_large", f"the drawing has more than {MAX_SIDES:,} sides", self.file)
-            current.points.append(complex(self._value(cells, "x", line), self._value(cells, "y", line)))
-            bulge = "bulge" in self.places and cells[self.places["bulge"]]
-            current.bulges.append(self._value(cells, "bulge", line) if bulge else 0.0)
-        if current:
-            yield current
+                raise self.fault(f"the row has {len(cells)} cells instead of {self.width}", line, hint)
+            given = {column: cells[place] for column, place in self.places.items()}
+            x, y = (self._value(given[column], column, line) for column in "xy")
+            bulge = self._value(given["bulge"], "bulge", line) if given.get("bulge") else 0.0
+            yield _Corner(line, given.get("outline", blanks), given.get("layer", ""), complex(x, y), bulge)
 
     def _cells(self, line: int, row: str) -> list[str]:
         if self.separator is None:
@@ -175,23 +147,23 @@ class _Table:
         try:
             return [cell.strip() for cell in next(csv.reader([row], delimiter=self.separator, strict=True))]
         except csv.Error as error:
-            raise self._fault(f"the row is not valid CSV: {error}", line) from None
+            raise self.fault(f"the row is not valid CSV: {error}", line) from None
 
     def _number(self, cell: str) -> float | None:
         """Return the number in a cell; None if it is not one."""
         plain = cell if self.separator == "," or "." in cell else cell.replace(",", ".")
         return float(plain) if NUMBER.fullmatch(plain) else None
 
-    def _value(self, cells: Sequence[str], column: str, line: int) -> float:
-        cell = cells[self.places[column]]
+    def _value(self, cell: str, column: str, line: int) -> float:
         number = self._number(cell)
         if number is None:
-            raise self._fault(f"{column} is `{cut(cell)}`, which is not a number", line)
+            raise self.fault(f"{column} is `{cut(cell)}`, which is not a number", line)
         if not abs(number) < MAX_NUMBER:
             raise DrawingError("number", f"{column} is beyond {MAX_NUMBER:g}", self.file, line=line)
         return number
 
-    def _fault(self, message: str, line: int, hint: str | None = None) -> DrawingError:
+    def fault(self, message: str, line: int, hint: str | None = None) -> DrawingError:
+        """Return the error for a file that is not a table of vertices."""
         return DrawingError("not_csv", message, self.file, hint=hint, line=line)
 
 

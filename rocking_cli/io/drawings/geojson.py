@@ -18,7 +18,7 @@ import numpy as np
 
 from rocking_cli.arrays import Points
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnPoint, DrawnText, LineDrawing, OmittedKind
-from rocking_cli.io.drawings.rings import MAX_ELEMENTS, MAX_NUMBER, MAX_SIDES, inside
+from rocking_cli.io.drawings.limits import MAX_ELEMENTS, MAX_NUMBER, MAX_SIDES, check_content, check_count, inside
 from rocking_cli.text import cut
 
 TITLE = "GeoJSON"
@@ -42,10 +42,7 @@ def sniff(data: bytes, ending: str) -> bool:
 
 def read(data: bytes, file: str) -> LineDrawing:
     """Return the drawing in a file. Raises `DrawingError`."""
-    if not data.strip(b"\0 \t\r\n\xef\xbb\xbf\xff\xfe"):
-        raise DrawingError("empty", "the file is empty", file)
-    if len(data) > MAX_BYTES:
-        raise DrawingError("too_large", f"the drawing has more than {MAX_BYTES / 1e6:g} MB", file)
+    check_content(data, MAX_BYTES, file)
     reader = _Features(file)
     whole = reader.parsed(data)
     reader.collect(whole)
@@ -122,40 +119,45 @@ class _Features:
         return value
 
     def _shape(self, kind: str, coordinates: list[Any], feature: Mapping[str, Any]) -> None:
-        parts = [coordinates]
-        if kind.startswith("Multi") and kind != "MultiPoint":
-            parts = coordinates
-            if not all(isinstance(each, list) for each in parts):
-                raise self.fault(f"a `{kind}` has coordinates that are not nested as they must be")
-        if kind == "Point":
-            parts = [[coordinates]] if coordinates else []
-        if not any(parts):
-            self.left[kind, _layer(feature), "it is empty"] += 1
+        """Add the lines or points of each part of a shape."""
+        layer = _layer(feature)
+        match kind:
+            case "Point":
+                parts = [[[coordinates]]] if coordinates else []
+            case "Polygon" | "MultiPolygon":
+                parts = [coordinates] if kind == "Polygon" else coordinates
+            case "MultiLineString":
+                parts = [[line] for line in coordinates]
+            case _:
+                parts = [[coordinates]]
+        parts = [part for part in parts if part not in ([], [[]])]
+        if not parts:
+            self.left[kind, layer, "it is empty"] += 1
         for part in parts:
-            if part:
-                self._part(kind, part, feature)
+            if not isinstance(part, list):
+                raise self.fault(f"a `{kind}` has coordinates that are not nested as they must be")
+            self._part(kind, layer, part, feature)
 
-    def _part(self, kind: str, part: Any, feature: Mapping[str, Any]) -> None:
+    def _part(self, kind: str, layer: str, part: list[Any], feature: Mapping[str, Any]) -> None:
         """Add one polygon, line, or set of points."""
-        layer, handle, name = _layer(feature), _text(feature.get("id")), _text(_properties(feature).get("name"))
-        rings = [self._points(each, kind) for each in (part if "Polygon" in kind else [part])]
-        z = [points for points, _ in rings]
+        rings = [self._points(ring, kind) for ring in part]
+        handle, name = _text(feature.get("id")), _text(_properties(feature).get("name"))
+        outer = rings[0][0]
+        is_closed = "Polygon" in kind or ("Line" in kind and len(outer) > 3 and bool(outer[0] == outer[-1]))
         if "Point" in kind:
-            self.spots += (DrawnPoint(complex(each), layer, kind, handle) for each in z[0])
-            at = complex(z[0][0])
+            self.spots += (DrawnPoint(complex(each), layer, kind, handle) for each in outer)
+            at = complex(outer[0])
         else:
-            is_closed = "Polygon" in kind or (len(z[0]) > 3 and bool(z[0][0] == z[0][-1]))
             self.shapes += 1
             shape = f"{kind} {self.shapes}" if len(rings) > 1 else ""
             for points, heights in rings:
-                corners = points[:-1] if is_closed and points[0] == points[-1] else points
-                if len(corners) < 2:
+                z = points[:-1] if is_closed and points[0] == points[-1] else points
+                if len(z) < 2:
                     self.left[kind, layer, "it is a point"] += 1
                     continue
-                self.chains.append(
-                    DrawnLine(corners, np.zeros(len(corners)), is_closed, layer, kind, handle, shape, heights=heights)
-                )
-            at = inside(z) if is_closed else complex(z[0][:2].mean())
+                straight = np.zeros(len(z))
+                self.chains.append(DrawnLine(z, straight, is_closed, layer, kind, handle, shape, heights=heights))
+            at = inside([points for points, _ in rings]) if is_closed else complex(outer[:2].mean())
         if name:
             self.labels.append(DrawnText(name, at, layer, "name", handle))
 
@@ -163,14 +165,11 @@ class _Features:
         """Return the points of a list of positions, and their least and greatest z."""
         if not isinstance(positions, list) or not positions:
             raise self.fault(f"a `{kind}` has coordinates that are not nested as they must be")
-        if len(self.chains) >= MAX_ELEMENTS:
-            raise DrawingError("too_large", f"the drawing has more than {MAX_ELEMENTS:,} lines", self.file)
         self.count += len(positions)
-        if self.count > MAX_SIDES:
-            raise DrawingError("too_large", f"the drawing has more than {MAX_SIDES:,} sides", self.file)
+        check_count(len(self.chains) + 1, MAX_ELEMENTS, "lines", self.file)
+        check_count(self.count, MAX_SIDES, "sides", self.file)
         for each in positions:
-            is_position = isinstance(each, list) and len(each) >= 2 and all(type(x) is float for x in each)
-            if not is_position:
+            if not (isinstance(each, list) and len(each) >= 2 and all(type(x) is float for x in each)):
                 raise self.fault(f"a `{kind}` has the position `{cut(str(each))}`: give two or three numbers")
             if not all(abs(x) < MAX_NUMBER for x in each):
                 raise DrawingError("number", f"a `{kind}` has a coordinate beyond {MAX_NUMBER:g}", self.file)

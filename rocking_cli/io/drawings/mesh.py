@@ -64,9 +64,9 @@ def read(data: bytes, file: str, /) -> MeshSurface:
             raise _cut(file, counts, 0, max(len(data) - STL_HEAD, 0) // STL_TRIANGLE)
     as_text = known == "OBJ" or (known == "STL" and not counts) or b"\nformat ascii" in head
     if len(data) > (MAX_TEXT_BYTES if as_text else MAX_BYTES):
-        raise DrawingError("large", f"has {len(data) / 1e6:.0f} MB", file, hint=FEWER)
+        raise DrawingError("too_large", f"has {len(data) / 1e6:.0f} MB", file, hint=FEWER)
     if counts.get("face", 0) > MAX_TRIANGLES:
-        raise DrawingError("large", f"announces {counts['face']:,} triangles", file, hint=FEWER)
+        raise DrawingError("too_large", f"announces {counts['face']:,} triangles", file, hint=FEWER)
     if known == "STL" and as_text and b"endsolid" not in data[-_SNIFFED:].lower():
         raise DrawingError("cut", "is cut short: its last line does not end the solid", file, hint="save it again")
     try:
@@ -81,7 +81,7 @@ def read(data: bytes, file: str, /) -> MeshSurface:
     if len(points) < counts.get("vertex", 0) or len(triangles) < counts.get("face", 0):
         raise _cut(file, counts, len(points), len(triangles))
     if len(triangles) > MAX_TRIANGLES:
-        raise DrawingError("large", f"has {len(triangles):,} triangles", file, hint=FEWER)
+        raise DrawingError("too_large", f"has {len(triangles):,} triangles", file, hint=FEWER)
     if not len(points):
         raise DrawingError("empty", "has no points", file)
     if not np.isfinite(points).all():
@@ -114,17 +114,14 @@ def _loaded(data: bytes, known: str, as_text: bool) -> list[Mapping[str, Any]]:
 
 def _joined(parts: list[Mapping[str, Any]]) -> tuple[Any, Any]:
     """Return the points and triangles of all parts of a file; faces of more corners are cut into triangles."""
-    points, triangles, before = list[Any](), list[Any](), 0
+    points, triangles, before = [np.zeros((0, 3))], [np.zeros((0, 3), np.int64)], 0
     for part in parts:
         z = np.asarray(part["vertices"], np.float64).reshape(-1, 3)
-        faces = np.asarray(part.get("faces", np.zeros((0, 3))), np.int64)
+        faces = np.asarray(part.get("faces", triangles[0]), np.int64)
         if faces.size:
             if faces.min() < 0 or faces.max() >= len(z):
                 raise ValueError(f"a face names a point that does not exist, of {len(z)}")
-            fan = [faces] if faces.shape[1] == 3 else [faces[:, [0, k, k + 1]] for k in range(1, faces.shape[1] - 1)]
-            triangles += [each + before for each in fan]
+            triangles += [faces[:, [0, k, k + 1]] + before for k in range(1, faces.shape[1] - 1)]
         points.append(z)
         before += len(z)
-    if len(points) == len(triangles) == 1:
-        return points[0], triangles[0]
-    return np.concatenate([*points, np.zeros((0, 3))]), np.concatenate([*triangles, np.zeros((0, 3), np.int64)])
+    return np.concatenate(points), np.concatenate(triangles)

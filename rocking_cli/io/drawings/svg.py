@@ -12,7 +12,6 @@ import re
 import zlib
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from fractions import Fraction
 from typing import NamedTuple
 from xml.parsers import expat
 
@@ -20,7 +19,7 @@ import numpy as np
 
 from rocking_cli.io.drawings import svg_paths as lines
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnText, LineDrawing, OmittedKind
-from rocking_cli.io.drawings.rings import MAX_ELEMENTS, MAX_NUMBER, MAX_SIDES
+from rocking_cli.io.drawings.limits import MAX_ELEMENTS, MAX_NUMBER, MAX_SIDES, check_content, check_count
 from rocking_cli.text import cut
 
 TITLE = "SVG"
@@ -49,21 +48,19 @@ _PROPERTIES = {"display", "visibility", *_CLIPS}
 _STYLED_BY = {"style", *_PROPERTIES}
 _STYLED = re.compile(r"display|visibility|transform|clip-path|mask")
 
-METRES = {
-    "in": Fraction(254, 10_000),
-    "mm": Fraction(1, 1000),
-    "cm": Fraction(1, 100),
-    "pt": Fraction(254, 720_000),
-    "pc": Fraction(254, 60_000),
-}
-_PX = Fraction(254, 960_000)  # by the standard of today; its size in files differs
+INCH = 0.0254
+METRES: dict[str | None, float] = {
+    "in": INCH, "mm": 0.001, "cm": 0.01, "pt": INCH / 72, "pc": INCH / 6, "px": INCH / 96, None: INCH / 96,
+}  # fmt: skip
+_PX = "there are 72, 90, 96 or 300 px per inch"  # 96 by the standard of today
 _LENGTH = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(px|in|mm|cm|pt|pc|%)?\s*", re.ASCII)
 _COMMENT = re.compile(r"/\*.*?(?:\*/|\Z)", re.DOTALL)
+_ASPECT = re.compile(r"(?!\s*none)\s*(?:x(Min|Mid|Max)Y(Min|Mid|Max))?\s*(slice)?")
 _ALIGN = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
 
 
 class SvgElement:
-    """An element of the file."""
+    """An element of the file: its name, attributes and line, and the elements and texts within it."""
 
     __slots__ = ("children", "given", "line", "tag")
 
@@ -82,40 +79,26 @@ class SvgElement:
 
 
 class SvgPlace(NamedTuple):
-    """Where an element is drawn.
+    """Where an element is drawn."""
 
-    Parameters
-    ----------
-    to : Affine
-        Map from its coordinates to those of the drawing.
-    width, height : float
-        Size of which a percentage is part.
-    label, group : str
-        DrawnText of the nearest group that has one, and id of the nearest that has an id.
-    visible : bool
-        Whether it is seen, unless it says otherwise.
-    used_as : str
-        Id of the outermost `use` element that draws it.
-    trail : tuple of str
-        Ids of the elements that are being drawn again.
-    depth : int
-        Number of elements around it.
-    """
-
-    to: lines.Affine
-    width: float
+    to: lines.Affine  # from its coordinates to those of the drawing
+    width: float  # of which a percentage is part
     height: float
-    label: str = ""
-    group: str = ""
-    visible: bool = True
-    used_as: str = ""
-    trail: tuple[str, ...] = ()
-    depth: int = 0
+    label: str = ""  # of the nearest group that has one
+    group: str = ""  # id of the nearest group that has one
+    visible: bool = True  # unless it says otherwise
+    used_as: str = ""  # id of the outermost `use` element that draws it
+    trail: tuple[str, ...] = ()  # ids of the elements that are being drawn again
+    depth: int = 0  # elements around it
 
     @property
     def layer(self) -> str:
         """Name of the layer."""
         return self.label or self.group
+
+    def pair(self, node: SvgElement, x: str, y: str, default: str = "0") -> complex:
+        """Return two lengths of an element, along x and y, as x + iy. Raises `ValueError`."""
+        return complex(_length(node, x, self.width, default), _length(node, y, self.height, default))
 
 
 def sniff(data: bytes, ending: str) -> bool:
@@ -127,10 +110,7 @@ def read(data: bytes, file: str) -> LineDrawing:
     """Return the drawing in a file. Raises `DrawingError`."""
     if data[:2] == b"\x1f\x8b":
         data = _unpacked(data, file)
-    if not data.strip(b"\0 \t\r\n\xef\xbb\xbf\xff\xfe"):
-        raise DrawingError("empty", "the file is empty", file)
-    if len(data) > MAX_BYTES:
-        raise DrawingError("too_large", f"the drawing has more than {MAX_BYTES / 1e6:g} MB", file)
+    check_content(data, MAX_BYTES, file)
     return _SvgReader(_parsed(data, file), file).drawing()
 
 
@@ -157,8 +137,7 @@ def _parsed(data: bytes, file: str) -> SvgElement:
         nonlocal count
         count += 1
         line = parser.CurrentLineNumber
-        if count > MAX_ELEMENTS:
-            raise DrawingError("too_large", f"the drawing has more than {MAX_ELEMENTS:,} elements", file)
+        check_count(count, MAX_ELEMENTS, "elements", file)
         if len(open_nodes) > MAX_DEPTH:
             raise DrawingError("too_large", f"elements are nested more than {MAX_DEPTH} deep", file, line=line)
         node = SvgElement(name.removeprefix(_SVG) if " " not in name or name.startswith(_SVG) else "", given, line)
@@ -216,13 +195,13 @@ class _SvgReader:
     def drawing(self) -> LineDrawing:
         """Return the whole drawing."""
         try:
-            paper, doubt, stretch = _paper(self.root)
             box = _box(self.root)
-            width, height = box[2:] if box else (_length(self.root, side, 100.0, "100") for side in ("width", "height"))
+            paper, doubt, stretch = _paper(self.root, box)
+            start = SvgPlace(lines.scaling(1.0, -stretch), 100.0, 100.0)  # y is turned up
+            size = complex(*box[2:]) if box else start.pair(self.root, "width", "height", "100")
         except ValueError as error:
             raise self._fault(self.root, error) from None
-        start = lines.scaling(1.0, -stretch)  # y is turned up
-        self._draw(self.root, SvgPlace(start, width, height), is_viewport=True)
+        self._draw(self.root, start._replace(width=size.real, height=size.imag), is_viewport=True)
         left = [OmittedKind(kind, layer, why, count) for (kind, layer, why), count in self.left.items()]
         return LineDrawing(TITLE, self.chains, self.labels, (), left, None, paper, doubt)
 
@@ -231,9 +210,7 @@ class _SvgReader:
 
     def _counted(self, node: SvgElement, depth: int = 0) -> None:
         self.count += 1
-        if self.count > MAX_ELEMENTS:
-            message = f"the drawing has more than {MAX_ELEMENTS:,} elements, with those that are used again"
-            raise DrawingError("too_large", message, self.file, line=node.line)
+        check_count(self.count, MAX_ELEMENTS, "elements, with those that are used again", self.file, node.line)
         if depth > MAX_DEPTH:
             message = f"elements are nested more than {MAX_DEPTH} deep"
             raise DrawingError("too_large", message, self.file, line=node.line)
@@ -314,7 +291,7 @@ class _SvgReader:
         reference = (node.get("href") or node.get(_HREF)).strip()
         if reference and not reference.startswith("#"):
             message = f"`{node.tag}` refers to another file, {cut(reference)}"
-            raise DrawingError("external", message, self.file, hint="put its content into the drawing", line=node.line)
+            raise DrawingError("xref", message, self.file, hint="put its content into the drawing", line=node.line)
         return reference[1:], self.named.get(reference[1:])
 
     def _use(self, node: SvgElement, place: SvgPlace) -> None:
@@ -325,15 +302,13 @@ class _SvgReader:
         if name in place.trail:
             message = f"`use` draws the element `{cut(name)}` within itself"
             raise DrawingError("not_svg", message, self.file, line=node.line)
-        shift = lines.Affine(shift=complex(_length(node, "x", place.width), _length(node, "y", place.height)))
+        shift = lines.Affine(shift=place.pair(node, "x", "y"))
         used_as = place.used_as or node.get("id")
         there = place._replace(to=place.to.after(shift), trail=(*place.trail, name), used_as=used_as)
-        if target.tag in ("symbol", "svg"):
-            inner = _viewport(target, there, node)
-            if inner:
-                self._draw(target, inner, is_viewport=True)
-        else:
-            self._draw(target, there)
+        is_viewport = target.tag in ("symbol", "svg")
+        inner = _viewport(target, there, node) if is_viewport else there
+        if inner:
+            self._draw(target, inner, is_viewport)
 
     def _text(self, node: SvgElement, place: SvgPlace) -> None:
         written = [""]
@@ -369,16 +344,15 @@ class _SvgReader:
         for track in tracks:
             self.sides += len(track.pieces)
             self.curves += sum(not isinstance(piece, complex) for piece in track.pieces)
-        if self.curves > MAX_CURVES:
-            raise DrawingError("too_large", f"the drawing has more than {MAX_CURVES:,} curves", self.file)
-        bents = list(lines.bent(tracks, place.to)) if self.sides <= MAX_SIDES else []
+        check_count(self.curves, MAX_CURVES, "curves", self.file)
+        check_count(self.sides, MAX_SIDES, "sides", self.file)
+        bents = list(lines.bent(tracks, place.to))
         self.shapes += 1
         shape = f"{node.tag} {self.shapes}" if len(bents) > 1 else ""
         self.sides += sum(len(each.points) for each in bents if each.is_straightened)
-        if self.sides > MAX_SIDES:
-            raise DrawingError("too_large", f"the drawing has more than {MAX_SIDES:,} sides", self.file)
+        check_count(self.sides, MAX_SIDES, "sides", self.file)
         for each in bents:
-            if max(map(abs, each.points)) > MAX_NUMBER:
+            if not max(map(abs, each.points)) <= MAX_NUMBER:
                 raise ValueError(f"has a point beyond {MAX_NUMBER:g}")
             self.chains.append(DrawnLine(
                 np.array(each.points), np.array(each.bulges), each.closed, place.layer, node.tag,
@@ -398,33 +372,30 @@ def _tracks(node: SvgElement, place: SvgPlace) -> list[lines.Track]:
         points = [complex(x, y) for x, y in zip(given[::2], given[1::2], strict=True)]
         return lines.polygon(points, node.tag == "polygon")
 
-    def pair(x: str, y: str) -> complex:
-        return complex(_length(node, x, place.width), _length(node, y, place.height))
-
     if node.tag == "line":
-        return lines.polygon([pair("x1", "y1"), pair("x2", "y2")], closed=False)
+        return lines.polygon([place.pair(node, "x1", "y1"), place.pair(node, "x2", "y2")], closed=False)
     if node.tag == "circle":
         mean = float(np.hypot(place.width, place.height)) / 2**0.5
         rx = ry = _length(node, "r", mean)
     else:
         rx, ry = _radii(node, place)
-    size = pair("width", "height") if node.tag == "rect" else complex(rx, ry)
+    size = place.pair(node, "width", "height") if node.tag == "rect" else complex(rx, ry)
     if min(size.real, size.imag, rx, ry) < 0:
         raise ValueError("has a negative size")
     if not (size.real and size.imag):
         return []
     if node.tag == "rect":
         rx, ry = min(rx, size.real / 2), min(ry, size.imag / 2)
-        return lines.rectangle(pair("x", "y"), size.real, size.imag, rx, ry)
-    return lines.ellipse(pair("cx", "cy"), rx, ry)
+        return lines.rectangle(place.pair(node, "x", "y"), size.real, size.imag, rx, ry)
+    return lines.ellipse(place.pair(node, "cx", "cy"), rx, ry)
 
 
 def _radii(node: SvgElement, place: SvgPlace) -> tuple[float, float]:
     """Return the radii of an ellipse or of corners; one that is not given is like the other."""
-    given = [None if node.get(name, "auto").strip() == "auto" else _length(node, name, whole)
-             for name, whole in (("rx", place.width), ("ry", place.height))]  # fmt: skip
-    rx, ry = (one if one is not None else other or 0.0 for one, other in (given, given[::-1]))
-    return rx, ry
+    names = [name for name in ("rx", "ry") if node.get(name, "auto").strip() != "auto"]
+    wholes = {"rx": place.width, "ry": place.height}
+    radii = [_length(node, name, wholes[name]) for name in names] or [0.0]
+    return radii[0], radii[-1]
 
 
 def _length(node: SvgElement, name: str, whole: float, default: str = "0") -> float:
@@ -438,9 +409,7 @@ def _length(node: SvgElement, name: str, whole: float, default: str = "0") -> fl
     number, unit = float(length[1]), length[2]
     if abs(number) > MAX_NUMBER:
         raise ValueError(f"has {name} `{cut(text)}`, which is too large")
-    if unit == "%":
-        return number / 100 * whole
-    return number * float(METRES[unit] / _PX) if unit in METRES else number
+    return number / 100 * whole if unit == "%" else number * (METRES[unit] / METRES["px"])
 
 
 def _box(node: SvgElement) -> list[float]:
@@ -454,59 +423,58 @@ def _box(node: SvgElement) -> list[float]:
 
 def _viewport(node: SvgElement, place: SvgPlace, sized: SvgElement) -> SvgPlace | None:
     """Return the place within a nested `svg` or a symbol, whose size another element may give; None if it has none."""
-    width, height = (
+    size = [
         _length(sized if sized.get(name) else node, name, whole, "100%")
         for name, whole in (("width", place.width), ("height", place.height))
-    )
-    corner = complex(_length(node, "x", place.width), _length(node, "y", place.height)) if node.tag == "svg" else 0j
+    ]
+    corner = place.pair(node, "x", "y") if node.tag == "svg" else 0j
     to = place.to.after(lines.Affine(shift=corner))
-    if min(width, height) <= 0:
+    if min(size) <= 0:
         return None
     box = _box(node)
     if not box:
-        return place._replace(to=to, width=width, height=height)
-    x, y, w, h = box
-    align, how = _aspect(node)
-    across, up = width / w, height / h
-    if align != "none":
-        across = up = max(across, up) if how == "slice" else min(across, up)
-        shares = _ALIGN.get(align[1:4], 0.5), _ALIGN.get(align[5:8], 0.5)
-        to = to.after(lines.Affine(shift=complex(shares[0] * (width - across * w), shares[1] * (height - up * h))))
+        return place._replace(to=to, width=size[0], height=size[1])
+    x, y, *sides = box
+    align, across, up = _fitted(node, [whole / side for whole, side in zip(size, sides, strict=True)])
+    room = size[0] - across * sides[0], size[1] - up * sides[1]
+    to = to.after(lines.Affine(shift=complex(*(_ALIGN[each] * more for each, more in zip(align, room, strict=True)))))
     to = to.after(lines.scaling(across, up)).after(lines.Affine(shift=complex(-x, -y)))
-    return place._replace(to=to, width=w, height=h)
+    return place._replace(to=to, width=sides[0], height=sides[1])
 
 
-def _paper(root: SvgElement) -> tuple[float | None, str, float]:
+def _fitted(node: SvgElement, scales: list[float]) -> tuple[tuple[str, str], float, float]:
+    """Return how the viewBox of an element is put into its size: alignment, and scales along x and y.
+
+    Parameters
+    ----------
+    node : SvgElement
+        The element.
+    scales : list of float
+        Scales along x and y that fill its size; one if only one side of it is known.
+    """
+    match = _ASPECT.match(node.get("preserveAspectRatio"))
+    if not match:
+        return ("Mid", "Mid"), scales[0], scales[-1]
+    scale = max(scales) if match[3] else min(scales)
+    return (match[1] or "Mid", match[2] or "Mid"), scale, scale
+
+
+def _paper(root: SvgElement, box: list[float]) -> tuple[float | None, str, float]:
     """Return the size of a unit on paper [m], why it is not known, and the stretch of y against x on paper."""
-    box = _box(root)
     if not box:
-        return None, "the drawing has no viewBox, and there are 72, 90, 96 or 300 px per inch", 1.0
-    scales, known = [], set()
-    for name, side in zip(("width", "height"), box[2:], strict=True):
-        size = _LENGTH.fullmatch(root.get(name))
-        if size and size[2] != "%" and (number := _exact(size[1])) > 0:
-            scales.append(number * METRES.get(size[2], Fraction(1)) / _exact(repr(side)))
-            known.add(size[2] in METRES)
-    align, how = _aspect(root)
-    stretch = float(scales[1] / scales[0]) if align == "none" and len(scales) == 2 and len(known) == 1 else 1.0
-    if known != {True}:
-        return None, "the size of the drawing is in px, and there are 72, 90, 96 or 300 px per inch", stretch
-    paper = scales[0] if align == "none" else max(scales) if how == "slice" else min(scales)
-    return float(paper), "", stretch
-
-
-def _aspect(node: SvgElement) -> tuple[str, str]:
-    """Return how the viewBox of an element is put into its size: alignment, and `meet` or `slice`."""
-    align, _, how = node.get("preserveAspectRatio").strip().partition(" ")
-    return align or "xMidYMid", how.strip()
-
-
-def _exact(text: str) -> Fraction:
-    """Return a number as a fraction. Raises `ValueError` if it is not one of a usual size."""
-    (number,) = lines.numbers(text)
-    if (number and abs(number) < 1 / MAX_NUMBER) or len(text) > 100:
-        raise ValueError(f"has the size `{cut(text)}`, which is out of range")
-    return Fraction(text) if number else Fraction(0)
+        return None, f"the drawing has no viewBox, and {_PX}", 1.0
+    sizes = (_LENGTH.fullmatch(root.get(name)) for name in ("width", "height"))
+    known = [(float(size[1]), size[2], side) for size, side in zip(sizes, box[2:], strict=True)
+             if size and size[2] != "%" and float(size[1]) > 0]  # fmt: skip
+    scales = [number / side * METRES[unit] for number, unit, side in known]
+    if not all(1 / MAX_NUMBER < scale < MAX_NUMBER for scale in scales):
+        raise ValueError("has a size that is out of range")
+    _, across, up = _fitted(root, scales or [1.0])
+    in_px = [unit in (None, "px") for _, unit, _ in known]
+    stretch = up / across if all(in_px) or not any(in_px) else 1.0
+    if any(in_px) or not known:
+        return None, f"the size of the drawing is in px, and {_PX}", stretch
+    return across, "", stretch
 
 
 def _declared(text: str) -> dict[str, str]:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rocking_cli.io.drawings.rings import MAX_NUMBER
+from rocking_cli.io.drawings.limits import MAX_NUMBER
 from rocking_cli.text import cut
 
 FLATNESS = 1e-6  # distance of a curve from its straight sides, over the size of its path
@@ -30,7 +30,6 @@ _COMMANDS = re.compile(r"([A-DF-Za-df-z])")  # an e is part of a number
 _NUMBER = re.compile(r"(?>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)", re.ASCII)
 _ARC = re.compile(rf"({_NUMBER.pattern})[\s,]*" * 3 + r"([01])[\s,]*([01])[\s,]*" + rf"({_NUMBER.pattern})[\s,]*" * 2)
 _STRAY = re.compile(r"[^-+.,\deE\s]|^\s*,|,\s*(?:,|$)", re.ASCII)  # not in a list of numbers
-_STRAY_IN_PATH = re.compile(r"[^-+.,\w\s]|_|(?:^|[A-Za-z])\s*,|,\s*(?:[A-Za-z,]|$)", re.ASCII)
 _TRANSFORM = re.compile(r"\s*(\w+)\s*\(([^()]*)\)\s*,?")
 _ARGUMENTS = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "Z": 0}
 
@@ -103,19 +102,7 @@ class Track:
 
 
 class Bent(NamedTuple):
-    """Corners and bulges of a track, with y up.
-
-    Parameters
-    ----------
-    points, bulges : list
-        Corners, and the bulge of the side from each to the next.
-    closed : bool
-        Whether a side leads from the last corner to the first.
-    arcs_found : int
-        Number of arcs that the file has as cubic curves.
-    is_straightened : bool
-        Whether curves that are no arcs were made straight sides.
-    """
+    """Corners and bulges of a track, with y up; see `DrawnLine`."""
 
     points: list[complex]
     bulges: list[float]
@@ -136,11 +123,6 @@ def numbers(text: str) -> list[float]:
         raise ValueError(f"has a list of more than {MAX_CHARACTERS:,} characters")
     if _STRAY.search(text):
         raise ValueError(f"`{cut(text)}` is not a list of numbers")
-    return _floats(text)
-
-
-def _floats(text: str) -> list[float]:
-    """Return the numbers of a list, as `numbers` does, of which only the numbers remain to be checked."""
     try:
         values = [float(each) for each in text.replace(",", " ").split()]
     except ValueError:
@@ -223,10 +205,9 @@ def path(text: str) -> list[Track]:
     before, *parts = _COMMANDS.split("" if text.strip() == "none" else text)
     if before.strip() or (parts and parts[0] not in "Mm"):
         raise ValueError(f"the path `{cut(text)}` does not start with M")
-    if _STRAY_IN_PATH.search(text):
-        raise ValueError(f"the path `{cut(text)}` has a comma or another mark at a wrong place")
     tracks: list[Track] = []
-    digits = _least_digit(text) if "A" in parts or "a" in parts else 0.0
+    # The value of the last decimal that its numbers are written with.
+    digits = 10.0 ** -max(map(len, re.findall(r"\.(\d+)", text)), default=0) if {"A", "a"} & set(parts) else 0.0
     start = here = 0j
     last = ""  # the command before, in capitals
     control = 0j  # the last control point of the curve before
@@ -240,7 +221,7 @@ def path(text: str) -> list[Track]:
                 pieces += _arc(here, rx, ry, angle, large, sweep, end, digits)
                 here, last = end, capital
             continue
-        count, given = _ARGUMENTS.get(capital), _floats(rest)
+        count, given = _ARGUMENTS.get(capital), numbers(rest)
         if count is None or (given if not count else not given or len(given) % count):
             raise ValueError(f"the path has `{cut(command + rest)}`, which is not a valid command")
         if capital == "Z":
@@ -283,23 +264,18 @@ def _begun(tracks: list[Track], start: complex) -> list[Piece]:
     return tracks[-1].pieces
 
 
-def _least_digit(text: str) -> float:
-    """Return the value of the last decimal that the numbers of a path are written with."""
-    return 10.0 ** -max((len(each) for each in re.findall(r"\.(\d+)", text)), default=0)
-
-
 def _arcs(text: str) -> Iterator[tuple[float, float, float, bool, bool, complex]]:
     """Yield the values of each arc of a command. Raises `ValueError`."""
-    place, end = len(text) - len(text.lstrip()), len(text.rstrip())
-    while True:
-        match = _ARC.match(text, place)
+    if _STRAY.search(text):
+        raise ValueError(f"`{cut(text)}` is not a list of arcs")
+    text, place = text.strip(), 0
+    while place < len(text) or not text:
+        match = _ARC.match(text, place)  # not a search, whose time grows with the square of the length
         if not match:
             raise ValueError(f"`{cut(text[place:])}` is not an arc of a path")
-        rx, ry, angle, x, y = _floats(" ".join(match.group(1, 2, 3, 6, 7)))
+        rx, ry, angle, x, y = numbers(" ".join(match.group(1, 2, 3, 6, 7)))
         yield abs(rx), abs(ry), radians(angle), match[4] == "1", match[5] == "1", complex(x, y)
         place = match.end()
-        if place >= end:
-            return
 
 
 def _arc(

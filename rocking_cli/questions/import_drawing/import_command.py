@@ -12,8 +12,7 @@ import click
 
 from rocking_cli.cli import complete, options, terminal
 from rocking_cli.cli.groups import Output
-from rocking_cli.cli.quantities import NUMBER, Parsed
-from rocking_cli.units import number_of
+from rocking_cli.cli.quantities import NUMBER
 
 if TYPE_CHECKING:
     from rocking_cli.ask.answer import Answer
@@ -27,7 +26,6 @@ OF_DRAWINGS = {
     "tolerance": "0.1mm",
 }  # fmt: skip
 """Options that only meshes, or drawings, have, with their defaults."""
-LENGTH = Parsed("length", lambda text: number_of(text, "m"))
 
 
 @click.command(short_help="Make a structure file of a drawing or a mesh.")
@@ -74,9 +72,7 @@ LENGTH = Parsed("length", lambda text: number_of(text, "m"))
     help="Largest distance of the straight sides of curved blocks from their arcs.",
 )
 @click.option("--azimuth", metavar="DEG", help="Of a mesh: direction of the motion, from its x axis: 30, or 0:350:10.")
-@click.option(
-    "--level", type=LENGTH, metavar="LENGTH", help="Of a mesh: height up to which points bear.  [default: 1mm]"
-)
+@click.option("--level", metavar="LENGTH", help="Of a mesh: height up to which points bear.  [default: 1mm]")
 @click.option("--settle", is_flag=True, help="Of a mesh: lay it on the facet of its hull below its centre of mass.")
 @click.option("--hull", is_flag=True, help="Of a mesh: take its convex hull; it need not be closed.")
 @click.option("--up", type=click.Choice(["z", "y"]), help="Of a mesh: axis that points upwards.  [default: z]")
@@ -151,10 +147,11 @@ def _of_mesh(file: str, output: Output, asked: dict[str, Any]) -> Answer[Any]:
     if len(asked["density"]) > 1 or "=" in "".join(asked["density"]):
         raise click.UsageError("A mesh has one density: give --density once, without a layer.")
     given = {name: value for name, value in asked.items() if name in OF_MESHES and value is not None}
-    from rocking_cli.questions.import_drawing.verb import density_of
-
-    density = None if not asked["density"] else density_of(asked["density"][0])
-    return import_mesh(file, units=asked["units"], density=density, out=output.out, watch=output.watch, **given)
+    density = asked["density"][0] if asked["density"] else None
+    return import_mesh(
+        file, units=asked["units"], density=density, out=output.out, command=_typed(file, asked), watch=output.watch,
+        **given,
+    )  # fmt: skip
 
 
 def _refuse(asked: dict[str, Any], names: Mapping[str, Any], why: str) -> None:
@@ -183,5 +180,5 @@ def _typed(file: str, asked: dict[str, Any]) -> str:
         option = "--as" if name == "kind" else f"--{name.replace('_', '-')}"
         for each in value if isinstance(value, tuple) else (value,):
             if each is not None and each is not False and defaults.get(name) != each:
-                words += [option, each]
+                words += [option] if each is True else [option, str(each)]
     return shlex.join(words)

@@ -10,16 +10,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from rocking_cli.ask.answer import Answer, drawn
+from rocking_cli.ask.drawings import density_of, length_of, read_drawing
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.units import UnitError, mass_of_weight, number_of
 
 if TYPE_CHECKING:
     from rocking_cli.io.tables import Columns
     from rocking_cli.questions.import_drawing.study import Imported
-
-Length = float | str
 
 
 @takes_numbers
@@ -30,12 +28,12 @@ def import_drawing(
     scale: str | None = None,
     layers: Mapping[str, Sequence[str]] | None = None,
     density: float | str | Mapping[str, float | str] | None = None,
-    depth: Length | None = None,
-    merge_gap: Length = 0.0,
-    close: Length = "1 mm",
+    depth: float | str | None = None,
+    merge_gap: float | str = 0.0,
+    close: float | str = "1 mm",
     nested: Literal["openings"] | None = None,
     kind: Literal["rigid_body", "assembly", "linkage"] | None = None,
-    tolerance: Length = "0.1 mm",
+    tolerance: float | str = "0.1 mm",
     out: str | Path | None = None,
     command: str = "rk.import_drawing",
     watch: Watcher = SILENT,
@@ -101,7 +99,6 @@ def import_drawing(
     >>> answer.structure.uplift(rk.Direction.POSITIVE)
     0.25
     """
-    from rocking_cli.ask.drawings import read_drawing
     from rocking_cli.core.structure_file import default_name, fields_text
     from rocking_cli.io.drawings.contract import MeshSurface
     from rocking_cli.io.files import keep_apart, write_whole
@@ -110,9 +107,10 @@ def import_drawing(
 
     options = ImportOptions(
         units=units, scale=scale, layers=layers or {}, densities=_densities(density),
-        depth=None if depth is None else _length(depth, "depth", zero=False), merge_gap=_length(merge_gap, "merge_gap"),
-        close=_length(close, "close", zero=False), nested=nested, kind=kind,
-        tolerance=_length(tolerance, "tolerance", zero=False),
+        depth=None if depth is None else length_of(depth, "depth", zero=False),
+        merge_gap=length_of(merge_gap, "merge_gap"),
+        close=length_of(close, "close", zero=False), nested=nested, kind=kind,
+        tolerance=length_of(tolerance, "tolerance", zero=False),
     )  # fmt: skip
     if out is not None:
         keep_apart([("`out`", Path(out))], [str(file)])
@@ -139,32 +137,9 @@ def _columns(made: Imported) -> Columns:
     return frame_of(BODIES, made.bodies)
 
 
-def _length(value: Length, name: str, *, zero: bool = True) -> float:
-    """Return a length [m] from a number or a text with a unit. Raises `InputError` if it is not a valid one."""
-    try:
-        length = number_of(value, "m")
-    except UnitError as error:
-        raise InputError(Problem(error.message, field=f"`{name}`", hint=error.hint)) from None
-    if not 0 <= length <= 1000 or not (zero or length):
-        raise InputError(Problem(f"must be a length up to 1000 m, got {value}", field=f"`{name}`"))
-    return length
-
-
 def _densities(given: float | str | Mapping[str, float | str] | None) -> dict[str, float]:
     """Return the density of each layer, that of all others under ""."""
     if given is None:
         return {}
     by_layer = given if isinstance(given, Mapping) else {"": given}
     return {layer: density_of(value) for layer, value in by_layer.items()}
-
-
-def density_of(value: float | str) -> float:
-    """Return a density [kg/m3] from a number or a text with a unit. Raises `InputError` if it is not a valid one."""
-    try:
-        weight = mass_of_weight(value, "kg/m3") if isinstance(value, str) else None
-        density = weight if weight is not None else number_of(value, "kg/m3")
-    except UnitError as error:
-        raise InputError(Problem(error.message, field="`density`", hint=error.hint)) from None
-    if not 0 < density <= 1e6:
-        raise InputError(Problem(f"must be above 0 and at most 1e6 kg/m3, got {value}", field="`density`"))
-    return density

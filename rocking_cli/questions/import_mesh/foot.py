@@ -9,11 +9,12 @@ from math import atan2, cos, degrees, hypot, radians, sqrt
 import numpy as np
 
 from rocking_cli.arrays import Reals
-from rocking_cli.questions.import_mesh.solid import Moments, Triangles
+from rocking_cli.questions.import_mesh.solid import Moments
 
 STRAIGHT = 1e-6  # distance of a corner of the foot from the line of its neighbours, over the size, that is none
 SINGLE = 2.0**-23  # relative precision of coordinates in single precision
 EQUAL_WAYS = 1e-6  # relative difference of the ways to two edges that meet in the corner towards which a body goes
+LEVEL_TURN = 1e-9  # sine of a turn that is none
 LEVELS = (0.0, 0.001, 0.002, 0.005, 0.010, 0.020)
 """Heights above the ground [m] up to which points count as standing on it, in the table of feet."""
 
@@ -117,10 +118,9 @@ def foot_of(points: Reals, level: float) -> Sequence[complex]:
     level : float
         Height [m].
     """
-    low = points[points[:, 2] <= level + SINGLE * np.abs(points).max()]
-    z = np.unique(low[:, 0] + 1j * low[:, 1])
-    tolerance = STRAIGHT * float(np.abs(points).max())
-    return _convex(z.tolist(), tolerance)
+    size = float(np.abs(points).max())
+    low = points[points[:, 2] <= level + SINGLE * size]
+    return _convex(np.unique(low[:, 0] + 1j * low[:, 1]).tolist(), STRAIGHT * size)
 
 
 def _convex(z: Sequence[complex], tolerance: float) -> list[complex]:
@@ -199,13 +199,13 @@ def levels_of(points: Reals, height: float, whole: Moments, gravity: float) -> l
     return rows
 
 
-def settled(points: Reals, triangles: Triangles, centroid: Reals) -> tuple[Reals, float]:
+def settled(planes: Reals, centroid: Reals) -> tuple[Reals, float]:
     """Return the turn, shape (3, 3), that lays a body down on the facet of its hull below its centre of mass.
 
     Parameters
     ----------
-    points, triangles : ndarray
-        The convex hull of the body [m], from `hull_of`.
+    planes : ndarray, shape (m, 4)
+        The planes of the facets of the convex hull, from `hull_of` [m].
     centroid : ndarray, shape (3,)
         Centre of mass [m].
 
@@ -216,23 +216,18 @@ def settled(points: Reals, triangles: Triangles, centroid: Reals) -> tuple[Reals
     float
         Its angle [deg].
     """
-    points = points - centroid
-    a, b, c = (points[triangles[:, k]] for k in range(3))
-    across = np.cross(b - a, c - a)
-    size = np.linalg.norm(across, axis=1)
-    normals, corner = across[size > 0] / size[size > 0, None], a[size > 0]
-    far = (normals * corner).sum(axis=1)
+    normals = planes[:, :3]
+    far = -planes[:, 3] - normals @ centroid
     down, height = np.array([0.0, 0.0, -1.0]), np.inf
     while True:  # the centre of mass comes down with every turn
         with np.errstate(divide="ignore", invalid="ignore"):
             below = int(np.where(normals @ down > 0, far / (normals @ down), np.inf).argmin())
-        if far[below] >= height:
+        if far[below] >= height * (1 - LEVEL_TURN):
             break
         down, height = normals[below], far[below]
-    cosine = float(np.clip(-down[2], -1.0, 1.0))
-    axis = np.array([-down[1], down[0], 0.0])  # down x (0, 0, -1)
-    sine = float(np.linalg.norm(axis))
-    axis = axis / sine if sine > 0 else np.array([1.0, 0.0, 0.0])
-    x, y, _ = axis
+    x, y, cosine = -down[1], down[0], -down[2]
+    sine = hypot(x, y)
+    if sine < LEVEL_TURN:
+        return np.diag([1.0, np.sign(cosine), np.sign(cosine)]), 0.0 if cosine > 0 else 180.0
     turn = np.array([[0.0, 0.0, y], [0.0, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + sine * turn + (1 - cosine) * turn @ turn, degrees(atan2(sine, cosine))
+    return np.eye(3) + turn + (1 - cosine) / sine**2 * turn @ turn, degrees(atan2(sine, cosine))

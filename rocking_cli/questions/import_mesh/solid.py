@@ -16,6 +16,7 @@ Names = NDArray[np.intp]
 CRUMB = 1e-3  # volume of a shell over that of the largest, below which it is left out
 MAX_SHELLS = 100  # larger ones
 PROBES = 5  # points of a shell at which it is looked whether it lies in another
+MAX_HULL_POINTS, MAX_HULL_CORNERS = 1_000_000, 100_000  # which take seconds
 PER_BATCH = 1 << 18  # triangles whose integrals are summed at once
 LEAST_VOLUME = 1e-9  # volume over the cube of the size, below which there is no inside
 MIX, HALF = np.uint64(0x9E3779B97F4A7C15), np.uint64(32)  # of the keys by which equal points are found
@@ -150,29 +151,36 @@ def closed(points: Reals, triangles: Triangles, file: str) -> None:
         what = f"its surface is closed, but {turned:,} sides lie between triangles of which one is turned over"
         raise DrawingError("open", what, file, at, "turn its faces the same way out, or `hull`, the convex hull")
     labels = joined(ends, len(points))[ends[:, 0]]
-    boxes = [
-        (float(np.linalg.norm(size)), np.sort(size)[::-1])
-        for each in np.unique(labels)[:MAX_SHELLS]
-        for size in [np.ptp(points[ends[labels == each]].reshape(-1, 3), axis=0)]
-    ]
-    long, wide = max(boxes, key=lambda box: box[0])[1][:2]
+    holes = [np.ptp(points[ends[labels == each]].reshape(-1, 3), axis=0) for each in np.unique(labels)[:MAX_SHELLS]]
+    _, wide, long = np.sort(max(holes, key=np.linalg.norm))
     what = f"its surface is not closed: {len(ends):,} loose sides, the largest hole {long:.3g} x {wide:.3g} m"
     raise DrawingError("open", what, file, at, "close its holes, or `hull`, the convex hull, which weighs more")
 
 
-def hull_of(points: Reals, file: str) -> tuple[Reals, Triangles]:
-    """Return the convex hull of points as corners and triangles that face outwards."""
+def hull_of(points: Reals, file: str) -> tuple[Reals, Triangles, Reals]:
+    """Return the convex hull of points: corners, triangles that face outwards, and the plane of each triangle.
+
+    A plane is a row [n, d], n . x + d = 0, n outwards. The points are joggled by 1e-11 of their size, as the time for
+    faces of many corners grows with the square of their number otherwise. Raises `DrawingError`.
+    """
     from scipy.spatial import ConvexHull, QhullError
 
+    what = f"has more than {MAX_HULL_POINTS:,} points, or {MAX_HULL_CORNERS:,} corners of its convex hull"
+    if len(points) > MAX_HULL_POINTS:
+        raise DrawingError("too_large", what, file, hint="leave out points")
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
     try:
-        hull = ConvexHull(points - points.mean(axis=0))
+        hull = ConvexHull(points - middle, qhull_options=f"QJ TA{MAX_HULL_CORNERS}")
     except (QhullError, ValueError):
         raise DrawingError("thin", "encloses nothing: all its points lie in one plane", file) from None
-    triangles = hull.simplices.astype(np.int64)
+    if len(hull.vertices) >= MAX_HULL_CORNERS:
+        raise DrawingError("too_large", what, file, hint="leave out points")
+    triangles, planes = hull.simplices.astype(np.int64), hull.equations
     a, b, c = (hull.points[triangles[:, k]] for k in range(3))
-    inwards = np.einsum("ij,ij->i", np.cross(b - a, c - a), hull.equations[:, :3]) < 0
+    inwards = np.einsum("ij,ij->i", np.cross(b - a, c - a), planes[:, :3]) < 0
     triangles[inwards] = triangles[inwards, ::-1]
-    return merged(points, triangles)
+    planes[:, 3] -= planes[:, :3] @ middle
+    return points, triangles, planes
 
 
 def solid(points: Reals, triangles: Triangles, file: str) -> tuple[Triangles, list[MeshNote]]:

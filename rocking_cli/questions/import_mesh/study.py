@@ -185,11 +185,12 @@ def imported(surface: MeshSurface, file: str, options: MeshOptions, azimuths: Se
     """
     scale = _scale(surface, file, options.units)
     turn = UPWARDS[options.up]
-    points, notes = surface.points @ turn.T * scale, list[MeshNote]()
-    points, triangles = merged(points, surface.triangles) if len(surface.triangles) else (points, surface.triangles)
+    points, triangles, notes = surface.points @ turn.T * scale, surface.triangles, list[MeshNote]()
+    if len(triangles):
+        points, triangles = merged(points, triangles)
     if options.hull:
         enclosed = _volume(points, triangles)
-        points, triangles = hull_of(points, file)
+        points, triangles, planes = hull_of(points, file)
     elif not len(triangles):
         what = f"is a cloud of {len(points):,} points without faces, which encloses nothing"
         advice = "make a surface of it, or `hull`, the convex hull, which weighs more"
@@ -198,12 +199,14 @@ def imported(surface: MeshSurface, file: str, options: MeshOptions, azimuths: Se
         closed(points, triangles, file)
     triangles, shells = solid(points, triangles, file)
     notes += [replace(each, at=(np.array(each.at) @ turn).tolist()) for each in shells]
-    points, triangles = _used(points, triangles)
+    used = np.bincount(triangles.ravel(), minlength=len(points)) > 0
+    points, triangles = points[used], (np.cumsum(used) - 1)[triangles]
     whole, turned = moments(points, triangles), 0.0
     if options.hull:
-        notes.append(_hull_note(whole.volume, enclosed))
+        more = "more than what it encloses" if enclosed is None else f"{100 * (whole.volume / enclosed - 1):.2g} % more"
+        notes.append(MeshNote("hull", 1, f"the body is the convex hull of the mesh, which weighs {more}"))
     if options.settle:
-        way, turned = settled(*((points, triangles) if options.hull else hull_of(points, file)), whole.centroid)
+        way, turned = settled(planes if options.hull else hull_of(points, file)[2], whole.centroid)
         notes.append(MeshNote("settled", 1, f"laid down on the facet of its hull by a turn of {turned:.3g} degrees"))
         points = points @ way.T
         whole = Moments(whole.volume, way @ whole.centroid, way @ whole.inertia @ way.T)
@@ -236,13 +239,6 @@ def _short(number: float) -> float:
     return float(f"{number:.12g}")
 
 
-def _used(points: Reals, triangles: Triangles) -> tuple[Reals, Triangles]:
-    """Return the points that triangles use, and the triangles by these."""
-    used = np.zeros(len(points), np.bool_)
-    used[triangles.ravel()] = True
-    return points[used], (np.cumsum(used) - 1)[triangles]
-
-
 def _volume(points: Reals, triangles: Triangles) -> float | None:
     """Return the volume that a surface encloses [m3]; None if it encloses none."""
     try:
@@ -252,18 +248,11 @@ def _volume(points: Reals, triangles: Triangles) -> float | None:
         return None
 
 
-def _hull_note(hull: float, enclosed: float | None) -> MeshNote:
-    words = "the body is the convex hull of the mesh, which weighs more than what it encloses"
-    if enclosed is not None:
-        words = f"the body is the convex hull of the mesh, which weighs {100 * (hull / enclosed - 1):.2g} % more"
-    return MeshNote("hull", 1, words)
-
-
 def _standing(points: Reals, whole: Moments, corners: Sequence[complex], level: float, file: str) -> Sequence[FootEdge]:
     """Return the edges of a foot. Raises `DrawingError` if the body does not stand on it."""
     within = f"within {1000 * level:g} mm"
     if len(corners) < 3:
-        angle = settled(*hull_of(points, file), whole.centroid)[1]
+        angle = settled(hull_of(points, file)[2], whole.centroid)[1]
         on = "one point" if len(corners) < 2 else "a line"
         what = f"stands on {on} {within} of the ground, {angle:.2f} degrees from a facet of its hull"
         at = [[each.real, each.imag] for each in corners]

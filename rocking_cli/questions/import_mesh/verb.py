@@ -10,16 +10,15 @@ from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from rocking_cli.ask.answer import Answer, drawn
+from rocking_cli.ask.drawings import density_of, length_of, read_drawing
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.text import one_line
 
 if TYPE_CHECKING:
-    from rocking_cli.core import Mechanism
-    from rocking_cli.io.drawings.contract import MeshSurface
     from rocking_cli.questions.import_mesh.foot import AzimuthRow
-    from rocking_cli.questions.import_mesh.study import ImportedMesh, MeshOptions
+    from rocking_cli.questions.import_mesh.study import ImportedMesh
 
 LEVEL = 0.001
 MAX_AZIMUTHS = 720
@@ -32,15 +31,16 @@ def import_mesh(
     path: str | Path,
     *,
     units: str | None = None,
-    density: float | None = None,
+    density: float | str | None = None,
     azimuth: str | float | Sequence[float] | None = None,
-    level: float = LEVEL,
+    level: float | str = LEVEL,
     settle: bool = False,
     hull: bool = False,
     up: str = "z",
     north: float | None = None,
     out: str | Path | None = None,
     page: str | Path | None = None,
+    command: str = "rk.import_mesh",
     watch: Watcher = SILENT,
 ) -> Answer[ImportedMesh]:
     """Make a structure of the mesh of a body, such as the scan of a statue: OBJ, PLY or STL.
@@ -51,12 +51,12 @@ def import_mesh(
         The mesh, a closed surface.
     units : str
         Unit of its coordinates, such as "mm"; a mesh does not say it.
-    density : float, optional
+    density : float or str, optional
         Density [kg/m3]; needed for a structure, not for its uplift.
     azimuth : float, str or sequence of float, optional
         Direction of the motion, anticlockwise from the x axis of the mesh [deg]; several make a structure each, also
         as text "FROM:TO:STEP". By default the body rocks over its weakest edge, driven by the whole motion.
-    level : float
+    level : float or str
         Height above the ground up to which points bear [m]: they make the foot.
     settle : bool
         Lay the body down on the facet of its convex hull below its centre of mass.
@@ -70,6 +70,8 @@ def import_mesh(
         Write the structure to this YAML file; of several azimuths one each, such as `statue-030.yaml`.
     page : str or Path, optional
         Write a page of HTML on which the body can be turned.
+    command : str
+        The command that the files name as their origin.
     watch : Watcher
         Told what was read and written.
 
@@ -104,73 +106,53 @@ def import_mesh(
     >>> [round(row.lambda_, 12) for row in answer.azimuths]
     [0.25, 0.5]
     """
-    from rocking_cli.ask.drawings import read_drawing
+    from rocking_cli.core.structure_file import structure_text
     from rocking_cli.io.drawings.contract import MeshSurface
     from rocking_cli.io.files import check_writable, keep_apart
-    from rocking_cli.questions.import_mesh.study import MeshOptions
+    from rocking_cli.questions.import_mesh.study import MeshOptions, imported
+    from rocking_cli.questions.import_mesh.view import columns, sentences, view
     from rocking_cli.units import KINDS
 
     for field, value, known in (("units", units, tuple(KINDS["length"])), ("up", up, ("z", "y"))):
         if value is not None and value not in known:
             raise InputError(Problem(f"must be one of {', '.join(known)}, got {value!r}", field=f"`{field}`"))
-    if density is not None and not 0 < density <= 1e6:
-        raise InputError(Problem(f"must be above 0 and at most 1e6 kg/m3, got {density:g}", field="`density`"))
-    if not 0 <= level < 100:
-        raise InputError(Problem(f"must be a height of at least 0 m, got {level:g}", field="`level`"))
     azimuths = azimuths_of(azimuth)
-    options = MeshOptions(units, density, level, settle, hull, up)
+    options = MeshOptions(
+        units, None if density is None else density_of(density), length_of(level, "level"), settle, hull, up
+    )
     places = [] if out is None else places_of(Path(out), azimuths)
-    pages = [] if page is None else [Path(page)]
-    if pages and pages[0].suffix.lower() != ".html":
-        raise InputError(Problem("give a file name that ends in .html", str(page), field="`page`"))
-    outputs = [*(("`out`", place) for place in places), *(("`page`", place) for place in pages)]
+    outputs = [("`out`", place) for place in places]
+    if page is not None:
+        if Path(page).suffix.lower() != ".html":
+            raise InputError(Problem("give a file name that ends in .html", str(page), field="`page`"))
+        outputs.append(("`page`", Path(page)))
     keep_apart(outputs, [str(path)])
     for _, place in outputs:
         check_writable(place)
     surface, content = read_drawing(path)
     if not isinstance(surface, MeshSurface):
         raise InputError(Problem("this is a drawing, not a mesh", str(path), hint="use rk.import_drawing"))
-    return of_surface(
-        surface, str(path), sha256(content).hexdigest(), options, azimuths, north, places, pages, watch
-    )  # fmt: skip
-
-
-def of_surface(
-    surface: MeshSurface,
-    file: str,
-    digest: str,
-    options: MeshOptions,
-    azimuths: Sequence[float],
-    north: float | None,
-    places: Sequence[Path],
-    pages: Sequence[Path],
-    watch: Watcher,
-) -> Answer[ImportedMesh]:
-    """Return the answer of a mesh that was read, and write its files; `digest` is the SHA-256 of the file."""
-    from rocking_cli.questions.import_mesh.study import imported
-    from rocking_cli.questions.import_mesh.view import columns, sentences, view
-
-    body = imported(surface, file, options, azimuths)
-    title = f"{one_line(Path(file).name)}: foot from below the centre of mass, over its height"
-    command = command_of(body, azimuths)
+    body, name = imported(surface, str(path), options, azimuths), one_line(Path(path).name)
     written = list[str]()
     rows: list[AzimuthRow | None] = [*body.azimuths] or [None]
-    for place, structure, row in zip(places, body.structures if places else (), rows if places else (), strict=True):
+    for place, structure, row in zip(places, body.structures if places else (), rows, strict=False):
         edge = body.weakest if row is None else row.edge
         where = "over its weakest edge" if row is None else f"towards {row.azimuth:g} degrees"
         at = ", ".join(f"{each:.7g}" for each in body.shift)
         head = [
-            f"The body of {Path(file).name}, rocking {where}, by: {command}",
-            f"SHA-256 of the mesh: {digest}",
+            f"The body of {name}, rocking {where}, by: {command}",
+            f"SHA-256 of the mesh: {sha256(content).hexdigest()}",
             f"It turns over edge {edge.number} of {len(body.edges)}, whose normal, here to the right, is at "
             f"{edge.azimuth:.6g} degrees. x = 0 is below its centre of mass, at ({at}) m in the mesh.",
             *sentences(body),
         ]
-        written += _write(place, _text(structure, head), watch)
-    for place in pages:
+        lines = [line for each in head for line in wrap(one_line(each), COMMENT_WIDTH, break_on_hyphens=False)]
+        written += _write(place, structure_text(structure, *lines), watch)
+    if page is not None:
         from rocking_cli.questions.import_mesh.page import render
 
-        written += _write(place, render(body, f"{Path(file).name} as a rocking body", [command], north), watch)
+        written += _write(Path(page), render(body, f"{name} as a rocking body", [command], north), watch)
+    title = f"{name}: foot from below the centre of mass, over its height"
     figure = drawn("questions.import_mesh.picture.draw_compass", body, title, north)
     return Answer("imported mesh", body, view(body, written), partial(columns, body), figure)
 
@@ -204,28 +186,6 @@ def places_of(out: Path, azimuths: Sequence[float]) -> list[Path]:
         return [out]
     names = [f"{each % 360:07.3f}".rstrip("0").rstrip(".") for each in azimuths]
     return [out.with_name(f"{out.stem}-{name}{out.suffix}") for name in names]
-
-
-def command_of(found: ImportedMesh, azimuths: Sequence[float]) -> str:
-    """Return the command that imports a mesh in this way."""
-    options = found.options
-    given = {
-        "units": options.units,
-        "density": None if options.density is None else f"{options.density:g}",
-        "azimuth": f"{azimuths[0]:g}" if len(azimuths) == 1 else None,
-        "level": None if options.level == LEVEL else f"{options.level:g}m",
-        "up": None if options.up == "z" else options.up,
-    }
-    words = [f"--{name} {value}" for name, value in given.items() if value is not None]
-    words += [f"--{name}" for name in ("settle", "hull") if getattr(options, name)]
-    return " ".join(["rocking import", one_line(Path(found.file).name), *words])
-
-
-def _text(structure: Mechanism, head: Sequence[str]) -> str:
-    from rocking_cli.core.structure_file import structure_text
-
-    lines = [line for each in head for line in wrap(one_line(each), COMMENT_WIDTH, break_on_hyphens=False)]
-    return structure_text(structure, *lines)
 
 
 def _write(place: Path, text: str, watch: Watcher) -> list[str]:

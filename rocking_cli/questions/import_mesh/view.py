@@ -90,14 +90,13 @@ def sentences(found: ImportedMesh) -> list[str]:
 
 def _by_level(found: ImportedMesh) -> str | None:
     """Return a sentence on how much the level matters; None if it does not."""
-    stands = [row for row in found.levels if row.lambda_ is not None]
-    least, most = (sorted(stands, key=lambda row: row.lambda_ or 0.0)[k] for k in (0, -1)) if stands else (None, None)
-    if least is None or most is None or (most.lambda_ or 0) - (least.lambda_ or 0) <= 1e-3 * found.weakest.lambda_:
+    by_lambda = sorted((row.lambda_, row.level) for row in found.levels if row.lambda_ is not None)
+    if not by_lambda or by_lambda[-1][0] - by_lambda[0][0] <= 1e-3 * found.weakest.lambda_:
         return None
+    least, most = (f"{number(each, 3)} at {1000 * level:g} mm" for each, level in (by_lambda[0], by_lambda[-1]))
     return (
-        f"lambda depends on `level`, here {1000 * found.options.level:g} mm: it is {number(least.lambda_, 3)} at "
-        f"{1000 * least.level:g} mm and {number(most.lambda_, 3)} at {1000 * most.level:g} mm. Choose the level by how "
-        "the body bears, not by its mesh."
+        f"lambda depends on `level`, here {1000 * found.options.level:g} mm: it is {least} and {most}. Choose the "
+        "level by how the body bears, not by its mesh."
     )
 
 

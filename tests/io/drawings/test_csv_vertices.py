@@ -57,8 +57,9 @@ def test_bulges_make_arcs():
     assert area(top) == pytest.approx(3.392699082, rel=1e-9)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(("text", "refused", "words"), [
-    ("", "empty", "no rows"), ("\n \n# 1,2\n", "empty", "no rows"), ("x,y\n", "empty", "no rows of numbers"),
+    ("", "empty", "the file is empty"), ("\n \n# 1,2\n", "empty", "no rows"), ("x,y\n", "empty", "no rows of numbers"),
     ("a,b\n1,2\n", "not_csv", "x.csv:1: the headings have no x and y: `a, b`"),
     ("x,y,name,body\n1,2\n", "not_csv", "two columns, `body` is the second"),
     ("x,y\n1,2\n3,z\n", "not_csv", "x.csv:3: y is `z`, which is not a number"),

@@ -4,7 +4,7 @@ from math import asin, comb, cos, pi, radians, sin, tan
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rocking_cli.io.drawings import svg
@@ -153,6 +153,7 @@ PIECES = st.one_of(*(
 ))  # fmt: skip
 
 
+@settings(max_examples=10)
 @given(POINTS, st.lists(PIECES, min_size=1, max_size=6), st.booleans(), st.data())
 def test_a_path_is_the_same_in_every_spelling(start, pieces, closed, data):
     spelled = [written(start, pieces, closed, data.draw), written(start, pieces, closed, None)]
@@ -219,6 +220,7 @@ def matrix(name, v):
     return skew
 
 
+@settings(max_examples=10)
 @given(st.lists(st.sampled_from(sorted(TRANSFORMS)), min_size=1, max_size=4), st.data())
 def test_transforms_are_those_of_the_standard(names, data):
     steps = [(name, [data.draw(st.integers(1, 30)) / 8 for _ in range(TRANSFORMS[name])]) for name in names]
@@ -231,6 +233,7 @@ def test_transforms_are_those_of_the_standard(names, data):
     np.testing.assert_allclose(only.points, expected[0] - 1j * expected[1], rtol=1e-9, atol=1e-9)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("data", [
     "L1 1", "M", "M1", "M1 2 3", "M1,,2", "M,1 2", "M1 2,", "M1 2z3", "M1 2L", "M1 2H", "M1 2B3", "M1 2C1 2 3 4",
     "M0 0A1 1 0 2 0 1 1", "M0 0A1 1 0 0 1 1", "M0 0A11 01 10 10", "M0 0L1 nan", "M0 0L1_0 1", "M0 0L1e999 1",
@@ -242,6 +245,7 @@ def test_paths_that_are_not_valid_are_refused_with_their_line(data):
     assert caught.value.refused == "not_svg"
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(("data", "count"), [
     ("", 0), ("none", 0), ("M1 1", 0), ("M1 1z", 0), ("M1 1L1 1", 0), ("M0 0 1 1M2 2", 1), ("M0 0 1 0 1 1zl-1 0", 2),
     ("M0 0a0 5 0 0 1 3 4", 1), ("m1 1 1 1zm1 0 1 1", 2), ("M0 0 1 0M5 5 6 5z", 2),

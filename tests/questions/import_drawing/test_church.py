@@ -76,6 +76,7 @@ def test_what_is_not_the_structure_is_left_out_and_said(church):
         assert f"left out: {2 if 'DIM' in left else 1} {left}" in words
 
 
+@pytest.mark.rest
 def test_the_drawing_is_what_its_script_makes(church, tmp_path, monkeypatch):
     monkeypatch.setattr("sys.argv", ["church.py", str(tmp_path / "church.dxf")])
     runpy.run_path(str(CHURCH.with_suffix(".py")), run_name="__main__")
