@@ -16,8 +16,8 @@ from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnText,
 from rocking_cli.io.field_problems import of_arguments
 from rocking_cli.io.yaml_file import in_a_line
 from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, many
-from rocking_cli.questions.import_drawing.outlines import DrawnBody, Sorted, polygons_of
-from rocking_cli.questions.import_drawing.rings import ArcRing
+from rocking_cli.questions.import_drawing.outlines import DrawnBody, Sorted
+from rocking_cli.questions.import_drawing.rings import ArcRing, polygons_of
 from rocking_cli.questions.import_drawing.roles import Role, plain
 from rocking_cli.text import in_short, seen
 from rocking_cli.units import UnitError, read

@@ -15,10 +15,13 @@ from rocking_cli.io.drawings.arcs import inner_points
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine
 from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, length_in_words, many
 from rocking_cli.questions.import_drawing.rings import (
+    CHORD,
     ArcRing,
     RingsInRow,
+    anticlockwise,
     chord_count,
     following,
+    polygons_of,
     tidied,
 )
 
@@ -28,9 +31,9 @@ if TYPE_CHECKING:
 Integers = NDArray[np.intp]
 EXACT = 1e-3  # share of the closing distance below which points are one without a search
 MOST_NEIGHBOURS = 50  # ends within the closing distance of an end, on average, from which it is too large
+TANGLE_SAMPLE, MOST_ACROSS = 200, 200_000  # lines of a sample, and pairs of lines that may cross
 MOST_COMPARED = 4000  # ends that are compared with one another for a message
 MOST_PLACES = 100  # places of a message
-CHORD = 0.1  # share of the closing distance to which arcs are compared
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,7 +171,8 @@ def loops(lines: Sequence[Placed], close: float, frame: DrawingFrame, file: str)
     mended = Mended()
     closed = [line for line in lines if line.closed]
     open_ = [line for line in lines if not line.closed]
-    made = [Loop(ArcRing.of(line.z, line.bulges), [line.source]) for line in closed]
+    turned = anticlockwise([ArcRing(line.z, line.bulges) for line in closed])
+    made = [Loop(ring, [line.source]) for ring, line in zip(turned, closed, strict=True)]
     if open_:
         made = _with_open(made, closed, open_, close, mended, frame, file)
     rings = tidied([loop.ring for loop in made], close)
@@ -253,6 +257,20 @@ def _check_crowd(tree: cKDTree, close: float) -> None:
         raise DrawingError("unclosed", what)
 
 
+def _check_tangle(edges: DrawnEdges, close: float) -> None:
+    """Raise `DrawingError` if so many lines lie across one another that they are no outlines, by a sample of them."""
+    import shapely
+
+    lines = edges.curves(close)
+    sample = lines[:: max(len(lines) // TANGLE_SAMPLE, 1)]
+    each = len(shapely.STRtree(lines).query(sample)[0]) / len(sample)
+    if each > MOST_NEIGHBOURS and each * len(lines) > MOST_ACROSS:
+        what = (
+            f"its {len(lines):,} lines lie across {each:,.0f} others each: put what is not an outline on another layer"
+        )
+        raise DrawingError("too_large", what)
+
+
 def _followed(
     edges: DrawnEdges, sources: Sequence[DrawnLine], close: float, mended: Mended
 ) -> tuple[list[Loop], DrawnEdges]:
@@ -265,6 +283,7 @@ def _followed(
 
     if not len(edges):
         return [], edges
+    _check_tangle(edges, close)
     start, end, nodes = _nodes(edges, close, mended)
     edges, start, end = _split(edges, start, end, nodes, close, mended)
     edges.a, edges.b = nodes[start], nodes[end]
@@ -485,21 +504,19 @@ def _faces(
     chosen = np.flatnonzero(crossed[part])
     lines = edges.chosen(chosen).curves(close)
     faces, cuts, dangles, _ = shapely.polygonize_full([shapely.node(shapely.multilinestrings(lines))])
-    loose = [*shapely.get_parts(dangles), *shapely.get_parts(cuts)]
-    loose = [each for each in loose if shapely.length(each) > close]
+    loose = np.concatenate([shapely.get_parts(dangles), shapely.get_parts(cuts)])
     tree = shapely.STRtree(lines)
-    open_parts = {
-        int(chosen[k]) for each in loose for k in tree.query(each, predicate="dwithin", distance=EXACT * close)
-    }
+    _, at_loose = tree.query(loose[shapely.length(loose) > close], predicate="dwithin", distance=EXACT * close)
+    open_parts = set(chosen[at_loose].tolist())
     middles = shapely.STRtree(shapely.line_interpolate_point(lines, 0.5, normalized=True))
     parts = shapely.get_parts(faces)
     parts = parts[shapely.area(parts) > close**2]
     face_of, on = middles.query(parts, predicate="dwithin", distance=close)
     starts = np.searchsorted(face_of, np.arange(len(parts) + 1))
     made = []
-    for k, face in enumerate(parts):
-        z = shapely.get_coordinates(shapely.get_exterior_ring(face))[:-1]
-        ring = ArcRing.of(z[:, 0] + 1j * z[:, 1], np.zeros(len(z)))
+    corners = [shapely.get_coordinates(each)[:-1] @ [1, 1j] for each in shapely.get_exterior_ring(parts)]
+    rings = anticlockwise([ArcRing(z, np.zeros(len(z))) for z in corners])
+    for k, (face, ring) in enumerate(zip(parts, rings, strict=True)):
         sides = chosen[on[starts[k] : starts[k + 1]]]
         sides = sides if len(sides) else chosen[tree.query_nearest(face, all_matches=False)]
         of = dict.fromkeys(edges.of[sides].tolist())
@@ -532,26 +549,23 @@ def _unclosed(edges: DrawnEdges, close: float, frame: DrawingFrame, file: str) -
 
 def _once(made: list[Loop], close: float, mended: Mended) -> list[Loop]:
     """Return loops without those that are drawn twice: by lines and as a polyline, or in the other sense."""
+    import shapely
     from scipy.spatial import cKDTree
 
     if len(made) < 2:
         return made
-    areas = np.array([loop.ring.moments.area for loop in made])
-    centroids = np.array([loop.ring.moments.centroid for loop in made])
-    tree = cKDTree(np.stack([centroids.real, centroids.imag], axis=1))
+    rings = [loop.ring for loop in made]
+    boxes = shapely.bounds(polygons_of(rings, close))
+    tree, reach = cKDTree(boxes), (2 + 2 * CHORD) * close
     second: set[int] = set()
-    if tree.count_neighbors(tree, close) > MOST_NEIGHBOURS * tree.n:
-        key = np.round(np.column_stack([centroids.real, centroids.imag, np.sqrt(areas)]) / close)
-        _, first = np.unique(key, axis=0, return_index=True)
+    if tree.count_neighbors(tree, reach, p=np.inf) > MOST_NEIGHBOURS * tree.n:
+        _, first = np.unique(np.round(boxes / close), axis=0, return_index=True)
         second = {*range(len(made))} - {*first.tolist()}
-    for i, j in [] if second else sorted(tree.query_pairs(close)):
-        one, other = made[i].ring, made[j].ring
-        room = close * (np.abs(np.diff(one.z)).sum() + abs(one.z[0] - one.z[-1]))
-        if i in second or abs(areas[i] - areas[j]) > 2 * room:
+    for i, j in [] if second else sorted(tree.query_pairs(reach, p=np.inf)):
+        room = close * shapely.length(_curve(rings[i], close))
+        if i in second or abs(rings[i].moments.area - rings[j].moments.area) > 2 * room:
             continue
-        from shapely import hausdorff_distance
-
-        if hausdorff_distance(_curve(one, close), _curve(other, close)) <= 2 * close:
+        if shapely.hausdorff_distance(_curve(rings[i], close), _curve(rings[j], close)) <= 2 * close:
             second.add(j)
-    mended.doubles += centroids[sorted(second)].tolist()
+    mended.doubles += [rings[k].moments.centroid for k in sorted(second)]
     return [loop for k, loop in enumerate(made) if k not in second]

@@ -15,7 +15,7 @@ import numpy as np
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnPoint, DrawnText, LineDrawing
 from rocking_cli.questions.import_drawing.loops import DrawnEdges, Loop, Placed, loops
 from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, length_in_words, many
-from rocking_cli.questions.import_drawing.rings import ArcRing, PlaneMoments
+from rocking_cli.questions.import_drawing.rings import ArcRing, PlaneMoments, polygons_of
 from rocking_cli.questions.import_drawing.roles import Role, Roles, counted
 from rocking_cli.text import in_short, seen
 from rocking_cli.units import UnitError, mass_of_weight, read
@@ -34,7 +34,6 @@ SAME_HEIGHT = 1e-6  # difference of heights of bodies of which the left one come
 ROW = 0.5  # share of its height by which a body must be above the first one of a row to begin another row
 GRID = 1e-3  # share of the closing distance to which shapes are cut; without a grid GEOS has errors at common sides
 TOUCHES = 4  # length of an outline that the corner of an opening alone may reach, over the closing distance
-CHORD = 0.1  # share of the closing distance to which shapes are compared
 
 
 @dataclass(eq=False)
@@ -218,18 +217,6 @@ def placed(chains: Sequence[DrawnLine], frame: DrawingFrame, close: float, file:
 def described(chain: DrawnLine) -> str:
     """Return what a line is in the file: "LWPOLYLINE 2F on MURO"."""
     return f"{chain.kind}{f' {seen(chain.handle)}' if chain.handle else ''} on {seen(chain.layer) or 'no layer'}"
-
-
-def polygons_of(rings: Sequence[ArcRing], close: float) -> Any:
-    """Return rings as polygons of shapely, their arcs as chords; an array of objects, shape (n,)."""
-    import shapely
-
-    if not rings:
-        return np.array([], dtype=object)
-    corners = [ring.chords(CHORD * close) for ring in rings]
-    z = np.concatenate(corners)
-    of = np.repeat(np.arange(len(corners)), [len(each) for each in corners])
-    return shapely.polygons(shapely.linearrings(np.stack([z.real, z.imag], axis=1), indices=of))
 
 
 def bodies_of(

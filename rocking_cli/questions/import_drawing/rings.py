@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import acos, ceil, pi
-from typing import NamedTuple, Self, TypeVar
+from typing import Any, NamedTuple, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from rocking_cli.arrays import Points, Reals
 from rocking_cli.io.drawings.arcs import STRAIGHT_BULGE, Sides, arc_circle, inner_points, level_count
 
 Number = TypeVar("Number", bound=np.generic)
+CHORD = 0.1  # share of the closing distance to which arcs are compared
 SMALL_TURN = 0.3  # turn below which differences of sines are taken from their series
 MAX_ARC_SIDES = 2000
 SAME_DIRECTION = 1e-6  # sine between two sides of one line
@@ -68,10 +69,13 @@ class ArcRing:
     bulges: Reals
 
     @classmethod
-    def of(cls, z: Points, bulges: Reals) -> Self:
+    def of(cls, z: Points, bulges: Reals) -> ArcRing:
         """Return the ring of a closed line in either sense."""
-        ring = cls(z, np.where(np.abs(bulges) > STRAIGHT_BULGE, bulges, 0.0) if bulges.any() else bulges)
-        return ring if ring.moments.area >= 0 else cls(z[::-1], -np.roll(ring.bulges[::-1], -1))
+        return anticlockwise([cls(z, bulges)])[0]
+
+    def turned(self) -> ArcRing:
+        """Return the ring in the other sense."""
+        return ArcRing(self.z[::-1], -np.roll(self.bulges[::-1], -1))
 
     @cached_property
     def arcs(self) -> int:
@@ -171,6 +175,27 @@ class RingsInRow:
             ring.__dict__["moments"] = moments
             made.append(ring)
         return made
+
+
+def anticlockwise(rings: Sequence[ArcRing]) -> list[ArcRing]:
+    """Return rings that run in either sense as such that run anticlockwise."""
+    if not rings:
+        return []
+    row = RingsInRow.of(rings)
+    row = RingsInRow(row.z, np.where(np.abs(row.bulges) > STRAIGHT_BULGE, row.bulges, 0.0), row.begins)
+    return [ring if ring.moments.area >= 0 else ring.turned() for ring in row.rings()]
+
+
+def polygons_of(rings: Sequence[ArcRing], close: float) -> Any:
+    """Return rings as polygons of shapely, their arcs as chords; an array of objects, shape (n,)."""
+    import shapely
+
+    if not rings:
+        return np.array([], dtype=object)
+    corners = [ring.chords(CHORD * close) for ring in rings]
+    z = np.concatenate(corners)
+    of = np.repeat(np.arange(len(corners)), [len(each) for each in corners])
+    return shapely.polygons(shapely.linearrings(np.stack([z.real, z.imag], axis=1), indices=of))
 
 
 def tidied(rings: Sequence[ArcRing], close: float) -> list[ArcRing]:

@@ -28,9 +28,8 @@ from rocking_cli.questions.import_drawing.outlines import (
     check_notches,
     name_and_weigh,
     placed,
-    polygons_of,
 )
-from rocking_cli.questions.import_drawing.rings import ArcRing
+from rocking_cli.questions.import_drawing.rings import ArcRing, polygons_of
 from rocking_cli.questions.import_drawing.roles import Role, Roles
 from rocking_cli.questions.import_drawing.scaling import metres_per_unit
 

@@ -79,7 +79,7 @@ REFUSED = [  # class, ending, content, options, words, and place
      "a tie ends on no body", [[106, 1]]),
     ("mechanism", "geojson", drawing(WALL, box(105, 3, 1, 1)), M, "'b2' touches nothing", [[105.5, 3.5]]),
     ("xref", "dxf", INSERT.format(4).encode(), M, "refers to another file, other.dwg", []),
-    ("external", "svg", b'<svg><use href="b.svg#a"/></svg>', M, "another file, b.svg#a", []),
+    ("xref", "svg", b'<svg><use href="b.svg#a"/></svg>', M, "another file, b.svg#a", []),
     ("degrees", "geojson", drawing(body([12.49, 41.89], [12.4901, 41.89], [12.49, 41.8902])), M, "look like degrees",
      [[12.49, 41.89]]),
     ("number", "csv", b"0,0\n1e13,0\n1,1\n", M, "x is beyond 1e.12", []),
@@ -98,14 +98,14 @@ REFUSED = [  # class, ending, content, options, words, and place
     ("thin", "obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2 1\n", D, "its surface has no inside", []),
     ("cut", "stl", meshes.stl(MESH)[:-20], D, "announces 12, and has 11 faces", []),
     ("damaged", "obj", b"v 0 0 0\nv 1 0 0\nf 1 2 9\n", D, "cannot be read as OBJ", []),
-    ("large", "ply", PLY.encode(), D, "announces 5,000,000 triangles", []),
+    ("too_large", "ply", PLY.encode(), D, "announces 5,000,000 triangles", []),
 ]  # fmt: skip
 HINTS = {
-    "xref": "bind it", "external": "put its content into", "degrees": "save it in a projection", "cut": "save it again",
+    "xref": "bind it", "xref svg": "put its content into", "degrees": "save it in a projection", "cut": "save it again",
     "too_large": "save what is needed", "not_svg": "save the drawing as SVG", "open": "close its holes, or --hull",
-    "point": "--settle", "falls": "--settle", "shells": "keep those of one body", "large": "reduce the mesh",
+    "point": "--settle", "falls": "--settle", "shells": "keep those of one body", "too_large ply": "reduce the mesh",
 }  # fmt: skip
-LINES = {"external": 1, "number": 2, "not_svg": 1, "not_geojson": 1, "not_csv": 2}
+LINES = {"xref svg": 1, "number": 2, "not_svg": 1, "not_geojson": 1, "not_csv": 2}
 NOT_REACHED = {"not_mesh"}  # by the command line, where the reader of meshes is chosen by the same test
 
 
@@ -125,8 +125,9 @@ def test_a_file_is_refused_with_class_words_and_place_and_nothing_is_written(
     told = json.loads(done.stdout)
     assert (told["refused"], bool(re.search(words, told["message"]))) == (refused, True), told
     assert [pytest.approx(place) for place in at] == told["at"]
-    assert (told["hint"] or "").startswith(HINTS.get(refused, "")) and bool(told["hint"]) == (refused in HINTS)
-    assert told["line"] == LINES.get(refused)
+    hint, row = (texts.get(f"{refused} {ending}", texts.get(refused)) for texts in (HINTS, LINES))
+    assert (told["hint"] or "").startswith(hint or "") and bool(told["hint"]) == bool(hint)
+    assert told["line"] == row
     assert [each.name for each in tmp_path.iterdir()] == [f"drawn.{ending}"]
 
 
