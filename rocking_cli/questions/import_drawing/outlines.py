@@ -119,7 +119,7 @@ def by_role(drawing: LineDrawing, roles: Roles, file: str) -> Sorted:
         kinds = Counter(each.kind for each in held)
         for each in drawing.left_out:
             kinds[each.kind] += each.count
-        what = in_short([f"{count:,} {kind}" for kind, count in kinds.most_common()]) or "nothing"
+        what = in_short([f"{count:,} {kind}" for kind, count in kinds.most_common()]) or "an empty page"
         where = in_short([f"{seen(layer) or 'no layer'} ({len(lines)} lines)" for layer, lines in unknown.items()])
         if where:
             what += f"; lines that do not close are on {where}: give `layers` bodies=LAYER if they are bodies"
@@ -245,6 +245,10 @@ def bodies_of(
         made, cut = made + hatched, cut + islands
         if left := len(spare) + len(drawn_too):
             notes.append(ImportNote("left out", left, f"{many(left, 'edge')} of hatches left out, as lines are drawn"))
+    heights = [each * frame.per for loop in made for chain in loop.sources for each in chain.heights]
+    if heights and max(heights) - min(heights) > close:
+        spread = length_in_words(max(heights) - min(heights))
+        notes.append(ImportNote("flattened", 1, f"outlines that lie up to {spread} apart in z are taken as one plane"))
     _check_size(made, file)
     _check_each(made, frame, close, file)
     outer, inner = _by_shape(made, close)

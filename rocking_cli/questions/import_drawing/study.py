@@ -180,8 +180,7 @@ def structure_from(drawing: LineDrawing, options: ImportOptions, name: str, file
     close = options.close
     bodies, notes, mended = bodies_of(of, frame, close, options.nested, file)
     notes = [*of.notes, *notes, *name_and_weigh(bodies, of, options.densities, frame, close, file)]
-    low = min(float(body.ring.z.imag.min()) for body in bodies)
-    left = min(float(body.ring.z.real.min()) for body in bodies)
+    left, low = (float(part.min()) for part in _extent(bodies))
     shift = -complex(left, low)
     ground, is_drawn = _ground(of.chains[Role.GROUND], bodies, frame, close, file)
     closed = mortar.close_gaps([body.ring for body in bodies], ground, options.merge_gap, close)
@@ -198,7 +197,8 @@ def structure_from(drawing: LineDrawing, options: ImportOptions, name: str, file
         notes.append(ImportNote("ground", 1, "no ground is drawn: it is level, at the lowest point"))
     origin = frame.to_drawing(-shift)
     x, y = (round(each * frame.per, DECIMALS) / frame.per + 0.0 for each in (origin.real, origin.imag))
-    notes.append(ImportNote("origin", 1, f"the origin of the file is at ({x:.9g}, {y:.9g}) of the drawing"))
+    upwards = ", with y upwards from the upper edge of its page" if drawing.format == "SVG" else ""
+    notes.append(ImportNote("origin", 1, f"the origin of the file is at ({x:.9g}, {y:.9g}) of the drawing{upwards}"))
     width, height = (float(np.ptp(part)) for part in _extent(bodies))
     notes.append(ImportNote("units", 1, f"{units}: the structure is {width:.4g} m wide and {height:.4g} m high"))
     places = BodyFinder(bodies, ground, frame, shift, close, file)

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from hashlib import sha256
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -112,6 +113,8 @@ def import_drawing(
         close=length_of(close, "close", zero=False), nested=nested, kind=kind,
         tolerance=length_of(tolerance, "tolerance", zero=False),
     )  # fmt: skip
+    if find_spec("shapely") is None:
+        raise InputError(Problem("a drawing needs the package shapely", hint="pip install 'rocking-cli[drawing]'"))
     if out is not None:
         keep_apart([("`out`", Path(out))], [str(file)])
     drawing, data = read_drawing(file)

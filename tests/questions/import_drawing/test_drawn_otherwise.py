@@ -1,10 +1,13 @@
 """Drawings that are right in another way than expected, or wrong in a way that is easily missed."""
 
+import sys
 from math import pi, tan
 
 import numpy as np
 import pytest
 
+import rocking_cli as rk
+from rocking_cli.errors import InputError
 from rocking_cli.io.drawings.contract import DrawingError
 from rocking_cli.questions.import_drawing.mortar import close_gaps
 from rocking_cli.questions.import_drawing.notes import DrawingFrame
@@ -104,8 +107,30 @@ def test_bodies_may_have_the_names_of_the_ground():
     assert [*found.fields["blocks"]] == ["floor-2", "ground-2"] and "floor" in found.fields["ground"]
 
 
-def test_a_size_on_paper_taken_as_real_is_said():
-    assert "size on paper" not in words(imported(WALL))
+def test_outlines_at_other_heights_and_arcs_at_the_edge_of_the_drawing():
+    assert "up to 55 m apart in z" in words(imported(WALL, box(0, 2.4, 0.6, 1, heights=(55.0, 55.0))))
+    assert "apart in z" not in words(imported(WALL))
+    (hung,) = imported(outline([(1, 0), (3, 0), (3, 2), (1, 2)], bulges=[0, 0, 0, 0.1]), **WEIGHED).bodies
+    assert hung.ring.z.real.min() == pytest.approx(0.1, abs=2e-5)  # the arc reaches x = 0, its corners do not
+
+
+def test_a_size_on_paper_taken_as_real_is_said(tmp_path):
+    file = tmp_path / "pillar.svg"
+    file.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="210mm" height="297mm" viewBox="0 0 210 297">'
+        '<g id="STONES"><rect x="50" y="40" width="60" height="240"/></g></svg>'
+    )
+    said = " ".join(note.words for note in rk.import_drawing(file, units="mm").notes)
+    assert "the size on paper: give `scale`" in said and "y upwards from the upper edge" in said
+    assert "size on paper" not in " ".join(note.words for note in rk.import_drawing(file, scale="1:10").notes)
+
+
+def test_without_shapely_the_package_to_install_is_named(monkeypatch, tmp_path):
+    (tmp_path / "a.csv").write_text("0,0\n1,0\n1,3\n0,3\n")
+    monkeypatch.setitem(sys.modules, "shapely", None)
+    with pytest.raises(InputError, match="needs the package shapely") as caught:
+        rk.import_drawing(tmp_path / "a.csv", units="m")
+    assert "rocking-cli[drawing]" in str(caught.value)
 
 
 def test_more_than_a_structure_file_holds_is_refused_at_once():
