@@ -14,6 +14,7 @@ import numpy as np
 from rocking_cli.arrays import Points
 from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
+from rocking_cli.errors import StructureError
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, LineDrawing
 from rocking_cli.questions.import_drawing import mortar
 from rocking_cli.questions.import_drawing.attached import DECIMALS, BodyFinder, DrawnAttachments, attached, rounded
@@ -550,7 +551,7 @@ def _refused_together(result: Imported, file: str) -> list[ImportNote]:
             mechanism.from_fields(result.fields)
     except ValidationError as error:
         faults = error.errors(include_url=False)
-        words = [f"{'.'.join(map(str, fault['loc'])) or result.kind}: {fault['msg']}" for fault in faults[:3]]
+        words = [": ".join(filter(None, (".".join(map(str, each["loc"])), each["msg"]))) for each in faults[:3]]
         if not all(TOGETHER in fault["msg"] for fault in faults):
             blamed = [
                 body.ring.moments.centroid for body in result.bodies
@@ -563,6 +564,8 @@ def _refused_together(result: Imported, file: str) -> list[ImportNote]:
             what = f"{result.kind} cannot take it: {'; '.join(words)}{_nearest_gap(result, joined)}"
             raise DrawingError("mechanism", what, file, at) from None
         return [ImportNote("together", 1, f"commands refuse the file as it is: {'; '.join(words)}")]
+    except StructureError as error:  # the analysis of the assembly found no answer
+        raise DrawingError("mechanism", f"{result.kind} cannot take it: {error}", file) from None
     return []
 
 
