@@ -84,7 +84,7 @@ DRAWN = "outline,layer,x,y,bulge\n" + "".join(
 )
 """Two blocks with a joint of 3 mm, one beside them that overlaps, and openings of both kinds [mm]."""
 
-DRAWN_FILE = EXAMPLES / "drawings" / "church.dxf"
+DRAWN_FILE = EXAMPLES / "drawings" / "wall.svg"
 
 CALLS = {
     "equiv": ({"structures": BLOCK}, {"structures": [BLOCK, OTHER]}),
@@ -99,9 +99,9 @@ CALLS = {
     ),
     "error": ({"structure": BLOCK}, {"structure": WEAK, "at": [0.3], "a": [3.0]}),
     "import_mesh": (
-        {"path": "in.obj", "units": "m", "density": 2000.0},
+        {"path": "in.obj", "units": "m", "density": 2000.0, "out": "o.yaml"},
         {"path": "in.ply", "units": "ft", "density": 1800.0, "azimuth": 40.0, "level": 0.01, "settle": True,
-         "hull": True, "up": "y", "north": 30.0, "out": "o.yaml", "page": "p.html"},
+         "hull": True, "up": "y", "north": 30.0, "out": "odd.yaml", "page": "p.html", "command": "odd"},
     ),
     "respond": (
         {"structure": WEAK, "motion": RECORD, "neighbours": 2, "opening": 1.0},
@@ -404,7 +404,7 @@ COMMAND_LINES = {
     "draw": f"{BLOCK_FILE}",
     "equiv": f"{BLOCK_FILE}",
     "collapse": f"{BLOCK_FILE}",
-    "import": f"{DRAWN_FILE} --merge-gap 12mm --depth 1 --density 2000",
+    "import": f"{DRAWN_FILE} --scale 1:50 --depth 1 --density 2000",
     "error": f"{BLOCK_FILE}",
     "record": f"{ACCEL}",
     "select": f"{ACCEL} {ACROSS} --target {EXAMPLES / 'target.csv'} --band 0.2:2 --count 2",
@@ -475,8 +475,8 @@ OTHERWISE = {
     ("import", "--out"): "o.yaml",
     ("import", "--units"): "mm",
     ("import", "--merge-gap"): "13mm",
-    ("import", "--scale"): "1:1",
-    ("import", "--density"): "PIETRA=2500",
+    ("import", "--scale"): "1:20",
+    ("import", "--density"): "2500",
     ("report", "--out"): "odd.html",
     ("fragility", "--plot"): "odd",
     ("results", "--plot"): "odd",
