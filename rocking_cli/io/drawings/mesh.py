@@ -171,10 +171,10 @@ def _numbers(text: bytes, kind: type) -> tuple[NDArray[Any], Integers]:
     if counts.min() < 3:
         raise ValueError("a line has fewer than three numbers")
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)
+        warnings.simplefilter("error", DeprecationWarning)  # older versions of numpy warn of what newer ones refuse
         numbers: NDArray[Any] = np.fromstring(text, kind, sep=" ")
-    if len(numbers) != counts.sum():
-        raise ValueError(f"number {len(numbers) + 1} of points or faces is no number")
+    if len(numbers) != counts.sum():  # such as 1-2
+        raise ValueError("two numbers are not apart")
     return numbers, counts
 
 
