@@ -44,6 +44,13 @@ def test_faces_of_four_corners_seams_of_texture_and_objects_are_read():
     assert len(mesh.read(ascii_quads, "q.ply").triangles) == 2
 
 
+def test_indices_of_obj_may_count_back_from_the_face():
+    points = FILES["a.obj"].split(b"f ")[0]
+    faces = "".join(f"f {a - 8} {b - 8}/7 {c - 8}//1 # back\n" for a, b, c in BOX[1]).encode()
+    found = mesh.read(points + faces + b"o two\n" + points + faces, "a.obj")
+    assert np.array_equal(found.triangles, np.concatenate([BOX[1], BOX[1] + 8]))
+
+
 @pytest.mark.parametrize("name", ["a.obj", "b.ply"])
 def test_points_without_faces_are_a_cloud(name):
     content = obj((BOX[0], BOX[1][:0])) if name == "a.obj" else ply((BOX[0], BOX[1][:0]))
@@ -54,16 +61,24 @@ def test_points_without_faces_are_a_cloud(name):
 @pytest.mark.parametrize(
     ("name", "content", "refused", "words"),
     [
-        ("a.stl", b"", "not_mesh", "is empty"),
-        ("a.dwg", b"AC1027 and more", "not_mesh", "is not a mesh in OBJ, PLY or STL"),
         ("a.obj", b"hello\n", "empty", "has no points"),
         ("a.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 9\n", "damaged", "is damaged or cut short"),
         ("a.obj", b"v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", "damaged", "coordinates that are not numbers"),
-        ("a.ply", ply(BOX).replace(b"face 12", b"face 999999999999"), "too_large", "announces 999,999,999,999"),
-        ("a.ply", ply(BOX).rsplit(b"\n", 3)[0], "cut", "announces 8 and 12, and has 8 points and 10 faces"),
-        ("a.stl", stl(BOX)[:-60], "cut", "announces 12, and has 10 faces"),
+        ("a.ply", ply(BOX).replace(b"face 12", b"face 999999999999"), "too_large", "has 999,999,999,999 faces"),
+        ("a.ply", ply(BOX).rsplit(b"\n", 3)[0], "cut", "announces 8 points and 12 faces, and has 8 and 10"),
+        ("a.stl", stl(BOX)[:-60], "cut", "announces 12 faces, and has 10"),
         ("a.stl", b"x" * 80 + struct.pack("<I", 4 * 10**9) + b"x" * 999, "cut", "announces 4,000,000,000"),
         ("a.stl", ascii_stl(BOX).rsplit(b"\n", 9)[0], "cut", "does not end the solid"),
+        ("a.stl", ascii_stl(BOX) + b"solid body\nfacet nor", "cut", "does not end the solid"),
+        ("a.stl", ascii_stl(BOX).replace(b"vertex", b"", 1), "damaged", "not every triangle has three corners"),
+        ("a.stl", stl(BOX) + b"x" * 50, "damaged", "has more data than the 12 faces"),
+        ("a.stl", stl((BOX[0], BOX[1][:0])), "empty", "has no triangles"),
+        ("a.ply", ply(BOX) + b"3 0 1 2\n", "damaged", "has more data than the 8 points and 12 faces"),
+        ("a.ply", ply(BOX, "binary_little_endian") + b"x", "damaged", "is damaged"),
+        ("a.obj", b"v 0 0 0\n" * 3 + b"f 0 1 2\n", "damaged", "a point that does not exist"),
+        ("a.obj", b"v 0 0 0\n" * 3 + b"f 1 2\n", "damaged", "fewer than three"),
+        ("a.obj", b"v 0 0 0\n" * 3 + b"f 1 2 x\n", "damaged", "unmatched data"),
+        ("a.obj", b"v 0 0 0\n" * 3 + b"f 1 2-3 1\n", "damaged", "unmatched data"),
         ("a.obj", b"v 0 0 0\n".ljust(mesh.MAX_TEXT_BYTES + 1), "too_large", "has 64 MB"),
     ],
 )
@@ -71,6 +86,22 @@ def test_what_is_no_mesh_is_refused(name, content, refused, words):
     with pytest.raises(DrawingError, match=words) as caught:
         mesh.read(content, name)
     assert (caught.value.refused, str(caught.value).startswith(f"{name}: ")) == (refused, True)
+
+
+def test_points_faces_and_triangles_are_bounded(monkeypatch):
+    monkeypatch.setattr(mesh, "MAX_COUNT", 7)
+    for name, of in (
+        ("a.obj", "8 points"),
+        ("c.ply", "8 points"),
+        ("e.stl", "12 triangles"),
+        ("f.stl", "12 triangles"),
+    ):
+        with pytest.raises(DrawingError, match=f"has {of}") as caught:
+            mesh.read(FILES[name], name)
+        assert caught.value.refused == "too_large"
+    for faces, of in ((b"f 1 1 1\n" * 8, "8 faces"), (b"f" + b" 1" * 10, "8 triangles")):
+        with pytest.raises(DrawingError, match=f"has {of}"):
+            mesh.read(b"v 0 0 0\n" + faces, "a.obj")
 
 
 def test_other_drawings_are_not_taken_for_meshes():
@@ -81,4 +112,4 @@ def test_other_drawings_are_not_taken_for_meshes():
 def test_without_the_package_its_name_is_told(monkeypatch):
     monkeypatch.setitem(sys.modules, "trimesh.exchange", None)
     with pytest.raises(InputError, match=r"rocking-cli\[mesh\]"):
-        mesh.read(FILES["a.obj"], "a.obj")
+        mesh.read(FILES["b.ply"], "b.ply")

@@ -12,7 +12,7 @@ from rocking_cli.arrays import Reals
 from rocking_cli.documents.figures import dark_figures, inline_svg, template
 from rocking_cli.plotting.moving import as_script, asset
 from rocking_cli.questions.import_mesh.picture import draw_compass
-from rocking_cli.questions.import_mesh.solid import Triangles
+from rocking_cli.questions.import_mesh.solid import Triangles, turned_to_least
 from rocking_cli.questions.import_mesh.study import ImportedMesh
 from rocking_cli.questions.import_mesh.view import sentences, view
 from rocking_cli.text import printable
@@ -81,12 +81,6 @@ def drawn_triangles(found: ImportedMesh) -> tuple[Reals, Triangles]:
         points = np.stack([np.bincount(names, found.points[:, k]) / count for k in range(3)], axis=1)
         corners = names[found.triangles]
         a, b, c = corners.T
-        triangles = np.unique(_turned_to_least(corners[(a != b) & (b != c) & (c != a)]), axis=0)
+        triangles = np.unique(turned_to_least(corners[(a != b) & (b != c) & (c != a)]), axis=0)
         cells = cells * 3 // 4
     return points, triangles
-
-
-def _turned_to_least(triangles: Triangles) -> Triangles:
-    """Return triangles that start with their least corner, in the same sense."""
-    least = triangles.argmin(axis=1)[:, None]
-    return np.take_along_axis(triangles, (least + np.arange(3)) % 3, axis=1)

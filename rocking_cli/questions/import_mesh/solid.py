@@ -15,7 +15,9 @@ Triangles = NDArray[np.int64]
 Names = NDArray[np.intp]
 CRUMB = 1e-3  # volume of a shell over that of the largest, below which it is left out
 MAX_SHELLS = 100  # larger ones
-PROBES = 5  # points of a shell at which it is looked whether it lies in another
+PROBED, PASSES = 10_000, 25_000_000  # triangles of shells that are looked for in others, and times theirs
+TOUCH = 1e-5  # depth to which shells that touch may overlap, over the size
+NEAR_CORNER = np.array([[1, 1, 1], [2.9, 0.05, 0.05], [0.05, 2.9, 0.05], [0.05, 0.05, 2.9]]) / 3
 MAX_HULL_POINTS, MAX_HULL_CORNERS = 1_000_000, 100_000  # which take seconds
 PER_BATCH = 1 << 18  # triangles whose integrals are summed at once
 LEAST_VOLUME = 1e-9  # volume over the cube of the size, below which there is no inside
@@ -72,6 +74,21 @@ def merged(points: Reals, triangles: Triangles) -> tuple[Reals, Triangles]:
     triangles = names.ravel()[triangles]
     a, b, c = triangles.T
     return points[first], triangles[(a != b) & (b != c) & (c != a)]
+
+
+def turned_to_least(triangles: Triangles) -> Triangles:
+    """Return triangles that start with their least corner, in the same sense."""
+    least = triangles.argmin(axis=1)[:, None]
+    return np.take_along_axis(triangles, (least + np.arange(3)) % 3, axis=1)
+
+
+def once(triangles: Triangles, count: int) -> Triangles:
+    """Return triangles without those that repeat one in the same sense; `count` is the number of corners."""
+    a, b, c = turned_to_least(triangles).T
+    sides = a * count + b
+    order = np.lexsort((c, sides))
+    again = (np.diff(sides[order]) == 0) & (np.diff(c[order]) == 0)
+    return np.delete(triangles, order[1:][again], axis=0)
 
 
 def loose_sides(triangles: Triangles, count: int) -> tuple[Triangles, int]:
@@ -186,11 +203,12 @@ def hull_of(points: Reals, file: str) -> tuple[Reals, Triangles, Reals]:
 def solid(points: Reals, triangles: Triangles, file: str) -> tuple[Triangles, list[MeshNote]]:
     """Return the triangles of one body: outer surfaces face outwards, cavities inwards, and crumbs are left out.
 
-    Raises `DrawingError` if they enclose nothing, or have too many shells.
+    Raises `DrawingError` if they enclose nothing, or have too many shells, or two that cross.
     """
-    points = points - (points.min(axis=0) + points.max(axis=0)) / 2
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    points = points - middle
     shell = joined(triangles, len(points))[triangles[:, 0]].astype(np.intp)
-    names, shell = np.unique(shell, return_inverse=True)
+    shell = np.unique(shell, return_inverse=True)[1]
     volumes = np.bincount(shell, six_volumes(points, triangles)) / 6
     size = float(np.abs(volumes).max())
     if not size > LEAST_VOLUME * float(np.ptp(points, axis=0).max()) ** 3:
@@ -200,7 +218,10 @@ def solid(points: Reals, triangles: Triangles, file: str) -> tuple[Triangles, li
     def note(kind: str, which: Bools, one: str, many: str) -> None:
         count = int(which.sum())
         if count:
-            at = [points[triangles[(shell == k).argmax(), 0]].tolist() for k in np.flatnonzero(which)[:MAX_SHELLS]]
+            at = [
+                (points[triangles[(shell == k).argmax(), 0]] + middle).tolist()
+                for k in np.flatnonzero(which)[:MAX_SHELLS]
+            ]
             words = f"{one if count == 1 else many.format(count)}, {np.abs(volumes[which]).sum():.3g} m3"
             notes.append(MeshNote(kind, count, words, at))
 
@@ -209,7 +230,7 @@ def solid(points: Reals, triangles: Triangles, file: str) -> tuple[Triangles, li
     counts = np.abs(volumes) >= CRUMB * size
     if counts.sum() > MAX_SHELLS:
         raise DrawingError("shells", f"has {counts.sum():,} closed surfaces", file, hint="keep those of one body")
-    within = _depths(points, triangles, shell, np.flatnonzero(counts), len(names)) % 2 == 1
+    within = _depths(points, triangles, shell, volumes, counts, middle, file) % 2 == 1
     turned = counts & ~within & (volumes < 0)
     note("crumbs", ~counts, "1 crumb is left out", "{} crumbs are left out")
     note("cavities", counts & within & (volumes < 0), "1 cavity is cut out", "{} cavities are cut out")
@@ -223,23 +244,46 @@ def solid(points: Reals, triangles: Triangles, file: str) -> tuple[Triangles, li
     return triangles[(counts & ~swallowed)[shell]], notes
 
 
-def _depths(points: Reals, triangles: Triangles, shell: Names, which: Names, count: int) -> Names:
-    """Return in how many of some shells each of them lies, by rays upwards from some of its points."""
-    depths = np.zeros(count, np.intp)
+def _depths(
+    points: Reals, triangles: Triangles, shell: Names, volumes: Reals, counts: Bools, middle: Reals, file: str
+) -> Names:  # fmt: skip
+    """Return in how many of some shells each of them lies, by rays upwards from points just within its surface.
+
+    Raises `DrawingError` if only some of these points lie in another shell.
+    """
+    depths, which = np.zeros(len(volumes), np.intp), np.flatnonzero(counts)
     if len(which) == 1:
         return depths
     corners = points[triangles]
-    low, high = corners.min(axis=1), corners.max(axis=1)
+    low, high, of_which = corners.min(axis=1), corners.max(axis=1), counts[shell]
+    touch = TOUCH * float(np.ptp(points, axis=0).max())
     for k in which:
         mine = np.flatnonzero(shell == k)
-        probes = corners[mine[np.linspace(0, len(mine) - 1, PROBES).astype(np.intp)]].mean(axis=1)
-        contains = np.zeros(count)
-        for p in probes:
-            over = (low[:, :2] <= p[:2]).all(axis=1) & (high[:, :2] >= p[:2]).all(axis=1) & (high[:, 2] >= p[2])
-            over &= shell != k
-            crossed = np.bincount(shell[over], _crossings(corners[over], p), minlength=count)
-            contains += crossed != 0
-        depths[k] = (contains[which] > PROBES / 2).sum()
+        near = of_which & (shell != k) & (low[:, :2] <= high[mine, :2].max(axis=0)).all(axis=1)
+        near &= (high >= low[mine].min(axis=0)).all(axis=1)
+        count = max(min(PROBED, PASSES // max(int(near.sum()), 1)) // len(which), 1)
+        some = corners[mine[np.linspace(0, len(mine) - 1, min(count, len(mine))).astype(np.intp)]]
+        normals = np.cross(some[:, 1] - some[:, 0], some[:, 2] - some[:, 0])
+        lengths = np.linalg.norm(normals, axis=1)
+        plain = lengths > touch * np.ptp(some, axis=1).max(axis=1)  # the normal of a sliver leads anywhere
+        if not near.any() or not plain.any():
+            continue
+        inwards = -np.sign(volumes[k]) * touch * normals[plain] / lengths[plain, None]
+        probes = (NEAR_CORNER @ some[plain] + inwards[:, None]).reshape(-1, 3)
+        within = np.zeros((len(probes), len(volumes)), bool)
+        floor, roof, others, surface = low[near, :2], high[near], corners[near], shell[near]
+        for each, p in zip(within, probes, strict=True):
+            over = np.flatnonzero((floor <= p[:2]).all(axis=1) & (roof >= p).all(axis=1))
+            each[:] = np.bincount(surface[over], _crossings(others[over], p), minlength=len(volumes)) != 0
+        crossed = within.any(axis=0) & ~within.all(axis=0)
+        if crossed.any():
+            at = probes[within[:, crossed.argmax()].argmax()] + middle
+            what = (
+                f"two of its surfaces cross: one is partly inside the other, at ({', '.join(f'{x:.4g}' for x in at)}) m"
+            )
+            advice = "join the two in the program that made them, or `hull`, the convex hull, which weighs more"
+            raise DrawingError("shells", what, file, [at.tolist()], advice)
+        depths[k] = within[0].sum()
     return depths
 
 

@@ -33,6 +33,7 @@ from rocking_cli.questions.import_mesh.solid import (
     hull_of,
     merged,
     moments,
+    once,
     solid,
 )
 from rocking_cli.short_repr import short_repr
@@ -44,6 +45,9 @@ GRAVITY = float(STANDARD_GRAVITY)
 DIGITS = 7  # decimals of lengths in a file [m]
 ROLLS = 12  # sides of a foot from which it is called round
 GUESSES = ("mm", "cm", "m")
+LEAST_SIZE, MOST_SIZE = 1e-3, 1e4  # of a body [m]
+ROUNDING = 2.0**-24  # of coordinates in single precision, over the largest
+COARSE, TOO_COARSE = 1e-4, 1e-2  # rounding over the size from which it is said, and refused
 
 
 @dataclass(frozen=True)
@@ -185,9 +189,20 @@ def imported(surface: MeshSurface, file: str, options: MeshOptions, azimuths: Se
     """
     scale = _scale(surface, file, options.units)
     turn = UPWARDS[options.up]
-    points, triangles, notes = surface.points @ turn.T * scale, surface.triangles, list[MeshNote]()
+    points, triangles, notes = surface.points @ turn.T * scale, surface.triangles, _rounding(surface, file, scale)
     if len(triangles):
         points, triangles = merged(points, triangles)
+        kept = once(triangles, len(points))
+        if again := len(triangles) - len(kept):
+            words = (
+                f"{again:,} triangles repeat others, and do not count" if again > 1 else "1 triangle repeats another"
+            )
+            notes.append(MeshNote("again", again, words))
+        triangles = kept
+        loose = int((np.bincount(triangles.ravel(), minlength=len(points)) == 0).sum())
+        if loose and not options.hull:
+            words = f"{loose:,} points belong" if loose > 1 else "1 point belongs"
+            notes.append(MeshNote("loose", loose, f"{words} to no face: the file may be cut short"))
     if options.hull:
         enclosed = _volume(points, triangles)
         points, triangles, planes = hull_of(points, file)
@@ -225,13 +240,31 @@ def imported(surface: MeshSurface, file: str, options: MeshOptions, azimuths: Se
 
 
 def _scale(surface: MeshSurface, file: str, units: str | None) -> float:
-    """Return the size of a unit of a mesh [m]. Raises `DrawingError` if it is not given."""
-    if units is not None:
-        return float(KINDS["length"][units])
+    """Return the size of a unit of a mesh [m]. Raises `DrawingError` if it is not given or not plausible."""
     size = float(np.ptp(surface.points, axis=0).max())
-    sizes = ", ".join(f"{size * float(KINDS['length'][unit]):.4g} m if {unit}" for unit in GUESSES)
-    what = f"a mesh does not say its units: give `units` (it is {size:.4g} units large: {sizes})"
-    raise DrawingError("units", what, file)
+    if units is None:
+        sizes = ", ".join(f"{size * float(KINDS['length'][unit]):.4g} m if {unit}" for unit in GUESSES)
+        what = f"a mesh does not say its units: give `units` (it is {size:.4g} units large: {sizes})"
+        raise DrawingError("units", what, file)
+    scale = float(KINDS["length"][units])
+    if not LEAST_SIZE <= size * scale <= MOST_SIZE:
+        raise DrawingError("units", f"the body would be {size * scale:.3g} m large: give other `units`", file)
+    return scale
+
+
+def _rounding(surface: MeshSurface, file: str, scale: float) -> list[MeshNote]:
+    """Return a note if the numbers of a file are coarse for the size of the body; `DrawingError` if much too coarse."""
+    far, size = (scale * float(each) for each in (np.abs(surface.points).max(), np.ptp(surface.points, axis=0).max()))
+    step = far * ROUNDING
+    if surface.points.dtype != np.float32 or step <= COARSE * size:
+        return []
+    words = (
+        f"the file rounds its coordinates to {1000 * step:.2g} mm, {100 * step / size:.2g} % of the size of the body, "
+        f"because it has single precision and the body is {far:.3g} m from its origin"
+    )
+    if step > TOO_COARSE * size:
+        raise DrawingError("number", words, file, hint="move the mesh to its origin in the program that made it")
+    return [MeshNote("rounded", 1, words)]
 
 
 def _short(number: float) -> float:

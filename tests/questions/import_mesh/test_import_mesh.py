@@ -132,6 +132,11 @@ def test_far_from_the_origin_in_single_precision():
         far = STATUE[0] + np.array([away, 2 * away, 0.0])
         rounded = np.float32(far).astype(float), STATUE[1]
         assert lambdas(rounded) == pytest.approx(lambdas(STATUE), rel=1e-3 if away > 1000 else 2e-4)
+    single = [((STATUE[0] + away).astype(np.float32), STATUE[1]) for away in (1000.0, 1e4, 1e6)]
+    assert kinds(taken(single[0])) == {}
+    (note,) = taken(single[1], level=0.01).notes
+    assert "rounds its coordinates to 0.6 mm, 0.025 % of the size" in note.words
+    assert refusal(single[2]).refused == "number"
     exact = STATUE[0] + np.array([4e6, 5e6, 100.0]), STATUE[1]
     assert lambdas(exact) == pytest.approx(lambdas(STATUE), rel=1e-7)
 
@@ -169,6 +174,27 @@ def test_cavities_crumbs_and_surfaces_that_face_inwards():
     assert lambdas(crumbs) == pytest.approx(lambdas(STATUE))
     lump = several(HOLLOW, box((0.2, 0.2, 0.5), (0.3, 0.3, 0.6)))  # lies in the cavity
     assert kinds(taken(lump)) == {"cavities": 1, "crumbs": 1}
+
+
+def test_faces_drawn_twice_count_once_and_points_without_faces_are_counted():
+    points, triangles = STATUE
+    found = taken((np.vstack([points, [[0.1, 0.1, 0.1]]]), np.concatenate([triangles, np.roll(triangles, 1, axis=1)])))
+    assert (kinds(found), found.whole.volume) == ({"again": 12, "loose": 1}, pytest.approx(0.6 * 0.8 * 2.4))
+    assert refusal((points, np.concatenate([triangles, triangles[:, ::-1]]))).refused == "thin"
+
+
+def test_shells_may_touch_but_not_cross():
+    for x, crosses in ((0.0, False), (1e-6, False), (1e-3, True)):
+        brick = box((0.5 - x, 0.0, 1.0 - x), (1.0, 0.7, 2.0))  # lies in the notch
+        if crosses:
+            found = refusal(several(ELL, brick))
+            assert found.refused == "shells"
+            assert "two of its surfaces cross: one is partly inside the other, at (" in str(found)
+            assert 0.499 <= found.at[0][0] <= 1
+        else:
+            assert kinds(taken(several(ELL, brick))) == ({"parts": 1} if x else {})
+    for bar in (box((-1, 0.1, 1), (2, 0.4, 1.3)), box((0.3, 0.2, 0), (1, 0.6, 1))):
+        assert refusal(several(STATUE, bar)).refused == refusal(several(STATUE, inwards(bar))).refused == "shells"
 
 
 def test_open_surfaces_are_refused_with_their_holes():
