@@ -133,7 +133,7 @@ class MeshSurface:
     format : str
         Name of the format.
     points : ndarray, shape (n, 3)
-        Corners, in the unit of the file.
+        Corners, in the unit of the file; in single precision if the file has them so.
     triangles : ndarray of int, shape (m, 3)
         Corners of each triangle; none in a cloud of points.
     """
