@@ -329,7 +329,7 @@ restitution, redrawn above 1), they were drawn evenly within 2 % of amplitude an
   errors of the fit, not those of real contact, such as bouncing, sliding, twisting and crushing.
 - These are two bodies of one kind, some .3 m from foot to centroid, on a table with one axis. The error in the
   description of a body is the same in all of its tests, so there are two samples of such an error, not 600.
-- No wall, frame or arch, no tie and no load has been held against observed shares: the checks of their mechanics are
+- No wall, frame or arch, no tie and no load has been checked against observed shares: the checks of their mechanics are
   in [Validation](validation.md).
 - Peak rotations were not recorded in these tests. Where your table has a `peak`, `rocking score` ranks it among those
   of the neighbours.

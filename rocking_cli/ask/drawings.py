@@ -92,14 +92,16 @@ def is_mesh(path: str | Path) -> bool:
     return bool(getattr(reader_of(path)[0], "MESH", False))
 
 
-def length_of(value: float | str, name: str, *, zero: bool = True) -> float:
-    """Return a length [m] from a number or a text with a unit. Raises `InputError` if it is not a valid one."""
+def length_of(value: float | str, name: str, most: float = 1000.0, *, zero: bool = True) -> float:
+    """Return a length [m], at most `most`, from a number or a text with a unit. Raises `InputError` for any other."""
     try:
         length = number_of(value, "m")
     except UnitError as error:
         raise InputError(Problem(error.message, field=f"`{name}`", hint=error.hint)) from None
-    if not 0 <= length <= 1000 or not (zero or length):
-        raise InputError(Problem(f"must be a length up to 1000 m, got {value}", field=f"`{name}`"))
+    if not 0 <= length <= most or not (zero or length):
+        what = f"must be a length up to {most:g} m, got {value}"
+        hint = "a number without a unit is in metres" if length > most else None
+        raise InputError(Problem(what, field=f"`{name}`", hint=hint))
     return length
 
 

@@ -96,7 +96,7 @@ def _unit(dxf: DxfFile) -> tuple[str | None, str]:
         known = ", ".join(f"{each} ({name})" for each, name in UNITS.items())
         return None, f"the file has the unit {number} of $INSUNITS, which is not one of {known}"
     if unit in IMPERIAL and is_metric:
-        return None, f"the file says {IMPERIAL[unit]}, but measures in metric units"
+        return None, f"the file states {IMPERIAL[unit]}, but its $MEASUREMENT is metric"
     return unit, ""
 
 

@@ -95,8 +95,8 @@ def _bounded(count: int, of: str, file: str) -> None:
         raise DrawingError("too_large", f"has {count:,} {of}", file, hint=FEWER)
 
 
-def _cut(file: str, announced: str, found: str) -> DrawingError:
-    return DrawingError("cut", f"is cut short: it announces {announced}, and has {found}", file, hint="save it again")
+def _cut(file: str, announced: str, held: str) -> DrawingError:
+    return DrawingError("cut", f"is cut short: it announces {announced}, and has {held}", file, hint="save it again")
 
 
 def _more(file: str, announced: str) -> DrawingError:
@@ -132,8 +132,8 @@ def _stl(data: bytes, as_text: bool, file: str) -> tuple[NDArray[Any], Integers]
     else:
         count = (_counted(data) - STL_HEAD) // STL_TRIANGLE.itemsize
         if len(data) < _counted(data):
-            found = max(len(data) - STL_HEAD, 0) // STL_TRIANGLE.itemsize
-            raise _cut(file, f"{count:,} faces", f"{found:,}")
+            held = max(len(data) - STL_HEAD, 0) // STL_TRIANGLE.itemsize
+            raise _cut(file, f"{count:,} faces", f"{held:,}")
         if len(data) > _counted(data):
             raise _more(file, f"{count:,} faces")
         points = np.frombuffer(data, STL_TRIANGLE, count, STL_HEAD)["corners"].reshape(-1, 3).astype(np.float32)

@@ -34,6 +34,8 @@ LOAD_FIELDS = {
     "body": "[^,;]+",
 }  # fmt: skip
 """Fields of ties and loads that texts may give, with the patterns of their values."""
+BARS = re.compile(r"(?:(\d+)\s*)?[\u00d8\u00f8\u2300\u03c6\u03a6]\s*(\d+)(?:\s*mm)?")  # 2\u00d816
+STEEL = re.compile(r"(?<!steel )(?<!steel)\b(S\d{3}|Fe\s?\d{3})\b")
 DECIMALS = 7  # of coordinates in a file [m]
 
 
@@ -106,7 +108,7 @@ class BodyFinder:
     def straight(self, chain: DrawnLine, kind: str, name: str) -> tuple[complex, complex]:
         """Return both ends of a line of two points. Raises `DrawingError` for other lines."""
         is_straight = len(chain.points) == len(set(chain.points.tolist())) == 2 and not chain.closed
-        self.require(is_straight, kind, f"{name} is one straight line; something else is", complex(chain.points[0]))
+        self.require(is_straight, kind, f"{name} must be one straight line: another shape is", complex(chain.points[0]))
         return complex(chain.points[0]), complex(chain.points[-1])
 
 
@@ -153,7 +155,7 @@ def _hinges(drawing: LineDrawing, of: Sorted, places: BodyFinder, made: DrawnAtt
         places.require(len(on) <= 2, "hinge", "the hinge is on more than two bodies", at)
         made.hinges.append((z, tuple(on), direction_of(layer)))
     for chain in of.chains[Role.HINGES]:
-        what = "a line is not a hinge (draw a point or a circle instead):"
+        what = "draw a hinge as a point or a circle: a line is"
         places.require(chain.closed, "hinge", what, complex(chain.points[0]))
 
 
@@ -163,7 +165,7 @@ def _supports(of: Sorted, places: BodyFinder, made: DrawnAttachments) -> None:
         z = [places.at(end) for end in ends]
         held = [(on[0], end) for end in z if (on := places.bodies(end))]
         nearest = min(ends, key=lambda end: float(places.away(places.solid, places.at(end)).min()))
-        places.require(held, "support", "the support ends on no body: its end next to a body is", nearest)
+        places.require(held, "support", "the support ends on no body: its nearer end is", nearest)
         normal = 1j * (z[1] - z[0]) / abs(z[1] - z[0])
         normal *= 1 if (normal.imag, normal.real) > (0, 0) else -1
         made.supports += [(name, end, normal, direction_of(chain.layer)) for name, end in held]
@@ -267,7 +269,7 @@ def _ties(of: Sorted, places: BodyFinder, made: DrawnAttachments) -> None:
     for k, chain in enumerate(chains):
         ends = [_end_of_tie(complex(z), places) for z in chain.points]
         text = seen(texts[k].text) if k in texts else ""
-        fields, others = _fields_in(text, TIE_FIELDS)
+        fields, others = _fields_in(_spelled_out(text), TIE_FIELDS)
         name, *unread = others or [""]
         tie: dict[str, Any] = {"name": name or f"tie {k + 1}"}
         tie |= {"from": ends[0], "to": ends[1]} if len(ends) == 2 else {"path": ends}
@@ -282,10 +284,16 @@ def _ties(of: Sorted, places: BodyFinder, made: DrawnAttachments) -> None:
             made.ties.append(tie | fields)
 
 
+def _spelled_out(text: str) -> str:
+    """Return a text with bars and steel in words: `2\u00d816 S235` as `bars 2, diameter 16 mm, steel S235`."""
+    text = BARS.sub(lambda bars: f"bars {bars[1] or 1}, diameter {bars[2]} mm, ", text)
+    return STEEL.sub(r", steel \1", text)
+
+
 def _fault_of(tie: dict[str, Any], described: bool) -> str:
     """Return why a tie cannot act, in words after its name; empty if it can."""
     if not described:
-        return "has no text such as `area 452 mm2, modulus 210 GPa`"
+        return "has no text with data, such as `area 452 mm2, modulus 210 GPa`"
     ends = {end.get("body") for end in tie.get("path", [tie.get("from"), tie.get("to")])}
     if len(ends) == 1:
         return f"has all its points on {ends.pop() or 'the ground'}, so that nothing stretches it"

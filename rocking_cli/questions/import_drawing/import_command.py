@@ -129,7 +129,7 @@ def _of_drawing(file: str, output: Output, asked: dict[str, Any]) -> Answer[Any]
     from rocking_cli.questions.import_drawing.roles import parse_layers
     from rocking_cli.questions.import_drawing.verb import import_drawing
 
-    _refuse(asked, OF_MESHES, "reads a mesh, and this is a drawing")
+    _refuse(asked, OF_MESHES, "is for meshes, but the file is a drawing")
     given = {name: value for name, value in asked.items() if name not in OF_MESHES and value is not None}
     given |= {"layers": parse_layers(asked["layers"]), "density": _densities(asked["density"])}
     answer = import_drawing(file, out=output.out, command=_typed(file, asked), watch=output.watch, **given)
@@ -143,7 +143,7 @@ def _of_mesh(file: str, output: Output, asked: dict[str, Any]) -> Answer[Any]:
     """Import a mesh."""
     from rocking_cli.questions.import_mesh.verb import import_mesh
 
-    _refuse(asked, OF_DRAWINGS, "reads a drawing, and this is a mesh")
+    _refuse(asked, OF_DRAWINGS, "is for drawings, but the file is a mesh")
     if len(asked["density"]) > 1 or "=" in "".join(asked["density"]):
         raise click.UsageError("A mesh has one density: give --density once, without a layer.")
     given = {name: value for name, value in asked.items() if name in OF_MESHES and value is not None}

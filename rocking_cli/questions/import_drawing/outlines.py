@@ -104,16 +104,16 @@ def by_role(drawing: LineDrawing, roles: Roles, file: str) -> Sorted:
         (layer,) = counts
         roles = Roles({**roles.given, layer: Role.BODIES})
         chains[Role.BODIES] = unknown.pop(layer)
-        words = f"the layer {seen(layer) or '(none)'} has the only outlines: they are bodies"
+        words = f"the layer {seen(layer) or '(none)'} alone has outlines: they are taken as bodies"
         notes.append(ImportNote("layers", 1, words))
     elif counts:
         known = Counter(chain.layer for chain in chains[Role.BODIES])
         strange = sorted(map(seen, counts))
         counts |= {layer: outline_count([c for c in chains[Role.BODIES] if c.layer == layer]) for layer in known}
         some = f"{strange[0]} has" if len(strange) == 1 else f"{len(strange)} of them have"
-        take, leave = (quote(f"{role}={','.join(strange)}") for role in (Role.BODIES, Role.NOTHING))
+        take, cut, leave = (quote(f"{role}={','.join(strange)}") for role in (Role.BODIES, Role.OPENINGS, Role.NOTHING))
         what = f"which layers are bodies? {counted(counts)}; {some} no known role: give `layers` {take}"
-        raise DrawingError("layers", f"{what}, or {leave}" if len(strange) == 1 else what, file)
+        raise DrawingError("layers", f"{what}, {cut} or {leave}" if len(strange) == 1 else what, file)
     if not chains[Role.BODIES]:
         held: list[DrawnLine | DrawnText | DrawnPoint] = [*drawing.chains, *drawing.labels, *drawing.spots]
         kinds = Counter(each.kind for each in held)
@@ -254,7 +254,8 @@ def bodies_of(
     outer, inner = _by_shape(made, close)
     straightened = sum(chain.is_straightened for loop in made for chain in loop.sources)
     if straightened:
-        notes.append(ImportNote("straightened", straightened, f"{many(straightened, 'curve')} made straight sides"))
+        words = f"{many(straightened, 'curve')} replaced by straight sides"
+        notes.append(ImportNote("straightened", straightened, words))
     if arcs := sum(chain.arcs_found for loop in made for chain in loop.sources):
         notes.append(ImportNote("arcs", arcs, f"{many(arcs, 'arc')} recognised in the curves of the file"))
     bodies, count = _nested(outer, frame, close, nested, file)
@@ -517,16 +518,22 @@ def name_and_weigh(
         label for label in of.labels if of.roles(label.layer) not in (Role.LOADS, Role.TIES) and label.text.strip()
     ]
     names: dict[int, list[str]] = {}
+    used: set[int] = set()
     if texts:
         at = frame.to_metres(np.array([label.at for label in texts]))
         tree = shapely.STRtree(polygons_of([body.ring for body in bodies], close))
         for k, home in tree.query(shapely.points(at.real, at.imag), predicate="within").T.tolist():
+            used.add(k)
             for text in filter(None, map(seen, texts[k].text.splitlines())):
                 if (density := density_in(text)) is not None:
                     bodies[home].density = density
                 elif any(each.isalpha() for each in text):
                     names.setdefault(home, []).append(text)
-    notes = []
+    outside = Counter((label.kind, label.layer) for k, label in enumerate(texts) if k not in used)
+    notes = [
+        ImportNote("left out", count, f"left out: {count:,} {kind} on {seen(layer) or 'no layer'}")
+        for (kind, layer), count in outside.items()
+    ]
     taken = {"ground", "floor", *(f"ground {k + 1}" for k in range(len(of.chains[Role.GROUND])))}
     count = Counter[str]()
     for k, body in enumerate(bodies):

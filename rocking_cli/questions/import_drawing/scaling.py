@@ -60,20 +60,20 @@ def metres_per_unit(
     if units is not None:
         per, words = metres(units) * times, f"1 unit = 1 {units}" + (f", at {scale}" if scale else "")
         if drawing.paper is not None and abs(per / drawing.paper - 1) < SAME_SIZE:
-            words += ", the size on paper: give `scale` if it is drawn to a scale"
+            words += ", the size on paper (if it is drawn to a scale, give `scale`)"
     elif scale is not None and drawing.paper is not None:
-        per, words = drawing.paper * times, f"the paper's size, at {scale}"
+        per, words = drawing.paper * times, f"the size on paper, at {scale}"
     elif drawing.unit is not None:
         per, words = (
             metres(drawing.unit) * times,
-            f"the unit is {drawing.unit}, as the file says" + (f", at {scale}" if scale else ""),
+            f"the unit is {drawing.unit}, as stated in the file" + (f", at {scale}" if scale else ""),
         )
         if not MIN_SIZE <= size * per <= MAX_SIZE:
             what = f"the file says {drawing.unit}, and what is drawn would be {size * per:.3g} m large: give `units`"
             raise DrawingError("units", what, file)
     else:
         sizes = ", ".join(f"{size * metres(each):.4g} m if {each}" for each in SHOWN)
-        why = drawing.doubt or "the drawing does not say its units"
+        why = drawing.doubt or f"the drawing does not say its units{' or its scale' * (drawing.paper is not None)}"
         more = " or `scale`" if drawing.paper is not None and scale is None else ""
         raise DrawingError("units", f"{why}: give `units`{more} (it is {size:.4g} units large: {sizes})", file)
     if not isfinite(size * per) or not 1e-3 <= size * per <= 1e4:

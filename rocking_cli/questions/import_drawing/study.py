@@ -189,17 +189,19 @@ def structure_from(drawing: LineDrawing, options: ImportOptions, name: str, file
     mended = [z + shift for z in (*mended, *closed.at)]
     for body, ring in zip(bodies, closed.rings, strict=True):
         body.ring = ring
+    _check_closed(bodies, frame, close, file)
     check_overlaps(bodies, ground if is_drawn else [], frame, close, file)
     for body in bodies:
         body.ring = body.ring.placed(1.0, shift)
         body.openings = [each.placed(1.0, shift) for each in body.openings]
     ground = [each.placed(1.0, shift) for each in ground]
     if not is_drawn:
-        notes.append(ImportNote("ground", 1, "no ground is drawn: it is level, at the lowest point"))
+        notes.append(ImportNote("ground", 1, "no ground is drawn: a level floor at the lowest point is assumed"))
     origin = frame.to_drawing(-shift)
     x, y = (round(each * frame.per, DECIMALS) / frame.per + 0.0 for each in (origin.real, origin.imag))
     upwards = ", with y upwards from the upper edge of its page" if drawing.format == "SVG" else ""
-    notes.append(ImportNote("origin", 1, f"the origin of the file is at ({x:.9g}, {y:.9g}) of the drawing{upwards}"))
+    words = f"the origin of the structure file is at ({x:.9g}, {y:.9g}) of the drawing{upwards}"
+    notes.append(ImportNote("origin", 1, words))
     width, height = (float(np.ptp(part)) for part in _extent(bodies))
     notes.append(ImportNote("units", 1, f"{units}: the structure is {width:.4g} m wide and {height:.4g} m high"))
     places = BodyFinder(bodies, ground, frame, shift, close, file)
@@ -268,6 +270,16 @@ def _closing_notes(closed: mortar.Closed, frame: DrawingFrame) -> list[ImportNot
         words = f"{many(len(closed.uneven), 'side')} faced two different gaps: the larger was closed"
         notes.append(ImportNote("two gaps", len(closed.uneven), words, [frame.to_drawing(z) for z in closed.uneven]))
     return notes
+
+
+def _check_closed(bodies: Sequence[DrawnBody], frame: DrawingFrame, close: float, file: str) -> None:
+    """Raise `DrawingError` "crosses" if closing gaps has made a body cross itself."""
+    import shapely
+
+    for k in np.flatnonzero(~shapely.is_valid(polygons_of([body.ring for body in bodies], close))).tolist():
+        at = bodies[k].ring.moments.centroid
+        what = f"{bodies[k].name} at {frame.place(at)} crosses itself once its gaps are closed"
+        raise DrawingError("crosses", f"{what}: give a smaller `merge_gap`", file, at=frame.pairs([at]))
 
 
 def check_overlaps(
@@ -522,8 +534,10 @@ def _check_weights(
     elif kind != "rigid_body" and (blamed or options.depth is None):
         blamed = [body for body in bodies if not body.is_plain][:1]
         for body in blamed:
-            what = f"{body.name} has {'arcs' if body.ring.arcs else 'openings'}, so that it is given by mass, "
-            what += "centroid and inertia: give `density` and `depth`"
+            missing = {"`density`": body.density is None, "`depth`": options.depth is None}
+            what = f"{body.name} at {frame.place(body.ring.moments.centroid)} has "
+            what += f"{'arcs' if body.ring.arcs else 'openings'}, so that its mass and inertia are computed: give "
+            what += " and ".join(name for name, is_missing in missing.items() if is_missing)
     if what:
         raise DrawingError("density", what, file, frame.pairs([body.ring.moments.centroid for body in blamed]))
 
@@ -563,7 +577,7 @@ def _refused_together(result: Imported, file: str) -> list[ImportNote]:
                 raise DrawingError("density", what, file, at) from None
             what = f"{result.kind} cannot take it: {'; '.join(words)}{_nearest_gap(result, joined)}"
             raise DrawingError("mechanism", what, file, at) from None
-        return [ImportNote("together", 1, f"commands refuse the file as it is: {'; '.join(words)}")]
+        return [ImportNote("together", 1, f"other commands refuse the file as it is: {'; '.join(words)}")]
     except StructureError as error:  # the analysis of the assembly found no answer
         raise DrawingError("mechanism", f"{result.kind} cannot take it: {error}", file) from None
     return []
@@ -579,4 +593,4 @@ def _nearest_gap(result: Imported, joined: Collection[str]) -> str:
     if not len(gaps):
         return ""
     widest = ceil(1e4 * float(gaps.max()) - 1e-6) / 10  # tenths of a millimetre
-    return f"; faces beside them are up to {widest:.4g} mm apart: give `merge_gap` {widest:.4g} mm"
+    return f"; faces beside them are up to {widest:.4g} mm apart: give `merge_gap` {widest:.4g}mm"

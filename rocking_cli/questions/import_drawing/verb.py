@@ -16,6 +16,8 @@ from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 
+MAX_GAP = 0.2  # of joints of mortar [m]
+
 if TYPE_CHECKING:
     from rocking_cli.io.tables import Columns
     from rocking_cli.questions.import_drawing.study import Imported
@@ -109,7 +111,7 @@ def import_drawing(
     options = ImportOptions(
         units=units, scale=scale, layers=layers or {}, densities=_densities(density),
         depth=None if depth is None else length_of(depth, "depth", zero=False),
-        merge_gap=length_of(merge_gap, "merge_gap"),
+        merge_gap=length_of(merge_gap, "merge_gap", MAX_GAP),
         close=length_of(close, "close", zero=False), nested=nested, kind=kind,
         tolerance=length_of(tolerance, "tolerance", zero=False),
     )  # fmt: skip

@@ -165,13 +165,13 @@ def closed(points: Reals, triangles: Triangles, file: str) -> None:
         return
     at = [points[ends[0, 0]].tolist()]
     if turned == len(ends):
-        what = f"its surface is closed, but {turned:,} sides lie between triangles of which one is turned over"
-        raise DrawingError("open", what, file, at, "turn its faces the same way out, or `hull`, the convex hull")
+        what = f"its surface is closed, but {turned:,} edges join triangles that face opposite ways"
+        raise DrawingError("open", what, file, at, "orient its faces outwards, or give `hull` for the convex hull")
     labels = joined(ends, len(points))[ends[:, 0]]
     holes = [np.ptp(points[ends[labels == each]].reshape(-1, 3), axis=0) for each in np.unique(labels)[:MAX_SHELLS]]
     _, wide, long = np.sort(max(holes, key=np.linalg.norm))
     what = f"its surface is not closed: {len(ends):,} loose sides, the largest hole {long:.3g} x {wide:.3g} m"
-    raise DrawingError("open", what, file, at, "close its holes, or `hull`, the convex hull, which weighs more")
+    raise DrawingError("open", what, file, at, "close its holes, or give `hull` for the convex hull, which is heavier")
 
 
 def hull_of(points: Reals, file: str) -> tuple[Reals, Triangles, Reals]:
@@ -235,10 +235,10 @@ def solid(points: Reals, triangles: Triangles, file: str) -> tuple[Triangles, li
     note("crumbs", ~counts, "1 crumb is left out", "{} crumbs are left out")
     note("cavities", counts & within & (volumes < 0), "1 cavity is cut out", "{} cavities are cut out")
     swallowed = counts & within & (volumes > 0)
-    note("within", swallowed, "1 part inside the body, which faces outwards as no cavity does, is left out",
-         "{} parts inside the body, which face outwards as no cavity does, are left out")  # fmt: skip
-    note("parts", counts & ~within & (np.abs(volumes) < size), "1 more part counts as of the body",
-         "{} more parts count as of the body")  # fmt: skip
+    note("within", swallowed, "1 part inside the body is left out: its faces point outwards, unlike those of a cavity",
+         "{} parts inside the body are left out: their faces point outwards, unlike those of cavities")  # fmt: skip
+    note("parts", counts & ~within & (np.abs(volumes) < size), "1 separate part counts as part of the body",
+         "{} separate parts count as parts of the body")  # fmt: skip
     note("turned", turned | inside_out & counts, "1 surface is turned outwards", "{} surfaces are turned outwards")
     triangles = np.where(turned[shell, None], triangles[:, ::-1], triangles)
     return triangles[(counts & ~swallowed)[shell]], notes
@@ -259,19 +259,19 @@ def _depths(
     touch = TOUCH * float(np.ptp(points, axis=0).max())
     for k in which:
         mine = np.flatnonzero(shell == k)
-        near = of_which & (shell != k) & (low[:, :2] <= high[mine, :2].max(axis=0)).all(axis=1)
-        near &= (high >= low[mine].min(axis=0)).all(axis=1)
-        count = max(min(PROBED, PASSES // max(int(near.sum()), 1)) // len(which), 1)
+        beside = of_which & (shell != k) & (low[:, :2] <= high[mine, :2].max(axis=0)).all(axis=1)
+        beside &= (high >= low[mine].min(axis=0)).all(axis=1)
+        count = max(min(PROBED, PASSES // max(int(beside.sum()), 1)) // len(which), 1)
         some = corners[mine[np.linspace(0, len(mine) - 1, min(count, len(mine))).astype(np.intp)]]
         normals = np.cross(some[:, 1] - some[:, 0], some[:, 2] - some[:, 0])
         lengths = np.linalg.norm(normals, axis=1)
         plain = lengths > touch * np.ptp(some, axis=1).max(axis=1)  # the normal of a sliver leads anywhere
-        if not near.any() or not plain.any():
+        if not beside.any() or not plain.any():
             continue
         inwards = -np.sign(volumes[k]) * touch * normals[plain] / lengths[plain, None]
         probes = (NEAR_CORNER @ some[plain] + inwards[:, None]).reshape(-1, 3)
         within = np.zeros((len(probes), len(volumes)), bool)
-        floor, roof, others, surface = low[near, :2], high[near], corners[near], shell[near]
+        floor, roof, others, surface = low[beside, :2], high[beside], corners[beside], shell[beside]
         for each, p in zip(within, probes, strict=True):
             over = np.flatnonzero((floor <= p[:2]).all(axis=1) & (roof >= p).all(axis=1))
             each[:] = np.bincount(surface[over], _crossings(others[over], p), minlength=len(volumes)) != 0
@@ -281,7 +281,7 @@ def _depths(
             what = (
                 f"two of its surfaces cross: one is partly inside the other, at ({', '.join(f'{x:.4g}' for x in at)}) m"
             )
-            advice = "join the two in the program that made them, or `hull`, the convex hull, which weighs more"
+            advice = "join the two in the program that made them, or give `hull` for the convex hull, which is heavier"
             raise DrawingError("shells", what, file, [at.tolist()], advice)
         depths[k] = within[0].sum()
     return depths

@@ -47,7 +47,7 @@ ROLLS = 12  # sides of a foot from which it is called round
 GUESSES = ("mm", "cm", "m")
 LEAST_SIZE, MOST_SIZE = 1e-3, 1e4  # of a body [m]
 ROUNDING = 2.0**-24  # of coordinates in single precision, over the largest
-COARSE, TOO_COARSE = 1e-4, 1e-2  # rounding over the size from which it is said, and refused
+NOTED_ROUNDING, REFUSED_ROUNDING = 1e-4, 1e-2  # rounding over the size from which it is said, and refused
 
 
 @dataclass(frozen=True)
@@ -208,7 +208,7 @@ def imported(surface: MeshSurface, file: str, options: MeshOptions, azimuths: Se
         points, triangles, planes = hull_of(points, file)
     elif not len(triangles):
         what = f"is a cloud of {len(points):,} points without faces, which encloses nothing"
-        advice = "make a surface of it, or `hull`, the convex hull, which weighs more"
+        advice = "make a surface of the points, or give `hull` for the convex hull, which is heavier"
         raise DrawingError("open", what, file, hint=advice)
     else:
         closed(points, triangles, file)
@@ -218,11 +218,11 @@ def imported(surface: MeshSurface, file: str, options: MeshOptions, azimuths: Se
     points, triangles = points[used], (np.cumsum(used) - 1)[triangles]
     whole, turned = moments(points, triangles), 0.0
     if options.hull:
-        more = "more than what it encloses" if enclosed is None else f"{100 * (whole.volume / enclosed - 1):.2g} % more"
+        more = "more than the body" if enclosed is None else f"{100 * (whole.volume / enclosed - 1):.2g} % more"
         notes.append(MeshNote("hull", 1, f"the body is the convex hull of the mesh, which weighs {more}"))
     if options.settle:
         way, turned = settled(planes if options.hull else hull_of(points, file)[2], whole.centroid)
-        notes.append(MeshNote("settled", 1, f"laid down on the facet of its hull by a turn of {turned:.3g} degrees"))
+        notes.append(MeshNote("settled", 1, f"turned by {turned:.3g} degrees to stand on a facet of its hull"))
         points = points @ way.T
         whole = Moments(whole.volume, way @ whole.centroid, way @ whole.inertia @ way.T)
     shift = np.array([*whole.centroid[:2], points[:, 2].min()])
@@ -256,13 +256,13 @@ def _rounding(surface: MeshSurface, file: str, scale: float) -> list[MeshNote]:
     """Return a note if the numbers of a file are coarse for the size of the body; `DrawingError` if much too coarse."""
     far, size = (scale * float(each) for each in (np.abs(surface.points).max(), np.ptp(surface.points, axis=0).max()))
     step = far * ROUNDING
-    if surface.points.dtype != np.float32 or step <= COARSE * size:
+    if surface.points.dtype != np.float32 or step <= NOTED_ROUNDING * size:
         return []
     words = (
         f"the file rounds its coordinates to {1000 * step:.2g} mm, {100 * step / size:.2g} % of the size of the body, "
         f"because it has single precision and the body is {far:.3g} m from its origin"
     )
-    if step > TOO_COARSE * size:
+    if step > REFUSED_ROUNDING * size:
         raise DrawingError("number", words, file, hint="move the mesh to its origin in the program that made it")
     return [MeshNote("rounded", 1, words)]
 

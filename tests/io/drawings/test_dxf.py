@@ -440,7 +440,7 @@ class TestUnits:
     @pytest.mark.parametrize("number, words", [(1, "inches"), (2, "feet")])
     def test_inches_are_not_believed_in_a_metric_drawing(self, number, words):
         drawing = read(new(INSUNITS=number, MEASUREMENT=1)[0])
-        assert drawing.unit is None and drawing.doubt == f"the file says {words}, but measures in metric units"
+        assert drawing.unit is None and drawing.doubt == f"the file states {words}, but its $MEASUREMENT is metric"
 
     def test_other_units_are_not_believed(self):
         drawing = read(new(INSUNITS=13)[0])

@@ -22,7 +22,7 @@ def tied(label, start=(0.4, 2.5), end=(3.6, 0.5)):
         ("bar: area 452 mm2", "the tie bar lacks data (stiffness: give stiffness, or area and modulus"),
         ("bar: area 452 kg, modulus 210 GPa", "the tie bar lacks data (area: 452 kg is a mass, not an area)"),
         ("bar: area 4,52 cm2, yield 235 MPa", "the tie bar lacks data (diameter is missing"),
-        ("tie rod", "the tie tie rod has no text such as"),
+        ("tie rod", "the tie tie rod has no text with data, such as"),
     ],
 )
 def test_a_tie_whose_text_lacks_data_is_a_comment_with_its_place(label, said):
@@ -42,6 +42,18 @@ def test_what_a_text_of_a_tie_says_besides_is_told():
     assert "not understood" not in words(tied("bar: area 452 mm2, modulus 210 GPa"))
 
 
+@pytest.mark.parametrize("label", ["2\u00d86 S235", "catena 2 \u00f8 6 mm, steel S235", "2\u23006, S235 only tension"])
+def test_bars_and_steel_as_drawings_write_them(label):
+    (tie,) = tied(label).structure.ties
+    assert (tie.bars, tie.diameter, tie.steel) == (2, 0.006, "S235")
+
+
+def test_texts_outside_bodies_are_counted():
+    labels = [text("SEZIONE A-A", 9, 9), text("8.00", 9, 8, "QUOTE"), text("9.00", 9, 7, "QUOTE"), text("low", 0.2, 1)]
+    said = words(imported(*PORTAL, labels=labels, **WEIGHTS))
+    assert "left out: 1 TEXT on TESTI" in said and "left out: 2 TEXT on QUOTE" in said
+
+
 def test_a_tie_on_one_body_is_a_comment_and_one_that_nothing_stretches_has_a_hint():
     found = tied("bar: stiffness 1 kN/m", (0.1, 2.5), (0.3, 0.5))
     assert "the tie bar has all its points on b1, so that nothing stretches it: it is a comment" in words(found)
@@ -53,7 +65,7 @@ def test_a_tie_on_one_body_is_a_comment_and_one_that_nothing_stretches_has_a_hin
 
 
 def test_a_support_on_no_body_is_told_by_the_end_next_to_one():
-    with pytest.raises(DrawingError, match=r"its end next to a body is at \(5, 2.5\)") as caught:
+    with pytest.raises(DrawingError, match=r"its nearer end is at \(5, 2.5\)") as caught:
         imported(*PORTAL, line((6, 2.5), (5, 2.5), "SOLAI"))
     assert caught.value.at == [[5.0, 2.5]]
 

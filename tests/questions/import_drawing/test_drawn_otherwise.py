@@ -101,6 +101,16 @@ def test_a_gap_is_not_closed_across_a_third_body():
     assert heights == [[0, 0.505], [0.505, 0.545], [0.545, 1.05]]
 
 
+def test_a_gap_wider_than_mortar_is_refused(tmp_path):
+    (tmp_path / "a.csv").write_text("0,0\n1,0\n1,3\n0,3\n")
+    with pytest.raises(InputError, match=r"must be a length up to 0\.2 m, got 12") as caught:
+        rk.import_drawing(tmp_path / "a.csv", units="m", merge_gap=12)
+    assert "metres" in str(caught.value)
+    stepped = outline([(0, 0), (1, 0), (1, 0.05), (0.9, 0.15), (0.9, 1), (0, 1)])
+    with pytest.raises(DrawingError, match="crosses itself once its gaps are closed"):
+        imported(stepped, box(1.15, 0, 1, 0.05), merge_gap=0.2)
+
+
 def test_bodies_may_have_the_names_of_the_ground():
     stones = [box(0, 0, 1, 1), box(0, 1, 1, 1)]
     found = imported(*stones, labels=[text("floor", 0.5, 0.5), text("ground", 0.5, 1.5)])
@@ -121,8 +131,13 @@ def test_a_size_on_paper_taken_as_real_is_said(tmp_path):
         '<g id="STONES"><rect x="50" y="40" width="60" height="240"/></g></svg>'
     )
     said = " ".join(note.words for note in rk.import_drawing(file, units="mm").notes)
-    assert "the size on paper: give `scale`" in said and "y upwards from the upper edge" in said
-    assert "size on paper" not in " ".join(note.words for note in rk.import_drawing(file, scale="1:10").notes)
+    assert (
+        "the size on paper (if it is drawn to a scale, give `scale`)" in said
+        and "y upwards from the upper edge" in said
+    )
+    assert "if it is drawn to a scale" not in " ".join(
+        note.words for note in rk.import_drawing(file, scale="1:10").notes
+    )
 
 
 def test_without_shapely_the_package_to_install_is_named(monkeypatch, tmp_path):

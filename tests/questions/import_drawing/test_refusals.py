@@ -50,7 +50,8 @@ REFUSED = [  # class, ending, content, options, words, and place
     ("units", "obj", meshes.obj(MESH), [], "a mesh does not say its units: give --units", []),
     ("layers", "geojson", drawing(*(box(9 * k, 0, 1, 1, name) for k, name in enumerate(("MURO", "0", "MURO")))), M,
      "MURO has 2 outlines, 0 has 1: give --layers bodies=MURO", []),
-    ("layers", "geojson", drawing(WALL, box(9, 0, 1, 1, "MATTE")), M, "bodies=MATTE, or nothing=MATTE", []),
+    ("layers", "geojson", drawing(WALL, box(9, 0, 1, 1, "MATTE")), M,
+     "bodies=MATTE, openings=MATTE or nothing=MATTE", []),
     ("empty", "geojson", drawing(shape("Point", [500, 0])), M, "no outline in it, only 1 Point", []),
     ("empty", "obj", b"# nothing\n", D, "has no points", []),
     ("unclosed", "csv", b"0,0\n1,0\n\n1,0\n1,2\n\n1,2\n0,2\n\n0,2\n0,0.03\n", M,
@@ -103,7 +104,7 @@ REFUSED = [  # class, ending, content, options, words, and place
 ]  # fmt: skip
 HINTS = {
     "xref": "bind it", "xref svg": "put its content into", "degrees": "save it in a projection", "cut": "save it again",
-    "too_large": "save what is needed", "not_svg": "save the drawing as SVG", "open": "close its holes, or --hull",
+    "too_large": "save what is needed", "not_svg": "save the drawing as SVG", "open": "close its holes, or give --hull",
     "point": "--settle", "falls": "--settle", "shells": "keep those of one body", "too_large ply": "reduce the mesh",
 }  # fmt: skip
 LINES = {"xref svg": 1, "number csv": 2, "not_svg": 1, "not_geojson": 1, "not_csv": 2}

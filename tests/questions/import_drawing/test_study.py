@@ -240,7 +240,7 @@ class TestLayers:
 
     def test_the_only_layer_with_outlines_is_taken_and_this_is_said(self):
         found = imported(box(0, 0, 1, 2, "0"), line((0, 3), (1, 3), "ROTTO"))
-        assert "the layer 0 has the only outlines" in words(found) and "1 LINE on ROTTO" in words(found)
+        assert "the layer 0 alone has outlines" in words(found) and "1 LINE on ROTTO" in words(found)
 
     @pytest.mark.parametrize(
         ("layer", "count"), [("Élévation PIERRE", 1), ("CONCI", 1), ("bloc", 1), ("MURATURA_ESTERNA", 1)]
@@ -352,7 +352,7 @@ class TestAttached:
         assert found.fields["blocks"]["pier left"]["density"] == 2200
 
     def test_open_joints_are_refused_with_their_width(self):
-        with pytest.raises(DrawingError, match=r"up to 8\.1 mm apart: give `merge_gap` 8\.1 mm"):
+        with pytest.raises(DrawingError, match=r"up to 8\.1 mm apart: give `merge_gap` 8\.1mm"):
             imported(box(0, 0, 1, 1), box(0, 1.00805, 1, 1))
         assert len(imported(box(0, 0, 1, 1), box(0, 1.00805, 1, 1), merge_gap=0.0081).joints) == 2
 
@@ -360,7 +360,7 @@ class TestAttached:
         curved = outline([(0, 0), (1, 0), (1, 2), (0, 2)], arcs_found=2, is_straightened=True)
         found = imported(curved)
         assert "2 arcs recognised in the curves of the file" in words(found)
-        assert "1 curve made straight sides" in words(found)
+        assert "1 curve replaced by straight sides" in words(found)
 
     def test_a_file_that_no_command_takes_is_refused(self):
         ends = ((-1, -0.1), (0.9, 3.1), (4.1, 5))  # the ground stops beside the piers

@@ -205,7 +205,7 @@ def test_open_surfaces_are_refused_with_their_holes():
     assert refusal((points, triangles[1:])).at
     over = triangles.copy()
     over[0] = over[0, ::-1]
-    assert "3 sides lie between triangles of which one is turned over" in str(refusal((points, over)))
+    assert "3 edges join triangles that face opposite ways" in str(refusal((points, over)))
     assert refusal((points, triangles[:0])).refused == "open"
     assert "cloud of 8 points" in str(refusal((points, triangles[:0])))
     assert refusal((points * [1, 1, 0], triangles)).refused == "thin"
