@@ -121,7 +121,7 @@ def attached(drawing: LineDrawing, of: Sorted, places: BodyFinder) -> DrawnAttac
     _ties(of, places, made)
     for role in (Role.SUPPORTS, Role.TIES):
         for at, layer in _spots(drawing, of, role):
-            words = f"left out: a point or circle on {seen(layer)}, as {role} are lines"
+            words = f"left out: a point or closed line on {seen(layer)}, as {role} are open lines"
             made.notes.append(ImportNote("left out", 1, words, [at]))
     counts = {"hinge": len(made.hinges), "support": len(made.supports), "load": len(made.loads), "tie": len(made.ties)}
     if named := [many(count, name) for name, count in counts.items() if count]:

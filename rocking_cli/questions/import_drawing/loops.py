@@ -265,9 +265,7 @@ def _check_tangle(edges: DrawnEdges, close: float) -> None:
     sample = lines[:: max(len(lines) // TANGLE_SAMPLE, 1)]
     each = len(shapely.STRtree(lines).query(sample)[0]) / len(sample)
     if each > MOST_NEIGHBOURS and each * len(lines) > MOST_ACROSS:
-        what = (
-            f"its {len(lines):,} lines lie across {each:,.0f} others each: put what is not an outline on another layer"
-        )
+        what = f"too many of its {len(lines):,} lines lie across one another: put what is no outline on another layer"
         raise DrawingError("too_large", what)
 
 

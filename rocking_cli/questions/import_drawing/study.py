@@ -189,7 +189,8 @@ def structure_from(drawing: LineDrawing, options: ImportOptions, name: str, file
     mended = [z + shift for z in (*mended, *closed.at)]
     for body, ring in zip(bodies, closed.rings, strict=True):
         body.ring = ring
-    _check_closed(bodies, frame, close, file)
+    if closed.gaps:
+        _check_closed(bodies, frame, close, file)
     check_overlaps(bodies, ground if is_drawn else [], frame, close, file)
     for body in bodies:
         body.ring = body.ring.placed(1.0, shift)

@@ -157,6 +157,15 @@ def test_more_than_a_structure_file_holds_is_refused_at_once():
         assert caught.value.refused == "too_large"
 
 
+def test_lines_across_one_another_and_outlines_about_one_centre_are_refused_at_once():
+    ends = np.exp(2j * np.pi * np.random.default_rng(1).random((700, 2)))
+    with pytest.raises(DrawingError, match="too many of its 700 lines lie across one another") as caught:
+        imported(*(line((a.real, a.imag), (b.real, b.imag)) for a, b in ends))
+    assert caught.value.refused == "too_large"
+    with pytest.raises(DrawingError, match="lies within"):
+        imported(*(box(0.001 * k, 0.001 * k, 9 - 0.002 * k, 9 - 0.002 * k) for k in range(2000)))
+
+
 def test_so_many_open_lines_that_they_are_not_searched_are_asked_about():
     lines = [line((k, 0), (k + 0.5, 1), "RILIEVO") for k in range(MAX_MEETING + 1)]
     with pytest.raises(DrawingError, match="RILIEVO"):
