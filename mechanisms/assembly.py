@@ -829,6 +829,7 @@ class Assembly(LinkedBodies):
             lines=[line for direction in self.directions if (line := self._thrust_line(direction)) is not None],
             forces=[forces for direction in self.directions if (forces := self._joint_forces(direction)) is not None],
             ground=ground,
+            ground_names=list(self.ground),
         )
 
     @per_direction

@@ -18,6 +18,7 @@ from pydantic import ValidationError
 from rocking_cli.core import equilibrium
 from rocking_cli.core.answers import Extra, Jointed, Kinematics
 from rocking_cli.core.bodies import Body
+from rocking_cli.core.bounds import Bound, meeting
 from rocking_cli.core.coefficients import Coefficients, coefficients
 from rocking_cli.core.given import KINEMATIC, NEEDS_A_SIDE, DirectionalRestitution, Strength
 from rocking_cli.core.hung.attached import Attached, Follow, PointMass
@@ -230,6 +231,12 @@ class Mechanism(Jointed):
                 break
             phi = guess
         return phi
+
+    @cached_property
+    @final
+    def bounds(self) -> Mapping[Direction, Bound | None]:
+        """The rotation of each direction beyond which something else than the mechanism decides; None without one."""
+        return {direction: meeting(self, direction) for direction in self.directions}
 
     @final
     def restitution_from_kinematics(self, direction: Direction) -> float:

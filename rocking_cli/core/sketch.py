@@ -136,6 +136,8 @@ class Sketch:
     ground : sequence of sequence of complex
         Lines of the ground surface, with the ground on the right of their direction. If empty, the ground is level
         under the pivots.
+    ground_names : sequence of str
+        Names of the lines of `ground` that are closed, clockwise polygons of something that bodies may meet.
     at_will : sequence of str
         Names of bodies whose outlines are only illustrative.
     notes : sequence of str
@@ -151,6 +153,7 @@ class Sketch:
     lines: Sequence[Line] = ()
     forces: Sequence[Forces] = ()
     ground: Sequence[Sequence[complex]] = ()
+    ground_names: Sequence[str] = ()
     notes: Sequence[str] = ()
     at_will: Sequence[str] = ()
 

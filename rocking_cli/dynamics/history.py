@@ -10,6 +10,7 @@ from math import ceil
 import numpy as np
 
 from rocking_cli.arrays import Bools, Reals
+from rocking_cli.core.bounds import Bound
 from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.deck import MAX_IMPACTS, RELEASE_DT, lay_out, read_marks, run_deck
 from rocking_cli.dynamics.joints import JointCheck, check_of
@@ -60,6 +61,8 @@ class History(Outcome[bool, int, float]):
         Check of the joints; None if they are not known, so that they were not checked.
     apart : bool
         Whether the motion is unknown from its first impact on because columns may fall out of step there.
+    bound : Bound, optional
+        The bound of the motion that it has reached, from which on it is unknown; None if it has not.
     """
 
     model: ModelName
@@ -74,6 +77,7 @@ class History(Outcome[bool, int, float]):
     ends_at_limit: tuple[bool, bool] = (False, False)
     check: JointCheck | None = None
     apart: bool = False
+    bound: Bound | None = None
 
     @property
     def reference(self) -> str:
@@ -180,6 +184,7 @@ def follow(
         ends_at_limit=model.ends_at_limit,
         check=check_of(model.joints, marks[0]),
         apart=bool(marks[0, kernels.REASON] == kernels.APART),
+        bound=model.bounds[int(marks[0, kernels.SIDE])] if marks[0, kernels.REASON] == kernels.BOUND else None,
     )
 
 

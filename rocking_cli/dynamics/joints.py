@@ -142,9 +142,9 @@ class JointCheck:
     passed : float
         Time at which the opening passes the limit, a contact crushes or no weight holds the structure down [s]; NaN if
         never.
-    reason : {"opens", "slides", "crushes", "weightless", "apart"} or None
+    reason : {"opens", "slides", "crushes", "weightless", "apart", "bound"} or None
         Which of these happens at `passed`; "weightless" means that no weight holds the structure down, "apart" that
-        its columns may fall out of step.
+        its columns may fall out of step, "bound" that it reaches the bound of its motion.
     joint : str
         The joint at which this happens; empty if none.
     warned : float
@@ -193,7 +193,14 @@ class JointCheck:
     at_rest: bool = True
 
 
-REASONS = ("opens", "slides", "crushes", "weightless", "apart")  # reasons of failure, by their number in the kernel
+REASONS = (
+    "opens",
+    "slides",
+    "crushes",
+    "weightless",
+    "apart",
+    "bound",
+)  # reasons of failure, by their number in the kernel
 
 
 def check_of(joints: JointTables | None, marks: Reals) -> JointCheck | None:

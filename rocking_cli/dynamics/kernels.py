@@ -17,14 +17,15 @@ it allocates memory or raises: code that is compiled ahead has no other library 
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import ceil, cosh, isfinite, nan, sinh, sqrt
+from math import ceil, cosh, inf, isfinite, nan, sinh, sqrt
 from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 # Columns of `numbers`, one row a direction.
-LAMBDA, Q_CR, ETA, RATE, REST, Q_END, PER_CELL, P, KAPPA_G, GRAVITY, HELD, ONE_SIDED = range(12)
-COLUMNS = 12
+# Q_BOUND is the q at which something else than the mechanism decides, infinite where nothing does.
+LAMBDA, Q_CR, ETA, RATE, REST, Q_END, PER_CELL, P, KAPPA_G, GRAVITY, HELD, ONE_SIDED, Q_BOUND = range(13)
+COLUMNS = 13
 # Columns of `records`, one row a ground motion: first sample and number of samples of either component, and of the
 # strongest that is still to come; intervals.
 U_FIRST, U_SIZE, V_FIRST, V_SIZE, AHEAD_FIRST, AHEAD_SIZE, DT, V_DT = range(8)
@@ -41,7 +42,7 @@ PASSED, REASON, WHERE, PASSED_PEAK, PASSED_IMPACTS, WARNED, WARNED_WHERE, WARNED
 LARGEST, LARGEST_WHERE, LARGEST_AT, LONGEST, PARTED, PARTED_WHERE = 18, 19, 20, 21, 22, 23
 MARKS = 24
 # Why a history is not known any longer.
-OPENS, SLIDES, CRUSHES, WEIGHTLESS, APART = range(5)
+OPENS, SLIDES, CRUSHES, WEIGHTLESS, APART, BOUND = range(6)
 # Columns of `contacts`: rows of the two normal forces and of the shear force, and whether the joint bears at other ends
 # in the other direction; of `bearing`: coefficient of friction, strength [N].
 NORMAL, OTHER, SHEAR, CHANGES = range(4)
@@ -226,6 +227,7 @@ class Law(NamedTuple):
     kappa_g: float
     q_cr: float
     q_end: float
+    q_bound: float
     gravity: float
 
 
@@ -257,6 +259,7 @@ def law_of(exact, numbers, d):
         numbers[d, KAPPA_G],
         numbers[d, Q_CR],
         numbers[d, Q_END],
+        numbers[d, Q_BOUND],
         numbers[d, GRAVITY],
     )
 
@@ -454,8 +457,8 @@ def turning_point(forces, law, ground, tau, state, size, f1, rising):
 def inspect(forces, law, ground, t, tau, state, size, ended, marks):
     """Look inside a step of the given size and end for impact, turning points, peak and the crossing of phi_cr.
 
-    Returns whether there is an impact, and the step that is left with the state at its end: up to the impact, or up
-    to a turning point that the ends of the step do not show.
+    Returns what ends the step (`REACHED` if nothing does), and the step that is left with the state at its end: up to
+    the impact, the bound, or a turning point that the ends of the step do not show.
     """
     q, w, f = state
     q1, w1, f1 = ended
@@ -477,13 +480,19 @@ def inspect(forces, law, ground, t, tau, state, size, ended, marks):
             continue
         xb, qb = (turn, extreme) if part == 0 else (size, q1)
         if rising == (part == 0):
+            bounded = qa < law.q_bound <= qb
+            if bounded:
+                xb, ended = locate(forces, law, ground, tau, state, xa, xb, nan, HEIGHT, law.q_bound, False)
+                qb = law.q_bound
             marks[PEAK + d] = max(marks[PEAK + d], qb)
             if qa < law.q_cr <= qb:
                 x, _ = locate(forces, law, ground, tau, state, xa, xb, nan, HEIGHT, law.q_cr, False)
                 marks[CROSSED] = t + tau + x
+            if bounded:
+                return LIMIT, xb, State(qb, ended.w, ended.f)
         elif qb <= 0:
             if not (qa > 0 or w > 0):
-                return True, xa, State(0.0, 0.0, 0.0)
+                return IMPACT, xa, State(0.0, 0.0, 0.0)
             guess = nan
             if xb == size:  # back from the end of the step: a parabola, then the cubic
                 x = first_root(f1 / 2, -w1, q1)
@@ -491,9 +500,9 @@ def inspect(forces, law, ground, t, tau, state, size, ended, marks):
                 x -= (q1 - x * (w1 - x / 2 * (f1 - x / 3 * jerk))) / (x * (f1 - x / 2 * jerk) - w1)
                 guess = size - x
             x, (_, w2, f2) = locate(forces, law, ground, tau, state, xa, xb, guess, HEIGHT, 0.0, True)
-            return True, x, State(0.0, min(w2, 0.0), f2)
+            return IMPACT, x, State(0.0, min(w2, 0.0), f2)
         xa, qa = xb, qb
-    return False, size, State(q1, w1, f1)
+    return REACHED, size, State(q1, w1, f1)
 
 
 @inlined
@@ -872,9 +881,9 @@ def misses(law, rtol, state, ended, e_q, e_w):
 
 @inlined
 def rises(law, state, ended):
-    """Whether q grows all through a step, and does not pass phi_cr in it."""
+    """Whether q grows all through a step, and passes neither phi_cr nor the bound in it."""
     outward = state.w > 0 and ended.w > 0 and (state.f >= 0 or ended.f <= 0)
-    return outward and (ended.q < law.q_cr or state.q >= law.q_cr)
+    return outward and (ended.q < law.q_cr or state.q >= law.q_cr) and ended.q < law.q_bound
 
 
 @inlined
@@ -885,7 +894,7 @@ def falls(state, ended):
 
 @inlined
 def fly(forces, corners, law, ground, t, tau, end, state, h, rtol, watched, watch, marks):
-    """Advance a motion from tau towards end, to the first impact or the kinematic limit.
+    """Advance a motion from tau towards end, to the first impact, the bound or the kinematic limit.
 
     Parameters
     ----------
@@ -938,13 +947,13 @@ def fly(forces, corners, law, ground, t, tau, end, state, h, rtol, watched, watc
         if rises(law, state, ended):
             marks[PEAK + d] = max(marks[PEAK + d], ended.q)
         elif not falls(state, ended):
-            hit, inside, ended = inspect(forces, law, ground, t, tau, state, size, ended, marks)
+            event, inside, ended = inspect(forces, law, ground, t, tau, state, size, ended, marks)
             whole = whole and inside == size
             size = inside
-            if hit:
+            if event != REACHED:
                 if watched and (watch.notes[FRESH] != 0 or not quiet(watch, law, ground, tau + size, ended.q, ended.w)):
                     look(watch, law, ground, t, tau, state, size, ended, peak, marks)
-                return IMPACT, end if whole else min(tau + size, end), ended, h
+                return event, end if whole else min(tau + size, end), ended, h
             if inside < part:
                 behind = nan
         if watched and (watch.notes[FRESH] != 0 or not quiet(watch, law, ground, tau + size, ended.q, ended.w)):
@@ -1098,6 +1107,11 @@ def follow(structure, motion, start, loose, rtol, most_impacts, brief, watch, sa
     known = fresh = False  # whether f is q.. at (q, w) now; whether it was found anew
     resting = q == 0.0
     marks[PEAK + d] = q
+    if q >= law.q_bound:
+        marks[SIDE] = d
+        watch.notes[SO_FAR], watch.notes[SO_FAR + 1] = marks[PEAK], marks[PEAK + 1]
+        passed(watch, d, 0.0, q, BOUND, -1, marks)
+        return LEFT
     h = STRIDE / max(numbers[0, P], numbers[1, P]) if exact else dt
     t = 0.0
     k, j = 0, 0
@@ -1147,7 +1161,7 @@ def follow(structure, motion, start, loose, rtol, most_impacts, brief, watch, sa
             # The most common interval by far: one step, and nothing happens in it.
             state = State(q, w, f)
             ended, e_q, e_w = advance(forces, law, Ground(s * u0, s * ramp, gravity, 0.0), 0.0, state, span)
-            uneventful = ended.q < law.q_end and (rises(law, state, ended) or falls(state, ended))
+            uneventful = ended.q < min(law.q_end, law.q_bound) and (rises(law, state, ended) or falls(state, ended))
             uneventful = uneventful and not passes(corners, law, q, ended.q)
             if uneventful and misses(law, rtol, state, ended, e_q, e_w) <= 1:
                 if watched:
@@ -1226,7 +1240,12 @@ def follow(structure, motion, start, loose, rtol, most_impacts, brief, watch, sa
                     return STALLED
                 if event == LIMIT:
                     marks[ENDED], marks[SIDE] = t + tau, d
-                    return OVERTURNED
+                    if q < law.q_bound:
+                        return OVERTURNED
+                    if not isfinite(marks[PASSED]):
+                        watch.notes[SO_FAR], watch.notes[SO_FAR + 1] = marks[PEAK], marks[PEAK + 1]
+                        passed(watch, d, t + tau, q, BOUND, -1, marks)
+                    return LEFT
                 if event == IMPACT:
                     idle = 0
                     n = int(marks[IMPACTS])
@@ -1257,7 +1276,7 @@ def follow(structure, motion, start, loose, rtol, most_impacts, brief, watch, sa
             before = marks[IMPACTS]
         else:
             idle += 1
-        if not resting and w >= 0 and q > law.q_cr:
+        if not resting and w >= 0 and q > law.q_cr and law.q_bound > law.q_end:
             strongest = ahead[k] * abs(factor) if k < ahead.size else 0.0
             weight = 1 - v_ahead[k] * v_factor / gravity if k < v_ahead.size and v_ahead[k] > 0 else 1.0
             most_weight = 1 + v_above[k] * v_factor / gravity if k < v_above.size else 1.0
@@ -1288,6 +1307,29 @@ def numbers_of(usual, what, numbers):
         eta = what[ETA_POSITIVE + d]
         if isfinite(eta):
             numbers[d, ETA] = eta
+
+
+@called
+def bound_of(structure, d, slender):
+    """The q of the bound of a direction in a history of another slenderness, whose rotations are larger by it."""
+    bound = structure.numbers[d, Q_BOUND]
+    if slender == 1 or not isfinite(bound):
+        return bound
+    sought, _ = angle(structure, d, bound)
+    sought /= slender
+    last, _ = angle(structure, d, structure.numbers[d, Q_END])
+    if not sought < last:
+        return inf
+    low, high = 0.0, structure.numbers[d, Q_END]
+    q = bound / slender
+    for _ in range(60):
+        phi, slope = angle(structure, d, q)
+        low, high = (q, high) if phi < sought else (low, q)
+        step = (phi - sought) / slope
+        q = q - step if low <= q - step <= high else (low + high) / 2
+        if abs(step) <= 1e-15 * q:
+            break
+    return q
 
 
 @called
@@ -1362,6 +1404,8 @@ def run(first, stop, runs, deck, rtol, most_impacts, brief, samples, all_marks, 
         structure = Structure(
             linear, room.numbers, deck.forces[cells], deck.angles[cells], deck.certain[cells], held, corners
         )
+        for d in range(2):
+            room.numbers[d, Q_BOUND] = bound_of(structure, d, what[SLENDER])
         of, size = deck.records[r], what[SIZE]
         horizontal = slice(int(of[U_FIRST]), int(of[U_FIRST]) + int(of[U_SIZE]))
         vertical = slice(int(of[V_FIRST]), int(of[V_FIRST]) + int(of[V_SIZE]))

@@ -12,6 +12,7 @@ import numpy as np
 from rocking_cli.arrays import Integers, Reals
 from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, both_statics
 from rocking_cli.core.advice import uplift_error
+from rocking_cli.core.bounds import Bound
 from rocking_cli.core.equivalence import Statics
 from rocking_cli.core.given import Uncertainty
 from rocking_cli.core.mechanism import why_none
@@ -25,6 +26,7 @@ from rocking_cli.dynamics.kernels import (
     LAMBDA,
     ONE_SIDED,
     PER_CELL,
+    Q_BOUND,
     Q_CR,
     Q_END,
     RATE,
@@ -89,6 +91,8 @@ class Model:
         Uncertainty of restitution and slenderness of the structure.
     columns : tuple of Model
         Models of its columns, each alone, if three or more carry one beam.
+    bounds : tuple of Bound or None
+        The rotation of each direction beyond which something else than the mechanism decides; None without one.
     """
 
     name: ModelName
@@ -108,6 +112,7 @@ class Model:
     joints: JointTables | None = None
     scatter: Scatter = field(default_factory=lambda: Scatter(KINEMATIC_SPREAD, SLENDERNESS_SPREAD))
     columns: tuple[Model, ...] = ()
+    bounds: tuple[Bound | None, Bound | None] = (None, None)
 
     @property
     def p(self) -> float:
@@ -242,7 +247,7 @@ def build(
         model = linear_model(mechanism.name or mechanism.mechanism, name, blocks, mechanism.gravity)
         if mechanism.attached:
             model = with_held(model, mechanism, blocks)
-    model = replace(model, scatter=_scatter(mechanism))
+    model = replace(_bounded(model, mechanism), scatter=_scatter(mechanism))
     if not mechanism.rocks_both_ways:
         # A one-sided structure never uplifts in the other direction, and rebounds at an impact.
         direction, numbers = mechanism.directions[0], model.numbers.copy()
@@ -251,6 +256,18 @@ def build(
         return replace(model, numbers=numbers, one_sided=direction, most_eta=(1.0, 1.0))
     most_eta = mechanism.greatest_restitution(Direction.POSITIVE), mechanism.greatest_restitution(Direction.NEGATIVE)
     return replace(model, most_eta=most_eta)
+
+
+def _bounded(model: Model, mechanism: Mechanism) -> Model:
+    """Return a model that ends at the first bound of each direction, if there is one within its table."""
+    numbers = model.numbers.copy()
+    bounds = [mechanism.bounds[direction] for direction in mechanism.sides]
+    for side, bound in enumerate(bounds):
+        if bound is not None and model.tables is None:
+            numbers[side, Q_BOUND] = bound.phi
+        elif bound is not None and bound.phi < model.tables[side].nodes[-1]:
+            numbers[side, Q_BOUND] = model.tables[side].q(bound.phi)
+    return replace(model, numbers=numbers, bounds=(bounds[0], bounds[1]))
 
 
 def _scatter(mechanism: Mechanism) -> Scatter:
@@ -287,6 +304,7 @@ def nonlinear_model(mechanism: Mechanism, statics: tuple[Statics, Statics], etas
         row[Q_END], row[PER_CELL], row[P], row[GRAVITY] = table.end, 1 / table.cell, p, mechanism.gravity
         rest = mechanism.coefficients(np.zeros(1), direction)
         row[HELD] = rest.Q[0] / (mechanism.gravity * rest.B[0])  # part of lambda that does not scale with g
+        row[Q_BOUND] = np.inf
         numbers.append(row)
     forces, angles, certain = (
         np.stack([getattr(table, part) for table in tables], axis=1) for part in ("forces", "angles", "certain")
@@ -350,7 +368,7 @@ def linear_model(label: str, name: ModelName, blocks: tuple[EquivalentBlock, Equ
         row = np.zeros(COLUMNS)
         row[LAMBDA], row[Q_CR], row[ETA], row[RATE] = block.phi_cr / kappa, block.phi_cr, block.eta, 1.0
         row[REST], row[Q_END], row[PER_CELL] = REST_RATE * block.p * block.phi_cr, FALLEN_ROTATION, 1.0
-        row[P], row[KAPPA_G], row[GRAVITY] = block.p, kappa / gravity, gravity
+        row[P], row[KAPPA_G], row[GRAVITY], row[Q_BOUND] = block.p, kappa / gravity, gravity, np.inf
         numbers.append(row)
         stiffness = block.p**2 / gravity
         forces[0, d, [0, 1, 4]] = stiffness * block.phi_cr, -stiffness, stiffness * kappa  # Eq. 12

@@ -9,6 +9,7 @@ from rocking_cli.core.equivalence import EQUAL_DIRECTIONS
 from rocking_cli.core.mechanism import why_none
 from rocking_cli.dynamics.resting import early_failures
 from rocking_cli.names import digits_apart
+from rocking_cli.views.verdict import SENSE, bound_in_words
 
 OPENING_CAUTION = (
     "lambda and what follows from it are unconservative: describe the structure so that this joint can move"
@@ -18,7 +19,16 @@ SLIDING_CAUTION = "Stronger motions move it by sliding, which is not modelled: p
 
 def cautions_of(mechanism: Mechanism) -> list[str]:
     """Return all cautions on a structure; those on what starts before it rocks come first."""
-    return [*before_rocking(mechanism), *of_restitution(mechanism), *mechanism.cautions()]
+    return [*before_rocking(mechanism), *of_restitution(mechanism), *of_bounds(mechanism), *mechanism.cautions()]
+
+
+def of_bounds(mechanism: Mechanism) -> list[str]:
+    """Return what happens at the bound of each direction, beyond which its motion is not known, in words."""
+    return [
+        f"{SENSE[direction].capitalize()}, {bound_in_words(bound)}: time histories are unknown from there on."
+        for direction, bound in mechanism.bounds.items()
+        if bound is not None
+    ]
 
 
 def of_restitution(mechanism: Mechanism) -> list[str]:

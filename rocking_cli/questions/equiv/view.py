@@ -10,11 +10,12 @@ from typing import Any, NamedTuple
 
 from rocking_cli.core import Direction, EquivalentBlock, Mechanism, PointMass, Statics, one_block
 from rocking_cli.core.advice import Grade, grade, preferred_kappa
+from rocking_cli.core.bounds import Bound
 from rocking_cli.core.equivalence import EQUAL_DIRECTIONS, alike
 from rocking_cli.core.hung.element import Element
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.structure import Structure
-from rocking_cli.views.cautions import before_rocking, cautions_of, of_restitution
+from rocking_cli.views.cautions import before_rocking, cautions_of, of_bounds, of_restitution
 from rocking_cli.views.column import UNIT, Column, data_of, of, only_shown, table_across
 from rocking_cli.views.restitution import restitution_source, restitution_used
 from rocking_cli.views.verdict import uplift_in_words
@@ -109,7 +110,10 @@ def view(structure: Structure) -> View:
         "restitution": restitution_source(mechanism),
         "caution": " ".join(cautions_of(mechanism)) or None,
         "misleading": structure.misleading,
-        "directions": {side.direction.label: _data(side) | _extras(mechanism, side.direction) for side in sides},
+        "directions": {
+            side.direction.label: _data(side, mechanism.bounds[side.direction]) | _extras(mechanism, side.direction)
+            for side in sides
+        },
     }
     shown = sides[:1] if is_symmetric(structure) else sides
     columns = _columns(mechanism, [side.direction for side in shown])
@@ -129,7 +133,9 @@ def view(structure: Structure) -> View:
     sentences += [f"Caution: {structure.misleading}."] if structure.misleading else []
     sentences += [*hung_in_words(mechanism), *([] if mechanism.rocks_both_ways else [restitution_used(structure)])]
     sentences += [f"P{mechanism.crushing.words[1:]}."] if mechanism.crushing else []
-    sentences += [f"Caution: {text}" for text in (*of_restitution(mechanism), *mechanism.cautions())]
+    sentences += [
+        f"Caution: {text}" for text in (*of_restitution(mechanism), *of_bounds(mechanism), *mechanism.cautions())
+    ]
     return View(data, [table, *sentences])
 
 
@@ -193,8 +199,8 @@ def is_symmetric(structure: Structure) -> bool:
     return alike(*structure.statics) and isclose(*structure.etas, rel_tol=EQUAL_DIRECTIONS)
 
 
-def _data(side: EquivalentSide) -> dict[str, Any]:
-    """Return the parameters of a direction as plain data; null if there is no equivalent block."""
+def _data(side: EquivalentSide, bound: Bound | None) -> dict[str, Any]:
+    """Return the parameters of a direction as plain data; null if there is no equivalent block, or no bound."""
     block = side.block
     return {
         **side.parameters,
@@ -203,6 +209,7 @@ def _data(side: EquivalentSide) -> dict[str, Any]:
         "stiffening": side.statics.stiffening,
         "limit": side.statics.limit,
         "no_block": side.statics.why_no_block,
+        "bound": bound._asdict() if bound is not None else None,
     }
 
 

@@ -17,11 +17,11 @@ import numpy as np
 from rocking_cli.arrays import Points, Reals
 from rocking_cli.core import Body, Contact, Direction, Mechanism, PointMass, Spot, of_joints
 from rocking_cli.core.contacts import MASONRY_FRICTION
+from rocking_cli.core.convex import convex_pieces
 from rocking_cli.core.hung.element import ConstantForce, Element, Spring
 from rocking_cli.core.kinematics import distance
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.short_repr import short_repr
-from rocking_cli.studies.engines.convex import convex_pieces
 from rocking_cli.studies.picture import box_around, picture
 
 FALL = 0.15  # of the structure's height: a block that falls by it has collapsed

@@ -33,6 +33,8 @@ def convex_pieces(corners: Sequence[complex] | Points, others: Sequence[Points] 
     z = np.asarray(corners, np.complex128)
     z = z[np.abs(z - np.roll(z, 1)) > 0]
     z = z if area_of(z) > 0 else z[::-1]
+    if all(_turn(z[k - 2], z[k - 1], z[k]) >= 0 for k in range(len(z))):
+        return [z]
     if (whole := _filled(z, others)) is not None:
         return [whole]
     return _merged(_triangles(z), z)

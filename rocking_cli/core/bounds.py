@@ -1,0 +1,240 @@
+"""Rotations beyond which a structure does not move as its mechanism alone would: there it meets something."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+
+from rocking_cli.arrays import Points, Reals
+from rocking_cli.core.contacts import Contact
+from rocking_cli.core.convex import convex_pieces
+from rocking_cli.core.kinematics import Direction, RigidMotion, distance, inside, rotation
+from rocking_cli.core.polygons import nearby
+
+if TYPE_CHECKING:
+    from rocking_cli.core.mechanism import Mechanism
+
+NODES = 65  # rotations from rest to the end of the search at which all bodies are looked at first
+FINER = 17  # rotations inside an interval in which two bodies may meet
+ROUNDS = 8  # refinements of an interval: its width is then below 1e-9 of the first one
+SAME_MOTION = 1e-12  # difference of two motions that counts as none [rad], and over the distance to the origin
+JOINT_GAP = 2e-3  # gap of a joint over width plus height of the smaller body, up to which an assembly joins them
+TOUCHING = 1e-6  # distance, or depth of one body in another, over the size of the structure, that counts as touching
+SHARE_OF_LIMIT = 0.999  # of the kinematic limit, at which linkages have no derivatives
+PATH_MARGIN = 1.25  # length of the path of a point between two rotations over the distance by its rates at both
+JOINED = 0.125  # depth at half the rotation, over that at the whole: above, two bodies overlap from rest on
+
+
+class Bound(NamedTuple):
+    """Rotation of one direction beyond which the motion is not that of the mechanism alone.
+
+    Parameters
+    ----------
+    phi : float
+        The rotation [rad].
+    kind : {"meets", "leans", "yields"}
+        Whether two bodies, or a body and the ground, meet there, up to the critical rotation or beyond it; or a tie
+        reaches its strength.
+    name : str
+        What is met, or the tie.
+    body : str
+        The body that meets it.
+    restitution : float or None
+        Ratio of the rates after and before, of a stop that throws the structure back; None: the model ends there.
+    """
+
+    phi: float
+    kind: Literal["meets", "leans", "yields"]
+    name: str
+    body: str = ""
+    restitution: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """A convex part of a body or of the ground, with its place at rest [m] and its link."""
+
+    name: str
+    corners: Points
+    link: int  # parts of one link do not move relative to each other; 0 is the ground
+
+    def at(self, motions: Sequence[RigidMotion]) -> Points:
+        """Return the corners over the rotations of the motions of all links, shape (n, corners) [m]."""
+        motion = motions[self.link]
+        return motion.q[:, None] + np.exp(1j * motion.psi)[:, None] * (self.corners - motion.rest)
+
+
+def meeting(mechanism: Mechanism, direction: Direction) -> Bound | None:
+    """Return the first rotation at which two bodies that do not touch, or a body and the ground, meet.
+
+    Bodies that touch at rest count from where they have parted, or where they close elsewhere than at their hinge. The
+    search ends where the potential energy is below that at rest: what has fallen so far does not come back.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        Any mechanism; bodies without a shape, and ground that is not drawn as a polygon, are left out.
+    direction : Direction
+        Direction of rocking.
+    """
+    search = _Search(mechanism, direction)
+    first: Bound | None = None
+    for one, other in search.pairs():
+        phi = search.meet(one, other, first.phi if first is not None else search.phi[-1])
+        if phi is not None:
+            moves, met = (one, other) if one.link else (other, one)
+            first = Bound(phi, "meets", met.name, moves.name)
+    if first is None:
+        return None
+    beyond = mechanism.coefficients(np.array([first.phi]), direction).restoring(mechanism.gravity)[0] < 0
+    return first._replace(kind="leans") if beyond else first
+
+
+class _Search:
+    """The search for meetings in one direction."""
+
+    def __init__(self, mechanism: Mechanism, direction: Direction) -> None:
+        self.mechanism, self.direction = mechanism, direction
+        self.phi = np.linspace(0.0, SHARE_OF_LIMIT * mechanism.limit(direction), NODES)
+        fallen = np.flatnonzero(mechanism.potential_energy(self.phi, direction) < 0)
+        if fallen.size:
+            self.phi *= fallen[0] / (NODES - 1)
+        self.places: list[tuple[int, complex]] = []  # of each link but the ground: its body, and how far beside it
+        self.links = [rotation(self.phi, 0j, 0.0)]
+        self.parts = [
+            _Part(name, piece, link) for name, link, shapes in self._shapes() for z in shapes
+            for piece in convex_pieces(z)
+        ]  # fmt: skip
+        corners = np.concatenate([part.corners for part in self.parts] or [np.zeros(1)])
+        self.tolerance = TOUCHING * float(np.ptp(corners.real) + np.ptp(corners.imag))
+
+    def _shapes(self) -> Iterator[tuple[str, int, Sequence[Points]]]:
+        """Yield each body, and each polygon of the ground, with its link and its polygons at rest."""
+        sketch, bodies = self.mechanism.sketch(), self.mechanism.bodies()
+        motions = self.mechanism.motion(self.phi, self.direction)
+        numbers = {body.name: k for k, body in enumerate(bodies)}
+        for piece in self.mechanism.pieces(self.direction):
+            body = bodies[numbers[piece.of]] if piece.of is not None else piece.body
+            drawn = () if body.name in sketch.at_will else body.shapes(sketch.outlines)
+            shapes = [piece.body.outline] if piece.body.outline else [np.asarray(z) + piece.shift for z in drawn]
+            link = 0 if piece.of is None else self._link(motions, numbers[piece.of], piece.shift)
+            yield piece.body.name, link, [np.asarray(z, np.complex128) for z in shapes]
+        for name, line in zip(sketch.ground_names, sketch.ground, strict=False):
+            yield name, 0, [np.asarray(line[:-1], np.complex128)]
+
+    def _link(self, motions: Sequence[RigidMotion], body: int, shift: complex) -> int:
+        """Return the link with which a body moves: one that is known, or a new one."""
+        motion = motions[body].shifted(shift)
+        reach = SAME_MOTION * (1 + float(np.abs(motion.q).max()))
+        for k, known in enumerate(self.links):
+            alike = np.abs(motion.psi - known.psi).max() <= SAME_MOTION
+            if alike and np.abs(motion.carry(0j)[0] - known.carry(0j)[0]).max() <= reach:
+                return k
+        self.links.append(motion)
+        self.places.append((body, shift))
+        return len(self.links) - 1
+
+    def pairs(self) -> Iterator[tuple[_Part, _Part]]:
+        """Yield the parts of different links whose paths come near each other."""
+        low, high = [], []
+        for part in self.parts:
+            z = part.at(self.links)
+            room = (PATH_MARGIN * np.abs(np.diff(z, axis=0)).max() + self.tolerance) * (1 + 1j)
+            low.append(complex(z.real.min(), z.imag.min()) - room)
+            high.append(complex(z.real.max(), z.imag.max()) + room)
+        for first, second in nearby(np.array(low), np.array(high)) if low else ():
+            for i, k in zip(first.tolist(), second.tolist(), strict=True):
+                if self.parts[i].link != self.parts[k].link:
+                    yield self.parts[min(i, k)], self.parts[max(i, k)]
+
+    def meet(self, one: _Part, other: _Part, before: float) -> float | None:
+        """Return the first rotation below `before` at which two parts meet, or None."""
+        touching = self._touching(one, other)
+        apart, path = self._apart(one, other, self.phi, self.links)
+        for k in range(1, NODES):
+            if self.phi[k - 1] >= before:
+                return None
+            low, high = self.phi[k - 1], self.phi[k]
+            if apart[k] < -touching:
+                free = apart[:k].max() > touching  # they were apart before
+                if not free and self._apart_at(one, other, high / 2) < JOINED * apart[k]:
+                    return None  # they overlap from rest on, as at a hinge that is not at a corner
+                return self._first(one, other, low, high, 0.0 if free else -touching)
+            # Between two rotations at which they are apart, they cannot meet unless their path is as long as this.
+            if min(apart[k - 1 : k + 1]) > touching and apart[k - 1] + apart[k] < path[k - 1]:
+                phi = self._between(one, other, low, high)
+                if phi is not None:
+                    return phi
+        return None
+
+    def _between(self, one: _Part, other: _Part, low: float, high: float) -> float | None:
+        """Return the first rotation between two at which two parts that are apart at both meet, or None."""
+        phi = np.linspace(low, high, FINER)
+        apart, path = self._apart(one, other, phi, self._motions(phi))
+        for k in range(1, FINER):
+            if apart[k] < 0:
+                return self._first(one, other, phi[k - 1], phi[k], 0.0)
+            if apart[k - 1] + apart[k] < path[k - 1] and path[k - 1] > self.tolerance:
+                found = self._between(one, other, phi[k - 1], phi[k])
+                if found is not None:
+                    return found
+        return None
+
+    def _first(self, one: _Part, other: _Part, low: float, high: float, level: float) -> float:
+        """Return the rotation at which the distance of two parts falls below a level, between two rotations."""
+        for _ in range(ROUNDS):
+            phi = np.linspace(low, high, FINER)
+            apart, _ = self._apart(one, other, phi, self._motions(phi))
+            k = max(int((apart < level).argmax()), 1)
+            low, high = phi[k - 1], phi[k]
+        return float(high)
+
+    def _apart_at(self, one: _Part, other: _Part, phi: float) -> float:
+        at = np.array([phi])
+        return float(self._apart(one, other, at, self._motions(at))[0][0])
+
+    def _motions(self, phi: Reals) -> list[RigidMotion]:
+        """Return the motion of each link over other rotations."""
+        motions = self.mechanism.motion(phi, self.direction)
+        return [rotation(phi, 0j, 0.0), *(motions[body].shifted(shift) for body, shift in self.places)]
+
+    def _touching(self, one: _Part, other: _Part) -> float:
+        """Return the distance up to which two parts touch [m]: more if they are joined, as joints may be open."""
+        least = JOINT_GAP * min(float(np.ptp(z.real) + np.ptp(z.imag)) for z in (one.corners, other.corners))
+        names = {part.name if part.link else None for part in (one, other)}
+        ground = next((part.corners for part in (one, other) if not part.link), None)
+        for contact in self._contacts:
+            if set(contact.pieces) == names:
+                below = np.array(contact.points) - 2 * least * contact.normal
+                if ground is None or (inside(below, ground) | (distance(below, ground) <= self.tolerance)).all():
+                    return max(least, self.tolerance)
+        return self.tolerance
+
+    @cached_property
+    def _contacts(self) -> Sequence[Contact]:
+        return [
+            contact for direction in self.mechanism.directions for contact in self.mechanism.contacts(direction) or ()
+        ]
+
+    def _apart(self, one: _Part, other: _Part, phi: Reals, motions: Sequence[RigidMotion]) -> tuple[Reals, Reals]:
+        """Return how far two parts are apart over rotations, negative if they overlap, and their paths in between.
+
+        The distance is along the best of the normals of their sides: where it is positive, they do not overlap, and it
+        changes by no more than the parts move relative to each other.
+        """
+        a, b = one.at(motions), other.at(motions)
+        apart = np.maximum(_beside(a, b), _beside(b, a))
+        path = sum(PATH_MARGIN * np.abs(np.diff(z, axis=0)).max(axis=1) for z in (a, b))
+        return apart, np.asarray(path)
+
+
+def _beside(a: Points, b: Points) -> Reals:
+    """Return the largest distance of polygons b from sides of convex polygons a, shape (n,); a is anticlockwise."""
+    side = np.roll(a, -1, axis=1) - a
+    outward = -1j * side / np.abs(side)
+    off = (outward.conj()[:, :, None] * (b[:, None, :] - a[:, :, None])).real
+    return np.asarray(off.min(axis=2).max(axis=1))
