@@ -42,9 +42,7 @@ def convex_pieces(corners: Sequence[complex] | Points, others: Sequence[Points] 
 
 def _filled(z: Points, others: Sequence[Points]) -> Points | None:
     """Return the convex hull of a polygon if its hollows are shallow and nothing reaches into them, or None."""
-    from scipy.spatial import ConvexHull
-
-    hull: Points = z[ConvexHull(np.stack([z.real, z.imag], axis=-1)).vertices]
+    hull = _hull(z)
     size = float(np.abs(z - z.mean()).max())
     if distance(z, hull).max() > SHALLOW_SHARE * size:
         return None
@@ -53,6 +51,20 @@ def _filled(z: Points, others: Sequence[Points]) -> Points | None:
         if reaching.size and distance(reaching, hull).max() > TOUCHING_SHARE * size:
             return None
     return hull
+
+
+def _hull(z: Points) -> Points:
+    """Return the convex hull of some points, anticlockwise."""
+    hull: list[complex] = []
+    there = sorted(z.tolist(), key=lambda at: (at.real, at.imag))
+    for side in (there, there[::-1]):
+        start = len(hull)
+        for at in side:
+            while len(hull) > start + 1 and _turn(hull[-2], hull[-1], at) <= 0:
+                hull.pop()
+            hull.append(at)
+        hull.pop()
+    return np.array(hull)
 
 
 def _turn(a: complex, b: complex, c: complex) -> float:

@@ -236,7 +236,16 @@ class Mechanism(Jointed):
     @final
     def bounds(self) -> Mapping[Direction, Bound | None]:
         """The rotation of each direction beyond which something else than the mechanism decides; None without one."""
-        return {direction: meeting(self, direction) for direction in self.directions}
+        return {direction: self._bound(direction) for direction in self.directions}
+
+    def _bound(self, direction: Direction) -> Bound | None:
+        """Return the first bound of a direction; what has fallen below its energy at rest has overturned before."""
+        phi = np.linspace(0.0, SHARE_OF_LIMIT * self.limit(direction), SCANNED)
+        fallen = np.flatnonzero(self.potential_energy(phi, direction) < 0)
+        bound = meeting(self, direction, float(phi[fallen[0] if fallen.size else -1]))
+        if bound is None or self.coefficients(np.array([bound.phi]), direction).restoring(self.gravity)[0] > 0:
+            return bound
+        return bound._replace(kind="leans")
 
     @final
     def restitution_from_kinematics(self, direction: Direction) -> float:
@@ -287,6 +296,8 @@ def _is_final(member: object) -> bool:
     return any(getattr(getattr(member, key, member), "__final__", False) for key in ("fget", "func", "__func__"))
 
 
+SCANNED = 65  # rotations at which the potential energy is compared with that at rest
+SHARE_OF_LIMIT = 0.999  # of the kinematic limit, at which linkages have no derivatives
 RESTITUTION_ROUNDING = 1e-9  # relative excess over the bound that is allowed, as equal sides reach the bound
 STRETCH_CHECKS = 129  # rotations at which it is checked whether a tie stretches
 MIN_ELONGATION = 1e-9  # elongation that counts, over the length of the path of a tie, or over 1 m if it is shorter

@@ -193,14 +193,7 @@ class JointCheck:
     at_rest: bool = True
 
 
-REASONS = (
-    "opens",
-    "slides",
-    "crushes",
-    "weightless",
-    "apart",
-    "bound",
-)  # reasons of failure, by their number in the kernel
+REASONS = ("opens", "slides", "crushes", "weightless", "apart", "bound")  # of failure, by their number in the kernel
 
 
 def check_of(joints: JointTables | None, marks: Reals) -> JointCheck | None:

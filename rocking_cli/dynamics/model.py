@@ -263,10 +263,9 @@ def _bounded(model: Model, mechanism: Mechanism) -> Model:
     numbers = model.numbers.copy()
     bounds = [mechanism.bounds[direction] for direction in mechanism.sides]
     for side, bound in enumerate(bounds):
-        if bound is not None and model.tables is None:
-            numbers[side, Q_BOUND] = bound.phi
-        elif bound is not None and bound.phi < model.tables[side].nodes[-1]:
-            numbers[side, Q_BOUND] = model.tables[side].q(bound.phi)
+        if bound is None or (model.tables is not None and bound.phi >= model.tables[side].nodes[-1]):
+            continue
+        numbers[side, Q_BOUND] = bound.phi if model.tables is None else model.tables[side].q(bound.phi)
     return replace(model, numbers=numbers, bounds=(bounds[0], bounds[1]))
 
 

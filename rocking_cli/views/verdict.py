@@ -189,7 +189,7 @@ def verdict(
     if run.unknown or (best == "nonlinear" and run.check is not None):
         sentences += filter(None, [joints_in_words(run, assumed_friction)])
     if run.unknown and len(histories) > 1:
-        sentences.append(NO_JOINTS)
+        sentences += [NO_JOINTS] if run.bound is None else []
     else:
         sentences += blocks_in_words(histories, agreed, {name: name for name in histories})
     if not run.unknown and disagree(histories):
