@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, NamedTuple
@@ -40,6 +40,8 @@ class Bound(NamedTuple):
         What is met, or the tie.
     body : str
         The body that meets it.
+    at : complex
+        Its point that meets a stop, at rest [m].
     restitution : float or None
         Ratio of the rates after and before, of a stop that throws the structure back; None: the model ends there.
     """
@@ -48,6 +50,7 @@ class Bound(NamedTuple):
     kind: Literal["meets", "leans", "yields"]
     name: str
     body: str = ""
+    at: complex = 0j
     restitution: float | None = None
 
 
@@ -63,6 +66,23 @@ class _Part:
         """Return the corners over the rotations of the motions of all links, shape (n, corners) [m]."""
         motion = motions[self.link]
         return np.asarray(motion.q[:, None] + np.exp(1j * motion.psi)[:, None] * (self.corners - motion.rest))
+
+
+def first_beyond(value: Callable[[Reals], Reals], low: float, high: float) -> float:
+    """Return the first rotation between two at which a continuous value, positive at the second, is so.
+
+    Parameters
+    ----------
+    value : callable
+        Function of rotations, shape (n,) [rad].
+    low, high : float
+        The rotations [rad].
+    """
+    for _ in range(ROUNDS):
+        phi = np.linspace(low, high, FINER)
+        k = max(int((value(phi) > 0).argmax()), 1)
+        low, high = phi[k - 1], phi[k]
+    return float(high)
 
 
 def meeting(mechanism: Jointed, direction: Direction, end: float) -> Bound | None:
@@ -178,12 +198,7 @@ class _Search:
 
     def _first(self, one: _Part, other: _Part, low: float, high: float, level: float) -> float:
         """Return the rotation at which the distance of two parts falls below a level, between two rotations."""
-        for _ in range(ROUNDS):
-            phi = np.linspace(low, high, FINER)
-            apart, _ = self._apart(one, other, phi, self._motions(phi))
-            k = max(int((apart < level).argmax()), 1)
-            low, high = phi[k - 1], phi[k]
-        return float(high)
+        return first_beyond(lambda phi: level - self._apart(one, other, phi, self._motions(phi))[0], low, high)
 
     def _apart_at(self, one: _Part, other: _Part, phi: float) -> float:
         at = np.array([phi])

@@ -25,7 +25,12 @@ def cautions_of(mechanism: Mechanism) -> list[str]:
 def of_bounds(mechanism: Mechanism) -> list[str]:
     """Return what happens at the bound of each direction, beyond which its motion is not known, in words."""
     return [
-        f"{SENSE[direction].capitalize()}, {bound_in_words(bound)}: time histories are unknown from there on."
+        f"{SENSE[direction].capitalize()}, {bound_in_words(bound)}: "
+        + (
+            "time histories are unknown from there on."
+            if bound.restitution is None
+            else f"it is thrown back with {bound.restitution:g} times its rate."
+        )
         for direction, bound in mechanism.bounds.items()
         if bound is not None
     ]
