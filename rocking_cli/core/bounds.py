@@ -18,7 +18,7 @@ from rocking_cli.core.polygons import nearby
 
 NODES = 65  # rotations from rest to the end of the search at which all bodies are looked at first
 FINER = 33  # rotations inside an interval in which two bodies may meet
-ROUNDS = 6  # refinements of an interval: its width is then below 1e-9 of the first one
+ROUNDS = 7  # refinements of an interval: its width is then below 1e-9 of the first one
 SAME_MOTION = 1e-12  # difference of two motions that counts as none [rad], and over the distance to the origin
 JOINT_GAP = 2e-3  # gap of a joint over width plus height of the smaller body, up to which an assembly joins them
 TOUCHING = 1e-6  # distance, or depth of one body in another, over the size of the structure, that counts as touching
