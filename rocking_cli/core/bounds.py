@@ -53,6 +53,12 @@ class Bound(NamedTuple):
     at: complex = 0j
     restitution: float | None = None
 
+    @property
+    def words(self) -> str:
+        """What happens at the bound, a clause."""
+        what = {"meets": f"{self.body} meets {self.name}", "leans": f"{self.body} leans on {self.name}"}
+        return f"{what.get(self.kind, f'the tie {self.name} yields')} at {self.phi:.4g} rad"
+
 
 @dataclass(frozen=True, eq=False)
 class _Part:

@@ -8,7 +8,6 @@ from math import isfinite, isnan
 from rocking_cli import names
 from rocking_cli.core import Direction
 from rocking_cli.core.advice import Grade, grade
-from rocking_cli.core.bounds import Bound
 from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.joints import JointCheck
@@ -114,7 +113,7 @@ def why_unknown(history: History) -> str | None:
             "ends otherwise"
         )
     if history.bound is not None:
-        return bound_in_words(history.bound)
+        return history.bound.words
     if check is None or check.reason in (None, "weightless"):
         return "nothing holds the structure down, as v_g'' comes down to -g"
     if check.reason == "crushes":
@@ -122,14 +121,6 @@ def why_unknown(history: History) -> str | None:
     does = "has slid by" if check.reason == "slides" else "has opened by"
     limit = f"{percent(check.limit)} of D_cr = {check.reach:.3g} m, by which the farthest block moves up to phi_cr"
     return f"the joint between {check.joint} {does} {_small(check.limit * check.reach, 'm')} ({limit})"
-
-
-def bound_in_words(bound: Bound) -> str:
-    """Return what happens at the bound of a motion, a clause."""
-    at = f"at {bound.phi:.4g} rad"
-    if bound.kind == "yields":
-        return f"the tie {bound.name} yields {at}"
-    return f"{bound.body} {'meets' if bound.kind == 'meets' else 'leans on'} {bound.name} {at}"
 
 
 def unknown_after(history: History) -> str:
