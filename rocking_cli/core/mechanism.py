@@ -282,6 +282,7 @@ def _is_final(member: object) -> bool:
 
 RESTITUTION_ROUNDING = 1e-9  # relative excess over the bound that is allowed, as equal sides reach the bound
 STRETCH_CHECKS = 129  # rotations at which it is checked whether a tie stretches
+MIN_MOMENT = 1e-9  # moment that counts, over the weight of the structure times its size
 MIN_ELONGATION = 1e-9  # elongation that counts, over the length of the path of a tie, or over 1 m if it is shorter
 NO_MASSES = "the structure has no masses: give density and depth, or its mass"
 
@@ -385,12 +386,15 @@ def check_stands(mechanism: Mechanism) -> None:
     for direction in mechanism.directions:
         bare = coefficients(rest, direction, bodies, mechanism.motion(rest, direction))
         moment = g * mechanism.coefficients(rest, direction).restoring(g)[0]
-        if bare.G[0] > 0 and not moment > 0:
+        tie = MIN_MOMENT * weight * extent(mechanism)
+        if bare.G[0] > 0 and not moment > tie:
+            how = f"with {-moment:.4g} N m more than its weight holds" if moment < -tie else (
+                "with as much as its weight holds, which is neutral equilibrium"
+            )  # fmt: skip
             raise RefusedFields(
                 (),
                 "loads" if mechanism.loads else "ties",
-                f"the structure cannot stand under them: at rest they turn it in the {direction.label} direction "
-                f"with {-moment:.4g} N m more than its weight holds",
+                f"the structure cannot stand under them: at rest they turn it in the {direction.label} direction {how}",
             )
 
 

@@ -178,7 +178,7 @@ def follow(
         uplift_error=model.uplift_error,
         p=model.p,
         ends_at_limit=model.ends_at_limit,
-        check=check_of(model.joints, marks[0]),
+        check=check_of(model.joints, marks[0], float(outcome.overturning_time[0])),
         apart=bool(marks[0, kernels.REASON] == kernels.APART),
     )
 
