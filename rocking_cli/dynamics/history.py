@@ -60,6 +60,8 @@ class History(Outcome[bool, int, float]):
         Check of the joints; None if they are not known, so that they were not checked.
     apart : bool
         Whether the motion is unknown from its first impact on because columns may fall out of step there.
+    unmeasured : bool
+        Whether it is unknown from there on because the restitution is not known.
     """
 
     model: ModelName
@@ -74,6 +76,7 @@ class History(Outcome[bool, int, float]):
     ends_at_limit: tuple[bool, bool] = (False, False)
     check: JointCheck | None = None
     apart: bool = False
+    unmeasured: bool = False
 
     @property
     def reference(self) -> str:
@@ -148,7 +151,8 @@ def follow(
     run = partial(run_deck, lay_out([model], [motion]), runs, marks, rtol=rtol, samples=recorded)
     run()
     tilts = np.array([release])
-    if out_of_step([model], [motion], runs, marks, tilts, rtol=rtol, most_impacts=MAX_IMPACTS)[0]:
+    loose = out_of_step([model], [motion], runs, marks, tilts, rtol=rtol, most_impacts=MAX_IMPACTS)
+    if model.to_first_impact or loose[0]:
         runs[0, kernels.LOOSE] = 1.0
         run()
     outcome = read_marks(marks, np.array([model.phi_cr]), np.array([model.reach]))
@@ -179,7 +183,8 @@ def follow(
         p=model.p,
         ends_at_limit=model.ends_at_limit,
         check=check_of(model.joints, marks[0], float(outcome.overturning_time[0])),
-        apart=bool(marks[0, kernels.REASON] == kernels.APART),
+        apart=bool(marks[0, kernels.REASON] == kernels.APART) and not model.to_first_impact,
+        unmeasured=bool(marks[0, kernels.REASON] == kernels.APART) and model.to_first_impact,
     )
 
 

@@ -89,6 +89,8 @@ class Model:
         Uncertainty of restitution and slenderness of the structure.
     columns : tuple of Model
         Models of its columns, each alone, if three or more carry one beam.
+    to_first_impact : bool
+        Whether its restitution is not known, so that its motion is unknown from the first impact on.
     """
 
     name: ModelName
@@ -108,6 +110,7 @@ class Model:
     joints: JointTables | None = None
     scatter: Scatter = field(default_factory=lambda: Scatter(KINEMATIC_SPREAD, SLENDERNESS_SPREAD))
     columns: tuple[Model, ...] = ()
+    to_first_impact: bool = False
 
     @property
     def p(self) -> float:
@@ -193,6 +196,8 @@ def build(
     equivalence: Equivalence | None,
     name: ModelName,
     opening: float = OPENING,
+    *,
+    to_first_impact: bool = False,
 ) -> Model:
     """Build one model of a structure.
 
@@ -208,31 +213,27 @@ def build(
         Equation of motion.
     opening : float
         Largest opening of a joint up to which a history is valid, over D_cr.
+    to_first_impact : bool
+        Whether the nonlinear model of a structure without a known restitution is valid up to its first impact, and not
+        refused.
 
     Raises
     ------
     InputError
-        If the restitution from kinematics is not positive, or the rebound of a one-sided structure is not known, so
-        that the motion after an impact is unknown; if the kernel cannot simulate an element of the structure, or one of
-        them has no linear model.
+        If the restitution is not known, see `no_restitution`; if the kernel cannot simulate an element of the
+        structure, or one of them has no linear model.
     """
     etas = mechanism.eta(mechanism.sides[0]), mechanism.eta(mechanism.sides[1])
-    if isnan(etas[0]):
-        raise InputError(NO_REBOUND)
-    for direction, eta in zip(mechanism.sides, etas, strict=True):
-        if eta <= 0 and mechanism.rocks_both_ways:
-            raise InputError(
-                Problem(
-                    f"{mechanism.name or 'structure'}: the kinematics give {eta:.4g} for an impact that ends "
-                    f"motion in the {direction.label} direction: {why_none(eta)}",
-                    field="restitution",
-                    hint="give a measured value as restitution, a number in (0, 1]",
-                )
-            )
+    if (missing := no_restitution(mechanism)) is not None:
+        if name != "nonlinear" or not to_first_impact:
+            raise InputError(missing)
+        etas = 1.0, 1.0  # of no effect, as nothing is known after an impact
     if name == "nonlinear":
         check_elements(mechanism)
         columns = [build(each, both_statics(each), None, name, opening) for each in mechanism.columns_alone()]
-        model = replace(nonlinear_model(mechanism, statics, etas), columns=tuple(columns))
+        model = replace(
+            nonlinear_model(mechanism, statics, etas), columns=tuple(columns), to_first_impact=missing is not None
+        )
         if model.joints is not None:
             model = replace(model, joints=replace(model.joints, limit=opening))
     else:
@@ -251,6 +252,25 @@ def build(
         return replace(model, numbers=numbers, one_sided=direction, most_eta=(1.0, 1.0))
     most_eta = mechanism.greatest_restitution(Direction.POSITIVE), mechanism.greatest_restitution(Direction.NEGATIVE)
     return replace(model, most_eta=most_eta)
+
+
+def no_restitution(mechanism: Mechanism) -> Problem | None:
+    """Return the problem that the motion of a structure after an impact is not known; None if it is.
+
+    The restitution from kinematics may be zero or less, and the rebound of a one-sided structure not known.
+    """
+    for direction in mechanism.directions:
+        eta = mechanism.eta(direction)
+        if isnan(eta):
+            return NO_REBOUND
+        if eta <= 0 and mechanism.rocks_both_ways:
+            return Problem(
+                f"{mechanism.name or 'structure'}: the kinematics give {eta:.4g} for an impact that ends "
+                f"motion in the {direction.label} direction: {why_none(eta)}",
+                field="restitution",
+                hint="give a measured value as restitution, a number in (0, 1]",
+            )
+    return None
 
 
 def _scatter(mechanism: Mechanism) -> Scatter:
