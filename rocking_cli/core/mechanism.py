@@ -74,6 +74,10 @@ class Mechanism(Jointed):
         """Return the columns if three or more carry one beam, each as a structure, equal ones once; otherwise none."""
         return ()
 
+    def weaker_side(self) -> Mechanism | None:
+        """Return the structure as it rocks about the weaker side of its base, if it may; by default None."""
+        return None
+
     @final
     def cautions(self) -> Sequence[str]:
         """Return cautions on the results: the `caution` of the mechanism, and that of this structure."""
