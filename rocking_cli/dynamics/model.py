@@ -243,7 +243,7 @@ def build(
         model = linear_model(mechanism.name or mechanism.mechanism, name, blocks, mechanism.gravity)
         if mechanism.attached:
             model = with_held(model, mechanism, blocks)
-    model = replace(model, scatter=_scatter(mechanism))
+    model = replace(model, scatter=scatter_of(mechanism))
     if not mechanism.rocks_both_ways:
         # A one-sided structure never uplifts in the other direction, and rebounds at an impact.
         direction, numbers = mechanism.directions[0], model.numbers.copy()
@@ -273,7 +273,7 @@ def no_restitution(mechanism: Mechanism) -> Problem | None:
     return None
 
 
-def _scatter(mechanism: Mechanism) -> Scatter:
+def scatter_of(mechanism: Mechanism) -> Scatter:
     """Return the scatter of a structure: as given, or else as usual from tests of such bodies."""
     uncertainty = mechanism.uncertainty or Uncertainty()
     usual = KINEMATIC_SPREAD if mechanism.restitution_is_kinematic else MEASURED_SPREAD
