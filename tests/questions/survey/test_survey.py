@@ -293,7 +293,7 @@ class TestRanking:
 
     @pytest.mark.parametrize("level", [0.5, 0.97, 1.03, 1.1])
     def test_the_share_is_that_of_neighbours(self, level):
-        """An acceleration held at x lambda g overturns the share Phi(ln x/sqrt(.04^2 + .10^2)); a second motion none."""
+        """Held at x lambda g, the ground overturns the share Phi(ln x/sqrt(.04^2 + .10^2)); a second motion none."""
         block = rk.Block(width=0.5, height=2.0)
         held = rk.GroundMotion("held", 0.02, -level * 0.25 * G * np.ones(1501))
         calm = rk.GroundMotion("calm", 0.02, 0.01 * G * np.ones(100))
