@@ -361,7 +361,7 @@ def test_a_release_without_a_known_restitution_ends_at_its_first_impact(block):
     assert found.known_to == pytest.approx(time, rel=1e-8) == found.impacts[0, 0]
     assert found.impacts[0, 2] == pytest.approx(rate(0.0), rel=1e-8)
     assert found.peak_ratio == pytest.approx(0.5) and np.isnan(found.phi[found.time > time]).all()
-    assert answer.result.contacts[1].time < time  # nothing is said of the forces after it
+    assert answer.result.contacts[1].time < time - 1e-4  # nothing is said of the forces after it
     said = " ".join(each for each in answer.view.parts if isinstance(each, str))
     assert f"unknown after {time:.4g} s: then it has an impact, and its restitution is not known." in said
     assert "Next: give a measured `restitution` (or `rebound`)." in said and "rocking margin" not in said
