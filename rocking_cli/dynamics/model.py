@@ -33,6 +33,7 @@ from rocking_cli.dynamics.kernels import (
     REST,
     P,
 )  # fmt: skip
+from rocking_cli.dynamics.sliding import Sliding, sliding_of
 from rocking_cli.dynamics.tables import DirectionTable, tabulate
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.names import OPENING
@@ -93,6 +94,8 @@ class Model:
         Models of its columns, each alone, if three or more carry one beam.
     bounds : tuple of Bound or None
         The rotation of each direction beyond which something else than the mechanism decides; None without one.
+    sliding : Sliding, optional
+        The foot of a single body that may only slide; None for other structures, and for a linear model.
     """
 
     name: ModelName
@@ -113,6 +116,7 @@ class Model:
     scatter: Scatter = field(default_factory=lambda: Scatter(KINEMATIC_SPREAD, SLENDERNESS_SPREAD))
     columns: tuple[Model, ...] = ()
     bounds: tuple[Bound | None, Bound | None] = (None, None)
+    sliding: Sliding | None = None
 
     @property
     def p(self) -> float:
@@ -237,7 +241,8 @@ def build(
     if name == "nonlinear":
         check_elements(mechanism)
         columns = [build(each, both_statics(each), None, name, opening) for each in mechanism.columns_alone()]
-        model = replace(nonlinear_model(mechanism, statics, etas), columns=tuple(columns))
+        model = nonlinear_model(mechanism, statics, etas)
+        model = replace(model, columns=tuple(columns), sliding=sliding_of(mechanism))
         if model.joints is not None:
             model = replace(model, joints=replace(model.joints, limit=opening))
     else:
