@@ -110,6 +110,8 @@ class Slip(NamedTuple):
         Displacement at the end [m]; NaN if it is not known.
     path : float
         Length of its path [m].
+    begins : float
+        Time at which it first slides [s]; NaN if it does not.
     ends : float
         Time at which it stops for good, or has slid as far as it may [s]; 0 if it does not slide.
     arrives : float
@@ -119,6 +121,7 @@ class Slip(NamedTuple):
     largest: Reals
     residual: Reals
     path: Reals
+    begins: Reals
     ends: Reals
     arrives: Reals
 
@@ -236,7 +239,7 @@ def slips(
     shear, mu = np.array([each.shear for each in feet])[foot], np.array([each.friction for each in feet])[foot]
     drives = _Drives(factor, abs(factor), *(np.array([shear[:, 0], *(mu * ends.T)[[0, 2]]]) / shear[:, 1]))
     before, beyond = (size * np.array([each.clear[k].distance for each in feet])[foot] for k in (0, 1))
-    run = _Run(*np.zeros((6, n)), np.zeros(n, np.int64), np.full(n, nan), -before, beyond)
+    run = _Run(*np.zeros((6, n)), np.zeros(n, np.int64), *np.full((2, n), nan), -before, beyond)
     begun = np.cumsum(pieces.span, axis=0) - pieces.span
     chunk = max(MOST_VALUES // n, 1)
     for first in range(0, len(begun), chunk):
@@ -251,8 +254,9 @@ def slips(
     # After the record, friction stops what still slides.
     gain, growth, _ = drives.over(*np.zeros((5, n)))
     run.advance(np.flatnonzero(run.sense), pieces.span.sum(axis=0)[record], np.full(n, inf), gain, growth)
+    largest = np.where(run.high >= -run.low, run.high, run.low)
     residual = np.where(np.isnan(run.arrives), run.slip, nan)
-    return Slip(np.where(run.high >= -run.low, run.high, run.low), residual, run.path, run.ends, run.arrives)
+    return Slip(largest, residual, run.path, run.begins, run.ends, run.arrives)
 
 
 class _Drives(NamedTuple):
@@ -288,6 +292,7 @@ class _Run:
     high: Reals
     ends: Reals
     sense: Integers
+    begins: Reals
     arrives: Reals
     least: Reals
     most: Reals
@@ -337,6 +342,7 @@ class _Run:
             self.path[at] += np.where(sticks, 0.0, ahead)
             self.low[at], self.high[at] = np.minimum(self.low[at], slip), np.maximum(self.high[at], slip)
             self.ends[at] = np.where(sticks, self.ends[at], start[at] + tau)
+            self.begins[at] = np.fmin(self.begins[at], np.where(sticks & within, start[at] + tau, nan))
             self.sense[at] = np.where(reached, 0, np.where(within, np.where(sticks, towards, 0), sense))
             on = within & ~reached
             at, tau = at[on], tau[on]
@@ -425,7 +431,8 @@ def settle(
         known[:, column : column + 2] = 0.0
     known[:, [kernels.SIDE, kernels.IMPACTS, kernels.PASSED_IMPACTS, kernels.LARGEST, kernels.LONGEST]] = 0.0
     known[:, kernels.STATUS], known[:, kernels.ENDED] = kernels.AT_REST, slip.ends
-    known[:, kernels.PASSED] = slip.arrives
+    known[:, kernels.WARNED], known[:, kernels.PASSED] = slip.begins, slip.arrives
+    known[:, kernels.WARNED_PEAK : kernels.WARNED_PEAK + 2] = 0.0
     known[arrived, kernels.REASON], known[arrived, kernels.WHERE] = kernels.SLIDES, 0.0
     marks[slides], largest[slides] = known, abs(slip.largest)
     return largest, slip
@@ -441,7 +448,7 @@ def _extremes(motion: GroundMotion | None) -> tuple[float, float]:
 def slid_of(sliding: Sliding, slip: Slip, kept: Sequence[tuple[float, float, float]], time: Reals) -> Slid:
     """Return the slip of one history at its samples; `kept` is that of `slips`."""
     ends, at, rate = (np.array([0.0, *column]) for column in zip(*kept, strict=True))
-    largest, residual, path, stops, arrives = (float(each[0]) for each in slip)
+    largest, residual, path, _, stops, arrives = (float(each[0]) for each in slip)
     displacement = np.interp(time, ends, at)  # the samples of a history are among the ends of pieces
     if not isnan(arrives):
         displacement[time > arrives] = nan

@@ -34,7 +34,13 @@ def neighbours_in_words(near: Neighbours) -> str:
         return f"None of {of} uplifts the structure."
     sentences = [f"Of {of}, {_shares(near)}"]
     low, median, high = near.peak_ratio
-    if high == 0:
+    if near.slides:
+        sentences.append(f"{_number(near, near.slides)} only {'slides' if _count(near, near.slides) == 1 else 'slide'}")
+        if 0 < near.slip[1] < inf:
+            sentences.append(f"the median slip is {near.slip[1]:.2g} m")
+        if near.slides + (near.unknown or 0.0) == 1:
+            return f"{'; '.join(sentences)}."
+    if high == 0 and not near.slides:
         return f"{sentences[0]}; at most one in six uplifts it."
     enough = near.around.count >= MIN_NEIGHBOURS_OF_QUANTILES
     if median == 0 or (low == 0 and enough):
@@ -48,19 +54,24 @@ def neighbours_in_words(near: Neighbours) -> str:
     return f"{'; '.join(sentences)}."
 
 
-def _shares(near: Neighbours) -> str:
-    def number(share: float) -> str:
-        return f"{round(share * near.around.count)} ({percent(share)})"
+def _count(near: Neighbours, share: float) -> int:
+    return round(share * near.around.count)
 
+
+def _number(near: Neighbours, share: float) -> str:
+    return f"{_count(near, share)} ({percent(share)})"
+
+
+def _shares(near: Neighbours) -> str:
     if near.overturned in (0, 1):
         none = "none is known to overturn the structure" if near.unknown else "none overturns the structure"
         sentence = "all overturn the structure" if near.overturned else none
     else:
-        does = "overturns" if round(near.overturned * near.around.count) == 1 else "overturn"
-        sentence = f"{number(near.overturned)} {does} the structure"
+        does = "overturns" if _count(near, near.overturned) == 1 else "overturn"
+        sentence = f"{_number(near, near.overturned)} {does} the structure"
     if not near.unknown:
         return sentence
-    return f"{sentence}, and the outcome under {'all' if near.unknown == 1 else number(near.unknown)} is unknown"
+    return f"{sentence}, and the outcome under {'all' if near.unknown == 1 else _number(near, near.unknown)} is unknown"
 
 
 def neighbours_data(near: Neighbours) -> dict[str, Any]:
@@ -71,6 +82,8 @@ def neighbours_data(near: Neighbours) -> dict[str, Any]:
         "overturned": near.overturned,
         "unknown": near.unknown,
         "peak_ratio": {f"{100 * share:.0f}": None if isinf(peak) else peak for share, peak in peaks},
+        "slides": near.slides,
+        "slip": {f"{100 * share:.0f}": None if isinf(slip) else slip for share, slip in zip(FRACTILES, near.slip, strict=True)},
         "sensitive": near.sensitive,
     }
 

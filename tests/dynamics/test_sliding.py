@@ -33,7 +33,7 @@ def noise(seed: int, *, dt: float = 0.05, size: float = 6.0, vertical: float | N
     return GroundMotion("noise", dt, size * random.normal(0.0, 1.0, 120), vertical=up)
 
 
-def stepped(motion: GroundMotion, friction: float, *, mass: float = 1.0, thrust: complex = 0j, h: float = 5e-5) -> tuple:
+def stepped(motion: GroundMotion, friction: float, *, mass: float = 1.0, thrust: complex = 0j, h: float = 1e-5) -> tuple:
     """Return largest and last displacement and path of a mass on a rough floor, step by step."""
     up = motion.vertical
     longest = max(motion.duration, up.duration if up is not None else 0.0)
@@ -46,10 +46,10 @@ def stepped(motion: GroundMotion, friction: float, *, mass: float = 1.0, thrust:
         if v == 0 and abs(drive) <= bound:
             continue
         sense = np.sign(v) if v else np.sign(drive)
-        after = v + h * (drive - sense * bound)
-        if v and after * sense < 0:
-            after = 0.0
-        x, path, v = x + h * (v + after) / 2, path + h * abs(v + after) / 2, after
+        after, step = v + h * (drive - sense * bound), h
+        if v and after * sense < 0:  # it stops on the way
+            step, after = h * v / (v - after), 0.0
+        x, path, v = x + step * (v + after) / 2, path + step * abs(v + after) / 2, after
         low, high = min(low, x), max(high, x)
     return (high if high >= -low else low), x, path
 
