@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
@@ -19,7 +19,7 @@ from rocking_cli.core.polygons import nearby
 
 NODES = 65  # rotations from rest to the end of the search at which all bodies are looked at first
 FINER = 33  # rotations inside an interval in which two bodies may meet
-ROUNDS = 6  # refinements of an interval: its width is then below 1e-9 of the first one
+ROUNDS = 7  # refinements of an interval: its width is then below 1e-9 of the first one
 SAME_MOTION = 1e-12  # difference of two motions that counts as none [rad], and over the distance to the origin
 JOINT_GAP = 2e-3  # gap of a joint over width plus height of the smaller body, up to which an assembly joins them
 TOUCHING = 1e-6  # distance, or depth of one body in another, over the size of the structure, that counts as touching
@@ -41,6 +41,8 @@ class Bound(NamedTuple):
         What is met, or the tie.
     body : str
         The body that meets it.
+    at : complex
+        Its point that meets a stop, at rest [m].
     restitution : float or None
         Ratio of the rates after and before, of a stop that throws the structure back; None: the model ends there.
     """
@@ -49,7 +51,14 @@ class Bound(NamedTuple):
     kind: Literal["meets", "leans", "yields"]
     name: str
     body: str = ""
+    at: complex = 0j
     restitution: float | None = None
+
+    @property
+    def words(self) -> str:
+        """What happens at the bound, a clause."""
+        what = {"meets": f"{self.body} meets {self.name}", "leans": f"{self.body} leans on {self.name}"}
+        return f"{what.get(self.kind, f'the tie {self.name} yields')} at {self.phi:.4g} rad"
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +73,23 @@ class _Part:
         """Return the corners over the rotations of the motions of all links, shape (n, corners) [m]."""
         motion = motions[self.link]
         return np.asarray(motion.q[:, None] + np.exp(1j * motion.psi)[:, None] * (self.corners - motion.rest))
+
+
+def first_beyond(value: Callable[[Reals], Reals], low: float, high: float) -> float:
+    """Return the first rotation between two at which a continuous value, positive at the second, is so.
+
+    Parameters
+    ----------
+    value : callable
+        Function of rotations, shape (n,) [rad].
+    low, high : float
+        The rotations [rad].
+    """
+    for _ in range(ROUNDS):
+        phi = np.linspace(low, high, FINER)
+        k = max(int((value(phi) > 0).argmax()), 1)
+        low, high = phi[k - 1], phi[k]
+    return float(high)
 
 
 def meeting(mechanism: Jointed, direction: Direction, end: float) -> Bound | None:
@@ -172,19 +198,14 @@ class _Search:
             if apart[k] < 0:
                 return self._first(one, other, phi[k - 1], phi[k], 0.0)
             if apart[k - 1] + apart[k] < path[k - 1] and path[k - 1] > self.tolerance:
-                found = self._between(one, other, phi[k - 1], phi[k])
-                if found is not None:
-                    return found
+                phi_met = self._between(one, other, phi[k - 1], phi[k])
+                if phi_met is not None:
+                    return phi_met
         return None
 
     def _first(self, one: _Part, other: _Part, low: float, high: float, level: float) -> float:
         """Return the rotation at which the distance of two parts falls below a level, between two rotations."""
-        for _ in range(ROUNDS):
-            phi = np.linspace(low, high, FINER)
-            apart, _ = self._apart(one, other, phi, self._motions(phi))
-            k = max(int((apart < level).argmax()), 1)
-            low, high = phi[k - 1], phi[k]
-        return float(high)
+        return first_beyond(lambda phi: level - self._apart(one, other, phi, self._motions(phi))[0], low, high)
 
     def _apart_at(self, one: _Part, other: _Part, phi: float) -> float:
         at = np.array([phi])
