@@ -264,7 +264,7 @@ class Clearance(NamedTuple):
 def clearances(mechanism: Jointed, left: complex, right: complex) -> tuple[Clearance, Clearance]:
     """Return how far a single body at rest may slide to the left and to the right on its level foot.
 
-    It may slide until it meets something, or an end of its foot passes the edge of the ground, if this is drawn.
+    It may slide until it meets something, such as a stop, or an end of its foot passes the edge of the ground, if this is drawn.
 
     Parameters
     ----------
@@ -288,6 +288,8 @@ def clearances(mechanism: Jointed, left: complex, right: complex) -> tuple[Clear
             for side, gap in enumerate((float((from_ - ends).min()), float((begins - to).min()))):
                 if gap > -touching:
                     found[side].append(Clearance(max(gap, 0.0), other.name))
+    for stop in mechanism.stops or ():
+        found[stop.gap > 0].append(Clearance(abs(stop.gap), stop.name))
     before, after = (min(each, default=Clearance(inf, "")) for each in found)
     return before, after
 

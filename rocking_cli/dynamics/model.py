@@ -158,7 +158,7 @@ class Model:
     @cached_property
     def symmetric(self) -> bool:
         """Whether both directions are equal, so that reversing a motion has no effect but on the sign."""
-        if self.one_sided is not None:
+        if self.one_sided is not None or (self.sliding is not None and not self.sliding.symmetric):
             return False
         pairs = ((of[:, 0], of[:, 1]) for of in (self.forces, self.certain, self.held) if len(of))
         same = all(np.allclose(one, other, rtol=0, atol=EQUAL_TABLES * np.abs(one).max()) for one, other in pairs)

@@ -13,8 +13,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from math import inf, isnan, nan
-from typing import TYPE_CHECKING, Any, NamedTuple
+from math import inf, isclose, isnan, nan
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -69,7 +69,12 @@ class Sliding:
     clear: tuple[Clearance, Clearance]
 
     @property
-    def least_friction_to_rock(self) -> float:
+    def symmetric(self) -> bool:
+        """Whether it may slide as far to the left as to the right."""
+        return isclose(*(each.distance for each in self.clear), rel_tol=LEVEL)
+
+    @property
+    def friction_to_rock(self) -> float:
         """Coefficient of friction beyond which the body may rock under horizontal motion; infinite if it never does."""
         (still, push, _), normal = self.ends.T, float(self.ends[:, 0].sum())
         with np.errstate(divide="ignore"):
@@ -162,6 +167,7 @@ def sliding_of(mechanism: Mechanism) -> Sliding | None:
     closed = resting(mechanism).closed
     if closed is None or [contact.forces for contact in closed.contacts] != [3]:
         return None
+    # With a tie or a spring, what follows would depend on how far it has slid.
     (foot,), ((normal, shear),) = closed.contacts, closed.rows
     left, right = sorted(foot.points, key=lambda point: point.real)
     level = abs(foot.normal - 1j) < LEVEL and abs((right - left).imag) <= LEVEL * abs(right - left)

@@ -16,6 +16,7 @@ from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.dynamics.parallel import in_parts, in_processes
+from rocking_cli.dynamics.sliding import sliding_of
 from rocking_cli.errors import InputError, Problem, RockingError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.io.spreadsheet import Spreadsheet
@@ -63,6 +64,9 @@ class Under:
     unknown : float or None
         The share of the motions that have an unknown outcome; None if the joints are not known, so that nothing was
         checked.
+    slip : float
+        The largest slip under the motions that are known not to overturn the structure [m]; 0 if it does not only
+        slide.
     """
 
     overturned: float
@@ -70,6 +74,7 @@ class Under:
     worst: str
     over: str = "phi_cr"
     unknown: float | None = 0.0
+    slip: float = 0.0
 
     @property
     def concluded(self) -> Concluded:
@@ -78,7 +83,7 @@ class Under:
             return Concluded.OVERTURNS
         if self.unknown:
             return Concluded.UNKNOWN
-        return Concluded.ROCKS if self.peak_ratio else Concluded.NO_UPLIFT
+        return Concluded.ROCKS if self.peak_ratio else Concluded.SLIDES if self.slip else Concluded.NO_UPLIFT
 
     @property
     def at_most(self) -> float:
@@ -198,7 +203,8 @@ def _by_lambda(found: Surveyed) -> tuple[float, ...]:
 def _by_response(found: Surveyed) -> tuple[float, ...]:
     assert found.under is not None
     peak = found.under.peak_ratio
-    return (-found.under.at_most, -(inf if isnan(peak) else _rounded(peak)), _rounded(found.uplift))
+    moved = -(inf if isnan(peak) else _rounded(peak)), -_rounded(found.under.slip)
+    return (-found.under.at_most, *moved, _rounded(found.uplift))
 
 
 def _by_ratio(found: Surveyed) -> tuple[float, ...]:
@@ -280,7 +286,7 @@ def survey(
     -------
     Survey
         Ranked by uplift acceleration; with motions by the share that overturns or is of unknown outcome, then by the
-        largest peak, then by uplift acceleration; with a site by the ratio of its code. Structures that rank equal keep
+        largest peak, slip, and uplift acceleration; with a site by the ratio of its code. Structures that rank equal keep
         their order.
     """
     check_opening(opening)
@@ -324,7 +330,7 @@ def _part(
         try:
             ready[k] = Structure(entry.make(), opening=opening)
             rows[k] = _alone(place, entry, ready[k], site)
-            if _may_lift(ready[k], motions):
+            if _may_move(ready[k], motions):
                 models[k] = ready[k].model("nonlinear")
         except RockingError as error:
             ready.pop(k, None)
@@ -386,8 +392,10 @@ def _alone(place: int, entry: SurveyEntry, structure: Structure, site: SiteFile 
     )
 
 
-def _may_lift(structure: Structure, motions: Sequence[GroundMotion]) -> bool:
-    """Return whether any of the motions could uplift a structure; if none can, its equation of motion is not needed."""
+def _may_move(structure: Structure, motions: Sequence[GroundMotion]) -> bool:
+    """Return whether any of the motions could move a structure; if none can, its equation of motion is not needed."""
+    if motions and sliding_of(structure.mechanism) is not None:
+        return True
     least = min(structure.uplift)
     return any(each.vertical is not None or each.pga_g >= least * (1 - 1e-9) for each in motions)
 
@@ -421,11 +429,12 @@ def _of_one(
     doubtful = np.setdiff1d(record[own & outcomes.unknown], fell)
     stays = own & ~np.isin(record, fell) & ~np.isin(record, doubtful)
     peaks = np.where(stays, outcomes.peak_ratio, -1.0)
-    strongest = int(peaks.argmax())
+    strongest = int(np.lexsort((-np.arange(own.size), outcomes.slip, peaks))[-1])  # the first of equal ones
     worst = motions[int([*fell, *doubtful, record[strongest]][0])].name
     over = "limit" if any(model.ends_at_limit) else "phi_cr"
     unknown = doubtful.size / len(motions) if doubtful.size or model.joints is not None else None
-    return Under(fell.size / len(motions), float(peaks[strongest]) if stays.any() else nan, worst, over, unknown)
+    peak, slip = float(peaks[strongest]) if stays.any() else nan, float((outcomes.slip * stays).max())
+    return Under(fell.size / len(motions), peak, worst, over, unknown, slip)
 
 
 @dataclass(frozen=True)
