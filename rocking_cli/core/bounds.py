@@ -264,7 +264,8 @@ class Clearance(NamedTuple):
 def clearances(mechanism: Jointed, left: complex, right: complex) -> tuple[Clearance, Clearance]:
     """Return how far a single body at rest may slide to the left and to the right on its level foot.
 
-    It may slide until it meets something, such as a stop, or an end of its foot passes the edge of the ground, if this is drawn.
+    It may slide until it meets something, such as a stop, or until an end of its foot passes the edge of the ground,
+    if this is drawn.
 
     Parameters
     ----------
@@ -276,8 +277,8 @@ def clearances(mechanism: Jointed, left: complex, right: complex) -> tuple[Clear
     direction = mechanism.directions[0]
     search = _Search(mechanism, direction, mechanism.limit(direction) / 2)
     still, moving = ([part for part in search.parts if (part.link > 0) is moves] for moves in (False, True))
-    size = np.ptp(np.concatenate([part.corners.real for part in moving] or [[left.real, right.real]]))
-    touching = max(JOINT_GAP * float(size), search.tolerance)
+    size = float(np.ptp(np.concatenate([np.array([left, right]), *(part.corners for part in moving)]).real))
+    touching = max(JOINT_GAP * size, search.tolerance)
     found = [list(_edges(still, (left, right), touching)), list(_edges(still, (left, right), touching, right=True))]
     for one in moving:
         for other in still:

@@ -245,13 +245,13 @@ def slips(
     shear, mu = np.array([each.shear for each in feet])[foot], np.array([each.friction for each in feet])[foot]
     drives = _Drives(factor, abs(factor), *(np.array([shear[:, 0], *(mu * ends.T)[[0, 2]]]) / shear[:, 1]))
     before, beyond = (size * np.array([each.clear[k].distance for each in feet])[foot] for k in (0, 1))
-    run = _Run(*np.zeros((6, n)), np.zeros(n, np.int64), *np.full((2, n), nan), -before, beyond)
+    run = _Run(-before, beyond, np.zeros(n, np.int64), *np.zeros((6, n)), *np.full((2, n), nan))
     begun = np.cumsum(pieces.span, axis=0) - pieces.span
     chunk = max(MOST_VALUES // n, 1)
     for first in range(0, len(begun), chunk):
         span, *accelerations = (each[first : first + chunk, record] for each in pieces)
         gain, growth, quiet = drives.over(span, *accelerations)
-        still = quiet.all(axis=1)
+        still = np.asarray(quiet.all(axis=1))
         for k in range(len(span)):
             if not still[k] or run.sense.any():
                 run.go(begun[first + k, record], span[k], gain[:, k], growth[:, k], quiet[k])
@@ -291,17 +291,17 @@ class _Drives(NamedTuple):
 class _Run:
     """State of many bodies: slip, speed and its sense (0: it sticks), and what has been so far, shape (n,) each."""
 
+    least: Reals
+    most: Reals
+    sense: Integers
     slip: Reals
     speed: Reals
     path: Reals
     low: Reals
     high: Reals
     ends: Reals
-    sense: Integers
     begins: Reals
     arrives: Reals
-    least: Reals
-    most: Reals
 
     def go(self, start: Reals, span: Reals, gain: Reals, growth: Reals, quiet: Bools) -> None:
         """Advance all bodies over a piece; those to which nothing happens at once, the others by their events."""
@@ -411,7 +411,7 @@ def settle(
     structure, record = (runs[:, column].astype(np.int64) for column in (kernels.STRUCTURE, kernels.RECORD))
     slender, largest = runs[:, kernels.SLENDER], np.zeros(len(runs))
     able = np.array([model.sliding is not None for model in models])[structure] & (runs[:, kernels.START] == 0)
-    able &= np.array([motion is not None for motion in motions])[record]
+    able = np.logical_and(able, np.array([motion is not None for motion in motions])[record])
     up = np.array([_extremes(motion) for motion in motions])[record] * runs[:, kernels.V_FACTOR, None]
     for k in np.unique(structure[able]).tolist():
         sliding, mine = models[k].sliding, np.flatnonzero(able & (structure == k))

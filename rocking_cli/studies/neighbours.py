@@ -244,8 +244,8 @@ def neighbours(
     able = draws.slender > 0
     largest_factor = float((draws.amplitude[able] / draws.slender[able]).max(initial=1.0))
     rests = engine.name != "blocks"  # of free blocks, other joints may open first
-    rests &= model.sliding is None and release is None and motion is not None and bool(able.all())
-    if rests and not can_lift(model, motion, largest_factor):
+    rests &= model.sliding is None and release is None and bool(able.all())
+    if rests and motion is not None and not can_lift(model, motion, largest_factor):
         unknown = None if unchecked else 0.0
         still = np.zeros((around.count, 2))
         return Neighbours(around, model.name, 0.0, (0.0, 0.0, 0.0), 1.0, lifted=False, unknown=unknown, rotations=still)

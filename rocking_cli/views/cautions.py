@@ -22,7 +22,8 @@ NEAR_FRICTION = 0.2  # relative difference of friction from that which decides, 
 
 def cautions_of(mechanism: Mechanism) -> list[str]:
     """Return all cautions on a structure; those on what starts before it rocks come first."""
-    return [*before_rocking(mechanism), *of_friction(mechanism), *of_restitution(mechanism), *of_bounds(mechanism), *mechanism.cautions()]
+    own = [*of_friction(mechanism), *of_restitution(mechanism), *of_bounds(mechanism), *mechanism.cautions()]
+    return [*before_rocking(mechanism), *own]
 
 
 def of_bounds(mechanism: Mechanism) -> list[str]:
@@ -70,8 +71,8 @@ def of_friction(mechanism: Mechanism) -> list[str]:
     if sliding is None or not isclose(sliding.friction, decides := sliding.friction_to_rock, rel_tol=NEAR_FRICTION):
         return []
     return [
-        f"Its friction of {sliding.friction:.4g} is within {percent(NEAR_FRICTION)} of {decides:.4g}, up to which it only "
-        "slides and above which it may rock. Neighbours do not vary friction: vary it yourself."
+        f"The friction of {sliding.friction:.4g} is within {percent(NEAR_FRICTION)} of {decides:.4g}, up to which the "
+        "structure only slides, and above which it may rock. Neighbours do not vary friction: vary it yourself."
     ]
 
 

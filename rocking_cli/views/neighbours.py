@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from math import inf, isinf
 from typing import Any, TypeVar
@@ -76,14 +76,18 @@ def _shares(near: Neighbours) -> str:
 
 def neighbours_data(near: Neighbours) -> dict[str, Any]:
     """Return the outcomes of the neighbours of a motion as plain data; peaks of overturning are null."""
-    peaks = zip(FRACTILES, near.peak_ratio, strict=True)
+
+    def quantiles(values: Sequence[float]) -> dict[str, float | None]:
+        pairs = zip(FRACTILES, values, strict=True)
+        return {f"{100 * share:.0f}": None if isinf(value) else value for share, value in pairs}
+
     return {
         **asdict(near.around),
         "overturned": near.overturned,
         "unknown": near.unknown,
-        "peak_ratio": {f"{100 * share:.0f}": None if isinf(peak) else peak for share, peak in peaks},
+        "peak_ratio": quantiles(near.peak_ratio),
         "slides": near.slides,
-        "slip": {f"{100 * share:.0f}": None if isinf(slip) else slip for share, slip in zip(FRACTILES, near.slip, strict=True)},
+        "slip": quantiles(near.slip),
         "sensitive": near.sensitive,
     }
 

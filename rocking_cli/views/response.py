@@ -208,7 +208,8 @@ def _columns(*, unknown: bool = False, slides: bool = False, over: str = "phi_cr
     """
 
     def of_structure(value: Callable[[History], Any]) -> Callable[[History], Any]:
-        return lambda run: None if (unknown or slides) and not (run.unknown or run.slip or run.by_blocks) else value(run)
+        hidden = unknown or slides
+        return lambda run: None if hidden and not (run.unknown or run.slip or run.by_blocks) else value(run)
 
     until, bound = ("known until", f"lower bound of peak / {over}") if unknown else (None, None)
     return [

@@ -64,7 +64,7 @@ def blocks(
             series = {"phi [rad]": run.phi, "phi_dot [rad/s]": run.rate, _ratio(run): run.ratio}
             columns |= {f"{name} {what}": _padded(values, part, _after(run)) for what, values in series.items()}
             if run.slid is not None:
-                columns[f"{name} slip [m]"] = _slip(run, part)
+                columns[f"{name} slip [m]"] = np.asarray(_slip(run, part))
         if watched is not None:
             for name, run in ((name, run) for name, run in histories.items() if not run.by_blocks):
                 phi = _padded(run.phi, part, _after(run))

@@ -286,8 +286,8 @@ def survey(
     -------
     Survey
         Ranked by uplift acceleration; with motions by the share that overturns or is of unknown outcome, then by the
-        largest peak, slip, and uplift acceleration; with a site by the ratio of its code. Structures that rank equal keep
-        their order.
+        largest peak, slip and uplift acceleration; with a site by the ratio of its code. Structures that rank equal
+        keep their order.
     """
     check_opening(opening)
     results: list[Surveyed | Bad | None] = [None] * len(entries)
