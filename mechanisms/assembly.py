@@ -410,6 +410,17 @@ class Assembly(LinkedBodies):
         except analysis.AssemblyFault as error:
             raise StructureError(f"in the {direction.label} direction {error}") from None
 
+    def _as_it_rocks(self, direction: Direction) -> Assembly:
+        """Return the assembly whose weakest mechanism moves: itself, or a single block that slides, without friction.
+
+        Joints without a coefficient of friction never slide. Time histories check whether it slides instead.
+        """
+        return self._unable_to_slide if len(self.blocks) == 1 and self._groups(direction).slides else self
+
+    @cached_property
+    def _unable_to_slide(self) -> Assembly:
+        return self.model_copy(update={"friction": None, "friction_of": None})
+
     def _joint(self, k: int) -> str:
         return _name(self._contacts[k])
 
@@ -418,7 +429,7 @@ class Assembly(LinkedBodies):
         told = getattr(self.lead, direction.label, None)
         if told is not None:
             return str(told)
-        mechanism = self._groups(direction)
+        mechanism = self._as_it_rocks(direction)._groups(direction)
         k = analysis.leading(mechanism, direction)
         group = mechanism.groups[k if k is not None else 0]
         hinged = {self._contacts[h.contact].b for h in mechanism.hinges if None in (h.one, h.other)}
@@ -428,7 +439,7 @@ class Assembly(LinkedBodies):
     def _linkage(self, direction: Direction) -> LinkageMotion:
         if direction not in self.directions:
             raise StructureError(f"it cannot rock in the {direction.label} direction")
-        mechanism = self._groups(direction)
+        mechanism = self._as_it_rocks(direction)._groups(direction)
         if mechanism.slides:
             where = in_short([self._joint(k) for k in mechanism.slides])
             raise StructureError(
@@ -501,7 +512,7 @@ class Assembly(LinkedBodies):
 
     def _hinges(self, direction: Direction) -> list[tuple[str, analysis.AssemblyContact, complex]]:
         """Return letter, joint and point of each hinge, from the left."""
-        hinges = self._groups(direction).hinges
+        hinges = self._as_it_rocks(direction)._groups(direction).hinges
         order = from_the_left([hinge.point for hinge in hinges])
         letters = [chr(65 + n) if n < 26 else f"{chr(65 + n // 26 - 1)}{chr(65 + n % 26)}" for n in range(len(order))]
         return [
@@ -543,7 +554,8 @@ class Assembly(LinkedBodies):
     def _bearing(self, direction: Direction) -> Iterator[tuple[analysis.AssemblyContact, Sequence[int]]]:
         """Yield the joints that still bear in a mechanism, and at which ends: both if closed, one if it hinges."""
         bear = {analysis.Opening.CLOSED: (0, 1), analysis.Opening.START: (0,), analysis.Opening.END: (1,)}
-        for contact, state in zip(self._contacts, self._groups(direction).states, strict=True):
+        states = self._as_it_rocks(direction)._groups(direction).states
+        for contact, state in zip(self._contacts, states, strict=True):
             if state in bear:
                 yield contact, bear[state]
 
@@ -703,7 +715,7 @@ class Assembly(LinkedBodies):
                     at,
                     _name(contact),
                 )
-                for letter, contact, at in self._hinges(direction)
+                for letter, contact, at in (self._hinges(direction) if not mechanism.slides else ())
             ],
             groups=mechanism.groups,
             rest=[name for name in mechanism.rest if name in self.blocks],
@@ -798,7 +810,8 @@ class Assembly(LinkedBodies):
         return analysis.friction(self._collapse(direction))
 
     def extras(self, direction: Direction) -> Sequence[Extra]:
-        needed, glued = self._needed(direction).needed, [self._joint(k) for k in self._needed(direction).glued]
+        rocks = self._as_it_rocks(direction)
+        needed, glued = rocks._needed(direction).needed, [self._joint(k) for k in rocks._needed(direction).glued]
         if needed is not None:
             friction = Extra("friction_needed", needed, "", "friction in every joint without which lambda is less")
         else:
@@ -809,7 +822,7 @@ class Assembly(LinkedBodies):
         usual = self._with_usual(direction)
         meaning = f"lambda with a friction of {MASONRY_FRICTION:g} in joints without any given"
         known = (friction,) if usual is None else (friction, Extra("lambda_with_usual", usual, "g", meaning))
-        end = self._valid_to(direction)
+        end = rocks._valid_to(direction)
         if end is None:
             return known
         phi, k, share = end
@@ -838,10 +851,11 @@ class Assembly(LinkedBodies):
         return analysis.thrust(self._contacts, list(self.blocks), friction.normal, friction.shear)
 
     def _thrust_line(self, direction: Direction) -> Line | None:
-        line = self._thrust(direction)
+        rocks = self._as_it_rocks(direction)
+        line = rocks._thrust(direction)
         if not line.chain:
             return None
-        name = f"a line of thrust at uplift, {self._collapse(direction).multiplier:.3g} g"
+        name = f"a line of thrust at uplift, {rocks._collapse(direction).multiplier:.3g} g"
         return Line(name, [each.point for each in line.passages], direction)
 
     def _joint_forces(self, direction: Direction) -> Forces | None:

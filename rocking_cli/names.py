@@ -1,13 +1,14 @@
 """Words shared by all commands, in a module that imports nothing.
 
-A motion has one of five outcomes: the structure does not uplift; it rocks, that is, it uplifts and comes to rest; it
-overturns; it is still rocking long after the end of the ground motion, without going to overturn; or the outcome is
-unknown, because a joint opens or slides that the model keeps closed, or something is met.
+A motion has one of six outcomes: the structure does not uplift; it slides and never rocks; it rocks, that is, it
+uplifts and comes to rest; it overturns; it is still rocking long after the end of the ground motion, without going to
+overturn; or the outcome is unknown, because a joint opens or slides that the model keeps closed, or something is met.
 """
 
 from __future__ import annotations
 
 NO_UPLIFT = "does not uplift"
+SLIDES = "does not overturn; slides"
 ROCKS = "rocks"
 OVERTURNS = "overturns"
 STILL_ROCKING = "still rocking"
@@ -20,7 +21,9 @@ OPENING = 0.005
 """Largest opening of a joint up to which an outcome is known, over D_cr, unless another one is given."""
 
 
-def outcome(*, uplifts: bool, overturned: bool, still_rocking: bool = False, unknown: bool = False) -> str:
+def outcome(
+    *, uplifts: bool, overturned: bool, still_rocking: bool = False, unknown: bool = False, slides: bool = False
+) -> str:
     """Return the outcome of a motion, in the words of this module.
 
     Parameters
@@ -29,6 +32,8 @@ def outcome(*, uplifts: bool, overturned: bool, still_rocking: bool = False, unk
         Whether the structure uplifts (also by a release), whether it overturns, and whether it is still rocking.
     unknown : bool
         Whether the model ceases to hold before the motion ends.
+    slides : bool
+        Whether the structure only slides.
 
     Examples
     --------
@@ -41,7 +46,7 @@ def outcome(*, uplifts: bool, overturned: bool, still_rocking: bool = False, unk
         return OVERTURNS
     if still_rocking:
         return STILL_ROCKING
-    return ROCKS if uplifts else NO_UPLIFT
+    return ROCKS if uplifts else SLIDES if slides else NO_UPLIFT
 
 
 MIN_MOTIONS, MIN_MOTIONS_OF_MEDIAN = 18, 6

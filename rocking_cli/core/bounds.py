@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -251,3 +252,82 @@ def _beside(a: Points, b: Points) -> Reals:
     outward = -1j * side / np.abs(side)
     off = (outward.conj()[:, :, None] * (b[:, None, :] - a[:, :, None])).real
     return np.asarray(off.min(axis=2).max(axis=1))
+
+
+class Clearance(NamedTuple):
+    """How far a body at rest may slide one way [m], infinite if nothing is there, and what it reaches then."""
+
+    distance: float
+    name: str
+
+
+def clearances(mechanism: Jointed, left: complex, right: complex) -> tuple[Clearance, Clearance]:
+    """Return how far a single body at rest may slide to the left and to the right on its level foot.
+
+    It may slide until it meets something, such as a stop, or until an end of its foot passes the edge of the ground,
+    if this is drawn.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        A structure of one body.
+    left, right : complex
+        Ends of its foot [m].
+    """
+    direction = mechanism.directions[0]
+    search = _Search(mechanism, direction, mechanism.limit(direction) / 2)
+    still, moving = ([part for part in search.parts if (part.link > 0) is moves] for moves in (False, True))
+    size = float(np.ptp(np.concatenate([np.array([left, right]), *(part.corners for part in moving)]).real))
+    touching = max(JOINT_GAP * size, search.tolerance)
+    found = [list(_edges(still, (left, right), touching)), list(_edges(still, (left, right), touching, right=True))]
+    for one in moving:
+        for other in still:
+            y = _heights(one.corners, other.corners)
+            if np.ptp(y) <= search.tolerance:
+                continue
+            (from_, to), (begins, ends) = _spans(one.corners, y), _spans(other.corners, y)
+            for side, gap in enumerate((float((from_ - ends).min()), float((begins - to).min()))):
+                if gap > -touching:
+                    found[side].append(Clearance(max(gap, 0.0), other.name))
+    for stop in mechanism.stops or ():
+        found[stop.gap > 0].append(Clearance(abs(stop.gap), stop.name))
+    before, after = (min(each, default=Clearance(inf, "")) for each in found)
+    return before, after
+
+
+def _edges(
+    still: Sequence[_Part], foot: tuple[complex, complex], touching: float, *, right: bool = False
+) -> Iterator[Clearance]:
+    """Yield how far a foot may slide one way to the edge of the ground on which it stands; nothing if it is not drawn.
+
+    Level tops that touch each other are one.
+    """
+    sign, level = 1 if right else -1, foot[0].imag
+    tops = []
+    for part in still:
+        x = part.corners.real[abs(part.corners.imag - level) <= touching]
+        if x.size > 1 and part.corners.imag.max() <= level + touching:
+            tops.append((float((sign * x).min()), float((sign * x).max()), part.name))
+    end = sign * foot[right].real
+    reach, name = end, ""
+    for first, last, of in sorted(tops):
+        if first <= reach + touching and last >= end - touching and last >= reach - touching:
+            reach, name = max(last, reach), of
+    if name:
+        yield Clearance(reach - end, f"the edge of {name}")
+
+
+def _heights(one: Points, other: Points) -> Reals:
+    """Return the heights at which convex polygons may meet first as one moves sideways: none if one is above."""
+    y = np.concatenate([one.imag, other.imag])
+    low, high = max(one.imag.min(), other.imag.min()), min(one.imag.max(), other.imag.max())
+    return np.append(y[(y >= low) & (y <= high)], [low, high]) if low < high else np.zeros(1)
+
+
+def _spans(z: Points, y: Reals) -> tuple[Reals, Reals]:
+    """Return where a convex polygon begins and ends at each of some heights within it [m]."""
+    a, b = z, np.roll(z, -1)
+    crossed = (np.minimum(a.imag, b.imag) <= y[:, None]) & (y[:, None] <= np.maximum(a.imag, b.imag))
+    rise = np.where(a.imag == b.imag, inf, b.imag - a.imag)  # a level side begins at a
+    x = a.real + (y[:, None] - a.imag) / rise * (b.real - a.real)
+    return np.where(crossed, x, inf).min(axis=1), np.where(crossed, x, -inf).max(axis=1)

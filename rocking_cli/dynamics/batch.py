@@ -16,6 +16,7 @@ from rocking_cli.dynamics.history import RTOL, check_rtol, out_of_step
 from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.dynamics.parallel import in_parts
+from rocking_cli.dynamics.sliding import settle
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.short_repr import short_repr
@@ -232,7 +233,8 @@ def respond_many(
         marks[loose] = new_marks
     reach = np.array([model.reach for model in models])
     phi_cr = np.array([model.phi_cr for model in models]).reshape(-1, 2)[runs.model]
-    outcomes = read_marks(marks, phi_cr, reach[runs.model])
+    slip, _ = settle(marks, models, motions, rows)
+    outcomes = replace(read_marks(marks, phi_cr, reach[runs.model]), slip=slip)
     if (runs.slender == 1).all():
         return outcomes
     peaks = {name: getattr(outcomes, name) * runs.slender for name in ("peak_positive", "peak_negative")}

@@ -99,6 +99,7 @@ def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
         lower_bound=np.where(np.isnan(warned), np.where(unknown, (peaks / phi_cr).max(axis=1), np.nan), bound),
         opening=marks[:, kernels.LARGEST] / reach,
         by_blocks=np.zeros(len(marks), np.bool_),
+        slip=np.zeros(len(marks)),
     )
 
 

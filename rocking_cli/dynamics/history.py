@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from math import ceil
 
@@ -17,6 +17,7 @@ from rocking_cli.dynamics.joints import JointCheck, check_of
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcome
 from rocking_cli.dynamics.parallel import in_parts
+from rocking_cli.dynamics.sliding import Slid, settle, slid_of
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.short_repr import short_repr
@@ -65,6 +66,8 @@ class History(Outcome[bool, int, float]):
         The bound of the motion that it has reached, from which on it is unknown; None if it has not.
     unmeasured : bool
         Whether it is unknown from there on because the restitution is not known.
+    slid : Slid, optional
+        The slip of a body that never rocks under the motion; None for others.
     """
 
     model: ModelName
@@ -81,6 +84,7 @@ class History(Outcome[bool, int, float]):
     apart: bool = False
     bound: Bound | None = None
     unmeasured: bool = False
+    slid: Slid | None = None
 
     @property
     def reference(self) -> str:
@@ -159,7 +163,11 @@ def follow(
     if model.to_first_impact or loose[0]:
         runs[0, kernels.LOOSE] = 1.0
         run()
-    outcome = read_marks(marks, np.array([model.phi_cr]), np.array([model.reach]))
+    slips: list[tuple[float, float, float]] = []  # along the motion
+    largest, slip = settle(marks, [model], [motion], runs, slips)
+    if slip is not None:  # it only slides
+        phi[:] = rate[:] = 0.0
+    outcome = replace(read_marks(marks, np.array([model.phi_cr]), np.array([model.reach])), slip=largest)
     end = float(marks[0, kernels.ENDED])
     if outcome.failed[0]:
         raise SolverError(
@@ -174,10 +182,11 @@ def follow(
         end = min(end, until)
     # The samples end with the record or with the motion, whichever is later; after overturning they are NaN.
     kept = min(samples, max(npts, int(end / dt) + (1 if marks[0, kernels.STATUS] == kernels.STILL_ROCKING else 3)))
+    time = np.arange(kept, dtype=np.float64) * dt
     return History(
         **{name: getattr(outcome, name)[0].item() for name in OUTCOME_FIELDS},
         model=model.name,
-        time=np.arange(kept, dtype=np.float64) * dt,
+        time=time,
         phi=phi[:kept],
         rate=rate[:kept],
         ratio=phi[:kept] / np.where(phi[:kept] < 0, model.phi_cr[1], model.phi_cr[0]),
@@ -190,6 +199,7 @@ def follow(
         check=check_of(model.joints, marks[0], float(outcome.overturning_time[0])),
         apart=bool(marks[0, kernels.REASON] == kernels.APART) and not model.to_first_impact,
         unmeasured=bool(marks[0, kernels.REASON] == kernels.APART) and model.to_first_impact,
+        slid=slid_of(model.sliding, slip, slips, time) if model.sliding is not None and slip is not None else None,
     )
 
 

@@ -34,6 +34,7 @@ from rocking_cli.dynamics.kernels import (
     REST,
     P,
 )  # fmt: skip
+from rocking_cli.dynamics.sliding import Sliding, sliding_of
 from rocking_cli.dynamics.tables import DirectionTable, tabulate
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.names import OPENING
@@ -96,6 +97,8 @@ class Model:
         The rotation of each direction beyond which something else than the mechanism decides; None without one.
     to_first_impact : bool
         Whether its restitution is not known, so that its motion is unknown from the first impact on.
+    sliding : Sliding, optional
+        The foot of a single body that may only slide; None for other structures, and for a linear model.
     """
 
     name: ModelName
@@ -117,6 +120,7 @@ class Model:
     columns: tuple[Model, ...] = ()
     bounds: tuple[Bound | None, Bound | None] = (None, None)
     to_first_impact: bool = False
+    sliding: Sliding | None = None
 
     @property
     def p(self) -> float:
@@ -157,7 +161,7 @@ class Model:
     @cached_property
     def symmetric(self) -> bool:
         """Whether both directions are equal, so that reversing a motion has no effect but on the sign."""
-        if self.one_sided is not None:
+        if self.one_sided is not None or (self.sliding is not None and not self.sliding.symmetric):
             return False
         pairs = ((of[:, 0], of[:, 1]) for of in (self.forces, self.certain, self.held) if len(of))
         same = all(np.allclose(one, other, rtol=0, atol=EQUAL_TABLES * np.abs(one).max()) for one, other in pairs)
@@ -238,7 +242,10 @@ def build(
         check_elements(mechanism)
         columns = [build(each, both_statics(each), None, name, opening) for each in mechanism.columns_alone()]
         model = replace(
-            nonlinear_model(mechanism, statics, etas), columns=tuple(columns), to_first_impact=missing is not None
+            nonlinear_model(mechanism, statics, etas),
+            columns=tuple(columns),
+            to_first_impact=missing is not None,
+            sliding=sliding_of(mechanism),
         )
         if model.joints is not None:
             model = replace(model, joints=replace(model.joints, limit=opening))

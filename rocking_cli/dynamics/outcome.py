@@ -64,6 +64,9 @@ class Outcome(Generic[Flags, Counts, Numbers]):
         joints are not known, so that nothing was checked.
     by_blocks : bool
         Whether it was simulated with free blocks.
+    slip : float
+        Largest displacement of a body that slides and never rocks [m]; 0 if it does not slide, and for other
+        structures.
     """
 
     still_rocking: Flags
@@ -82,6 +85,7 @@ class Outcome(Generic[Flags, Counts, Numbers]):
     lower_bound: Numbers
     opening: Numbers
     by_blocks: Flags
+    slip: Numbers
 
     @property
     def fell(self) -> Flags:
@@ -150,6 +154,7 @@ class Outcome(Generic[Flags, Counts, Numbers]):
             overturned=bool(self.fell),
             still_rocking=bool(self.still_rocking),
             unknown=bool(self.unknown),
+            slides=bool(self.slip),
         )
 
 
@@ -160,6 +165,7 @@ UNCHECKED_FIELDS: dict[str, Any] = {
     "lower_bound": nan,
     "opening": nan,
     "by_blocks": False,
+    "slip": 0.0,
 }
 """The fields of a model that has no joints to be checked, such as an equivalent block."""
 

@@ -61,16 +61,18 @@ class Agreement:
 
 
 def agreements(histories: Mapping[ModelName, History]) -> dict[ModelName, Agreement]:
-    """Compare the motion of each equivalent block with that of the nonlinear model; empty without the latter.
+    """Compare the motion of each equivalent block with that of the nonlinear model.
+
+    It is empty without the latter, and where this is unknown or only slides, which no equivalent block does.
 
     Parameters
     ----------
     histories : mapping of str to History
         Histories of models of one structure under one motion, on the same samples.
     """
-    if "nonlinear" not in histories or histories["nonlinear"].unknown:
+    best = histories.get("nonlinear")
+    if best is None or best.unknown or best.slip:
         return {}
-    best = histories["nonlinear"]
     return {name: _compare(run, best) for name, run in histories.items() if name != "nonlinear"}
 
 
@@ -115,7 +117,9 @@ def _difference(run: History, best: History) -> float:
 
 
 def disagree(histories: Mapping[ModelName, History]) -> bool:
-    """Return whether the models that are fit for the structure differ in whether it overturns."""
+    """Return whether the models that are fit for the structure differ in whether it overturns; none is if it slides."""
+    if any(run.slip for run in histories.values()):
+        return False
     fit = [run for run in histories.values() if grade(run.uplift_error) is not Grade.DISREGARD and not run.unknown]
     return len({run.fell for run in fit}) > 1
 

@@ -20,6 +20,7 @@ class Concluded(StrEnum):
     """Possible conclusions on a response or a verification, the worst last."""
 
     NO_UPLIFT = "does_not_uplift"
+    SLIDES = "slides"
     ROCKS = "rocks"
     SATISFIED = "satisfied"
     NOT_CHECKED = "not_checked"
@@ -117,6 +118,8 @@ class Conclusion:
         overturn, or are of unknown outcome, of a margin (infinite if none does).
     peak_ratio : float or None
         Peak over phi_cr (or the limit) of the response that governs; None if it overturns or is unknown.
+    slip : float or None
+        Largest displacement of a body that only slides [m]; None for others.
     known_until : float or None
         Time until which the response that governs is known [s]; None if all of it is known.
     share : NeighbourShare or None
@@ -144,6 +147,7 @@ class Conclusion:
     polarity: int | None = None
     ratio: float | None = None
     peak_ratio: float | None = None
+    slip: float | None = None
     known_until: float | None = None
     share: NeighbourShare | None = None
     limit_states: Sequence[str] = ()
@@ -204,9 +208,9 @@ def are_alike(one: Conclusion, other: Conclusion) -> bool:
     return all(isclose(a, b, rel_tol=SAME_RATIO) for a, b in zip(severity(one), severity(other), strict=True))
 
 
-def severity(conclusion: Conclusion) -> tuple[int, float, float, float]:
+def severity(conclusion: Conclusion) -> tuple[int, float, float, float, float]:
     """Return how bad a conclusion is, to compare it with others."""
     share = conclusion.share.highest if conclusion.share is not None else 0.0
     # Without a ratio, a motion takes the structure past its capacity: this is the worst.
     ratio = 0.0 if conclusion.ratio is None else -conclusion.ratio
-    return SEVERITY.index(conclusion.concluded), share, ratio, conclusion.peak_ratio or 0.0
+    return SEVERITY.index(conclusion.concluded), share, ratio, conclusion.peak_ratio or 0.0, conclusion.slip or 0.0

@@ -116,6 +116,8 @@ class Watched:
             points = [PointPeak(name, spot.at, nan, nan) for name, spot in self.points.items()]
         else:
             points = [self._point(name, spot, reached) for name, spot in self.points.items()]
+            if history.slip:  # all points move as its foot does
+                points = [replace(point, horizontal=history.slip) for point in points]
         ties = [self._tie(tie, reached) for tie in self.ties]
         return Movements(points, ties, self._impact_velocity(history), history.known_to)
 
@@ -127,14 +129,16 @@ class Watched:
         moved = next(point.horizontal for point in self.peaks(history).points if point.name == INTERLOCK)
         return not moved <= interlock.overlap  # NaN for a history that overturns
 
-    def columns(self, phi: Reals) -> Iterator[tuple[str, Reals]]:
+    def columns(self, phi: Reals, slip: Reals | float = 0.0) -> Iterator[tuple[str, Reals]]:
         """Yield displacements of points [m], elongations [m] and forces [N] of ties, at signed rotations (n,).
+
+        With a slip [m], the body has moved sideways by it.
 
         Values are NaN without a rotation, and beyond the kinematic limit, which linear models may exceed.
         """
         for name, spot in self.points.items():
             moved = self._signed(phi, partial(self._displacement, spot))
-            yield f"{name} u_x [m]", moved.real
+            yield f"{name} u_x [m]", moved.real + slip
             yield f"{name} u_y [m]", moved.imag
         for tie in self.ties:
             both = self._signed(phi, partial(_strained, self.mechanism, tie))

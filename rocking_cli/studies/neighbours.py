@@ -161,6 +161,11 @@ class Neighbours:
     unknown : float or None
         The share of unknown outcome, because joints open or slide that the model keeps closed; None if the joints are
         not known, so that nothing was checked.
+    slides : float
+        The share that slides and is known not to overturn.
+    slip : tuple of float
+        The 16, 50 and 84 % of the largest slips of bodies that only slide [m]; infinite for those of another outcome
+        than to stay upright.
     rotations : ndarray, shape (n, 2)
         Peak rotation of each of them in the positive and in the negative direction [rad]; infinite if it overturns or
         has an unknown outcome.
@@ -174,6 +179,8 @@ class Neighbours:
     lifted: bool = True
     over: str = "phi_cr"
     unknown: float | None = None
+    slides: float = 0.0
+    slip: tuple[float, float, float] = (0.0, 0.0, 0.0)
     rotations: Reals = field(default_factory=lambda: np.zeros((0, 2)), compare=False, repr=False)
 
     @property
@@ -238,7 +245,8 @@ def neighbours(
     able = draws.slender > 0
     largest_factor = float((draws.amplitude[able] / draws.slender[able]).max(initial=1.0))
     rests = engine.name != "blocks"  # of free blocks, other joints may open first
-    if rests and release is None and motion is not None and able.all() and not can_lift(model, motion, largest_factor):
+    rests &= model.sliding is None and release is None and bool(able.all())
+    if rests and motion is not None and not can_lift(model, motion, largest_factor):
         unknown = None if unchecked else 0.0
         still = np.zeros((around.count, 2))
         return Neighbours(around, model.name, 0.0, (0.0, 0.0, 0.0), 1.0, lifted=False, unknown=unknown, rotations=still)
@@ -254,6 +262,8 @@ def neighbours(
     peaks = np.where(outcome[1:] > 0, np.inf, outcomes.peak_ratio[1:])
     # Quantiles are values of the sample, as interpolation with infinity has no meaning.
     low, middle, high = (float(peak) for peak in np.quantile(peaks, FRACTILES, method="inverted_cdf"))
+    slips = np.where(outcome[1:] > 0, np.inf, outcomes.slip[1:])
+    low_slip, middle_slip, high_slip = (float(slip) for slip in np.quantile(slips, FRACTILES, method="inverted_cdf"))
     rotations = np.stack([outcomes.peak_positive[1:], outcomes.peak_negative[1:]], axis=-1)
     rotations[outcome[1:] > 0] = np.inf
     return Neighbours(
@@ -264,6 +274,8 @@ def neighbours(
         float((outcome[1:] == outcome[0]).mean()),
         over=peaks_over(model.ends_at_limit),
         unknown=None if unchecked and not outcomes.unknown.any() else float(outcomes.unknown[1:].mean()),
+        slides=float((outcomes.slip[1:] * (outcome[1:] == 0) > 0).mean()),
+        slip=(low_slip, middle_slip, high_slip),
         rotations=rotations,
     )
 

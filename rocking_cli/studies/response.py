@@ -65,12 +65,13 @@ def _of_run(run: History, neighbours: Neighbours | None, motion: str, sign: int)
     elif run.fell:
         what = Concluded.OVERTURNS
     else:
-        what = Concluded.ROCKS if run.lifted else Concluded.NO_UPLIFT
+        what = Concluded.ROCKS if run.lifted else Concluded.SLIDES if run.slip else Concluded.NO_UPLIFT
     return Conclusion(
         concluded=what,
         motion=motion,
         polarity=sign,
         peak_ratio=None if run.unknown or run.fell else run.peak_ratio,
+        slip=run.slip if what is Concluded.SLIDES else None,
         known_until=run.known_to if run.unknown else None,
         joint=run.check.joint if run.unknown and run.check is not None else "",
         share=NeighbourShare(neighbours.overturned, neighbours.at_most, neighbours.around.count)

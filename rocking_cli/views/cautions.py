@@ -8,7 +8,8 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.equivalence import EQUAL_DIRECTIONS
 from rocking_cli.core.mechanism import why_none
 from rocking_cli.dynamics.resting import early_failures
-from rocking_cli.names import digits_apart
+from rocking_cli.dynamics.sliding import sliding_of
+from rocking_cli.names import digits_apart, percent
 from rocking_cli.views.verdict import SENSE
 
 OPENING_CAUTION = (
@@ -16,11 +17,14 @@ OPENING_CAUTION = (
 )
 STOCKY_ETA = 0.7  # restitution from kinematics of a block that is twice as high as wide: 1 - 1.5 sin^2(alpha)
 SLIDING_CAUTION = "Stronger motions move it by sliding, which is not modelled: prevent this, for instance by dowels"
+ONLY_SLIDES = "Stronger motions make it slide and not rock: time histories give the slip"
+NEAR_FRICTION = 0.2  # relative difference of friction from that which decides, up to which there is a caution
 
 
 def cautions_of(mechanism: Mechanism) -> list[str]:
     """Return all cautions on a structure; those on what starts before it rocks come first."""
-    return [*before_rocking(mechanism), *of_restitution(mechanism), *of_bounds(mechanism), *mechanism.cautions()]
+    own = [*of_friction(mechanism), *of_restitution(mechanism), *of_bounds(mechanism), *mechanism.cautions()]
+    return [*before_rocking(mechanism), *own]
 
 
 def of_bounds(mechanism: Mechanism) -> list[str]:
@@ -76,9 +80,22 @@ def _of_stocky(mechanism: Mechanism) -> list[str]:
     ]
 
 
+def of_friction(mechanism: Mechanism) -> list[str]:
+    """Return that the friction of a body is close to that at which it may rock, in words."""
+    sliding = sliding_of(mechanism)
+    if sliding is None or not isclose(sliding.friction, decides := sliding.friction_to_rock, rel_tol=NEAR_FRICTION):
+        return []
+    return [
+        f"The friction of {sliding.friction:.4g} is within {percent(NEAR_FRICTION)} of {decides:.4g}, up to which the "
+        "structure only slides, and above which it may rock. Neighbours do not vary friction: vary it yourself."
+    ]
+
+
 def before_rocking(mechanism: Mechanism) -> list[str]:
     """Return which joint slides or opens at rest before the structure rocks, in which direction, and what to do."""
     joints: dict[tuple[str, str], list[str]] = {}
+    sliding = sliding_of(mechanism)
+    only_slides = sliding is not None and sliding.friction <= sliding.friction_to_rock
     for direction, failure, lambda_ in early_failures(mechanism):
         push = failure.push / mechanism.gravity
         does = f"the joint between {failure.joint} {'slides' if failure.slides else 'opens'} from"
@@ -89,7 +106,7 @@ def before_rocking(mechanism: Mechanism) -> list[str]:
             digits = digits_apart(push, lambda_, 4)
             what = f"at rest {does} {push:.{digits}g} g, below lambda = {lambda_:.{digits}g}. "
             first = "Another mechanism starts first" if failure.opens else "The structure slides before it rocks"
-            what += OPENING_CAUTION if failure.opens else SLIDING_CAUTION
+            what += OPENING_CAUTION if failure.opens else ONLY_SLIDES if only_slides else SLIDING_CAUTION
         joints.setdefault((first, what), []).append(direction.label)
     return [
         f"{first} in {'both directions' if len(labels) > 1 else f'the {labels[0]} direction'}: {what}."

@@ -110,6 +110,7 @@ CLAUSES = {
     Concluded.OVERTURNS: names.OVERTURNS,
     Concluded.UNKNOWN: "has an unknown outcome",
     Concluded.ROCKS: names.ROCKS,
+    Concluded.SLIDES: "slides and does not overturn",
     Concluded.NO_UPLIFT: names.NO_UPLIFT,
 }
 """Clauses on outcomes, the worst first."""
@@ -189,6 +190,8 @@ def does(end: Conclusion, over: str) -> str:
         itself = f"the outcome is {names.UNKNOWN} after {end.known_until:.4g} s"
     elif end.concluded is Concluded.ROCKS:
         itself = f"the structure {names.ROCKS} to {end.peak_ratio:.3g} {over}"
+    elif end.concluded is Concluded.SLIDES:
+        itself = f"the structure does not overturn and slides by up to {end.slip:.3g} m"
     else:
         itself = f"the structure {end.concluded.value.replace('_', ' ')}"
     return itself if end.share is None else f"{itself}, and {_of_neighbours(end.share)}"
@@ -218,6 +221,8 @@ def headline(end: Conclusion, over: str) -> str:
         return f"{names.UNKNOWN} after {end.known_until:.4g} s"
     if end.concluded is Concluded.ROCKS and end.peak_ratio is not None:
         return f"{names.ROCKS} to {end.peak_ratio:.3g} {over}"
+    if end.concluded is Concluded.SLIDES:
+        return f"{names.SLIDES} by up to {end.slip:.3g} m"
     words = end.concluded.value.replace("_", " ")
     if ties := [each.name for each in end.left_out if each.what == "tie"]:
         words = f"{words} without {in_short(ties)}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from math import inf, isinf
 from typing import Any, TypeVar
@@ -34,7 +34,13 @@ def neighbours_in_words(near: Neighbours) -> str:
         return f"None of {of} uplifts the structure."
     sentences = [f"Of {of}, {_shares(near)}"]
     low, median, high = near.peak_ratio
-    if high == 0:
+    if near.slides:
+        sentences.append(f"{_number(near, near.slides)} only {'slides' if _count(near, near.slides) == 1 else 'slide'}")
+        if 0 < near.slip[1] < inf:
+            sentences.append(f"the median slip is {near.slip[1]:.2g} m")
+        if near.slides + (near.unknown or 0.0) == 1:
+            return f"{'; '.join(sentences)}."
+    if high == 0 and not near.slides:
         return f"{sentences[0]}; at most one in six uplifts it."
     enough = near.around.count >= MIN_NEIGHBOURS_OF_QUANTILES
     if median == 0 or (low == 0 and enough):
@@ -48,29 +54,40 @@ def neighbours_in_words(near: Neighbours) -> str:
     return f"{'; '.join(sentences)}."
 
 
-def _shares(near: Neighbours) -> str:
-    def number(share: float) -> str:
-        return f"{round(share * near.around.count)} ({percent(share)})"
+def _count(near: Neighbours, share: float) -> int:
+    return round(share * near.around.count)
 
+
+def _number(near: Neighbours, share: float) -> str:
+    return f"{_count(near, share)} ({percent(share)})"
+
+
+def _shares(near: Neighbours) -> str:
     if near.overturned in (0, 1):
         none = "none is known to overturn the structure" if near.unknown else "none overturns the structure"
         sentence = "all overturn the structure" if near.overturned else none
     else:
-        does = "overturns" if round(near.overturned * near.around.count) == 1 else "overturn"
-        sentence = f"{number(near.overturned)} {does} the structure"
+        does = "overturns" if _count(near, near.overturned) == 1 else "overturn"
+        sentence = f"{_number(near, near.overturned)} {does} the structure"
     if not near.unknown:
         return sentence
-    return f"{sentence}, and the outcome under {'all' if near.unknown == 1 else number(near.unknown)} is unknown"
+    return f"{sentence}, and the outcome under {'all' if near.unknown == 1 else _number(near, near.unknown)} is unknown"
 
 
 def neighbours_data(near: Neighbours) -> dict[str, Any]:
     """Return the outcomes of the neighbours of a motion as plain data; peaks of overturning are null."""
-    peaks = zip(FRACTILES, near.peak_ratio, strict=True)
+
+    def quantiles(values: Sequence[float]) -> dict[str, float | None]:
+        pairs = zip(FRACTILES, values, strict=True)
+        return {f"{100 * share:.0f}": None if isinf(value) else value for share, value in pairs}
+
     return {
         **asdict(near.around),
         "overturned": near.overturned,
         "unknown": near.unknown,
-        "peak_ratio": {f"{100 * share:.0f}": None if isinf(peak) else peak for share, peak in peaks},
+        "peak_ratio": quantiles(near.peak_ratio),
+        "slides": near.slides,
+        "slip": quantiles(near.slip),
         "sensitive": near.sensitive,
     }
 

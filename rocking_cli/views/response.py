@@ -15,6 +15,7 @@ from rocking_cli.core import Direction, Mechanism
 from rocking_cli.dynamics.history import MIN_IMPACT_RATE, History, contact_lost
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.outcome import OneOutcome
+from rocking_cli.dynamics.sliding import Slid
 from rocking_cli.dynamics.verdict import Agreement
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
@@ -135,6 +136,7 @@ def histories_data(
             **known_data(run),
             "impact_velocity": moved.impact_velocity if moved is not None else None,
             "points": {each.name: data_of(POINTS, each) for each in moved.points} if moved is not None else {},
+            "slip": data_of(SLIP, run.slid) if run.slid is not None else None,
             "ties": {each.name: data_of(TIES, each) for each in moved.ties} if moved is not None else {},
         }
         if etas is not None and not run.by_blocks:
@@ -192,19 +194,22 @@ def not_checked(mechanism: Mechanism, histories: Iterable[History]) -> list[str]
     return [unchecked(why=mechanism.unchecked)]
 
 
-def _columns(*, unknown: bool = False, over: str = "phi_cr") -> list[Column[History]]:
+def _columns(*, unknown: bool = False, slides: bool = False, over: str = "phi_cr") -> list[Column[History]]:
     """Return the columns of the table of histories, except those in `KNOWN`.
 
     Parameters
     ----------
     unknown : bool
         Whether the outcome of the structure is unknown: the table then leaves out those of its blocks.
+    slides : bool
+        Whether the structure slides, which its blocks do not: the table then leaves out their outcomes.
     over : str
         What peaks are divided by.
     """
 
     def of_structure(value: Callable[[History], Any]) -> Callable[[History], Any]:
-        return lambda run: None if unknown and not (run.unknown or run.by_blocks) else value(run)
+        hidden = unknown or slides
+        return lambda run: None if hidden and not (run.unknown or run.slip or run.by_blocks) else value(run)
 
     until, bound = ("known until", f"lower bound of peak / {over}") if unknown else (None, None)
     return [
@@ -232,6 +237,11 @@ POINTS: tuple[Column[PointPeak], ...] = (
     Column("at", lambda point: [point.at.real, point.at.imag]),
     Column("horizontal", of("horizontal")),
     Column("vertical", of("vertical")),
+)
+SLIP: tuple[Column[Slid], ...] = (
+    Column("largest", of("largest"), "m", "largest slip, positive to the right", rounded(4)),
+    Column("residual", of("residual"), "m", "slip at the end", rounded(4)),
+    Column("path", of("path"), "m", "length of the path of the slip", rounded(4)),
 )
 TIES: tuple[Column[TiePeak], ...] = (
     Column("peak_force", of("force")),
@@ -402,8 +412,10 @@ def outcome_table(title: str, found: Response, sign: int, watched: Watched) -> T
     unknown = any(run.unknown for run in runs)
     free = runs[0].ends_at_limit
     over = "limit" if all(free) else "phi_cr or limit" if any(free) else "phi_cr"
+    slides = any(run.slip for run in runs)
     columns = [
-        *_columns(unknown=unknown, over=over),
+        *_columns(unknown=unknown, slides=slides, over=over),
+        *(_slips() if slides else ()),
         *_movements({run.model: watched.peaks(run) for run in runs if run.model != "blocks"}),
     ]
     if sign in found.contacts:
@@ -419,6 +431,16 @@ def outcome_table(title: str, found: Response, sign: int, watched: Watched) -> T
         for head, run in zip(model_heads(found.runs[sign], unknown=unknown), runs, strict=True)
     ]
     return table_across(title, columns, heads, runs)
+
+
+def _slips() -> Iterator[Column[History]]:
+    """Yield the columns of the slip of a body that only slides."""
+
+    def of_run(column: Column[Slid]) -> Callable[[History], float | None]:
+        return lambda run: column.of(run.slid) if run.slid is not None else None
+
+    for column in SLIP:
+        yield only_shown(column.head, of_run(column), column.form, column.unit)
 
 
 def model_heads(models: Iterable[str], *, unknown: bool) -> list[str]:

@@ -12,6 +12,7 @@ from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.joints import JointCheck
 from rocking_cli.dynamics.model import ModelName
+from rocking_cli.dynamics.sliding import Slid
 from rocking_cli.dynamics.verdict import NEAR_OVERTURNING, SAME_PEAK_DELAY, Agreement, disagree, remedy
 from rocking_cli.names import percent
 
@@ -76,7 +77,7 @@ def joints_in_words(history: History, assumed_friction: float | None = None) -> 
         return f"{_until(history)} Next: {REMEDIES[remedy(history)]}."
     if history.unknown:
         return " ".join([_until(history), *slides, NEXT_STEP.format(REMEDIES[remedy(history)])])
-    if check is None:
+    if check is None or history.slip:
         return " ".join(slides)
     if isnan(check.warned) and check.alone:
         return " ".join(slides)
@@ -120,6 +121,8 @@ def why_unknown(history: History) -> str | None:
         )
     if history.bound is not None:
         return history.bound.words
+    if history.slid is not None and (there := history.slid.arrives) is not None:
+        return f"it slides to {there.name}, {there.distance:.3g} m away"
     if check is None or check.reason in (None, "weightless"):
         return "nothing holds the structure down, as v_g'' comes down to -g"
     if check.reason == "crushes":
@@ -185,7 +188,7 @@ def verdict(
     sentences = [] if run.unknown else [f"{by or 'The'} structure {ends(run)}."]
     if run.unknown or (best == "nonlinear" and run.check is not None):
         sentences += filter(None, [joints_in_words(run, assumed_friction)])
-    if run.unknown and len(histories) > 1:
+    if (run.unknown or run.slip) and len(histories) > 1:
         sentences += [NO_JOINTS] if run.bound is None else []
     else:
         sentences += blocks_in_words(histories, agreed, {name: name for name in histories})
@@ -207,6 +210,8 @@ def ends(run: History) -> str:
         return f"has an {names.UNKNOWN} outcome"
     if run.fell:
         return f"{names.OVERTURNS} {SENSE[Direction(run.fell_to)]}"
+    if run.slid is not None and run.slip:
+        return f"does not overturn, but slides {_slip(run.slid)}"
     if not run.peak_ratio:
         return names.NO_UPLIFT
     if run.peak_ratio > 1:
@@ -217,6 +222,14 @@ def ends(run: History) -> str:
     if any(run.ends_at_limit):
         return f"{names.ROCKS} to {run.furthest:.4g} rad, {run.peak_ratio:.4g} of its {run.reference}"
     return f"{names.ROCKS} to {run.peak_ratio:.4g} of its critical rotation phi_cr"
+
+
+def _slip(slid: Slid) -> str:
+    """Return how far and where a body slides, in words, which follow the outcome."""
+    most, end = (
+        f"{_small(abs(slip), 'm')} to the {'right' if slip > 0 else 'left'}" for slip in (slid.largest, slid.residual)
+    )
+    return f"by up to {most}; at the end it is {end} of its place, after a path of {_small(slid.path, 'm')}"
 
 
 def blocks_in_words(

@@ -105,7 +105,7 @@ def carry_out(unit: WorkUnit) -> RunRows:
 def _slide_times(unit: WorkUnit, found: Outcomes) -> tuple[Reals, Bools]:
     """Simulate runs again with samples; return when each first slides [s], and which have no complete history."""
     runs = unit.runs
-    times, lost = np.full(len(runs), np.nan), np.zeros(len(runs), dtype=bool)
+    times, lost = np.where(found.slip > 0, found.warned, np.nan), np.zeros(len(runs), dtype=bool)
     checks: dict[tuple[int, float | None], Contacts] = {}
     for k in np.flatnonzero(np.isfinite(found.uplift_time) & ~found.failed):  # a structure at rest has nothing to check
         model, eta = int(runs.model[k]), float(runs.eta[k])

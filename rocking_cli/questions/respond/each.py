@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from rocking_cli.io.tables import Columns
 
 FAILED = "failed"
-OUTCOMES = (names.NO_UPLIFT, names.ROCKS, names.STILL_ROCKING, names.OVERTURNS, names.UNKNOWN, FAILED)
+OUTCOMES = (names.NO_UPLIFT, names.SLIDES, names.ROCKS, names.STILL_ROCKING, names.OVERTURNS, names.UNKNOWN, FAILED)
 """Categories of the column `outcome`."""
 HISTORIES_PER_TASK = 16
 MOST_VALUES = 200_000_000  # rotations in all histories: 1.6 GB
@@ -209,7 +209,7 @@ def _outcome_columns(grid: RunGrid, outcome: Outcomes) -> dict[str, Any]:
     peaks = {
         "peak_ratio": outcome.peak_ratio,
         "peak_rotation [rad]": np.maximum(outcome.peak_positive, outcome.peak_negative),
-        "peak_displacement [m]": np.stack(list(_displacements(grid, outcome))),
+        "peak_displacement [m]": np.maximum(np.stack(list(_displacements(grid, outcome))), outcome.slip),
     }
     values: dict[str, Any] = {
         "outcome": _words(outcome),
@@ -226,6 +226,7 @@ def _outcome_columns(grid: RunGrid, outcome: Outcomes) -> dict[str, Any]:
         "known_to [s]": outcome.known_to,
         "peak_ratio_at_least": outcome.lower_bound,
         "opening": outcome.opening,
+        "slip [m]": outcome.slip,
     }
     return {name: np.ravel(each) for name, each in values.items()}
 
@@ -249,8 +250,8 @@ def _moved(mechanism: Mechanism, direction: Direction, peaks: Reals) -> Reals:
 
 def _words(outcome: Outcomes) -> NDArray[Any]:
     """Return the outcomes in words, in the order of precedence of `names.outcome`."""
-    reasons = [outcome.failed, outcome.unknown, outcome.fell, outcome.still_rocking, outcome.lifted]
-    words = [FAILED, names.UNKNOWN, names.OVERTURNS, names.STILL_ROCKING, names.ROCKS]
+    reasons = [outcome.failed, outcome.unknown, outcome.fell, outcome.still_rocking, outcome.lifted, outcome.slip > 0]
+    words = [FAILED, names.UNKNOWN, names.OVERTURNS, names.STILL_ROCKING, names.ROCKS, names.SLIDES]
     return np.select(reasons, [np.array(word, dtype=object) for word in words], np.array(names.NO_UPLIFT, dtype=object))
 
 

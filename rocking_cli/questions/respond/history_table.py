@@ -63,12 +63,19 @@ def blocks(
         for name, run in histories.items():
             series = {"phi [rad]": run.phi, "phi_dot [rad/s]": run.rate, _ratio(run): run.ratio}
             columns |= {f"{name} {what}": _padded(values, part, _after(run)) for what, values in series.items()}
+            if run.slid is not None:
+                columns[f"{name} slip [m]"] = np.asarray(_slip(run, part))
         if watched is not None:
             for name, run in ((name, run) for name, run in histories.items() if not run.by_blocks):
                 phi = _padded(run.phi, part, _after(run))
-                columns |= {f"{name} {what}": values for what, values in watched.columns(phi)}
+                columns |= {f"{name} {what}": values for what, values in watched.columns(phi, _slip(run, part))}
         columns |= {f"{name} {sheared}": _padded(values, part, np.nan) for name, values in base_shear.items()}
         yield columns
+
+
+def _slip(run: History, part: slice) -> Reals | float:
+    """Return the slip of a history in a slice of its samples [m]; 0 if it does not slide."""
+    return _padded(run.slid.displacement, part, run.slid.residual) if run.slid is not None else 0.0
 
 
 def _after(run: History) -> float:

@@ -288,7 +288,7 @@ def _draw_responses(
     axes.set_ylim(scale.low, scale.high)
     if watched is not None and not watched.mechanism.rocks_both_ways:
         _draw_wall(axes, watched.mechanism.directions[0], scale)
-    moves = any(run.lifted for run in histories.values())
+    moves = any(run.lifted for run in histories.values()) and not histories[best].slip
     curves = [_draw_run(axes, run, scale, until, told=name != best and moves) for name, run in histories.items()]
     moved = watched if best != "blocks" else None  # free blocks do not move as the mechanism does
     points, limits = list(_points(axes, histories[best], scale, until, moved)), list[Line2D]()
@@ -299,7 +299,7 @@ def _draw_responses(
             line.set_label("kinematic limit" if free[k] else "critical rotation")
             limits.append(line)
     if not moves:
-        axes.text(0.5, 0.6, names.NO_UPLIFT, transform=axes.transAxes, ha="center", fontsize=style.LABEL)
+        axes.text(0.5, 0.6, histories[best].words, transform=axes.transAxes, ha="center", fontsize=style.LABEL)
     over = style.over(free, math=True) if scale.factor is None else f"[{scale.unit.strip()}]"
     style.tidy(axes, y=f"rotation {over}, clockwise up")
     curves += _draw_impacts(axes, histories[best], until, len(histories))
@@ -331,7 +331,7 @@ def _fate(run: History, scale: _Scale) -> str:
         does = "collapse" if run.by_blocks else names.OVERTURNS
         return f"{does} at {run.overturning_time:.4g} s{'' if _leaves(run) else ', after the last sample'}"
     if not run.lifted:
-        return names.NO_UPLIFT
+        return run.words
     peak = run.peak_ratio if scale.factor is None else scale.factor * run.furthest
     # A motion may start and end between two samples.
     at = float(run.time[_peak(run)]) if run.ratio.any() else run.uplift_time
@@ -411,7 +411,7 @@ def _draw_forces(axes: Axes, histories: Runs, watched: Watched) -> list[Line2D]:
     run = histories[model]
     forces = {
         name.removesuffix(FORCE_SUFFIX): values / 1000
-        for name, values in watched.columns(run.phi)
+        for name, values in watched.columns(run.phi, run.slid.displacement if run.slid is not None else 0.0)
         if FORCE_SUFFIX in name
     }
     strongest = sorted(forces, key=lambda name: -float(np.nanmax(np.abs(forces[name]))))[:MAX_TIES]

@@ -18,6 +18,7 @@ from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import Model, scatter_of
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.dynamics.parallel import in_parts, in_processes
+from rocking_cli.dynamics.sliding import sliding_of
 from rocking_cli.errors import InputError, Problem, RockingError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.io.spreadsheet import Spreadsheet
@@ -73,6 +74,9 @@ class Under:
     share : NeighbourShare, optional
         The share of the neighbours that overturn the structure, the mean over the motions; of two polarities, the
         worse governs. None without neighbours.
+    slip : float
+        The largest slip under the motions that are known not to overturn the structure [m]; 0 if it does not only
+        slide.
     """
 
     overturned: float
@@ -81,6 +85,7 @@ class Under:
     over: str = "phi_cr"
     unknown: float | None = 0.0
     share: NeighbourShare | None = None
+    slip: float = 0.0
 
     @property
     def concluded(self) -> Concluded:
@@ -89,7 +94,7 @@ class Under:
             return Concluded.OVERTURNS
         if self.unknown:
             return Concluded.UNKNOWN
-        return Concluded.ROCKS if self.peak_ratio else Concluded.NO_UPLIFT
+        return Concluded.ROCKS if self.peak_ratio else Concluded.SLIDES if self.slip else Concluded.NO_UPLIFT
 
     @property
     def at_most(self) -> float:
@@ -212,7 +217,8 @@ def _by_lambda(found: Surveyed) -> tuple[float, ...]:
 def _by_response(found: Surveyed) -> tuple[float, ...]:
     assert found.under is not None
     peak = found.under.peak_ratio
-    return (-found.under.at_most, -(inf if isnan(peak) else _rounded(peak)), _rounded(found.uplift))
+    moved = -(inf if isnan(peak) else _rounded(peak)), -_rounded(found.under.slip)
+    return (-found.under.at_most, *moved, _rounded(found.uplift))
 
 
 def _by_ratio(found: Surveyed) -> tuple[float, ...]:
@@ -307,7 +313,7 @@ def survey(
     -------
     Survey
         Ranked by uplift acceleration; with motions by the share of their neighbours (without any, of the motions) that
-        overturn or have an unknown outcome, then by the largest peak, then by uplift acceleration; with a site by the
+        overturn or have an unknown outcome, then by the largest peak, slip and uplift acceleration; with a site by the
         ratio of its code. Structures that rank equal keep their order.
     """
     check_opening(opening)
@@ -365,7 +371,7 @@ def _part(
             ready[k] = Structure(weaker or made, opening=opening)
             alone = _alone(place, entry, ready[k], site)
             rows[k] = replace(alone, side="depth" if weaker is not None else None, remarks=made.remarks)
-            if _may_lift(ready[k], shaking):
+            if _may_move(ready[k], shaking):
                 models[k] = ready[k].model("nonlinear")
         except RockingError as error:
             ready.pop(k, None)
@@ -428,8 +434,10 @@ def _alone(place: int, entry: SurveyEntry, structure: Structure, site: SiteFile 
     )
 
 
-def _may_lift(structure: Structure, shaking: Shaking) -> bool:
-    """Return whether a motion or a neighbour of one may uplift a structure; if none can, it needs no model."""
+def _may_move(structure: Structure, shaking: Shaking) -> bool:
+    """Return whether a motion or a neighbour of one may move a structure; if none can, it needs no model."""
+    if shaking.motions and sliding_of(structure.mechanism) is not None:
+        return True
     least, around = min(structure.uplift) * (1 - 1e-9), shaking.around
     if around.count:
         slenderness = scatter_of(structure.mechanism).slenderness if around.slenderness is None else around.slenderness
@@ -482,11 +490,12 @@ def _of_one(
     doubtful = np.setdiff1d(record[own & outcomes.unknown], fell)
     stays = own & ~np.isin(record, fell) & ~np.isin(record, doubtful)
     peaks = np.where(stays, outcomes.peak_ratio, -1.0)
-    strongest = int(peaks.argmax())
+    strongest = int(np.lexsort((-np.arange(own.size), outcomes.slip, peaks))[-1])  # the first of equal ones
     worst = motions[int([*fell, *doubtful, record[strongest]][0])].name
     over = "limit" if any(model.ends_at_limit) else "phi_cr"
     unknown = doubtful.size / len(motions) if doubtful.size or model.joints is not None else None
-    return Under(fell.size / len(motions), float(peaks[strongest]) if stays.any() else nan, worst, over, unknown)
+    peak, slip = float(peaks[strongest]) if stays.any() else nan, float((outcomes.slip * stays).max())
+    return Under(fell.size / len(motions), peak, worst, over, unknown, slip=slip)
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from rocking_cli.names import digits_apart, percent
 from rocking_cli.questions.survey.study import Bad, Survey, Surveyed
 from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.text import cut, one_line
-from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, table_of
+from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, rounded, table_of
 from rocking_cli.views.conclusion import uncounted_ties
 from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.sheet.language import ENGLISH
@@ -102,6 +102,7 @@ UNDER_MOTIONS: tuple[Column[RankedStructure], ...] = (
     Column("overturned", of("found.under.overturned"), head="overturn\nit", form=percent),
     Column("unknown", of("found.under.unknown"), head="unknown", form=percent),
     Column("peak_ratio", of("found.under.peak_ratio"), head="largest\npeak", form=_peak),
+    Column("slip", of("found.under.slip"), "m", "largest\nslip [m]", rounded(3)),
     Column("peak_over", of("found.under.over"), text=True),
     Column("outcome", of("found.under.concluded.value"), text=True),
     Column("worst", of("found.under.worst"), text=True),
@@ -241,6 +242,8 @@ def table(found: Survey, top: int, longest: int | None = MAX_NAME_LENGTH) -> Tab
     empty = set(OF_MOTIONS) if found.around.count else {"unknown"} if not has_unknown(found) else set[str]()
     if all(each.side is None for each in found.rows):
         empty.add("side")
+    if not any(each.under is not None and each.under.slip for each in found.rows):
+        empty.add("slip")
     if all(_not_counted(row) is None for row in _ranked(found)):
         empty.add("not_counted")
     if found.by == "ratio" and longest is not None:
@@ -331,9 +334,11 @@ def _of_motions(found: Survey) -> str:
     under = [each.under for each in found.rows if each.under is not None]
     falls = sum(each.overturned > 0 for each in under)
     doubtful = sum(bool(each.unknown) and each.overturned == 0 for each in under)
+    slides = sum(each.concluded is Concluded.SLIDES for each in under)
     lifts = sum(each.at_most > 0 or each.peak_ratio > 0 for each in under)
     motions = f"at least one of {len(found.motions)} motions" if len(found.motions) > 1 else found.motions[0]
     unknown = f", {doubtful:,} may overturn (unknown outcome)" if doubtful else ""
+    unknown += f", {slides:,} only {'slides' if slides == 1 else 'slide'}" if slides else ""
     verb = "overturns" if falls == 1 else "overturn"
     return (
         f"Under {motions}, {falls:,} of {_structures(len(under))} {verb}{unknown}, and {lifts:,} "
