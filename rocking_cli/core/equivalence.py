@@ -9,6 +9,7 @@ from math import isclose, isnan, sqrt
 
 import numpy as np
 
+from rocking_cli.core.bounds import Bound
 from rocking_cli.core.coefficients import check_continuous
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.kinematics import Direction
@@ -234,6 +235,8 @@ class Statics:
         Largest difference of V'/V'(0) from the straight line 1 - phi/phi_cr; NaN without a critical rotation.
     why_no_block : str or None
         Why no single block is equivalent to the structure, a sentence without a full stop; None if one is.
+    yields : Bound or None
+        Where the first tie of steel yields, up to which the other values hold; None if none does.
     """
 
     lambda_: float
@@ -242,6 +245,7 @@ class Statics:
     stiffening: float
     departure: float
     why_no_block: str | None
+    yields: Bound | None = None
 
     @property
     def reference(self) -> float:
@@ -287,5 +291,8 @@ def statics(mechanism: Mechanism, direction: Direction) -> Statics:
         rises = mechanism.bends and (slope >= 0).any()
         cause = ": what ties it stiffens it" if mechanism.attached else ""
         why = f"its restoring moment does not fall all the way from rest{cause}" if rises else ""
+    yields = next((each for each in mechanism.bounds(direction) if each.kind == "yields"), None)
+    if yields is not None and (phi_cr is None or yields.phi < phi_cr):
+        why = f"{yields.name} yields at {yields.phi:.4g} rad, before its restoring moment vanishes"
     why = mechanism.hung.fault("equivalent block") or why
-    return Statics(lam, phi_cr, limit, float(slope[0] / moment[0]), departure, why or None)
+    return Statics(lam, phi_cr, limit, float(slope[0] / moment[0]), departure, why or None, yields)

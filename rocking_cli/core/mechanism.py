@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 from itertools import pairwise
 from math import isclose, nan, sqrt
-from typing import Any, final
+from typing import Any, Self, final
 
 import numpy as np
 from pydantic import ValidationError
@@ -37,6 +37,7 @@ from rocking_cli.core.hung.element import Element, Stretched
 from rocking_cli.core.hung.everything import Hung
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.core.sketch import Outline
+from rocking_cli.core.yielding import yields
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.plugins.errors import failed, guard
 from rocking_cli.units import STANDARD_GRAVITY
@@ -152,6 +153,16 @@ class Mechanism(Jointed):
         return self.hung.things
 
     @final
+    def at_strength(self) -> Self:
+        """Return the structure as methods of codes count it: ties of steel act with their strength, as constant forces.
+
+        It is the structure itself if it has none of steel. In equations of motion they are elastic, see `SteelBar`.
+        """
+        if not self.hung.bars:
+            return self
+        return self.model_copy(update={"ties": [tie.at_strength() for tie in self.ties or []]})
+
+    @final
     def slackness(self, phi: Reals, direction: Direction) -> Reals:
         """Return a value that is zero where a tie goes slack, for each one-sided tie, shape (ties, n)."""
         return self.hung.slackness(self.followed(np.asarray(phi, dtype=np.float64), direction), np.size(phi))
@@ -243,11 +254,13 @@ class Mechanism(Jointed):
         phi = np.linspace(0.0, SHARE_OF_LIMIT * self.limit(direction), SCANNED)
         fallen = np.flatnonzero(self.potential_energy(phi, direction) < 0)
         end = float(phi[fallen[0] if fallen.size else -1])
-        stops = [bound for stop in self.stops or () if (bound := self._stopped(stop, direction, end)) is not None]
-        bound = min(stops, key=lambda each: each.phi, default=None)
+        ends = [yields(self, direction, end), *(self._stopped(stop, direction, end) for stop in self.stops or ())]
+        bound = min(filter(None, ends), key=lambda each: each.phi, default=None)
         met = meeting(self, direction, end if bound is None else (1 - SAME_PLACE) * bound.phi)
         bound = bound if met is None else met
-        if bound is None or self.coefficients(np.array([bound.phi]), direction).restoring(self.gravity)[0] > 0:
+        if bound is None or bound.kind == "yields":
+            return bound
+        if self.coefficients(np.array([bound.phi]), direction).restoring(self.gravity)[0] > 0:
             return bound
         return bound._replace(kind="leans", restitution=None)
 
