@@ -9,11 +9,11 @@ from math import isclose, isnan, sqrt
 
 import numpy as np
 
-from rocking_cli.core.bounds import Bound
 from rocking_cli.core.coefficients import check_continuous
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.kinematics import Direction
 from rocking_cli.core.mechanism import Mechanism
+from rocking_cli.core.yielding import yields
 from rocking_cli.errors import PluginError, RockingError, StructureError
 from rocking_cli.plugins.errors import plugin_error
 from rocking_cli.short_repr import short_repr
@@ -235,8 +235,8 @@ class Statics:
         Largest difference of V'/V'(0) from the straight line 1 - phi/phi_cr; NaN without a critical rotation.
     why_no_block : str or None
         Why no single block is equivalent to the structure, a sentence without a full stop; None if one is.
-    yields : Bound or None
-        Where the first tie of steel yields, up to which the other values hold; None if none does.
+    yields : float or None
+        Rotation at which a tie of steel yields before the critical one, or the limit [rad]; None if none does.
     """
 
     lambda_: float
@@ -245,7 +245,7 @@ class Statics:
     stiffening: float
     departure: float
     why_no_block: str | None
-    yields: Bound | None = None
+    yields: float | None = None
 
     @property
     def reference(self) -> float:
@@ -291,8 +291,9 @@ def statics(mechanism: Mechanism, direction: Direction) -> Statics:
         rises = mechanism.bends and (slope >= 0).any()
         cause = ": what ties it stiffens it" if mechanism.attached else ""
         why = f"its restoring moment does not fall all the way from rest{cause}" if rises else ""
-    yields = next((each for each in mechanism.bounds(direction) if each.kind == "yields"), None)
-    if yields is not None and (phi_cr is None or yields.phi < phi_cr):
-        why = f"{yields.name} yields at {yields.phi:.4g} rad, before its restoring moment vanishes"
+    bound = yields(mechanism, direction, float(rotations[-1 if phi_cr is not None else -2]))
+    if bound is not None:
+        why = f"the tie {bound.name} yields at {bound.phi:.4g} rad, before its restoring moment vanishes"
     why = mechanism.hung.fault("equivalent block") or why
-    return Statics(lam, phi_cr, limit, float(slope[0] / moment[0]), departure, why or None, yields)
+    at_yield = None if bound is None else bound.phi
+    return Statics(lam, phi_cr, limit, float(slope[0] / moment[0]), departure, why or None, at_yield)
