@@ -13,7 +13,6 @@ from rocking_cli.core.coefficients import check_continuous
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.kinematics import Direction
 from rocking_cli.core.mechanism import Mechanism
-from rocking_cli.core.yielding import yields
 from rocking_cli.errors import PluginError, RockingError, StructureError
 from rocking_cli.plugins.errors import plugin_error
 from rocking_cli.short_repr import short_repr
@@ -291,7 +290,7 @@ def statics(mechanism: Mechanism, direction: Direction) -> Statics:
         rises = mechanism.bends and (slope >= 0).any()
         cause = ": what ties it stiffens it" if mechanism.attached else ""
         why = f"its restoring moment does not fall all the way from rest{cause}" if rises else ""
-    bound = yields(mechanism, direction, float(rotations[-1 if phi_cr is not None else -2]))
+    bound = mechanism.yields(direction, float(rotations[-1 if phi_cr is not None else -2]))
     if bound is not None:
         why = f"the tie {bound.name} yields at {bound.phi:.4g} rad, before its restoring moment vanishes"
     why = mechanism.hung.fault("equivalent block") or why

@@ -12,10 +12,11 @@ from scipy.optimize import brentq
 import rocking_cli as rk
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.core import Direction
-from rocking_cli.core.yielding import yields
+from rocking_cli.core.bounds import Bound
 from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.tables import tabulate
 from rocking_cli.structure import build_models
+from rocking_cli.views.verdict import why_unknown
 from tests.conftest import record
 from tests.core.test_ties_of_steel import SITE
 from tests.oracle import GROUND, Block, Ground, simulate
@@ -31,7 +32,9 @@ BOTH = [pytest.param(side, id=side.label) for side in Direction]
 
 
 def wall(**tie):
-    bar = {key: value for key, value in {"name": "bar", "area": 2e-5, "yield": YIELD, **tie}.items() if value is not None}
+    bar = {
+        key: value for key, value in {"name": "bar", "area": 2e-5, "yield": YIELD, **tie}.items() if value is not None
+    }
     return rk.Block(name="wall", width=B, height=H, density=DENSITY, depth=DEPTH, ties=[bar] if tie else None)
 
 
@@ -49,6 +52,11 @@ def first_yield(place, side, strain=YIELD / E):
     if not beyond.size:
         return None
     return brentq(lambda phi: elongation(place, phi, side) - strain * long, *grid[beyond[0] - 1 :][:2], xtol=1e-15)
+
+
+def yields_at(phi, name="bar"):
+    """The bound of a direction in which a bar yields."""
+    return Bound(pytest.approx(phi, abs=1e-11), "yields", name)
 
 
 def comes_taut(side):
@@ -79,32 +87,27 @@ def test_the_sense_may_change_within_one_direction(side, shorter):
     table = tabulate(tied)[0 if side > 0 else 1]
     (cell, _) = np.flatnonzero(np.diff(table.corners))  # before and behind the cell that holds the corner
     assert table.nodes[cell + 1] <= taut <= table.nodes[cell + 2]
-    assert yields(tied, side).phi > taut
+    assert tied.bounds[side].phi > taut
 
 
 @pytest.mark.parametrize("side", BOTH)
 @pytest.mark.parametrize("place", [BACK, STEEP], ids=["back", "steep"])
 def test_the_rotation_at_which_it_yields(place, side):
     expected = first_yield(place, side)
-    found = yields(wall(**place), side)
-    if expected is None:
-        assert found is None and list(wall(**place).bounds(side)) == []
-        return
-    assert found == (pytest.approx(expected, rel=1e-12), "yields", "bar", None)
-    assert list(wall(**place).bounds(side)) == [found]
+    found = wall(**place).bounds[side]
+    assert found == (None if expected is None else yields_at(expected))
 
 
 @pytest.mark.parametrize("side", BOTH)
 def test_a_duct_along_the_axis_stretches_both_ways(side):
     """e = 2 (b/2) sin(phi/2), over 4 m."""
-    found = yields(wall(**DUCT), side)
-    assert found.phi == pytest.approx(2 * asin(YIELD / E * 4.0 / B), rel=1e-12)
+    assert wall(**DUCT).bounds[side] == yields_at(2 * asin(YIELD / E * 4.0 / B))
 
 
 def test_of_several_bars_the_first_to_yield_counts():
     bars = [{"name": name, **BACK, "area": 2e-5, "yield": stress} for name, stress in (("a", 3e8), ("b", 2e8))]
     block = rk.Block(name="wall", width=B, height=H, density=DENSITY, depth=DEPTH, ties=bars)
-    assert yields(block, PLUS) == (pytest.approx(first_yield(BACK, PLUS, 2e8 / E), rel=1e-12), "yields", "b", None)
+    assert block.bounds[PLUS] == yields_at(first_yield(BACK, PLUS, 2e8 / E), "b")
 
 
 @pytest.mark.parametrize(
@@ -119,7 +122,7 @@ def test_of_several_bars_the_first_to_yield_counts():
     ids=["modulus", "length", "bars", "bearing"],
 )  # fmt: skip
 def test_stiffness_and_strength_follow_from_the_file(changed, strain):
-    assert yields(wall(**BACK, **changed), PLUS).phi == pytest.approx(first_yield(BACK, PLUS, strain), rel=1e-12)
+    assert wall(**BACK, **changed).bounds[PLUS] == yields_at(first_yield(BACK, PLUS, strain))
 
 
 @pytest.mark.parametrize("place", [BACK, STEEP, DUCT], ids=["back", "steep", "duct"])
@@ -134,24 +137,22 @@ def test_equiv_says_until_when():
     answer = rk.equiv(wall(**BACK))
     sides = answer.to_dict()["directions"]
     at = first_yield(BACK, PLUS)
-    (bound,) = sides["positive"]["bounds"]
-    assert bound == {"phi": pytest.approx(at), "kind": "yields", "name": "bar", "restitution": None}
-    assert sides["negative"]["bounds"] == []
+    bound = sides["positive"]["bound"]
+    assert (bound["phi"], bound["kind"], bound["name"]) == (pytest.approx(at), "yields", "bar")
+    assert sides["negative"]["bound"] is None
     said = " ".join(answer.sentences)
-    assert f"the tie 'bar' yields at {at:.4g} rad, before its restoring moment vanishes" in said
+    assert f"the tie bar yields at {at:.4g} rad, before its restoring moment vanishes" in said
+    assert f"Clockwise, the tie bar yields at {at:.4g} rad: time histories are unknown from there on." in said
     assert f"{E * 2e-5 / 4.7 / 1e3:.4g} kN/m, tension only, with a strength of 4.7 kN" in said
     bare = rk.equiv(wall()).to_dict()["directions"]["negative"]
     kept = ("lambda", "phi_cr", "p", "kappa1", "kappa2")
     assert [sides["negative"][key] for key in kept] == pytest.approx([bare[key] for key in kept], rel=1e-9)
-    assert "Beyond it" not in said
 
 
 def test_a_soft_bar_that_yields_beyond_the_critical_rotation_has_an_equivalent_block():
     """Of 1 GPa and a strength that it reaches at .2 rad, beyond b/h."""
     soft = wall(**BACK, area=1e-7, modulus=1e9, **{"yield": 1e9 * 0.2 * 3.8 / 4.7})
-    at = yields(soft, PLUS).phi
-    answer = rk.equiv(soft)
-    assert answer.positive.phi_cr < at and f"Beyond it, at {at:.4g} rad, a tie yields." in " ".join(answer.sentences)
+    assert rk.equiv(soft).positive.phi_cr < soft.bounds[PLUS].phi
 
 
 def second(place, stiffness=E * 2e-5 / 4.7):
@@ -161,7 +162,7 @@ def second(place, stiffness=E * 2e-5 / 4.7):
 
 
 def until_yield(motion, history, at):
-    """Compare a history with that of the second program up to the first rotation `at`; return when that is [s]."""
+    """Compare a history, which is unknown from the rotation `at` on, with the second program; return until when [s]."""
     ends = [(a, b) for a, b, side, _ in motion.flights if side > 0]
     grid = np.concatenate([np.linspace(a, b, 400) for a, b in ends])
     phi = np.array([motion.at(t)[0] for t in grid])
@@ -171,7 +172,10 @@ def until_yield(motion, history, at):
     before = history.time < time
     expected = np.array([motion.at(t)[0] for t in history.time[before]])
     np.testing.assert_allclose(history.phi[before], expected, atol=1e-9)
-    assert np.abs(expected).max() > 0 and motion.at(history.time[~before][0])[0] > at
+    assert history.unknown and history.known_to == pytest.approx(time, abs=1e-8)
+    assert why_unknown(history) == f"the tie bar yields at {at:.4g} rad"
+    left = max((each.phi for each in motion.peaks if each.side < 0 and each.time < time), default=0.0)
+    assert (history.peak_positive, history.peak_negative) == pytest.approx((at, left), rel=1e-7)
     return time
 
 
@@ -202,7 +206,7 @@ def test_a_strong_bar_that_never_yields_is_followed_to_the_end():
     motion = simulate(second(BACK, E * 1e-6 / 4.7), Ground(time.tolist(), samples.tolist()), until=8.0)
     peaks = [max(each.phi for each in motion.peaks if each.side == side) for side in (1, -1)]
     assert (history.peak_positive, history.peak_negative) == pytest.approx(peaks, rel=1e-7)
-    assert 1e-3 < peaks[0] < yields(strong, PLUS).phi and peaks[1] > 1e-3
+    assert 1e-3 < peaks[0] < strong.bounds[PLUS].phi and peaks[1] > 1e-3
 
 
 def test_a_steep_bar_that_comes_taut_on_the_way():

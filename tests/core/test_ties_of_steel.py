@@ -11,7 +11,6 @@ from rocking_cli.core import Direction
 from rocking_cli.core.hung.steel import STEELS
 from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.errors import InputError
-from rocking_cli.studies.movements import Watched
 from tests.cli.test_cli import run, run_json
 from tests.core.test_laden_files import BAR, BARE, FRAME, HEAVY, tie
 
@@ -116,7 +115,11 @@ def test_on_a_structure_of_another_size_the_force_stays(number):
     for factor in (0.2, 3.0):
         larger = structure.enlarged(factor)
         bare = larger.model_copy(update={"ties": None})
-        added = (larger.at_strength().uplift(Direction.POSITIVE) - bare.uplift(Direction.POSITIVE)) * larger.total_mass() * G
+        added = (
+            (larger.at_strength().uplift(Direction.POSITIVE) - bare.uplift(Direction.POSITIVE))
+            * larger.total_mass()
+            * G
+        )
         assert added * 4.0 / 7.5 == pytest.approx(force_of(structure), rel=1e-9)
         (bar,), (given,) = larger.hung.bars, structure.hung.bars
         assert (bar.stiffness, bar.strength) == pytest.approx((given.stiffness, given.strength), rel=1e-12)

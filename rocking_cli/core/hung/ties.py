@@ -259,10 +259,10 @@ class Tie(Described):
         """Return the strength of a tie of steel with this number of bars."""
         return tie_strength(self.section, self.yield_of_steel, count, self.plate, self.wall)
 
-    def at_strength(self) -> Self:
-        """Return the tie as methods of codes count it: one of steel acts with its strength, as a constant force."""
+    def at_strength(self, *, on: bool) -> Self:
+        """Return the tie as methods of codes count it, or, without `on`, as motions do: it matters for one of steel."""
         tie = self.model_copy()
-        tie._at_strength = self.is_steel
+        tie._at_strength = on
         return tie
 
     @property
