@@ -16,6 +16,7 @@ from rocking_cli.core.bounds import Bound
 from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.tables import tabulate
 from rocking_cli.structure import build_models
+from rocking_cli.studies.engines.free_blocks import free_blocks
 from rocking_cli.views.verdict import why_unknown
 from tests.conftest import record
 from tests.core.test_ties_of_steel import SITE
@@ -152,7 +153,8 @@ def test_equiv_says_until_when():
 def test_a_soft_bar_that_yields_beyond_the_critical_rotation_has_an_equivalent_block():
     """Of 1 GPa and a strength that it reaches at .2 rad, beyond b/h."""
     soft = wall(**BACK, area=1e-7, modulus=1e9, **{"yield": 1e9 * 0.2 * 3.8 / 4.7})
-    assert rk.equiv(soft).positive.phi_cr < soft.bounds[PLUS].phi
+    at = first_yield(BACK, PLUS, 0.2 * 3.8 / 4.7)
+    assert rk.equiv(soft).positive.phi_cr < at and soft.bounds[PLUS] == yields_at(at)
 
 
 def second(place, stiffness=E * 2e-5 / 4.7):
@@ -250,3 +252,29 @@ def test_codes_keep_the_strength_where_it_resists():
 def test_the_switch_has_no_effect_without_steel():
     bare, elastic = wall(), wall(**{**BACK, "yield": None, "area": None, "stiffness": 1e6})
     assert bare.at_strength() is bare and elastic.at_strength() is elastic
+
+
+def test_histories_of_a_code_are_those_of_the_passive_bar():
+    """Its static methods count the strength, and its time histories are known until the bar yields."""
+    time = np.arange(0, 1.61, 0.05)
+    pulse = rk.GroundMotion("pulse", 0.05, -2.2 * np.sin(2 * pi * time / 1.6))
+    known_to = follow(build_models(wall(**BACK), ("nonlinear",))[0], pulse).known_to
+    found = rk.verify(wall(**BACK), {**SITE, "FC": 1.0}, motions=[pulse], polarity=1)
+    (peak,) = found.directions[PLUS].dynamic["SLV"].records
+    assert (peak.without, peak.known_to_without) == (None, pytest.approx(known_to, rel=1e-9))
+    assert found.directions[PLUS].lambda_ == pytest.approx(Chain(wall(**BACK).at_strength(), PLUS).alpha0, rel=1e-12)
+
+
+def test_free_blocks_refuse_it_by_name():
+    with pytest.raises(rk.InputError, match="free blocks cannot have a tie that yields, as bar"):
+        free_blocks(wall(**BACK))
+
+
+def test_what_is_advised_where_it_yields():
+    """A stronger tie or a weaker motion: free blocks cannot go on from there."""
+    answer = rk.respond(wall(**BACK), "sine:0.3g:1s", neighbours=3)
+    known_to, at = answer["nonlinear"].known_to, first_yield(BACK, PLUS)
+    assert list(answer.conclusion.next) == ["stronger_bar", "margin"]
+    said = " ".join(answer.sentences)
+    assert f"The outcome is unknown after {known_to:.4g} s: then the tie bar yields at {at:.4g} rad." in said
+    assert "give the tie a section or a steel with which it does not yield" in said and "crosscheck" not in said
