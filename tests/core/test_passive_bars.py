@@ -247,6 +247,7 @@ def test_codes_keep_the_strength_where_it_resists():
     )
     bare = rk.verify(wall(), SITE).directions[MINUS]
     assert found[MINUS].a0 == bare.a0 and found[MINUS].d0 == bare.d0
+    assert rk.verify(wall(**BACK), SITE).conclusion.left_out == []  # no other mechanism starts first
 
 
 def test_the_switch_has_no_effect_without_steel():
