@@ -234,6 +234,8 @@ class Statics:
         Largest difference of V'/V'(0) from the straight line 1 - phi/phi_cr; NaN without a critical rotation.
     why_no_block : str or None
         Why no single block is equivalent to the structure, a sentence without a full stop; None if one is.
+    yields : float or None
+        Rotation at which a tie of steel yields before the critical one, or the limit [rad]; None if none does.
     """
 
     lambda_: float
@@ -242,6 +244,7 @@ class Statics:
     stiffening: float
     departure: float
     why_no_block: str | None
+    yields: float | None = None
 
     @property
     def reference(self) -> float:
@@ -287,5 +290,9 @@ def statics(mechanism: Mechanism, direction: Direction) -> Statics:
         rises = mechanism.bends and (slope >= 0).any()
         cause = ": what ties it stiffens it" if mechanism.attached else ""
         why = f"its restoring moment does not fall all the way from rest{cause}" if rises else ""
+    bound = mechanism.yields(direction, float(rotations[-1 if phi_cr is not None else -2]))
+    if bound is not None:
+        why = f"the tie {bound.name} yields at {bound.phi:.4g} rad, before its restoring moment vanishes"
     why = mechanism.hung.fault("equivalent block") or why
-    return Statics(lam, phi_cr, limit, float(slope[0] / moment[0]), departure, why or None)
+    at_yield = None if bound is None else bound.phi
+    return Statics(lam, phi_cr, limit, float(slope[0] / moment[0]), departure, why or None, at_yield)

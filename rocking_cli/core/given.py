@@ -281,7 +281,7 @@ class Given(Described):
 
             kept = {key: value for key, value in kept.items() if changed.keys().isdisjoint(spellings(key, fields[key]))}
         copy = type(self).from_fields({**kept, **changed}, self._folder)
-        if set(changed) <= {"name"}:
+        if set(changed) <= {"name", "ties"}:
             vars(copy)["_weights"] = self._weights
         return copy
 

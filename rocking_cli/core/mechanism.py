@@ -6,11 +6,11 @@ fault.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from itertools import pairwise
 from math import isclose, nan, sqrt
-from typing import Any, final
+from typing import Any, Self, final
 
 import numpy as np
 from pydantic import ValidationError
@@ -33,7 +33,7 @@ from rocking_cli.core.hung.attachments import (
     interlocked,
 )
 from rocking_cli.core.hung.element import INTERLOCK_NAME as INTERLOCK
-from rocking_cli.core.hung.element import Element, Stretched
+from rocking_cli.core.hung.element import Element, SteelBar, Stretched
 from rocking_cli.core.hung.everything import Hung
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.core.sketch import Outline
@@ -156,6 +156,17 @@ class Mechanism(Jointed):
         return self.hung.things
 
     @final
+    def at_strength(self, *, on: bool = True) -> Self:
+        """Return the structure with ties of steel as methods of codes count them, or, without `on`, as motions do.
+
+        By methods of codes they act with their strength, as constant forces; in motions they are elastic and passive.
+        It is the structure itself if it has none of steel.
+        """
+        if not any(tie.is_steel for tie in self.ties or []):
+            return self
+        return self.model_copy(update={"ties": [tie.at_strength(on=on) for tie in self.ties or []]})
+
+    @final
     def slackness(self, phi: Reals, direction: Direction) -> Reals:
         """Return a value that is zero where a tie goes slack, for each one-sided tie, shape (ties, n)."""
         return self.hung.slackness(self.followed(np.asarray(phi, dtype=np.float64), direction), np.size(phi))
@@ -247,11 +258,13 @@ class Mechanism(Jointed):
         phi = np.linspace(0.0, SHARE_OF_LIMIT * self.limit(direction), SCANNED)
         fallen = np.flatnonzero(self.potential_energy(phi, direction) < 0)
         end = float(phi[fallen[0] if fallen.size else -1])
-        stops = [bound for stop in self.stops or () if (bound := self._stopped(stop, direction, end)) is not None]
-        bound = min(stops, key=lambda each: each.phi, default=None)
+        ends = [self.yields(direction, end), *(self._stopped(stop, direction, end) for stop in self.stops or ())]
+        bound = min(filter(None, ends), key=lambda each: each.phi, default=None)
         met = meeting(self, direction, end if bound is None else (1 - SAME_PLACE) * bound.phi)
         bound = bound if met is None else met
-        if bound is None or self.coefficients(np.array([bound.phi]), direction).restoring(self.gravity)[0] > 0:
+        if bound is None or bound.kind == "yields":
+            return bound
+        if self.coefficients(np.array([bound.phi]), direction).restoring(self.gravity)[0] > 0:
             return bound
         return bound._replace(kind="leans", restitution=None)
 
@@ -264,12 +277,23 @@ class Mechanism(Jointed):
             moved = self.followed(phi, direction)(Spot(body, at)).z.real - at.real
             return np.asarray(np.sign(stop.gap) * moved - abs(stop.gap))
 
-        phi = np.linspace(0.0, end, SCANNED)
-        reached = np.flatnonzero(beyond(phi) > 0)
-        if not reached.size:
+        first = _first(beyond, end)
+        if first is None:
             return None
-        first = first_beyond(beyond, phi[max(reached[0] - 1, 0)], phi[reached[0]])
         return Bound(first, "meets", stop.name, body, at, stop.restitution)
+
+    @final
+    def yields(self, direction: Direction, end: float) -> Bound | None:
+        """Return the bound at which the first tie of steel reaches its strength up to a rotation, or None."""
+        bounds = []
+        for bar in self.hung.bars:
+
+            def beyond(phi: Reals, bar: SteelBar = bar) -> Reals:
+                return bar.elongation(self.followed(phi, direction))[0] - bar.yield_elongation
+
+            if (first := _first(beyond, end)) is not None:
+                bounds.append(Bound(first, "yields", bar.name))
+        return min(bounds, key=lambda bound: bound.phi, default=None)
 
     @final
     def restitution_from_kinematics(self, direction: Direction) -> float:
@@ -304,6 +328,13 @@ class Mechanism(Jointed):
         return self.restitution if self.restitution is not None else self.restitution_from_kinematics(direction)
 
 
+def _first(beyond: Callable[[Reals], Reals], end: float) -> float | None:
+    """Return the first rotation up to an end at which a continuous value, not positive at rest, is so; or None."""
+    phi = np.linspace(0.0, end, PLACES_OF_POINTS)
+    k = int((beyond(phi) > 0).argmax())
+    return first_beyond(beyond, phi[k - 1], phi[k]) if k else None
+
+
 def _rotations(phi: Any) -> Reals:
     """Return rotations as an array of reals. Raises `InputError` if they are not numbers in an array."""
     try:
@@ -320,6 +351,7 @@ def _is_final(member: object) -> bool:
     return any(getattr(getattr(member, key, member), "__final__", False) for key in ("fget", "func", "__func__"))
 
 
+PLACES_OF_POINTS = 1025  # rotations at which it is looked how far a point has moved, or a tie is stretched
 SCANNED = 65  # rotations at which the potential energy is compared with that at rest, and stops are looked for
 SAME_PLACE = 1e-6  # difference of the rotations at which a wall is met, and its stop, by rounding
 SHARE_OF_LIMIT = 0.999  # of the kinematic limit, at which linkages have no derivatives

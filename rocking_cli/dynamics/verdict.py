@@ -129,6 +129,8 @@ def remedy(history: History) -> str:
     check = history.check
     if history.unmeasured:
         return "give_restitution"
+    if history.bound is not None and history.bound.kind == "yields":
+        return "stronger_bar"
     if check is not None and not history.apart and history.bound is None:
         if check.reason == "slides":
             return "hold_joint"

@@ -37,6 +37,7 @@ class NextStep(StrEnum):
 
     HINGE_AT_JOINT = "hinge_at_joint"
     HOLD_JOINT = "hold_joint"
+    STRONGER_BAR = "stronger_bar"
     ASSUME_OVERTURNING = "assume_overturning"
     STRENGTHEN = "strengthen"
     CHECK_HOLD = "check_hold"
@@ -167,7 +168,7 @@ class Conclusion:
         if self.relies:
             steps.append(NextStep.CHECK_HOLD)
         neighbours_differ = self.share is not None and self.share.highest > 0 and self.share.lowest < 1
-        if self.remedy is not None:
+        if self.remedy not in (None, NextStep.STRONGER_BAR):  # free blocks have no ties that yield
             steps.append(NextStep.CROSSCHECK)
         if self.ratio is None and (self.remedy not in (None, NextStep.RESTITUTION) or neighbours_differ):
             steps.append(NextStep.MARGIN)

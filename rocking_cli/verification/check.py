@@ -140,9 +140,11 @@ def verify(
     code = code_of(site)
     taken = {"control": control} if code.takes_control else {}
     try:
-        verification = _held(code.verify(structure.mechanism, site.site, **taken), code, "verify")
-        mechanism = structure.mechanism
-        before = {each.failure.joint: 0 for each in early_failures(mechanism) if each.direction in mechanism.directions}
+        mechanism = structure.mechanism.at_strength()
+        verification = _held(code.verify(mechanism, site.site, **taken), code, "verify")
+        # At rest between two directions a tie of steel has no force.
+        resting = structure.mechanism if mechanism.rocks_both_ways else mechanism
+        before = {each.failure.joint: 0 for each in early_failures(resting) if each.direction in mechanism.directions}
         starts_first = [LeftOut("mechanism", joint, "starts_first") for joint in before]
         return replace(verification, left_out=[*verification.left_out, *starts_first])
     except InputError as error:

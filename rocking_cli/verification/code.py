@@ -38,7 +38,8 @@ class Number:
     of : callable, optional
         `of(verified)` returns the number from the result of a direction, or None if the site lacks values for it.
     of_structure : callable, optional
-        `of_structure(mechanism, direction)` returns the number of a structure without a site instead.
+        `of_structure(mechanism, direction)` returns the number of a structure without a site instead; ties of steel act
+        with their strength, as for `Code.verify`.
     unit : str
         Unit of the number; empty if it is dimensionless.
     """
@@ -91,7 +92,7 @@ class Code(ABC):
         Parameters
         ----------
         mechanism : Mechanism
-            The structure.
+            The structure; ties of steel act with their strength, as constant forces (`Mechanism.at_strength`).
         site : Site
             The site, an object of the class attribute `site`.
         control : Control, optional

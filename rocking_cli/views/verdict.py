@@ -27,14 +27,13 @@ MIN_OPENING = 1e-6  # share of D_cr: a smaller opening is reported as none
 # From a comparison with free blocks: a peak below SMALL_PEAK has an error of some 20 % if a joint opens by more than
 # SMALL_PEAK_OPENING of D_cr.
 SMALL_PEAK, SMALL_PEAK_OPENING, SMALL_PEAK_ERROR = 0.02, 0.001, 0.2
-NEXT_STEP = (
-    "Next: `rocking crosscheck` simulates what happens from then on, as free blocks; `rocking margin` shows up to "
-    "which scale factor the outcome is known. Under this motion, {}."
-)
+NEXT_STEP = "Next: {}`rocking margin` shows up to which scale factor the outcome is known. Under this motion, {}."
+CROSSCHECK = "`rocking crosscheck` simulates what happens from then on, as free blocks; "
 OVERTURNS = "assume that it overturns"
 REMEDIES = {
     "hinge_at_joint": f"describe the structure as a linkage that hinges at the joint that opens, or {OVERTURNS}",
     "hold_joint": f"anchor the joint that slides or justify a higher friction, or {OVERTURNS}",
+    "stronger_bar": f"give the tie a section or a steel with which it does not yield, or {OVERTURNS}",
     "assume_overturning": OVERTURNS,
     "give_restitution": "give a measured `restitution` (or `rebound`)",
 }
@@ -76,7 +75,10 @@ def joints_in_words(history: History, assumed_friction: float | None = None) -> 
     if history.unmeasured:
         return f"{_until(history)} Next: {REMEDIES[remedy(history)]}."
     if history.unknown:
-        return " ".join([_until(history), *slides, NEXT_STEP.format(REMEDIES[remedy(history)])])
+        step = remedy(history)
+        return " ".join(
+            [_until(history), *slides, NEXT_STEP.format(CROSSCHECK * (step != "stronger_bar"), REMEDIES[step])]
+        )
     if check is None or history.slip:
         return " ".join(slides)
     if isnan(check.warned) and check.alone:

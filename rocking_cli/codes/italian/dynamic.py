@@ -79,7 +79,8 @@ def with_histories(
     verification: ItalianVerification, structure: Structure, site: ItalianSite, histories: Histories
 ) -> ItalianVerification:
     """Return a verification with time histories under a set of records; see `check.with_histories`."""
-    taken = structure if verification.mechanism is structure.mechanism else structure.of(verification.mechanism)
+    counted = verification.mechanism.at_strength(on=False)
+    taken = structure if counted == structure.mechanism else structure.of(counted)
     unchecked = taken.mechanism.unchecked if taken.model("nonlinear").joints is None else None
     curves = {direction: each.exact for direction, each in verification.directions.items()}
     state = _state_of_records(verification, histories.state)

@@ -156,6 +156,10 @@ class Stretched(Element):
         """Return a value [N] that changes sign where a one-sided element goes slack or taut."""
         return self.force(e)
 
+    def pull(self, e: Reals, going: Reals) -> Reals:
+        """Return the force N with which one such element acts at elongations `e` that change by `going` (e') [N]."""
+        return self.force(e)
+
     def elongation(self, follow: Follow, direction: Direction = Direction.POSITIVE) -> tuple[Reals, Reals, Reals]:
         """Return e = L - L(0) [m] and the first two derivatives of L in phi, each shape (n,)."""
         paths = [follow(spot) for spot in self.spots]
@@ -177,14 +181,14 @@ class Stretched(Element):
     def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:
         """Add the moment N L' to Q."""
         e, first, second = self.elongation(follow)
-        n = self.force(e)
+        n = self.pull(e, first)
         total.Q[:] += self.count * n * first
         total.dQ[:] += self.count * (self.slope(e, first) * first**2 + n * second)
         total.U[:] += self.count * self.energy(e)
 
     def forces(self, direction: Direction, follow: Follow) -> Sequence[Push]:
         """Return the force N along each piece of the path, at both of its ends [N]."""
-        n = self.count * self.force(self.elongation(follow)[0])
+        n = self.count * self.pull(*self.elongation(follow)[:2])
         paths = [follow(spot) for spot in self.spots]
         pushes = []
         for (one, here), (other, there) in pairwise(zip(self.spots, paths, strict=True)):
@@ -346,6 +350,57 @@ class Spring(Stretched):
     def slack_at(self, e: Reals) -> Reals:
         """Return N0 + k e [N], the force of a tie that acts in both senses."""
         return self.prestress + self.stiffness * e
+
+
+@dataclass(frozen=True)
+class SteelBar(Spring):
+    """A passive tie of steel: N = k e while it is longer than at rest, until it yields; slack otherwise.
+
+    Parameters
+    ----------
+    name, spots, stiffness, count
+        See `Spring`.
+    strength : float
+        Force of one such tie at which it yields, or its anchorage fails [N].
+    """
+
+    _: KW_ONLY
+    strength: float
+    only: Sense | None = "tension"
+
+    @property
+    def words(self) -> str:
+        """Description of the stiffness and of the strength."""
+        return f"{super().words}, with a strength of {self.strength / 1000:.4g} kN"
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the path of the tie, its stiffness and its strength."""
+        return {**super().as_dict(), "strength": self.strength}
+
+    @property
+    def yield_elongation(self) -> float:
+        """Elongation at which it yields [m]."""
+        return self.strength / self.stiffness
+
+
+@dataclass(frozen=True)
+class BarAtStrength(Spring):
+    """A tie of steel as methods of codes count it: with its strength, as a constant force, unless it is slack.
+
+    It is slack while it is shorter than at rest, and at rest in a direction in which it becomes shorter.
+    """
+
+    def force(self, e: Reals) -> Reals:
+        """Return the strength [N], shape (n,); 0 where the tie is shorter than at rest."""
+        return np.where(e < 0, 0.0, self.prestress)
+
+    def pull(self, e: Reals, going: Reals) -> Reals:
+        """Return the force with which one tie acts [N], at rest in a direction that stretches it."""
+        return np.where((e == 0) & (going < 0), 0.0, self.force(e))
+
+    def energy(self, e: Reals) -> Reals:
+        """Return the work of the strength [J]; a slack tie takes up none."""
+        return self.prestress * np.maximum(e, 0.0)
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy as np
 from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.hung.attached import Attached, Follow, PointMass
 from rocking_cli.core.hung.attachments import Loc
-from rocking_cli.core.hung.element import NO_ANSWER, ConstantForce, Element, Question, Stretched
+from rocking_cli.core.hung.element import NO_ANSWER, ConstantForce, Element, Question, SteelBar, Stretched
 from rocking_cli.core.kinematics import Direction, Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.short_repr import short_repr
@@ -49,6 +49,11 @@ class Hung:
     def ties(self) -> Sequence[Element]:
         """Elements that are stretched: ties and beds of springs."""
         return [each for each in self.elements if each.stretched]
+
+    @property
+    def bars(self) -> Sequence[SteelBar]:
+        """Passive ties of steel."""
+        return [each for each in self.elements if isinstance(each, SteelBar)]
 
     @cached_property
     def one_sided(self) -> Sequence[Stretched]:

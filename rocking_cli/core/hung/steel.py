@@ -18,6 +18,7 @@ STEELS: dict[SteelName, float] = {
 }  # fmt: skip
 """Characteristic yield stress [Pa]: EN 10025-2 as in NTC 2018, table 4.2.I; B450C of NTC 2018, 11.3.2.1; FeB of the
 Italian decree of 9 January 1996."""
+STEEL_MODULUS = 210e9  # Pa, modulus of elasticity: NTC 2018, 11.3.4.1; EN 1993-1-1, 3.2.6
 MAX_NAMED_DIAMETER = 0.04  # m; the standards give thicker steel a lower yield stress than its name says
 BAR_DIAMETERS = tuple(d / 1000 for d in (12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 32))
 """Diameters of bars that are proposed [m]."""

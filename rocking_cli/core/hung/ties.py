@@ -8,13 +8,14 @@ from importlib.metadata import EntryPoint
 from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Literal, Self, cast
 
-from pydantic import ConfigDict, Field, ModelWrapValidatorHandler, model_validator
+from pydantic import ConfigDict, Field, ModelWrapValidatorHandler, PrivateAttr, model_validator
 
 from rocking_cli.core.fields import Described, Name, Vertex, geometry_error, point, quantity
 from rocking_cli.core.hung.attached import Spot
-from rocking_cli.core.hung.element import Element, Spring, SpringBed
+from rocking_cli.core.hung.element import BarAtStrength, Element, Spring, SpringBed, SteelBar
 from rocking_cli.core.hung.steel import (
     MAX_NAMED_DIAMETER,
+    STEEL_MODULUS,
     STEELS,
     AnchorPlate,
     BearingWall,
@@ -90,8 +91,8 @@ class Tie(Described):
     stiffness: float | None = quantity("its stiffness", unit="N/m", example=1e6, default=None, ge=0, le=1e15)
     area: float | None = quantity("area of its section", unit="m2", example=5e-4, default=None, gt=0, le=1e6)
     modulus: float | None = quantity(
-        "modulus of elasticity; for a bed, stiffness per metre of face and per metre of displacement", unit="Pa",
-        example=2e11, default=None, gt=0, le=1e15,
+        "modulus of elasticity, of steel 210 GPa unless given; for a bed, stiffness per metre of face and per metre of "
+        "displacement", unit="Pa", example=2e11, default=None, gt=0, le=1e15,
     )  # fmt: skip
     length: float | None = quantity(
         "length over which it stretches; if omitted, that of its path", unit="m", default=None, gt=0, le=1e6
@@ -108,7 +109,7 @@ class Tie(Described):
         "diameter of a bar", unit="m", symbol="d", example=0.024, default=None, gt=0, le=1
     )
     steel: SteelName | None = Field(
-        None, description="steel of the tie, which then acts with its strength, as a constant force"
+        None, description="steel of the tie, which then pulls only while it is stretched, until it yields"
     )
     yield_stress: float | None = quantity(
         "instead of `steel`: its yield stress", unit="Pa", symbol="f_y", example=2.35e8, default=None, ge=1e7, le=1e12,
@@ -120,6 +121,7 @@ class Tie(Described):
     wall: BearingWall | None = Field(None, description="masonry that the anchor plates bear on")
     only: Literal["tension", "compression"] | None = Field(None, description="the one sense in which it can act")
     each: bool = Field(False, description="whether each of several bodies that move alike has one")
+    _at_strength: bool = PrivateAttr(default=False)
 
     @model_validator(mode="wrap")
     @classmethod
@@ -164,6 +166,8 @@ class Tie(Described):
             self._check_steel()
         else:
             self._check_elastic()
+        if self.stiffness is None and self.length is None and self.span == 0:
+            raise geometry_error("length", "its ends are together at rest: give the length over which it stretches")
         if (self.only == "tension" and self.prestress < 0) or (self.only == "compression" and self.prestress > 0):
             raise geometry_error("prestress", f"it acts in {self.only} only: its force at rest must have that sign")
 
@@ -177,8 +181,6 @@ class Tie(Described):
             )
         if self.stiffness is not None and self.length is not None:
             raise geometry_error("length", "cannot be combined with `stiffness`: use it with `area` and `modulus`")
-        if self.stiffness is None and self.length is None and self.span == 0:
-            raise geometry_error("length", "its ends are together at rest: give the length over which it stretches")
 
     def _check_steel(self) -> None:
         """Refuse fields of a tie of steel that do not fit together."""
@@ -190,10 +192,9 @@ class Tie(Described):
             raise geometry_error("steel", f"is missing: name one of {named}, or give the yield stress as `yield`")
         if self.steel is not None and self.yield_stress is not None:
             raise geometry_error("yield", "cannot be combined with `steel`: give one of the two")
-        for key in ("stiffness", "modulus", "prestress"):
+        for key, why in (("stiffness", "has its stiffness from its section"), ("prestress", "has no force at rest")):
             if getattr(self, key):
-                reason = "a tie of steel acts with its strength, a constant force: leave it out, or leave out the steel"
-                raise geometry_error(key, reason)
+                raise geometry_error(key, f"a tie of steel {why}: leave it out, or leave out the steel")
         if self.only == "compression":
             raise geometry_error("only", "a tie of steel acts in tension")
         self._check_bars()
@@ -238,7 +239,7 @@ class Tie(Described):
 
     @property
     def is_steel(self) -> bool:
-        """Whether the tie is of steel, and acts with its strength as a constant force."""
+        """Whether the tie is of steel, and yields."""
         return self.steel is not None or self.yield_stress is not None
 
     @property
@@ -256,22 +257,32 @@ class Tie(Described):
 
     def strength(self, count: float) -> TieStrength:
         """Return the strength of a tie of steel with this number of bars."""
+        return tie_strength(self.section, self.yield_of_steel, count, self.plate, self.wall)
+
+    def at_strength(self, *, on: bool) -> Self:
+        """Return the tie as methods of codes count it, or, without `on`, as motions do: it matters for one of steel."""
+        tie = self.model_copy()
+        tie._at_strength = on
+        return tie
+
+    @property
+    def section(self) -> float:
+        """Area of the section of the tie, or of one of its bars [m2]."""
         section = self.area if self.diameter is None else circle(self.diameter)
         assert section is not None
-        return tie_strength(section, self.yield_of_steel, count, self.plate, self.wall)
+        return section
 
     @property
     def k(self) -> float:
-        """Stiffness of the tie [N/m]."""
-        if self.stiffness is not None or self.is_steel:
-            return self.stiffness or 0.0
-        assert self.area is not None and self.modulus is not None
-        return self.area * self.modulus / (self.length or self.span)
+        """Stiffness of the tie, or of one of its bars [N/m]."""
+        if self.stiffness is not None:
+            return self.stiffness
+        return self.section * (self.modulus or STEEL_MODULUS) / (self.length or self.span)
 
     @property
     def is_elastic(self) -> bool:
-        """Whether the force increases with the elongation, as that of a constant force does not."""
-        return self.bed is not None or self.k > 0
+        """Whether the force increases with the elongation without end, as that of a tie of steel does not."""
+        return self.bed is not None or (not self.is_steel and self.k > 0)
 
     def element(self, spots: Sequence[Spot], count: float) -> Element:
         """Return `count` such ties, with all their bars, through points as one element.
@@ -283,16 +294,18 @@ class Tie(Described):
             return SpringBed(self.name, spots[0], spots[1], self.modulus, count)
         if self.is_steel:
             number, count = (count, 1.0) if self.diameter is not None else (1.0, count)
-            return Spring(self.name, tuple(spots), 0.0, self.strength(number).force, only=self.only, count=count)
+            strength = self.strength(number).force
+            if self._at_strength:
+                return BarAtStrength(self.name, tuple(spots), 0.0, strength, count=count)
+            return SteelBar(self.name, tuple(spots), number * self.k, strength=strength, count=count)
         return Spring(self.name, tuple(spots), self.k, self.prestress, only=self.only, count=count)
 
     def enlarged(self, factor: float) -> Self:
         """Return the tie on a structure of another size: its lengths are multiplied, its stiffness and force stay."""
         kept: dict[str, Any] = {}
         if self.is_steel:  # the spacing is enlarged as the depth is, so that the number of bars stays
-            section = self.area or circle(self.diameter or 0.0)
-            kept = {"area": self.area, "diameter": self.diameter, "yield_stress": self.strength(1).force / section}
-            kept |= {"steel": None, "plate": None, "wall": None}
+            kept = {"area": self.area, "diameter": self.diameter, "yield_stress": self.strength(1).force / self.section}
+            kept |= {"steel": None, "plate": None, "wall": None, "length": self.length or self.span}
         elif self.bed is None:
             kept = {"stiffness": self.k, "area": None, "modulus": None, "length": None}
         return super().enlarged(factor).model_copy(update=kept)

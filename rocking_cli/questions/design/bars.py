@@ -59,7 +59,9 @@ class SteelAnswer:
     proposals: Sequence[Bars]
 
 
-def steel_answer(structure: Structure, field: str, value: float, other: float) -> SteelAnswer | None:
+def steel_answer(
+    structure: Structure, field: str, value: float, other: float, *, of_code: bool = False
+) -> SteelAnswer | None:
     """Return the bars that give the least force of a tie that meets a requirement.
 
     Parameters
@@ -70,6 +72,8 @@ def steel_answer(structure: Structure, field: str, value: float, other: float) -
         The field that varies.
     value, other : float
         The value that is the answer, and the other end of the range in which the requirement is met.
+    of_code : bool
+        Whether the requirement is on a number of a code, for which ties of steel act with their strength.
 
     Returns
     -------
@@ -79,9 +83,11 @@ def steel_answer(structure: Structure, field: str, value: float, other: float) -
     path = words(field)
     if path[0] != "ties" or len(path) < 3 or path[2] in ("plate", "wall"):
         return None
-    chosen = structure.varied(field, value).mechanism
+    chosen, largest = (structure.varied(field, each).mechanism for each in (value, other))
+    if of_code:
+        chosen, largest = chosen.at_strength(), largest.at_strength()
     tie = _named(chosen, path[1])
-    force, more = (_constant_force(each, tie.name) for each in (chosen, structure.varied(field, other).mechanism))
+    force, more = (_constant_force(each, tie.name) for each in (chosen, largest))
     if force is None or more is None or not 0 < force < more:
         return None
     stress = tie.yield_of_steel if tie.is_steel else STEELS[DEFAULT_STEEL]

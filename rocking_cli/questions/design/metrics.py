@@ -96,6 +96,11 @@ class Metric:
         """Whether the metric needs ground motions."""
         return self.of_neighbours is not None
 
+    @property
+    def of_code(self) -> bool:
+        """Whether the metric is of a code of practice, for which ties of steel act with their strength."""
+        return self.sited or bool(self.codes)
+
     def value(self, structure: Structure, excitation: Excitation | None) -> float:
         """Return the metric of a structure."""
         return self.at(structure, excitation)[0]
@@ -209,9 +214,8 @@ def _of_codes(name: str) -> Metric | None:
         if one.of_structure is not None:
             structure.statics  # noqa: B018 - what does not stand is refused with its name
             with _blamed(first, name):
-                return min(
-                    one.of_structure(structure.mechanism, direction) for direction in structure.mechanism.directions
-                )
+                mechanism = structure.mechanism.at_strength()
+                return min(one.of_structure(mechanism, direction) for direction in mechanism.directions)
         assert excitation is not None and excitation.site is not None
         key = excitation.site.site.code
         of = numbers[key].of

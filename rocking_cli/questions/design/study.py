@@ -324,7 +324,9 @@ def design(
         monotone, value, _not_built(values, reasons), behind, structure.mechanism.own_caution(),
         _taken_otherwise(structure, field, span, aim, excitation),
         [each.name for each in excitation.motions] if excitation is not None else [],
-        None if value is None else steel_answer(structure, field, value, float(values[-1] if met[-1] else values[0])),
+        None if value is None else steel_answer(
+            structure, field, value, float(values[-1] if met[-1] else values[0]), of_code=aim.metric.of_code
+        ),
         _relied_on(structure, field, _closest(values, numbers, aim.level) if value is None else value, aim, excitation),
     )  # fmt: skip
 

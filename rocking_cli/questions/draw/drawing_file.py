@@ -282,8 +282,9 @@ def _tie(drawn: _Drawn, drawing: Picture, tie: Strand) -> None:
             away = ANCHOR_SHARE * drawn.size * (end - other) / abs(end - other)
             drawn.line("GROUND", np.array([end, end + away * (1 - 0.5j), end + away * (1 + 0.5j)]), closed=True)
     given = next((each for each in drawing.mechanism.ties or [] if each.name == tie.thing.name), None)
-    if given is not None and not given.model_fields_set - DRAWN_FIELDS:
-        words = _in_words(given, TIE_FIELDS)
+    drawn_whole = given is not None and not given.model_fields_set - DRAWN_FIELDS
+    if given is not None and (drawn_whole or given.is_steel):  # without its plates a bar yields where they fail
+        words = _in_words(given if drawn_whole else given.enlarged(1.0), TIE_FIELDS)
     else:
         force, stiffness = (tie.thing.count * each for each in tie.thing.at_rest)
         words = [f"stiffness {stiffness:.9g} N/m", f"prestress {force:.9g} N"] + [f"only {tie.only}"] * bool(tie.only)

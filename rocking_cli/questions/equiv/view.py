@@ -233,7 +233,9 @@ def sentence(side: EquivalentSide) -> str:
     statics = side.statics
     grows = "increases" if statics.stiffening > 0 else "decreases"
     ends = (
-        f"a motion can end only at the kinematic limit of {statics.limit:.4g} rad"
+        "a motion is known until the tie yields"
+        if statics.yields is not None
+        else f"a motion can end only at the kinematic limit of {statics.limit:.4g} rad"
         if statics.phi_cr is None
         else f"the moment first vanishes at {statics.phi_cr:.4g} rad"
     )

@@ -15,7 +15,7 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.advice import Grade
 from rocking_cli.core.equivalence import EQUAL_DIRECTIONS
 from rocking_cli.core.hung.attached import Spot
-from rocking_cli.core.hung.element import ConstantForce, Element, SpringBed, Stretched
+from rocking_cli.core.hung.element import ConstantForce, Element, SpringBed, SteelBar, Stretched
 from rocking_cli.core.mechanism import doubts as doubts_about_size
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.verdict import disagree
@@ -83,6 +83,7 @@ class TieWords(NamedTuple):
     sense: str
     stiffness: float
     prestress: float
+    strength: float | None = None
 
     @classmethod
     def of(cls, tie: Element) -> TieWords:
@@ -92,7 +93,8 @@ class TieWords(NamedTuple):
         assert isinstance(tie, Stretched)  # the only other kind of element
         prestress, stiffness = tie.at_rest
         sense = (tie.only or "both") if stiffness else "force"
-        return cls(tie.name, tie.spots, False, tie.count, sense, stiffness, prestress)
+        strength = tie.strength if isinstance(tie, SteelBar) else None
+        return cls(tie.name, tie.spots, False, tie.count, sense, stiffness, prestress, strength)
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from rocking_cli.arrays import Points, Reals
 from rocking_cli.core import Body, Contact, Direction, Mechanism, PointMass, Spot, of_joints
 from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.core.convex import convex_pieces
-from rocking_cli.core.hung.element import ConstantForce, Element, Spring
+from rocking_cli.core.hung.element import ConstantForce, Element, Spring, SteelBar
 from rocking_cli.core.kinematics import distance
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.short_repr import short_repr
@@ -267,6 +267,8 @@ class _Apart:
                 )
                 raise self._cannot(field, what)
             if isinstance(attached, Element):
+                if isinstance(attached, SteelBar):
+                    raise self._cannot(field, f"a tie that yields, as {attached.name}")
                 springs = [each for each in attached.stretched if isinstance(each, Spring) and each.stiffness]
                 several = any(spot.body in self.mechanism.alike() for tie in springs for spot in tie.spots)
                 if several or not springs or len(springs) < len(attached.stretched):

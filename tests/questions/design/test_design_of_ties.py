@@ -42,7 +42,7 @@ def by_yield(count, diameter, stress=235e6):
     ],
 )  # fmt: skip
 def test_the_answer_in_steel(tie, vary, force, bars):
-    found = rk.design(facade(**tie), f"ties.bar.{vary}", f"lambda >= {lambda_of(force)!r}", points=7)
+    found = rk.design(facade(**tie), f"ties.bar.{vary}", f"alpha0 >= {lambda_of(force)!r}", points=7)
     assert found.steel.force == pytest.approx(force, rel=1e-9)
     assert [(each.number, each.diameter) for each in found.steel.proposals] == bars
     stress = found.steel.stress
@@ -66,7 +66,7 @@ def test_the_words_of_bars():
     bars = "The tie bar needs 137 kN: one bar of 28 mm (144.7 kN) or two bars of 20 mm (147.7 kN), of S235."
     assert f"{bars} Anchor plates and the wall under them are not counted" in found.sentences[0]
     apart = rk.design(facade(spacing=2.0, diameter=0.01, **{"yield": 2e8}), "ties.0.diameter=6mm:40mm",
-                      f"lambda >= {lambda_of(1e5)!r}", points=7)  # fmt: skip
+                      f"alpha0 >= {lambda_of(1e5)!r}", points=7)  # fmt: skip
     assert "bars of 16 mm every 2 m (100.5 kN), of a yield stress of 200 MPa." in apart.sentences[0]
 
 
@@ -74,11 +74,13 @@ def test_plates_of_the_tie_count():
     """Of each bar the plate bears 0.3 * 0.25 * 1.5 MPa = 112.5 kN and punches at 105 kN: 137 kN take two bars."""
     wall = {"thickness": 0.6, "compression": 1.5e6, "shear": 5e4}
     tied = facade(area=None, **{"steel": "S235", "bars": 2, "diameter": 0.01, "plate": PLATE, "wall": wall})
-    found = rk.design(tied, "ties.bar.diameter=6mm:32mm", f"lambda >= {lambda_of(137e3)!r}", points=7)
+    found = rk.design(tied, "ties.bar.diameter=6mm:32mm", f"alpha0 >= {lambda_of(137e3)!r}", points=7)
     ((count, diameter, strength),) = found.steel.proposals
     assert (count, diameter) == (2, 0.020) and strength.limits["punching"] == pytest.approx(210e3)
     assert "not counted" not in found.sentences[0]
-    assert rk.design(tied, "ties.bar.plate.width=0.1:0.5", f"lambda >= {lambda_of(20e3)!r}", points=7).steel is None
+    assert rk.design(tied, "ties.bar.plate.width=0.1:0.5", f"alpha0 >= {lambda_of(20e3)!r}", points=7).steel is None
+    at_rest = rk.design(tied, "ties.bar.diameter=6mm:32mm", "lambda >= 0.07", points=2)
+    assert at_rest.everywhere and "ties.bar.diameter has no effect on it." in " ".join(at_rest.sentences)
 
 
 @pytest.mark.parametrize(

@@ -209,7 +209,7 @@ WAY_BACK = {
     "rigid_body.yaml": "", "spanning_wall.yaml": "", "symmetric_frame.yaml": "", "verify/arch_on_piers.yaml": "",
     "verify/facade.yaml": "does not tell `one_sided`, `rebound`: add it",
     "verify/parapet.yaml": "",
-    "verify/tied_facade.yaml": "`one_sided`, `rebound`; the further data of `bar`: `rocking import` refuses it",
+    "verify/tied_facade.yaml": "`one_sided`, `rebound`; the further data of `bar`: add it",
     "wall.yaml": "",
     "walls/column_with_tendon.yaml": "the tie `tendon`: its import has lambda .* instead of none",
     "walls/facade.yaml": "does not tell `one_sided`: add it",

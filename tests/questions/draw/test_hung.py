@@ -100,7 +100,7 @@ class TestPicture:
     def test_a_bar_is_a_line_and_a_stiffness_alone_a_spring(self, of, kind):
         long, short = (
             {key: value for key, value in each.items() if key not in ("stiffness", "prestress")} | of
-            for each in (BAR, TENDON | {"length": 5.0} if "modulus" in of else TENDON)
+            for each in (BAR, TENDON | {"length": 5.0} if "area" in of else TENDON)
         )
         shown = picture(Block(**FACADE, ties=[long, short]))
         assert [tie.pieces[0].kind for tie in shown.ties] == [kind, {"spring": "symbol"}.get(kind, kind)]

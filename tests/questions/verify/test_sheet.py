@@ -135,7 +135,7 @@ def verified(structure, site, control=None):
     """The verification of a structure at a site, and the site."""
     mechanism = parse_structure(structure, "s.yaml", "test", Registry()) if isinstance(structure, str) else structure
     given = site_in(parse(site, "site.yaml", "site", "")).site
-    return Italian().verify(mechanism, given, control_at(mechanism, *control) if control else None), given
+    return Italian().verify(mechanism.at_strength(), given, control_at(mechanism, *control) if control else None), given
 
 
 def parts_of(found, given, language="en", by=build.SHEET):

@@ -390,7 +390,7 @@ def test_templates_name_every_size_of_a_mechanism_of_this_package():
 
 
 def test_rows_of_loads_and_ties():
-    crossed = Composition(structure("crossed"))
+    crossed = Composition(structure("crossed").at_strength())
     own, walls = crossed.loads
     assert own.weight == pytest.approx(43200 * 9.80665e-3) and own.per_metre == pytest.approx(own.weight / 5)
     assert walls.reverses and walls.body == "block" and walls.force.imag == 0 and walls.at == pytest.approx(8j / 3)
