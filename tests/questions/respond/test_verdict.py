@@ -12,6 +12,8 @@ from rocking_cli import names
 from rocking_cli.core import Direction
 from rocking_cli.core.advice import Grade
 from rocking_cli.dynamics.verdict import agreements
+from rocking_cli.structure import Structure
+from rocking_cli.views.restitution import restitution_used
 from rocking_cli.views.verdict import NO_JOINTS, OVERTURNS, verdict
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES, record, rows_of
@@ -52,6 +54,10 @@ LOW = {"uplift_error": -0.33}
         ({"nonlinear": peak(0.4), "linear1": peak(0.6)}, "Disregard linear1 here: its peak is 50 % higher", "close"),
         ({"nonlinear": peak(0.4), "linear1": peak(0.4, **LOW)}, "uplift acceleration is 33 % too low; here", "agrees"),
         ({"linear2": peak(0.9)}, "rocks to 0.9 of its critical rotation phi_cr. This is close", "linear2"),
+        # Reaching the kinematic limit is overturning there, however far it still is from losing its weight's moment.
+        ({"nonlinear": peak(0.9, ends_at_limit=(True, True))}, "0.9 of its kinematic limit", "close"),
+        ({"nonlinear": peak(0.801)}, "This is close to overturning", "exceeds"),
+        ({"nonlinear": peak(0.799)}, "rocks to 0.799", "close"),
         ({"linear1": peak(0.2, **LOW)}, "Disregard linear1: its uplift acceleration is 33 % too low.", "here"),
         ({"linear1": peak(0.2), "linear2": fell(UP)}, "By linear2 it overturns clockwise. Do not trust", "close"),
         ({"nonlinear": peak(1.75)}, "exceeds its critical rotation, reaching 1.75 times it", "rocks to"),
@@ -73,6 +79,19 @@ def test_the_verdict_says_what_happened(histories, words, not_said):
     said = verdict(histories, agreements(histories))
     assert words in said
     assert not_said not in said
+
+
+@pytest.mark.parametrize(
+    ("eta", "given", "doubted"),
+    [(0.9699, False, False), (0.9701, False, True), (0.9999, False, True), (0.9999, True, False)],
+)
+def test_a_restitution_of_kinematics_above_those_of_tests_is_doubted(eta, given, doubted):
+    """A block has eta = 1 - 1.5 sin(alpha)^2, tan(alpha) its width over its height; tests found 0.97 at most."""
+    alpha = np.arcsin(np.sqrt((1 - eta) / 1.5))
+    block = Block(width=np.tan(alpha), height=1.0, restitution=eta if given else None)
+    said = restitution_used(Structure(block))
+    assert f"eta = {eta:.4g}, {'as given' if given else 'from rigid-body kinematics'}" in said
+    assert ("Tests" in said) == doubted
 
 
 def shifted(seconds):
