@@ -24,7 +24,7 @@ from rocking_cli.studies.neighbours import (
     neighbours,
     simulate_neighbours,
 )
-from rocking_cli.views.neighbours import deviations, neighbours_in_words
+from rocking_cli.views.neighbours import deviations, neighbours_data, neighbours_in_words
 from tests.conftest import EXAMPLES
 from tests.following import build_model, respond
 
@@ -155,6 +155,14 @@ def test_neighbours_of_unknown_outcome_are_what_each_would_be_alone(file, openin
 def test_nothing_is_known_of_joints_that_the_mechanism_does_not_name():
     found = neighbours(build_model(load_structure(EXAMPLES / "curve.yaml"), "nonlinear"), ACCEL, Neighbourhood(5))
     assert found.unknown is None and found.at_most == found.overturned
+
+
+def test_nor_where_nothing_can_lift_it():
+    faint = ACCEL.scaled(0.01)
+    for structure, unknown in ((load_structure(EXAMPLES / "curve.yaml"), None), (BLOCK, 0.0)):
+        found = neighbours(build_model(structure, "nonlinear"), faint, Neighbourhood(5))
+        assert not found.lifted and found.unknown == unknown == neighbours_data(found)["unknown"]
+        assert found.at_most == found.overturned == 0
 
 
 @pytest.mark.rest

@@ -13,8 +13,9 @@ from rocking_cli.core import Direction
 from rocking_cli.core.advice import Grade
 from rocking_cli.dynamics.verdict import agreements
 from rocking_cli.structure import Structure
+from rocking_cli.views.response import known_data
 from rocking_cli.views.restitution import restitution_used
-from rocking_cli.views.verdict import NO_JOINTS, OVERTURNS, verdict
+from rocking_cli.views.verdict import NO_JOINTS, OVERTURNS, joints_in_words, verdict
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES, record, rows_of
 from tests.following import respond
@@ -92,6 +93,42 @@ def test_a_restitution_of_kinematics_above_those_of_tests_is_doubted(eta, given,
     said = restitution_used(Structure(block))
     assert f"eta = {eta:.4g}, {'as given' if given else 'from rigid-body kinematics'}" in said
     assert ("Tests" in said) == doubted
+
+
+def test_what_is_known_of_a_history_is_null_where_nothing_is():
+    """Joints that were not checked make it neither known nor unknown, and a linear model has none."""
+    known = known_data(RESTED)
+    assert known == {"unknown": False, "known_to": None, "known_to_reason": None, "peak_lower_bound": None,
+                     "opening": RESTED.opening}  # fmt: skip
+    assert known_data(replace(RESTED, check=None))["unknown"] is None
+    assert known_data(replace(RESTED, model="linear1", check=None))["unknown"] is False
+    bound = replace(unknown(), lower_bound=0.3)
+    for each in (bound, replace(bound, check=None)):
+        data = known_data(each)
+        assert (data["unknown"], data["known_to"], data["peak_lower_bound"]) == (True, 2.0, 0.3)
+        assert data["known_to_reason"]
+    assert known_data(replace(RESTED, lower_bound=0.3, warned=1.0))["peak_lower_bound"] is None
+
+
+@pytest.mark.parametrize(
+    ("ratio", "opening", "uncertain"),
+    [(0.0199, 0.00101, True), (0.0201, 0.00101, False), (0.0199, 0.00099, False), (0.0, 0.00101, False)],
+)
+def test_a_small_peak_is_uncertain_where_a_joint_opens_by_more_than_a_thousandth(ratio, opening, uncertain):
+    check = replace(RESTED.check, warned=1.0, largest=opening * RESTED.check.reach, largest_joint="a and b")
+    said = joints_in_words(peak(ratio, check=check))
+    assert ("the peak remain valid" in said) != uncertain and ("uncertain" in said) == uncertain
+
+
+@pytest.mark.parametrize(
+    ("warned", "bound", "said"),
+    [(1.0, 0.2, ("a peak of 0.3 ", "is 0.2, that before")), (1.0, 0.3, ("is 0.3 of", "that until then")),
+     (np.nan, 0.3, ("is 0.3 of", "that until then"))],
+)  # fmt: skip
+def test_a_lower_bound_is_the_peak_before_the_first_warning(warned, bound, said):
+    text = joints_in_words(replace(unknown(), peak_ratio=0.3, warned=warned, lower_bound=bound))
+    assert text.startswith("The outcome is unknown after 2 s") and all(each in text for each in said)
+    assert ("that until then" in text) == (bound == 0.3)
 
 
 def shifted(seconds):
