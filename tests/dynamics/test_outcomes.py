@@ -10,6 +10,8 @@ import pytest
 from mechanisms.block import Block
 from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.deck import lay_out, read_marks
+from rocking_cli.dynamics.joints import check_of
+from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcome
 from rocking_cli.dynamics.verdict import disagree, known_until, peak_time, remedy
 from rocking_cli.excitation.base import GroundMotion
 from tests.following import build_model, respond
@@ -33,6 +35,16 @@ def read(status=kernels.AT_REST, side=0, **noted):
     if "WARNED" in noted:
         marks[0, kernels.WARNED_PEAK : kernels.WARNED_PEAK + 2] = 0.02, 0.06
     return read_marks(marks, np.array([PHI_CR]), np.array([REACH])).by_field(lambda values: values[0])
+
+
+def made(**fields):
+    """Outcomes of which all is known, but for what is given."""
+    many = len(next(iter(fields.values())))
+    flags = {"still_rocking", "failed", "unknown"}
+    usual = {
+        name: name not in flags and (0 if name in ("fell_to", "impact_count") else np.nan) for name in OUTCOME_FIELDS
+    }
+    return Outcome(**{name: np.array(fields.get(name, [value] * many)) for name, value in usual.items()})
 
 
 def test_of_a_run_that_is_known_all_is_said():
@@ -93,6 +105,41 @@ def test_what_failed_or_never_ran_is_neither_known_nor_unknown():
 def test_still_rocking_is_said_only_of_what_is_known():
     assert read(kernels.STILL_ROCKING).still_rocking and not read(kernels.STILL_ROCKING).at_rest
     assert not read(kernels.STILL_ROCKING, PASSED=3.0).still_rocking
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_the_joints_say_what_happened_to_them_or_that_nothing_did(known):
+    """A block has one joint, with the ground, and none that stays closed while it rocks."""
+    model = build_model(Block(width=0.7, height=2.8), "nonlinear")
+    marks = np.full(kernels.MARKS, NEVER)
+    marks[[kernels.LARGEST, kernels.LONGEST]] = 0.0
+    if not known:
+        marks[[kernels.PASSED, kernels.REASON, kernels.WHERE, kernels.WARNED, kernels.WARNED_WHERE]] = 3, 1, 0, 2, 0
+    found = check_of(model.joints, marks)
+    assert (found.reason, found.passed, found.warned) == pytest.approx(
+        (None, NEVER, NEVER) if known else ("slides", 3.0, 2.0), nan_ok=True
+    )
+    assert (found.joint == found.warned_joint == "") == known
+    assert found.parted is None and found.parted_joint == "" and found.count == 1
+    assert check_of(None, marks) is None
+
+
+# --- of many runs no sum and no mean drops the unknown
+
+
+def test_overturned_is_nan_where_it_is_not_known_and_the_share_is_a_range():
+    found = made(fell_to=[1, 0, -1, 0, 0], unknown=[False, True, False, False, False], failed=[False] * 4 + [True])
+    np.testing.assert_array_equal(found.overturned, [1.0, np.nan, 1.0, 0.0, np.nan])
+    assert found.fell.tolist() == [True, False, True, False, False]
+    assert np.isnan(found.overturned.sum()) and np.isnan(found.overturned.mean())
+    assert found.share() == (0.5, 0.75)  # of the four that ran
+    assert np.isnan(made(failed=[True]).share()).all()
+
+
+def test_of_one_motion_it_is_yes_no_or_none():
+    found = made(fell_to=[-1, 0, 0, 0], unknown=[False, False, True, False], failed=[False] * 3 + [True])
+    single = [found.by_field(lambda each, k=k: each[k]).overturned for k in range(4)]
+    assert single == [True, False, None, None]
 
 
 # --- several histories of one structure
