@@ -2,7 +2,7 @@
 
 A motion has one of five outcomes: the structure does not uplift; it rocks, that is, it uplifts and comes to rest; it
 overturns; it is still rocking long after the end of the ground motion, without going to overturn; or the outcome is
-unknown, because a joint opens or slides that the model keeps closed.
+unknown, because a joint opens or slides that the model keeps closed, or something is met.
 """
 
 from __future__ import annotations

@@ -2,29 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
 from rocking_cli.arrays import Points, Reals
+from rocking_cli.core.answers import Jointed
 from rocking_cli.core.contacts import Contact
 from rocking_cli.core.convex import convex_pieces
 from rocking_cli.core.kinematics import Direction, RigidMotion, distance, inside, rotation
 from rocking_cli.core.polygons import nearby
 
-if TYPE_CHECKING:
-    from rocking_cli.core.mechanism import Mechanism
-
 NODES = 65  # rotations from rest to the end of the search at which all bodies are looked at first
-FINER = 17  # rotations inside an interval in which two bodies may meet
-ROUNDS = 8  # refinements of an interval: its width is then below 1e-9 of the first one
+FINER = 33  # rotations inside an interval in which two bodies may meet
+ROUNDS = 7  # refinements of an interval: its width is then below 1e-9 of the first one
 SAME_MOTION = 1e-12  # difference of two motions that counts as none [rad], and over the distance to the origin
 JOINT_GAP = 2e-3  # gap of a joint over width plus height of the smaller body, up to which an assembly joins them
 TOUCHING = 1e-6  # distance, or depth of one body in another, over the size of the structure, that counts as touching
-SHARE_OF_LIMIT = 0.999  # of the kinematic limit, at which linkages have no derivatives
 PATH_MARGIN = 1.25  # length of the path of a point between two rotations over the distance by its rates at both
 JOINED = 0.125  # depth at half the rotation, over that at the whole: above, two bodies overlap from rest on
 
@@ -43,6 +40,8 @@ class Bound(NamedTuple):
         What is met, or the tie.
     body : str
         The body that meets it.
+    at : complex
+        Its point that meets a stop, at rest [m].
     restitution : float or None
         Ratio of the rates after and before, of a stop that throws the structure back; None: the model ends there.
     """
@@ -51,7 +50,14 @@ class Bound(NamedTuple):
     kind: Literal["meets", "leans", "yields"]
     name: str
     body: str = ""
+    at: complex = 0j
     restitution: float | None = None
+
+    @property
+    def words(self) -> str:
+        """What happens at the bound, a clause."""
+        what = {"meets": f"{self.body} meets {self.name}", "leans": f"{self.body} leans on {self.name}"}
+        return f"{what.get(self.kind, f'the tie {self.name} yields')} at {self.phi:.4g} rad"
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,14 +71,30 @@ class _Part:
     def at(self, motions: Sequence[RigidMotion]) -> Points:
         """Return the corners over the rotations of the motions of all links, shape (n, corners) [m]."""
         motion = motions[self.link]
-        return motion.q[:, None] + np.exp(1j * motion.psi)[:, None] * (self.corners - motion.rest)
+        return np.asarray(motion.q[:, None] + np.exp(1j * motion.psi)[:, None] * (self.corners - motion.rest))
 
 
-def meeting(mechanism: Mechanism, direction: Direction) -> Bound | None:
+def first_beyond(value: Callable[[Reals], Reals], low: float, high: float) -> float:
+    """Return the first rotation between two at which a continuous value, positive at the second, is so.
+
+    Parameters
+    ----------
+    value : callable
+        Function of rotations, shape (n,) [rad].
+    low, high : float
+        The rotations [rad].
+    """
+    for _ in range(ROUNDS):
+        phi = np.linspace(low, high, FINER)
+        k = max(int((value(phi) > 0).argmax()), 1)
+        low, high = phi[k - 1], phi[k]
+    return float(high)
+
+
+def meeting(mechanism: Jointed, direction: Direction, end: float) -> Bound | None:
     """Return the first rotation at which two bodies that do not touch, or a body and the ground, meet.
 
-    Bodies that touch at rest count from where they have parted, or where they close elsewhere than at their hinge. The
-    search ends where the potential energy is below that at rest: what has fallen so far does not come back.
+    Bodies that touch at rest count from where they have parted, or where they close elsewhere than at their hinge.
 
     Parameters
     ----------
@@ -80,36 +102,32 @@ def meeting(mechanism: Mechanism, direction: Direction) -> Bound | None:
         Any mechanism; bodies without a shape, and ground that is not drawn as a polygon, are left out.
     direction : Direction
         Direction of rocking.
+    end : float
+        Rotation at which the search ends, below the kinematic limit [rad].
     """
-    search = _Search(mechanism, direction)
+    search = _Search(mechanism, direction, end)
     first: Bound | None = None
     for one, other in search.pairs():
         phi = search.meet(one, other, first.phi if first is not None else search.phi[-1])
         if phi is not None:
             moves, met = (one, other) if one.link else (other, one)
             first = Bound(phi, "meets", met.name, moves.name)
-    if first is None:
-        return None
-    beyond = mechanism.coefficients(np.array([first.phi]), direction).restoring(mechanism.gravity)[0] < 0
-    return first._replace(kind="leans") if beyond else first
+    return first
 
 
 class _Search:
     """The search for meetings in one direction."""
 
-    def __init__(self, mechanism: Mechanism, direction: Direction) -> None:
+    def __init__(self, mechanism: Jointed, direction: Direction, end: float) -> None:
         self.mechanism, self.direction = mechanism, direction
-        self.phi = np.linspace(0.0, SHARE_OF_LIMIT * mechanism.limit(direction), NODES)
-        fallen = np.flatnonzero(mechanism.potential_energy(self.phi, direction) < 0)
-        if fallen.size:
-            self.phi *= fallen[0] / (NODES - 1)
+        self.phi = np.linspace(0.0, end, NODES)
         self.places: list[tuple[int, complex]] = []  # of each link but the ground: its body, and how far beside it
         self.links = [rotation(self.phi, 0j, 0.0)]
         self.parts = [
             _Part(name, piece, link) for name, link, shapes in self._shapes() for z in shapes
             for piece in convex_pieces(z)
         ]  # fmt: skip
-        corners = np.concatenate([part.corners for part in self.parts] or [np.zeros(1)])
+        corners = np.concatenate([part.corners for part in self.parts] or [np.zeros(1, np.complex128)])
         self.tolerance = TOUCHING * float(np.ptp(corners.real) + np.ptp(corners.imag))
 
     def _shapes(self) -> Iterator[tuple[str, int, Sequence[Points]]]:
@@ -186,12 +204,7 @@ class _Search:
 
     def _first(self, one: _Part, other: _Part, low: float, high: float, level: float) -> float:
         """Return the rotation at which the distance of two parts falls below a level, between two rotations."""
-        for _ in range(ROUNDS):
-            phi = np.linspace(low, high, FINER)
-            apart, _ = self._apart(one, other, phi, self._motions(phi))
-            k = max(int((apart < level).argmax()), 1)
-            low, high = phi[k - 1], phi[k]
-        return float(high)
+        return first_beyond(lambda phi: level - self._apart(one, other, phi, self._motions(phi))[0], low, high)
 
     def _apart_at(self, one: _Part, other: _Part, phi: float) -> float:
         at = np.array([phi])

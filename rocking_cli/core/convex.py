@@ -14,16 +14,16 @@ TOUCHING_SHARE = 1e-3  # distance from its sides up to which a point touches it,
 ZERO_TURN = 1e-12  # turn of a side, over the product of the lengths of both, that counts as straight
 
 
-def convex_pieces(corners: Sequence[complex] | Points, others: Sequence[Points] = ()) -> list[Points]:
+def convex_pieces(corners: Sequence[complex] | Points, others: Sequence[Points] | None = None) -> list[Points]:
     """Return convex polygons that together are a simple polygon.
 
     Parameters
     ----------
     corners : sequence of complex
         Corners of the polygon in either order [m].
-    others : sequence of ndarray of complex
-        Polygons beside it. A shallow hollow into which none of them reaches is filled, as under the soffit of a
-        voussoir: fewer pieces, the same contacts.
+    others : sequence of ndarray of complex, optional
+        Polygons beside it: if they are given, a shallow hollow into which none of them reaches is filled, as under the
+        soffit of a voussoir: fewer pieces, the same contacts.
 
     Returns
     -------
@@ -35,16 +35,14 @@ def convex_pieces(corners: Sequence[complex] | Points, others: Sequence[Points] 
     z = z if area_of(z) > 0 else z[::-1]
     if all(_turn(z[k - 2], z[k - 1], z[k]) >= 0 for k in range(len(z))):
         return [z]
-    if (whole := _filled(z, others)) is not None:
+    if others is not None and (whole := _filled(z, others)) is not None:
         return [whole]
     return _merged(_triangles(z), z)
 
 
 def _filled(z: Points, others: Sequence[Points]) -> Points | None:
     """Return the convex hull of a polygon if its hollows are shallow and nothing reaches into them, or None."""
-    from scipy.spatial import ConvexHull
-
-    hull: Points = z[ConvexHull(np.stack([z.real, z.imag], axis=-1)).vertices]
+    hull = _hull(z)
     size = float(np.abs(z - z.mean()).max())
     if distance(z, hull).max() > SHALLOW_SHARE * size:
         return None
@@ -53,6 +51,20 @@ def _filled(z: Points, others: Sequence[Points]) -> Points | None:
         if reaching.size and distance(reaching, hull).max() > TOUCHING_SHARE * size:
             return None
     return hull
+
+
+def _hull(z: Points) -> Points:
+    """Return the convex hull of some points, anticlockwise."""
+    hull: list[complex] = []
+    there = sorted(z.tolist(), key=lambda at: (at.real, at.imag))
+    for side in (there, there[::-1]):
+        start = len(hull)
+        for at in side:
+            while len(hull) > start + 1 and _turn(hull[-2], hull[-1], at) <= 0:
+                hull.pop()
+            hull.append(at)
+        hull.pop()
+    return np.array(hull)
 
 
 def _turn(a: complex, b: complex, c: complex) -> float:

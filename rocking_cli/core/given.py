@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal, Never, Self, final
 
 from pydantic import Field, SerializeAsAny, ValidationError, model_validator
 
-from rocking_cli.core.fields import Described, Name, geometry_error, length, quantity
+from rocking_cli.core.fields import Described, Name, Vertex, geometry_error, length, point, quantity
 from rocking_cli.core.hung.attachments import RefusedFields
 from rocking_cli.core.hung.element import Interlock, Load
 from rocking_cli.core.hung.ties import Tie
@@ -75,6 +75,28 @@ class Uncertainty(Described):
         default=None,
         ge=0,
         lt=1,
+    )
+
+
+class Stop(Described):
+    """A rigid wall that a point of a body meets when it has moved sideways by a gap."""
+
+    name: Name = Field("the stop", description="what to call it")
+    body: Name | None = Field(None, description="the body, by its name in the picture; optional for a single body")
+    point: Vertex = point("the point of the body that meets it", alias="point")
+    gap: float = quantity(
+        "distance to it at rest, to the right of the point; negative: to the left",
+        unit="m",
+        example=0.05,
+        ge=-1e6,
+        le=1e6,
+    )
+    restitution: float | None = quantity(
+        "rate after meeting it over that before; if omitted, time histories end there",
+        example=0.3,
+        default=None,
+        ge=0,
+        le=1,
     )
 
 
@@ -175,6 +197,12 @@ class Given(Described):
         default=None,
         gt=0,
         le=10,
+    )
+    stops: list[Stop] | None = Field(
+        None,
+        max_length=100,
+        examples=[[{"point": [0.35, 2.8], "gap": 0.05, "restitution": 0.3}]],
+        description="walls that it meets as it rocks; `rocking mechanisms stops` lists their fields",
     )
     uncertainty: Uncertainty | None = Field(
         None,

@@ -18,10 +18,10 @@ from pydantic import ValidationError
 from rocking_cli.core import equilibrium
 from rocking_cli.core.answers import Extra, Jointed, Kinematics
 from rocking_cli.core.bodies import Body
-from rocking_cli.core.bounds import Bound, meeting
+from rocking_cli.core.bounds import Bound, first_beyond, meeting
 from rocking_cli.core.coefficients import Coefficients, coefficients
-from rocking_cli.core.given import KINEMATIC, NEEDS_A_SIDE, DirectionalRestitution, Strength
-from rocking_cli.core.hung.attached import Attached, Follow, PointMass
+from rocking_cli.core.given import KINEMATIC, NEEDS_A_SIDE, DirectionalRestitution, Stop, Strength
+from rocking_cli.core.hung.attached import Attached, Follow, PointMass, Spot
 from rocking_cli.core.hung.attachments import (
     Carrier,
     Loc,
@@ -236,7 +236,36 @@ class Mechanism(Jointed):
     @final
     def bounds(self) -> Mapping[Direction, Bound | None]:
         """The rotation of each direction beyond which something else than the mechanism decides; None without one."""
-        return {direction: meeting(self, direction) for direction in self.directions}
+        return {direction: self._bound(direction) for direction in self.directions}
+
+    def _bound(self, direction: Direction) -> Bound | None:
+        """Return the first bound of a direction; what has fallen below its energy at rest has overturned before."""
+        phi = np.linspace(0.0, SHARE_OF_LIMIT * self.limit(direction), SCANNED)
+        fallen = np.flatnonzero(self.potential_energy(phi, direction) < 0)
+        end = float(phi[fallen[0] if fallen.size else -1])
+        stops = [bound for stop in self.stops or () if (bound := self._stopped(stop, direction, end)) is not None]
+        bound = min(stops, key=lambda each: each.phi, default=None)
+        met = meeting(self, direction, end if bound is None else (1 - SAME_PLACE) * bound.phi)
+        bound = bound if met is None else met
+        if bound is None or self.coefficients(np.array([bound.phi]), direction).restoring(self.gravity)[0] > 0:
+            return bound
+        return bound._replace(kind="leans", restitution=None)
+
+    def _stopped(self, stop: Stop, direction: Direction, end: float) -> Bound | None:
+        """Return the bound at which a point of a body meets its stop up to a rotation, or None."""
+        (body,) = [stop.body] if stop.body is not None else [each.name for each in self.bodies()]
+        at = complex(*stop.point)
+
+        def beyond(phi: Reals) -> Reals:
+            moved = self.followed(phi, direction)(Spot(body, at)).z.real - at.real
+            return np.asarray(np.sign(stop.gap) * moved - abs(stop.gap))
+
+        phi = np.linspace(0.0, end, SCANNED)
+        reached = np.flatnonzero(beyond(phi) > 0)
+        if not reached.size:
+            return None
+        first = first_beyond(beyond, phi[max(reached[0] - 1, 0)], phi[reached[0]])
+        return Bound(first, "meets", stop.name, body, at, stop.restitution)
 
     @final
     def restitution_from_kinematics(self, direction: Direction) -> float:
@@ -287,6 +316,9 @@ def _is_final(member: object) -> bool:
     return any(getattr(getattr(member, key, member), "__final__", False) for key in ("fget", "func", "__func__"))
 
 
+SCANNED = 65  # rotations at which the potential energy is compared with that at rest, and stops are looked for
+SAME_PLACE = 1e-6  # difference of the rotations at which a wall is met, and its stop, by rounding
+SHARE_OF_LIMIT = 0.999  # of the kinematic limit, at which linkages have no derivatives
 RESTITUTION_ROUNDING = 1e-9  # relative excess over the bound that is allowed, as equal sides reach the bound
 STRETCH_CHECKS = 129  # rotations at which it is checked whether a tie stretches
 MIN_ELONGATION = 1e-9  # elongation that counts, over the length of the path of a tie, or over 1 m if it is shorter
@@ -301,6 +333,7 @@ def check(mechanism: Mechanism) -> None:
     check_one_sided(mechanism)
     mechanism.total_mass()  # refuses a density without a volume
     check_strength(mechanism)
+    check_stops(mechanism)
     if mechanism.is_laden and not mechanism.has_mass:
         key = "loads" if mechanism.loads else "ties" if mechanism.ties else "interlock"
         raise RefusedFields((), key, NO_MASSES)
@@ -339,6 +372,16 @@ def check_one_sided(mechanism: Mechanism) -> None:
     if mechanism.one_sided is not None and is_null and mechanism.rebound_from_impacts() is None:
         why = "only for a plain rectangle does it follow from the shape; give a number in [0, 1)"
         raise RefusedFields((), "rebound", f"cannot be {KINEMATIC}: {why}")
+
+
+def check_stops(mechanism: Mechanism) -> None:
+    """Refuse stops of bodies that do not exist, or without a distance."""
+    names = [body.name for body in mechanism.bodies()]
+    for k, stop in enumerate(mechanism.stops or ()):
+        if stop.gap == 0:
+            raise RefusedFields(("stops", k), "gap", "must not be 0: describe what leans on a wall by `one_sided`")
+        if stop.body not in names and (stop.body is not None or len(names) > 1):
+            raise RefusedFields(("stops", k), "body", f"must be one of {', '.join(names)}")
 
 
 def check_strength(mechanism: Mechanism) -> None:

@@ -15,6 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
+from rocking_cli.core.bounds import Bound
 from rocking_cli.core.contacts import Contact, Piece
 from rocking_cli.core.hung.attached import Path, PointMass, Spot
 from rocking_cli.core.kinematics import Direction, Integers, Points, Rates, Reals, RigidMotion, VelocityTerm, rotation
@@ -133,6 +134,39 @@ def tabulated_impulses(mechanism: Mechanism, ended: Direction) -> Reals | None:
     jump = np.stack([old.momentum(old.dq), new.momentum(new.dq)], axis=-1)
     pressing = [[old.thrown(contact), new.thrown(contact)] for contact in contacts if contact.pressed_by]
     return np.concatenate([_solved(rates, new, jump)[0][0], np.reshape(pressing, (-1, 2))])
+
+
+def stop_impulses(mechanism: Mechanism, direction: Direction, bound: Bound) -> Reals:
+    """Return the impulses at the contacts of a direction where a stop takes its rate away.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        Any mechanism that gives its contacts.
+    direction : Direction
+        The direction.
+    bound : Bound
+        The stop: its rotation, and the body and its point that meet it.
+
+    Returns
+    -------
+    ndarray, shape (rows,)
+        Impulse of each row of `released`, over the rate that the stop takes [N s per rad/s].
+
+    Raises
+    ------
+    Undetermined
+        If the impulses do not follow from the motion.
+    """
+    contacts = mechanism.contacts(direction) or ()
+    pieces = Pieces(mechanism, direction, np.array([bound.phi]))
+    piece = mechanism.piece_at(bound.body, bound.at, direction)
+    face = Contact((None, piece), (bound.at,), 1 + 0j, held="slide")
+    rates, _ = pieces.rates([*contacts, face])
+    # J^T P = M (q._after - q._before), with the force of the stop, which is not known either, as its last row.
+    jacobian = rates.dense()[0] / pieces.scale
+    momentum = -pieces.momentum(pieces.dq)[0] / pieces.scale
+    return np.asarray((inverted(jacobian[None])[0].T @ momentum)[:-1])
 
 
 def _with_loads(

@@ -15,7 +15,7 @@ Layout: TypeAlias = "str | tuple[str, tuple[Layout, ...]]"
 """An argument: "i" a whole number, "b" a yes or no, "f" a real one, "R2" an array of real numbers with two axes, "I2"
 one of whole numbers; or a tuple, by its name among the names of the kernel ("": without one), with what is in it."""
 
-_JOINTS: Layout = ("Joints", ("I2", "I3", "R2", "R2", "R2", "R2", "R3", "R2"))
+_JOINTS: Layout = ("Joints", ("I2", "I3", "R2", "R2", "R2", "R2", "R2", "R3", "R2"))
 _SAMPLES: Layout = ("Samples", ("i", "R1", "R1", "R2", "R1"))
 _ROOM: Layout = ("Room", ("R2", "R2", "R1", "I1"))
 _SIDE: Layout = ("Side", ("f", "f", "f", "f"))

@@ -25,6 +25,7 @@ from rocking_cli.core.released import (
     Released,
     Undetermined,
     released,
+    stop_impulses,
     tabulated_impulses,
 )
 from rocking_cli.dynamics import kernels
@@ -69,6 +70,9 @@ class JointTables:
     struck : ndarray, shape (2, rows, 2)
         Impulses in the direction that begins, over the rotation rate before the impact [N s per rad/s]: a constant, and
         the factor of eta.
+    stopped : ndarray, shape (2, rows, 2)
+        Impulses of a stop, over the rotation rate before it: a constant, and the factor of its restitution; zeros
+        without a stop.
     within : ndarray, shape (cells, 2, 5)
         Quick test that no joint fails, for each cell of q and each direction: five numbers (a, b, c, d, e). All joints
         hold if a + b q.^2 <= u_g'' <= c + d q.^2 and q.^2 <= e. Outside these bounds the forces must be computed.
@@ -111,6 +115,7 @@ class JointTables:
     bearing: Reals
     rows: Reals
     struck: Reals
+    stopped: Reals
     within: Reals
     reach: float
     limit: float
@@ -193,14 +198,7 @@ class JointCheck:
     at_rest: bool = True
 
 
-REASONS = (
-    "opens",
-    "slides",
-    "crushes",
-    "weightless",
-    "apart",
-    "bound",
-)  # reasons of failure, by their number in the kernel
+REASONS = ("opens", "slides", "crushes", "weightless", "apart", "bound")  # of failure, by their number in the kernel
 
 
 def check_of(joints: JointTables | None, marks: Reals) -> JointCheck | None:
@@ -293,7 +291,7 @@ def joints_of(
     weight = mechanism.gravity * sum(body.mass for body in mechanism.weighed())
     rows = np.zeros((cells, 2, row_count, 20))
     within = np.zeros((CELL_SPLITS * cells, 2, 5))
-    struck = np.zeros((2, row_count, 2))
+    struck, stopped = np.zeros((2, 2, row_count, 2))
     rest, steady = _at_rest(still, labels, bearing, weight)
     plain = len(labels)
     labels += [mode.joint for mode in still.modes]
@@ -314,9 +312,13 @@ def joints_of(
         within[:, d] = _within(cubics, contacts[:, d], bearing)
         if (hit := answers[d][1]) is not None:
             struck[d, : len(hit)] = hit
+        bound = mechanism.bounds[direction]
+        if bound is not None and bound.restitution is not None and not redundant:
+            by_stop = stop_impulses(mechanism, direction, bound)
+            stopped[d, : len(by_stop)] = by_stop[:, None]
     sliding = {k for k, mode in enumerate(still.modes, plain) if mode.slides}
     return JointTables(
-        labels, contacts, bearing, rows, struck, within, _reach(mechanism, statics), OPENING,
+        labels, contacts, bearing, rows, struck, stopped, within, _reach(mechanism, statics), OPENING,
         not any(table.held.size for table in tables), MAX_OPENING_STEP / p, mechanism.gravity, rest, steady,
         mechanism.asserted(), sliding, redundant, _calm(within, tables, statics),
         len(mechanism.bodies()) == 1, checked_joints(mechanism), still.known,
@@ -567,7 +569,7 @@ def checked_joints(mechanism: Mechanism) -> Sequence[str]:
 
 def laid_out(
     all_joints: Sequence[JointTables | None],
-) -> tuple[Integers, Integers, Reals, Reals, Reals, Reals, Reals, Reals]:
+) -> tuple[Integers, Integers, Reals, Reals, Reals, Reals, Reals, Reals, Reals]:
     """Return the joints of several structures, one after the other, as the fields of `kernels.Joints`."""
     counts = np.zeros((len(all_joints), 8), np.int64)
     numbers = np.ones((len(all_joints), 8))
@@ -591,6 +593,7 @@ def laid_out(
         np.concatenate([np.zeros((0, 2)), *(each.bearing for each in known)]),
         np.concatenate([np.zeros((0, kernels.OF_ROW)), *(each.rows.reshape(-1, kernels.OF_ROW) for each in known)]),
         np.concatenate([np.zeros((0, 2)), *(each.struck.reshape(-1, 2) for each in known)]),
+        np.concatenate([np.zeros((0, 2)), *(each.stopped.reshape(-1, 2) for each in known)]),
         np.concatenate([np.zeros((0, 5)), *(each.within.reshape(-1, 5) for each in known)]),
         np.concatenate([np.zeros((0, 3, 4)), *(each.rest for each in known)]),
         numbers,

@@ -23,9 +23,10 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 # Columns of `numbers`, one row a direction.
-# Q_BOUND is the q at which something else than the mechanism decides, infinite where nothing does.
-LAMBDA, Q_CR, ETA, RATE, REST, Q_END, PER_CELL, P, KAPPA_G, GRAVITY, HELD, ONE_SIDED, Q_BOUND = range(13)
-COLUMNS = 13
+# Q_BOUND is the q at which something else than the mechanism decides, infinite where nothing does; BOUND_ETA the
+# restitution of a stop there, NaN where the motion is not known beyond.
+LAMBDA, Q_CR, ETA, RATE, REST, Q_END, PER_CELL, P, KAPPA_G, GRAVITY, HELD, ONE_SIDED, Q_BOUND, BOUND_ETA = range(14)
+COLUMNS = 14
 # Columns of `records`, one row a ground motion: first sample and number of samples of either component, and of the
 # strongest that is still to come; intervals.
 U_FIRST, U_SIZE, V_FIRST, V_SIZE, AHEAD_FIRST, AHEAD_SIZE, DT, V_DT = range(8)
@@ -72,6 +73,7 @@ SLOW = 0.5  # length of an interval after the record, in 1/p
 LOOK = 1.25e-3  # s: longest step in which openings of joints are advanced, eight in 0.01 s
 BEHIND = 1e-11  # distance behind a corner of the force at which a motion goes on, over a cell
 COINCIDE = 1e-9  # distance of moments that coincide, over a sample interval
+TINY = 1e-300  # divisor of what is zero too
 LONG = 1e3  # s after the record by which sliding at rest has stopped
 
 SOURCE: list[Callable[..., object]] = []
@@ -105,6 +107,7 @@ class Joints(NamedTuple):
     rows: np.ndarray
     # (n, 2): of its directions and rows, impulses over the rate before, a constant and the factor of eta
     struck: np.ndarray
+    stopped: np.ndarray  # (n, 2): the same of a stop, in the direction that it ends for a moment
     within: np.ndarray  # (n, 5): of its cells and directions, where all joints bear for certain, see `quiet`
     # (joints, 3, 4): of both normal forces and the shear force at rest, factors of 1, u_g'' and v_g'', and compliance
     rest: np.ndarray
@@ -124,6 +127,7 @@ class Watch(NamedTuple):
     bearing: np.ndarray
     rows: np.ndarray
     struck: np.ndarray
+    stopped: np.ndarray
     within: np.ndarray
     rest: np.ndarray
     steady_from: float  # u_g'' at which no joint fails at rest
@@ -567,8 +571,11 @@ def quiet(watch, law, ground, tau, q, w):
 
 
 @called
-def weigh(watch, d, per_end, q, w, u, weight, lift):
-    """Fill in how fast each joint would open and slip at this moment, and return the `Demand`."""
+def weigh(watch, d, per_end, q, w, u, weight, lift, held):
+    """Fill in how fast each joint would open and slip at this moment, and return the `Demand`.
+
+    `held` is the acceleration of phi that a stop holds back.
+    """
     rows, kept = watch.rows, watch.kept
     place = q * per_end * watch.cells
     k = min(max(int(place), 0), watch.cells - 1)
@@ -588,6 +595,7 @@ def weigh(watch, d, per_end, q, w, u, weight, lift):
                 continue
             at = rows[row + r]
             n = one * cubic(at, 0, x) + push * cubic(at, 4, x) + rate * cubic(at, 8, x) + up * cubic(at, 12, x)
+            n += held * watch.stopped[d * watch.lines + r, 0]
             total += n
             kept[j, GAP_ACC + end] = -n * cubic(at, 16, x)
             if -n > missing:
@@ -600,6 +608,7 @@ def weigh(watch, d, per_end, q, w, u, weight, lift):
         if isfinite(friction):
             at = rows[row + shear]
             t = one * cubic(at, 0, x) + push * cubic(at, 4, x) + rate * cubic(at, 8, x) + up * cubic(at, 12, x)
+            t += held * watch.stopped[d * watch.lines + shear, 0]
             c = cubic(at, 16, x)
             for sense in range(2):
                 left = friction * max(total, 0.0) - (1.0 - 2.0 * sense) * t
@@ -698,10 +707,11 @@ def copy_accelerations(watch, column):
 
 
 @called
-def look(watch, law, ground, t, tau, state, size, ended, peak, marks):
+def look(watch, law, ground, t, tau, state, size, ended, peak, held, held_end, marks):
     """Check the joints over a step: how far any opens or slips if it alone could.
 
-    `peak` is the largest q of its direction before the step.
+    `peak` is the largest q of its direction before the step, `held` and `held_end` the accelerations of phi that a stop
+    holds back at both ends.
     """
     notes, kept, d, q_cr = watch.notes, watch.kept, law.d, law.q_cr
     notes[FRESH] = 0.0
@@ -710,7 +720,7 @@ def look(watch, law, ground, t, tau, state, size, ended, peak, marks):
     u0, ramp = s * ground.push * watch.slender, s * ground.ramp * watch.slender
     lift = ground.g - law.gravity
     if not abs(notes[SEEN] - t - tau) <= COINCIDE * size:  # else the step before has ended here
-        now = weigh(watch, d, per_end, state.q, state.w, u0 + ramp * tau, unit, lift + ground.grade * tau)
+        now = weigh(watch, d, per_end, state.q, state.w, u0 + ramp * tau, unit, lift + ground.grade * tau, held)
         note(watch, d, q_cr, t + tau, state.q, now, notes[MOVING] > 0, marks)
     notes[SEEN] = t + tau + size
     copy_accelerations(watch, START_ACC)
@@ -719,10 +729,11 @@ def look(watch, law, ground, t, tau, state, size, ended, peak, marks):
     if steps > 2:
         q, w = between(state, ended, size, 0.5)
         at = tau + size / 2
-        half = weigh(watch, d, per_end, q, w, u0 + ramp * at, unit, lift + ground.grade * at)
+        middle = (held + held_end) / 2
+        half = weigh(watch, d, per_end, q, w, u0 + ramp * at, unit, lift + ground.grade * at, middle)
         copy_accelerations(watch, HALF_ACC)
     at = tau + size
-    last = weigh(watch, d, per_end, ended.q, ended.w, u0 + ramp * at, unit, lift + ground.grade * at)
+    last = weigh(watch, d, per_end, ended.q, ended.w, u0 + ramp * at, unit, lift + ground.grade * at, held_end)
     if steps <= 2:
         for j in range(watch.size):
             for end in range(4):
@@ -777,12 +788,19 @@ def between(state, ended, size, x):
 
 
 @called
-def strike(watch, d, t, rate, eta, marks):
-    """Open the joints, or let them slide, that an impact does not press together; d is the direction that begins."""
-    kept, rows = watch.kept, watch.rows
-    moving, missing, where, row = False, 0.0, -1, d * watch.lines
+def strike(watch, d, t, place, impulses, rate, eta, marks):
+    """Open the joints, or let them slide, that an impact does not press together.
+
+    d is the direction that begins; or that which a stop ends for a moment, at a `place` above 0 of its range of q.
+    `impulses` are those of `struck` or `stopped`.
+    """
+    kept, row = watch.kept, d * watch.lines
+    moving, missing, where = False, 0.0, -1
+    k = min(int(place * watch.cells), watch.cells - 1)
+    x = place * watch.cells - k
+    first = (2 * k + d) * watch.lines
     for j in range(watch.size):
-        if watch.contacts[j, d, CHANGES]:
+        if place == 0 and watch.contacts[j, d, CHANGES]:
             kept[j, GAP : GAP + 4] = 0.0
         shear = watch.contacts[j, d, SHEAR]
         if shear < 0:
@@ -791,19 +809,19 @@ def strike(watch, d, t, rate, eta, marks):
         for end in range(2):
             r = watch.contacts[j, d, NORMAL + end]
             if r >= 0:
-                p = rate * (watch.struck[row + r, 0] + eta * watch.struck[row + r, 1])
+                p = rate * (impulses[row + r, 0] + eta * impulses[row + r, 1])
                 total += p
                 if -p > missing:
                     missing, where = -p, j
-                kept[j, GAP_RATE + end] += rows[row + r, 16] * max(0.0, -p)
+                kept[j, GAP_RATE + end] += cubic(watch.rows[first + r], 16, x) * max(0.0, -p)
         friction = watch.bearing[j, FRICTION]
         if isfinite(friction):
-            p = rate * (watch.struck[row + shear, 0] + eta * watch.struck[row + shear, 1])
+            p = rate * (impulses[row + shear, 0] + eta * impulses[row + shear, 1])
             for sense in range(2):
                 left = friction * max(total, 0.0) - (1.0 - 2.0 * sense) * p
                 if -left > missing:
                     missing, where = -left, j
-                kept[j, SLIP_RATE + sense] += rows[row + shear, 16] * max(0.0, -left)
+                kept[j, SLIP_RATE + sense] += cubic(watch.rows[first + shear], 16, x) * max(0.0, -left)
         for end in range(2):
             if kept[j, GAP + end] > 0 or kept[j, GAP_RATE + end] > 0 or kept[j, SLIP_RATE + end] > 0:
                 moving = True
@@ -952,12 +970,12 @@ def fly(forces, corners, law, ground, t, tau, end, state, h, rtol, watched, watc
             size = inside
             if event != REACHED:
                 if watched and (watch.notes[FRESH] != 0 or not quiet(watch, law, ground, tau + size, ended.q, ended.w)):
-                    look(watch, law, ground, t, tau, state, size, ended, peak, marks)
+                    look(watch, law, ground, t, tau, state, size, ended, peak, 0.0, 0.0, marks)
                 return event, end if whole else min(tau + size, end), ended, h
             if inside < part:
                 behind = nan
         if watched and (watch.notes[FRESH] != 0 or not quiet(watch, law, ground, tau + size, ended.q, ended.w)):
-            look(watch, law, ground, t, tau, state, size, ended, peak, marks)
+            look(watch, law, ground, t, tau, state, size, ended, peak, 0.0, 0.0, marks)
         state = State(behind, ended.w, ended.f) if isfinite(behind) else ended
         tau = end if whole else tau + size
         if state.q >= law.q_end:
@@ -1041,6 +1059,14 @@ def stays(numbers, u):
     return -numbers[1, LAMBDA] * g <= -u and -u <= numbers[0, LAMBDA] * g
 
 
+@inlined
+def pressure(structure, law, push, g):
+    """The acceleration of phi with which the ground pushes a structure that does not move against its stop."""
+    q = law.q_bound
+    _, speed = angle(structure, law.d, q)
+    return speed * (balance(law, q, push) if law.exact else force(structure.forces, law, q, push, g))
+
+
 @called
 def draw(structure, law, ground, t, flight, rtol, dt, drawn, watch, samples):
     """Fill in the output samples between tau and end by a separate integration.
@@ -1105,6 +1131,7 @@ def follow(structure, motion, start, loose, rtol, most_impacts, brief, watch, sa
     law = law_of(exact, numbers, d)
     q, w, f = abs(start), 0.0, 0.0
     known = fresh = False  # whether f is q.. at (q, w) now; whether it was found anew
+    held = False  # whether the ground pushes it against a stop
     resting = q == 0.0
     marks[PEAK + d] = q
     if q >= law.q_bound:
@@ -1167,7 +1194,7 @@ def follow(structure, motion, start, loose, rtol, most_impacts, brief, watch, sa
                 if watched:
                     ground = Ground(s * u0, s * ramp, gravity, 0.0)
                     if watch.notes[FRESH] != 0 or not quiet(watch, law, ground, span, ended.q, ended.w):
-                        look(watch, law, ground, t, 0.0, state, span, ended, marks[PEAK + d], marks)
+                        look(watch, law, ground, t, 0.0, state, span, ended, marks[PEAK + d], 0.0, 0.0, marks)
                 marks[PEAK + d] = max(marks[PEAK + d], ended.q)
                 q, w, f = ended
                 tau = span
@@ -1218,6 +1245,18 @@ def follow(structure, motion, start, loose, rtol, most_impacts, brief, watch, sa
                     q, w, known = 0.0, 0.0, False
                     if not isfinite(marks[FIRST_UPLIFT]):
                         marks[FIRST_UPLIFT] = t + tau
+                if held:
+                    pressed = pressure(structure, law, s * (u0 + ramp * tau), g + grade * tau)
+                    later = pressure(structure, law, s * (u0 + ramp * end), g + grade * end)
+                    until = end if later > 0 else tau + (end - tau) * max(pressed, 0.0) / max(pressed - later, TINY)
+                    if watched and until > tau:
+                        later = max(later, 0.0)
+                        there, ground = State(q, 0.0, 0.0), Ground(s * u0, s * ramp, g, grade)
+                        look(watch, law, ground, t, tau, there, until - tau, there, q, max(pressed, 0.0), later, marks)
+                    held = until >= end
+                    tau = min(until, end)
+                    if held:
+                        break
                 if not known:
                     push = s * (u0 + ramp * tau)
                     f = balance(law, q, push) if exact else force(forces, law, q, push, g + grade * tau)
@@ -1242,10 +1281,17 @@ def follow(structure, motion, start, loose, rtol, most_impacts, brief, watch, sa
                     marks[ENDED], marks[SIDE] = t + tau, d
                     if q < law.q_bound:
                         return OVERTURNED
-                    if not isfinite(marks[PASSED]):
-                        watch.notes[SO_FAR], watch.notes[SO_FAR + 1] = marks[PEAK], marks[PEAK + 1]
-                        passed(watch, d, t + tau, q, BOUND, -1, marks)
-                    return LEFT
+                    watch.notes[SO_FAR], watch.notes[SO_FAR + 1] = marks[PEAK], marks[PEAK + 1]
+                    stop = numbers[d, BOUND_ETA]
+                    if not isfinite(stop):
+                        if not isfinite(marks[PASSED]):
+                            passed(watch, d, t + tau, q, BOUND, -1, marks)
+                        return LEFT
+                    if watched:
+                        _, speed = angle(structure, d, q)
+                        strike(watch, d, t + tau, q / law.q_end, watch.stopped, w * speed, stop, marks)
+                    held = stop * w <= numbers[d, REST] or loops > CHATTER
+                    w, known = 0.0 if held else -stop * w, False
                 if event == IMPACT:
                     idle = 0
                     n = int(marks[IMPACTS])
@@ -1257,7 +1303,7 @@ def follow(structure, motion, start, loose, rtol, most_impacts, brief, watch, sa
                     if loose and not isfinite(marks[PASSED]):
                         passed(watch, d, t + tau, 0.0, APART, -1, marks)
                     if watched:
-                        strike(watch, side, t + tau, -w * numbers[d, RATE], numbers[d, ETA], marks)
+                        strike(watch, side, t + tau, 0.0, watch.struck, -w * numbers[d, RATE], numbers[d, ETA], marks)
                     w = numbers[d, ETA] * -w * numbers[d, RATE] / numbers[side, RATE]  # Eq. 6, on phi.
                     d = side
                     s = 1.0 - 2.0 * d
@@ -1349,6 +1395,7 @@ def watch_of(joints, m, size, slender, motion, room):
         joints.bearing[first : first + count],
         joints.rows[rows_at : rows_at + cells * 2 * rows],
         joints.struck[struck_at : struck_at + 2 * rows],
+        joints.stopped[struck_at : struck_at + 2 * rows],
         joints.within[within_at : within_at + within_cells * 2],
         joints.rest[first : first + count],
         steady_from,

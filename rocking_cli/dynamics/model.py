@@ -18,6 +18,7 @@ from rocking_cli.core.given import Uncertainty
 from rocking_cli.core.mechanism import why_none
 from rocking_cli.dynamics.joints import JointTables, joints_of
 from rocking_cli.dynamics.kernels import (
+    BOUND_ETA,
     COLUMNS,
     ETA,
     GRAVITY,
@@ -158,7 +159,7 @@ class Model:
         pairs = ((of[:, 0], of[:, 1]) for of in (self.forces, self.certain, self.held) if len(of))
         same = all(np.allclose(one, other, rtol=0, atol=EQUAL_TABLES * np.abs(one).max()) for one, other in pairs)
         one, other = self.numbers  # the numbers have different units
-        return same and np.allclose(one, other, rtol=EQUAL_TABLES, atol=EQUAL_TABLES**2)
+        return same and np.allclose(one, other, rtol=EQUAL_TABLES, atol=EQUAL_TABLES**2, equal_nan=True)
 
     def q(self, ratio: float) -> float:
         """Return the kernel's coordinate q at a signed rotation, given as a fraction of the phi_cr of its direction."""
@@ -262,11 +263,13 @@ def _bounded(model: Model, mechanism: Mechanism) -> Model:
     """Return a model that ends at the first bound of each direction, if there is one within its table."""
     numbers = model.numbers.copy()
     bounds = [mechanism.bounds[direction] for direction in mechanism.sides]
+    if model.joints is not None and model.joints.redundant:  # the impulses of a stop on them are not known
+        bounds = [bound and bound._replace(restitution=None) for bound in bounds]
     for side, bound in enumerate(bounds):
-        if bound is not None and model.tables is None:
-            numbers[side, Q_BOUND] = bound.phi
-        elif bound is not None and bound.phi < model.tables[side].nodes[-1]:
-            numbers[side, Q_BOUND] = model.tables[side].q(bound.phi)
+        if bound is None or (model.tables is not None and bound.phi >= model.tables[side].nodes[-1]):
+            continue
+        numbers[side, Q_BOUND] = bound.phi if model.tables is None else model.tables[side].q(bound.phi)
+        numbers[side, BOUND_ETA] = np.nan if bound.restitution is None else bound.restitution
     return replace(model, numbers=numbers, bounds=(bounds[0], bounds[1]))
 
 
@@ -304,7 +307,7 @@ def nonlinear_model(mechanism: Mechanism, statics: tuple[Statics, Statics], etas
         row[Q_END], row[PER_CELL], row[P], row[GRAVITY] = table.end, 1 / table.cell, p, mechanism.gravity
         rest = mechanism.coefficients(np.zeros(1), direction)
         row[HELD] = rest.Q[0] / (mechanism.gravity * rest.B[0])  # part of lambda that does not scale with g
-        row[Q_BOUND] = np.inf
+        row[Q_BOUND], row[BOUND_ETA] = np.inf, np.nan
         numbers.append(row)
     forces, angles, certain = (
         np.stack([getattr(table, part) for table in tables], axis=1) for part in ("forces", "angles", "certain")
@@ -368,7 +371,8 @@ def linear_model(label: str, name: ModelName, blocks: tuple[EquivalentBlock, Equ
         row = np.zeros(COLUMNS)
         row[LAMBDA], row[Q_CR], row[ETA], row[RATE] = block.phi_cr / kappa, block.phi_cr, block.eta, 1.0
         row[REST], row[Q_END], row[PER_CELL] = REST_RATE * block.p * block.phi_cr, FALLEN_ROTATION, 1.0
-        row[P], row[KAPPA_G], row[GRAVITY], row[Q_BOUND] = block.p, kappa / gravity, gravity, np.inf
+        row[P], row[KAPPA_G], row[GRAVITY] = block.p, kappa / gravity, gravity
+        row[Q_BOUND], row[BOUND_ETA] = np.inf, np.nan
         numbers.append(row)
         stiffness = block.p**2 / gravity
         forces[0, d, [0, 1, 4]] = stiffness * block.phi_cr, -stiffness, stiffness * kappa  # Eq. 12

@@ -200,7 +200,7 @@ def _head(picture: Picture, direction: Direction, ratio: float, width: float) ->
     if picture.start is not None:
         return f"{direction.label}\nas it starts"
     phi = ratio * picture.reference[direction]
-    times = "" if ratio == 1 else f"{ratio:g} "
+    times = "" if ratio == 1 else f"{ratio:.3g} "
     of = "" if picture.phi_cr[direction] is None else rf"{times}$\phi_{{cr}}$ = "
     value = f"{phi:.3g} rad = {three_digits(degrees(phi))}°"
     lines = style.folded(rf"$\phi$ = {of}{value.replace(' ', NO_BREAK)}", width, style.LABEL)

@@ -27,6 +27,7 @@ from rocking_cli.core import (
     Sketch,
     disc,
 )
+from rocking_cli.core.bounds import Bound
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.mechanism import extent
 from rocking_cli.errors import RockingError, StructureError
@@ -546,10 +547,14 @@ def _picture(mechanism: Mechanism, collapses: Mapping[Direction, CollapseMechani
     bodies, sketch = mechanism.bodies(), mechanism.sketch()
     phi_cr: dict[Direction, float | None] = dict.fromkeys(mechanism.directions)
     limit = dict.fromkeys(mechanism.directions, MAX_LIMIT_SHARE)
+    met: dict[Direction, Bound] = {}
     starts = not all(each.lead or not each.velocities for each in collapses.values())
     if not starts:
         phi_cr = {direction: _critical(mechanism, direction) for direction in mechanism.directions}
         limit = {direction: MAX_LIMIT_SHARE * mechanism.limit(direction) for direction in mechanism.directions}
+        met = {side: each for side, each in mechanism.bounds.items() if each is not None and each.kind != "yields"}
+        limit |= {direction: bound.phi for direction, bound in met.items()}
+        sketch = replace(sketch, notes=[*sketch.notes, *(f"{side.label}: {each.words}" for side, each in met.items())])
     seen = {direction: limit[direction] if phi is None else phi for direction, phi in phi_cr.items()}
     if not starts and not (min(seen.values()) > 0 and extent(mechanism) > MIN_SIZE):
         raise StructureError("it is too small to be drawn: check the sizes and their units")
@@ -577,8 +582,11 @@ def _picture(mechanism: Mechanism, collapses: Mapping[Direction, CollapseMechani
                 letter, point = hinge.letter if k == carriers[0] else "", hinge.point + parts[k].shift
                 pins.append(DrawnHinge(letter, point, k, direction, hinge.slide))
     outlines = [outline for part in parts for outline in part.outlines]
-    ground = tuple(face for each in sketch.ground for face in _faces(np.asarray(each, np.complex128), outlines))
-    ground = ground or _level_ground(parts, pins)
+    lines = [np.asarray(each, np.complex128) for each in sketch.ground]
+    whole = [name in {each.name for each in met.values()} for name in sketch.ground_names] or [False] * len(lines)
+    ground = tuple(
+        face for line, drawn in zip(lines, whole, strict=True) for face in ([line] if drawn else _faces(line, outlines))
+    ) or _level_ground(parts, pins)
     if any(part.assumed for part in parts):
         sketch = replace(sketch, notes=[*sketch.notes, ASSUMED_NOTE])
     if mechanism.crushing:

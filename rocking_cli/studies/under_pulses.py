@@ -85,8 +85,9 @@ class PulsedModel:
 
     @property
     def may_open(self) -> bool:
-        """Whether the structure has joints that could open or slide, so that outcomes may be unknown."""
-        return self.model.joints is not None and bool(self.model.joints.labels)
+        """Whether outcomes may be unknown, as the structure has joints that could open or slide, or a bound."""
+        joints = self.model.joints is not None and bool(self.model.joints.labels)
+        return joints or self.model.bounds != (None, None)
 
     @property
     def symmetric(self) -> bool:
@@ -217,7 +218,8 @@ def outcomes(
     with 400 points to a period: amplitudes of overturning have a relative error of some 1e-8, the peaks of motions that
     only just uplift one of 1e-4.
     """
-    exact = structure.model.is_linear and shape.segments() and structure.model.one_sided is None
+    free = structure.model.one_sided is None and structure.model.bounds == (None, None)
+    exact = structure.model.is_linear and shape.segments() and free
     follow = _exactly if exact else _by_histories
     # The reversed pulse has the same effect on a symmetric structure.
     first, *others = polarities[:1] if structure.symmetric else polarities

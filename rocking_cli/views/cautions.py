@@ -9,7 +9,7 @@ from rocking_cli.core.equivalence import EQUAL_DIRECTIONS
 from rocking_cli.core.mechanism import why_none
 from rocking_cli.dynamics.resting import early_failures
 from rocking_cli.names import digits_apart
-from rocking_cli.views.verdict import SENSE, bound_in_words
+from rocking_cli.views.verdict import SENSE
 
 OPENING_CAUTION = (
     "lambda and what follows from it are unconservative: describe the structure so that this joint can move"
@@ -25,7 +25,12 @@ def cautions_of(mechanism: Mechanism) -> list[str]:
 def of_bounds(mechanism: Mechanism) -> list[str]:
     """Return what happens at the bound of each direction, beyond which its motion is not known, in words."""
     return [
-        f"{SENSE[direction].capitalize()}, {bound_in_words(bound)}: time histories are unknown from there on."
+        f"{SENSE[direction].capitalize()}, {bound.words}: "
+        + (
+            "time histories are unknown from there on."
+            if bound.restitution is None
+            else f"it is thrown back with {bound.restitution:g} times its rate."
+        )
         for direction, bound in mechanism.bounds.items()
         if bound is not None
     ]

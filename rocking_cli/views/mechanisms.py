@@ -11,7 +11,7 @@ from pydantic_core import PydanticUndefined
 
 from rocking_cli.core import Mechanism
 from rocking_cli.core.contract import Verdict
-from rocking_cli.core.given import Crushing, Strength, Uncertainty
+from rocking_cli.core.given import Crushing, Stop, Strength, Uncertainty
 from rocking_cli.core.hung.element import Interlock, Load
 from rocking_cli.core.hung.steel import AnchorPlate, BearingWall
 from rocking_cli.core.hung.ties import Face, Place, Tie
@@ -83,8 +83,8 @@ def installed(found: Sequence[InstalledMechanism]) -> View:
             "Next: `rocking new NAME > structure.yaml` prints a file to start from, and `rocking draw structure.yaml` "
             "draws it. `rocking mechanisms NAME` lists the fields of a mechanism. If none fits, list blocks in an "
             "`assembly`, or bodies and joints in a `linkage`. Loads, ties, supports, strengths and uncertainties can "
-            "be added to any mechanism: see `rocking mechanisms loads`, `ties`, `interlock`, `crushing`, `strength`, "
-            "`uncertainty`.",
+            "be added to any mechanism: see `rocking mechanisms loads`, `ties`, `stops`, `interlock`, `crushing`, "
+            "`strength`, `uncertainty`.",
         ],
     )
 
@@ -118,6 +118,7 @@ PARTS: dict[str, tuple[str, dict[str, type[BaseModel]]]] = {
         "a tie, one of the list `ties` of any mechanism",
         {"": Tie, "from, to, path": Place, "bed": Face, "plate": AnchorPlate, "wall": BearingWall},
     ),
+    "stops": ("a wall that it meets, one of the list `stops` of any mechanism", {"": Stop}),
     "crushing": ("the strength of pivots, `crushing` of single bodies and walls", {"": Crushing}),
     "interlock": ("the friction of crossing walls, `interlock` of any mechanism", {"": Interlock}),
     "strength": ("the strength of contacts, `strength` of any mechanism", {"": Strength}),

@@ -8,7 +8,6 @@ from math import isfinite, isnan
 from rocking_cli import names
 from rocking_cli.core import Direction
 from rocking_cli.core.advice import Grade, grade
-from rocking_cli.core.bounds import Bound
 from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.joints import JointCheck
@@ -21,6 +20,7 @@ TIME_TOLERANCE = 1e-2  # s within which two events are at the same time
 ASSUMED = (
     "The friction required, {:.3g}, is more than the {:g} usual for masonry: the result assumes that nothing slides."
 )
+INVALID_REASON = "the model no longer holds: a joint opens or slides too far, or something is met"
 NO_JOINTS = "The equivalent blocks have no joints, so their results are not those of the structure."
 MIN_OPENING = 1e-6  # share of D_cr: a smaller opening is reported as none
 # From a comparison with free blocks: a peak below SMALL_PEAK has an error of some 20 % if a joint opens by more than
@@ -114,7 +114,7 @@ def why_unknown(history: History) -> str | None:
             "ends otherwise"
         )
     if history.bound is not None:
-        return bound_in_words(history.bound)
+        return history.bound.words
     if check is None or check.reason in (None, "weightless"):
         return "nothing holds the structure down, as v_g'' comes down to -g"
     if check.reason == "crushes":
@@ -122,14 +122,6 @@ def why_unknown(history: History) -> str | None:
     does = "has slid by" if check.reason == "slides" else "has opened by"
     limit = f"{percent(check.limit)} of D_cr = {check.reach:.3g} m, by which the farthest block moves up to phi_cr"
     return f"the joint between {check.joint} {does} {_small(check.limit * check.reach, 'm')} ({limit})"
-
-
-def bound_in_words(bound: Bound) -> str:
-    """Return what happens at the bound of a motion, a clause."""
-    at = f"at {bound.phi:.4g} rad"
-    if bound.kind == "yields":
-        return f"the tie {bound.name} yields {at}"
-    return f"{bound.body} {'meets' if bound.kind == 'meets' else 'leans on'} {bound.name} {at}"
 
 
 def unknown_after(history: History) -> str:
@@ -189,7 +181,7 @@ def verdict(
     if run.unknown or (best == "nonlinear" and run.check is not None):
         sentences += filter(None, [joints_in_words(run, assumed_friction)])
     if run.unknown and len(histories) > 1:
-        sentences.append(NO_JOINTS)
+        sentences += [NO_JOINTS] if run.bound is None else []
     else:
         sentences += blocks_in_words(histories, agreed, {name: name for name in histories})
     if not run.unknown and disagree(histories):

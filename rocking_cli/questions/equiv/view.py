@@ -209,7 +209,7 @@ def _data(side: EquivalentSide, bound: Bound | None) -> dict[str, Any]:
         "stiffening": side.statics.stiffening,
         "limit": side.statics.limit,
         "no_block": side.statics.why_no_block,
-        "bound": bound._asdict() if bound is not None else None,
+        "bound": {key: value for key, value in bound._asdict().items() if key != "at"} if bound is not None else None,
     }
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rocking_cli.core.registry import Registry
     from rocking_cli.studies.picture import Picture
 
-PARTS = ("loads", "ties", "interlock", "strength", "crushing", "uncertainty")
+PARTS = ("loads", "ties", "stops", "interlock", "strength", "crushing", "uncertainty")
 """Additions to any mechanism, with fields of their own."""
 LOADS_CHECK = "The plugin can be loaded, and is a mechanism."
 TEMPLATE_CHECK = "The file that `rocking new` prints is a structure."
@@ -37,8 +37,8 @@ TEMPLATE_CHECK = "The file that `rocking new` prints is a structure."
 def command(name: str | None, file: str | None, checked: bool, plot: Path | None, as_json: bool) -> None:
     """List the installed mechanisms and the structures that each suits; with NAME, show the fields of one.
 
-    NAME may also be `loads`, `ties`, `interlock`, `strength`, `crushing` or `uncertainty`, which can be added to any
-    mechanism.
+    NAME may also be `loads`, `ties`, `stops`, `interlock`, `strength`, `crushing` or `uncertainty`, which can be added
+    to any mechanism.
 
     With --check, the command compares the coefficients of the mechanism with its bodies and their motion, and prints
     which checks pass and which fail, with the traceback of an error in the mechanism. The exit code is 3 if a check

@@ -17,7 +17,7 @@ from rocking_cli.questions.overturning.study import FALLS, Comparison, Overturni
 from rocking_cli.studies.under_pulses import PulsedModel
 from rocking_cli.views.column import only_shown, rounded, table_of
 from rocking_cli.views.engines import BLOCKS_FAILED, engines_in_words
-from rocking_cli.views.verdict import unchecked
+from rocking_cli.views.verdict import INVALID_REASON, unchecked
 from rocking_cli.views.view import ABSENT, Table, View, number
 
 MAX_TABLE_ROWS = 9  # rows of a table; --out and --json have the whole curves
@@ -63,10 +63,10 @@ def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionles
         f"Shares of the points of the map, which depend on the ranges of its axes: {shares}.",
     ]
     if some_unknown:
-        opens = "a joint opens or slides so far that the model no longer holds"
+        why = INVALID_REASON if found.structure.engine.name == "exact" else BLOCKS_FAILED
         parts.append(
-            f"The outcome is unknown where {opens if found.structure.engine.name == 'exact' else BLOCKS_FAILED}: the "
-            "structure may stand or overturn there. Next: `rocking respond` with such a pulse says why, and when."
+            f"The outcome is unknown where {why}; the structure may stand or overturn there. Next: `rocking respond` "
+            "with such a pulse says why, and when."
         )
     if not (found.outcome.peak_ratio != 0).any():
         parts.append(

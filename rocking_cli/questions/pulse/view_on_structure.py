@@ -28,6 +28,7 @@ from rocking_cli.questions.pulse.view import (
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Concluding
 from rocking_cli.studies.contact import Contacts
+from rocking_cli.views.cautions import of_bounds
 from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
 from rocking_cli.views.conclusion import conclusion_data
 from rocking_cli.views.response import known_data, model_heads, not_checked, pulse_data
@@ -125,6 +126,7 @@ def view(
     else:
         parts.append(f"No closed form: by the equivalent blocks, the structure {names.NO_UPLIFT} (a <= 1).")
     runs = [run for each in answers.values() for run in map(outcome, each.values()) if isinstance(run, History)]
+    parts += [f"Caution: {text}" for text in of_bounds(mechanism)]
     return View(data, [*parts, restitution_used(structure), *not_checked(mechanism, runs)])
 
 

@@ -17,7 +17,7 @@ from rocking_cli.questions.spectrum.study import Spectrum
 from rocking_cli.short_repr import short_repr
 from rocking_cli.views import processing
 from rocking_cli.views.column import Column, only_shown, rounded, table_of
-from rocking_cli.views.verdict import unchecked
+from rocking_cli.views.verdict import INVALID_REASON, unchecked
 from rocking_cli.views.view import ABSENT, Table, View
 
 MAX_TABLE_ROWS = 12  # rows of a table, besides that of the structure as given; --out and --json have the whole curves
@@ -25,7 +25,6 @@ SCALING_NOTE = (
     "All lengths are scaled, including the positions of loads and ties; their masses, stiffness and forces are not."
 )
 MAX_LISTED_FAILURES = 3  # histories that could not be simulated
-INVALID_REASON = "a joint opens or slides so far that the model no longer holds"
 
 
 @short_repr

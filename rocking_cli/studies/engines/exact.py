@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from math import isfinite
 from typing import ClassVar, Unpack
 
+from rocking_cli.core import Direction
 from rocking_cli.dynamics import history
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import RTOL, TAIL_SECONDS, History, check_rtol
@@ -74,6 +75,10 @@ def check_motion(structure: Structure, motion: GroundMotion | None, release: flo
     if release is not None and not of.rocks_both_ways and release * of.directions[0] < 0:
         supports = "release is against the supports that it leans on"
         raise InputError(f"{supports}: it rocks in the {of.one_sided} direction only")
+    side = Direction.POSITIVE if (release or 0) > 0 else Direction.NEGATIVE
+    bound = of.bounds.get(side) if release is not None else None
+    if bound is not None and abs(release or 0) * structure.model("nonlinear").phi_cr[side < 0] > bound.phi:
+        raise InputError(f"release is beyond the rotation at which {bound.words}: give less than that")
     if not (isfinite(tail) and tail >= 0):
         raise InputError(f"tail must be a time in seconds, 0 or more, got {tail:g}")
 
