@@ -60,7 +60,7 @@ def of_rows(*forces, step=0.1, limit=1.0, strength=np.inf, friction=np.nan, othe
     made = {
         "size": 1, "cells": 1, "lines": len(forces), "gravity": G, "limit": limit, "step": step, "slender": 1.0,
         "contacts": np.array([[[0, other, len(forces) - 1, 0]] * 2]), "bearing": np.array([[friction, strength]]),
-        "rows": rows.reshape(-1, kernels.OF_ROW), "kept": np.empty((1, kernels.KEPT)),
+        "rows": rows.reshape(-1, kernels.OF_ROW), "stopped": np.zeros((2 * len(forces), 2)), "kept": np.empty((1, kernels.KEPT)),
         "notes": np.empty(kernels.NOTES), "active": np.empty(4, np.int64),
     }  # fmt: skip
     return begun(kernels.Watch(**{**dict.fromkeys(kernels.Watch._fields, 0), **made}))
@@ -92,7 +92,7 @@ class TestInsideAStep:
         """N = 1 - q/q_0 is inside a step on the parabola through its start, middle and end: it pulls from a root on."""
         level, start = float(self.MOTION(share * self.SIZE)), 5.0
         watch, found = of_rows({ONE: (1.0, -2 / level)}, {ONE: (1.0,)}, step=self.SIZE / 1000), marks()
-        kernels.look(watch, LAW, Ground(0.0, 0.0, G, 0.0), start, 0.0, *self.step(), 0.0, found)
+        kernels.look(watch, LAW, Ground(0.0, 0.0, G, 0.0), start, 0.0, *self.step(), 0.0, 0.0, 0.0, found)
         pull = np.polyfit([0.0, 0.5, 1.0], self.MOTION(np.array([0.0, 0.5, 1.0]) * self.SIZE) / level - 1, 2)
         first = min(root for root in np.roots(pull) if 0 < root < 1)
         assert 0 <= (found[kernels.WARNED] - start) / self.SIZE - first <= 1.001e-3
@@ -105,7 +105,7 @@ class TestInsideAStep:
         strength = float(self.MOTION(share * self.SIZE))
         how = {"step": self.SIZE / 4, "strength": strength, "friction": 0.0}
         watch, found = of_rows({ONE: (0.0, 2.0)}, {ONE: (1.0,)}, **how), marks()
-        kernels.look(watch, LAW, Ground(0.0, 0.0, G, 0.0), 0.0, 0.0, *self.step(), 0.0, found)
+        kernels.look(watch, LAW, Ground(0.0, 0.0, G, 0.0), 0.0, 0.0, *self.step(), 0.0, 0.0, 0.0, found)
         reason = kernels.CRUSHES if moment <= 1 else NEVER
         expected = [moment * self.SIZE, reason]
         assert found[[kernels.PASSED, kernels.REASON]].tolist() == pytest.approx(expected, nan_ok=True)
@@ -121,7 +121,7 @@ class TestAnImpact:
         watch, found, rate = of_block(mu), marks(), 1.7
         b, h, inertia = HALF_WIDTH, HALF_HEIGHT, 4 / 3 * MASS * (HALF_WIDTH**2 + HALF_HEIGHT**2)
         eta = 1 - 1.5 * b**2 / (b**2 + h**2)
-        kernels.strike(watch, d, 3.0, rate, eta, found)
+        kernels.strike(watch, d, 3.0, 0.0, watch.struck, rate, eta, found)
         lacks = max(MASS * rate * (h * (1 - eta) - mu * b * (1 + eta)), 0.0)
         slips = inertia / (MASS * inertia - (MASS * h) ** 2) * lacks
         rates = watch.kept[0, kernels.SLIP_RATE : kernels.SLIP_RATE + 2].tolist()
@@ -134,12 +134,12 @@ class TestAnImpact:
     def test_an_impulse_is_what_stops_the_motion_and_what_begins_the_next(self, eta):
         """P = w (P_0 + eta P_1): -(1 + 3 eta) opens the end, and what presses it gives its friction."""
         watch = of_rows({}, {})._replace(struck=np.array([[9.0, 9.0], [9.0, 9.0], [-1.0, -3.0], [0.0, 0.0]]))
-        kernels.strike(watch, 1, 0.0, 2.0, eta, marks())
+        kernels.strike(watch, 1, 0.0, 0.0, watch.struck, 2.0, eta, marks())
         assert watch.kept[0, kernels.GAP_RATE] == pytest.approx(2.0 * (1 + 3 * eta))
         watch = of_rows({}, {}, friction=0.5)._replace(
             struck=np.array([[1.0, 3.0], [-2.0, -5.0], [9.0, 9.0], [9.0, 9.0]])
         )
-        kernels.strike(watch, 0, 0.0, 2.0, eta, marks())
+        kernels.strike(watch, 0, 0.0, 0.0, watch.struck, 2.0, eta, marks())
         slips = 2.0 * (2 + 5 * eta - 0.5 * (1 + 3 * eta))
         assert watch.kept[0, kernels.SLIP_RATE : kernels.SLIP_RATE + 2].tolist() == pytest.approx([0.0, slips])
 
@@ -148,7 +148,7 @@ class TestAnImpact:
             watch = of_rows({}, {}, friction=0.5)._replace(struck=np.zeros((4, 2)))
             watch.contacts[:, :, kernels.CHANGES] = changes
             watch.kept[0, [kernels.GAP, kernels.SLIP, kernels.SLIP_RATE]] = 0.1, 0.2, 0.3
-            kernels.strike(watch, 0, 0.0, 1.0, 0.5, marks())
+            kernels.strike(watch, 0, 0.0, 0.0, watch.struck, 1.0, 0.5, marks())
             kept = watch.kept[0, [kernels.GAP, kernels.SLIP, kernels.SLIP_RATE]]
             assert kept.tolist() == [stays, 0.2, 0.3]
             kernels.settle(watch, 0.0, marks())  # at rest all joints are closed, and what has slid stays
