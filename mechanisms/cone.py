@@ -23,6 +23,9 @@ class Cone(SingleBody):
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Table I; DeJong (2012), Engineering Structures 40"
     verified: ClassVar[str] = "closed forms of shell and solid; the hollow cone tends to both"
 
+    caution: ClassVar[str] = (
+        "Its foot is round: it may roll on its rim, out of the plane of motion, which is not modelled."
+    )
     starter: ClassVar[tuple[str, ...]] = ("kind",)
 
     base_radius: float = length("outer radius of the base", symbol="r", example=1.5)

@@ -16,7 +16,7 @@ from rocking_cli.core import Equivalence, Mechanism, NoEquivalentBlock, Statics,
 from rocking_cli.core.advice import uplift_error
 from rocking_cli.core.equivalence import MAX_CURVATURE
 from rocking_cli.core.hung.element import Question
-from rocking_cli.dynamics.model import MODELS, Model, ModelName, build
+from rocking_cli.dynamics.model import MODELS, Model, ModelName, build, no_restitution
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.dotted import put, words
@@ -109,6 +109,9 @@ class Structure:
     opening : float
         Largest opening of a joint up to which its time histories are valid, over D_cr: the displacement of its farthest
         block at the critical rotation.
+    to_first_impact : bool
+        Whether time histories of a structure without a known restitution are simulated up to their first impact, and
+        not refused.
 
     Raises
     ------
@@ -119,6 +122,7 @@ class Structure:
     mechanism: Mechanism
     file: str | None = None
     opening: float = OPENING
+    to_first_impact: bool = False
     _models: dict[ModelName, Model] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
@@ -127,6 +131,10 @@ class Structure:
     def of(self, mechanism: Mechanism) -> Structure:
         """Return the structure with another mechanism, such as its own with another field."""
         return replace(self, mechanism=mechanism, _models={})
+
+    def released(self) -> Structure:
+        """Return the structure for a free release: without a known restitution, simulated up to its first impact."""
+        return self if no_restitution(self.mechanism) is None else replace(self, to_first_impact=True, _models={})
 
     @property
     def name(self) -> str:
@@ -189,8 +197,9 @@ class Structure:
 
     @property
     def default_models(self) -> tuple[ModelName, ...]:
-        """Models to simulate by default: all, or the nonlinear one alone if the linear ones mislead."""
-        return MODELS if self.why_no_block is None and self.misleading is None else ("nonlinear",)
+        """Models to simulate by default: all, or the nonlinear one alone if the linear ones mislead or do not exist."""
+        all_fit = not self.to_first_impact and self.why_no_block is None and self.misleading is None
+        return MODELS if all_fit else ("nonlinear",)
 
     @cached_property
     def etas(self) -> tuple[float, float]:
@@ -221,7 +230,9 @@ class Structure:
         if name not in self._models:
             statics, equivalence = self.statics, self.equivalence if name != "nonlinear" else None
             with self.named():
-                self._models[name] = build(self.mechanism, statics, equivalence, name, self.opening)
+                self._models[name] = build(
+                    self.mechanism, statics, equivalence, name, self.opening, to_first_impact=self.to_first_impact
+                )
         return self._models[name]
 
     def models(self, names: Sequence[ModelName] = MODELS) -> list[Model]:

@@ -20,7 +20,16 @@ PI = "3.14159265358979323846264338327950288419716939937510"
 KINDS: Mapping[str, Mapping[str, str]] = {
     "length": {"m": "1", "mm": "0.001", "cm": "0.01", "dm": "0.1", "km": "1000", "in": "0.0254", "ft": "0.3048"},
     # Accelerations come before masses, as a field in g is an acceleration and masses are in kg.
-    "acceleration": {"m/s2": "1", "cm/s2": "0.01", "mm/s2": "0.001", "gal": "0.01", "g": "9.80665", "ft/s2": "0.3048"},
+    "acceleration": {
+        "m/s2": "1",
+        "cm/s2": "0.01",
+        "mm/s2": "0.001",
+        "gal": "0.01",
+        "g": "9.80665",
+        "mg": "0.00980665",
+        "%g": "0.0980665",
+        "ft/s2": "0.3048",
+    },
     "mass": {"kg": "1", "g": "0.001", "t": "1000", "Mg": "1000", "lb": "0.45359237"},
     "force": {
         "N": "1",

@@ -307,7 +307,7 @@ around: Decorator = in_order(
         default=200,
         show_default=True,
         metavar="N",
-        help="Number of neighbouring motions to simulate as well; `respond` and `animate` accept 0 for none.",
+        help="Number of neighbouring motions to simulate as well; `respond`, `animate` and `survey` accept 0 for none.",
     ),
     click.option(
         "--amplitude-deviation",
@@ -343,9 +343,9 @@ engine: Decorator = click.option(
 
 
 def few_neighbours(given: dict[str, Any], few: int | None) -> None:
-    """Replace the default number of neighbours by another with free blocks, which take long."""
+    """Replace the default number of neighbours by another with free blocks and in tables, which take long."""
     typed = click.get_current_context().get_parameter_source("neighbours") is ParameterSource.COMMANDLINE
-    if given["engine"] != "exact" and not typed:
+    if given.get("engine") != "exact" and not typed:
         given["neighbours"] = few
 
 

@@ -197,9 +197,9 @@ class _Search:
             if apart[k] < 0:
                 return self._first(one, other, phi[k - 1], phi[k], 0.0)
             if apart[k - 1] + apart[k] < path[k - 1] and path[k - 1] > self.tolerance:
-                found = self._between(one, other, phi[k - 1], phi[k])
-                if found is not None:
-                    return found
+                phi_met = self._between(one, other, phi[k - 1], phi[k])
+                if phi_met is not None:
+                    return phi_met
         return None
 
     def _first(self, one: _Part, other: _Part, low: float, high: float, level: float) -> float:

@@ -75,6 +75,10 @@ class Mechanism(Jointed):
         """Return the columns if three or more carry one beam, each as a structure, equal ones once; otherwise none."""
         return ()
 
+    def weaker_side(self) -> Mechanism | None:
+        """Return the structure as it rocks about the weaker side of its base, if it may; by default None."""
+        return None
+
     @final
     def cautions(self) -> Sequence[str]:
         """Return cautions on the results: the `caution` of the mechanism, and that of this structure."""
@@ -321,6 +325,7 @@ SAME_PLACE = 1e-6  # difference of the rotations at which a wall is met, and its
 SHARE_OF_LIMIT = 0.999  # of the kinematic limit, at which linkages have no derivatives
 RESTITUTION_ROUNDING = 1e-9  # relative excess over the bound that is allowed, as equal sides reach the bound
 STRETCH_CHECKS = 129  # rotations at which it is checked whether a tie stretches
+MIN_MOMENT = 1e-9  # moment that counts, over the weight of the structure times its size
 MIN_ELONGATION = 1e-9  # elongation that counts, over the length of the path of a tie, or over 1 m if it is shorter
 NO_MASSES = "the structure has no masses: give density and depth, or its mass"
 
@@ -435,12 +440,15 @@ def check_stands(mechanism: Mechanism) -> None:
     for direction in mechanism.directions:
         bare = coefficients(rest, direction, bodies, mechanism.motion(rest, direction))
         moment = g * mechanism.coefficients(rest, direction).restoring(g)[0]
-        if bare.G[0] > 0 and not moment > 0:
+        tie = MIN_MOMENT * weight * extent(mechanism)
+        if bare.G[0] > 0 and not moment > tie:
+            how = f"with {-moment:.4g} N m more than its weight holds" if moment < -tie else (
+                "with as much as its weight holds, which is neutral equilibrium"
+            )  # fmt: skip
             raise RefusedFields(
                 (),
                 "loads" if mechanism.loads else "ties",
-                f"the structure cannot stand under them: at rest they turn it in the {direction.label} direction "
-                f"with {-moment:.4g} N m more than its weight holds",
+                f"the structure cannot stand under them: at rest they turn it in the {direction.label} direction {how}",
             )
 
 

@@ -77,7 +77,8 @@ def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
     fell_to = np.where(overturned, 1 - 2 * marks[:, kernels.SIDE], 0).astype(np.int64)
     until = np.where(unknown[:, None], kernels.PASSED_PEAK, kernels.PEAK) + np.arange(2)
     peaks = np.take_along_axis(marks, until, axis=1)
-    warned = np.where(marks[:, kernels.WARNED] <= np.where(unknown, passed, np.inf), marks[:, kernels.WARNED], np.nan)
+    end = np.where(unknown, passed, np.where(overturned & ~np.isnan(crossed), crossed, np.inf))
+    warned = np.where(marks[:, kernels.WARNED] <= end, marks[:, kernels.WARNED], np.nan)
     bound = (marks[:, kernels.WARNED_PEAK : kernels.WARNED_PEAK + 2] / phi_cr).max(axis=1)
     uplift = marks[:, kernels.FIRST_UPLIFT]
     impacts = np.where(unknown, marks[:, kernels.PASSED_IMPACTS], marks[:, kernels.IMPACTS])

@@ -63,6 +63,8 @@ class History(Outcome[bool, int, float]):
         Whether the motion is unknown from its first impact on because columns may fall out of step there.
     bound : Bound, optional
         The bound of the motion that it has reached, from which on it is unknown; None if it has not.
+    unmeasured : bool
+        Whether it is unknown from there on because the restitution is not known.
     """
 
     model: ModelName
@@ -78,6 +80,7 @@ class History(Outcome[bool, int, float]):
     check: JointCheck | None = None
     apart: bool = False
     bound: Bound | None = None
+    unmeasured: bool = False
 
     @property
     def reference(self) -> str:
@@ -152,7 +155,8 @@ def follow(
     run = partial(run_deck, lay_out([model], [motion]), runs, marks, rtol=rtol, samples=recorded)
     run()
     tilts = np.array([release])
-    if out_of_step([model], [motion], runs, marks, tilts, rtol=rtol, most_impacts=MAX_IMPACTS)[0]:
+    loose = out_of_step([model], [motion], runs, marks, tilts, rtol=rtol, most_impacts=MAX_IMPACTS)
+    if model.to_first_impact or loose[0]:
         runs[0, kernels.LOOSE] = 1.0
         run()
     outcome = read_marks(marks, np.array([model.phi_cr]), np.array([model.reach]))
@@ -182,9 +186,10 @@ def follow(
         uplift_error=model.uplift_error,
         p=model.p,
         ends_at_limit=model.ends_at_limit,
-        check=check_of(model.joints, marks[0]),
-        apart=bool(marks[0, kernels.REASON] == kernels.APART),
         bound=model.bounds[int(marks[0, kernels.SIDE])] if marks[0, kernels.REASON] == kernels.BOUND else None,
+        check=check_of(model.joints, marks[0], float(outcome.overturning_time[0])),
+        apart=bool(marks[0, kernels.REASON] == kernels.APART) and not model.to_first_impact,
+        unmeasured=bool(marks[0, kernels.REASON] == kernels.APART) and model.to_first_impact,
     )
 
 

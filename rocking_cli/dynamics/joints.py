@@ -48,6 +48,12 @@ WHOLE_RANGE = (-np.inf, np.inf)  # stands for: under any u_g'' no joint fails at
 MAX_MISSING_WEIGHTS = 1e3  # force over the weight that no ground motion overcomes
 BOUND_MARGIN = 0.01  # margin over the width of the certain bounds, as cubics may cross them between nodes
 MAX_LISTED_NAMES = 4  # names listed in a message: enough for the hinges of a frame or an arch in both directions
+EVENTS = (
+    [kernels.PASSED, kernels.REASON, kernels.WHERE],
+    [kernels.WARNED, kernels.WARNED_WHERE],
+    [kernels.PARTED, kernels.PARTED_WHERE],
+)
+"""Marks of each event at a joint, its time first."""
 PLACE_KINDS = (("foot", "feet"), ("hinge", "hinges"), ("closed joint", "closed joints"))
 
 
@@ -201,10 +207,17 @@ class JointCheck:
 REASONS = ("opens", "slides", "crushes", "weightless", "apart", "bound")  # of failure, by their number in the kernel
 
 
-def check_of(joints: JointTables | None, marks: Reals) -> JointCheck | None:
-    """Return the check of the joints in one history from the marks of the kernel; None if they are not known."""
+def check_of(joints: JointTables | None, marks: Reals, overturning_time: float) -> JointCheck | None:
+    """Return the check of the joints in one history from the marks of the kernel; None if they are not known.
+
+    What happens to joints after `overturning_time` (NaN: never) is left out.
+    """
     if joints is None:
         return None
+    marks = marks.copy()
+    for event in EVENTS:
+        if marks[event[0]] > overturning_time:
+            marks[event] = np.nan
 
     def label(column: int) -> str:
         at = marks[column]

@@ -73,7 +73,6 @@ SLOW = 0.5  # length of an interval after the record, in 1/p
 LOOK = 1.25e-3  # s: longest step in which openings of joints are advanced, eight in 0.01 s
 BEHIND = 1e-11  # distance behind a corner of the force at which a motion goes on, over a cell
 COINCIDE = 1e-9  # distance of moments that coincide, over a sample interval
-TINY = 1e-300  # divisor of what is zero too
 LONG = 1e3  # s after the record by which sliding at rest has stopped
 
 SOURCE: list[Callable[..., object]] = []
@@ -1248,7 +1247,9 @@ def follow(structure, motion, start, loose, rtol, most_impacts, brief, watch, sa
                 if held:
                     pressed = pressure(structure, law, s * (u0 + ramp * tau), g + grade * tau)
                     later = pressure(structure, law, s * (u0 + ramp * end), g + grade * end)
-                    until = end if later > 0 else tau + (end - tau) * max(pressed, 0.0) / max(pressed - later, TINY)
+                    until = end if later > 0 else tau
+                    if later <= 0 < pressed:
+                        until += (end - tau) * pressed / (pressed - later)
                     if watched and until > tau:
                         later = max(later, 0.0)
                         there, ground = State(q, 0.0, 0.0), Ground(s * u0, s * ramp, g, grade)

@@ -94,6 +94,8 @@ class Model:
         Models of its columns, each alone, if three or more carry one beam.
     bounds : tuple of Bound or None
         The rotation of each direction beyond which something else than the mechanism decides; None without one.
+    to_first_impact : bool
+        Whether its restitution is not known, so that its motion is unknown from the first impact on.
     """
 
     name: ModelName
@@ -114,6 +116,7 @@ class Model:
     scatter: Scatter = field(default_factory=lambda: Scatter(KINEMATIC_SPREAD, SLENDERNESS_SPREAD))
     columns: tuple[Model, ...] = ()
     bounds: tuple[Bound | None, Bound | None] = (None, None)
+    to_first_impact: bool = False
 
     @property
     def p(self) -> float:
@@ -199,6 +202,8 @@ def build(
     equivalence: Equivalence | None,
     name: ModelName,
     opening: float = OPENING,
+    *,
+    to_first_impact: bool = False,
 ) -> Model:
     """Build one model of a structure.
 
@@ -214,31 +219,27 @@ def build(
         Equation of motion.
     opening : float
         Largest opening of a joint up to which a history is valid, over D_cr.
+    to_first_impact : bool
+        Whether the nonlinear model of a structure without a known restitution is valid up to its first impact, and not
+        refused.
 
     Raises
     ------
     InputError
-        If the restitution from kinematics is not positive, or the rebound of a one-sided structure is not known, so
-        that the motion after an impact is unknown; if the kernel cannot simulate an element of the structure, or one of
-        them has no linear model.
+        If the restitution is not known, see `no_restitution`; if the kernel cannot simulate an element of the
+        structure, or one of them has no linear model.
     """
     etas = mechanism.eta(mechanism.sides[0]), mechanism.eta(mechanism.sides[1])
-    if isnan(etas[0]):
-        raise InputError(NO_REBOUND)
-    for direction, eta in zip(mechanism.sides, etas, strict=True):
-        if eta <= 0 and mechanism.rocks_both_ways:
-            raise InputError(
-                Problem(
-                    f"{mechanism.name or 'structure'}: the kinematics give {eta:.4g} for an impact that ends "
-                    f"motion in the {direction.label} direction: {why_none(eta)}",
-                    field="restitution",
-                    hint="give a measured value as restitution, a number in (0, 1]",
-                )
-            )
+    if (missing := no_restitution(mechanism)) is not None:
+        if name != "nonlinear" or not to_first_impact:
+            raise InputError(missing)
+        etas = 1.0, 1.0  # of no effect, as nothing is known after an impact
     if name == "nonlinear":
         check_elements(mechanism)
         columns = [build(each, both_statics(each), None, name, opening) for each in mechanism.columns_alone()]
-        model = replace(nonlinear_model(mechanism, statics, etas), columns=tuple(columns))
+        model = replace(
+            nonlinear_model(mechanism, statics, etas), columns=tuple(columns), to_first_impact=missing is not None
+        )
         if model.joints is not None:
             model = replace(model, joints=replace(model.joints, limit=opening))
     else:
@@ -248,7 +249,7 @@ def build(
         model = linear_model(mechanism.name or mechanism.mechanism, name, blocks, mechanism.gravity)
         if mechanism.attached:
             model = with_held(model, mechanism, blocks)
-    model = replace(_bounded(model, mechanism), scatter=_scatter(mechanism))
+    model = replace(_bounded(model, mechanism), scatter=scatter_of(mechanism))
     if not mechanism.rocks_both_ways:
         # A one-sided structure never uplifts in the other direction, and rebounds at an impact.
         direction, numbers = mechanism.directions[0], model.numbers.copy()
@@ -273,7 +274,26 @@ def _bounded(model: Model, mechanism: Mechanism) -> Model:
     return replace(model, numbers=numbers, bounds=(bounds[0], bounds[1]))
 
 
-def _scatter(mechanism: Mechanism) -> Scatter:
+def no_restitution(mechanism: Mechanism) -> Problem | None:
+    """Return the problem that the motion of a structure after an impact is not known; None if it is.
+
+    The restitution from kinematics may be zero or less, and the rebound of a one-sided structure not known.
+    """
+    for direction in mechanism.directions:
+        eta = mechanism.eta(direction)
+        if isnan(eta):
+            return NO_REBOUND
+        if eta <= 0 and mechanism.rocks_both_ways:
+            return Problem(
+                f"{mechanism.name or 'structure'}: the kinematics give {eta:.4g} for an impact that ends "
+                f"motion in the {direction.label} direction: {why_none(eta)}",
+                field="restitution",
+                hint="give a measured value as restitution, a number in (0, 1]",
+            )
+    return None
+
+
+def scatter_of(mechanism: Mechanism) -> Scatter:
     """Return the scatter of a structure: as given, or else as usual from tests of such bodies."""
     uncertainty = mechanism.uncertainty or Uncertainty()
     usual = KINEMATIC_SPREAD if mechanism.restitution_is_kinematic else MEASURED_SPREAD

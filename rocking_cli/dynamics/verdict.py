@@ -123,6 +123,8 @@ def disagree(histories: Mapping[ModelName, History]) -> bool:
 def remedy(history: History) -> str:
     """Return what to do about an unknown outcome: a value of `NextStep`."""
     check = history.check
+    if history.unmeasured:
+        return "give_restitution"
     if check is not None and not history.apart and history.bound is None:
         if check.reason == "slides":
             return "hold_joint"

@@ -44,6 +44,7 @@ class NextStep(StrEnum):
     MORE_MOTIONS = "give_more_motions"
     FIRST_MECHANISM = "verify_first_mechanism"
     SITE_VALUES = "give_site_values"
+    RESTITUTION = "give_restitution"
     RESPOND = "respond"
     CROSSCHECK = "crosscheck"
     DESIGN = "design"
@@ -164,7 +165,7 @@ class Conclusion:
         neighbours_differ = self.share is not None and self.share.highest > 0 and self.share.lowest < 1
         if self.remedy is not None:
             steps.append(NextStep.CROSSCHECK)
-        if self.ratio is None and (self.remedy is not None or neighbours_differ):
+        if self.ratio is None and (self.remedy not in (None, NextStep.RESTITUTION) or neighbours_differ):
             steps.append(NextStep.MARGIN)
         steps += dict.fromkeys(OF_LEFT_OUT[each.what] for each in self.left_out)
         if self.method and NextStep.FIRST_MECHANISM not in steps and self.concluded in OF_VERIFICATION:

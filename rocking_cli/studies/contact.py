@@ -407,7 +407,8 @@ def _states(mechanism: Mechanism, history: History, motion: GroundMotion | None)
     """Return the samples of a history until it overturns, its first uplift, and both sides of its impacts."""
     end = history.overturning_time if history.fell else np.inf
     samples = _samples(mechanism, history, motion)
-    impact = history.impacts[history.impacts[:, 0] <= end]
+    impact = _known_impacts(history)
+    impact = impact[impact[:, 0] <= end]
     after = -impact[:, 1] if mechanism.rocks_both_ways else impact[:, 1]
     eta = np.where(impact[:, 1] > 0, mechanism.eta(mechanism.sides[0]), mechanism.eta(mechanism.sides[1]))
     still = np.zeros(len(impact))
@@ -467,8 +468,14 @@ def _stretches(time: Reals, value: Reals, level: float) -> tuple[Reals, Reals]:
 
 def _ended(history: History) -> dict[Direction, float]:
     """Return the time of the first impact that ends motion in each direction [s], for the directions that have one."""
-    signs = history.impacts[:, 1]
-    return {each: float(history.impacts[signs == each, 0][0]) for each in Direction if (signs == each).any()}
+    impacts = _known_impacts(history)
+    signs = impacts[:, 1]
+    return {each: float(impacts[signs == each, 0][0]) for each in Direction if (signs == each).any()}
+
+
+def _known_impacts(history: History) -> Reals:
+    """Return the impacts of a history after which its motion is known: none without a known restitution."""
+    return history.impacts[:0] if history.unmeasured else history.impacts
 
 
 def _ratio(reactions: Reactions) -> float:

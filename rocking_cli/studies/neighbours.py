@@ -201,6 +201,7 @@ def neighbours(
     release_is_angle: bool = False,
     rtol: float = RTOL,
     engine: Engine = EXACT,
+    threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Neighbours:
     """Simulate the neighbours of a motion.
@@ -217,7 +218,7 @@ def neighbours(
         Start at rest, tilted by this fraction of the critical rotation.
     release_is_angle : bool
         Whether the tilt is given as an angle, which stays the same if the slenderness varies.
-    rtol, progress
+    rtol, threads, progress
         See `respond_many`.
     engine : Engine
         Who simulates them.
@@ -246,7 +247,9 @@ def neighbours(
     tilts = None
     if release is not None:
         tilts = release / np.where(all_draws.slender > 0, all_draws.slender, 1.0) if release_is_angle else release
-    outcomes = simulate_neighbours(model, motion, all_draws, release=tilts, rtol=rtol, engine=engine, progress=progress)
+    outcomes = simulate_neighbours(
+        model, motion, all_draws, release=tilts, rtol=rtol, engine=engine, threads=threads, progress=progress
+    )
     outcome = np.where(outcomes.unknown, 2, outcomes.fell)
     peaks = np.where(outcome[1:] > 0, np.inf, outcomes.peak_ratio[1:])
     # Quantiles are values of the sample, as interpolation with infinity has no meaning.

@@ -14,6 +14,7 @@ from rocking_cli.views.verdict import SENSE
 OPENING_CAUTION = (
     "lambda and what follows from it are unconservative: describe the structure so that this joint can move"
 )
+STOCKY_ETA = 0.7  # restitution from kinematics of a block that is twice as high as wide: 1 - 1.5 sin^2(alpha)
 SLIDING_CAUTION = "Stronger motions move it by sliding, which is not modelled: prevent this, for instance by dowels"
 
 
@@ -37,14 +38,14 @@ def of_bounds(mechanism: Mechanism) -> list[str]:
 
 
 def of_restitution(mechanism: Mechanism) -> list[str]:
-    """Return what is odd about the restitution of a structure, in words: 0 or less, or above 1.
+    """Return what is odd about the restitution of a structure, in words: 0 or less, above 1, or that of a stocky body.
 
     Above 1 it may be right if the mechanisms of the two directions differ: a light part may turn faster after the
     impact than all did before, and the ratio of the energies never exceeds 1.
     """
+    cautions = _of_stocky(mechanism)
     if not mechanism.rocks_both_ways:
-        return []
-    cautions: list[str] = []
+        return cautions
     etas = {direction: mechanism.eta(direction) for direction in mechanism.directions}
     one = isclose(*etas.values(), rel_tol=EQUAL_DIRECTIONS)
     for direction, eta in list(etas.items())[: 1 if one else 2]:
@@ -59,6 +60,20 @@ def of_restitution(mechanism: Mechanism) -> list[str]:
                 f"{kept:.3g} % of the kinetic energy."
             )
     return cautions
+
+
+def _of_stocky(mechanism: Mechanism) -> list[str]:
+    """Return a caution on a single body so stocky that it bounces, see Lipscombe and Pellegrino (1993)."""
+    if len(mechanism.bodies()) > 1:
+        return []
+    eta = min(map(mechanism.restitution_from_kinematics, mechanism.directions))
+    if not eta < STOCKY_ETA * (1 - EQUAL_DIRECTIONS):
+        return []
+    return [
+        f"It is stocky: its kinematics give eta = {eta:.3g}, below {STOCKY_ETA:g} as for a block lower than twice its "
+        "width. Tests of such bodies found bouncing and losses that the model does not have (Lipscombe and Pellegrino "
+        "1993)."
+    ]
 
 
 def before_rocking(mechanism: Mechanism) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields
-from math import sqrt
+from math import inf, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -294,7 +294,9 @@ def view(
     """
     mechanism, given = structure.mechanism, found.given
     watched, etas = Watched(mechanism), structure.etas if impacts else None
-    notes = vertical_notes(found.first, mechanism.gravity)
+    runs = [run for histories in found.runs.values() for run in histories.values()]
+    until = max(run.overturning_time if run.fell else inf for run in runs)
+    notes = vertical_notes(found.first, mechanism.gravity, until)
     data: dict[str, Any] = {
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
         "record": record_data(given.motion, given.factor, polarity, given.pulse) if given else None,
@@ -337,7 +339,7 @@ def apart(watched: Watched, runs: ByPolarity) -> Iterator[str]:
         )
 
 
-def vertical_notes(motion: GroundMotion | None, gravity: float) -> list[str]:
+def vertical_notes(motion: GroundMotion | None, gravity: float, until: float = inf) -> list[str]:
     """Return sentences on what a vertical component means for results: the range of g, and where contact is lost.
 
     Parameters
@@ -346,6 +348,8 @@ def vertical_notes(motion: GroundMotion | None, gravity: float) -> list[str]:
         The ground motion, as scaled.
     gravity : float
         Acceleration of gravity [m/s2].
+    until : float
+        Time at which the structure overturns [s]: contact that is lost later does not matter.
     """
     if motion is None or motion.vertical is None:
         return []
@@ -359,7 +363,7 @@ def vertical_notes(motion: GroundMotion | None, gravity: float) -> list[str]:
         "forms and spectra over p leave out."
     ]
     lost = contact_lost(motion, gravity)
-    if lost is not None:
+    if lost is not None and lost <= until:
         sentences.append(
             f"Contact is lost: at {lost:.4g} s v_g'' comes down to -g and nothing holds the structure to the ground. "
             "It may fly, which no model here follows: do not trust the response from then on."

@@ -10,7 +10,7 @@ from rocking_cli.structure import Structure
 from rocking_cli.views.verdict import SENSE
 
 ETA_TOLERANCE = 1e-9
-MIN_DOUBTFUL_ETA = 0.97  # restitution from kinematics above which there is a caution, as tests measured less
+MIN_DOUBTFUL_ETA = 0.97  # restitution from kinematics above which tests of slender bodies measured less
 
 
 def restitution_source(mechanism: Mechanism) -> str:
@@ -52,6 +52,10 @@ def restitution_used(structure: Structure) -> str:
     if not isclose(positive, negative, rel_tol=ETA_TOLERANCE):
         values += f" at impacts that end clockwise rotation and {negative:.4g} at the others"
     sentence = f"Coefficient of restitution eta = {values}, {how}."
-    if source == "kinematics" and MIN_DOUBTFUL_ETA < max(structure.etas) < 1 + ETA_TOLERANCE:
-        sentence += " Tests of such bodies found less, about 0.95."
-    return sentence
+    if source != "kinematics" or not 0 < min(structure.etas) <= max(structure.etas) < 1 + ETA_TOLERANCE:
+        return sentence
+    slender = " and for bodies as slender as this, about 0.95" if max(structure.etas) > MIN_DOUBTFUL_ETA else ""
+    return (
+        f"{sentence} Tests found higher values for concrete and stone (Kalliontzis et al. 2016; Ther and Kollar "
+        f"2017), and lower ones for soft or worn feet (ElGawady et al. 2011){slender}."
+    )

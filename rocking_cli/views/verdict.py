@@ -35,6 +35,7 @@ REMEDIES = {
     "hinge_at_joint": f"describe the structure as a linkage that hinges at the joint that opens, or {OVERTURNS}",
     "hold_joint": f"anchor the joint that slides or justify a higher friction, or {OVERTURNS}",
     "assume_overturning": OVERTURNS,
+    "give_restitution": "give a measured `restitution` (or `rebound`)",
 }
 
 
@@ -71,6 +72,8 @@ def joints_in_words(history: History, assumed_friction: float | None = None) -> 
     """
     check = history.check
     slides = [] if assumed_friction is None else [ASSUMED.format(assumed_friction, MASONRY_FRICTION)]
+    if history.unmeasured:
+        return f"{_until(history)} Next: {REMEDIES[remedy(history)]}."
     if history.unknown:
         return " ".join([_until(history), *slides, NEXT_STEP.format(REMEDIES[remedy(history)])])
     if check is None:
@@ -108,6 +111,8 @@ def why_unknown(history: History) -> str | None:
     check = history.check
     if not history.unknown:
         return None
+    if history.unmeasured:
+        return "it has an impact, and its restitution is not known"
     if history.apart:
         return (
             "three or more columns may fall out of step at an impact, and one that carries nothing, rocking alone, "

@@ -317,6 +317,7 @@ def data(found: Verification) -> dict[str, Any]:
         "conclusion": conclusion_data(found.conclusion),
         "directions": {direction.label: shown_by.data(found, each) for direction, each in found.directions.items()},
         "governs": found.governs.label,
+        "caution": " ".join(cautions_of(found.mechanism)) or None,
         **shown_by.data_of_all(found),
         **({} if found.strengthened is None else {"strengthened": data(found.strengthened)}),
     }

@@ -13,7 +13,7 @@ import pytest
 import rocking_cli as rk
 from rocking_cli.ask import watcher as rk_watcher
 from rocking_cli.plugins.rooms import commands
-from rocking_cli.processing.reading_options import READING, SCALING
+from rocking_cli.processing.reading_options import READING, SCALING, UNITS
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 from tests.elsewhere import PROJECT
@@ -250,7 +250,10 @@ def test_the_opening_is_that_of_scored_tests_too(tmp_path):
 
 
 def test_an_array_in_another_unit_is_converted_once():
-    for unit, size in (("g", 9.80665), ("cm/s^2", 0.01), ("gal", 0.01), ("m/s2", 1.0), ("ft/s2", 0.3048)):
+    sizes = {"g": 9.80665, "cm/s^2": 0.01, "gal": 0.01, "m/s2": 1.0, "ft/s2": 0.3048}
+    sizes |= {"mg": 9.80665e-3, "%g": 9.80665e-2, "mm/s2": 1e-3}
+    assert set(UNITS) <= {unit.replace("^", "") for unit in sizes}  # all that `--units` accepts
+    for unit, size in sizes.items():
         motion = rk.GroundMotion("mine", 0.01, [0.0, 0.3, 0.0], unit=unit)
         again = replace(motion.scaled(2), name="again")
         assert motion.acceleration.max() == pytest.approx(0.3 * size, rel=1e-15)

@@ -105,6 +105,32 @@ def test_the_command_line_says_the_same(tmp_path):
         assert f"{file}:7:44: loads[1].weight" in run(*command, file, code=2).stderr.replace("\n", "")
 
 
+@pytest.mark.parametrize("off", [0.0, 1e-15, -1e-15, 1e-12, -1e-12])
+def test_neutral_equilibrium_is_said_as_such(off):
+    """A push m g b/h at the top balances the weight exactly; the last digits of the sum decide nothing."""
+    block, width, height, mass = Registry()["block"], 0.7, 2.9, 1234.5
+    push = mass * 9.80665 * width / 2 / height
+
+    def pushed(share):
+        return block(
+            width=width, height=height, mass=mass,
+            loads=[{"name": "push", "force": [share * push, 0.0], "at": [0.0, height]}],
+        )  # fmt: skip
+
+    with pytest.raises(InputError, match="with as much as its weight holds, which is neutral equilibrium"):
+        pushed(1 + off)
+    with pytest.raises(InputError, match=f"with {0.01 * push * height:.4g} N m more than its weight holds"):
+        pushed(1.01)
+    assert pushed(0.99).uplift(Direction.POSITIVE) == pytest.approx(0.01 * width / height, rel=1e-9)
+
+
+def test_the_list_of_fields_says_from_where_a_load_is_measured():
+    said = " ".join(run("mechanisms", "loads").stdout.split())
+    assert "of a block from the middle of its base" in said
+    block = Registry()["block"](width=0.6, height=2.0)
+    assert sum(block.feet()) == 0  # its origin is the middle of its base
+
+
 def test_in_python_the_argument_is_named():
     bar = {"name": "t", "from": {"ground": [-3.0, 1.0]}, "to": {"at": [0.6, 1.0]}, "stiffness": 1.0}
     with pytest.raises(InputError, match=r"ties\[1\]\.to\.at: \[0\.6, 1\] lies outside block"):

@@ -23,8 +23,13 @@ from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.core.given import DirectionalRestitution
 from rocking_cli.core.mechanism import why_none
+from rocking_cli.core.structure_file import load_structure
 from rocking_cli.errors import InputError
+from rocking_cli.structure import Structure
+from rocking_cli.views.cautions import cautions_of
+from rocking_cli.views.restitution import restitution_used
 from tests.cli.test_cli import run, run_json
+from tests.conftest import EXAMPLES
 from tests.reference_mechanics import cross, link_rates, polygon_moments, sector_moments
 
 BOTH = list(Direction)
@@ -330,7 +335,12 @@ def test_the_reason_for_no_restitution_is_the_sign_of_the_product():
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ("", "Coefficient of restitution eta = 0.9118, from rigid-body kinematics, not measured."),
+        (
+            "",
+            "Coefficient of restitution eta = 0.9118, from rigid-body kinematics, not measured. Tests found higher "
+            "values for concrete and stone (Kalliontzis et al. 2016; Ther and Kollar 2017), and lower ones for soft or "
+            "worn feet (ElGawady et al. 2011).",
+        ),
         ("restitution: 0.85\n", "Coefficient of restitution eta = 0.85, as given."),
         (
             "restitution: {positive_to_negative: 0.8, negative_to_positive: 0.9}\n",
@@ -355,3 +365,28 @@ def test_a_history_says_which_restitution_it_used(given, said, tmp_path):
         assert data["restitution"]["positive_to_negative"] == run_json("equiv", file)["directions"]["positive"]["eta"]
     for text in (run("spectrum", file, *pulse).stdout, run("overturning", file, "--points", 4).stdout):
         assert ("(from kinematics, not measured)" in text) == (not given)
+
+
+@pytest.mark.parametrize(("height", "slender"), [(0.699, None), (1.0, False), (4.8, False), (5.0, True), (9.0, True)])
+def test_tests_are_cited_on_both_sides_of_the_kinematics(height, slender):
+    """eta = 1 - 1.5 sin^2(alpha) is .97 at height/width = 7; below 0.707 there is none, and nothing is compared."""
+    said = restitution_used(Structure(Block(width=1.0 if height < 2 else 0.7, height=height)))
+    assert ("higher values for concrete and stone" in said) == (slender is not None)
+    assert ("lower ones for soft or worn feet" in said) == (slender is not None)
+    assert ("as slender as this, about 0.95" in said) == bool(slender)
+    assert "Tests" not in restitution_used(Structure(Block(width=0.7, height=height, restitution=0.9)))
+
+
+@pytest.mark.parametrize("given", [{}, {"restitution": 0.6}, {"one_sided": "positive", "rebound": 0.3}])
+@pytest.mark.parametrize(("ratio", "stocky"), [(1.0, True), (1.99, True), (2.0, False), (2.01, False), (4.0, False)])
+def test_a_body_lower_than_twice_its_width_is_said_to_bounce(ratio, stocky, given):
+    """Whatever restitution is given, as bouncing is not a matter of its value."""
+    said = [each for each in cautions_of(Block(width=0.8, height=0.8 * ratio, **given)) if "bouncing" in each]
+    assert bool(said) == stocky
+    if stocky:
+        eta = 1 - 1.5 / (1 + ratio**2)
+        assert said[0].startswith(f"It is stocky: its kinematics give eta = {eta:.3g}, below 0.7 as for a block")
+
+
+def test_several_bodies_of_a_low_restitution_are_not_called_stocky():
+    assert not any("stocky" in each for each in cautions_of(load_structure(EXAMPLES / "arch.yaml")))

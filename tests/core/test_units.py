@@ -58,7 +58,8 @@ WRONG = [
     ("5 KN/mc", "kg/m3", "did you mean kN/m3?"), ("5 Kg/m3", "kg/m3", "did you mean kg/m3?"),
     ("5 Kg", "kg", "did you mean kg?"), ("5 MT", "kg", "did you mean t?"), ("5 MT", "m", "did you mean m?"),
     ("5 DaN", "N", "did you mean daN?"), ("5 mpa", "Pa", "did you mean MPa?"), ("5 mN", "N", "known: N, daN"),
-    ("5 mg", "kg", "known: kg, g"), ("5 hPa", "Pa", "known: Pa"), ("5 dN", "N", "known: N"), ("5 kp", "N", "known: N"),
+    ("5 mg", "kg", "is an acceleration, not a mass (units: kg, g"),
+    ("5 hPa", "Pa", "known: Pa"), ("5 dN", "N", "known: N"), ("5 kp", "N", "known: N"),
     ("5 N/cm2", "Pa", "known: Pa"), ("5 kg/cm3", "kg/m3", "known: kg/m3"), ("5 kg/cm2", "kg/m3", "is a pressure"),
     ("5 \x1b[31m", "m", r"\x1b[31m"), ("5 m", "kg m2", "is a length, not in kg m2"),
 ]  # fmt: skip

@@ -516,7 +516,10 @@ class Load(Described):
     force: Annotated[list[Newtons], Field(min_length=2, max_length=2)] | None = quantity(
         "a constant force [Fx, Fy], to the right and up", unit="N", example=[0.0, -1000.0], default=None
     )
-    at: Vertex = point("where it acts")
+    at: Vertex = point(
+        "where it acts, [x, y] in the coordinates of `rocking draw`; of a block from the middle of its base, to the "
+        "right and up"
+    )
     body: Name | None = Field(
         None, description="the body it acts on, by its name in the picture; optional for a single body"
     )

@@ -21,15 +21,8 @@ from rocking_cli.excitation.doubts import of_samples
 from rocking_cli.text import did_you_mean, exact, regex
 from rocking_cli.units import KINDS, UnitError, number_of, split
 
-UNITS: dict[str, float] = {
-    "g": STANDARD_GRAVITY,
-    "m/s2": 1.0,
-    "cm/s2": 0.01,
-    "mm/s2": 0.001,
-    "gal": 0.01,
-    "mg": STANDARD_GRAVITY / 1000,
-    "%g": STANDARD_GRAVITY / 100,
-}
+_READ = ("g", "m/s2", "cm/s2", "mm/s2", "gal", "mg", "%g")
+UNITS: dict[str, float] = {name: float(KINDS["acceleration"][name]) for name in _READ}
 """Size of each unit that can be read [m/s2], under its canonical name."""
 
 CHOICES = ", ".join(UNITS)

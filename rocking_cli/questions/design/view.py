@@ -53,6 +53,7 @@ def data(found: Design) -> dict[str, Any]:
         "scan": {"values": found.values.tolist(), "metric": found.metric.tolist(), **unknown},
         "not_built": [{"low": each.low, "high": each.high, "reason": each.reason} for each in found.not_built],
         "taken_otherwise": not_counted(found.taken_otherwise),
+        "caution": found.caution or None,
         "verdict": answer(found),
     }
 

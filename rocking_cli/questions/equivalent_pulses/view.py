@@ -38,6 +38,7 @@ COLUMNS: tuple[Column[PulsedStructure], ...] = (
     Column("peak_ratio", of("history.peak_ratio")),
     only_shown("peak / phi_cr", of("history"), _peak),
     Column("overturned", of("history.overturned")),
+    Column("caution", lambda each: each.caution or None),
 )
 
 

@@ -114,6 +114,7 @@ def _data(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around
         "engine": rows[0].margin.engine if rows else "exact",
         "polarity": polarity,
         "neighbours": asdict(around),
+        "caution": " ".join(cautions_of(mechanism)) or None,
         "motions": [
             {
                 "name": row.name,

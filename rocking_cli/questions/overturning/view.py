@@ -167,6 +167,7 @@ def _structure(shaken: PulsedModel, mechanism: Mechanism) -> dict[str, Any]:
         "direction": shaken.direction.label,
         "p": shaken.p,
         "lambda": shaken.lambda_,
+        "caution": mechanism.own_caution() or None,
     }
 
 

@@ -178,6 +178,7 @@ def respond(
         chosen[0] = chosen[0]._replace(motion=replace(chosen[0].motion, vertical=vertical))
     if not motions:
         refuse_idle("without a ground motion", neighbours=neighbours)
+        ready = ready.released()
     ratio = tilt.ratio(ready) if tilt is not None else None
     question = Question(signs, ratio, tail, rtol, with_pulse, drawn_around, tilt is not None and tilt.is_angle,
                         engine_of(engine).name)  # fmt: skip
@@ -277,7 +278,8 @@ def _check(
 def usual_models(structure: Structure, watch: Watcher = SILENT) -> tuple[ModelName, ...]:
     """Return the models that do not mislead for a structure, with a note on the others."""
     if len(structure.default_models) < len(MODELS):
-        watch.note(f"nonlinear history only: {structure.why_no_block or structure.misleading}")
+        why = structure.why_no_block or structure.misleading or "the restitution is not known"
+        watch.note(f"nonlinear history only: {why}")
     return structure.default_models
 
 

@@ -446,7 +446,10 @@ def filters(quick: bool) -> float:
 
 SIZES = {
     "length": {"m": 1, "mm": 1e-3, "cm": 1e-2, "dm": 0.1, "km": 1e3, "in": 0.0254, "ft": 0.3048},
-    "acceleration": {"m/s2": 1, "cm/s2": 1e-2, "mm/s2": 1e-3, "gal": 1e-2, "g": 9.80665, "ft/s2": 0.3048},
+    "acceleration": {
+        "m/s2": 1, "cm/s2": 1e-2, "mm/s2": 1e-3, "gal": 1e-2, "g": 9.80665, "mg": 9.80665e-3, "%g": 9.80665e-2,
+        "ft/s2": 0.3048,
+    },
     "mass": {"kg": 1, "g": 1e-3, "t": 1e3, "Mg": 1e3, "lb": 0.45359237},
     "force": {
         "N": 1, "daN": 10, "kN": 1e3, "MN": 1e6, "kgf": 9.80665, "lbf": 4.4482216152605, "kip": 4448.2216152605,

@@ -160,6 +160,7 @@ def _data(results: ShownSpectra, each: Spectrum) -> dict[str, Any]:
         "lambda": structure.lambda_,
         "eta": structure.eta,
         "alike": each.shape.own is None,
+        "caution": each.shape.caution or None,
         "hung": each.shape.hung,
         "lambdas": each.uplifts.tolist() if each.shape.own is not None else None,
         "size": each.periods.tolist(),

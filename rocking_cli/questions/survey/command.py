@@ -45,6 +45,7 @@ class SurveyOutput(Output):
 @options.ground_motions
 @options.reading
 @options.scaling("1", "-1", "both")
+@options.around
 @options.opening
 @options.site
 @click.option(
@@ -84,10 +85,14 @@ def command(
     headings (width [mm]). TABLE.csv may be - for standard input.
 
     Without ground motions, structures are ranked by their uplift acceleration. With ground motions, they are ranked by
-    the share of motions that overturn them and then by their largest peak rotation, both from the nonlinear model; a
-    motion whose outcome is unknown, because a joint opens or slides that the model keeps closed, counts as overturning.
-    With --polarity both, the worse of the two polarities governs. With --site, each is verified by the code of the site
-    and ranked by its ratio of capacity to demand.
+    the share of neighbouring motions that overturn them and then by their largest peak rotation, both from the
+    nonlinear model; a motion whose outcome is unknown, because a joint opens or slides that the model keeps closed,
+    counts as overturning. There are 200 neighbours of each motion unless the table would then take more than a minute;
+    --neighbours N fixes their number. With --polarity both, the worse of the two polarities governs. With --site, each
+    is verified by the code of the site and ranked by its ratio of capacity to demand.
+
+    A block that is alone, and less deep than wide, is ranked as it rocks about its depth, unless its column plane says
+    width.
 
     A row that cannot be used is reported with its line number and skipped, and the exit code is 5.
 
@@ -97,6 +102,7 @@ def command(
       rocking survey parapets.csv --record "records/*.AT2" --polarity both --out ranked.csv
     """
     asked.check()
+    options.few_neighbours(question, None)
     from rocking_cli.excitation.records.opening import name_of
     from rocking_cli.io.files import keep_apart
     from rocking_cli.io.tables import check_table

@@ -127,7 +127,8 @@ class SheetFolder:
         )
 
     def _sheet(self, found: Survey, entry: SurveyEntry) -> bytes:
-        site, structure = of_each(self.site), Structure(entry.make())
+        site, made = of_each(self.site), entry.make()
+        structure = Structure(made.weaker_side() or made)
         verification = verify(structure, site)
         source = f"{Path(found.sheet.file).name}, line {entry.line}" if found.sheet is not None else structure.name
         origin = sheets.SheetOrigin(self.call, File(source, yaml_of(structure.mechanism).encode()))

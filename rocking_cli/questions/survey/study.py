@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from math import inf, isnan, nan
-from typing import Protocol
+from math import exp, inf, isnan, nan
+from statistics import fmean
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from rocking_cli.arrays import Integers
 from rocking_cli.core import Mechanism
 from rocking_cli.core.mechanism import doubts
 from rocking_cli.dynamics.batch import Runs, respond_many
-from rocking_cli.dynamics.model import Model
+from rocking_cli.dynamics.model import Model, scatter_of
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.dynamics.parallel import in_parts, in_processes
 from rocking_cli.errors import InputError, Problem, RockingError, SolverError
@@ -22,12 +24,17 @@ from rocking_cli.io.spreadsheet import Spreadsheet
 from rocking_cli.names import OPENING
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure, check_opening
-from rocking_cli.studies.conclusion import Concluded, Conclusion
+from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare
+from rocking_cli.studies.neighbours import Neighbourhood, neighbours
 from rocking_cli.verification.check import code_of, of_each, row_numbers, verify
 from rocking_cli.verification.code import SiteFile
 from rocking_cli.verification.results import Remark
 
 STRUCTURES_PER_CHUNK = 8  # in the memory of a thread at a time: the tables of each are one megabyte, at most ten
+
+MAX_SAMPLES = 400_000_000  # of motions times structures, polarities and neighbours: under a minute on two processors
+NO_NEIGHBOURS = Neighbourhood(0)
+FARTHEST = 5.0  # standard deviations beyond which no neighbour is drawn
 
 
 class SurveyEntry(Protocol):
@@ -63,6 +70,9 @@ class Under:
     unknown : float or None
         The share of the motions that have an unknown outcome; None if the joints are not known, so that nothing was
         checked.
+    share : NeighbourShare, optional
+        The share of the neighbours that overturn the structure, the mean over the motions; of two polarities, the
+        worse governs. None without neighbours.
     """
 
     overturned: float
@@ -70,6 +80,7 @@ class Under:
     worst: str
     over: str = "phi_cr"
     unknown: float | None = 0.0
+    share: NeighbourShare | None = None
 
     @property
     def concluded(self) -> Concluded:
@@ -82,8 +93,8 @@ class Under:
 
     @property
     def at_most(self) -> float:
-        """The share of the motions that overturn the structure if all of unknown outcome do."""
-        return self.overturned + (self.unknown or 0.0)
+        """The share that overturns the structure if all of unknown outcome do: of neighbours, or else of motions."""
+        return self.share.highest if self.share is not None else self.overturned + (self.unknown or 0.0)
 
 
 @short_repr
@@ -99,6 +110,8 @@ class Surveyed:
         Line of the structure in its file.
     name, mechanism : str
         Names of the structure and of its mechanism.
+    side : str or None
+        "depth" if the structure rocks about its depth, as the weaker side of its base; None if as given.
     direction : str
         "positive", or "negative" if the structure uplifts first in this direction.
     lambda_ : float
@@ -152,6 +165,7 @@ class Surveyed:
     remarks: Sequence[str] = ()
     relies_on: Sequence[Remark] = ()
     numbers: Mapping[str, float | None] = field(default_factory=dict)
+    side: str | None = None
 
 
 @dataclass(frozen=True)
@@ -223,6 +237,10 @@ class Survey:
         The structures that could not be used, in their order.
     motions : sequence of str
         The names of the ground motions.
+    around : Neighbourhood
+        The neighbours of each motion; a count of 0 for none.
+    reduced : bool
+        Whether there are fewer neighbours than usual, so that the survey takes no more than about a minute.
     by : str
         The quantity by which they are ranked, a key of `ORDERS`.
     units : mapping of str to str
@@ -237,6 +255,8 @@ class Survey:
     by: str = "lambda"
     units: Mapping[str, str] = field(default_factory=dict)
     sheet: Spreadsheet | None = None
+    around: Neighbourhood = NO_NEIGHBOURS
+    reduced: bool = False
 
     def cells(self, found: Surveyed) -> Sequence[str]:
         """Return the cells of a structure in its table; none without a table."""
@@ -249,6 +269,8 @@ def survey(
     polarities: Sequence[int] = (1,),
     *,
     site: SiteFile | None = None,
+    around: Neighbourhood = NO_NEIGHBOURS,
+    bounded: bool = False,
     opening: float = OPENING,
     threads: int | None = None,
     processes: int | None = None,
@@ -266,6 +288,11 @@ def survey(
         The polarities, 1, -1 or both; of both, the worse governs.
     site : SiteFile, optional
         The site: each structure is verified by its code.
+    around : Neighbourhood
+        The neighbours of each motion; a count of 0 for none.
+    bounded : bool
+        Whether to simulate fewer neighbours if all would take more than about a minute. The number of samples decides,
+        so that a table has the same ranks on every machine.
     opening : float
         Largest opening of a joint, over D_cr, up to which a history is known.
     threads : int, optional
@@ -279,21 +306,25 @@ def survey(
     Returns
     -------
     Survey
-        Ranked by uplift acceleration; with motions by the share that overturns or is of unknown outcome, then by the
-        largest peak, then by uplift acceleration; with a site by the ratio of its code. Structures that rank equal keep
-        their order.
+        Ranked by uplift acceleration; with motions by the share of their neighbours (without any, of the motions) that
+        overturn or have an unknown outcome, then by the largest peak, then by uplift acceleration; with a site by the
+        ratio of its code. Structures that rank equal keep their order.
     """
     check_opening(opening)
     results: list[Surveyed | Bad | None] = [None] * len(entries)
     site = of_each(site) if site is not None else None
+    samples = len(entries) * len(polarities) * sum(motion.npts for motion in motions)
+    if reduced := bounded and samples * around.count > MAX_SAMPLES:
+        around = replace(around, count=MAX_SAMPLES // samples)
+    shaking = Shaking(motions, polarities, around)
 
     def work(first: int, stop: int) -> None:
-        results[first:stop] = _part(entries, motions, polarities, site, opening, first, stop)
+        results[first:stop] = _part(entries, shaking, site, opening, first, stop)
 
     if processes is None:
         in_parts(work, len(entries), STRUCTURES_PER_CHUNK, threads, progress)
     else:
-        whole = partial(_part, entries, motions, polarities, site, opening)
+        whole = partial(_part, entries, shaking, site, opening)
         for first, part in in_processes(whole, len(entries), STRUCTURES_PER_CHUNK, processes):
             results[first : first + len(part)] = part
             if progress is not None:
@@ -303,13 +334,20 @@ def survey(
     bad, names = [each for each in results if isinstance(each, Bad)], [each.name for each in motions]
     numbers = code_of(site).row_numbers if site is not None else {}
     units = {name: number.unit for name, number in numbers.items()}
-    return Survey(good, bad, names, by, units, getattr(entries, "sheet", None))
+    return Survey(good, bad, names, by, units, getattr(entries, "sheet", None), around, reduced)
+
+
+class Shaking(NamedTuple):
+    """Ground motions, their polarities, and their neighbours."""
+
+    motions: Sequence[GroundMotion]
+    polarities: Sequence[int]
+    around: Neighbourhood
 
 
 def _part(
     entries: Sequence[SurveyEntry],
-    motions: Sequence[GroundMotion],
-    polarities: Sequence[int],
+    shaking: Shaking,
     site: SiteFile | None,
     opening: float,
     first: int,
@@ -322,21 +360,26 @@ def _part(
     for k, place in enumerate(range(first, stop)):
         entry = entries[place]
         try:
-            ready[k] = Structure(entry.make(), opening=opening)
-            rows[k] = _alone(place, entry, ready[k], site)
-            if _may_lift(ready[k], motions):
+            made = entry.make()
+            weaker = made.weaker_side()
+            ready[k] = Structure(weaker or made, opening=opening)
+            alone = _alone(place, entry, ready[k], site)
+            rows[k] = replace(alone, side="depth" if weaker is not None else None, remarks=made.remarks)
+            if _may_lift(ready[k], shaking):
                 models[k] = ready[k].model("nonlinear")
         except RockingError as error:
             ready.pop(k, None)
             rows[k] = Bad(place + 1, entry.line, entry.name, _placed(error, entry))
-    if motions:
-        under = _under(list(models.values()), motions, polarities)
+    if motions := shaking.motions:
+        under = _under(list(models.values()), shaking)
         answers = dict(zip(models, under, strict=True))
         for k, structure in ready.items():
             one = rows[k]
             assert isinstance(one, Surveyed)
             over = "phi_cr" if all(side.phi_cr is not None for side in structure.statics) else "limit"
-            answer = answers.get(k, Under(0.0, 0.0, motions[0].name, over))
+            of = shaking.around.count
+            none = NeighbourShare(0.0, 0.0, of) if of else None
+            answer = answers.get(k, Under(0.0, 0.0, motions[0].name, over, share=none))
             if isinstance(answer, SolverError):
                 rows[k] = Bad(one.row, entries[first + k].line, one.name, answer)
             else:
@@ -380,24 +423,25 @@ def _alone(place: int, entry: SurveyEntry, structure: Structure, site: SiteFile 
         ratio=verification.ratio if verification is not None else None,
         verified=verification.conclusion if verification is not None else None,
         unprinted=verification is not None and verification.unprinted,
-        remarks=mechanism.remarks,
         relies_on=verification.relied_on if verification is not None else (),
         numbers=row_numbers(verification, code_of(site)) if verification is not None and site is not None else {},
     )
 
 
-def _may_lift(structure: Structure, motions: Sequence[GroundMotion]) -> bool:
-    """Return whether any of the motions could uplift a structure; if none can, its equation of motion is not needed."""
-    least = min(structure.uplift)
-    return any(each.vertical is not None or each.pga_g >= least * (1 - 1e-9) for each in motions)
+def _may_lift(structure: Structure, shaking: Shaking) -> bool:
+    """Return whether a motion or a neighbour of one may uplift a structure; if none can, it needs no model."""
+    least, around = min(structure.uplift) * (1 - 1e-9), shaking.around
+    if around.count:
+        slenderness = scatter_of(structure.mechanism).slenderness if around.slenderness is None else around.slenderness
+        least *= exp(-FARTHEST * (around.amplitude + slenderness))
+    return any(each.vertical is not None or each.pga_g >= least for each in shaking.motions)
 
 
-def _under(
-    models: Sequence[Model], motions: Sequence[GroundMotion], polarities: Sequence[int]
-) -> list[Under | SolverError]:
+def _under(models: Sequence[Model], shaking: Shaking) -> list[Under | SolverError]:
     """Return the response of each of some structures to ground motions; an error if a motion cannot be simulated."""
     if not models:
         return []
+    motions, polarities, around = shaking
     places = [
         (i, j, sign)
         for i, model in enumerate(models)
@@ -407,7 +451,24 @@ def _under(
     which = np.array(places)
     runs = Runs.of(which[:, 0], which[:, 1], polarity=which[:, 2])
     outcomes = respond_many(models, motions, runs, threads=1, only_peaks=True)
-    return [_of_one(model, which[:, 0] == i, which[:, 1], outcomes, motions) for i, model in enumerate(models)]
+    each = [_of_one(model, which[:, 0] == i, which[:, 1], outcomes, motions) for i, model in enumerate(models)]
+    for i, (model, one) in enumerate(zip(models, each, strict=True)):
+        if around.count and isinstance(one, Under):
+            try:
+                each[i] = replace(one, share=_share(model, np.unique(which[which[:, 0] == i, 2]), shaking))
+            except SolverError as error:
+                each[i] = error
+    return each
+
+
+def _share(model: Model, signs: Integers, shaking: Shaking) -> NeighbourShare:
+    """Return the share of the neighbours that overturn a structure: of the worse polarity, the mean over motions."""
+    low, high = [], []
+    for motion in shaking.motions:
+        near = [neighbours(model, motion.scaled(int(sign)), shaking.around, threads=1) for sign in signs]
+        low.append(max(each.overturned for each in near))
+        high.append(max(each.at_most for each in near))
+    return NeighbourShare(fmean(low), fmean(high), shaking.around.count)
 
 
 def _of_one(

@@ -10,13 +10,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from rocking_cli.ask.answer import Answer, drawn
-from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
+from rocking_cli.ask.given import SiteLike, StructureLike, around_of, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.names import OPENING
 from rocking_cli.questions.survey.view import DEFAULT_ROWS
+from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.text import one_line
 
 if TYPE_CHECKING:
@@ -36,6 +37,10 @@ def survey(
     *,
     polarity: str | int = "1",
     site: SiteLike | None = None,
+    neighbours: int | None = None,
+    amplitude_deviation: float = Neighbourhood.amplitude,
+    slenderness_deviation: float | None = None,
+    restitution_deviation: float | None = None,
     opening: float = OPENING,
     top: int = DEFAULT_ROWS,
     threads: int | None = None,
@@ -67,6 +72,12 @@ def survey(
     site : mapping, str or Path, optional
         Fields of a site file, or the file: each structure is verified by its code and ranked by the ratio of capacity
         to demand.
+    neighbours : int, optional
+        Number of neighbouring motions to simulate for each structure and motion, 0 for none; by default 200, or as many
+        as take about a minute.
+    amplitude_deviation, slenderness_deviation, restitution_deviation : float, optional
+        Standard deviations of the neighbours: of ln amplitude, of ln slenderness and of restitution; by default those
+        of each structure.
     opening : float
         Largest opening of a joint up to which a history is valid, over D_cr.
     top : int
@@ -128,7 +139,9 @@ def survey(
     signs, where = signs_of(polarity), site_of(site) if site is not None else None
     entries, requested = _entries(structures, watch), Motions.of(motions, options)
     if not requested:
-        refuse_idle("without ground motions", polarity=signs != (1,), opening=opening != OPENING)
+        refuse_idle("without ground motions", polarity=signs != (1,), opening=opening != OPENING, neighbours=neighbours)
+    count = Neighbourhood.count if neighbours is None and requested else neighbours or 0
+    around = around_of(count, amplitude_deviation, restitution_deviation, slenderness_deviation)
     shaken = [each.motion.scaled(each.factor) for each in requested.gather(0.0, watch)] if requested else []
     writer = None
     if sheets is not None and site is not None and where is not None:
@@ -143,11 +156,12 @@ def survey(
         from rocking_cli.questions.survey.coordinates import columns_of
 
         columns_of(getattr(entries, "sheet", None))
-    count = _processes(len(entries), bool(shaken) or where is not None) if processes else None
+    processes_used = _processes(len(entries), bool(shaken) or where is not None) if processes else None
     with watch.progress(len(entries), "structures") as advance:
         result = study(
-            entries, shaken, signs, site=where, opening=opening, threads=threads, processes=count, progress=advance
-        )
+            entries, shaken, signs, site=where, around=around, bounded=neighbours is None, opening=opening,
+            threads=threads, processes=processes_used, progress=advance,
+        )  # fmt: skip
     _warn_of_sizes(result, watch)
     if hasattr(entries, "sheet"):  # a table: weights of other structures were noted when they were opened
         _note_remarks(result, watch)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from functools import partial
 from math import isnan
 from typing import Any, NamedTuple
@@ -18,6 +18,7 @@ from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.text import cut, one_line
 from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, table_of
 from rocking_cli.views.conclusion import uncounted_ties
+from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.sheet.language import ENGLISH
 from rocking_cli.views.view import Table, View, number
 
@@ -32,7 +33,7 @@ RANKED = {
     "lambda": "by ground acceleration at uplift",
     "ratio": "by the ratio of capacity to demand under the code of the site; structures with ratios below 1 fail",
     "response": (
-        "by the share of motions that overturn them, then by the largest peak under the others, then by uplift "
+        "by the share of {} that overturn them, then by the largest peak under motions that do not, then by uplift "
         "acceleration; an unknown outcome counts as overturning"
     ),
 }
@@ -66,6 +67,14 @@ def caution_of(row: RankedStructure) -> str | None:
     return " ".join(filter(None, [row.found.caution, *(f"{each[0].upper()}{each[1:]}" for each in relied)])) or None
 
 
+def _share(row: RankedStructure) -> str | None:
+    """Return the share of neighbours that overturn a structure, as a range if outcomes are unknown."""
+    if row.found.under is None or (share := row.found.under.share) is None:
+        return None
+    low, high = percent(share.lowest), percent(share.highest)
+    return low if low == high else f"{low.removesuffix(' %')} to {high}"
+
+
 def _peak(peak: float) -> str:
     return "no uplift" if peak == 0 else number(peak, 3)
 
@@ -74,6 +83,7 @@ STRUCTURE: tuple[Column[RankedStructure], ...] = (
     Column("rank", of("rank"), head="rank"),
     Column("name", of("found.name"), head="name", form=one_line, text=True),
     Column("mechanism", of("found.mechanism"), head="mechanism", text=True),
+    Column("side", of("found.side"), head="side", text=True),
     Column("row", of("found.row")),
     Column("line", of("found.line")),
 )
@@ -82,6 +92,11 @@ OF_SITE: tuple[Column[RankedStructure], ...] = (
     Column("concluded", of("found.verified.concluded.value"), head="verified", form=spaced, text=True),
     Column("limit_state", _limit_state, head="governs", text=True),
     Column("not_counted", _not_counted, head="not\ncounted", text=True),
+)
+OF_NEIGHBOURS: tuple[Column[RankedStructure], ...] = (
+    only_shown("neighbours\noverturn", _share),
+    Column("share_lowest", of("found.under.share.lowest")),
+    Column("share_highest", of("found.under.share.highest")),
 )
 UNDER_MOTIONS: tuple[Column[RankedStructure], ...] = (
     Column("overturned", of("found.under.overturned"), head="overturn\nit", form=percent),
@@ -106,6 +121,8 @@ PARAMETERS: tuple[Column[RankedStructure], ...] = (
 )
 
 
+OF_MOTIONS = {"overturned", "unknown"}
+"""Keys of the columns on the motions themselves, which tables do not show beside those of their neighbours."""
 LEFT_TO_PAGES = {"phi_cr", "kappa2", "eta"}
 """Keys of the columns that terminals do not show beside those of a site, so that a row fits into a line."""
 
@@ -129,6 +146,7 @@ def data(found: Survey) -> dict[str, Any]:
     return {
         "ranked_by": found.by,
         "motions": list(found.motions),
+        "neighbours": asdict(found.around) if found.around.count else None,
         "rows": [one(row) for row in _ranked(found)],
         "bad": [
             {"row": each.row, "line": each.line, "name": one_line(each.name), "reason": each.reason}
@@ -143,6 +161,7 @@ def _columns(found: Survey) -> list[Column[RankedStructure]]:
         *STRUCTURE,
         *(OF_SITE if found.by == "ratio" else ()),
         *(_number(name, unit) for name, unit in found.units.items()),
+        *(OF_NEIGHBOURS if found.around.count else ()),
         *(UNDER_MOTIONS if found.motions else ()),
         *PARAMETERS,
     ]
@@ -219,7 +238,9 @@ def has_unknown(found: Survey) -> bool:
 
 def table(found: Survey, top: int, longest: int | None = MAX_NAME_LENGTH) -> Table:
     """Return a table of the first rows, with names of at most `longest` characters."""
-    empty = {"unknown"} if not has_unknown(found) else set[str]()
+    empty = set(OF_MOTIONS) if found.around.count else {"unknown"} if not has_unknown(found) else set[str]()
+    if all(each.side is None for each in found.rows):
+        empty.add("side")
     if all(_not_counted(row) is None for row in _ranked(found)):
         empty.add("not_counted")
     if found.by == "ratio" and longest is not None:
@@ -327,15 +348,21 @@ def _structures(count: int) -> str:
 def sentences(found: Survey, top: int | None = None) -> list[str]:
     """Return sentences on how to read the rows."""
     rows, many = found.rows, len(found.rows)
-    lines = [f"Ranked {RANKED[found.by]}."]
+    ranked = RANKED[found.by].format("neighbouring motions" if found.around.count else "motions")
+    lines = [f"Ranked {ranked}."]
     if top is not None and many > top:
-        lines[0] = f"Showing {top} of {many:,}, ranked {RANKED[found.by]}."
+        lines[0] = f"Showing {top} of {many:,}, ranked {ranked}."
+    if turned := [each for each in rows if each.side is not None]:
+        lines.append(
+            f"{_named(turned)}: ranked about the depth, the weaker side of the base. If a structure cannot rock about "
+            "it, give its column `plane` the word width."
+        )
     if found.motions:
         lines.append(
             "Time histories are by the nonlinear model. The peak is the largest rotation over the critical rotation "
-            "among the motions that do not overturn the structure. One time history is one sample: use "
-            "`rocking respond` and `rocking margin` to see how close the result is."
+            "among the motions that do not overturn the structure."
         )
+        lines += _of_neighbours(found)
         lines += _not_known(rows)
     cautions = [(each.name, caution_of(RankedStructure(0, each))) for each in rows]
     cautioned = [(name, caution) for name, caution in cautions if caution is not None]
@@ -354,6 +381,18 @@ def sentences(found: Survey, top: int | None = None) -> list[str]:
             "the reason."
         )
     return lines
+
+
+def _of_neighbours(found: Survey) -> Iterator[str]:
+    """Yield what the shares are shares of, and why there are fewer neighbours than usual, or none."""
+    fewer = "more would take over a minute for this table: `--neighbours N` fixes their number"
+    if not found.around.count:
+        why = f" There are no neighbours, as {fewer}." if found.reduced else ""
+        yield f"One time history is one sample: `rocking margin` shows how close the result is.{why}"
+        return
+    of = f"{found.around.count} neighbours ({deviations(found.around)})"
+    mean = " of each motion, the mean over the motions" if len(found.motions) > 1 else ""
+    yield f"The share is that of {of}{mean}{f'; {fewer}' if found.reduced else ''}."
 
 
 def _not_known(rows: Sequence[Surveyed]) -> Iterator[str]:

@@ -70,6 +70,7 @@ def test_contact_is_lost_where_the_ramp_reaches_minus_g(samples, lost):
     motion = GroundMotion("both", 0.1, np.zeros(2), vertical=up)
     assert contact_lost(motion, G) == (None if lost is None else pytest.approx(lost, rel=1e-12))
     assert len(vertical_notes(motion, G)) == (1 if lost is None else 2)
+    assert len(vertical_notes(motion, G, until=0.12)) == (2 if lost is not None and lost < 0.12 else 1)
     assert contact_lost(replace(motion, vertical=None), G) is None
     assert vertical_notes(replace(motion, vertical=None), G) == []
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import rocking_cli as rk
 from mechanisms.block import Block
 from rocking_cli import names
 from rocking_cli.core import Direction
@@ -386,3 +387,42 @@ def test_every_command_calls_an_outcome_the_same(structure, pulse, word, tmp_pat
 )  # fmt: skip
 def test_percentages_have_no_powers_of_ten(share, said):
     assert names.percent(share) == said
+
+
+@pytest.mark.parametrize(
+    "block",
+    [
+        Block(width=3, height=1),  # its kinematics give eta = -0.35
+        Block(width=0.6, height=4, one_sided="positive", mass=2e3, loads=[{"name": "a", "mass": 1e-6, "at": [0, 2]}]),
+    ],
+    ids=["stocky", "one_sided"],
+)
+def test_a_release_without_a_known_restitution_ends_at_its_first_impact(block):
+    """Its time and rate from the energy of a block alone: phi.^2/2 = p^2 (cos(alpha - phi_0) - cos(alpha - phi))."""
+    alpha, radius = np.arctan2(block.width, block.height), np.hypot(block.width, block.height) / 2
+    p, start = np.sqrt(3 * 9.80665 / (4 * radius)), alpha / 2
+
+    def rate(phi):
+        return p * np.sqrt(2 * (np.cos(alpha - start) - np.cos(alpha - phi)))
+
+    s, weight = np.polynomial.legendre.leggauss(60)
+    s, weight = (s + 1) / 2, weight / 2
+    phi = start * (1 - s**2)  # in s the integrand 1/rate has no singularity
+    time = float(np.sum(weight * 2 * start * s / rate(phi)))
+
+    answer = rk.respond(block, release=0.5)
+    assert list(answer.result) == ["nonlinear"]  # linear blocks have no first impact to stop at
+    found = answer["nonlinear"]
+    assert found.unknown and found.unmeasured and not found.apart and found.impact_count == 1
+    assert found.known_to == pytest.approx(time, rel=1e-8) == found.impacts[0, 0]
+    assert found.impacts[0, 2] == pytest.approx(rate(0.0), rel=1e-8)
+    assert found.peak_ratio == pytest.approx(0.5) and np.isnan(found.phi[found.time > time]).all()
+    assert answer.result.contacts[1].time < time - 1e-4  # nothing is said of the forces after it
+    said = " ".join(each for each in answer.view.parts if isinstance(each, str))
+    assert f"unknown after {time:.4g} s: then it has an impact, and its restitution is not known." in said
+    assert "Next: give a measured `restitution` (or `rebound`)." in said and "rocking margin" not in said
+    assert answer.to_dict()["conclusion"]["next"] == ["give_restitution", "crosscheck"]
+    with pytest.raises(rk.InputError, match=r"restitution|rebound"):  # a ground motion goes on after impacts
+        rk.respond(block, "sine:0.5g:0.5s", neighbours=0)
+    with pytest.raises(rk.InputError, match=r"restitution|rebound"):
+        rk.respond(block, release=0.5, models="linear2")

@@ -6,8 +6,9 @@ import os
 import re
 from collections import Counter
 from html.parser import HTMLParser
-from math import atan, isclose, sqrt
+from math import atan, hypot, isclose, log, sqrt
 from pathlib import Path
+from statistics import NormalDist
 
 import numpy as np
 import pytest
@@ -17,11 +18,13 @@ from rocking_cli.dynamics.parallel import in_processes
 from rocking_cli.errors import InputError, Refused
 from rocking_cli.io.dotted import HOLE, closed, put, words
 from rocking_cli.io.spreadsheet import parse_sheet
+from rocking_cli.names import percent
 from rocking_cli.questions.survey.structure_table import StructureTable
 from rocking_cli.questions.survey.study import MadeStructure, Under, survey
-from rocking_cli.questions.survey.view import sentences
+from rocking_cli.questions.survey.view import RankedStructure, _share, sentences
+from rocking_cli.studies.neighbours import Neighbourhood
 from tests.cli.test_cli import run, some
-from tests.conftest import EXAMPLES, rows_of
+from tests.conftest import EXAMPLES, record, rows_of
 
 ACCEL = EXAMPLES / "accel.csv"
 HEAD = "mechanism,name,width,height\n"
@@ -287,6 +290,87 @@ class TestRanking:
             assert row["overturned"] == len(fell) / 2
             stays = [each.peak_ratio for motion, runs in histories.items() if motion not in fell for each in runs]
             assert isclose(row["peak_ratio"], max(stays), rel_tol=1e-6, abs_tol=1e-12)
+
+    @pytest.mark.parametrize("level", [0.5, 0.97, 1.03, 1.1])
+    def test_the_share_is_that_of_neighbours(self, level):
+        """Held at x lambda g, the ground overturns the share Phi(ln x/sqrt(.04^2 + .10^2)); a second motion none."""
+        block = rk.Block(width=0.5, height=2.0)
+        held = rk.GroundMotion("held", 0.02, -level * 0.25 * G * np.ones(1501))
+        calm = rk.GroundMotion("calm", 0.02, 0.01 * G * np.ones(100))
+        wanted = NormalDist(sigma=hypot(0.04, 0.10)).cdf(log(level))
+        for motions, share in (([held], wanted), ([held, calm], wanted / 2)):
+            for signs in ((1,), (1, -1)):
+                under = survey([MadeStructure(block)], motions, signs, around=Neighbourhood()).rows[0].under
+                assert under.share.lowest == under.share.highest == pytest.approx(share, abs=0.03)
+                assert under.at_most == under.share.highest and under.share.of == 200
+                assert under.overturned == (level > 1) / len(motions)  # of the motions themselves, as before
+
+    def test_unknown_outcomes_make_it_a_range(self):
+        arch, pulse = EXAMPLES / "arch.yaml", "sine:0.6g:0.4s"
+        answer = rk.survey([arch], pulse, neighbours=40)
+        low, high, of = answer.rows[0].under.share
+        wanted = rk.shares(arch, pulse, neighbours=40).result
+        assert low < high and of == 40
+        assert (low, high) == pytest.approx((wanted.overturned, wanted.overturned + wanted.unknown))
+        (row,) = answer.to_dict()["rows"]
+        assert (row["share_lowest"], row["share_highest"]) == (low, high)
+        assert _share(RankedStructure(1, answer.rows[0])) == f"{percent(low).removesuffix(' %')} to {percent(high)}"
+
+    def test_neighbours_decide_the_rank_and_their_number_is_said(self, monkeypatch):
+        table(HEAD + "block,a,0.5,2\nblock,b,0.3,2\nblock,c,0.8,2\n")
+        asked = ("survey", "t.csv", "--pulse", "sine:0.3g:0.5s")
+        data = found(*asked)
+        assert data["neighbours"]["count"] == 200 and data["neighbours"]["amplitude"] == 0.04
+        shares = [row["share_highest"] for row in data["rows"]]
+        assert shares == sorted(shares, reverse=True) and shares[0] > shares[-1]
+        assert "The share is that of 200 neighbours (standard deviations" in run(*asked).stdout
+        few = run(*asked, "--neighbours", "10", "--slenderness-deviation", "0.05").stdout
+        assert "The share is that of 10 neighbours (standard deviations 4 % of amplitude, 5 % of slenderness" in few
+        alone = found(*asked, "--neighbours", "0")
+        assert alone["neighbours"] is None and "share_highest" not in alone["rows"][0]
+        assert "One time history is one sample" in run(*asked, "--neighbours", "0").stdout
+        assert "no effect without ground motions" in run("survey", "t.csv", "--neighbours", "5", code=2).stderr
+
+    def test_a_table_that_would_take_more_than_a_minute_has_fewer(self, monkeypatch):
+        blocks = [rk.Block(width=b, height=2.0) for b in (0.3, 0.5)]
+        pulse = rk.parse_pulse("sine:0.3g:0.5s").sampled()
+        for most, count in ((2 * 2 * pulse.npts * 200, 200), (2 * 2 * pulse.npts * 31, 31), (0, 0)):
+            monkeypatch.setattr("rocking_cli.questions.survey.study.MAX_SAMPLES", most)
+            answer = rk.survey(blocks, pulse, polarity="both")
+            assert answer.result.around.count == count and answer.result.reduced == (count < 200)
+            said = " ".join(each for each in answer.view.parts if isinstance(each, str))
+            why = "more would take over a minute for this table: `--neighbours N` fixes their number"
+            assert (why in said) == (count < 200)
+            assert ("There are no neighbours" in said) == (count == 0)
+            assert rk.survey(blocks, pulse, polarity="both", neighbours=40).result.around.count == 40
+
+    def test_a_block_is_ranked_by_its_weaker_side_unless_it_says_plane(self):
+        head = "mechanism,name,width,height,depth,plane\n"
+        table(f"{head}block,front,0.6,2.4,0.18,\nblock,held,0.6,2.4,0.18,width\nblock,wall,0.3,2.4,1,\n")
+        data = found("survey", "t.csv")
+        assert [(row["name"], row["side"]) for row in data["rows"]] == [
+            ("front", "depth"), ("wall", None), ("held", None),
+        ]  # fmt: skip
+        assert [row["lambda"] for row in data["rows"]] == pytest.approx([0.075, 0.125, 0.25])
+        assert all(row["caution"] is None for row in data["rows"])
+        said = " ".join(run("survey", "t.csv").stdout.split())
+        assert "front: ranked about the depth, the weaker side of the base." in said
+        (shaken,) = [row for row in found("survey", "t.csv", "--pulse", "sine:0.1g:0.5s")["rows"] if row["side"]]
+        turned = rk.respond(rk.Block(width=0.18, height=2.4), "sine:0.1g:0.5s", models="nonlinear", neighbours=0)
+        assert shaken["peak_ratio"] == pytest.approx(turned["nonlinear"].peak_ratio, rel=1e-9)
+
+    def test_a_collection_under_el_centro(self):
+        """One history of the amphora overturns, and half of its neighbours; the stele falls about its depth."""
+        table(
+            "mechanism,name,width [cm],height [cm],depth [cm]\n"
+            "block,amphora,16,68,16\nblock,stele,60,240,18\nblock,bookcase,90,220,35\n"
+        )
+        motion = record("RSN6_IMPVALL.I_I-ELC180.AT2")
+        rows = {row["name"]: row for row in found("survey", "t.csv", "--record", motion)["rows"]}
+        assert rows["amphora"]["overturned"] == 1 and 0.44 < rows["amphora"]["share_highest"] < 0.64
+        assert rows["stele"]["overturned"] == 1 and rows["stele"]["lambda"] == pytest.approx(0.075)
+        assert rows["bookcase"]["overturned"] == 0 and rows["bookcase"]["lambda"] == pytest.approx(0.1591, abs=1e-4)
+        assert rows["bookcase"]["peak_ratio"] == pytest.approx(0.57, abs=0.005)
 
     def test_both_polarities_of_what_is_not_symmetric(self):
         frame = rk.load_structure(EXAMPLES / "frame.yaml")
