@@ -60,7 +60,8 @@ def of_rows(*forces, step=0.1, limit=1.0, strength=np.inf, friction=np.nan, othe
     made = {
         "size": 1, "cells": 1, "lines": len(forces), "gravity": G, "limit": limit, "step": step, "slender": 1.0,
         "contacts": np.array([[[0, other, len(forces) - 1, 0]] * 2]), "bearing": np.array([[friction, strength]]),
-        "rows": rows.reshape(-1, kernels.OF_ROW), "stopped": np.zeros((2 * len(forces), 2)), "kept": np.empty((1, kernels.KEPT)),
+        "rows": rows.reshape(-1, kernels.OF_ROW), "stopped": np.zeros((2 * len(forces), 2)),
+        "kept": np.empty((1, kernels.KEPT)),
         "notes": np.empty(kernels.NOTES), "active": np.empty(4, np.int64),
     }  # fmt: skip
     return begun(kernels.Watch(**{**dict.fromkeys(kernels.Watch._fields, 0), **made}))
@@ -281,3 +282,33 @@ class TestNotes:
         for t, moving in ((0.0, False), (1.0, True), (1.5, True), (3.0, False), (4.0, True), (5.0, False)):
             self.moment(watch, found, t, moving=moving)
         assert found[kernels.LONGEST] == 2.0
+
+
+class TestUplift:
+    """-u_g'' > lambda (g + v_g'') lifts the positive direction, u_g'' the negative one: on ramps, at a root."""
+
+    NUMBERS = np.zeros((2, kernels.COLUMNS))
+    NUMBERS[:, kernels.LAMBDA], NUMBERS[:, kernels.GRAVITY] = (0.2, 0.3), G
+
+    def at(self, u, ramp, end=2.0, g=G, grade=0.0, tau=0.0):
+        return kernels.lifts_at(self.NUMBERS, tau, end, u, ramp, g, grade)
+
+    @pytest.mark.parametrize(("d", "level"), [(0, -0.2 * G), (1, 0.3 * G)])
+    def test_it_lifts_where_a_ramp_crosses_its_level(self, d, level):
+        assert self.at(0.0, level) == (pytest.approx(1.0), d)
+        assert self.at(0.0, level / 2.001) == (2.0, -1) and self.at(level * 1.001, 0.0, tau=0.5) == (0.5, d)
+        assert self.at(level * 0.999, 0.0)[1] == -1
+        # Weight that ebbs by half in 2 s halves the level on the way.
+        assert self.at(0.75 * level, 0.0, grade=-G / 4) == (pytest.approx(1.0), d)
+
+    def test_of_both_it_takes_the_first_or_the_one_with_more_behind_it(self):
+        """Without weight at the end both directions are open: the ramps of the levels are crossed at 0.25 and 1.2 s."""
+        for u, d in ((-0.15 * G, 0), (0.25 * G, 1)):
+            first = 1 - abs(u) / (self.NUMBERS[d, kernels.LAMBDA] * G)
+            time, lifted = self.at(u, 0.0, end=1.2, grade=-G)
+            assert (time, lifted) == (pytest.approx(first), d)
+        other = self.at(0.1 * G, -0.4 * G, end=1.0, grade=-1.2 * G)
+        crossings = [(0.2 - -0.1) / (0.4 + 0.2 * 1.2), (0.3 - 0.1) / (-0.4 + 0.3 * 1.2)]
+        expected = min((t, d) for d, t in enumerate(crossings) if t > 0)
+        assert other == (pytest.approx(expected[0]), expected[1])
+        assert self.at(0.05 * G, 0.0, g=-0.5 * G) == (0.0, 1)  # 0.05 + 0.15 against -0.05 + 0.1

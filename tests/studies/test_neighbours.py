@@ -285,6 +285,12 @@ class TestWords:
         around = Neighbourhood(restitution=0.05, slenderness=0.10)
         return neighbours_in_words(Neighbours(around, "nonlinear", overturned, peaks, 1.0, unknown=unknown))
 
+    @pytest.mark.parametrize("unknown", [0.0, 0.25, None])
+    def test_data_have_no_peak_where_a_neighbour_overturns_or_is_unknown(self, unknown):
+        data = neighbours_data(Neighbours(Neighbourhood(20), "nonlinear", 0.3, OPEN, 0.85, unknown=unknown))
+        assert data["peak_ratio"] == {"16": 0.1, "50": None, "84": None}
+        assert (data["overturned"], data["unknown"], data["sensitive"]) == (0.3, unknown, True)
+
     def test_deviations_that_are_not_given_are_those_of_the_structure(self):
         own = "and those of the structure for its"
         assert deviations(Neighbourhood()) == f"standard deviations 4 % of amplitude, {own} slenderness and restitution"
