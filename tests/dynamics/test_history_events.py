@@ -413,6 +413,8 @@ def test_a_release_starts_at_rest_from_its_fraction_of_phi_cr(model, side):
     assert history.impacts[0, 1] == side
     assert history.at_rest
     assert np.isnan(history.uplift_time)
+    assert history.lifted and history.words == "rocks"  # though nothing uplifts it from rest
+    assert not shake(model, 0.1, np.zeros(12)).lifted
 
 
 @every_model

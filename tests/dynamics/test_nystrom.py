@@ -17,7 +17,7 @@ from tests.reference_history import Nonlinear
 # q.. = -(g (1 - 0.8 q - 0.3 q^2 + 0.5 q^3) + u (0.7 + 0.4 q - 0.6 q^2 + 0.2 q^3)), all one cell of a table.
 G, B = (1.0, -0.8, -0.3, 0.5), (0.7, 0.4, -0.6, 0.2)
 FORCES = np.array([[G + B, G + B]])
-LAW = Law(False, 0, 1.0, 1.0, 0.0, 1.0, 10.0, 1.0)
+LAW = Law(False, 0, 1.0, 1.0, 0.0, 1.0, 10.0, np.inf, 1.0)
 GROUND = Ground(-1.5, 1.3, 1.1, -0.7)
 STARTS = ((0.4, -0.3), (0.1, 0.5), (0.7, 0.2), (0.2, -0.6))
 

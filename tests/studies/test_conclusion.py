@@ -17,6 +17,7 @@ import rocking_cli as rk
 from rocking_cli.cli.main import main
 from rocking_cli.core import Direction
 from rocking_cli.studies.conclusion import SEVERITY, Concluded, Conclusion, LeftOut, NeighbourShare, NextStep, worst
+from rocking_cli.studies.response import concluded
 from rocking_cli.verification.results import Requirement
 from rocking_cli.views.conclusion import (
     NEXT_STEPS,
@@ -31,6 +32,7 @@ from rocking_cli.views.view import Table
 from tests.cli.test_cli import run, run_json, some
 from tests.conftest import EXAMPLES, YAML_FILES
 from tests.dynamics.test_rest import CRACKS, of
+from tests.following import respond
 
 PILLAR = {"mechanism": "block", "width": 0.5, "height": 2.2, "density": 1800, "depth": 0.5}
 LEANING = rk.RigidBody(polygon=[[0, 0], [0.7, 0], [0.7, 2.8], [0.2, 2.8]], density=1800, depth=1)
@@ -305,6 +307,8 @@ def test_every_next_step_has_words_and_says_what_the_result_needs():
     assert next_in_words(Conclusion(concluded=Concluded.NO_UPLIFT)) == ""
     rocks = Conclusion(concluded=Concluded.ROCKS, share=NeighbourShare(0.0, 0.0, 20))
     assert rocks.next == [] and replace(rocks, share=NeighbourShare(0.0, 0.1, 20)).next == [NextStep.MARGIN]
+    assert replace(rocks, share=NeighbourShare(0.9, 1.0, 20)).next == [NextStep.MARGIN]
+    assert replace(rocks, share=NeighbourShare(1.0, 1.0, 20)).next == []  # they all end alike
 
 
 def test_the_worst_of_several_governs():
@@ -415,6 +419,23 @@ def test_an_unknown_response_is_concluded_with_its_joint_and_time():
     assert end.joint == (run_.check.joint if run_.unknown else "")
     assert np.isfinite(run_.known_to) == run_.unknown
     json.dumps(conclusion_data(end))
+
+
+@pytest.mark.parametrize(
+    ("fields", "what", "peak", "until"),
+    [
+        ({}, Concluded.ROCKS, 0.4, None),
+        ({"peak_ratio": 0.0}, Concluded.NO_UPLIFT, 0.0, None),
+        ({"fell_to": 1, "peak_ratio": np.nan}, Concluded.OVERTURNS, None, None),
+        ({"unknown": True, "known_to": 3.0, "warned": 2.0}, Concluded.UNKNOWN, None, 3.0),
+        ({"unknown": True, "known_to": 0.5, "peak_ratio": 0.0}, Concluded.UNKNOWN, None, 0.5),
+    ],
+)
+def test_a_history_concludes_with_its_peak_or_until_when_it_is_known(fields, what, peak, until):
+    rested = respond(rk.Block(width=0.7, height=2.8), release=0.4, models=("nonlinear",))["nonlinear"]
+    end = concluded({1: {"nonlinear": replace(rested, **fields)}}, {}, "motion")
+    assert (end.concluded, end.peak_ratio, end.known_until) == (what, pytest.approx(peak) if peak else peak, until)
+    assert (end.remedy is None) == (until is None)
 
 
 def test_directions_that_differ_name_the_one_that_governs():

@@ -83,6 +83,26 @@ def test_a_block_state_by_state(vertical):
     assert found.joint in ("O", "O'") and not found.whole and found.holds
 
 
+def test_after_the_last_sample_nothing_shakes_it_any_longer():
+    """A record that ends with a push: from then on each state is that of a free motion."""
+    motion = GroundMotion("push", 0.01, np.full(31, -0.35 * G))
+    history, found = checked(BLOCK, motion)
+    k = int(np.flatnonzero(history.time > 0.31)[0])
+    assert history.phi[k] > 0 and history.first_impact > history.time[k]
+    free, _ = of_a_block(history.phi[k], history.rate[k], 0.0, 0.0)
+    assert found.demand[found.times == history.time[k]] == pytest.approx([free], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("fields", "valid"),
+    [({}, True), ({"slides": 1.0}, False), ({"slides": 1.0, "followed": True}, True), ({"lost": 1.0}, False),
+     ({"opens": 1.0}, False), ({"opens": np.nan}, True), ({"followed": True, "known_to": 2.0}, False),
+     ({"known_to": 2.0}, False)],
+)  # fmt: skip
+def test_a_whole_history_is_valid_if_followed_and_known_or_if_all_joints_hold(fields, valid):
+    assert contact.ContactDemand(times=np.zeros(0), demand=np.zeros(0), **fields).stands == valid
+
+
 def test_how_long_a_demand_lasts():
     """Along a polygon: above 1 from 1 to 1.5 and from 3.25 to 5, at one moment from 4 down to 2."""
     time = np.array([0.0, 2.0, 2.0, 3.0, 4.0, 4.0, 6.0])
@@ -321,6 +341,7 @@ def test_an_impact_that_throws_a_joint_apart_loses_contact():
     history, found = checked(arch, None, release=0.3)
     assert impulses(arch, arch.directions[0]).normal.min() < 0
     assert found.lost == history.impacts[0, 0] and found.lost_joint == "A'" and not found.holds
+    assert found.times[found.demand > 0].max() == found.lost  # that moment itself still counts
     assert f"Contact is lost at joint A' at {found.lost:.4g} s" in contact_words(found, arch)
 
 

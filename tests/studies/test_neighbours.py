@@ -24,7 +24,7 @@ from rocking_cli.studies.neighbours import (
     neighbours,
     simulate_neighbours,
 )
-from rocking_cli.views.neighbours import deviations, neighbours_in_words
+from rocking_cli.views.neighbours import deviations, neighbours_data, neighbours_in_words
 from tests.conftest import EXAMPLES
 from tests.following import build_model, respond
 
@@ -157,6 +157,14 @@ def test_nothing_is_known_of_joints_that_the_mechanism_does_not_name():
     assert found.unknown is None and found.at_most == found.overturned
 
 
+def test_nor_where_nothing_can_lift_it():
+    faint = ACCEL.scaled(0.01)
+    for structure, unknown in ((load_structure(EXAMPLES / "curve.yaml"), None), (BLOCK, 0.0)):
+        found = neighbours(build_model(structure, "nonlinear"), faint, Neighbourhood(5))
+        assert not found.lifted and found.unknown == unknown == neighbours_data(found)["unknown"]
+        assert found.at_most == found.overturned == 0
+
+
 @pytest.mark.rest
 @pytest.mark.parametrize(
     ("file", "pulse"),
@@ -276,6 +284,12 @@ class TestWords:
     def sentence(self, overturned, peaks, unknown=0.0):
         around = Neighbourhood(restitution=0.05, slenderness=0.10)
         return neighbours_in_words(Neighbours(around, "nonlinear", overturned, peaks, 1.0, unknown=unknown))
+
+    @pytest.mark.parametrize("unknown", [0.0, 0.25, None])
+    def test_data_have_no_peak_where_a_neighbour_overturns_or_is_unknown(self, unknown):
+        data = neighbours_data(Neighbours(Neighbourhood(20), "nonlinear", 0.3, OPEN, 0.85, unknown=unknown))
+        assert data["peak_ratio"] == {"16": 0.1, "50": None, "84": None}
+        assert (data["overturned"], data["unknown"], data["sensitive"]) == (0.3, unknown, True)
 
     def test_deviations_that_are_not_given_are_those_of_the_structure(self):
         own = "and those of the structure for its"

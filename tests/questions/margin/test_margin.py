@@ -319,6 +319,18 @@ def shown(uplift=0.5, shares=0.0, unknown=0.0, polarities=(1, -1)) -> Margin:
     return Margin(AROUND, uplift, FACTORS, zeros + shares, zeros + unknown, pga=0.4, polarities=polarities)
 
 
+@pytest.mark.parametrize(
+    ("shares", "unknown", "ratio"),
+    [((0.0, 0.05, 0.2), (0.0, 0.0, 0.0), 3.0), ((0.0, 0.05, 0.2), (0.0, 0.06, 0.0), 2.0),
+     ((0.0, 0.0, 0.09), (0.1, 0.0, 0.0), 1.0), ((0.0, 0.05, 0.09), (0.0, 0.0, 0.0), np.inf)],
+)  # fmt: skip
+def test_the_factor_of_the_conclusion_is_the_first_at_which_a_tenth_overturns_or_may(shares, unknown, ratio):
+    motion = parse_pulse("sine:0.05g:0.5s").sampled()
+    end = margins.conclusion(Structure(BLOCK), motion, (1,), made(*shares, unknown=unknown))
+    assert end.ratio == ratio
+    assert (end.share.lowest, end.share.highest) == pytest.approx((shares[0], shares[0] + unknown[0]))
+
+
 @pytest.mark.parametrize(("uplift", "mark"), [(0.05, "<"), (0.5, "|"), (9.0, ">")])
 def test_where_it_uplifts_is_marked_on_the_axis_or_pointed_to_and_named(uplift, mark):
     (axes,) = draw_margins({"a": shown(uplift)}, "title").axes

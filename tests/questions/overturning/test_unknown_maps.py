@@ -12,7 +12,6 @@ from matplotlib.patches import Rectangle
 import rocking_cli as rk
 from mechanisms.block import Block
 from rocking_cli.core.structure_file import load_structure
-from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcome
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD, parse_pulse
 from rocking_cli.excitation.records import read_record
@@ -39,6 +38,7 @@ from rocking_cli.studies.under_pulses import outcomes, parse_shape, pulsed_model
 from rocking_cli.views.animation import why_it_ends
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
+from tests.dynamics.test_outcomes import made
 from tests.following import respond
 
 SINE = parse_shape("sine")
@@ -53,39 +53,12 @@ def nonlinear(mechanism, motion):
     return respond(mechanism, motion, models=("nonlinear",))["nonlinear"]
 
 
-def made(**fields):
-    """Outcomes of which all is known, but for what is given."""
-    many = len(next(iter(fields.values())))
-    flags = {"still_rocking", "failed", "unknown"}
-    usual = {
-        name: name not in flags and (0 if name in ("fell_to", "impact_count") else np.nan) for name in OUTCOME_FIELDS
-    }
-    return Outcome(**{name: np.array(fields.get(name, [value] * many)) for name, value in usual.items()})
-
-
-class TestArrays:
-    """No sum and no mean of `overturned` drops the unknown."""
-
-    def test_overturned_is_nan_where_it_is_not_known_and_the_share_is_a_range(self):
-        found = made(fell_to=[1, 0, -1, 0, 0], unknown=[False, True, False, False, False], failed=[False] * 4 + [True])
-        np.testing.assert_array_equal(found.overturned, [1.0, np.nan, 1.0, 0.0, np.nan])
-        assert found.fell.tolist() == [True, False, True, False, False]
-        assert np.isnan(found.overturned.sum()) and np.isnan(found.overturned.mean())
-        assert found.share() == (0.5, 0.75)  # of the four that ran
-        assert np.isnan(made(failed=[True]).share()).all()
-
-    def test_of_one_motion_it_is_yes_no_or_none(self):
-        found = made(fell_to=[-1, 0, 0, 0], unknown=[False, False, True, False], failed=[False] * 3 + [True])
-        single = [found.by_field(lambda each, k=k: each[k]).overturned for k in range(4)]
-        assert single == [True, False, None, None]
-        assert nonlinear(PORTAL, RECORD).overturned is None
-
-    def test_arrays_frames_and_json_agree(self):
-        answer = rk.respond_each(FILE, ACCEL, models="nonlinear", scales=[0.1, 2.0])
-        assert answer["nonlinear"].share() == (0.0, 0.5)
-        np.testing.assert_array_equal(answer["nonlinear"].overturned.ravel(), [0.0, np.nan])
-        np.testing.assert_array_equal(answer.to_frame()["overturned"], [0.0, np.nan])
-        assert np.ravel(answer.to_dict()["nonlinear"]["overturned"]).tolist() == [False, None]
+def test_arrays_frames_and_json_agree():
+    answer = rk.respond_each(FILE, ACCEL, models="nonlinear", scales=[0.1, 2.0])
+    assert answer["nonlinear"].share() == (0.0, 0.5)
+    np.testing.assert_array_equal(answer["nonlinear"].overturned.ravel(), [0.0, np.nan])
+    np.testing.assert_array_equal(answer.to_frame()["overturned"], [0.0, np.nan])
+    assert np.ravel(answer.to_dict()["nonlinear"]["overturned"]).tolist() == [False, None]
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,10 @@ from rocking_cli import names
 from rocking_cli.core import Direction
 from rocking_cli.core.advice import Grade
 from rocking_cli.dynamics.verdict import agreements
-from rocking_cli.views.verdict import NO_JOINTS, OVERTURNS, verdict
+from rocking_cli.structure import Structure
+from rocking_cli.views.response import known_data
+from rocking_cli.views.restitution import restitution_used
+from rocking_cli.views.verdict import NO_JOINTS, OVERTURNS, joints_in_words, verdict
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES, record, rows_of
 from tests.following import respond
@@ -53,6 +56,10 @@ LOW = {"uplift_error": -0.33}
         ({"nonlinear": peak(0.4), "linear1": peak(0.6)}, "Disregard linear1 here: its peak is 50 % higher", "close"),
         ({"nonlinear": peak(0.4), "linear1": peak(0.4, **LOW)}, "uplift acceleration is 33 % too low; here", "agrees"),
         ({"linear2": peak(0.9)}, "rocks to 0.9 of its critical rotation phi_cr. This is close", "linear2"),
+        # Reaching the kinematic limit is overturning there, however far it still is from losing its weight's moment.
+        ({"nonlinear": peak(0.9, ends_at_limit=(True, True))}, "0.9 of its kinematic limit", "close"),
+        ({"nonlinear": peak(0.801)}, "This is close to overturning", "exceeds"),
+        ({"nonlinear": peak(0.799)}, "rocks to 0.799", "close"),
         ({"linear1": peak(0.2, **LOW)}, "Disregard linear1: its uplift acceleration is 33 % too low.", "here"),
         ({"linear1": peak(0.2), "linear2": fell(UP)}, "By linear2 it overturns clockwise. Do not trust", "close"),
         ({"nonlinear": peak(1.75)}, "exceeds its critical rotation, reaching 1.75 times it", "rocks to"),
@@ -74,6 +81,55 @@ def test_the_verdict_says_what_happened(histories, words, not_said):
     said = verdict(histories, agreements(histories))
     assert words in said
     assert not_said not in said
+
+
+@pytest.mark.parametrize(
+    ("eta", "given", "doubted"),
+    [(0.9699, False, False), (0.9701, False, True), (0.9999, False, True), (0.9999, True, False)],
+)
+def test_a_restitution_of_kinematics_above_those_of_tests_is_doubted(eta, given, doubted):
+    """A block has eta = 1 - 1.5 sin(alpha)^2, tan(alpha) its width over its height; tests found 0.97 at most."""
+    alpha = np.arcsin(np.sqrt((1 - eta) / 1.5))
+    block = Block(width=np.tan(alpha), height=1.0, restitution=eta if given else None)
+    said = restitution_used(Structure(block))
+    assert f"eta = {eta:.4g}, {'as given' if given else 'from rigid-body kinematics'}" in said
+    assert ("Tests" in said) == doubted
+
+
+def test_what_is_known_of_a_history_is_null_where_nothing_is():
+    """Joints that were not checked make it neither known nor unknown, and a linear model has none."""
+    known = known_data(RESTED)
+    assert known == {"unknown": False, "known_to": None, "known_to_reason": None, "peak_lower_bound": None,
+                     "opening": RESTED.opening}  # fmt: skip
+    assert known_data(replace(RESTED, check=None))["unknown"] is None
+    assert known_data(replace(RESTED, model="linear1", check=None))["unknown"] is False
+    bound = replace(unknown(), lower_bound=0.3)
+    for each in (bound, replace(bound, check=None)):
+        data = known_data(each)
+        assert (data["unknown"], data["known_to"], data["peak_lower_bound"]) == (True, 2.0, 0.3)
+        assert data["known_to_reason"]
+    assert known_data(replace(RESTED, lower_bound=0.3, warned=1.0))["peak_lower_bound"] is None
+
+
+@pytest.mark.parametrize(
+    ("ratio", "opening", "uncertain"),
+    [(0.0199, 0.00101, True), (0.0201, 0.00101, False), (0.0199, 0.00099, False), (0.0, 0.00101, False)],
+)
+def test_a_small_peak_is_uncertain_where_a_joint_opens_by_more_than_a_thousandth(ratio, opening, uncertain):
+    check = replace(RESTED.check, warned=1.0, largest=opening * RESTED.check.reach, largest_joint="a and b")
+    said = joints_in_words(peak(ratio, check=check))
+    assert ("the peak remain valid" in said) != uncertain and ("uncertain" in said) == uncertain
+
+
+@pytest.mark.parametrize(
+    ("warned", "bound", "said"),
+    [(1.0, 0.2, ("a peak of 0.3 ", "is 0.2, that before")), (1.0, 0.3, ("is 0.3 of", "that until then")),
+     (np.nan, 0.3, ("is 0.3 of", "that until then"))],
+)  # fmt: skip
+def test_a_lower_bound_is_the_peak_before_the_first_warning(warned, bound, said):
+    text = joints_in_words(replace(unknown(), peak_ratio=0.3, warned=warned, lower_bound=bound))
+    assert text.startswith("The outcome is unknown after 2 s") and all(each in text for each in said)
+    assert ("that until then" in text) == (bound == 0.3)
 
 
 def shifted(seconds):

@@ -82,6 +82,35 @@ def test_the_vertical_component_keeps_its_size_and_its_pace_with_the_other():
     assert np.array_equal(both.vertical.acceleration, motion.acceleration)
 
 
+@pytest.mark.parametrize("FC", [1.0, 1.2, 1.35])
+class TestUntilWhen:
+    """With FC the motion runs sqrt(FC) times as fast; what is said of it is a time of the record."""
+
+    def test_weight_is_gone_at_the_moment_of_the_record_at_which_the_ground_falls_away(self, FC):
+        """v_g'' falls to -2 g in 2 s: nothing holds the block down from 1 s on, whatever FC."""
+        up = rk.GroundMotion("up", 0.01, -2 * G * np.linspace(0.0, 1.0, 201))
+        motion = rk.GroundMotion("falls", 0.01, np.full(201, 0.01 * G), vertical=up)
+        found = dynamic.peaks(WALL, curves(FC), motion, (1, -1))[Direction.POSITIVE]
+        assert found.known_to_without == pytest.approx(1.0, rel=1e-9)
+        assert found.known_to_with_confidence == pytest.approx(1.0, rel=1e-9)
+        assert found.with_confidence is found.without is None
+
+    @pytest.mark.parametrize("ends", [{1: 150, -1: 90}, {1: 90, -1: 150}, {1: 90}, {-1: 90}])
+    def test_of_both_polarities_it_is_the_earlier_one(self, FC, ends, monkeypatch):
+        """Either history ends at a sample of the record, or is known to its end."""
+
+        def follows(structure, motion):
+            sample = ends.get(int(np.sign(motion.acceleration[1])))
+            rested = follow(MODEL, None, release=0.1)
+            return replace(rested, unknown=True, known_to=sample * motion.dt) if sample else rested
+
+        monkeypatch.setattr(dynamic, "follow", follows)
+        motion = rk.GroundMotion("push", 0.01, np.array([0.0, 1.0, 0.0]))
+        found = dynamic.peaks(WALL, curves(FC), motion, (1, -1))[Direction.POSITIVE]
+        assert found.known_to_without == pytest.approx(0.9)
+        assert found.known_to_with_confidence == pytest.approx(0.9)
+
+
 ALLOWED = {"SLV": 0.12, "SLC": 0.18}
 
 
