@@ -177,7 +177,7 @@ def test_each_neighbour_is_judged_with_its_own_slenderness() -> None:
     draws = Neighbourhood(100, slenderness=0.0).drawn(model)
     drive, grip = 0.9 * G * draws.amplitude - 0.42 * G, 0.42 * G
     slips = np.sort(drive * 0.59**2 / 2 * (1 + drive / grip))
-    assert exact.slip == pytest.approx((slips[15], slips[49], slips[83]), rel=1e-9)
+    assert exact.slip == pytest.approx([slips[15], slips[49], slips[83]], rel=1e-9)
 
 
 ONE_BLOCK = {"b": {"polygon": [[0.0, 0.0], [1.0, 0.0], [0.8, 2.0], [0.2, 2.0]]}}
