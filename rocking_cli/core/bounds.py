@@ -255,10 +255,19 @@ def _beside(a: Points, b: Points) -> Reals:
 
 
 class Clearance(NamedTuple):
-    """How far a body at rest may slide one way [m], infinite if nothing is there, and what it reaches then."""
+    """How far a body at rest may slide one way [m], infinite if nothing is there, and what it reaches then.
+
+    `edge` is whether it reaches the edge of ground that has this name, and otherwise meets what has it.
+    """
 
     distance: float
     name: str
+    edge: bool = False
+
+    @property
+    def words(self) -> str:
+        """What it reaches, in words."""
+        return f"the edge of {self.name}" if self.edge else self.name
 
 
 def clearances(mechanism: Jointed, left: complex, right: complex) -> tuple[Clearance, Clearance]:
@@ -314,7 +323,7 @@ def _edges(
         if first <= reach + touching and last >= end - touching and last >= reach - touching:
             reach, name = max(last, reach), of
     if name:
-        yield Clearance(reach - end, f"the edge of {name}")
+        yield Clearance(reach - end, name, edge=True)
 
 
 def _heights(one: Points, other: Points) -> Reals:

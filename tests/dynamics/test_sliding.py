@@ -217,7 +217,7 @@ def test_it_slides_to_what_is_drawn_beside_it() -> None:
         (model,) = build_models(assembly(**ground), ("nonlinear",))
         assert model.sliding is not None
         for found, (distance, name) in zip(model.sliding.clear, expected, strict=True):
-            assert found.name == name
+            assert found.words == name
             assert found.distance == pytest.approx(distance, rel=1e-9)
     assert (
         build_models(made(width=1.0, height=0.8, friction=0.2), ("nonlinear",))[0].sliding.clear[0].distance == np.inf
@@ -228,7 +228,7 @@ def test_stops_bound_the_slip() -> None:
     stops = [{"point": [0.5, 0.8], "gap": 0.05, "name": "wall"}, {"point": [-0.5, 0.2], "gap": -0.02}]
     (model,) = build_models(made(width=1.0, height=0.8, friction=0.2, stops=stops), ("nonlinear",))
     assert model.sliding is not None
-    assert [(each.distance, each.name) for each in model.sliding.clear] == [(0.02, "the stop"), (0.05, "wall")]
+    assert [(each.distance, each.words) for each in model.sliding.clear] == [(0.02, "the stop"), (0.05, "wall")]
     assert not model.symmetric
 
 
