@@ -409,8 +409,10 @@ def settle(
     """
     structure, record = (runs[:, column].astype(np.int64) for column in (kernels.STRUCTURE, kernels.RECORD))
     slender, largest = runs[:, kernels.SLENDER], np.zeros(len(runs))
-    able = np.array([foot is not None for foot in feet])[structure] & (runs[:, kernels.START] == 0)
-    able = np.logical_and(able, np.array([motion is not None for motion in motions])[record])
+    stands, shaken = (np.array([each is not None for each in every], np.bool_) for every in (feet, motions))
+    able = np.asarray(stands[structure] & shaken[record] & (runs[:, kernels.START] == 0))
+    if not able.any():
+        return largest, None
     up = np.array([_extremes(motion) for motion in motions])[record] * runs[:, kernels.V_FACTOR, None]
     for k in np.unique(structure[able]).tolist():
         foot, mine = feet[k], np.flatnonzero(able & (structure == k))
@@ -420,10 +422,10 @@ def settle(
     if not slides.size:
         return largest, None
     # Only the structures and motions of these runs.
-    (which, stands_on), (shaken, under) = (np.unique(of[slides], return_inverse=True) for of in (structure, record))
+    (bodies, stands_on), (grounds, under) = (np.unique(of[slides], return_inverse=True) for of in (structure, record))
     slip = slips(
-        [foot for k in which if (foot := feet[k]) is not None],
-        [motion for k in shaken if (motion := motions[k]) is not None],
+        [foot for k in bodies if (foot := feet[k]) is not None],
+        [motion for k in grounds if (motion := motions[k]) is not None],
         stands_on,
         under,
         runs[slides, kernels.FACTOR] * slender[slides],
