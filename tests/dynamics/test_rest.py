@@ -228,9 +228,9 @@ def test_equiv_says_what_comes_before_rocking(tmp_path):
          "ground and block slides from 0.3 g, below lambda = 0.5. Stronger motions make it slide and not rock: "
          "time histories give the slip."),
         ("near", 0.45, "The structure slides before it rocks in both directions: at rest the joint between the ground "
-         "and block slides from 0.45 g, below lambda = 0.5. Stronger motions make it slide and not rock: time histories "
-         "give the slip. The friction of 0.45 is within 20 % of 0.5, up to which the structure only slides, and above "
-         "which it may rock. Neighbours do not vary friction: vary it yourself."),
+         "and block slides from 0.45 g, below lambda = 0.5. Stronger motions make it slide and not rock: time "
+         "histories give the slip. The friction of 0.45 is within 20 % of 0.5, up to which the structure only slides, "
+         "and above which it may rock. Neighbours do not vary friction: vary it yourself."),
         ("just rocks", 0.51, "The friction of 0.51 is within 20 % of 0.5, up to which the structure only slides, and "
          "above which it may rock. Neighbours do not vary friction: vary it yourself."),
         ("rocks", 0.61, None),
