@@ -40,6 +40,12 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.plugins.errors import failed, guard
 from rocking_cli.units import STANDARD_GRAVITY
 
+OUT_OF_STEP = (
+    "Three or more columns may fall out of step at an impact: a column that carries nothing then rocks alone. "
+    "If that column ends otherwise than the structure, the outcome is unknown from the first impact; if not, peaks are "
+    "those of columns in step."
+)
+
 
 class Mechanism(Jointed):
     """A rocking structure with one degree of freedom.
@@ -73,6 +79,10 @@ class Mechanism(Jointed):
     def columns_alone(self) -> Sequence[Mechanism]:
         """Return the columns if three or more carry one beam, each as a structure, equal ones once; otherwise none."""
         return ()
+
+    def own_caution(self) -> str:
+        """Return a caution on the results of this structure in particular; by default on `columns_alone`."""
+        return OUT_OF_STEP if self.columns_alone() else ""
 
     @final
     def cautions(self) -> Sequence[str]:
