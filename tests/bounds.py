@@ -31,6 +31,8 @@ SURE = (0.05, 0.95)  # shares of overturning neighbours below and above which a 
 LEEWAY = 0.1  # by which a share must move to have changed: two neighbours of twenty
 AROUND = (1.0, 0.97, 1.03)  # scales at which free blocks must contradict a verdict to refute it
 AT_ONCE = 2  # processes
+OPPOSITE = ("stands", "overturns")
+BROKEN = ("FAILED", "the process ended")  # how the words begin with which a case has no answer
 
 
 def modules() -> Iterator[tuple[str, Path]]:
@@ -326,7 +328,7 @@ class Verdict(NamedTuple):
     def against(self, other: Verdict) -> bool:
         """Whether this sure verdict is not that of another."""
         moved = max(abs(self.lowest - other.lowest), abs(self.highest - other.highest))
-        return self.word in ("stands", "overturns") and other.word != self.word and moved >= LEEWAY
+        return self.word in OPPOSITE and other.word != self.word and moved >= LEEWAY
 
 
 def _made(given: Case) -> Any:
@@ -412,10 +414,10 @@ class Change(NamedTuple):
 
 def changes(pool: ThreadPoolExecutor, found: Found, numbers: Sequence[int], kind: str) -> list[Change]:
     """What becomes of cases if all bounds of a kind are doubled at once, and which of them does it alone."""
-    lines, named = listed()[kind], listed().get("named", {})
-    after = in_parts(pool, "exact", numbers, [*lines])
+    engine, lines, named = "blocks" if kind == "blocks" else "exact", listed()[kind], listed()["named"]
+    after = in_parts(pool, engine, numbers, [*lines])
     moved = [number for number in numbers if found[number][0].against(after[number][0])]
-    alone = dict(zip(lines, pool.map(lambda name: run("exact", moved, [name]), lines), strict=True)) if moved else {}
+    alone = dict(zip(lines, pool.map(lambda name: run(engine, moved, [name]), lines), strict=True)) if moved else {}
     result = []
     for number in moved:
         by = [name for name, each in alone.items() if found[number][0].against(each[number][0])]
@@ -427,51 +429,41 @@ def changes(pool: ThreadPoolExecutor, found: Found, numbers: Sequence[int], kind
 
 def main() -> int:
     """Run all, print the table and what went wrong; how many verdicts changed unnamed, or were refuted."""
-    count, free = int(os.environ.get("CASES", "2000")), int(os.environ.get("FREE", "300"))
-    numbers = range(count)
-    kinds = [make.__name__[1:] for make in KINDS]
+    numbers, free = range(int(os.environ.get("CASES", "2000"))), int(os.environ.get("FREE", "300"))
+    few = max(len(numbers) // 20, 1)
     with ThreadPoolExecutor(AT_ONCE) as pool:
         found = in_parts(pool, "exact", numbers)
+        sure = [number for number in numbers if found[number][0].word in OPPOSITE][:free]
         moved = {kind: changes(pool, found, numbers, kind) for kind in ("physical", "numerical")}
-        sure = [number for number in numbers if found[number][0].word in ("stands", "overturns")][:free]
+        moved["kernels"] = changes(pool, found, numbers[:few], "kernels")
         blocks = in_parts(pool, "blocks", sure)
-    refuted = [number for number in sure if not blocks[number][0].refused and found[number][0].against(blocks[number][0])
-               and blocks[number][0].word != "open"]  # fmt: skip
-    print(
-        f"{'kind':18}"
-        + "".join(
-            f"{each:>10}"
-            for each in (
-                "cases",
-                "stands",
-                "overturns",
-                "open",
-                "refused",
-                "physical",
-                "named",
-                "numerical",
-                "by blocks",
-                "refuted",
-            )
-        )
-    )
-    for kind in [*kinds, "all"]:
-        here = {number for number in numbers if kind in (kinds[number % len(kinds)], "all")}
+        moved["blocks"] = changes(pool, blocks, sure[:few], "blocks")
+    refuted = [each for each in sure if found[each][0].against(blocks[each][0]) and blocks[each][0].word in OPPOSITE]
+    print(f"Changed if doubled: kernels of {few} cases, free blocks of {len(sure[:few])}, all others of every case.")
+    heads = "cases", *OPPOSITE, "open", "refused", *moved, "named", "asked", "refuted"
+    print(f"{'kind':18}" + "".join(f"{each:>10}" for each in heads))
+    of = [make.__name__[1:] for make in KINDS]
+    for kind in [*of, "all"]:
+        here = {number for number in numbers if kind in (of[number % len(of)], "all")}
         words = Counter(found[number][0].word for number in here)
-        doubled_here = {each: [one for one in moved[each] if one.number in here] for each in moved}
+        changed = [[one for one in each if one.number in here] for each in moved.values()]
+        asked = sum(not blocks[each][0].refused for each in here & {*sure})
+        told = sum(one.named for each in changed for one in each)
         cells = (
-            len(here), words["stands"], words["overturns"], words["open"], words["refused"],
-            sum(not one.named for one in doubled_here["physical"]), sum(one.named for one in doubled_here["physical"]),
-            len(doubled_here["numerical"]), sum(not blocks[each][0].refused for each in here & {*sure}),
+            len(here),
+            *(words[each] for each in heads[1:5]),
+            *map(len, changed),
+            told,
+            asked,
             len(here & {*refuted}),
-        )  # fmt: skip
+        )
         print(f"{kind:18}" + "".join(f"{each:10}" for each in cells))
-    for each in moved:
-        for one in moved[each]:
-            print(f"{each}: {'named' if one.named else 'CHANGED'} {one}\n  {json.dumps(case(one.number))}")
+    for name, each in moved.items():
+        for one in each:
+            print(f"{name}: {'named' if one.named else 'CHANGED'} {one}\n  {json.dumps(case(one.number))}")
     for number in refuted:
         print(f"REFUTED {number}: {found[number][0]}, by blocks {blocks[number][0]}\n  {json.dumps(case(number))}")
-    failed = [number for number in numbers if found[number][0].refused.startswith(("FAILED", "the process"))]
+    failed = [number for number in numbers if found[number][0].refused.startswith(BROKEN)]
     for number in failed:
         print(f"{number}: {found[number][0].refused}\n  {json.dumps(case(number))}")
     return len(refuted) + len(failed) + sum(not one.named for one in moved["physical"])

@@ -56,5 +56,5 @@ def test_no_sure_verdict_of_a_sample_changes():
     with ThreadPoolExecutor(bounds.AT_ONCE) as pool:
         found = bounds.in_parts(pool, "exact", numbers)
         assert {verdict.word for verdict, _ in found.values()} >= {"stands", "overturns", "open"}
-        assert not [verdict.refused for verdict, _ in found.values() if verdict.refused.startswith(("FAILED", "the p"))]
+        assert not [verdict.refused for verdict, _ in found.values() if verdict.refused.startswith(bounds.BROKEN)]
         assert not [each for each in bounds.changes(pool, found, numbers, "physical") if not each.named]
