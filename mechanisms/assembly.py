@@ -541,8 +541,11 @@ class Assembly(LinkedBodies):
         return contacts
 
     def _bearing(self, direction: Direction) -> Iterator[tuple[analysis.AssemblyContact, Sequence[int]]]:
-        """Yield the joints that still bear in a mechanism, and at which ends: both if closed, one if it hinges."""
-        bear = {analysis.Opening.CLOSED: (0, 1), analysis.Opening.START: (0,), analysis.Opening.END: (1,)}
+        """Yield the joints that still bear in a mechanism, and at which ends: one if it hinges, or else both."""
+        bear = {
+            analysis.Opening.CLOSED: (0, 1), analysis.Opening.SLIDES: (0, 1),
+            analysis.Opening.START: (0,), analysis.Opening.END: (1,),
+        }  # fmt: skip
         for contact, state in zip(self._contacts, self._groups(direction).states, strict=True):
             if state in bear:
                 yield contact, bear[state]
@@ -829,6 +832,7 @@ class Assembly(LinkedBodies):
             lines=[line for direction in self.directions if (line := self._thrust_line(direction)) is not None],
             forces=[forces for direction in self.directions if (forces := self._joint_forces(direction)) is not None],
             ground=ground,
+            ground_names=list(self.ground),
         )
 
     @per_direction

@@ -136,6 +136,8 @@ class Sketch:
     ground : sequence of sequence of complex
         Lines of the ground surface, with the ground on the right of their direction. If empty, the ground is level
         under the pivots.
+    ground_names : sequence of str
+        Names of these lines; empty if they have none.
     at_will : sequence of str
         Names of bodies whose outlines are only illustrative.
     notes : sequence of str
@@ -153,6 +155,7 @@ class Sketch:
     ground: Sequence[Sequence[complex]] = ()
     notes: Sequence[str] = ()
     at_will: Sequence[str] = ()
+    ground_names: Sequence[str] = ()
 
     def __post_init__(self) -> None:
         kinds = {"lengths": Length, "angles": Angle, "lines": Line, "forces": Forces, "notes": str}

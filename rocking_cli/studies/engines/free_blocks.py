@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
@@ -31,7 +32,17 @@ NEAR_SHARE = 1e-6  # distance that counts as zero, over the size of the structur
 LEAD_RATE = 1e-6  # difference of a rate of turning from that of phi that counts as zero
 SAME_TURN = 1e-6  # turn from one normal to another that counts as none
 FLAT_SHARE = 1e-6  # length of a foot, over the size of the structure, below which it is a point
-MARGIN_SHARE = 0.1  # length of the ground beside a foot, over that of the foot
+FAR = 100.0  # over the size of the structure: how far ground without an edge reaches beside ground at another level
+LEVEL_SHARE = 2e-3  # distance of a foot from what it rests on, over its length, that counts as zero
+STEEPEST = 0.5  # sine of the slope of a face, measured from upright, up to which nothing rests on it
+THE_GROUND = "the ground"  # its name, if the file gives none
+
+
+class HalfPlane(NamedTuple):
+    """What does not move and has no edge: all that is behind a point, against a unit normal."""
+
+    at: complex
+    normal: complex
 
 
 class HeldPoint(NamedTuple):
@@ -64,10 +75,10 @@ class FreeBlocks:
         Mass, moment of inertia and centroid of each block, with the masses that are fixed to it.
     shapes : mapping of str to sequence of ndarray of complex
         Convex pieces of each block at rest [m].
-    ground : sequence of ndarray of complex
-        Convex pieces of what does not move [m].
-    walls : sequence of ndarray of complex
-        Side walls that it leans on, without friction [m].
+    ground : mapping of str to sequence of ndarray of complex or HalfPlane
+        What does not move, by name: convex pieces [m], and half-planes of what has no edge.
+    walls : sequence of HalfPlane
+        Side walls that it leans on, without friction.
     friction : float
         Coefficient of friction of all contacts but those of `frictions`.
     frictions : mapping of tuple of str to float
@@ -92,8 +103,8 @@ class FreeBlocks:
 
     bodies: Sequence[Body]
     shapes: Mapping[str, Sequence[Points]]
-    ground: Sequence[Points]
-    walls: Sequence[Points]
+    ground: Mapping[str, Sequence[Points | HalfPlane]]
+    walls: Sequence[HalfPlane]
     friction: float
     frictions: Mapping[tuple[str, str], float]
     guides: Sequence[HeldPoint]
@@ -140,6 +151,47 @@ class FreeBlocks:
             furthest = np.where(further, along, furthest)
             signed = np.where(further, np.where(direction * moved[:, k, 2] < 0, -values[:, k, 2], 0.0), signed)
         return signed
+
+    def edge_passed(self, block: str, moved: Reals) -> str:
+        """Return on what a block rested whose edge the middle of its foot has passed: a block, or a part of the ground.
+
+        Parameters
+        ----------
+        block : str
+            The block.
+        moved : ndarray, shape (blocks, 3)
+            Displacements of all blocks [m, m, rad].
+
+        Returns
+        -------
+        str
+            Its name; empty if there is none. Faces of the ground that are in line have no edge between them.
+        """
+        below = {name: pieces for name, pieces in self.shapes.items() if name != block} | self.ground
+        level = [piece for pieces in self.ground.values() for piece in pieces]
+        for start, end in ((a, b) for z in self.shapes[block] for a, b in zip(z, np.roll(z, -1), strict=True)):
+            long, along = abs(end - start), (end - start) / abs(end - start)
+            if along.real < STEEPEST:  # anticlockwise, a foot goes to the right
+                continue
+            for name, pieces in below.items():
+                bears = np.clip(_faces(pieces, start, along, LEVEL_SHARE * long), 0.0, long)
+                bears = bears[np.ptp(bears, axis=1) > LEVEL_SHARE * long]
+                if bears.size:
+                    at = self._carried(block, start + bears.mean() * along, moved)
+                    at = self._carried(name, at, moved, back=True) if name in self.shapes else at
+                    faces = _faces(level if name in self.ground else pieces, start, along, LEVEL_SHARE * long)
+                    place = ((at - start) / along).real
+                    if not ((faces[:, 0] <= place) & (place <= faces[:, 1])).any():
+                        return name
+        return ""
+
+    def _carried(self, block: str, at: complex, moved: Reals, *, back: bool = False) -> complex:
+        """Return where a block has carried a point, or from where to a point."""
+        k = [body.name for body in self.bodies].index(block)
+        about, (x, y, turned) = self.bodies[k].centroid, moved[k].tolist()
+        if back:
+            return complex(about + np.exp(-1j * turned) * (at - about - complex(x, y)))
+        return complex(about + complex(x, y) + np.exp(1j * turned) * (at - about))
 
     def tilted(self, mechanism: Mechanism, phi: float) -> Reals:
         """Return the displacements of the blocks if the mechanism has rotated by phi (signed) [m, m, rad]."""
@@ -239,12 +291,11 @@ class _Apart:
         drawn = picture(self.mechanism)
         walls = () if self.mechanism.propped else drawn.walls
         ground = self._ground(drawn.ground)
-        guides, feet = self._held(ground)
+        guides = self._held(ground)
         moves_with = {self._block(member): (member.of, member.shift) for member in reversed(self.members)}
         united = [_united(name, each) for name, each in bodies.items()]
         return FreeBlocks(
-            united, shapes, [*ground, *feet],
-            [piece for line in walls for piece in _below(line, self.size)], self.friction, self._frictions(), guides,
+            united, shapes, ground, [_half_plane(*line) for line in walls], self.friction, self._frictions(), guides,
             floors, ties, self._leads(united, moves_with), moves_with, self.mechanism.gravity, drawn_as,
             {member.body.name: self._block(member) for member in self.members},
         )  # fmt: skip
@@ -319,22 +370,39 @@ class _Apart:
         known = any(member.body.name == piece for member in self.members)
         return Spot(self.part_of.get(piece, piece) if known else None, spot.at)
 
-    def _ground(self, drawn: Sequence[Points]) -> list[Points]:
+    def _ground(self, drawn: Sequence[Points]) -> dict[str, list[Points | HalfPlane]]:
         """Return what does not move: bodies at rest, polygons of the ground, and the ground below its lines."""
         moving = {member.of for member in self.members}
-        still = [z for body in self.mechanism.bodies() if body.name not in moving
-                 for z in body.shapes(self.sketch.outlines)]  # fmt: skip
-        closed = [z[:-1] for z in self.sketch.ground if len(z) > 3 and z[0] == z[-1]]
-        lines = [] if closed or still else drawn
-        return [
-            *(piece for z in (*still, *closed) for piece in convex_pieces(z)),
-            *(piece for line in lines for piece in _below(line, self.size)),
-        ]
+        ground = defaultdict[str, list[Points | HalfPlane]](list)
+        for body in (body for body in self.mechanism.bodies() if body.name not in moving):
+            ground[body.name] += [piece for z in body.shapes(self.sketch.outlines) for piece in convex_pieces(z)]
+        lines = self.sketch.ground
+        for name, z in zip(self.sketch.ground_names or [THE_GROUND] * len(lines), lines, strict=True):
+            if len(z) > 3 and z[0] == z[-1]:
+                ground[name] += convex_pieces(z[:-1])
+        for line in () if ground else drawn:
+            ground[THE_GROUND] += self._endless(line)
+        return ground
 
-    def _held(self, ground: Sequence[Points]) -> tuple[list[HeldPoint], list[Points]]:
-        """Return the points that are held, and the ground below feet that stand elsewhere than on `ground`."""
+    def _endless(self, line: Points) -> list[Points | HalfPlane]:
+        """Return the ground on the right of a line, which goes on beyond both ends; towards deeper blocks, halfway."""
+        corners = np.concatenate([z for member in self.members for z in member.polygons])
+        first, last = (away / abs(away) for away in (line[0] - line[1], line[-1] - line[-2]))
+        reaches = []
+        for end, away, below in ((line[0], first, 1), (line[-1], last, -1)):
+            there = (corners - end) / away
+            deeper = there.real[(there.real > 0) & (below * there.imag > NEAR_SHARE * self.size)]
+            reaches.append(float(deeper.min(initial=inf)) / 2)
+        if reaches == [inf, inf] and len(line) == 2:
+            return [_half_plane(*line)]
+        near, far = (min(reach, FAR * self.size) for reach in reaches)
+        return list(_below(np.array([line[0] + near * first, *line[1:-1], line[-1] + far * last]), self.size))
+
+    def _held(self, ground: dict[str, list[Points | HalfPlane]]) -> list[HeldPoint]:
+        """Return the points that are held, and add the ground below feet that stand elsewhere than on `ground`."""
         guides = list[HeldPoint]()
         feet, slots = list[_Held](), list[_Held]()
+        known = [piece for pieces in ground.values() for piece in pieces]
         for contact in self.contacts:
             bears, borne = contact.pieces
             if bears is not None or borne is None:
@@ -342,22 +410,22 @@ class _Apart:
             block = self.part_of.get(borne, borne)
             if contact.held == "slide":
                 _hold(slots, block, contact)
-            elif contact.held is None and not any(self._touches(contact, piece) for piece in ground):
+            elif contact.held is None and not any(self._touches(contact, piece) for piece in known):
                 _hold(feet, block, contact)
-        below = []
         for block, normal, points in feet:
             start, end = sorted(points, key=lambda point: (point / normal).imag)[:: len(points) - 1 or 1][:2]
             if abs(end - start) > FLAT_SHARE * self.size:
-                more = MARGIN_SHARE * (end - start)
-                below += _below(np.array([end + more, start - more]), self.size)
+                ground.setdefault(THE_GROUND, []).extend(self._endless(np.array([end, start])))
             else:  # it always turns about this point
                 guides.append(HeldPoint(block, start, 0j))
         # Both directions may guide a block at points of their own; between them, its path is theirs to second order.
         guides += [HeldPoint(block, complex(np.mean(points)), 1j * normal) for block, normal, points in slots]
-        return guides, below
+        return guides
 
-    def _touches(self, contact: Contact, piece: Points) -> bool:
-        return bool(distance(np.array(contact.points), piece).max() < NEAR_SHARE * self.size)
+    def _touches(self, contact: Contact, piece: Points | HalfPlane) -> bool:
+        points = np.array(contact.points)
+        off = abs(((points - piece.at) / piece.normal).real) if isinstance(piece, HalfPlane) else distance(points, piece)
+        return bool(off.max() < NEAR_SHARE * self.size)
 
     def _frictions(self) -> dict[tuple[str, str], float]:
         """Return the friction of pairs of blocks that differ from all others: as given, or 0 of smooth contacts."""
@@ -397,6 +465,25 @@ def _hold(known: list[_Held], block: str, contact: Contact) -> None:
             held.points.extend(contact.points)
             return
     known.append(_Held(block, contact.normal, list(contact.points)))
+
+
+def _half_plane(start: complex, end: complex) -> HalfPlane:
+    """Return all that is on the right of a line."""
+    return HalfPlane(start, 1j * (end - start) / abs(end - start))
+
+
+def _faces(pieces: Sequence[Points | HalfPlane], start: complex, along: complex, near: float) -> Reals:
+    """Return from where to where faces are in line with a foot, from its start along it [m], shape (faces, 2)."""
+    faces = [np.zeros((0, 2))]
+    for piece in pieces:
+        if isinstance(piece, HalfPlane):
+            off = abs(((piece.at - start) / along).imag), near * abs(piece.normal - 1j * along) / LEVEL_SHARE
+            faces.append(np.array([[-inf, inf]] if max(off) < near else np.zeros((0, 2))))
+        else:  # anticlockwise: a face that bears a foot goes to the left
+            ends = (np.stack([np.roll(piece, -1), piece], axis=-1) - start) / along
+            inline = (np.abs(ends.imag).max(axis=1) < near) & (ends.real[:, 0] < ends.real[:, 1])
+            faces.append(ends.real[inline])
+    return np.concatenate(faces)
 
 
 def _below(line: Points, size: float) -> list[Points]:
