@@ -98,6 +98,7 @@ def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
         lower_bound=np.where(np.isnan(warned), np.where(unknown, (peaks / phi_cr).max(axis=1), np.nan), bound),
         opening=marks[:, kernels.LARGEST] / reach,
         by_blocks=np.zeros(len(marks), np.bool_),
+        off_edge=np.zeros(len(marks), np.bool_),
     )
 
 

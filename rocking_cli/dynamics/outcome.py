@@ -64,6 +64,8 @@ class Outcome(Generic[Flags, Counts, Numbers]):
         joints are not known, so that nothing was checked.
     by_blocks : bool
         Whether it was simulated with free blocks.
+    off_edge : bool
+        Whether it overturns because a free block falls off an edge that the file draws.
     """
 
     still_rocking: Flags
@@ -82,6 +84,7 @@ class Outcome(Generic[Flags, Counts, Numbers]):
     lower_bound: Numbers
     opening: Numbers
     by_blocks: Flags
+    off_edge: Flags
 
     @property
     def fell(self) -> Flags:
@@ -160,6 +163,7 @@ UNCHECKED_FIELDS: dict[str, Any] = {
     "lower_bound": nan,
     "opening": nan,
     "by_blocks": False,
+    "off_edge": False,
 }
 """The fields of a model that has no joints to be checked, such as an equivalent block."""
 

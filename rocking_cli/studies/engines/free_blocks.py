@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from math import inf
+from math import inf, nan
 from typing import NamedTuple
 
 import numpy as np
@@ -20,9 +20,10 @@ from rocking_cli.core import Body, Contact, Direction, Mechanism, PointMass, Spo
 from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.core.hung.element import ConstantForce, Element, Spring
 from rocking_cli.core.kinematics import distance
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.engines.convex import convex_pieces
+from rocking_cli.studies.hung import walls
 from rocking_cli.studies.picture import box_around, picture
 
 FALL = 0.15  # of the structure's height: a block that falls by it has collapsed
@@ -43,6 +44,10 @@ class HalfPlane(NamedTuple):
 
     at: complex
     normal: complex
+
+    def distance(self, points: Points) -> Reals:
+        """Return the distance of points from its face [m]."""
+        return np.abs(np.real((points - self.at) / self.normal))
 
 
 class HeldPoint(NamedTuple):
@@ -90,7 +95,7 @@ class FreeBlocks:
     ties : sequence of Spring
         Elastic ties.
     leads : sequence of Lead
-        The block of each direction whose rotation is phi.
+        The block of each direction whose rotation is phi; empty if the mechanism has no rotation, as one that slides.
     moves_with : mapping of str to (str or None, complex)
         The body of the mechanism with which each block moves (None: none), and how far beside it it stands [m].
     gravity : float
@@ -128,7 +133,7 @@ class FreeBlocks:
         return (high - low).imag
 
     def rotation(self, moved: Reals) -> Reals:
-        """Return phi from the displacements of the blocks, shape (n, blocks, 3): signed, shape (n,) [rad]."""
+        """Return phi from the displacements of the blocks, shape (n, blocks, 3): signed, shape (n,), or NaN [rad]."""
         return self._signed(moved, moved)
 
     def rotation_rate(self, moved: Reals, rates: Reals) -> Reals:
@@ -141,6 +146,8 @@ class FreeBlocks:
         That is the direction whose motion is nearest to theirs, weighed by mass: in one direction of an arch, the block
         that leads the other turns too, and farther.
         """
+        if not self.leads:
+            return np.full(len(moved), nan)
         names = [body.name for body in self.bodies]
         weights = np.array([[body.mass, body.mass, body.inertia] for body in self.bodies])
         furthest, signed = np.zeros(len(moved)), np.zeros(len(moved))
@@ -167,7 +174,7 @@ class FreeBlocks:
         str
             Its name; empty if there is none. Faces of the ground that are in line have no edge between them.
         """
-        below = {name: pieces for name, pieces in self.shapes.items() if name != block} | self.ground
+        below = {name: pieces for name, pieces in self.shapes.items() if name != block} | dict(self.ground)
         level = [piece for pieces in self.ground.values() for piece in pieces]
         for start, end in ((a, b) for z in self.shapes[block] for a, b in zip(z, np.roll(z, -1), strict=True)):
             long, along = abs(end - start), (end - start) / abs(end - start)
@@ -182,7 +189,7 @@ class FreeBlocks:
                     faces = _faces(level if name in self.ground else pieces, start, along, LEVEL_SHARE * long)
                     place = ((at - start) / along).real
                     if not ((faces[:, 0] <= place) & (place <= faces[:, 1])).any():
-                        return name
+                        return str(name)
         return ""
 
     def _carried(self, block: str, at: complex, moved: Reals, *, back: bool = False) -> complex:
@@ -256,8 +263,8 @@ class _Apart:
         self.members = self._members()
         self.part_of = self._bonded()
         outlines = [z for member in self.members for z in member.polygons]
-        low, high = box_around(outlines)
-        self.size = abs(high - low)
+        self.box = box_around(outlines)
+        self.size = abs(self.box[1] - self.box[0])
         self.friction = mechanism.friction if mechanism.friction is not None else MASONRY_FRICTION
 
     def blocks(self) -> FreeBlocks:
@@ -288,14 +295,13 @@ class _Apart:
             for spring in element.stretched
             if isinstance(spring, Spring)
         ]
-        drawn = picture(self.mechanism)
-        walls = () if self.mechanism.propped else drawn.walls
-        ground = self._ground(drawn.ground)
+        leans = () if self.mechanism.propped else walls(self.mechanism, *self.box)
+        ground = self._ground()
         guides = self._held(ground)
         moves_with = {self._block(member): (member.of, member.shift) for member in reversed(self.members)}
         united = [_united(name, each) for name, each in bodies.items()]
         return FreeBlocks(
-            united, shapes, ground, [_half_plane(*line) for line in walls], self.friction, self._frictions(), guides,
+            united, shapes, ground, [_half_plane(*line) for line in leans], self.friction, self._frictions(), guides,
             floors, ties, self._leads(united, moves_with), moves_with, self.mechanism.gravity, drawn_as,
             {member.body.name: self._block(member) for member in self.members},
         )  # fmt: skip
@@ -370,7 +376,7 @@ class _Apart:
         known = any(member.body.name == piece for member in self.members)
         return Spot(self.part_of.get(piece, piece) if known else None, spot.at)
 
-    def _ground(self, drawn: Sequence[Points]) -> dict[str, list[Points | HalfPlane]]:
+    def _ground(self) -> dict[str, list[Points | HalfPlane]]:
         """Return what does not move: bodies at rest, polygons of the ground, and the ground below its lines."""
         moving = {member.of for member in self.members}
         ground = defaultdict[str, list[Points | HalfPlane]](list)
@@ -380,7 +386,7 @@ class _Apart:
         for name, z in zip(self.sketch.ground_names or [THE_GROUND] * len(lines), lines, strict=True):
             if len(z) > 3 and z[0] == z[-1]:
                 ground[name] += convex_pieces(z[:-1])
-        for line in () if ground else drawn:
+        for line in () if ground else picture(self.mechanism).ground:
             ground[THE_GROUND] += self._endless(line)
         return ground
 
@@ -424,7 +430,7 @@ class _Apart:
 
     def _touches(self, contact: Contact, piece: Points | HalfPlane) -> bool:
         points = np.array(contact.points)
-        off = abs(((points - piece.at) / piece.normal).real) if isinstance(piece, HalfPlane) else distance(points, piece)
+        off = piece.distance(points) if isinstance(piece, HalfPlane) else distance(points, piece)
         return bool(off.max() < NEAR_SHARE * self.size)
 
     def _frictions(self) -> dict[tuple[str, str], float]:
@@ -439,11 +445,15 @@ class _Apart:
         return {pair: mu for pair, mu in frictions.items() if mu != self.friction}
 
     def _leads(self, bodies: Sequence[Body], moves_with: Mapping[str, tuple[str | None, complex]]) -> list[Lead]:
-        """Return a block that turns by phi in each direction, and the rates of all blocks."""
+        """Return a block that turns by phi in each direction, and the rates of all blocks; empty if none does."""
         leads = []
         names = [body.name for body in self.mechanism.bodies()]
-        for direction in self.mechanism.directions:
-            motions = dict(zip(names, self.mechanism.motion(np.zeros(1), direction), strict=True))
+        try:
+            moving = [self.mechanism.motion(np.zeros(1), direction) for direction in self.mechanism.directions]
+        except MechanismError:
+            return []
+        for direction, each in zip(self.mechanism.directions, moving, strict=True):
+            motions = dict(zip(names, each, strict=True))
             turning = {name for name, motion in motions.items() if abs(motion.dpsi[0] + direction) < LEAD_RATE}
             rates = np.zeros((len(bodies), 3))
             for k, body in enumerate(bodies):

@@ -175,8 +175,9 @@ class _Builder:
         corners = [(point.real, y, point.imag) for y in (-DEPTH / 2, DEPTH / 2) for point in away.tolist()]
         self.spec.add_mesh(name=name, uservert=np.ravel(corners).tolist())
         body.add_geom(
-            name=name, type=self.mujoco.mjtGeom.mjGEOM_MESH, meshname=name, mass=0.0, **self._rough(friction), **self.soft
-        )
+            name=name, type=self.mujoco.mjtGeom.mjGEOM_MESH, meshname=name, mass=0.0, **self._rough(friction),
+            **self.soft,
+        )  # fmt: skip
 
     def _plane(self, plane: HalfPlane, friction: float) -> None:
         at, normal = plane.at / self.size, plane.normal
@@ -231,8 +232,8 @@ class _Builder:
         """Hold a peg at a place on the side of a smooth face to which the normal points."""
         name, away = self._named(""), at - (PEG + DEPTH) * normal
         body.add_geom(
-            name=name, type=self.mujoco.mjtGeom.mjGEOM_BOX, size=[UNBOUNDED, UNBOUNDED, DEPTH], pos=[away.real, 0.0, away.imag],
-            zaxis=[normal.real, 0.0, normal.imag], mass=0.0, contype=0, conaffinity=0,
+            name=name, type=self.mujoco.mjtGeom.mjGEOM_BOX, size=[UNBOUNDED, UNBOUNDED, DEPTH],
+            pos=[away.real, 0.0, away.imag], zaxis=[normal.real, 0.0, normal.imag], mass=0.0, contype=0, conaffinity=0,
         )  # fmt: skip
         self.spec.add_pair(geomname1=name, geomname2=peg, condim=1, **self.soft)
 
