@@ -15,7 +15,7 @@ from rocking_cli.studies.engines.free_blocks import free_blocks
 from tests.conftest import EXAMPLES, PROJECT
 from tests.penalty import Plate, stacked
 
-pytest.importorskip("mujoco", reason="free blocks need mujoco-core")
+pytest.importorskip("mujoco", reason="free blocks need mujoco")
 
 EVIDENCE = runpy.run_path(str(PROJECT / "docs" / "make_free_blocks.py"))
 bounce, fall, halved, heavy, released, simulated, slide, structure = (

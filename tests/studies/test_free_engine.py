@@ -12,7 +12,7 @@ from rocking_cli.studies.engines import blocks, engine_of, memory, scene
 from rocking_cli.views.view import Table
 from tests.conftest import EXAMPLES
 
-pytest.importorskip("mujoco", reason="free blocks need mujoco-core")
+pytest.importorskip("mujoco", reason="free blocks need mujoco")
 
 BLOCK = structure_of(rk.Block(width=1.0, height=2.0))  # it soon comes to rest
 ACCEL = rk.read_record(EXAMPLES / "accel.csv")
