@@ -172,25 +172,27 @@ class FreeBlocks:
         Returns
         -------
         str
-            Its name; empty if there is none. Faces of the ground that are in line have no edge between them.
+            Its name; empty if there is none. Faces in line that continue each other have no edge between them.
         """
-        below = {name: pieces for name, pieces in self.shapes.items() if name != block} | dict(self.ground)
         level = [piece for pieces in self.ground.values() for piece in pieces]
+        below = {name: pieces for name, pieces in self.shapes.items() if name != block} | {"": level}
         for start, end in ((a, b) for z in self.shapes[block] for a, b in zip(z, np.roll(z, -1), strict=True)):
             long, along = abs(end - start), (end - start) / abs(end - start)
-            if along.real < STEEPEST:  # anticlockwise, a foot goes to the right
-                continue
-            for name, pieces in below.items():
-                bears = np.clip(_faces(pieces, start, along, LEVEL_SHARE * long), 0.0, long)
-                bears = bears[np.ptp(bears, axis=1) > LEVEL_SHARE * long]
-                if bears.size:
-                    at = self._carried(block, start + bears.mean() * along, moved)
-                    at = self._carried(name, at, moved, back=True) if name in self.shapes else at
-                    faces = _faces(level if name in self.ground else pieces, start, along, LEVEL_SHARE * long)
+            near = LEVEL_SHARE * long
+            for name, pieces in below.items() if along.real > STEEPEST else ():  # anticlockwise, a foot goes right
+                faces = _joined(_faces(pieces, start, along, near), near)
+                for low, high in (each for each in np.clip(faces, 0.0, long).tolist() if each[1] - each[0] > near):
+                    at = self._carried(block, start + (low + high) / 2 * along, moved)
+                    at = self._carried(name, at, moved, back=True) if name else at
                     place = ((at - start) / along).real
                     if not ((faces[:, 0] <= place) & (place <= faces[:, 1])).any():
-                        return str(name)
+                        return name or self._bearing(start, along, near, low, high)
         return ""
+
+    def _bearing(self, start: complex, along: complex, near: float, low: float, high: float) -> str:
+        """Return the name of the ground that bears a part of a foot."""
+        faces = {name: _faces(pieces, start, along, near) for name, pieces in self.ground.items()}
+        return next(name for name, each in faces.items() if ((each[:, 0] < high) & (each[:, 1] > low)).any())
 
     def _carried(self, block: str, at: complex, moved: Reals, *, back: bool = False) -> complex:
         """Return where a block has carried a point, or from where to a point."""
@@ -494,6 +496,17 @@ def _faces(pieces: Sequence[Points | HalfPlane], start: complex, along: complex,
             inline = (np.abs(ends.imag).max(axis=1) < near) & (ends.real[:, 0] < ends.real[:, 1])
             faces.append(ends.real[inline])
     return np.concatenate(faces)
+
+
+def _joined(faces: Reals, near: float) -> Reals:
+    """Return faces in line, those that continue each other as one."""
+    joined: list[list[float]] = []
+    for low, high in sorted(faces.tolist()):
+        if joined and low <= joined[-1][1] + near:
+            joined[-1][1] = max(joined[-1][1], high)
+        else:
+            joined.append([low, high])
+    return np.array(joined).reshape(-1, 2)
 
 
 def _below(line: Points, size: float) -> list[Points]:
