@@ -83,6 +83,7 @@ def outcome_of(moved: BlockMotion, free: FreeBlocks, phi_cr: Sequence[float]) ->
         "lower_bound": ratio if moved.failed else nan,
         "opening": nan,
         "by_blocks": True,
+        "slip": 0.0,
         "off_edge": bool(moved.off),
     }
 
