@@ -15,7 +15,7 @@ PYTEST := -m pytest -n auto --dist worksteal
 # The tiers that `make test` leaves out; CONTRIBUTING.md says what is in each.
 LATER := rest or docs or types or kernels
 
-.PHONY: setup constraints demo selfcheck test test-all test-newest test-oldest test-kernels test-versions test-elsewhere damage soak fuzz fields \
+.PHONY: setup constraints demo selfcheck test test-all test-newest test-oldest test-kernels test-versions test-elsewhere damage soak bounds fuzz fields \
 	properties lint type contracts check bench kernels same-kernels validation free-blocks scoreboard trust trust-check pages pictures \
 	docs release clean
 
@@ -105,6 +105,9 @@ fields: setup  ## Every field of every example and starter, spoilt in every way;
 
 properties: setup  ## New examples for every property test, random ones; EXAMPLES=1000 is how many for each
 	$(BIN)/python -c "import os, sys, pytest; os.environ['ROCKING_PROPERTIES'] = '$(or $(EXAMPLES),500)'; sys.exit(pytest.main(['-q', '-n', 'auto', '-m', 'hypothesis', '--ignore=tests/cli/test_fuzz.py', 'tests']))"
+
+bounds: setup  ## Random structures with every bound of the code as it is and doubled, ten minutes; CASES, FREE: how many, by free blocks
+	$(BIN)/python -m tests.bounds
 
 soak: setup  ## What takes too long for the tests, an hour: damaged stores, races, kills, spoilt records; READERS=20 is how often
 	$(BIN)/python -m tests.soak

@@ -632,7 +632,7 @@ class Assembly(LinkedBodies):
             lambda_, usual = self._collapse(direction).multiplier, self._with_usual(direction)
             if usual is not None and usual < (1 - GLUE_INCREASE) * lambda_:
                 raised.append(f"{usual:.4g} g instead of {lambda_:.4g} g in the {direction.label} direction")
-        sentences = [self._of_grains(), self._of_confined()]
+        sentences = [super().own_caution(), self._of_grains(), self._of_confined()]
         if raised:
             sentences.append(
                 "Joints without `friction` never slide and may carry shear without a normal force, which raises "

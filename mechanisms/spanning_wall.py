@@ -33,6 +33,7 @@ from rocking_cli.core import (
 )
 from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.core.fields import along_wall
+from rocking_cli.core.reactions import at_uplift
 
 WEAK_HINGE_DECREASE = 0.01  # relative decrease of lambda by the weakest hinge from which there is a caution
 TOP_DISTANCE = 1e-9  # distance of a hinge that counts as at the top, over the height; zero loads, over the weight
@@ -136,6 +137,26 @@ class SpanningWall(Mechanism):
         return 1 / (1 + sqrt(max(rho * self._lever(direction), 0.0) / (1 + rho)))
 
     def own_caution(self) -> str:
+        return " ".join(filter(None, [self._of_the_top(), self._of_the_hinge()]))
+
+    @property
+    def _top_rubs(self) -> bool:
+        """Whether only friction under the load holds the top."""
+        return self.overburden > 0 and self.support == "load"
+
+    def _of_the_top(self) -> str:
+        """Return a caution if the file gives no friction and the top needs more than masonry usually has."""
+        if self.friction is not None or not self._top_rubs:
+            return ""
+        needed = max(abs(at_uplift(self, each).force[-1, 0]) for each in self.directions) / self.overburden
+        if needed <= MASONRY_FRICTION:
+            return ""
+        return (
+            f"To rock, it needs a coefficient of friction of {needed:.3g} between the load and its top, more than the "
+            f"{MASONRY_FRICTION:g} usual for masonry. Give `friction`, or where the top is anchored as `support`."
+        )
+
+    def _of_the_hinge(self) -> str:
         """Return a caution if lambda with the weakest hinge is lower by more than 1 % than with the given hinge."""
         if self.hinge == "weakest":
             return ""
@@ -237,9 +258,9 @@ class SpanningWall(Mechanism):
             if y != hinge
         ]
         foot, crack, top = of_joints(self.joints(direction), self.friction)
-        if self.overburden and self.support == "load":  # only friction under the load holds the top
-            friction = MASONRY_FRICTION if self.friction is None else self.friction
-            top = replace(top, pressed_by="overburden", friction=friction, name="the load and the top of the wall")
+        if self._top_rubs:
+            name = "the load and the top of the wall"
+            top = replace(top, pressed_by="overburden", friction=self.friction, name=name)
         return [foot, crack, top, *whole]
 
     def sketch(self) -> Sketch:

@@ -96,15 +96,6 @@ class SymmetricFrame(Mechanism):
         middle = last / 2 + 1j * (2 * h + self.beam_depth / 2)
         return columns, box("beam", 1 - of_columns, last.real + self.column_width, self.beam_depth, middle)
 
-    def own_caution(self) -> str:
-        if self.columns < 3:
-            return ""
-        return (
-            "Three or more columns may fall out of step at an impact: a column that carries nothing then rocks alone. "
-            "If that column ends otherwise than the frame, the outcome is unknown from the first impact; if not, peaks "
-            "are those of columns in step."
-        )
-
     def columns_alone(self) -> Sequence[Mechanism]:
         if self.columns < 3:
             return ()

@@ -300,37 +300,40 @@ def sized_pulse(*polarities: str, required: bool = False) -> Decorator:
     )
 
 
-around: Decorator = in_order(
-    click.option(
-        "--neighbours",
-        type=click.IntRange(0, 1_000_000),
-        default=200,
-        show_default=True,
-        metavar="N",
-        help="Number of neighbouring motions to simulate as well; `respond`, `animate` and `survey` accept 0 for none.",
-    ),
-    click.option(
-        "--amplitude-deviation",
-        type=FRACTION,
-        default=0.04,
-        show_default=True,
-        metavar="SHARE",
-        help="Standard deviation of ln amplitude of the neighbours.",
-    ),
-    click.option(
-        "--slenderness-deviation",
-        type=FRACTION,
-        metavar="SHARE",
-        help="Standard deviation of ln slenderness; by default that of the file, or 10 %.",
-    ),
-    click.option(
-        "--restitution-deviation",
-        type=FRACTION,
-        metavar="ETA",
-        help="Standard deviation of restitution; by default that of the file, 0.03 of a given value, or 0.05.",
-    ),
-)
-"""The neighbours of a motion: `neighbours` and the three deviations."""
+def around(usual: int | None = 200, shown: str | bool = True) -> Decorator:
+    """Declare the neighbours of a motion, `neighbours` with its default and how it is shown, and their deviations."""
+    return in_order(
+        click.option(
+            "--neighbours",
+            type=click.IntRange(0, 1_000_000),
+            default=usual,
+            show_default=shown,
+            metavar="N",
+            help="Number of neighbouring motions to simulate as well; `respond`, `animate` and `survey` accept 0 for "
+            "none.",
+        ),
+        click.option(
+            "--amplitude-deviation",
+            type=FRACTION,
+            default=0.04,
+            show_default=True,
+            metavar="SHARE",
+            help="Standard deviation of ln amplitude of the neighbours.",
+        ),
+        click.option(
+            "--slenderness-deviation",
+            type=FRACTION,
+            metavar="SHARE",
+            help="Standard deviation of ln slenderness; by default that of the file, or 10 %.",
+        ),
+        click.option(
+            "--restitution-deviation",
+            type=FRACTION,
+            metavar="ETA",
+            help="Standard deviation of restitution; by default that of the file, 0.03 of a given value, or 0.05.",
+        ),
+    )
+
 
 engine: Decorator = click.option(
     "--engine",
@@ -343,9 +346,9 @@ engine: Decorator = click.option(
 
 
 def few_neighbours(given: dict[str, Any], few: int | None) -> None:
-    """Replace the default number of neighbours by another with free blocks and in tables, which take long."""
+    """Replace the default number of neighbours by another with free blocks, which take long."""
     typed = click.get_current_context().get_parameter_source("neighbours") is ParameterSource.COMMANDLINE
-    if given.get("engine") != "exact" and not typed:
+    if given["engine"] != "exact" and not typed:
         given["neighbours"] = few
 
 

@@ -255,10 +255,19 @@ def _beside(a: Points, b: Points) -> Reals:
 
 
 class Clearance(NamedTuple):
-    """How far a body at rest may slide one way [m], infinite if nothing is there, and what it reaches then."""
+    """How far a body at rest may slide one way [m], infinite if nothing is there, and what it reaches then.
+
+    `edge` is whether it reaches the edge of ground that has this name, and otherwise meets what has it.
+    """
 
     distance: float
     name: str
+    edge: bool = False
+
+    @property
+    def words(self) -> str:
+        """What it reaches, in words."""
+        return f"the edge of {self.name}" if self.edge else self.name
 
 
 def clearances(mechanism: Jointed, left: complex, right: complex) -> tuple[Clearance, Clearance]:
@@ -279,7 +288,7 @@ def clearances(mechanism: Jointed, left: complex, right: complex) -> tuple[Clear
     still, moving = ([part for part in search.parts if (part.link > 0) is moves] for moves in (False, True))
     size = float(np.ptp(np.concatenate([np.array([left, right]), *(part.corners for part in moving)]).real))
     touching = max(JOINT_GAP * size, search.tolerance)
-    found = [list(_edges(still, (left, right), touching)), list(_edges(still, (left, right), touching, right=True))]
+    clear = [list(_edges(still, (left, right), touching)), list(_edges(still, (left, right), touching, right=True))]
     for one in moving:
         for other in still:
             y = _heights(one.corners, other.corners)
@@ -288,10 +297,10 @@ def clearances(mechanism: Jointed, left: complex, right: complex) -> tuple[Clear
             (from_, to), (begins, ends) = _spans(one.corners, y), _spans(other.corners, y)
             for side, gap in enumerate((float((from_ - ends).min()), float((begins - to).min()))):
                 if gap > -touching:
-                    found[side].append(Clearance(max(gap, 0.0), other.name))
+                    clear[side].append(Clearance(max(gap, 0.0), other.name))
     for stop in mechanism.stops or ():
-        found[stop.gap > 0].append(Clearance(abs(stop.gap), stop.name))
-    before, after = (min(each, default=Clearance(inf, "")) for each in found)
+        clear[stop.gap > 0].append(Clearance(abs(stop.gap), stop.name))
+    before, after = (min(each, default=Clearance(inf, "")) for each in clear)
     return before, after
 
 
@@ -314,7 +323,7 @@ def _edges(
         if first <= reach + touching and last >= end - touching and last >= reach - touching:
             reach, name = max(last, reach), of
     if name:
-        yield Clearance(reach - end, f"the edge of {name}")
+        yield Clearance(reach - end, name, edge=True)
 
 
 def _heights(one: Points, other: Points) -> Reals:

@@ -233,7 +233,7 @@ def respond_many(
         marks[loose] = new_marks
     reach = np.array([model.reach for model in models])
     phi_cr = np.array([model.phi_cr for model in models]).reshape(-1, 2)[runs.model]
-    slip, _ = settle(marks, models, motions, rows)
+    slip, _ = settle(marks, [model.sliding for model in models], motions, rows)
     outcomes = replace(read_marks(marks, phi_cr, reach[runs.model]), slip=slip)
     if (runs.slender == 1).all():
         return outcomes

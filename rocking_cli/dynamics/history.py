@@ -164,7 +164,7 @@ def follow(
         runs[0, kernels.LOOSE] = 1.0
         run()
     slips: list[tuple[float, float, float]] = []  # along the motion
-    largest, slip = settle(marks, [model], [motion], runs, slips)
+    largest, slip = settle(marks, [model.sliding], [motion], runs, slips)
     if slip is not None:  # it only slides
         phi[:] = rate[:] = 0.0
     outcome = replace(read_marks(marks, np.array([model.phi_cr]), np.array([model.reach])), slip=largest)

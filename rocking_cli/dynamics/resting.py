@@ -260,13 +260,12 @@ def _weakest(
     low, high = np.full(count, -np.inf), np.full(count, np.inf)
     limits: list[Reals] = []
     at = 0
-    borne: dict[int, tuple[float, Reals]] = {}  # key: row of a guide under a load; value: its friction and the load
+    borne: dict[int, Reals] = {}  # key: row of a guide under a load; value: what its friction can bear
     for contact, (normal, shear) in zip(closed, rows, strict=True):
         low[list(normal)] = 0.0
-        if contact.pressed_by:
-            load = there.pressing(contact, still=True)[0]
-            low[at], high[at] = np.array([-1, 1]) * (contact.friction or 0.0) * load[ONE] / unit
-            borne[at] = contact.friction or 0.0, load
+        if contact.pressed_by and contact.friction is not None:
+            borne[at] = contact.friction * there.pressing(contact, still=True)[0]
+            low[at], high[at] = np.array([-1, 1]) * borne[at][ONE] / unit
         elif shear is not None and contact.friction is not None:
             for sign in (1.0, -1.0):
                 limit = np.zeros(count + 1)
@@ -287,8 +286,8 @@ def _weakest(
     force = velocity @ demand
     if force[PUSH] * sense > 0:
         velocity, speed, force = -velocity, -speed, -force
-    for row, (friction, load) in borne.items():
-        force = force + friction * abs(speed[row]) * load
+    for row, holds in borne.items():
+        force = force + abs(speed[row]) * holds
     names = [contact.label for contact in joints for _ in range(contact.forces)]
     speed = np.abs(speed[: len(names)])
     fastest = speed.max()

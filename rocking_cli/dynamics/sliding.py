@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import inf, isclose, isnan, nan
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,9 +29,6 @@ from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.resting import resting
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.short_repr import short_repr
-
-if TYPE_CHECKING:
-    from rocking_cli.dynamics.model import Model
 
 LEVEL = 1e-6  # difference in height of the ends of a level foot, over its width
 ZERO_TENSION = 1e-9  # tension over the weight that counts as zero, as rounding
@@ -383,7 +380,7 @@ def _arrival(ahead: float, speed: float, gain: float, growth: float, longest: fl
 
 def settle(
     marks: Reals,
-    models: Sequence[Model],
+    feet: Sequence[Sliding | None],
     motions: Sequence[GroundMotion | None],
     runs: Reals,
     kept: list[tuple[float, float, float]] | None = None,
@@ -394,8 +391,10 @@ def settle(
     ----------
     marks : ndarray, shape (n, MARKS)
         What the kernel found, which is corrected.
-    models, motions : sequence
-        Models of structures, and ground motions.
+    feet : sequence of Sliding or None
+        The foot of each structure; None if it may do more than slide.
+    motions : sequence of GroundMotion or None
+        The ground motions.
     runs : ndarray
         Runs of the kernel.
     kept : list, optional
@@ -410,22 +409,24 @@ def settle(
     """
     structure, record = (runs[:, column].astype(np.int64) for column in (kernels.STRUCTURE, kernels.RECORD))
     slender, largest = runs[:, kernels.SLENDER], np.zeros(len(runs))
-    able = np.array([model.sliding is not None for model in models])[structure] & (runs[:, kernels.START] == 0)
-    able = np.logical_and(able, np.array([motion is not None for motion in motions])[record])
+    stands, shaken = (np.array([each is not None for each in every], np.bool_) for every in (feet, motions))
+    able = np.asarray(stands[structure] & shaken[record] & (runs[:, kernels.START] == 0))
+    if not able.any():
+        return largest, None
     up = np.array([_extremes(motion) for motion in motions])[record] * runs[:, kernels.V_FACTOR, None]
     for k in np.unique(structure[able]).tolist():
-        sliding, mine = models[k].sliding, np.flatnonzero(able & (structure == k))
-        assert sliding is not None
-        able[mine] = sliding.holds(slender[mine], *up[mine].T)
+        foot, mine = feet[k], np.flatnonzero(able & (structure == k))
+        assert foot is not None
+        able[mine] = foot.holds(slender[mine], *up[mine].T)
     slides = np.flatnonzero(able)
     if not slides.size:
         return largest, None
     # Only the structures and motions of these runs.
-    (which, foot), (shaken, under) = (np.unique(of[slides], return_inverse=True) for of in (structure, record))
+    (bodies, stands_on), (grounds, under) = (np.unique(of[slides], return_inverse=True) for of in (structure, record))
     slip = slips(
-        [sliding for k in which if (sliding := models[k].sliding) is not None],
-        [motion for k in shaken if (motion := motions[k]) is not None],
-        foot,
+        [foot for k in bodies if (foot := feet[k]) is not None],
+        [motion for k in grounds if (motion := motions[k]) is not None],
+        stands_on,
         under,
         runs[slides, kernels.FACTOR] * slender[slides],
         runs[slides, kernels.SIZE],

@@ -19,7 +19,7 @@ from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.contacts import MASONRY_FRICTION, Contact
 from rocking_cli.core.given import Strength
 from rocking_cli.core.reactions import Reactions, at_uplift, impulses, parts, reactions
-from rocking_cli.core.released import Undetermined, released
+from rocking_cli.core.released import Pieces, Undetermined, released
 from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.short_repr import short_repr
@@ -210,7 +210,8 @@ class Contacts:
         shear = 0.0
         for direction, part in self._parts(states):
             reactions = self._forces(direction, states, part)
-            largest[:, part], joint[:, part] = self._worst(direction, reactions)
+            pressed = self._pressed(direction, states, part)
+            largest[:, part], joint[:, part] = self._worst(direction, reactions, pressed)
             shear = max(shear, float(np.abs(_base(reactions, self._rest[direction])).max()))
         demand = replace(self._summed_up(history, states, largest, joint, shear), supports=self._supports(states))
         if history.check is None:
@@ -253,8 +254,7 @@ class Contacts:
             except Undetermined:
                 return []
             assert table is not None  # mechanisms with guides have such a table
-            ground = states.ground[part]
-            terms = np.stack([np.ones(part.size), ground.real, states.rate[part] ** 2, ground.imag], axis=-1)
+            terms = _terms(states, part)
             for row, each in guides:
                 by_support.setdefault(each.support, []).append(
                     (each, np.einsum("nk,nk->n", table.force[:, row], terms))
@@ -278,13 +278,27 @@ class Contacts:
     def _forces(self, direction: Direction, states: _States, part: Places) -> Reactions:
         return reactions(self.mechanism, direction, states.phi[part], states.rate[part], states.ground[part])
 
-    def _worst(self, direction: Direction, reactions: Reactions) -> tuple[Reals, Places]:
+    def _pressed(self, direction: Direction, states: _States, part: Places) -> Mapping[complex, Reals]:
+        """Return the forces of the loads that press on guides [N], by the points of the guides."""
+        pressed = [each for each in self.mechanism.contacts(direction) or () if each.pressed_by]
+        if not pressed:
+            return {}
+        pieces, terms = Pieces(self.mechanism, direction, states.phi[part]), _terms(states, part)
+        return {each.points[0]: np.einsum("nk,nk->n", pieces.pressing(each), terms) for each in pressed}
+
+    def _worst(
+        self, direction: Direction, reactions: Reactions, pressed: Mapping[complex, Reals]
+    ) -> tuple[Reals, Places]:
         """Return the largest friction required, pull and use of strength in each state, and the joints of these."""
         rest = self._at_uplift[direction]
         bears = np.maximum(MIN_BEARING_SHARE * rest.normal, 0.0)
         normal = np.where(np.abs(reactions.force) > IDLE_SHARE * np.abs(rest.force).max(), reactions.normal, np.nan)
         with np.errstate(divide="ignore", invalid="ignore"):
             needed = np.where(normal > bears, np.abs(reactions.shear) / normal, 0.0)
+            for k, each in enumerate(reactions.joints):
+                if each.is_guide and each.point in pressed:
+                    load = pressed[each.point]
+                    needed[k] = np.where(load > 0, np.abs(reactions.force[k]) / load, 0.0)
             pull = np.broadcast_to(-reactions.total.imag, normal.shape) if reactions.shared else -normal
             measures = np.stack([needed, pull, normal / self._capacity(reactions)])
         measures = np.where(np.isnan(measures), -np.inf, measures)
@@ -389,6 +403,12 @@ class _States(NamedTuple):
     rate: Reals  # rate of this rotation [rad/s]
     ground: NDArray[np.complex128]  # u_g'' + i v_g'' [m/s2]
     rocks: Bools
+
+
+def _terms(states: _States, part: Places) -> Reals:
+    """Return what the columns of tables of forces are the factors of: 1, u_g'', phi.^2 and v_g'', shape (n, 4)."""
+    ground = states.ground[part]
+    return np.stack([np.ones(part.size), ground.real, states.rate[part] ** 2, ground.imag], axis=-1)
 
 
 def _samples(mechanism: Mechanism, history: History, motion: GroundMotion | None) -> _States:

@@ -6,7 +6,7 @@ together with its neighbours: the same motion a little stronger or weaker, with 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from statistics import NormalDist
 from typing import NamedTuple
@@ -163,9 +163,9 @@ class Neighbours:
         not known, so that nothing was checked.
     slides : float
         The share that slides and is known not to overturn.
-    slip : tuple of float
-        The 16, 50 and 84 % of the largest slips of bodies that only slide [m]; infinite for those of another outcome
-        than to stay upright.
+    slips : ndarray, shape (n,)
+        Largest slip of each of them [m], 0 if it does not only slide; infinite if it overturns or has an unknown
+        outcome.
     rotations : ndarray, shape (n, 2)
         Peak rotation of each of them in the positive and in the negative direction [rad]; infinite if it overturns or
         has an unknown outcome.
@@ -180,13 +180,18 @@ class Neighbours:
     over: str = "phi_cr"
     unknown: float | None = None
     slides: float = 0.0
-    slip: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    slips: Reals = field(default_factory=lambda: np.zeros(0), compare=False, repr=False)
     rotations: Reals = field(default_factory=lambda: np.zeros((0, 2)), compare=False, repr=False)
 
     @property
     def sensitive(self) -> bool:
         """Whether so many neighbours have another outcome that the outcome of the motion itself is partly chance."""
         return self.as_itself < MIN_AGREEMENT
+
+    @property
+    def slip(self) -> Sequence[float]:
+        """The 16, 50 and 84 % of the largest slips [m]; infinite where neighbours overturn or are unknown."""
+        return [float(slip) for slip in np.quantile(self.slips, FRACTILES, method="inverted_cdf")]
 
     @property
     def half_overturn(self) -> bool:
@@ -249,7 +254,10 @@ def neighbours(
     if rests and motion is not None and not can_lift(model, motion, largest_factor):
         unknown = None if unchecked else 0.0
         still = np.zeros((around.count, 2))
-        return Neighbours(around, model.name, 0.0, (0.0, 0.0, 0.0), 1.0, lifted=False, unknown=unknown, rotations=still)
+        none = (0.0, 0.0, 0.0)
+        return Neighbours(
+            around, model.name, 0.0, none, 1.0, lifted=False, unknown=unknown, slips=still[:, 0], rotations=still
+        )
     itself = Draws(np.ones(1), np.ones(1), np.full((1, 2), np.nan))  # NaN keeps the restitution of the model
     all_draws = Draws(*(np.concatenate(pair) for pair in zip(itself, draws, strict=True)))
     tilts = None
@@ -263,7 +271,6 @@ def neighbours(
     # Quantiles are values of the sample, as interpolation with infinity has no meaning.
     low, middle, high = (float(peak) for peak in np.quantile(peaks, FRACTILES, method="inverted_cdf"))
     slips = np.where(outcome[1:] > 0, np.inf, outcomes.slip[1:])
-    low_slip, middle_slip, high_slip = (float(slip) for slip in np.quantile(slips, FRACTILES, method="inverted_cdf"))
     rotations = np.stack([outcomes.peak_positive[1:], outcomes.peak_negative[1:]], axis=-1)
     rotations[outcome[1:] > 0] = np.inf
     return Neighbours(
@@ -274,8 +281,8 @@ def neighbours(
         float((outcome[1:] == outcome[0]).mean()),
         over=peaks_over(model.ends_at_limit),
         unknown=None if unchecked and not outcomes.unknown.any() else float(outcomes.unknown[1:].mean()),
-        slides=float((outcomes.slip[1:] * (outcome[1:] == 0) > 0).mean()),
-        slip=(low_slip, middle_slip, high_slip),
+        slides=float(((slips > 0) & (slips < np.inf)).mean()),
+        slips=slips,
         rotations=rotations,
     )
 

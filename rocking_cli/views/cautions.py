@@ -23,8 +23,13 @@ NEAR_FRICTION = 0.2  # relative difference of friction from that which decides, 
 
 def cautions_of(mechanism: Mechanism) -> list[str]:
     """Return all cautions on a structure; those on what starts before it rocks come first."""
-    own = [*of_friction(mechanism), *of_restitution(mechanism), *of_bounds(mechanism), *mechanism.cautions()]
-    return [*before_rocking(mechanism), *own]
+    return [
+        *before_rocking(mechanism),
+        *of_friction(mechanism),
+        *of_restitution(mechanism),
+        *of_bounds(mechanism),
+        *mechanism.cautions(),
+    ]
 
 
 def of_bounds(mechanism: Mechanism) -> list[str]:
@@ -83,7 +88,7 @@ def _of_stocky(mechanism: Mechanism) -> list[str]:
 def of_friction(mechanism: Mechanism) -> list[str]:
     """Return that the friction of a body is close to that at which it may rock, in words."""
     sliding = sliding_of(mechanism)
-    if sliding is None or not isclose(sliding.friction, decides := sliding.friction_to_rock, rel_tol=NEAR_FRICTION):
+    if sliding is None or abs(sliding.friction / (decides := sliding.friction_to_rock) - 1) > NEAR_FRICTION:
         return []
     return [
         f"The friction of {sliding.friction:.4g} is within {percent(NEAR_FRICTION)} of {decides:.4g}, up to which the "

@@ -124,7 +124,7 @@ def why_unknown(history: History) -> str | None:
     if history.bound is not None:
         return history.bound.words
     if history.slid is not None and (there := history.slid.arrives) is not None:
-        return f"it slides to {there.name}, {there.distance:.3g} m away"
+        return f"it slides to {there.words}, {there.distance:.3g} m away"
     if check is None or check.reason in (None, "weightless"):
         return "nothing holds the structure down, as v_g'' comes down to -g"
     if check.reason == "crushes":

@@ -35,12 +35,12 @@ def nonlinear(mechanism, motion, **how):
 # Supports
 
 
-@pytest.mark.parametrize("friction", [0.6, 0.2, None])
+@pytest.mark.parametrize("friction", [0.6, 0.2])
 def test_a_top_that_friction_under_a_roof_holds_slides_where_its_levers_say(friction):
     """The wall turns about its foot as one body, and the roof slides on it: moments about the foot."""
     wall = rk.SpanningWall(**ROOF, friction=friction)
     weight, height, half = 1800 * 0.4 * 3.5 * G, 3.5, 0.2
-    holds = (MASONRY_FRICTION if friction is None else friction) * 1000 * height
+    holds = friction * 1000 * height
     expected = ((weight + 1000) * half + holds) / (weight * height / 2)
     for direction in Direction:
         failure = first_failure(resting(wall), direction)
@@ -78,6 +78,39 @@ def test_a_top_slides_from_where_its_force_exceeds_friction_under_what_the_roof_
     slides = time[moves & (force > 0.8 * normal)]
     assert slides.size and found.warned == pytest.approx(slides[0], abs=0.003)
     assert found.check.warned_joint == "the load and the top of the wall"
+
+
+def test_a_top_without_given_friction_never_slides_and_what_it_needs_is_said():
+    """The friction is the force by the equations of each body, over the weight of the roof with what lifts it."""
+    motion = pulse(0.35, 0.6)
+    wall = rk.SpanningWall(**ROOF)
+    assert not resting(wall).modes
+    found = nonlinear(wall, motion)
+    held = nonlinear(wall.model_copy(update={"support": 0.0}), motion)
+    np.testing.assert_array_equal(found.phi, held.phi)
+    assert found.lifted and not found.unknown
+    demand = Contacts(wall).check(found, motion)
+    k = int(np.argmin(np.abs(found.time - demand.time)))
+    phi, rate = np.abs(found.phi[k : k + 1]), np.abs(np.gradient(found.phi, found.time)[k : k + 1])
+    direction = Direction.POSITIVE if found.phi[k] > 0 else Direction.NEGATIVE
+    at = reactions(wall, direction, phi, rate, np.interp(found.time[k : k + 1], motion.time, motion.acceleration))
+    tops = wall.motion(np.abs(found.phi[k - 1 : k + 2]), direction)[-1].carry(3.5j)[0].imag
+    normal = 1000.0 * (1 + np.diff(tops, 2)[0] / (found.time[1] - found.time[0]) ** 2 / G)
+    assert demand.friction_needed == pytest.approx(abs(at.force[-1, 0]) / normal, rel=0.02)
+    assert demand.joint[0] == "C" and demand.assumed_friction == demand.friction_needed > MASONRY_FRICTION
+    assert "the result assumes that nothing slides" in joints_in_words(found, demand.assumed_friction)
+
+
+@pytest.mark.parametrize("overburden", [1000.0, 20000.0])
+def test_a_caution_states_the_friction_that_a_top_needs_to_rock(overburden):
+    """Moments of the upper block about the hinge, and of both about the foot, as the wall starts to rock."""
+    wall = rk.SpanningWall(**{**ROOF, "overburden": overburden})
+    weight, height, half = 1800 * 0.4 * 3.5 * G, 3.5, 0.2
+    force = wall.uplift(Direction.POSITIVE) * weight / 2 - (weight + overburden) * half / height
+    needed, caution = force / overburden, wall.own_caution()
+    assert (f"a coefficient of friction of {needed:.3g} between" in caution) == (needed > MASONRY_FRICTION)
+    assert "friction" not in wall.model_copy(update={"friction": 0.6}).own_caution()
+    assert "friction" not in wall.model_copy(update={"support": 0.0}).own_caution()
 
 
 def test_forces_of_supports_are_those_of_the_free_bodies():
@@ -358,13 +391,14 @@ def test_a_linkage_and_an_assembly_of_three_columns_have_the_same_columns_alone(
         for direction in Direction:
             assert alone.uplift(direction) == pytest.approx(block.uplift(direction), rel=1e-9)
             assert alone.eta(direction) == pytest.approx(block.eta(direction), rel=1e-9)
+        assert "peaks are those of columns in step" in made.own_caution()
     motion = rk.parse_pulse("sine:0.4g:0.8s").sampled()
     found = nonlinear(portico, motion)
     assert found.apart and found.unknown
     two = {**data, "bodies": {name: each for name, each in data["bodies"].items() if name != "middle"}}
     two["positive"]["joints"] = {k: each for k, each in data["positive"]["joints"].items() if k not in "CD"}
     two.pop("mechanism")
-    assert not rk.Linkage(**two).columns_alone()
+    assert not rk.Linkage(**two).columns_alone() and not rk.Linkage(**two).own_caution()
 
 
 def test_a_structure_whose_faces_at_rest_are_not_known_bears_while_it_rocks_only():

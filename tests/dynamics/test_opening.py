@@ -403,7 +403,8 @@ def test_the_lower_bound_is_the_largest_rotation_until_the_first_warning(name, f
 
 def test_what_slides_in_one_motion_adds_to_what_slid_before():
     """At rest the rate ends and the slip stays: of two pulses with quiet between the slip is that of either alone."""
-    made = Registry()["block"](width=1.0, height=5.0, friction=0.1, restitution=0.01)
+    hair = {"name": "hair", "from": {"ground": [-9.0, 2.5]}, "to": {"at": [0.0, 2.5]}, "stiffness": 1e-6}
+    made = Registry()["block"](width=1.0, height=5.0, friction=0.1, restitution=0.01, mass=1000.0, ties=[hair])
     time = 0.005 * np.arange(1600)
     one, other = (
         np.where((time > at) & (time < at + 0.4), size * 9.80665 * np.sin(2 * np.pi * (time - at) / 0.4), 0.0)

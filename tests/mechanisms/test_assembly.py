@@ -669,8 +669,9 @@ def test_linkages_that_are_no_good(fields, match):
 
 
 def test_what_cannot_rock_that_way_says_so():
-    with pytest.raises(MechanismError, match="slides between floor and a"):
-        assembly({"a": TOWERS["a"]}, friction=0.1).uplift(POSITIVE)
+    stack = {"a": rectangle(0.0, 0.0, 1.0, 4.0), "top": rectangle(0.0, 4.0, 1.0, 5.0)}
+    with pytest.raises(MechanismError, match="slides between a and top"):
+        assembly(stack, friction_of={"a and top": 0.1}).uplift(POSITIVE)
 
 
 def test_what_leans_on_a_wall_leaves_it():

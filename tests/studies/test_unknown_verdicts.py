@@ -86,6 +86,7 @@ class TestSeveral:
 
     def test_a_motion_that_only_slides_has_no_empty_line(self, tmp_path):
         text = "mechanism: block\nwidth: 0.8\nheight: 1.6\ndensity: 2000\ndepth: 1\nfriction: 0.3\n"
+        text += "ties: [{name: hair, from: {ground: [-9, 0.8]}, to: {at: [0, 0.8]}, stiffness: 1e-6}]\n"
         (tmp_path / "squat.yaml").write_text(text, encoding="utf-8")
         motions = ("--pulse", "sine:0.45g:0.8s", "--pulse", "sine:0.05g:1s", "--neighbours", 3)
         said = run("respond", tmp_path / "squat.yaml", *motions).stdout
@@ -165,7 +166,7 @@ class TestAzimuths:
             overturning_time=none, impact_count=np.zeros(6), end_time=none, warned=none, by_blocks=no,
             unknown=np.array([0, 1, 1, 0, 0, 0], dtype=bool),
             peak_ratio=np.array([nan, 0.9, 0.1, 0.4, 0.3, 0.2]), known_to=np.array([nan, 1.0, 2.0, nan, nan, nan]),
-            lower_bound=np.array([nan, 0.5, 0.1, nan, 0.2, nan]), uplift_time=np.ones(6),
+            lower_bound=np.array([nan, 0.5, 0.1, nan, 0.2, nan]), uplift_time=np.ones(6), slip=np.zeros(6),
         )  # fmt: skip
         return AzimuthResponses(("x", "y"), 1.0, azimuths, np.full(6, 0.5), {"nonlinear": many})
 

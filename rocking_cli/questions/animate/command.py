@@ -33,7 +33,7 @@ from rocking_cli.cli.quantities import POSITIVE
     "--fps", type=POSITIVE, default=20.0, show_default=True, metavar="FRAMES",
     help="Frames per second of a GIF or a video.",
 )  # fmt: skip
-@options.around
+@options.around()
 @options.opening
 @options.as_json
 @options.grouped(asked=GroundMotions)

@@ -45,7 +45,7 @@ def _aim(text: str) -> Any:
 @options.ground_motions
 @options.reading
 @options.scaling("1", "-1", "both")
-@options.around
+@options.around()
 @options.opening
 @options.site
 @options.out(".csv", ".parquet", what="Write the scanned values and the metric at each (.csv or .parquet).")

@@ -139,8 +139,13 @@ def _ratio(structure: Structure, excitation: Excitation | None) -> float:
     return nan if end.ratio is None else end.ratio
 
 
-def _median_of(measure: Callable[[Mechanism, Reals, Direction], Reals]) -> Callable[[Neighbours, Structure], float]:
-    """Return a metric: the median over neighbours of the largest value of a function of rotation up to their peaks."""
+def _median_of(
+    measure: Callable[[Mechanism, Reals, Direction], Reals], *, slides: bool = False
+) -> Callable[[Neighbours, Structure], float]:
+    """Return a metric: the median over neighbours of the largest value of a function of rotation up to their peaks.
+
+    If `slides`, the value of a body that only slides is its slip.
+    """
 
     def median(near: Neighbours, structure: Structure) -> float:
         mechanism = structure.mechanism
@@ -150,7 +155,8 @@ def _median_of(measure: Callable[[Mechanism, Reals, Direction], Reals]) -> Calla
             reached = np.where(np.isfinite(reached), np.minimum(reached, most), reached)
             sides.append(largest_on_the_way(partial(measure, mechanism), reached, side))
         # A value of the sample, as interpolation with infinity has no meaning.
-        return float(np.quantile(np.max(sides, axis=0), 0.5, method="inverted_cdf"))
+        values = np.max([*sides, near.slips] if slides else sides, axis=0)
+        return float(np.quantile(values, 0.5, method="inverted_cdf"))
 
     return median
 
@@ -184,7 +190,7 @@ METRICS: Mapping[str, Metric] = {
         Metric("peak_ratio", "", "median of the neighbours' peak rotation over phi_cr",
                of_neighbours=lambda near, _: near.peak_ratio[1], lacks=_lacks_critical_rotation),
         Metric("peak_displacement", "m", "peak displacement of the control point, the centroid of all that moves, that "
-               "half of the neighbours do not exceed", of_neighbours=_median_of(centroid_moved)),
+               "half of the neighbours do not exceed", of_neighbours=_median_of(centroid_moved, slides=True)),
         Metric("drift", "", "peak displacement of the top over its height that half of the neighbours do not exceed",
                of_neighbours=_median_of(drifts)),
         Metric("tie_force", "N", "largest force of a tie that half of the neighbours do not exceed",

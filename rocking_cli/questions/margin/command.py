@@ -17,7 +17,7 @@ from rocking_cli.cli.help import Command
 @options.ground_motions
 @options.reading
 @options.scaling("1", "-1", "both", default="both")
-@options.around
+@options.around()
 @options.opening
 @options.engine
 @options.plot("Plot the shares against the scale factor")

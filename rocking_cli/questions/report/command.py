@@ -35,7 +35,7 @@ from rocking_cli.questions.verify import heads
     help="Limit state to which the records belong, such as SLC, if the site gives it.  [default: that of the verdict]",
 )  # fmt: skip
 @options.on_floor
-@options.around
+@options.around()
 @options.opening
 @options.as_json
 @click.pass_context

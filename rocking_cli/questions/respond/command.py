@@ -75,7 +75,7 @@ def _models(text: str) -> tuple[str, ...]:
     metavar="TOLERANCE",
     help="Relative error tolerance per step of the nonlinear integration.",
 )
-@options.around
+@options.around()
 @options.opening
 @options.engine
 @click.option("--impacts", is_flag=True, help="List the impacts: time, and angular velocity before and after.")

@@ -212,9 +212,11 @@ def _in(factor: float, value: float) -> str:
 
 
 def _fate(history: History) -> str:
-    """Return a table cell: the peak, or that the structure overturns, does not uplift, or is of unknown outcome."""
+    """Return a table cell: the peak, or that the structure overturns, slides, does not uplift, or is unknown."""
     if history.unknown:
         return names.UNKNOWN
     if history.fell:
         return "overturns"
+    if history.slip:
+        return "slides"
     return f"{history.peak_ratio:.4g}" if history.lifted else "no uplift"

@@ -16,7 +16,7 @@ MAX_NAMED_TESTS = 20  # tests that cannot be simulated, in a message
 
 @click.command(cls=Command, short_help="Score stated shares of overturning against tests.")
 @click.argument("file", metavar="TESTS.csv", type=click.Path())
-@options.around
+@options.around()
 @options.opening
 @options.reading
 @options.out(".csv", ".parquet", what="Write what is stated of each test (.csv or .parquet).")

@@ -369,11 +369,12 @@ def neighbours(quick: bool) -> float:
 def openings(quick: bool) -> float:
     """Return the largest error of two times of slip [s], which steps of 1.3 ms limit; quick or not, both are computed.
 
-    A cube on friction mu = .2 under an acceleration of .21 g does not uplift: it slides by (a - mu g) t^2/2, and its
-    motion is unknown once this exceeds .5 % of the displacement of its centroid at the critical rotation, 45 degrees.
+    A cube on friction mu = .2 beside a wall under an acceleration of .21 g does not uplift: it slides by (a - mu g)
+    t^2/2, and its motion is unknown once this exceeds .5 % of the displacement of its centroid at the critical
+    rotation, 45 degrees.
     A released block first slides when the shear force at its corner exceeds mu N, both by Newton's law.
     """
-    cube = made("block", width=2.0, height=2.0, friction=0.2)
+    cube = made("block", width=2.0, height=2.0, friction=0.2, one_sided="positive", rebound=0.5)
     history = follow(cube.model("nonlinear"), GroundMotion("held", 0.01, np.full(60, -0.21 * GRAVITY)))
     slip = 0.005 * 2 * sqrt(2) * sin(pi / 8)
     of, mu, top = block(0.7, 2.8), 0.15, 0.95

@@ -11,7 +11,7 @@ import click
 
 from rocking_cli.cli import complete, options, terminal
 from rocking_cli.cli.defaults import as_declared
-from rocking_cli.cli.groups import GroundMotions, Output, read_table
+from rocking_cli.cli.groups import NEIGHBOUR_OPTIONS, GroundMotions, Output, read_table
 from rocking_cli.cli.help import Command
 from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.questions.verify import heads
@@ -45,7 +45,7 @@ class SurveyOutput(Output):
 @options.ground_motions
 @options.reading
 @options.scaling("1", "-1", "both")
-@options.around
+@options.around(None, "200, or as many as take about a minute")
 @options.opening
 @options.site
 @click.option(
@@ -102,7 +102,6 @@ def command(
       rocking survey parapets.csv --record "records/*.AT2" --polarity both --out ranked.csv
     """
     asked.check()
-    options.few_neighbours(question, None)
     from rocking_cli.excitation.records.opening import name_of
     from rocking_cli.io.files import keep_apart
     from rocking_cli.io.tables import check_table
@@ -115,6 +114,8 @@ def command(
     motions, watch = asked.motions, results.watch
     files = {"--out": results.out, "--page": results.page, "--plot": results.plot, "--map": results.map}
     keep_apart([*files.items()], [file, question["site"], *(str(each.path) for each in motions.records)])
+    if not asked:
+        as_declared(question, *NEIGHBOUR_OPTIONS)
     if question["sheets"] is None:
         as_declared(question, *heads.HEAD_OPTIONS)
     table = read_table(file, lambda sheet: StructureTable(sheet, Path()))

@@ -33,8 +33,8 @@ RANKED = {
     "lambda": "by ground acceleration at uplift",
     "ratio": "by the ratio of capacity to demand under the code of the site; structures with ratios below 1 fail",
     "response": (
-        "by the share of {} that overturn them, then by the largest peak under motions that do not, then by uplift "
-        "acceleration; an unknown outcome counts as overturning"
+        "by the share of {} that overturn them, then by the largest peak or slip under motions that do not, then by "
+        "uplift acceleration; an unknown outcome counts as overturning"
     ),
 }
 

@@ -21,7 +21,7 @@ def block(**fields):
 @pytest.fixture(scope="module")
 def answer():
     return rk.respond_each(
-        [block(), block(name="low", height=2.0, friction=0.2)],
+        [block(), block(name="low", height=2.0, friction=0.36)],
         [ACCEL, "sine:0.6g:0.8s"],
         models=["nonlinear", "linear1"],
         scales=SCALES,
@@ -37,7 +37,7 @@ def test_each_row_is_the_response_that_it_names(answer):
     assert list(frame["outcome"].cat.categories) == list(each.OUTCOMES) and len(set(frame["outcome"])) >= 3
     for row in frame.iloc[::7].itertuples():
         given = {} if row.Index % 2 == 0 else {"restitution": 0.8}
-        body = block(**given) if row.structure == "tall" else block(name="low", height=2.0, friction=0.2, **given)
+        body = block(**given) if row.structure == "tall" else block(name="low", height=2.0, friction=0.36, **given)
         motion = ACCEL if row.motion == "accel.csv" else row.motion
         one = rk.respond(body, motion, scale=row.scale, polarity=row.polarity, models=row.model)
         run = one[row.model]
@@ -83,7 +83,7 @@ def test_rotations_are_those_of_single_responses(answer):
     for place in ((0, 0, 1, 0, 0), (0, 0, 1, 1, 0), (0, 0, 2, 0, 0), (1, 0, 0, 0, 1)):
         k, _, scale, sign, eta = place
         body = block(**({"restitution": 0.8} if eta else {}))
-        body = body if k == 0 else block(name="low", height=2.0, friction=0.2, restitution=0.8)
+        body = body if k == 0 else block(name="low", height=2.0, friction=0.36, restitution=0.8)
         run = rk.respond(body, ACCEL, scale=SCALES[scale], polarity=POLARITIES[sign])["nonlinear"]
         at = np.interp(run.time, answer.time, rotation[place])
         turned = np.isfinite(run.phi) & np.isfinite(at)

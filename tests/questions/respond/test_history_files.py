@@ -75,7 +75,7 @@ def test_after_overturning_fields_are_empty_and_after_rest_zero():
 
 def test_fields_are_empty_from_where_a_history_is_not_known():
     rocking = respond(BLOCK, PULSE, models=("nonlinear",), tail=3.0)["nonlinear"]
-    smooth = BLOCK.model_copy(update={"friction": 0.05})
+    smooth = BLOCK.model_copy(update={"friction": BLOCK.width / BLOCK.height + 1e-6})
     unknown = respond(smooth, PULSE, models=("nonlinear",), tail=0.0)["nonlinear"]
     assert unknown.unknown and rocking.time.size > unknown.time.size
     _, *lines = rows({"unknown": unknown, "rocking": rocking}, PULSE)

@@ -330,6 +330,8 @@ class TestRanking:
         assert alone["neighbours"] is None and "share_highest" not in alone["rows"][0]
         assert "One time history is one sample" in run(*asked, "--neighbours", "0").stdout
         assert "no effect without ground motions" in run("survey", "t.csv", "--neighbours", "5", code=2).stderr
+        monkeypatch.setenv("ROCKING_NEIGHBOURS", "7")  # a user's default, which has no effect without motions
+        assert found(*asked)["neighbours"]["count"] == 7 and found("survey", "t.csv")["neighbours"] is None
 
     def test_a_table_that_would_take_more_than_a_minute_has_fewer(self, monkeypatch):
         blocks = [rk.Block(width=b, height=2.0) for b in (0.3, 0.5)]
