@@ -127,6 +127,16 @@ def test_the_joints_say_what_happened_to_them_or_that_nothing_did(known):
     assert isnan(later.passed) and later.reason is None and (later.warned == 2.0) != known
 
 
+def test_a_tendon_that_leaves_no_critical_rotation_leaves_the_limit_to_compare_with():
+    """It pulls the harder the further the column leans: nothing but the end of its motion overturns it."""
+    tendon = {"name": "tendon", "from": {"ground": [0.0, 0.0]}, "to": {"at": [0.0, 2.8]}, "stiffness": 1e9}
+    tied = Block(width=0.7, height=2.8, density=2000.0, depth=1.0, ties=[tendon])
+    assert build_model(BLOCK, "nonlinear").ends_at_limit == (False, False)
+    assert build_model(tied, "nonlinear").ends_at_limit == (True, True)
+    history = respond(tied, release=0.4, models=("nonlinear",))["nonlinear"]
+    assert history.reference == "kinematic limit" and run().reference == "critical rotation"
+
+
 # --- of many runs no sum and no mean drops the unknown
 
 
