@@ -552,8 +552,11 @@ class Assembly(LinkedBodies):
         return contacts
 
     def _bearing(self, direction: Direction) -> Iterator[tuple[analysis.AssemblyContact, Sequence[int]]]:
-        """Yield the joints that still bear in a mechanism, and at which ends: both if closed, one if it hinges."""
-        bear = {analysis.Opening.CLOSED: (0, 1), analysis.Opening.START: (0,), analysis.Opening.END: (1,)}
+        """Yield the joints that still bear in a mechanism, and at which ends: one if it hinges, or else both."""
+        bear = {
+            analysis.Opening.CLOSED: (0, 1), analysis.Opening.SLIDES: (0, 1),
+            analysis.Opening.START: (0,), analysis.Opening.END: (1,),
+        }  # fmt: skip
         states = self._as_it_rocks(direction)._groups(direction).states
         for contact, state in zip(self._contacts, states, strict=True):
             if state in bear:

@@ -3,6 +3,8 @@
 A motion has one of six outcomes: the structure does not uplift; it slides and never rocks; it rocks, that is, it
 uplifts and comes to rest; it overturns; it is still rocking long after the end of the ground motion, without going to
 overturn; or the outcome is unknown, because a joint opens or slides that the model keeps closed, or something is met.
+Free blocks have two more: one falls off an edge that the file draws, and counts as overturned; or all come to rest, in
+a structure whose mechanism has no rotation.
 """
 
 from __future__ import annotations
@@ -13,6 +15,8 @@ ROCKS = "rocks"
 OVERTURNS = "overturns"
 STILL_ROCKING = "still rocking"
 UNKNOWN = "unknown"
+FALLS_OFF = "falls off the edge of"
+COMES_TO_REST = "comes to rest"
 
 LANGUAGES = ("en", "it")
 """Languages of calculation sheets and of templates."""

@@ -195,6 +195,15 @@ class Structure:
         with self.named():
             self.mechanism.hung.ask(question)
 
+    @cached_property
+    def no_model(self) -> str | None:
+        """Reason why the structure has no rocking model, as one that slides; None if it has one in each direction."""
+        try:
+            self.model("nonlinear")
+        except MechanismError as error:
+            return f"{error}"
+        return None
+
     @property
     def default_models(self) -> tuple[ModelName, ...]:
         """Models to simulate by default: all, or the nonlinear one alone if the linear ones mislead or do not exist."""

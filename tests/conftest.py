@@ -30,7 +30,7 @@ SHARED = PROJECT.parent / "shared"
 # Real strong motion is not part of the project. Tests of it are skipped, and counted, where it is absent.
 RECORDS = Path(os.environ.get("ROCKING_RECORDS", SHARED / "records"))
 FORMATS = RECORDS / "formats"
-NEEDS_MUJOCO = pytest.mark.skipif(find_spec("mujoco") is None, reason="free blocks need mujoco-core")
+NEEDS_MUJOCO = pytest.mark.skipif(find_spec("mujoco") is None, reason="free blocks need mujoco")
 NEEDS_RECORDS = pytest.mark.skipif(not FORMATS.is_dir(), reason=f"no real records in {RECORDS} (ROCKING_RECORDS)")
 
 

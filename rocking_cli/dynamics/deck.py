@@ -100,6 +100,7 @@ def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
         opening=marks[:, kernels.LARGEST] / reach,
         by_blocks=np.zeros(len(marks), np.bool_),
         slip=np.zeros(len(marks)),
+        off_edge=np.zeros(len(marks), np.bool_),
     )
 
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from math import ceil
+from math import ceil, isfinite
+from typing import NamedTuple
 
 import numpy as np
 
+from rocking_cli import names
 from rocking_cli.arrays import Bools, Reals
 from rocking_cli.core.bounds import Bound
 from rocking_cli.dynamics import kernels
@@ -31,6 +33,27 @@ MIN_COLUMN_ETA = 1e-3  # lower bound on the restitution of a single column, whic
 MIN_IMPACT_RATE = 0.02  # least rate of a counted impact, over that of the strongest one; weaker impacts are chatter
 
 
+class BlockPeaks(NamedTuple):
+    """What free blocks do in a history.
+
+    Parameters
+    ----------
+    fell : str
+        The block that falls first; empty if none does.
+    off : str
+        The block, or the part of the ground, off whose edge it falls; empty if it falls otherwise.
+    turned, moved, left : (float, str)
+        Largest rotation [rad] and displacement [m] of the centroid of any block, and the largest displacement in the
+        end [m], each with the block; the last is NaN after a fall.
+    """
+
+    fell: str
+    off: str
+    turned: tuple[float, str]
+    moved: tuple[float, str]
+    left: tuple[float, str]
+
+
 @short_repr
 @dataclass(frozen=True, eq=False, kw_only=True)
 class History(Outcome[bool, int, float]):
@@ -39,11 +62,12 @@ class History(Outcome[bool, int, float]):
     Parameters
     ----------
     model : str
-        `"nonlinear"`, `"linear1"` or `"linear2"`.
+        `"nonlinear"`, `"linear1"` or `"linear2"`; `"blocks"` for free blocks.
     time : ndarray, shape (n,)
         Times of the samples [s]: those of the ground motion, or every k-th of them, with k its `every`.
     phi, rate : ndarray, shape (n,)
-        Signed rotation [rad] and its rate [rad/s]; NaN after overturning, and after the motion becomes unknown.
+        Signed rotation [rad] and its rate [rad/s]; NaN after overturning, after the motion becomes unknown, and for
+        free blocks of a structure whose mechanism has no rotation, as one that slides.
     ratio : ndarray, shape (n,)
         Signed rotation over the critical rotation of its direction.
     impacts : ndarray, shape (k, 3)
@@ -68,6 +92,8 @@ class History(Outcome[bool, int, float]):
         Whether it is unknown from there on because the restitution is not known.
     slid : Slid, optional
         The slip of a body that never rocks under the motion; None for others.
+    blocks : BlockPeaks, optional
+        What free blocks do; None for one degree of freedom.
     """
 
     model: ModelName
@@ -85,6 +111,21 @@ class History(Outcome[bool, int, float]):
     bound: Bound | None = None
     unmeasured: bool = False
     slid: Slid | None = None
+    blocks: BlockPeaks | None = None
+
+    @property
+    def rotates(self) -> bool:
+        """Whether the mechanism has a rotation: free blocks are simulated without one too."""
+        return isfinite(self.ratio[0])
+
+    @property
+    def words(self) -> str:
+        """Outcome in the words of `rocking_cli.names`."""
+        if self.blocks is not None and self.blocks.off:
+            return f"{names.FALLS_OFF} {self.blocks.off}"
+        if not self.rotates and self.at_rest:
+            return names.COMES_TO_REST
+        return super().words
 
     @property
     def reference(self) -> str:

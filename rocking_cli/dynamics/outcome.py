@@ -67,6 +67,8 @@ class Outcome(Generic[Flags, Counts, Numbers]):
     slip : float
         Largest displacement of a body that slides and never rocks [m]; 0 if it does not slide, and for other
         structures.
+    off_edge : bool
+        Whether it overturns because a free block falls off an edge that the file draws.
     """
 
     still_rocking: Flags
@@ -86,6 +88,7 @@ class Outcome(Generic[Flags, Counts, Numbers]):
     opening: Numbers
     by_blocks: Flags
     slip: Numbers
+    off_edge: Flags
 
     @property
     def fell(self) -> Flags:
@@ -166,6 +169,7 @@ UNCHECKED_FIELDS: dict[str, Any] = {
     "opening": nan,
     "by_blocks": False,
     "slip": 0.0,
+    "off_edge": False,
 }
 """The fields of a model that has no joints to be checked, such as an equivalent block."""
 

@@ -21,10 +21,12 @@ class Concluded(StrEnum):
 
     NO_UPLIFT = "does_not_uplift"
     SLIDES = "slides"
+    COMES_TO_REST = "comes_to_rest"
     ROCKS = "rocks"
     SATISFIED = "satisfied"
     NOT_CHECKED = "not_checked"
     UNKNOWN = "unknown"
+    FALLS_OFF = "falls_off_an_edge"
     OVERTURNS = "overturns"
     NOT_SATISFIED = "not_satisfied"
 
@@ -163,7 +165,7 @@ class Conclusion:
     def next(self) -> Sequence[NextStep]:
         """What to do next, the most useful step first."""
         steps = [] if self.remedy is None else [self.remedy]
-        if self.concluded is Concluded.OVERTURNS:
+        if self.concluded in (Concluded.FALLS_OFF, Concluded.OVERTURNS):
             steps.append(NextStep.STRENGTHEN)
         if self.relies:
             steps.append(NextStep.CHECK_HOLD)

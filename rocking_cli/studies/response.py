@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from math import isnan
 
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
@@ -63,14 +64,16 @@ def _of_run(run: History, neighbours: Neighbours | None, motion: str, sign: int)
     if run.unknown:
         what = Concluded.UNKNOWN
     elif run.fell:
-        what = Concluded.OVERTURNS
+        what = Concluded.FALLS_OFF if run.off_edge else Concluded.OVERTURNS
+    elif isnan(run.peak_ratio):
+        what = Concluded.COMES_TO_REST
     else:
         what = Concluded.ROCKS if run.lifted else Concluded.SLIDES if run.slip else Concluded.NO_UPLIFT
     return Conclusion(
         concluded=what,
         motion=motion,
         polarity=sign,
-        peak_ratio=None if run.unknown or run.fell else run.peak_ratio,
+        peak_ratio=None if run.unknown or isnan(run.peak_ratio) else run.peak_ratio,
         slip=run.slip if what is Concluded.SLIDES else None,
         known_until=run.known_to if run.unknown else None,
         joint=run.check.joint if run.unknown and run.check is not None else "",

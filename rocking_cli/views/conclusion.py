@@ -108,9 +108,11 @@ def digits_beside_one(ratio: float) -> int:
 
 CLAUSES = {
     Concluded.OVERTURNS: names.OVERTURNS,
+    Concluded.FALLS_OFF: f"{names.FALLS_OFF} what it stands on",
     Concluded.UNKNOWN: "has an unknown outcome",
     Concluded.ROCKS: names.ROCKS,
     Concluded.SLIDES: "slides and does not overturn",
+    Concluded.COMES_TO_REST: names.COMES_TO_REST,
     Concluded.NO_UPLIFT: names.NO_UPLIFT,
 }
 """Clauses on outcomes, the worst first."""
@@ -136,7 +138,7 @@ def counted(ends: Sequence[Conclusion], over: str) -> str:
             return f"the structure uplifts under none of {count} motions."
         if under:
             of = f"all {count}" if len(under) == count else f"{len(under)}{'' if outcomes else f' of {count}'}"
-            bad = what in (Concluded.OVERTURNS, Concluded.UNKNOWN) and len(under) < count
+            bad = what in (Concluded.OVERTURNS, Concluded.FALLS_OFF, Concluded.UNKNOWN) and len(under) < count
             named = f" ({in_short(under, most=MAX_NAMED_MOTIONS)})" if bad else ""
             outcomes.append(f"{clause} under {of}{'' if outcomes else ' motions'}{named}")
     *before, last = outcomes

@@ -13,7 +13,7 @@ BLOCKS_FAILED = "free blocks failed: a step diverged, or a body sank too deep in
 ALL_EXACT = "Engine: one degree of freedom for all histories, as it tells every outcome."
 
 
-def engines_in_words(engine: EngineName, by_blocks: int, mechanism: Mechanism) -> list[str]:
+def engines_in_words(engine: EngineName, by_blocks: int, mechanism: Mechanism, off_edge: int = 0) -> list[str]:
     """Return sentences on the histories that were simulated with free blocks; none if there are none.
 
     Parameters
@@ -24,6 +24,8 @@ def engines_in_words(engine: EngineName, by_blocks: int, mechanism: Mechanism) -
         Number of histories with free blocks.
     mechanism : Mechanism
         The structure.
+    off_edge : int
+        Number of those of them in which a block falls off an edge.
     """
     if engine == "exact":
         return []
@@ -34,7 +36,8 @@ def engines_in_words(engine: EngineName, by_blocks: int, mechanism: Mechanism) -
     friction = (
         f"{mechanism.friction:g}, as given" if given else f"{MASONRY_FRICTION:g}, as usual for masonry: none is given"
     )
-    return [blocks_in_words(engine, histories, friction)]
+    off = f"In {off_edge} of them, a block falls off an edge that the file draws: they count as overturned."
+    return [blocks_in_words(engine, histories, friction), *([off] if off_edge else [])]
 
 
 def blocks_in_words(engine: EngineName, histories: str, friction: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields
-from math import inf, sqrt
+from math import degrees, inf, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rocking_cli import names
 from rocking_cli.core import Direction, Mechanism
-from rocking_cli.dynamics.history import MIN_IMPACT_RATE, History, contact_lost
+from rocking_cli.dynamics.history import MIN_IMPACT_RATE, BlockPeaks, History, contact_lost
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.sliding import Slid
@@ -138,6 +138,7 @@ def histories_data(
             "points": {each.name: data_of(POINTS, each) for each in moved.points} if moved is not None else {},
             "slip": data_of(SLIP, run.slid) if run.slid is not None else None,
             "ties": {each.name: data_of(TIES, each) for each in moved.ties} if moved is not None else {},
+            "blocks": data_of(BLOCKS, run.blocks) if run.blocks is not None else None,
         }
         if etas is not None and not run.by_blocks:
             data[name]["impact_list"] = [data_of(IMPACTS, each) for each in _impacts(run.impacts, etas)]
@@ -164,6 +165,8 @@ def ending(outcome: OneOutcome) -> str:
     """Return the keyword for how a motion ended, for JSON."""
     if outcome.unknown:
         return names.UNKNOWN
+    if outcome.off_edge:
+        return "falls_off"
     return "overturned" if outcome.fell else "still_rocking" if outcome.still_rocking else "at_rest"
 
 
@@ -226,13 +229,23 @@ def _columns(*, unknown: bool = False, slides: bool = False, over: str = "phi_cr
         Column("overturning_time", of("overturning_time")),
         only_shown("overturning time", of_structure(of("overturning_time")), rounded(5), "s"),
         Column("overturning_direction", lambda run: Direction(run.fell_to).label if run.fell else None),
-        Column("impacts", lambda run: len(run.felt), head="impacts"),
-        Column("impacts_all", of("impact_count")),
+        Column("impacts", lambda run: len(run.felt) if run.rotates else None, head="impacts"),
+        Column("impacts_all", lambda run: run.impact_count if run.rotates else None),
         Column("contact_lost", of("contact_lost")),
         Column("ratio_of", lambda run: "limit" if any(run.ends_at_limit) else "phi_cr"),
     ]
 
 
+BLOCKS: tuple[Column[BlockPeaks], ...] = (
+    Column("falls", lambda blocks: blocks.fell or None),
+    Column("falls_off", lambda blocks: blocks.off or None),
+    Column("rotation", lambda blocks: blocks.turned[0], "rad"),
+    Column("rotation_of", lambda blocks: blocks.turned[1]),
+    Column("displacement", lambda blocks: blocks.moved[0], "m"),
+    Column("displacement_of", lambda blocks: blocks.moved[1]),
+    Column("residual", lambda blocks: blocks.left[0], "m"),
+    Column("residual_of", lambda blocks: blocks.left[1] or None),
+)
 POINTS: tuple[Column[PointPeak], ...] = (
     Column("at", lambda point: [point.at.real, point.at.imag]),
     Column("horizontal", of("horizontal")),
@@ -311,7 +324,7 @@ def view(
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
         "record": record_data(given.motion, given.factor, polarity, given.pulse) if given else None,
         "release": asked.release,
-        "restitution": restitution_data(structure),
+        "restitution": restitution_data(structure) if structure.no_model is None else None,
         **runs_data(found, watched, etas),
     }
     if found.fit is None or found.to_pulse is None:
@@ -326,8 +339,10 @@ def view(
             share_of_pulse(found, found.to_pulse, pulse),
         ]
     first = next(iter(found.runs.values()))
-    caution = [f"Caution: {text}" for text in cautions_of(mechanism)]
-    if structure.misleading and any(name not in ("nonlinear", "blocks") for name in first):
+    rocks = structure.no_model is None
+    own = cautions_of(mechanism) if rocks else [f"{structure.no_model}. Free blocks alone have no rotation phi."]
+    caution = [f"Caution: {text}" for text in own]
+    if rocks and structure.misleading and any(name not in ("nonlinear", "blocks") for name in first):
         caution.append(f"Caution: {structure.misleading}.")
     caution += [f"Caution: {text}" for text in apart(watched, found.runs)]
     caution += not_checked(mechanism, first.values())
@@ -417,6 +432,7 @@ def outcome_table(title: str, found: Response, sign: int, watched: Watched) -> T
         *_columns(unknown=unknown, slides=slides, over=over),
         *(_slips() if slides else ()),
         *_movements({run.model: watched.peaks(run) for run in runs if run.model != "blocks"}),
+        *(_of_blocks() if any(run.blocks is not None for run in runs) else ()),
     ]
     if sign in found.contacts:
         per, unit = force_unit(watched.mechanism)
@@ -469,6 +485,17 @@ def _movements(moved: Mapping[str, Movements]) -> Iterator[Column[History]]:
     for k, tie in enumerate(any_model.ties):
         yield only_shown(f"{tie.name}, force", peak("ties", k, "force", 1e-3), rounded(4), "kN")
         yield only_shown(f"{tie.name}, elongation", peak("ties", k, "elongation", 1e3), rounded(4), "mm")
+
+
+def _of_blocks() -> Iterator[Column[History]]:
+    """Yield the columns of the largest movements of free blocks."""
+
+    def cell(show: Callable[[BlockPeaks], float]) -> Callable[[History], float | None]:
+        return lambda run: None if run.blocks is None else show(run.blocks)
+
+    yield only_shown("peak rotation of a block", cell(lambda blocks: degrees(blocks.turned[0])), rounded(4), "deg")
+    yield only_shown("displacement of a block", cell(lambda blocks: 1e3 * blocks.moved[0]), rounded(4), "mm")
+    yield only_shown("its displacement at rest", cell(lambda blocks: 1e3 * blocks.left[0]), rounded(4), "mm")
 
 
 def _impact_table(title: str, history: History, etas: tuple[float, float]) -> list[Table | str]:

@@ -182,8 +182,7 @@ def verdict(
         others: dict[ModelName, History] = {name: run for name, run in histories.items() if name != "blocks"}
         first = [verdict(others, agreed, assumed_friction)] if others else []
         run = histories["blocks"]
-        does = f"collapses at {run.overturning_time:.4g} s" if run.fell else ends(run)
-        return " ".join([*first, f"As free blocks, the structure {does}."])
+        return " ".join([*first, f"As free blocks, the structure {blocks_do(run)}."])
     best: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
     run = histories[best]
     by = "" if best == "nonlinear" or len(histories) == 1 else f"By {best} the"
@@ -232,6 +231,20 @@ def _slip(slid: Slid) -> str:
         f"{_small(abs(slip), 'm')} to the {'right' if slip > 0 else 'left'}" for slip in (slid.largest, slid.residual)
     )
     return f"by up to {most}; at the end it is {end} of its place, after a path of {_small(slid.path, 'm')}"
+
+
+def blocks_do(run: History) -> str:
+    """Return the outcome of a history of free blocks in words, which follow "the structure"."""
+    assert run.blocks is not None
+    falls, off, (turned, _), (moved, mover), (left, stays) = run.blocks
+    if run.fell:
+        where = f", where {falls} {names.FALLS_OFF} {off}" if off else f": {falls} falls first"
+        return f"collapses at {run.overturning_time:.4g} s{where}"
+    at_rest = "does not come to rest" if run.still_rocking else names.COMES_TO_REST
+    does = ends(run) if run.rotates else at_rest
+    where = f" {mover} moves by up to {_small(moved, 'm')}, and {stays} stays {_small(left, 'm')} from its place"
+    still = f" It still moves at {run.end_time:.4g} s, where the simulation ends." if run.still_rocking else ""
+    return f"{does}.{where}; no block turns by more than {turned:.3g} rad{still and '.'}{still.rstrip('.')}"
 
 
 def blocks_in_words(

@@ -246,7 +246,7 @@ def offences(data, at=""):
 
 def needs_mujoco(line):
     if line.startswith("crosscheck"):
-        pytest.importorskip("mujoco", reason="free blocks need mujoco-core")
+        pytest.importorskip("mujoco", reason="free blocks need mujoco")
 
 
 def names(lines):

@@ -15,7 +15,7 @@ from rocking_cli.studies.engines.free_blocks import free_blocks
 from tests.conftest import EXAMPLES, PROJECT
 from tests.penalty import Plate, stacked
 
-pytest.importorskip("mujoco", reason="free blocks need mujoco-core")
+pytest.importorskip("mujoco", reason="free blocks need mujoco")
 
 EVIDENCE = runpy.run_path(str(PROJECT / "docs" / "make_free_blocks.py"))
 bounce, fall, halved, heavy, released, simulated, slide, structure = (
@@ -50,7 +50,7 @@ def test_a_block_that_turns_back_is_not_at_rest():
 def test_what_does_not_stand_is_refused():
     free = free_blocks(PEDESTAL)
     with pytest.raises(SolverError, match="as free blocks it does not stand by itself: block moves"):
-        BlockModel(replace(free, ground=[])).simulate(None)
+        BlockModel(replace(free, ground={})).simulate(None)
 
 
 @pytest.mark.parametrize("deep", [0.05, 0.2])
@@ -121,9 +121,9 @@ def test_weight_on_small_blocks_stiffens_contacts():
     bare = heavy(1.0)[2]
     for ratio in (1.0, 10.0, 100.0, 1000.0):
         exact, free, time_constant = heavy(ratio)
-        assert free == pytest.approx(exact, rel=0.005)
+        assert free == pytest.approx(exact, rel=0.015)
     without = heavy(ratio, time_constant / bare)
-    assert abs(without[1] / exact - 1) > 0.01
+    assert abs(without[1] / exact - 1) > 2 * abs(free / exact - 1)
 
 
 def portal(scale=1.0, mirrored=False):

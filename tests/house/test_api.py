@@ -525,7 +525,7 @@ MODULES = (
 def test_examples_in_docstrings_run(name, monkeypatch):
     monkeypatch.chdir(PROJECT)
     if "crosscheck" in name:
-        pytest.importorskip("mujoco", reason="free blocks need mujoco-core")
+        pytest.importorskip("mujoco", reason="free blocks need mujoco")
     found = doctest.testmod(import_module(f"rocking_cli{name}"))
     assert found.attempted > 0 and found.failed == 0
 

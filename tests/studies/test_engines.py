@@ -5,7 +5,7 @@ import pytest
 import rocking_cli as rk
 from rocking_cli.studies.engines import memory
 
-pytest.importorskip("mujoco", reason="free blocks need mujoco-core")
+pytest.importorskip("mujoco", reason="free blocks need mujoco")
 
 BLOCK = rk.Block(width=0.7, height=2.8)
 PULSE = rk.Pulse.parse("sine:0.4g:0.8s").sampled(100) if hasattr(rk.Pulse, "parse") else None

@@ -1,5 +1,6 @@
 """The engine of free blocks: what it says, what it refuses, what it remembers; and who is asked by `auto`."""
 
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +13,7 @@ from rocking_cli.studies.engines import blocks, engine_of, memory, scene
 from rocking_cli.views.view import Table
 from tests.conftest import EXAMPLES
 
-pytest.importorskip("mujoco", reason="free blocks need mujoco-core")
+pytest.importorskip("mujoco", reason="free blocks need mujoco")
 
 BLOCK = structure_of(rk.Block(width=1.0, height=2.0))  # it soon comes to rest
 ACCEL = rk.read_record(EXAMPLES / "accel.csv")
@@ -129,6 +130,22 @@ def test_without_the_extra_one_sentence_says_what_to_install(monkeypatch):
         rk.InputError, match=r"MuJoCo, which is not installed[\s\S]*pip install 'rocking-cli\[blocks\]'"
     ):
         engine_of("blocks")
+
+
+@pytest.mark.parametrize(
+    ("package", "says"),
+    [
+        ("raise OSError('libmujoco.so: cannot open')", "does not load .libmujoco.so: cannot open"),
+        ("", "does not load"),  # what is left of a package that another one replaced
+        ("__version__ = '3.12.1'", "MuJoCo 3.12.1 misses contacts"),
+    ],
+)
+def test_an_installation_that_is_broken_is_named_with_what_mends_it(monkeypatch, tmp_path, package, says):
+    (tmp_path / "mujoco.py").write_text(package, encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "mujoco")
+    with pytest.raises(rk.InputError, match=rf"{says}[\s\S]*pip install --force-reinstall 'mujoco>=3.13'"):
+        scene.engine_version()
 
 
 @pytest.mark.parametrize(

@@ -54,6 +54,8 @@ class Margin:
         Who simulated them.
     by_blocks : int
         Number of neighbours, of all factors and polarities, that were simulated with free blocks.
+    off_edge : int
+        Number of those of them in which a block falls off an edge; they count as overturned.
     pga : float
         Peak ground acceleration of the motion at a factor of 1 [standard gravity].
     polarities : sequence of int
@@ -68,6 +70,7 @@ class Margin:
     checked: bool = True
     engine: EngineName = "exact"
     by_blocks: int = 0
+    off_edge: int = 0
     pga: float = field(kw_only=True)
     polarities: Sequence[int] = field(kw_only=True)
 
@@ -166,7 +169,7 @@ def margin(
     factors = np.union1d(factors[np.abs(factors - 1) > FACTOR_TOLERANCE], 1.0)
     # The same neighbours at every factor, so that differences come from the factor alone.
     draws, overturned, at_most = around.drawn(model), np.zeros(factors.size), np.zeros(factors.size)
-    by_blocks = 0
+    by_blocks = off_edge = 0
     for k, sign in enumerate(polarities):
         # Neighbours that always overturn cannot do so more often; a symmetric structure has the same shares under the
         # motion reversed.
@@ -179,7 +182,7 @@ def margin(
             model, motion, repeated, scale=some.repeat(around.count), polarity=sign, threads=threads, progress=progress,
             engine=engine,
         )  # fmt: skip
-        by_blocks += int(outcomes.by_blocks.sum())
+        by_blocks, off_edge = by_blocks + int(outcomes.by_blocks.sum()), off_edge + int(outcomes.off_edge.sum())
         fell, doubtful = (of.reshape(some.size, around.count).mean(axis=1) for of in (outcomes.fell, outcomes.unknown))
         overturned[undecided] = np.maximum(overturned[undecided], fell)
         at_most[undecided] = np.maximum(at_most[undecided], fell + doubtful)
@@ -188,7 +191,7 @@ def margin(
     least = min((uplift for uplift in uplifts if uplift is not None), default=None)
     return Margin(
         around, least, factors, overturned, at_most - overturned, engine=engine.name, by_blocks=by_blocks,
-        checked=model.joints is not None or engine.name == "blocks",
+        off_edge=off_edge, checked=model.joints is not None or engine.name == "blocks",
         pga=motion.of_ground.pga_g, polarities=tuple(polarities),
     )  # fmt: skip
 

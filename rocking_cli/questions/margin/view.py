@@ -99,7 +99,8 @@ def view(
             f"The row '{GOVERNING_ROW}' governs; the row below it alone does not prove that the structure stands."
         )
     if rows:
-        parts += engines_in_words(rows[0].margin.engine, sum(row.margin.by_blocks for row in rows), mechanism)
+        by_blocks, off_edge = (sum(getattr(row.margin, key) for row in rows) for key in ("by_blocks", "off_edge"))
+        parts += engines_in_words(rows[0].margin.engine, by_blocks, mechanism, off_edge)
     parts += [f"{row.name}: {in_words(row.margin)}" for row in rows] if len(rows) <= MAX_DETAILED_MOTIONS else []
     parts += [f"Caution: {text}" for text in cautions_of(mechanism)]
     if not all(row.margin.checked for row in rows):
@@ -138,6 +139,7 @@ def margin_data(found: Margin) -> dict[str, Any]:
         "shares": found.overturned.tolist(),
         "unknown": found.unknown.tolist() if found.checked else None,
         "by_blocks": found.by_blocks,
+        "off_edge": found.off_edge,
         "levels": {
             f"{100 * level:g}": {
                 "first": found.first(level),

@@ -83,7 +83,8 @@ def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionles
             "structure although a smaller one does."
         )
     if mechanism is not None:
-        parts += engines_in_words(found.structure.engine.name, int(found.outcome.by_blocks.sum()), mechanism)
+        by_blocks, off_edge = int(found.outcome.by_blocks.sum()), int(found.outcome.off_edge.sum())
+        parts += engines_in_words(found.structure.engine.name, by_blocks, mechanism, off_edge)
         parts += _joints([found.structure], [mechanism])
     return View(_map_data(found, mechanism, dimensionless=dimensionless), parts)
 
@@ -138,6 +139,7 @@ def _map_data(found: OverturningMap, mechanism: Mechanism | None, *, dimensionle
         "model": shaken.model.name,
         "engine": shaken.engine.name,
         "by_blocks": int(found.outcome.by_blocks.sum()),
+        "off_edge": int(found.outcome.off_edge.sum()),
         "eta": shaken.eta,
         "polarity": _polarity(found),
         "dimensionless": dimensionless,

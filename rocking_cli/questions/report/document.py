@@ -41,7 +41,9 @@ TOTAL_BINS = 6000  # bins of the curves of all motions: each curve has some two 
 MIN_BINS, MAX_BINS = 300, 2500  # bins of the curves of one motion
 OWN_PARTS = frozenset({"drawing", "inputs", "basis-4"})
 """Parts of a calculation sheet that a report leaves out: it contains them already, or has another order."""
-BAD_CONCLUSIONS = frozenset({Concluded.OVERTURNS, Concluded.UNKNOWN, Concluded.NOT_SATISFIED, Concluded.NOT_CHECKED})
+BAD_CONCLUSIONS = frozenset(
+    {Concluded.OVERTURNS, Concluded.FALLS_OFF, Concluded.UNKNOWN, Concluded.NOT_SATISFIED, Concluded.NOT_CHECKED}
+)
 
 
 @dataclass(frozen=True, eq=False)

@@ -65,8 +65,9 @@ class Several:
         self, structure: Structure, models: Sequence[ModelName], asked: int, engine: EngineName = "exact"
     ) -> None:
         self._title = heading(structure.mechanism)
-        self._free = [side.phi_cr is None for side in structure.statics]
-        self._restitution = restitution_used(structure)
+        rocks = structure.no_model is None
+        self._free = [side.phi_cr is None for side in structure.statics] if rocks else [False]
+        self._restitution = restitution_used(structure) if rocks else ""
         by_engine: Mapping[EngineName, Sequence[ModelName]] = {"blocks": ["blocks"], "auto": ["nonlinear", "blocks"]}
         self._engine, self._by_blocks = engine, 0
         self._models = by_engine.get(engine, models)
@@ -77,8 +78,8 @@ class Several:
         self._until: dict[str, str] = {}
         self._around: Neighbourhood | None = None
         self._mechanism = structure.mechanism
-        self._cautions = cautions_of(structure.mechanism)
-        if structure.misleading and any(name != "nonlinear" for name in models):
+        self._cautions = cautions_of(structure.mechanism) if rocks else [f"{structure.no_model}."]
+        if rocks and structure.misleading and any(name != "nonlinear" for name in models):
             self._cautions.append(f"{structure.misleading}.")
         self._watched, self._torn = Watched(structure.mechanism), dict[str, list[str]]()
         self._contacts: dict[str, ContactDemand] = {}

@@ -171,7 +171,10 @@ def respond(
         around = all_directions(ready, motions, third, models=models, release=tilt, rtol=rtol, watch=watch)
         write_files(around, out, plot, watch)
         return around  # type: ignore[no-any-return]
-    chosen = motions.gather(ready.growth, watch, with_vertical=vertical is not None) if motions else [None]
+    rocks = engine == "exact" or ready.no_model is None
+    engine = engine if rocks else "blocks"
+    growth = ready.growth if rocks else 0.0
+    chosen = motions.gather(growth, watch, with_vertical=vertical is not None) if motions else [None]
     if vertical is not None and chosen[0] is not None:
         if not isinstance(vertical, GroundMotion):
             vertical = motions.vertical(chosen[0], vertical, vertical_dt, vertical_channel, watch)
@@ -189,9 +192,12 @@ def respond(
         idle = {"rtol": rtol != RTOL, "opening": opening != OPENING, "impacts": impacts, "contact": contact}
         refuse_idle("with free blocks", **idle, restitution_deviation=restitution_deviation)
     names = models_of(models) if models is not None else usual_models(ready, watch)
+    if not rocks:
+        refuse_idle(f"as {ready.no_model}", neighbours=neighbours, out=out, plot=plot)
+    else:
+        ready.models(names)
     if "nonlinear" not in names:
         refuse_idle("on linear blocks, which have no joints", opening=opening != OPENING)
-    ready.models(names)
     title, doubts = heading(ready.mechanism) if title is None else title, doubts_of(ready.mechanism)
 
     def one(given: Scaled | None, title: str, table: str | Path | None, picture: str | Path | None) -> ResponseAnswer:

@@ -30,14 +30,13 @@ if TYPE_CHECKING:
 SOFTNESS = 0.01  # time constant of a contact, over sqrt(size/g) of the smallest block
 STEPS = 8  # time steps in this time
 HEAVY = 10.0  # weight straight above a block over its own, from which the contacts are stiffer
-HOLD = 1e-3  # s; the ground acceleration is held over so long at most
 SUNK = 1e-3  # largest depth to which a body may sink into another, over its size; as far it may move at rest
-SETTLING = 0.3  # s
+SETTLING = 1.0  # over sqrt(size/g)
 LIGHT = 0.1  # normal force over the weight of the lighter block, below which friction is not looked at
 REST_ENERGY = 1e-9  # kinetic energy at rest, over m g times the size; for sqrt(size/g), as blocks also turn back
 LONGEST_TAIL = 60.0  # s after the motion for which blocks that still move are followed
 ROUNDING = 1e-6  # samples
-READ_AS = 2  # number of the rule by which an outcome is read from a motion: outcomes by others are not those kept
+READ_AS = 3  # number of the rule by which an outcome is read from a motion: outcomes by others are not those kept
 
 
 @short_repr
@@ -57,6 +56,8 @@ class BlockMotion:
         Time at which a block first falls by 0.15 of the structure's height, or turns by 0.8 rad [s]; NaN if none does.
     block : str
         This block; empty if there is none.
+    off : str
+        On what it rested whose edge it has left then: another block, or a part of the ground; empty if on none.
     failed : str
         Why the simulation is no answer, a clause; empty if it is one.
     at_rest : bool
@@ -71,6 +72,7 @@ class BlockMotion:
     rates: Reals
     collapsed: float = nan
     block: str = ""
+    off: str = ""
     failed: str = ""
     at_rest: bool = False
     friction: Mapping[tuple[str, str], float] = field(default_factory=dict)
@@ -134,7 +136,7 @@ class BlockModel:
     @cached_property
     def digest(self) -> str:
         """A digest of all on which motions of these blocks depend, besides the ground motion."""
-        rules = READ_AS, STEPS, HOLD, FALL, TURN, SUNK, SETTLING, REST_ENERGY, LONGEST_TAIL
+        rules = READ_AS, STEPS, FALL, TURN, SUNK, SETTLING, REST_ENERGY, LONGEST_TAIL
         return self.scene.digest() + repr((rules, self.free.height, self.time_constant))
 
     def simulate(
@@ -154,7 +156,7 @@ class BlockModel:
         Parameters
         ----------
         motion : GroundMotion or None
-            Ground acceleration, linear between its samples and zero after the last.
+            Ground acceleration, linear between its samples and zero after the last; held over each step.
         factor, vertical_factor : float
             Factors on both components.
         start : ndarray, shape (blocks, 3), optional
@@ -178,11 +180,10 @@ class BlockModel:
         model, count = self.scene.model, 3 * len(self.names)
         data = mujoco.MjData(model)
         sample = motion.dt * motion.every if motion is not None else RELEASE_DT
-        holds = ceil(sample / HOLD)
-        steps = ceil(sample / holds / self.step)
-        model.opt.timestep = sample / holds / steps / self.scene.unit_of_time
+        steps = ceil(sample / self.step)
+        model.opt.timestep = sample / steps / self.scene.unit_of_time
         model.opt.gravity[:] = (0.0, 0.0, -1.0)
-        self._settle(data, steps)
+        self._settle(data)
         rest = data.qpos[:count].copy()
         sunk = self._deepest(data)
         if start is not None:
@@ -193,7 +194,7 @@ class BlockModel:
             ended = max(ended, motion.vertical.duration)
         last = min(ended + max(tail, LONGEST_TAIL), most)
         pushes, lifts = (
-            _held(each, factor_of / self.free.gravity, sample, holds, ended)
+            _held(each, factor_of / self.free.gravity, sample, steps, ended)
             for each, factor_of in (
                 (motion, factor),
                 (motion.vertical if motion is not None else None, vertical_factor),
@@ -207,12 +208,14 @@ class BlockModel:
         frictions: dict[tuple[str, str], float] = {}
         k = moving = 0  # samples; the last with motion
         while True:
-            for hold in range(k * holds, (k + 1) * holds):
-                if hold < len(pushes):
-                    model.opt.gravity[0], model.opt.gravity[2] = -pushes[hold], -1.0 - lifts[hold]
-                elif hold == len(pushes):
+            for step in range(k * steps, (k + 1) * steps):
+                if step < len(pushes):
+                    model.opt.gravity[0], model.opt.gravity[2] = -pushes[step], -1.0 - lifts[step]
+                elif step == len(pushes):
                     model.opt.gravity[:] = (0.0, 0.0, -1.0)
-                mujoco.mj_step(model, data, steps)
+                mujoco.mj_step1(model, data)
+                self._let_slide(data)
+                mujoco.mj_step2(model, data)
                 if failed := self._fault(data, sunk):
                     break
             if failed:
@@ -238,6 +241,7 @@ class BlockModel:
             time=sample * np.arange(len(moved), dtype=np.float64), moved=np.array(moved), rates=np.array(rates),
             collapsed=k * sample if fallen is not None else nan, failed=failed, at_rest=at_rest, friction=frictions,
             block=self.names[fallen] if fallen is not None else "",
+            off=self.free.edge_passed(self.names[fallen], moved[-1]) if fallen is not None else "",
         )  # fmt: skip
 
     def _normal(self, moved: Reals) -> Reals:
@@ -251,16 +255,30 @@ class BlockModel:
         raised: Reals = (rise + (arms * np.expm1(1j * turned)).imag) / self.scene.size
         return raised
 
-    def _settle(self, data: mujoco.MjData, steps: int) -> None:
+    def _settle(self, data: mujoco.MjData) -> None:
         """Let the blocks sink into their contacts at rest."""
         import mujoco
 
-        mujoco.mj_step(self.scene.model, data, ceil(SETTLING / self.scene.unit_of_time / self.scene.model.opt.timestep))
+        mujoco.mj_step(self.scene.model, data, ceil(SETTLING / self.scene.model.opt.timestep))
         moved = np.abs(data.qpos[: 3 * len(self.names)]).reshape(-1, 3).max(axis=1)
         if not moved.max() < SUNK:
             name = self.names[int(moved.argmax())]
             raise SolverError(f"as free blocks it does not stand by itself: {name} moves")
         data.qvel[:] = 0.0
+
+    @staticmethod
+    def _let_slide(data: mujoco.MjData) -> None:
+        """Let contacts slide without opening.
+
+        Contact forces minimise a convex function, by which a contact that slides also opens: its faces part at mu times
+        the rate at which it is braked, so that what slides hops and tilts. What they part by is taken from the rate at
+        which the faces are to part.
+        """
+        if contacts := data.ncon:
+            at, velocity = data.contact.efc_address[data.contact.dim > 1], data.efc_vel
+        if contacts and at.size:
+            braked = data.efc_KBIP[at + 1, 1] * np.sqrt(velocity[at + 1] ** 2 + velocity[at + 2] ** 2)
+            data.efc_aref[at] -= data.contact.friction[data.contact.dim > 1, 0] * braked
 
     def _fallen(self, moved: Reals) -> int | None:
         """Return the number of a block that has fallen, or None."""
@@ -282,7 +300,7 @@ class BlockModel:
         """Return why a state is no answer, in words; empty if it is one."""
         if not np.isfinite(data.qvel).all() or data.warning.number[_diverged()].any():
             return "a step diverged"
-        if not data.ncon:
+        if not data.ncon or -data.contact.dist.min() <= self._limits.min():
             return ""
         limits = (self._limits + sunk)[data.contact.geom].min(axis=1)
         deep = -data.contact.dist > limits
@@ -322,12 +340,12 @@ def _diverged() -> list[int]:
     return [int(kinds.mjWARN_BADQPOS), int(kinds.mjWARN_BADQVEL), int(kinds.mjWARN_BADQACC)]
 
 
-def _held(motion: GroundMotion | None, factor: float, sample: float, holds: int, ended: float) -> list[float]:
-    """Return the ground acceleration in the middle of each hold, over g, until the motion ends."""
-    count = ceil(ended / sample - ROUNDING) * holds
+def _held(motion: GroundMotion | None, factor: float, sample: float, steps: int, ended: float) -> list[float]:
+    """Return the ground acceleration in the middle of each step, over g, until the motion ends."""
+    count = ceil(ended / sample - ROUNDING) * steps
     if motion is None:
         return [0.0] * count
-    middles = (np.arange(count) + 0.5) * (sample / holds)
+    middles = (np.arange(count) + 0.5) * (sample / steps)
     times = np.arange(motion.npts) * motion.dt
     held: list[float] = (factor * np.interp(middles, times, motion.acceleration, right=0.0)).tolist()
     return held

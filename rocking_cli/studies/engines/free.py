@@ -15,7 +15,7 @@ import numpy as np
 from rocking_cli.arrays import Bools, Reals
 from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.batch import Runs
-from rocking_cli.dynamics.history import TAIL_SECONDS, History, contact_lost
+from rocking_cli.dynamics.history import TAIL_SECONDS, BlockPeaks, History, contact_lost
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcome, Outcomes
 from rocking_cli.dynamics.parallel import MAX_PROCESSES, in_processes
@@ -58,11 +58,12 @@ def simulate(free: FreeBlocks, models: dict[float, BlockModel], motion: GroundMo
 def outcome_of(moved: BlockMotion, free: FreeBlocks, phi_cr: Sequence[float]) -> dict[str, Any]:
     """Return the fields of the outcome of a motion of free blocks."""
     phi = free.rotation(moved.moved)
+    way = phi[-1] if free.leads else moved.moved[-1, _place(free, moved.block), 0]
     peaks = [float(np.max(sign * phi, initial=0.0)) for sign in (1, -1)]
     fell = np.isfinite(moved.collapsed)
     moving = np.abs(phi) > MOVED * np.where(phi < 0, phi_cr[1], phi_cr[0])
     uplifts = bool(moving.any()) or bool(fell)
-    fell_to = (1 if phi[-1] >= 0 else -1) if fell else 0
+    fell_to = (1 if way >= 0 else -1) if fell else 0
     ratio = max(peak / limit for peak, limit in zip(peaks, phi_cr, strict=True))
     end = float(moved.time[-1])
     return {
@@ -82,14 +83,29 @@ def outcome_of(moved: BlockMotion, free: FreeBlocks, phi_cr: Sequence[float]) ->
         "lower_bound": ratio if moved.failed else nan,
         "opening": nan,
         "by_blocks": True,
+        "off_edge": bool(moved.off),
     }
+
+
+def _place(free: FreeBlocks, block: str) -> int:
+    return next((k for k, body in enumerate(free.bodies) if body.name == block), 0)
+
+
+def blocks_of(moved: BlockMotion, free: FreeBlocks) -> BlockPeaks:
+    """Return what the blocks do in a motion."""
+    names = [body.name for body in free.bodies]
+    turned, away = np.abs(moved.moved[..., 2]), np.hypot(moved.moved[..., 0], moved.moved[..., 1])
+    turned_most, moved_most, left = (
+        (float(each.max()), names[int(each.argmax())]) for each in (turned.max(axis=0), away.max(axis=0), away[-1])
+    )
+    return BlockPeaks(moved.block, moved.off, turned_most, moved_most, (nan, "") if moved.block else left)
 
 
 def impacts_of(time: Reals, phi: Reals, rate: Reals, moving: Bools) -> Reals:
     """Return time, sign of the direction that ends, and rate before of each return through rest after uplift."""
     rows, side = [], 0
     for k in range(len(phi)):
-        sign = int(np.sign(phi[k]))
+        sign = np.sign(phi[k])
         if side and sign not in (0, side):
             ends = time[k - 1] + (time[k] - time[k - 1]) * phi[k - 1] / (phi[k - 1] - phi[k])
             rows.append((ends, side, abs(rate[k - 1])))
@@ -99,16 +115,17 @@ def impacts_of(time: Reals, phi: Reals, rate: Reals, moving: Bools) -> Reals:
     return np.array(rows).reshape(-1, 3)
 
 
-def history_of(moved: BlockMotion, free: FreeBlocks, model: Model, motion: GroundMotion | None) -> History:
-    """Return a motion of free blocks as the history of the rotation that the mechanism has."""
-    phi = free.rotation(moved.moved)
-    outcome = outcome_of(moved, free, model.phi_cr)
-    phi_cr = np.where(phi < 0, model.phi_cr[1], model.phi_cr[0])
+def history_of(moved: BlockMotion, free: FreeBlocks, model: Model | None, motion: GroundMotion | None) -> History:
+    """Return a motion of free blocks as the history of the rotation that the mechanism has, if it has one."""
+    phi, both = free.rotation(moved.moved), model.phi_cr if model is not None else (nan, nan)
+    outcome = outcome_of(moved, free, both)
+    phi_cr = np.where(phi < 0, both[1], both[0])
     rate = free.rotation_rate(moved.moved, moved.rates)
     return History(
         **outcome, model="blocks", time=moved.time, phi=phi, rate=rate, ratio=phi / phi_cr,
         impacts=impacts_of(moved.time, phi, rate, np.abs(phi) > MOVED * phi_cr),
-        contact_lost=contact_lost(motion, model.gravity), p=model.p, ends_at_limit=model.ends_at_limit,
+        contact_lost=contact_lost(motion, free.gravity), p=model.p if model is not None else nan,
+        ends_at_limit=model.ends_at_limit if model is not None else (False, False), blocks=blocks_of(moved, free),
     )  # fmt: skip
 
 
@@ -150,8 +167,8 @@ class Blocks(Engine):
         """
         with structure.named():
             free = free_blocks(structure.mechanism)
-            model = structure.model("nonlinear")
-            start = _start(structure.mechanism, free, model.phi_cr, release or 0.0)
+            model = structure.model("nonlinear") if structure.no_model is None else None
+            start = _start(structure.mechanism, free, model.phi_cr, release or 0.0) if model is not None else None
             moved = simulate(free, {}, motion, start=start, tail=tail, friction=True, progress=progress)
         if moved.failed:
             raise SolverError(f"{structure.name}: free blocks failed at {moved.time[-1]:.4g} s: {moved.failed}")

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from math import inf, nan
 from typing import NamedTuple
 
 import numpy as np
@@ -20,8 +21,9 @@ from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.core.convex import convex_pieces
 from rocking_cli.core.hung.element import ConstantForce, Element, Spring, SteelBar
 from rocking_cli.core.kinematics import distance
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.short_repr import short_repr
+from rocking_cli.studies.hung import walls
 from rocking_cli.studies.picture import box_around, picture
 
 FALL = 0.15  # of the structure's height: a block that falls by it has collapsed
@@ -31,7 +33,21 @@ NEAR_SHARE = 1e-6  # distance that counts as zero, over the size of the structur
 LEAD_RATE = 1e-6  # difference of a rate of turning from that of phi that counts as zero
 SAME_TURN = 1e-6  # turn from one normal to another that counts as none
 FLAT_SHARE = 1e-6  # length of a foot, over the size of the structure, below which it is a point
-MARGIN_SHARE = 0.1  # length of the ground beside a foot, over that of the foot
+FAR = 100.0  # over the size of the structure: how far ground without an edge reaches beside ground at another level
+LEVEL_SHARE = 2e-3  # distance of a foot from what it rests on, over its length, that counts as zero
+STEEPEST = 0.5  # sine of the slope of a face, measured from upright, up to which nothing rests on it
+THE_GROUND = "the ground"  # its name, if the file gives none
+
+
+class HalfPlane(NamedTuple):
+    """What does not move and has no edge: all that is behind a point, against a unit normal."""
+
+    at: complex
+    normal: complex
+
+    def distance(self, points: Points) -> Reals:
+        """Return the distance of points from its face [m]."""
+        return np.abs(np.real((points - self.at) / self.normal))
 
 
 class HeldPoint(NamedTuple):
@@ -64,10 +80,10 @@ class FreeBlocks:
         Mass, moment of inertia and centroid of each block, with the masses that are fixed to it.
     shapes : mapping of str to sequence of ndarray of complex
         Convex pieces of each block at rest [m].
-    ground : sequence of ndarray of complex
-        Convex pieces of what does not move [m].
-    walls : sequence of ndarray of complex
-        Side walls that it leans on, without friction [m].
+    ground : mapping of str to sequence of ndarray of complex or HalfPlane
+        What does not move, by name: convex pieces [m], and half-planes of what has no edge.
+    walls : sequence of HalfPlane
+        Side walls that it leans on, without friction.
     friction : float
         Coefficient of friction of all contacts but those of `frictions`.
     frictions : mapping of tuple of str to float
@@ -79,7 +95,7 @@ class FreeBlocks:
     ties : sequence of Spring
         Elastic ties.
     leads : sequence of Lead
-        The block of each direction whose rotation is phi.
+        The block of each direction whose rotation is phi; empty if the mechanism has no rotation, as one that slides.
     moves_with : mapping of str to (str or None, complex)
         The body of the mechanism with which each block moves (None: none), and how far beside it it stands [m].
     gravity : float
@@ -92,8 +108,8 @@ class FreeBlocks:
 
     bodies: Sequence[Body]
     shapes: Mapping[str, Sequence[Points]]
-    ground: Sequence[Points]
-    walls: Sequence[Points]
+    ground: Mapping[str, Sequence[Points | HalfPlane]]
+    walls: Sequence[HalfPlane]
     friction: float
     frictions: Mapping[tuple[str, str], float]
     guides: Sequence[HeldPoint]
@@ -117,7 +133,7 @@ class FreeBlocks:
         return (high - low).imag
 
     def rotation(self, moved: Reals) -> Reals:
-        """Return phi from the displacements of the blocks, shape (n, blocks, 3): signed, shape (n,) [rad]."""
+        """Return phi from the displacements of the blocks, shape (n, blocks, 3): signed, shape (n,), or NaN [rad]."""
         return self._signed(moved, moved)
 
     def rotation_rate(self, moved: Reals, rates: Reals) -> Reals:
@@ -130,6 +146,8 @@ class FreeBlocks:
         That is the direction whose motion is nearest to theirs, weighed by mass: in one direction of an arch, the block
         that leads the other turns too, and farther.
         """
+        if not self.leads:
+            return np.full(len(moved), nan)
         names = [body.name for body in self.bodies]
         weights = np.array([[body.mass, body.mass, body.inertia] for body in self.bodies])
         furthest, signed = np.zeros(len(moved)), np.zeros(len(moved))
@@ -140,6 +158,49 @@ class FreeBlocks:
             furthest = np.where(further, along, furthest)
             signed = np.where(further, np.where(direction * moved[:, k, 2] < 0, -values[:, k, 2], 0.0), signed)
         return signed
+
+    def edge_passed(self, block: str, moved: Reals) -> str:
+        """Return on what a block rested whose edge the middle of its foot has passed: a block, or a part of the ground.
+
+        Parameters
+        ----------
+        block : str
+            The block.
+        moved : ndarray, shape (blocks, 3)
+            Displacements of all blocks [m, m, rad].
+
+        Returns
+        -------
+        str
+            Its name; empty if there is none. Faces in line that continue each other have no edge between them.
+        """
+        level = [piece for pieces in self.ground.values() for piece in pieces]
+        below = {name: pieces for name, pieces in self.shapes.items() if name != block} | {"": level}
+        for start, end in ((a, b) for z in self.shapes[block] for a, b in zip(z, np.roll(z, -1), strict=True)):
+            long, along = abs(end - start), (end - start) / abs(end - start)
+            near = LEVEL_SHARE * long
+            for name, pieces in below.items() if along.real > STEEPEST else ():  # anticlockwise, a foot goes right
+                faces = _joined(_faces(pieces, start, along, near), near)
+                for low, high in (each for each in np.clip(faces, 0.0, long).tolist() if each[1] - each[0] > near):
+                    at = self._carried(block, start + (low + high) / 2 * along, moved)
+                    at = self._carried(name, at, moved, back=True) if name else at
+                    place = ((at - start) / along).real
+                    if not ((faces[:, 0] <= place) & (place <= faces[:, 1])).any():
+                        return name or self._bearing(start, along, near, low, high)
+        return ""
+
+    def _bearing(self, start: complex, along: complex, near: float, low: float, high: float) -> str:
+        """Return the name of the ground that bears a part of a foot."""
+        faces = {name: _faces(pieces, start, along, near) for name, pieces in self.ground.items()}
+        return next(name for name, each in faces.items() if ((each[:, 0] < high) & (each[:, 1] > low)).any())
+
+    def _carried(self, block: str, at: complex, moved: Reals, *, back: bool = False) -> complex:
+        """Return where a block has carried a point, or from where to a point."""
+        k = [body.name for body in self.bodies].index(block)
+        about, (x, y, turned) = self.bodies[k].centroid, moved[k].tolist()
+        if back:
+            return complex(about + np.exp(-1j * turned) * (at - about - complex(x, y)))
+        return complex(about + complex(x, y) + np.exp(1j * turned) * (at - about))
 
     def tilted(self, mechanism: Mechanism, phi: float) -> Reals:
         """Return the displacements of the blocks if the mechanism has rotated by phi (signed) [m, m, rad]."""
@@ -204,8 +265,8 @@ class _Apart:
         self.members = self._members()
         self.part_of = self._bonded()
         outlines = [z for member in self.members for z in member.polygons]
-        low, high = box_around(outlines)
-        self.size = abs(high - low)
+        self.box = box_around(outlines)
+        self.size = abs(self.box[1] - self.box[0])
         self.friction = mechanism.friction if mechanism.friction is not None else MASONRY_FRICTION
 
     def blocks(self) -> FreeBlocks:
@@ -236,15 +297,13 @@ class _Apart:
             for spring in element.stretched
             if isinstance(spring, Spring)
         ]
-        drawn = picture(self.mechanism)
-        walls = () if self.mechanism.propped else drawn.walls
-        ground = self._ground(drawn.ground)
-        guides, feet = self._held(ground)
+        leans = () if self.mechanism.propped else walls(self.mechanism, *self.box)
+        ground = self._ground()
+        guides = self._held(ground)
         moves_with = {self._block(member): (member.of, member.shift) for member in reversed(self.members)}
         united = [_united(name, each) for name, each in bodies.items()]
         return FreeBlocks(
-            united, shapes, [*ground, *feet],
-            [piece for line in walls for piece in _below(line, self.size)], self.friction, self._frictions(), guides,
+            united, shapes, ground, [_half_plane(*line) for line in leans], self.friction, self._frictions(), guides,
             floors, ties, self._leads(united, moves_with), moves_with, self.mechanism.gravity, drawn_as,
             {member.body.name: self._block(member) for member in self.members},
         )  # fmt: skip
@@ -255,6 +314,8 @@ class _Apart:
     def _refuse(self) -> None:
         if self.mechanism.crushing is not None:
             raise self._cannot("crushing", "pivots that crush")
+        if self.mechanism.stops:
+            raise self._cannot("stops", "stops: draw the wall as `ground` of an assembly")
         if self.mechanism.driven < 1:
             raise self._cannot("drive", "a drive below 1: they are plane, and their ground motion is that of the plane")
         for loc, attached in self.mechanism.hung.placed:
@@ -321,22 +382,39 @@ class _Apart:
         known = any(member.body.name == piece for member in self.members)
         return Spot(self.part_of.get(piece, piece) if known else None, spot.at)
 
-    def _ground(self, drawn: Sequence[Points]) -> list[Points]:
+    def _ground(self) -> dict[str, list[Points | HalfPlane]]:
         """Return what does not move: bodies at rest, polygons of the ground, and the ground below its lines."""
         moving = {member.of for member in self.members}
-        still = [z for body in self.mechanism.bodies() if body.name not in moving
-                 for z in body.shapes(self.sketch.outlines)]  # fmt: skip
-        closed = [z[:-1] for z in self.sketch.ground if len(z) > 3 and z[0] == z[-1]]
-        lines = [] if closed or still else drawn
-        return [
-            *(piece for z in (*still, *closed) for piece in convex_pieces(z)),
-            *(piece for line in lines for piece in _below(line, self.size)),
-        ]
+        ground = defaultdict[str, list[Points | HalfPlane]](list)
+        for body in (body for body in self.mechanism.bodies() if body.name not in moving):
+            ground[body.name] += [piece for z in body.shapes(self.sketch.outlines) for piece in convex_pieces(z)]
+        lines = self.sketch.ground
+        for name, z in zip(self.sketch.ground_names or [THE_GROUND] * len(lines), lines, strict=True):
+            if len(z) > 3 and z[0] == z[-1]:
+                ground[name] += convex_pieces(z[:-1])
+        for line in () if ground else picture(self.mechanism).ground:
+            ground[THE_GROUND] += self._endless(line)
+        return ground
 
-    def _held(self, ground: Sequence[Points]) -> tuple[list[HeldPoint], list[Points]]:
-        """Return the points that are held, and the ground below feet that stand elsewhere than on `ground`."""
+    def _endless(self, line: Points) -> list[Points | HalfPlane]:
+        """Return the ground on the right of a line, which goes on beyond both ends; towards deeper blocks, halfway."""
+        corners = np.concatenate([z for member in self.members for z in member.polygons])
+        first, last = (away / abs(away) for away in (line[0] - line[1], line[-1] - line[-2]))
+        reaches = []
+        for end, away, below in ((line[0], first, 1), (line[-1], last, -1)):
+            there = (corners - end) / away
+            deeper = there.real[(there.real > 0) & (below * there.imag > NEAR_SHARE * self.size)]
+            reaches.append(float(deeper.min(initial=inf)) / 2)
+        if reaches == [inf, inf] and len(line) == 2:
+            return [_half_plane(*line)]
+        near, far = (min(reach, FAR * self.size) for reach in reaches)
+        return list(_below(np.array([line[0] + near * first, *line[1:-1], line[-1] + far * last]), self.size))
+
+    def _held(self, ground: dict[str, list[Points | HalfPlane]]) -> list[HeldPoint]:
+        """Return the points that are held, and add the ground below feet that stand elsewhere than on `ground`."""
         guides = list[HeldPoint]()
         feet, slots = list[_Held](), list[_Held]()
+        known = [piece for pieces in ground.values() for piece in pieces]
         for contact in self.contacts:
             bears, borne = contact.pieces
             if bears is not None or borne is None:
@@ -344,22 +422,22 @@ class _Apart:
             block = self.part_of.get(borne, borne)
             if contact.held == "slide":
                 _hold(slots, block, contact)
-            elif contact.held is None and not any(self._touches(contact, piece) for piece in ground):
+            elif contact.held is None and not any(self._touches(contact, piece) for piece in known):
                 _hold(feet, block, contact)
-        below = []
         for block, normal, points in feet:
             start, end = sorted(points, key=lambda point: (point / normal).imag)[:: len(points) - 1 or 1][:2]
             if abs(end - start) > FLAT_SHARE * self.size:
-                more = MARGIN_SHARE * (end - start)
-                below += _below(np.array([end + more, start - more]), self.size)
+                ground.setdefault(THE_GROUND, []).extend(self._endless(np.array([end, start])))
             else:  # it always turns about this point
                 guides.append(HeldPoint(block, start, 0j))
         # Both directions may guide a block at points of their own; between them, its path is theirs to second order.
         guides += [HeldPoint(block, complex(np.mean(points)), 1j * normal) for block, normal, points in slots]
-        return guides, below
+        return guides
 
-    def _touches(self, contact: Contact, piece: Points) -> bool:
-        return bool(distance(np.array(contact.points), piece).max() < NEAR_SHARE * self.size)
+    def _touches(self, contact: Contact, piece: Points | HalfPlane) -> bool:
+        points = np.array(contact.points)
+        off = piece.distance(points) if isinstance(piece, HalfPlane) else distance(points, piece)
+        return bool(off.max() < NEAR_SHARE * self.size)
 
     def _frictions(self) -> dict[tuple[str, str], float]:
         """Return the friction of pairs of blocks that differ from all others: as given, or 0 of smooth contacts."""
@@ -373,11 +451,15 @@ class _Apart:
         return {pair: mu for pair, mu in frictions.items() if mu != self.friction}
 
     def _leads(self, bodies: Sequence[Body], moves_with: Mapping[str, tuple[str | None, complex]]) -> list[Lead]:
-        """Return a block that turns by phi in each direction, and the rates of all blocks."""
+        """Return a block that turns by phi in each direction, and the rates of all blocks; empty if none does."""
         leads = []
         names = [body.name for body in self.mechanism.bodies()]
-        for direction in self.mechanism.directions:
-            motions = dict(zip(names, self.mechanism.motion(np.zeros(1), direction), strict=True))
+        try:
+            moving = [self.mechanism.motion(np.zeros(1), direction) for direction in self.mechanism.directions]
+        except MechanismError:
+            return []
+        for direction, each in zip(self.mechanism.directions, moving, strict=True):
+            motions = dict(zip(names, each, strict=True))
             turning = {name for name, motion in motions.items() if abs(motion.dpsi[0] + direction) < LEAD_RATE}
             rates = np.zeros((len(bodies), 3))
             for k, body in enumerate(bodies):
@@ -399,6 +481,36 @@ def _hold(known: list[_Held], block: str, contact: Contact) -> None:
             held.points.extend(contact.points)
             return
     known.append(_Held(block, contact.normal, list(contact.points)))
+
+
+def _half_plane(start: complex, end: complex) -> HalfPlane:
+    """Return all that is on the right of a line."""
+    return HalfPlane(start, 1j * (end - start) / abs(end - start))
+
+
+def _faces(pieces: Sequence[Points | HalfPlane], start: complex, along: complex, near: float) -> Reals:
+    """Return from where to where faces are in line with a foot, from its start along it [m], shape (faces, 2)."""
+    faces = [np.zeros((0, 2))]
+    for piece in pieces:
+        if isinstance(piece, HalfPlane):
+            off = abs(((piece.at - start) / along).imag), near * abs(piece.normal - 1j * along) / LEVEL_SHARE
+            faces.append(np.array([[-inf, inf]] if max(off) < near else np.zeros((0, 2))))
+        else:  # anticlockwise: a face that bears a foot goes to the left
+            ends = (np.stack([np.roll(piece, -1), piece], axis=-1) - start) / along
+            inline = (np.abs(ends.imag).max(axis=1) < near) & (ends.real[:, 0] < ends.real[:, 1])
+            faces.append(ends.real[inline])
+    return np.concatenate(faces)
+
+
+def _joined(faces: Reals, near: float) -> Reals:
+    """Return faces in line, those that continue each other as one."""
+    joined: list[list[float]] = []
+    for low, high in sorted(faces.tolist()):
+        if joined and low <= joined[-1][1] + near:
+            joined[-1][1] = max(joined[-1][1], high)
+        else:
+            joined.append([low, high])
+    return np.array(joined).reshape(-1, 2)
 
 
 def _below(line: Points, size: float) -> list[Points]:

@@ -20,26 +20,37 @@ from rocking_cli.arrays import Points, Reals
 from rocking_cli.core import PointMass
 from rocking_cli.core.hung.element import Spring
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.studies.engines.free_blocks import FreeBlocks, HeldPoint
+from rocking_cli.studies.engines.free_blocks import FreeBlocks, HalfPlane, HeldPoint
 
 if TYPE_CHECKING:
     import mujoco
 
-IMPEDANCE = (0.95, 0.99, 1e-3)  # share of a force by which a contact resists: at first touch, and from this depth [m]
+IMPEDANCE = (0.95, 0.99)  # share of a force by which a contact resists: at first touch, and from a depth on
+FULL_DEPTH = 10.0  # this depth, over gravity times the square of the time in which a contact recovers
 SLIP_STIFFNESS = 10.0  # stiffness of friction over that of contact
 DEPTH = 0.1  # of the prisms, over the size; without effect
 PEG = 0.01  # radius of the pegs that guides and floors act on, over the size
 UNBOUNDED = 1e6  # over the size
+FIRST_VERSION = (3, 13)  # of MuJoCo: older ones miss corners of tilted faces that touch
+REINSTALL = "pip install --force-reinstall 'mujoco>=3.13'"
 
 
 def engine_version() -> str:
-    """Return the version of MuJoCo. Raises `InputError` if it is not installed."""
+    """Return the version of MuJoCo. Raises `InputError` if it is not installed, broken, or too old."""
     if find_spec("mujoco") is None:
         what = "free blocks are simulated by MuJoCo, which is not installed"
         raise InputError(Problem(what, field="engine", hint="pip install 'rocking-cli[blocks]'"))
-    import mujoco
+    try:
+        import mujoco
 
-    return str(mujoco.__version__)
+        version = str(mujoco.__version__)
+    except (ImportError, OSError, AttributeError) as error:
+        why = f"MuJoCo, which simulates free blocks, is installed but does not load ({error})"
+        raise InputError(Problem(why, field="engine", hint=REINSTALL)) from None
+    if tuple(map(int, version.split(".")[:2])) < FIRST_VERSION:
+        why = f"MuJoCo {version} misses contacts of tilted bodies, by which peaks are off by up to 13 %"
+        raise InputError(Problem(why, field="engine", hint=REINSTALL))
+    return version
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,22 +120,22 @@ class _Builder:
         self.unit_of_time = sqrt(self.size / free.gravity)
         self.mass = sum(body.mass for body in free.bodies) + sum(load.mass for load in free.floors)
         self.spec = mujoco.MjSpec()
-        option = self.spec.option
-        option.cone, option.integrator = mujoco.mjtCone.mjCONE_ELLIPTIC, mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-        option.iterations, option.tolerance, option.impratio = 100, 1e-10, SLIP_STIFFNESS
         self.soft: dict[str, Any] = {
             "solref": [time_constant / self.unit_of_time, 1.0],
-            "solimp": [*IMPEDANCE[:2], IMPEDANCE[2] / self.size, 0.5, 2.0],
+            "solimp": [*IMPEDANCE, FULL_DEPTH * (time_constant / self.unit_of_time) ** 2, 0.5, 2.0],
         }
         self.geometries: list[tuple[str, float]] = []  # owner and size
         self.bodies = {body.name: self._block(body.name) for body in free.bodies}
 
     def built(self) -> BlockScene:
         """Return the model, with all that it has besides blocks."""
-        for z in self.free.ground:
-            self._prism(self.spec.worldbody, z, 0j, "", self.free.friction)
-        for z in self.free.walls:
-            self._prism(self.spec.worldbody, z, 0j, "", 0.0)
+        for piece in (piece for pieces in self.free.ground.values() for piece in pieces):
+            if isinstance(piece, HalfPlane):
+                self._plane(piece, self.free.friction)
+            else:
+                self._prism(self.spec.worldbody, piece, 0j, "", self.free.friction)
+        for wall in self.free.walls:
+            self._plane(wall, 0.0)
         for guide in self.free.guides:
             self._hold(guide)
         for floor in self.free.floors:
@@ -138,6 +149,9 @@ class _Builder:
                     **self.soft,
                 )  # fmt: skip
         model = self.spec.compile()
+        kinds, option = self.mujoco, model.opt
+        option.cone, option.integrator = kinds.mjtCone.mjCONE_ELLIPTIC, kinds.mjtIntegrator.mjINT_IMPLICITFAST
+        option.iterations, option.tolerance, option.impratio = 100, 1e-10, SLIP_STIFFNESS
         # MuJoCo orders geometries by their bodies.
         owners, sizes = zip(*(self.geometries[int(model.geom(k).name)] for k in range(model.ngeom)), strict=True)
         return BlockScene(model, self.size, self.unit_of_time, self.mass, owners, np.array(sizes))
@@ -171,9 +185,20 @@ class _Builder:
         corners = [(point.real, y, point.imag) for y in (-DEPTH / 2, DEPTH / 2) for point in away.tolist()]
         self.spec.add_mesh(name=name, uservert=np.ravel(corners).tolist())
         body.add_geom(
-            name=name, type=self.mujoco.mjtGeom.mjGEOM_MESH, meshname=name, mass=0.0, friction=[friction, 0.0, 0.0],
-            condim=3 if friction else 1, priority=0 if friction else 1, **self.soft,
+            name=name, type=self.mujoco.mjtGeom.mjGEOM_MESH, meshname=name, mass=0.0, **self._rough(friction),
+            **self.soft,
         )  # fmt: skip
+
+    def _plane(self, plane: HalfPlane, friction: float) -> None:
+        at, normal = plane.at / self.size, plane.normal
+        self.spec.worldbody.add_geom(
+            name=self._named(""), type=self.mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1], pos=[at.real, 0.0, at.imag],
+            zaxis=[normal.real, 0.0, normal.imag], **self._rough(friction), **self.soft,
+        )  # fmt: skip
+
+    def _rough(self, friction: float) -> dict[str, Any]:
+        """Return the friction of a geometry; one without any has none against all others."""
+        return {"friction": [friction, 0.0, 0.0], "condim": 3 if friction else 1, "priority": 0 if friction else 1}
 
     def _place(self, block: str | None, at: complex) -> tuple[mujoco.MjsBody, list[float]]:
         """Return a block, or the ground, and the place of a point in its frame."""
@@ -217,8 +242,8 @@ class _Builder:
         """Hold a peg at a place on the side of a smooth face to which the normal points."""
         name, away = self._named(""), at - (PEG + DEPTH) * normal
         body.add_geom(
-            name=name, type=self.mujoco.mjtGeom.mjGEOM_BOX, size=[1, 1, DEPTH], pos=[away.real, 0.0, away.imag],
-            zaxis=[normal.real, 0.0, normal.imag], mass=0.0, contype=0, conaffinity=0,
+            name=name, type=self.mujoco.mjtGeom.mjGEOM_BOX, size=[UNBOUNDED, UNBOUNDED, DEPTH],
+            pos=[away.real, 0.0, away.imag], zaxis=[normal.real, 0.0, normal.imag], mass=0.0, contype=0, conaffinity=0,
         )  # fmt: skip
         self.spec.add_pair(geomname1=name, geomname2=peg, condim=1, **self.soft)
 

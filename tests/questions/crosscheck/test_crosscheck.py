@@ -23,7 +23,7 @@ from rocking_cli.studies.picture import picture
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 
-pytest.importorskip("mujoco", reason="free blocks need mujoco-core")
+pytest.importorskip("mujoco", reason="free blocks need mujoco")
 
 SHORT = rk.Block(width=1.0, height=2.0, name="short")  # it soon comes to rest
 BRIEF = rk.GroundMotion("brief", 0.01, 8.0 * np.sin(np.pi * np.arange(41) / 40))

@@ -22,7 +22,7 @@ from tests.conftest import rows_of
 from tests.questions.fragility.test_study_runs import dump, finished
 from tests.stores import command
 
-NEEDS_BLOCKS = pytest.mark.skipif(scene.find_spec("mujoco") is None, reason="free blocks need mujoco-core")
+NEEDS_BLOCKS = pytest.mark.skipif(scene.find_spec("mujoco") is None, reason="free blocks need mujoco")
 BLOCK = "mechanism: block\nname: pillar\nwidth: 0.7\nheight: 2.8\nrestitution: 0.9\nfriction: 0.3\n"
 STUDY = """\
 structures: [block.yaml]
