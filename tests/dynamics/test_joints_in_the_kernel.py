@@ -256,7 +256,7 @@ class TestNotes:
         for how, reason in (({"gap": 0.0101}, kernels.OPENS), ({"slip": 0.0101}, kernels.SLIDES),
                             ({"crushes": 0}, kernels.CRUSHES)):  # fmt: skip
             watch, found = of_rows({}, {}, limit=0.01), marks()
-            found[kernels.IMPACTS], watch.notes[kernels.SO_FAR + 1] = 3, 0.7
+            found[kernels.IMPACTS], watch.notes[kernels.SO_FAR], watch.notes[kernels.SO_FAR + 1] = 3, 0.5, 0.7
             self.moment(watch, found, 1.0, gap=0.01, q=0.2)  # as much as is permitted
             assert isnan(found[kernels.PASSED])
             self.moment(watch, found, 2.0, q=0.3, **how)
@@ -264,7 +264,7 @@ class TestNotes:
             self.moment(watch, found, 3.0, q=0.6, **how)
             got = found[[kernels.PASSED, kernels.REASON, kernels.WHERE, kernels.PASSED_IMPACTS, kernels.PASSED_PEAK,
                          kernels.PASSED_PEAK + 1]]  # fmt: skip
-            assert got.tolist() == [2.0, reason, 0.0, 3.0, 0.3, 0.7]
+            assert got.tolist() == [2.0, reason, 0.0, 3.0, 0.5, 0.7]
 
     def test_the_first_warning_and_the_largest_opening_up_to_the_critical_rotation(self):
         watch, found = of_rows({}, {}), marks()
@@ -302,10 +302,10 @@ class TestUplift:
         assert self.at(0.75 * level, 0.0, grade=-G / 4) == (pytest.approx(1.0), d)
 
     def test_of_both_it_takes_the_first_or_the_one_with_more_behind_it(self):
-        """Without weight at the end both directions are open: the ramps of the levels are crossed at 0.25 and 1.2 s."""
+        """Without weight both directions are open; here one is after the other, as weight ebbs within 1 s."""
         for u, d in ((-0.15 * G, 0), (0.25 * G, 1)):
             first = 1 - abs(u) / (self.NUMBERS[d, kernels.LAMBDA] * G)
-            time, lifted = self.at(u, 0.0, end=1.2, grade=-G)
+            time, lifted = self.at(u, 0.0, end=3.0, grade=-G)
             assert (time, lifted) == (pytest.approx(first), d)
         other = self.at(0.1 * G, -0.4 * G, end=1.0, grade=-1.2 * G)
         crossings = [(0.2 - -0.1) / (0.4 + 0.2 * 1.2), (0.3 - 0.1) / (-0.4 + 0.3 * 1.2)]

@@ -19,6 +19,7 @@ from tests.following import build_model, respond
 NEVER = float("nan")
 PHI_CR = 0.2, 0.4
 REACH = 0.5
+BLOCK = Block(width=0.7, height=2.8)
 
 
 def read(status=kernels.AT_REST, side=0, **noted):
@@ -110,18 +111,30 @@ def test_still_rocking_is_said_only_of_what_is_known():
 @pytest.mark.parametrize("known", [True, False])
 def test_the_joints_say_what_happened_to_them_or_that_nothing_did(known):
     """A block has one joint, with the ground, and none that stays closed while it rocks."""
-    model = build_model(Block(width=0.7, height=2.8), "nonlinear")
+    model = build_model(BLOCK, "nonlinear")
     marks = np.full(kernels.MARKS, NEVER)
     marks[[kernels.LARGEST, kernels.LONGEST]] = 0.0
     if not known:
         marks[[kernels.PASSED, kernels.REASON, kernels.WHERE, kernels.WARNED, kernels.WARNED_WHERE]] = 3, 1, 0, 2, 0
-    found = check_of(model.joints, marks)
+    found = check_of(model.joints, marks, NEVER)
     assert (found.reason, found.passed, found.warned) == pytest.approx(
         (None, NEVER, NEVER) if known else ("slides", 3.0, 2.0), nan_ok=True
     )
     assert (found.joint == found.warned_joint == "") == known
     assert found.parted is None and found.parted_joint == "" and found.count == 1
-    assert check_of(None, marks) is None
+    assert check_of(None, marks, NEVER) is None
+    later = check_of(model.joints, marks, 2.5)  # after overturning nothing is said of joints
+    assert isnan(later.passed) and later.reason is None and (later.warned == 2.0) != known
+
+
+def test_a_tendon_that_leaves_no_critical_rotation_leaves_the_limit_to_compare_with():
+    """It pulls the harder the further the column leans: nothing but the end of its motion overturns it."""
+    tendon = {"name": "tendon", "from": {"ground": [0.0, 0.0]}, "to": {"at": [0.0, 2.8]}, "stiffness": 1e9}
+    tied = Block(width=0.7, height=2.8, density=2000.0, depth=1.0, ties=[tendon])
+    assert build_model(BLOCK, "nonlinear").ends_at_limit == (False, False)
+    assert build_model(tied, "nonlinear").ends_at_limit == (True, True)
+    history = respond(tied, release=0.4, models=("nonlinear",))["nonlinear"]
+    assert history.reference == "kinematic limit" and run().reference == "critical rotation"
 
 
 # --- of many runs no sum and no mean drops the unknown
@@ -146,9 +159,10 @@ def test_of_one_motion_it_is_yes_no_or_none():
 
 
 def run(known_to=None, **fields):
+    """A block let go, which rocks until it rests, but for what is given."""
+    rested = respond(BLOCK, release=0.4, models=("nonlinear",))["nonlinear"]
     known = {"unknown": known_to is not None, "known_to": NEVER if known_to is None else known_to}
-    usual = {"uplift_error": 0.0, "fell": False, "check": None, "apart": False, "bound": None}
-    return SimpleNamespace(**usual | known | fields)
+    return replace(rested, **{"check": None} | known | fields)
 
 
 def test_they_are_known_until_the_first_is_not_but_for_free_blocks():
@@ -160,9 +174,9 @@ def test_they_are_known_until_the_first_is_not_but_for_free_blocks():
 @pytest.mark.parametrize(
     ("others", "expected"),
     [
-        ({"linear1": run(fell=True)}, True), ({"linear1": run()}, False),
-        ({"linear1": run(fell=True, uplift_error=0.3)}, False),  # unfit for the structure
-        ({"linear1": run(2.0, fell=True)}, False),
+        ({"linear1": run(fell_to=1)}, True), ({"linear1": run()}, False),
+        ({"linear1": run(fell_to=1, uplift_error=0.3)}, False),  # unfit for the structure
+        ({"linear1": run(2.0, fell_to=1)}, False),
     ],
 )  # fmt: skip
 def test_models_disagree_if_they_are_fit_and_known(others, expected):
@@ -180,11 +194,10 @@ def test_the_remedy_is_that_of_the_joint_and_of_none_where_no_joint_is_to_blame(
 
 
 def test_the_peak_is_had_at_the_first_sample_that_is_as_large_but_for_rounding():
-    rested = respond(Block(width=0.7, height=2.8), release=0.4, models=("nonlinear",))["nonlinear"]
     for second, first in ((1.0005, True), (1.0015, False)):
         ratio = np.zeros(10)
         ratio[[3, 7]] = -0.5, 0.5 * second
-        assert peak_time(replace(rested, ratio=ratio, time=np.arange(10.0))) == (3.0 if first else 7.0)
+        assert peak_time(run(ratio=ratio, time=np.arange(10.0))) == (3.0 if first else 7.0)
 
 
 # --- what is still to come of a motion
@@ -194,7 +207,7 @@ def test_the_strongest_to_come_is_that_of_both_senses_and_of_the_vertical_one_by
     """Of samples of .01 s, and vertical ones of .005 s: from each on, the last not counted, as nothing follows it."""
     up = GroundMotion("up", 0.005, np.array([0.0, 1.0, -4.0, 2.0, -1.0, 3.0, 0.5]))
     motion = GroundMotion("push", 0.01, np.array([1.0, -5.0, 2.0, -3.0]), vertical=up)
-    deck = lay_out([build_model(Block(width=0.7, height=2.8), "nonlinear")], [motion])
+    deck = lay_out([build_model(BLOCK, "nonlinear")], [motion])
     assert deck.ahead.tolist() == [5.0, 5.0, 3.0, 0.0]
     assert deck.v_ahead.tolist() == [4.0, 4.0, 1.0, 0.0]  # downwards, at 0, 2, 4 and 6 vertical samples
     assert deck.v_above.tolist() == [3.0, 3.0, 3.0, 0.0]
