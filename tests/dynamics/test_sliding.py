@@ -171,6 +171,8 @@ def test_each_neighbour_is_judged_with_its_own_slenderness() -> None:
     assert found.unknown == pytest.approx(expected, abs=0.03)
     assert found.slides == pytest.approx(1 - expected, abs=0.03)
     assert (found.overturned, found.at_most) == (0.0, found.unknown)
+    two = respond_many([model], [motion], Runs.of(0, 0, slender=[0.94, 0.95]))  # 0.42 h/b is .945
+    assert two.unknown.tolist() == [True, False]
     exact = neighbours(model, motion, Neighbourhood(100, slenderness=0.0))
     assert (exact.unknown, exact.slides) == (0.0, 1.0)
     # x = (a - mu g) t^2/2 (1 + (a - mu g)/(mu g)) for each amplitude.
