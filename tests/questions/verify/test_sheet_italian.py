@@ -172,6 +172,7 @@ ODD = {
 NOT_VERIFIED = {
     "grain": f"{ASSEMBLY}{SOIL % ''}friction: 0.6\nblocks: {{tower: {TALL}, grain: {GRAIN}}}\n",
     "confined": f"{ASSEMBLY}{SOIL % LID}friction: 0.4\nblocks: {{squat: {SQUAT}}}\n",
+    "top": SPANNING.replace("5 kN", "1 kN") + "hinge: 0.8\n",
 }
 
 
