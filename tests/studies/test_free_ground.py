@@ -257,3 +257,15 @@ def test_a_mirrored_edge_is_the_mirrored_edge():
     other = replace(free, ground={"seat": [np.array([0.4 - 1j, 3 - 1j, 3 + 0j, 0.4 + 0j])]})
     assert free.edge_passed("a", moved_by(free, "a", 0.31)) == other.edge_passed("a", moved_by(free, "a", -0.31))
     assert free.edge_passed("a", moved_by(free, "a", 0.29)) == other.edge_passed("a", moved_by(free, "a", -0.29)) == ""
+
+
+def test_deep_ground_is_as_shallow_ground():
+    motion, found = sine(0.5, 0.7), []
+    for wide, deep in ((9.0, 1.0), (900.0, 30.0)):
+        portal = assembly(
+            {"left": box(0, 0.9, 0, 3.4), "right": box(2.9, 3.7, 0, 3.4), "lintel": box(-0.1, 3.9, 3.4, 4.1)},
+            {"floor": box(-wide, wide, -deep, 0)}, 0.7,
+        )  # fmt: skip
+        found.append(BlockModel(free_blocks(portal)).simulate(motion, most=2.0).moved)
+    assert np.abs(found[0][..., 2]).max() > 0.05
+    assert found[1] == pytest.approx(found[0], abs=1e-3 * np.abs(found[0]).max())

@@ -117,6 +117,7 @@ def view(structure: Structure, given: Scaled | None, polarity: int, release: flo
         "parted": found.parted,
         "friction": {"given": mechanism.friction, "blocks": found.free.friction},
         "block": found.moved.block or None,
+        "falls_off": found.moved.off or None,
         "limit": None if isnan(reach) else structure.opening * reach,
         "joints": [data_of(JOINTS, each) for each in found.joints],
         "finding": found.finding,
@@ -159,7 +160,8 @@ def verdict(found: Crosscheck) -> str:
     """Return whether both engines agree, and when they part, in a few sentences."""
     parts = [_finding(found)]
     if found.moved.block:
-        parts.append(f"Of the free blocks, {found.moved.block} falls first.")
+        off = f", off the edge of {found.moved.off}" if found.moved.off else ""
+        parts.append(f"Of the free blocks, {found.moved.block} falls first{off}.")
     share = f"more than {percent(PARTED)} of the larger peak"
     if isnan(found.parted):
         parts.append(f"Up to {found.compared_to:.4g} s, their rotations never differ by {share}.")

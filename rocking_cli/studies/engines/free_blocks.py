@@ -20,7 +20,7 @@ from rocking_cli.core import Body, Contact, Direction, Mechanism, PointMass, Spo
 from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.core.convex import convex_pieces
 from rocking_cli.core.hung.element import ConstantForce, Element, Spring, SteelBar
-from rocking_cli.core.kinematics import distance
+from rocking_cli.core.kinematics import area_of, distance
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.hung import walls
@@ -34,6 +34,7 @@ LEAD_RATE = 1e-6  # difference of a rate of turning from that of phi that counts
 SAME_TURN = 1e-6  # turn from one normal to another that counts as none
 FLAT_SHARE = 1e-6  # length of a foot, over the size of the structure, below which it is a point
 FAR = 100.0  # over the size of the structure: how far ground without an edge reaches beside ground at another level
+NEARBY = 2.0  # over the size of the structure: how far beside and below it ground is a piece of its own
 LEVEL_SHARE = 2e-3  # distance of a foot from what it rests on, over its length, that counts as zero
 STEEPEST = 0.5  # sine of the slope of a face, measured from upright, up to which nothing rests on it
 THE_GROUND = "the ground"  # its name, if the file gives none
@@ -385,16 +386,22 @@ class _Apart:
     def _ground(self) -> dict[str, list[Points | HalfPlane]]:
         """Return what does not move: bodies at rest, polygons of the ground, and the ground below its lines."""
         moving = {member.of for member in self.members}
-        ground = defaultdict[str, list[Points | HalfPlane]](list)
+        ground = defaultdict[str, list[Points]](list)
         for body in (body for body in self.mechanism.bodies() if body.name not in moving):
             ground[body.name] += [piece for z in body.shapes(self.sketch.outlines) for piece in convex_pieces(z)]
         lines = self.sketch.ground
         for name, z in zip(self.sketch.ground_names or [THE_GROUND] * len(lines), lines, strict=True):
             if len(z) > 3 and z[0] == z[-1]:
                 ground[name] += convex_pieces(z[:-1])
-        for line in () if ground else picture(self.mechanism).ground:
-            ground[THE_GROUND] += self._endless(line)
-        return ground
+        if not ground:
+            return {THE_GROUND: [piece for line in picture(self.mechanism).ground for piece in self._endless(line)]}
+        # Contacts with large pieces are less exact: what is near the structure is cut out of them.
+        left, right = self.box[0].real - NEARBY * self.size, self.box[1].real + NEARBY * self.size
+        cuts = ((1j, left), (-1j, -right)), ((-1j, -left),), ((1j, right),)
+        deep = 1 + 0j, self.box[0].imag - NEARBY * self.size
+        parts = {name: [_cut(z, (deep, *each)) for z in pieces for each in cuts] for name, pieces in ground.items()}
+        least = (NEAR_SHARE * self.size) ** 2
+        return {name: [z for z in each if len(z) > 2 and area_of(z) > least] for name, each in parts.items()}
 
     def _endless(self, line: Points) -> list[Points | HalfPlane]:
         """Return the ground on the right of a line, which goes on beyond both ends; towards deeper blocks, halfway."""
@@ -511,6 +518,18 @@ def _joined(faces: Reals, near: float) -> Reals:
         else:
             joined.append([low, high])
     return np.array(joined).reshape(-1, 2)
+
+
+def _cut(z: Points, levels: Sequence[tuple[complex, float]]) -> Points:
+    """Return the part of a convex polygon that is above levels, each after a turn; empty if there is none."""
+    for turn, level in levels:
+        points, turned = [], (z * turn).tolist()
+        for start, end in zip(turned, turned[1:] + turned[:1], strict=True):
+            points += [start] if start.imag >= level else []
+            if (start.imag - level) * (end.imag - level) < 0:
+                points.append(start + (end - start) * (level - start.imag) / (end.imag - start.imag))
+        z = np.array(points, np.complex128) / turn
+    return z
 
 
 def _below(line: Points, size: float) -> list[Points]:
