@@ -207,7 +207,7 @@ class Structure:
     @property
     def default_models(self) -> tuple[ModelName, ...]:
         """Models to simulate by default: all, or the nonlinear one alone if the linear ones mislead or do not exist."""
-        all_fit = not self.to_first_impact and self.why_no_block is None and self.misleading is None
+        all_fit = no_restitution(self.mechanism) is None and self.why_no_block is None and self.misleading is None
         return MODELS if all_fit else ("nonlinear",)
 
     @cached_property

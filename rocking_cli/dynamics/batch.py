@@ -223,6 +223,7 @@ def respond_many(
     marks = np.full((len(runs), kernels.MARKS), np.nan)  # a run that is never computed has failed
     most_impacts = DECISIVE_IMPACTS - 1 if only_peaks else MAX_IMPACTS  # a history ends after this number of impacts
     rows[:, kernels.STRUCTURE] = runs.model
+    rows[:, kernels.LOOSE] = np.array([model.to_first_impact for model in models])[runs.model]
     if len(runs):
         run = partial(run_deck, lay_out(models, motions), rtol=rtol, most_impacts=most_impacts)
         in_parts(partial(run, rows, marks), len(rows), HISTORIES_PER_TASK, threads, progress)

@@ -225,7 +225,7 @@ def build(
         Largest opening of a joint up to which a history is valid, over D_cr.
     to_first_impact : bool
         Whether the nonlinear model of a structure without a known restitution is valid up to its first impact, and not
-        refused.
+        refused; that of a body which only slides always is.
 
     Raises
     ------
@@ -233,9 +233,10 @@ def build(
         If the restitution is not known, see `no_restitution`; if the kernel cannot simulate an element of the
         structure, or one of them has no linear model.
     """
-    etas = mechanism.eta(mechanism.sides[0]), mechanism.eta(mechanism.sides[1])
+    etas, sliding = (mechanism.eta(mechanism.sides[0]), mechanism.eta(mechanism.sides[1])), sliding_of(mechanism)
     if (missing := no_restitution(mechanism)) is not None:
-        if name != "nonlinear" or not to_first_impact:
+        slides = sliding is not None and sliding.friction < sliding.friction_to_rock
+        if name != "nonlinear" or not (to_first_impact or slides):
             raise InputError(missing)
         etas = 1.0, 1.0  # of no effect, as nothing is known after an impact
     if name == "nonlinear":
@@ -245,7 +246,7 @@ def build(
             nonlinear_model(mechanism, statics, etas),
             columns=tuple(columns),
             to_first_impact=missing is not None,
-            sliding=sliding_of(mechanism),
+            sliding=sliding,
         )
         if model.joints is not None:
             model = replace(model, joints=replace(model.joints, limit=opening))

@@ -270,3 +270,11 @@ def test_a_block_of_an_assembly_slides_as_a_block_does() -> None:
     upper = made("assembly", friction=0.2, friction_of={"b and c": 0.1}, ground=floor, blocks=two)
     with pytest.raises(MechanismError, match="no rocking model exists for sliding"):
         build_models(upper, ("nonlinear",))
+
+
+def test_a_flat_block_that_only_slides_needs_no_restitution():
+    flat = Registry()["block"](width=1.0, height=0.3, friction=0.3)
+    (model,) = build_models(flat, ("nonlinear",))
+    found = follow(model, GroundMotion("push", 0.2, np.full(3, 0.5 * G)))
+    speed = 0.2 * G * 0.4
+    assert abs(found.slid.largest) == pytest.approx(speed * 0.4 / 2 + speed**2 / (2 * 0.3 * G), rel=1e-12)
