@@ -465,9 +465,9 @@ def _share(model: Model, signs: Integers, shaking: Shaking) -> NeighbourShare:
     """Return the share of the neighbours that overturn a structure: of the worse polarity, the mean over motions."""
     low, high = [], []
     for motion in shaking.motions:
-        near = [neighbours(model, motion.scaled(int(sign)), shaking.around, threads=1) for sign in signs]
-        low.append(max(each.overturned for each in near))
-        high.append(max(each.at_most for each in near))
+        by_sign = [neighbours(model, motion.scaled(int(sign)), shaking.around, threads=1) for sign in signs]
+        low.append(max(each.overturned for each in by_sign))
+        high.append(max(each.at_most for each in by_sign))
     return NeighbourShare(fmean(low), fmean(high), shaking.around.count)
 
 
