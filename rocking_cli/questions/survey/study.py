@@ -34,7 +34,7 @@ STRUCTURES_PER_CHUNK = 8  # in the memory of a thread at a time: the tables of e
 
 MAX_SAMPLES = 400_000_000  # of motions times structures, polarities and neighbours: under a minute on two processors
 NO_NEIGHBOURS = Neighbourhood(0)
-FARTHEST = 5.0  # standard deviations beyond which no neighbour is drawn
+MAX_DEVIATIONS = 5.0  # standard deviations beyond which no neighbour is drawn
 
 
 class SurveyEntry(Protocol):
@@ -433,7 +433,7 @@ def _may_lift(structure: Structure, shaking: Shaking) -> bool:
     least, around = min(structure.uplift) * (1 - 1e-9), shaking.around
     if around.count:
         slenderness = scatter_of(structure.mechanism).slenderness if around.slenderness is None else around.slenderness
-        least *= exp(-FARTHEST * (around.amplitude + slenderness))
+        least *= exp(-MAX_DEVIATIONS * (around.amplitude + slenderness))
     return any(each.vertical is not None or each.pga_g >= least for each in shaking.motions)
 
 
