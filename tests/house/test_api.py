@@ -226,7 +226,8 @@ FRAMES = {
     ),
     "shares": ("overturned; stands; unknown; checked", {"stands": lambda _, data: [data["stands"]]}),
     "survey": (
-        "rank; name; mechanism; row; line; overturned; unknown; peak_ratio; peak_over; outcome; worst; lambda; "
+        "rank; name; mechanism; side; row; line; share_lowest; share_highest; overturned; unknown; peak_ratio; "
+        "peak_over; outcome; worst; lambda; "
         "uplift [g]; direction; p [rad/s]; phi_cr [rad]; kappa1; kappa2; eta; no_block; doubt; caution",
         {"p [rad/s]": lambda _, data: [row["p"] for row in data["rows"]]},
     ),

@@ -35,7 +35,7 @@ STRUCTURES_PER_CHUNK = 8  # in the memory of a thread at a time: the tables of e
 
 MAX_SAMPLES = 400_000_000  # of motions times structures, polarities and neighbours: under a minute on two processors
 NO_NEIGHBOURS = Neighbourhood(0)
-FARTHEST = 5.0  # standard deviations beyond which no neighbour is drawn
+MAX_DEVIATIONS = 5.0  # standard deviations beyond which no neighbour is drawn
 
 
 class SurveyEntry(Protocol):
@@ -441,7 +441,7 @@ def _may_move(structure: Structure, shaking: Shaking) -> bool:
     least, around = min(structure.uplift) * (1 - 1e-9), shaking.around
     if around.count:
         slenderness = scatter_of(structure.mechanism).slenderness if around.slenderness is None else around.slenderness
-        least *= exp(-FARTHEST * (around.amplitude + slenderness))
+        least *= exp(-MAX_DEVIATIONS * (around.amplitude + slenderness))
     return any(each.vertical is not None or each.pga_g >= least for each in shaking.motions)
 
 
@@ -473,9 +473,9 @@ def _share(model: Model, signs: Integers, shaking: Shaking) -> NeighbourShare:
     """Return the share of the neighbours that overturn a structure: of the worse polarity, the mean over motions."""
     low, high = [], []
     for motion in shaking.motions:
-        near = [neighbours(model, motion.scaled(int(sign)), shaking.around, threads=1) for sign in signs]
-        low.append(max(each.overturned for each in near))
-        high.append(max(each.at_most for each in near))
+        by_sign = [neighbours(model, motion.scaled(int(sign)), shaking.around, threads=1) for sign in signs]
+        low.append(max(each.overturned for each in by_sign))
+        high.append(max(each.at_most for each in by_sign))
     return NeighbourShare(fmean(low), fmean(high), shaking.around.count)
 
 

@@ -390,7 +390,7 @@ def sentences(found: Survey, top: int | None = None) -> list[str]:
 
 def _of_neighbours(found: Survey) -> Iterator[str]:
     """Yield what the shares are shares of, and why there are fewer neighbours than usual, or none."""
-    fewer = "more would take over a minute for this table: `--neighbours N` fixes their number"
+    fewer = "more would take over a minute for this table: give `neighbours` to fix their number"
     if not found.around.count:
         why = f" There are no neighbours, as {fewer}." if found.reduced else ""
         yield f"One time history is one sample: `rocking margin` shows how close the result is.{why}"

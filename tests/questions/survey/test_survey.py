@@ -341,7 +341,7 @@ class TestRanking:
             answer = rk.survey(blocks, pulse, polarity="both")
             assert answer.result.around.count == count and answer.result.reduced == (count < 200)
             said = " ".join(each for each in answer.view.parts if isinstance(each, str))
-            why = "more would take over a minute for this table: `--neighbours N` fixes their number"
+            why = "more would take over a minute for this table: give `neighbours` to fix their number"
             assert (why in said) == (count < 200)
             assert ("There are no neighbours" in said) == (count == 0)
             assert rk.survey(blocks, pulse, polarity="both", neighbours=40).result.around.count == 40
