@@ -28,6 +28,13 @@ from rocking_cli.core import (
 EQUAL_COLUMNS = 1e-6  # relative difference of two columns that count as equal
 
 
+OUT_OF_STEP = (
+    "Three or more columns may fall out of step at an impact: a column that carries nothing then rocks alone. "
+    "If that column ends otherwise than the structure, the outcome is unknown from the first impact; if not, peaks are "
+    "those of columns in step."
+)
+
+
 class LinkedBodies(Mechanism):
     """A mechanism whose bodies are given one by one."""
 
@@ -93,6 +100,10 @@ class LinkedBodies(Mechanism):
             else Joint(each.name, each.at, each.bodies)
             for each in self._linkage(direction).joints
         ]
+
+    def own_caution(self) -> str:
+        """Return the caution that columns may fall out of step, if three or more carry one beam."""
+        return OUT_OF_STEP if self.columns_alone() else ""
 
     def columns_alone(self) -> Sequence[Mechanism]:
         if not self.rocks_both_ways:

@@ -10,6 +10,7 @@ from typing import ClassVar, Self
 import numpy as np
 from pydantic import model_validator
 
+from mechanisms._linked_bodies import OUT_OF_STEP
 from mechanisms.block import Block
 from rocking_cli.core import (
     Angle,
@@ -95,6 +96,10 @@ class SymmetricFrame(Mechanism):
             return columns, Body("beam", 1 - of_columns, 0.0, last / 2 + 2j * h + 0.5j * self.column_width)
         middle = last / 2 + 1j * (2 * h + self.beam_depth / 2)
         return columns, box("beam", 1 - of_columns, last.real + self.column_width, self.beam_depth, middle)
+
+    def own_caution(self) -> str:
+        """Return the caution that columns may fall out of step, if three or more carry one beam."""
+        return OUT_OF_STEP if self.columns_alone() else ""
 
     def columns_alone(self) -> Sequence[Mechanism]:
         if self.columns < 3:

@@ -93,6 +93,10 @@ class Kinematics(Given, ABC):
         """Return further results of interest to users, such as the height of the hinge; shown by `equiv`."""
         return ()
 
+    def own_caution(self) -> str:
+        """Return a caution on the results of this structure in particular; by default an empty text."""
+        return ""
+
     def collapse(self, direction: Direction) -> CollapseMechanism | None:
         """Return the weakest mechanism of a direction, if the structure searches for it; by default None."""
         return None

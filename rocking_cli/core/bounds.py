@@ -62,7 +62,7 @@ class Bound(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class _Part:
+class _Shape:
     """A convex part of a body or of the ground, with its place at rest [m] and its link."""
 
     name: str
@@ -106,7 +106,7 @@ def meeting(mechanism: Jointed, direction: Direction, end: float) -> Bound | Non
     end : float
         Rotation at which the search ends, below the kinematic limit [rad].
     """
-    search = _Search(mechanism, direction, end)
+    search = _Meetings(mechanism, direction, end)
     first: Bound | None = None
     for one, other in search.pairs():
         phi = search.meet(one, other, first.phi if first is not None else search.phi[-1])
@@ -116,7 +116,7 @@ def meeting(mechanism: Jointed, direction: Direction, end: float) -> Bound | Non
     return first
 
 
-class _Search:
+class _Meetings:
     """The search for meetings in one direction."""
 
     def __init__(self, mechanism: Jointed, direction: Direction, end: float) -> None:
@@ -125,7 +125,7 @@ class _Search:
         self.places: list[tuple[int, complex]] = []  # of each link but the ground: its body, and how far beside it
         self.links = [rotation(self.phi, 0j, 0.0)]
         self.parts = [
-            _Part(name, piece, link) for name, link, shapes in self._shapes() for z in shapes
+            _Shape(name, piece, link) for name, link, shapes in self._shapes() for z in shapes
             for piece in convex_pieces(z)
         ]  # fmt: skip
         corners = np.concatenate([part.corners for part in self.parts] or [np.zeros(1, np.complex128)])
@@ -157,7 +157,7 @@ class _Search:
         self.places.append((body, shift))
         return len(self.links) - 1
 
-    def pairs(self) -> Iterator[tuple[_Part, _Part]]:
+    def pairs(self) -> Iterator[tuple[_Shape, _Shape]]:
         """Yield the parts of different links whose paths come near each other."""
         low, high = [], []
         for part in self.parts:
@@ -170,7 +170,7 @@ class _Search:
                 if self.parts[i].link != self.parts[k].link:
                     yield self.parts[min(i, k)], self.parts[max(i, k)]
 
-    def meet(self, one: _Part, other: _Part, before: float) -> float | None:
+    def meet(self, one: _Shape, other: _Shape, before: float) -> float | None:
         """Return the first rotation below `before` at which two parts meet, or None."""
         touching = self._touching(one, other)
         apart, path = self._apart(one, other, self.phi, self.links)
@@ -190,7 +190,7 @@ class _Search:
                     return phi
         return None
 
-    def _between(self, one: _Part, other: _Part, low: float, high: float) -> float | None:
+    def _between(self, one: _Shape, other: _Shape, low: float, high: float) -> float | None:
         """Return the first rotation between two at which two parts that are apart at both meet, or None."""
         phi = np.linspace(low, high, FINER)
         apart, path = self._apart(one, other, phi, self._motions(phi))
@@ -203,11 +203,11 @@ class _Search:
                     return phi_met
         return None
 
-    def _first(self, one: _Part, other: _Part, low: float, high: float, level: float) -> float:
+    def _first(self, one: _Shape, other: _Shape, low: float, high: float, level: float) -> float:
         """Return the rotation at which the distance of two parts falls below a level, between two rotations."""
         return first_beyond(lambda phi: level - self._apart(one, other, phi, self._motions(phi))[0], low, high)
 
-    def _apart_at(self, one: _Part, other: _Part, phi: float) -> float:
+    def _apart_at(self, one: _Shape, other: _Shape, phi: float) -> float:
         at = np.array([phi])
         return float(self._apart(one, other, at, self._motions(at))[0][0])
 
@@ -216,7 +216,7 @@ class _Search:
         motions = self.mechanism.motion(phi, self.direction)
         return [rotation(phi, 0j, 0.0), *(motions[body].shifted(shift) for body, shift in self.places)]
 
-    def _touching(self, one: _Part, other: _Part) -> float:
+    def _touching(self, one: _Shape, other: _Shape) -> float:
         """Return the distance up to which two parts touch [m]: more if they are joined, as joints may be open."""
         least = JOINT_GAP * min(float(np.ptp(z.real) + np.ptp(z.imag)) for z in (one.corners, other.corners))
         names = {part.name if part.link else None for part in (one, other)}
@@ -234,7 +234,7 @@ class _Search:
             contact for direction in self.mechanism.directions for contact in self.mechanism.contacts(direction) or ()
         ]
 
-    def _apart(self, one: _Part, other: _Part, phi: Reals, motions: Sequence[RigidMotion]) -> tuple[Reals, Reals]:
+    def _apart(self, one: _Shape, other: _Shape, phi: Reals, motions: Sequence[RigidMotion]) -> tuple[Reals, Reals]:
         """Return how far two parts are apart over rotations, negative if they overlap, and their paths in between.
 
         The distance is along the best of the normals of their sides: where it is positive, they do not overlap, and it
@@ -284,7 +284,7 @@ def clearances(mechanism: Jointed, left: complex, right: complex) -> tuple[Clear
         Ends of its foot [m].
     """
     direction = mechanism.directions[0]
-    search = _Search(mechanism, direction, mechanism.limit(direction) / 2)
+    search = _Meetings(mechanism, direction, mechanism.limit(direction) / 2)
     still, moving = ([part for part in search.parts if (part.link > 0) is moves] for moves in (False, True))
     size = float(np.ptp(np.concatenate([np.array([left, right]), *(part.corners for part in moving)]).real))
     touching = max(JOINT_GAP * size, search.tolerance)
@@ -305,7 +305,7 @@ def clearances(mechanism: Jointed, left: complex, right: complex) -> tuple[Clear
 
 
 def _edges(
-    still: Sequence[_Part], foot: tuple[complex, complex], touching: float, *, right: bool = False
+    still: Sequence[_Shape], foot: tuple[complex, complex], touching: float, *, right: bool = False
 ) -> Iterator[Clearance]:
     """Yield how far a foot may slide one way to the edge of the ground on which it stands; nothing if it is not drawn.
 

@@ -41,12 +41,6 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.plugins.errors import failed, guard
 from rocking_cli.units import STANDARD_GRAVITY
 
-OUT_OF_STEP = (
-    "Three or more columns may fall out of step at an impact: a column that carries nothing then rocks alone. "
-    "If that column ends otherwise than the structure, the outcome is unknown from the first impact; if not, peaks are "
-    "those of columns in step."
-)
-
 
 class Mechanism(Jointed):
     """A rocking structure with one degree of freedom.
@@ -84,10 +78,6 @@ class Mechanism(Jointed):
     def weaker_side(self) -> Mechanism | None:
         """Return the structure as it rocks about the weaker side of its base, if it may; by default None."""
         return None
-
-    def own_caution(self) -> str:
-        """Return a caution on the results of this structure in particular; by default on `columns_alone`."""
-        return OUT_OF_STEP if self.columns_alone() else ""
 
     @final
     def cautions(self) -> Sequence[str]:

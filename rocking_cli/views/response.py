@@ -340,8 +340,8 @@ def view(
         ]
     first = next(iter(found.runs.values()))
     rocks = structure.no_model is None
-    own = cautions_of(mechanism) if rocks else [f"{structure.no_model}. Free blocks alone have no rotation phi."]
-    caution = [f"Caution: {text}" for text in own]
+    remarks = cautions_of(mechanism) if rocks else [f"{structure.no_model}. Free blocks alone have no rotation phi."]
+    caution = [f"Caution: {text}" for text in remarks]
     if rocks and structure.misleading and any(name not in ("nonlinear", "blocks") for name in first):
         caution.append(f"Caution: {structure.misleading}.")
     caution += [f"Caution: {text}" for text in apart(watched, found.runs)]

@@ -144,7 +144,10 @@ def test_an_installation_that_is_broken_is_named_with_what_mends_it(monkeypatch,
     (tmp_path / "mujoco.py").write_text(package, encoding="utf-8")
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.delitem(sys.modules, "mujoco")
-    with pytest.raises(rk.InputError, match=rf"{says}[\s\S]*pip install --force-reinstall 'mujoco>=3.13'"):
+    with pytest.raises(
+        rk.InputError,
+        match=rf"{says}[\s\S]*pip uninstall -y mujoco mujoco-core, then pip install 'rocking-cli\[blocks]'",
+    ):
         scene.engine_version()
 
 

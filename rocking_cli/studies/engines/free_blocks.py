@@ -33,7 +33,9 @@ NEAR_SHARE = 1e-6  # distance that counts as zero, over the size of the structur
 LEAD_RATE = 1e-6  # difference of a rate of turning from that of phi that counts as zero
 SAME_TURN = 1e-6  # turn from one normal to another that counts as none
 FLAT_SHARE = 1e-6  # length of a foot, over the size of the structure, below which it is a point
-FAR = 100.0  # over the size of the structure: how far ground without an edge reaches beside ground at another level
+FARTHEST_GROUND = (
+    100.0  # over the size of the structure: how far ground without an edge reaches beside ground at another level
+)
 NEARBY = 2.0  # over the size of the structure: how far beside and below it ground is a piece of its own
 LEVEL_SHARE = 2e-3  # distance of a foot from what it rests on, over its length, that counts as zero
 STEEPEST = 0.5  # sine of the slope of a face, measured from upright, up to which nothing rests on it
@@ -179,20 +181,20 @@ class FreeBlocks:
         below = {name: pieces for name, pieces in self.shapes.items() if name != block} | {"": level}
         for start, end in ((a, b) for z in self.shapes[block] for a, b in zip(z, np.roll(z, -1), strict=True)):
             long, along = abs(end - start), (end - start) / abs(end - start)
-            near = LEVEL_SHARE * long
+            tolerance = LEVEL_SHARE * long
             for name, pieces in below.items() if along.real > STEEPEST else ():  # anticlockwise, a foot goes right
-                faces = _joined(_faces(pieces, start, along, near), near)
-                for low, high in (each for each in np.clip(faces, 0.0, long).tolist() if each[1] - each[0] > near):
+                faces = _joined(_faces(pieces, start, along, tolerance), tolerance)
+                for low, high in (each for each in np.clip(faces, 0.0, long).tolist() if each[1] - each[0] > tolerance):
                     at = self._carried(block, start + (low + high) / 2 * along, moved)
                     at = self._carried(name, at, moved, back=True) if name else at
                     place = ((at - start) / along).real
                     if not ((faces[:, 0] <= place) & (place <= faces[:, 1])).any():
-                        return name or self._bearing(start, along, near, low, high)
+                        return name or self._bearing(start, along, tolerance, low, high)
         return ""
 
-    def _bearing(self, start: complex, along: complex, near: float, low: float, high: float) -> str:
+    def _bearing(self, start: complex, along: complex, tolerance: float, low: float, high: float) -> str:
         """Return the name of the ground that bears a part of a foot."""
-        faces = {name: _faces(pieces, start, along, near) for name, pieces in self.ground.items()}
+        faces = {name: _faces(pieces, start, along, tolerance) for name, pieces in self.ground.items()}
         return next(name for name, each in faces.items() if ((each[:, 0] < high) & (each[:, 1] > low)).any())
 
     def _carried(self, block: str, at: complex, moved: Reals, *, back: bool = False) -> complex:
@@ -414,8 +416,10 @@ class _Apart:
             reaches.append(float(deeper.min(initial=inf)) / 2)
         if reaches == [inf, inf] and len(line) == 2:
             return [_half_plane(*line)]
-        near, far = (min(reach, FAR * self.size) for reach in reaches)
-        return list(_below(np.array([line[0] + near * first, *line[1:-1], line[-1] + far * last]), self.size))
+        first_reach, last_reach = (min(reach, FARTHEST_GROUND * self.size) for reach in reaches)
+        return list(
+            _below(np.array([line[0] + first_reach * first, *line[1:-1], line[-1] + last_reach * last]), self.size)
+        )
 
     def _held(self, ground: dict[str, list[Points | HalfPlane]]) -> list[HeldPoint]:
         """Return the points that are held, and add the ground below feet that stand elsewhere than on `ground`."""
@@ -495,25 +499,25 @@ def _half_plane(start: complex, end: complex) -> HalfPlane:
     return HalfPlane(start, 1j * (end - start) / abs(end - start))
 
 
-def _faces(pieces: Sequence[Points | HalfPlane], start: complex, along: complex, near: float) -> Reals:
+def _faces(pieces: Sequence[Points | HalfPlane], start: complex, along: complex, tolerance: float) -> Reals:
     """Return from where to where faces are in line with a foot, from its start along it [m], shape (faces, 2)."""
     faces = [np.zeros((0, 2))]
     for piece in pieces:
         if isinstance(piece, HalfPlane):
-            off = abs(((piece.at - start) / along).imag), near * abs(piece.normal - 1j * along) / LEVEL_SHARE
-            faces.append(np.array([[-inf, inf]] if max(off) < near else np.zeros((0, 2))))
+            off = abs(((piece.at - start) / along).imag), tolerance * abs(piece.normal - 1j * along) / LEVEL_SHARE
+            faces.append(np.array([[-inf, inf]] if max(off) < tolerance else np.zeros((0, 2))))
         else:  # anticlockwise: a face that bears a foot goes to the left
             ends = (np.stack([np.roll(piece, -1), piece], axis=-1) - start) / along
-            inline = (np.abs(ends.imag).max(axis=1) < near) & (ends.real[:, 0] < ends.real[:, 1])
+            inline = (np.abs(ends.imag).max(axis=1) < tolerance) & (ends.real[:, 0] < ends.real[:, 1])
             faces.append(ends.real[inline])
     return np.concatenate(faces)
 
 
-def _joined(faces: Reals, near: float) -> Reals:
+def _joined(faces: Reals, tolerance: float) -> Reals:
     """Return faces in line, those that continue each other as one."""
     joined: list[list[float]] = []
     for low, high in sorted(faces.tolist()):
-        if joined and low <= joined[-1][1] + near:
+        if joined and low <= joined[-1][1] + tolerance:
             joined[-1][1] = max(joined[-1][1], high)
         else:
             joined.append([low, high])

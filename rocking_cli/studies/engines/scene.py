@@ -32,7 +32,7 @@ DEPTH = 0.1  # of the prisms, over the size; without effect
 PEG = 0.01  # radius of the pegs that guides and floors act on, over the size
 UNBOUNDED = 1e6  # over the size
 FIRST_VERSION = (3, 13)  # of MuJoCo: older ones miss corners of tilted faces that touch
-REINSTALL = "pip install --force-reinstall 'mujoco>=3.13'"
+REINSTALL = "pip uninstall -y mujoco mujoco-core, then pip install 'rocking-cli[blocks]'"
 
 
 def engine_version() -> str:
