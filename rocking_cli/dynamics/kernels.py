@@ -23,8 +23,8 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 # Columns of `numbers`, one row a direction.
-# Q_BOUND is the q at which something else than the mechanism decides, infinite where nothing does; BOUND_ETA the
-# restitution of a stop there, NaN where the motion is not known beyond.
+# Q_BOUND is the q at which something else than the mechanism decides, in `Deck` the phi [rad], infinite where nothing
+# does; BOUND_ETA the restitution of a stop there, NaN where the motion is not known beyond.
 LAMBDA, Q_CR, ETA, RATE, REST, Q_END, PER_CELL, P, KAPPA_G, GRAVITY, HELD, ONE_SIDED, Q_BOUND, BOUND_ETA = range(14)
 COLUMNS = 14
 # Columns of `records`, one row a ground motion: first sample and number of samples of either component, and of the
@@ -483,14 +483,16 @@ def inspect(forces, law, ground, t, tau, state, size, ended, marks):
             continue
         xb, qb = (turn, extreme) if part == 0 else (size, q1)
         if rising == (part == 0):
-            bounded = qa < law.q_bound <= qb
-            if bounded:
-                xb, ended = locate(forces, law, ground, tau, state, xa, xb, nan, HEIGHT, law.q_bound, False)
-                qb = law.q_bound
+            bounded = False
+            for crossing in range(2):  # one search for both: each is compiled with a step inside
+                level = law.q_bound if crossing == 0 else law.q_cr
+                if qa < level <= qb:
+                    x, there = locate(forces, law, ground, tau, state, xa, xb, nan, HEIGHT, level, False)
+                    if crossing == 0:
+                        bounded, xb, qb, ended = True, x, level, there
+                    else:
+                        marks[CROSSED] = t + tau + x
             marks[PEAK + d] = max(marks[PEAK + d], qb)
-            if qa < law.q_cr <= qb:
-                x, _ = locate(forces, law, ground, tau, state, xa, xb, nan, HEIGHT, law.q_cr, False)
-                marks[CROSSED] = t + tau + x
             if bounded:
                 return LIMIT, xb, State(qb, ended.w, ended.f)
         elif qb <= 0:
@@ -960,21 +962,19 @@ def fly(forces, corners, law, ground, t, tau, end, state, h, rtol, watched, watc
             continue
         if size == h and not law.exact:
             h = size * (5.0 if error < 1e-4 else min(5.0, 0.9 * error**-0.2))
-        peak = marks[PEAK + d]
+        peak, event = marks[PEAK + d], REACHED
         if rises(law, state, ended):
             marks[PEAK + d] = max(marks[PEAK + d], ended.q)
         elif not falls(state, ended):
             event, inside, ended = inspect(forces, law, ground, t, tau, state, size, ended, marks)
             whole = whole and inside == size
             size = inside
-            if event != REACHED:
-                if watched and (watch.notes[FRESH] != 0 or not quiet(watch, law, ground, tau + size, ended.q, ended.w)):
-                    look(watch, law, ground, t, tau, state, size, ended, peak, 0.0, 0.0, marks)
-                return event, end if whole else min(tau + size, end), ended, h
             if inside < part:
                 behind = nan
         if watched and (watch.notes[FRESH] != 0 or not quiet(watch, law, ground, tau + size, ended.q, ended.w)):
             look(watch, law, ground, t, tau, state, size, ended, peak, 0.0, 0.0, marks)
+        if event != REACHED:
+            return event, end if whole else min(tau + size, end), ended, h
         state = State(behind, ended.w, ended.f) if isfinite(behind) else ended
         tau = end if whole else tau + size
         if state.q >= law.q_end:
@@ -1037,7 +1037,7 @@ def lifts_at(numbers, tau, end, u, ramp, g, grade):
     return first, lifted
 
 
-@inlined
+@called
 def angle(structure, d, q):
     """phi and dphi/dq at q."""
     if structure.linear:
@@ -1058,7 +1058,7 @@ def stays(numbers, u):
     return -numbers[1, LAMBDA] * g <= -u and -u <= numbers[0, LAMBDA] * g
 
 
-@inlined
+@called
 def pressure(structure, law, push, g):
     """The acceleration of phi with which the ground pushes a structure that does not move against its stop."""
     q = law.q_bound
@@ -1189,11 +1189,10 @@ def follow(structure, motion, start, loose, rtol, most_impacts, brief, watch, sa
             ended, e_q, e_w = advance(forces, law, Ground(s * u0, s * ramp, gravity, 0.0), 0.0, state, span)
             uneventful = ended.q < min(law.q_end, law.q_bound) and (rises(law, state, ended) or falls(state, ended))
             uneventful = uneventful and not passes(corners, law, q, ended.q)
+            if uneventful and watched:  # else the step is made again, and its joints are looked at
+                ground = Ground(s * u0, s * ramp, gravity, 0.0)
+                uneventful = watch.notes[FRESH] == 0 and quiet(watch, law, ground, span, ended.q, ended.w)
             if uneventful and misses(law, rtol, state, ended, e_q, e_w) <= 1:
-                if watched:
-                    ground = Ground(s * u0, s * ramp, gravity, 0.0)
-                    if watch.notes[FRESH] != 0 or not quiet(watch, law, ground, span, ended.q, ended.w):
-                        look(watch, law, ground, t, 0.0, state, span, ended, marks[PEAK + d], 0.0, 0.0, marks)
                 marks[PEAK + d] = max(marks[PEAK + d], ended.q)
                 q, w, f = ended
                 tau = span
@@ -1245,8 +1244,10 @@ def follow(structure, motion, start, loose, rtol, most_impacts, brief, watch, sa
                     if not isfinite(marks[FIRST_UPLIFT]):
                         marks[FIRST_UPLIFT] = t + tau
                 if held:
-                    pressed = pressure(structure, law, s * (u0 + ramp * tau), g + grade * tau)
-                    later = pressure(structure, law, s * (u0 + ramp * end), g + grade * end)
+                    pressed = later = 0.0
+                    for last_moment in range(2):
+                        pressed, at = later, end if last_moment == 1 else tau
+                        later = pressure(structure, law, s * (u0 + ramp * at), g + grade * at)
                     until = end if later > 0 else tau
                     if later <= 0 < pressed:
                         until += (end - tau) * pressed / (pressed - later)
@@ -1278,33 +1279,34 @@ def follow(structure, motion, start, loose, rtol, most_impacts, brief, watch, sa
                 if event == STUCK:
                     marks[ENDED], marks[SIDE] = t + tau, d
                     return STALLED
-                if event == LIMIT:
-                    marks[ENDED], marks[SIDE] = t + tau, d
-                    if q < law.q_bound:
-                        return OVERTURNED
+                if event != REACHED:
+                    met = event == LIMIT  # rather the bound of its motion than the ground
+                    if met:
+                        marks[ENDED], marks[SIDE] = t + tau, d
+                        if q < law.q_bound:
+                            return OVERTURNED
                     watch.notes[SO_FAR], watch.notes[SO_FAR + 1] = marks[PEAK], marks[PEAK + 1]
-                    stop = numbers[d, BOUND_ETA]
-                    if not isfinite(stop):
-                        if not isfinite(marks[PASSED]):
-                            passed(watch, d, t + tau, q, BOUND, -1, marks)
+                    marks[IMPACTS] += 0.0 if met else 1.0
+                    eta = numbers[d, BOUND_ETA] if met else numbers[d, ETA]
+                    ends = not isfinite(eta) if met else loose
+                    if ends and not isfinite(marks[PASSED]):
+                        passed(watch, d, t + tau, q, BOUND if met else APART, -1, marks)
+                    if ends and met:
                         return LEFT
+                    side = d if met or numbers[d, ONE_SIDED] else 1 - d  # a rebound keeps its direction
+                    _, speed = angle(structure, d, q)
+                    rate = abs(w) * speed
                     if watched:
-                        _, speed = angle(structure, d, q)
-                        strike(watch, d, t + tau, q / law.q_end, watch.stopped, w * speed, stop, marks)
-                    held = stop * w <= numbers[d, REST] or loops > CHATTER
-                    w, known = 0.0 if held else -stop * w, False
+                        impulses = watch.stopped if met else watch.struck
+                        strike(watch, side, t + tau, q / law.q_end, impulses, rate, eta, marks)
+                    if met:
+                        held = eta * w <= numbers[d, REST] or loops > CHATTER
+                        w, known = 0.0 if held else -eta * w, False
                 if event == IMPACT:
                     idle = 0
-                    n = int(marks[IMPACTS])
+                    n = int(marks[IMPACTS]) - 1
                     if n < impacts.shape[0]:
-                        impacts[n, 0], impacts[n, 1], impacts[n, 2] = t + tau, s, -w * numbers[d, RATE]
-                    marks[IMPACTS] += 1
-                    side = d if numbers[d, ONE_SIDED] else 1 - d  # a rebound keeps its direction
-                    watch.notes[SO_FAR], watch.notes[SO_FAR + 1] = marks[PEAK], marks[PEAK + 1]
-                    if loose and not isfinite(marks[PASSED]):
-                        passed(watch, d, t + tau, 0.0, APART, -1, marks)
-                    if watched:
-                        strike(watch, side, t + tau, 0.0, watch.struck, -w * numbers[d, RATE], numbers[d, ETA], marks)
+                        impacts[n, 0], impacts[n, 1], impacts[n, 2] = t + tau, s, rate
                     w = numbers[d, ETA] * -w * numbers[d, RATE] / numbers[side, RATE]  # Eq. 6, on phi.
                     d = side
                     s = 1.0 - 2.0 * d
@@ -1358,25 +1360,17 @@ def numbers_of(usual, what, numbers):
 
 @called
 def bound_of(structure, d, slender):
-    """The q of the bound of a direction in a history of another slenderness, whose rotations are larger by it."""
-    bound = structure.numbers[d, Q_BOUND]
-    if slender == 1 or not isfinite(bound):
-        return bound
-    sought, _ = angle(structure, d, bound)
-    sought /= slender
-    last, _ = angle(structure, d, structure.numbers[d, Q_END])
-    if not sought < last:
-        return inf
-    low, high = 0.0, structure.numbers[d, Q_END]
-    q = bound / slender
-    for _ in range(60):
-        phi, slope = angle(structure, d, q)
-        low, high = (q, high) if phi < sought else (low, q)
-        step = (phi - sought) / slope
-        q = q - step if low <= q - step <= high else (low + high) / 2
-        if abs(step) <= 1e-15 * q:
-            break
-    return q
+    """The q of the bound of a direction, in a history whose rotations are larger by its slenderness."""
+    end = structure.numbers[d, Q_END]
+    low, high = 0.0, end
+    for _ in range(60 if isfinite(structure.numbers[d, Q_BOUND]) else 0):
+        q = (low + high) / 2
+        phi, _ = angle(structure, d, q)
+        if phi * slender < structure.numbers[d, Q_BOUND]:
+            low = q
+        else:
+            high = q
+    return high if high < end else inf
 
 
 @called

@@ -275,10 +275,9 @@ def _bounded(model: Model, mechanism: Mechanism) -> Model:
     if model.joints is not None and model.joints.redundant:  # the impulses of a stop on them are not known
         bounds = [bound and bound._replace(restitution=None) for bound in bounds]
     for side, bound in enumerate(bounds):
-        if bound is None or (model.tables is not None and bound.phi >= model.tables[side].nodes[-1]):
-            continue
-        numbers[side, Q_BOUND] = bound.phi if model.tables is None else model.tables[side].q(bound.phi)
-        numbers[side, BOUND_ETA] = np.nan if bound.restitution is None else bound.restitution
+        if bound is not None:
+            numbers[side, Q_BOUND] = bound.phi
+            numbers[side, BOUND_ETA] = np.nan if bound.restitution is None else bound.restitution
     return replace(model, numbers=numbers, bounds=(bounds[0], bounds[1]))
 
 

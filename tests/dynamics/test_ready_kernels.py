@@ -81,7 +81,7 @@ class TestWhatIsShipped:
     def test_they_are_small_and_all_of_them(self):
         files = {each.name: each.stat().st_size for each in shipped.READY_FOLDER.iterdir()}
         assert files.keys() == {*shipped.manifest()["files"], shipped.MANIFEST_FILE}
-        assert sum(files.values()) < 1.5e6
+        assert sum(files.values()) < 1.6e6
 
     @pytest.mark.parametrize("system, machine, name", [
         ("linux", "x86_64", "linux-x86_64.so"), ("linux", "aarch64", "linux-aarch64.so"),
