@@ -141,7 +141,8 @@ CALLS = {
          "model": "linear2", "eta": 0.7, "polarity": "-1", "fractiles": (0.3, 0.7), "opening": 0.2},
     ),
     "overturning_map": (
-        {"structure": WEAK, "model": "nonlinear", "points": 3, "period": (0.3, 2.0), "ag": (0.2, 1.5)},
+        {"structure": WEAK.model_copy(update={"friction": 0.3}), "model": "nonlinear", "points": 3,
+         "period": (0.3, 2.0), "ag": (0.2, 1.5)},  # it slides, and rocks
         {"structure": BLOCK, "shape": "cosine", "model": "linear1", "eta": 0.7, "period": (0.2, 1.0), "ag": (0.3, 2.0),
          "omega": (1.0, 3.0), "a": (1.0, 3.0), "dimensionless": True, "polarity": "both", "points": 4, "opening": 1.0,
          "engine": "auto"},
