@@ -37,7 +37,8 @@ from tests.meshes import box, obj, ply
 
 BLOCK = rk.Block(width=0.7, height=2.8, name="block", friction=0.6)
 OTHER = rk.Block(width=0.5, height=2.0, name="other")
-WEAK = rk.Block(width=0.7, height=2.8, name="weak", friction=0.2)  # it slides before it rocks
+WEAK = rk.Block(width=0.7, height=2.8, name="weak", friction=0.2)  # it only slides
+ROUGHER = WEAK.model_copy(update={"friction": 0.3})  # it rocks, until it slides
 PULSE, STRONG = "sine:0.3g:0.5s", "sine:0.9g:0.5s"
 FRAME = rk.load_structure(EXAMPLES / "frame.yaml").model_copy(update={"friction": 0.3})
 LEANING = WEAK.model_copy(update={"one_sided": "positive", "rebound": 0.5})
@@ -141,14 +142,13 @@ CALLS = {
          "model": "linear2", "eta": 0.7, "polarity": "-1", "fractiles": (0.3, 0.7), "opening": 0.2},
     ),
     "overturning_map": (
-        {"structure": WEAK.model_copy(update={"friction": 0.3}), "model": "nonlinear", "points": 3,
-         "period": (0.3, 2.0), "ag": (0.2, 1.5)},  # it slides, and rocks
+        {"structure": ROUGHER, "model": "nonlinear", "points": 3, "period": (0.3, 2.0), "ag": (0.2, 1.5)},
         {"structure": BLOCK, "shape": "cosine", "model": "linear1", "eta": 0.7, "period": (0.2, 1.0), "ag": (0.3, 2.0),
          "omega": (1.0, 3.0), "a": (1.0, 3.0), "dimensionless": True, "polarity": "both", "points": 4, "opening": 1.0,
          "engine": "auto"},
     ),
     "overturning": (
-        {"structures": WEAK, "model": "nonlinear", "points": 3, "period": (0.3, 2.0), "ag": (0.2, 1.5)},
+        {"structures": ROUGHER, "model": "nonlinear", "points": 3, "period": (0.3, 2.0), "ag": (0.2, 1.5)},
         {"structures": BLOCK, "compare": True, "shape": "cosine", "model": "linear1", "eta": 0.7, "period": (0.2, 1.0),
          "ag": (0.3, 2.0), "omega": (1.0, 3.0), "a": (1.0, 3.0), "dimensionless": True, "polarity": "both", "points": 4,
          "opening": 1.0, "engine": "auto"},
