@@ -166,7 +166,7 @@ CALLS = {
         {"structure": WEAK, "motion": PULSE, "polarity": "-1", "opening": 0.0} | AROUND,
     ),
     "survey": (
-        {"structures": [FRAME, WEAK], "motions": RECORD},
+        {"structures": [FRAME, WEAK], "motions": RECORD.scaled(1.5)},
         {"structures": [OTHER], "motions": PULSE, "polarity": "-1", "site": SITE, "opening": 1.0, "top": 1,
          "page": "p.html", "map": "m.png", "sheets": "odd", "sheet_format": "docx", "language": "it", "project": "odd",
          "place": "odd", "author": "odd", "logo": "in.svg", "origin": "odd"} | AROUND,
