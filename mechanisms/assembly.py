@@ -8,7 +8,7 @@ from math import isclose, isfinite, nan
 from typing import Annotated, Any, ClassVar, Self, TypeVar
 
 import numpy as np
-from pydantic import ConfigDict, Field, PrivateAttr, model_validator
+from pydantic import ConfigDict, Field, PrivateAttr, ValidationError, model_validator
 
 from mechanisms import _assembly as analysis
 from mechanisms._laid import Bricks, Voussoirs
@@ -419,7 +419,10 @@ class Assembly(LinkedBodies):
 
     @cached_property
     def _unable_to_slide(self) -> Assembly:
-        return self.model_copy(update={"friction": None, "friction_of": None})
+        try:
+            return self.model_copy(update={"friction": None, "friction_of": None})
+        except ValidationError:  # it is confined, and can only slide
+            return self
 
     def _joint(self, k: int) -> str:
         return _name(self._contacts[k])

@@ -552,12 +552,13 @@ def _picture(mechanism: Mechanism, collapses: Mapping[Direction, CollapseMechani
     if not starts:
         phi_cr = {direction: _critical(mechanism, direction) for direction in mechanism.directions}
         limit = {direction: MAX_LIMIT_SHARE * mechanism.limit(direction) for direction in mechanism.directions}
+        turns = [*limit.values(), *(phi for phi in phi_cr.values() if phi is not None)]
+        if not (min(turns) > 0 and extent(mechanism) > MIN_SIZE):
+            raise StructureError("it is too small to be drawn: check the sizes and their units")
         met = {side: each for side, each in mechanism.bounds.items() if each is not None and each.kind != "yields"}
         limit |= {direction: bound.phi for direction, bound in met.items()}
         sketch = replace(sketch, notes=[*sketch.notes, *(f"{side.label}: {each.words}" for side, each in met.items())])
     seen = {direction: limit[direction] if phi is None else phi for direction, phi in phi_cr.items()}
-    if not starts and not (min(seen.values()) > 0 and extent(mechanism) > MIN_SIZE):
-        raise StructureError("it is too small to be drawn: check the sizes and their units")
     parts = tuple(
         DrawnPart(
             body.name,

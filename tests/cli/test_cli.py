@@ -214,11 +214,16 @@ class TestEquiv:
 
     def test_a_stocky_block_is_shown_with_a_warning(self, tmp_path):
         (tmp_path / "slab.yaml").write_text("mechanism: block\nwidth: 3\nheight: 1\n", encoding="utf-8")
-        said = "The kinematics give eta = -0.35 at impacts: the mass inner product"
+        said = [
+            "It is stocky: its kinematics give eta = -0.35, below 0.7",
+            "The kinematics give eta = -0.35 at impacts: the mass inner product",
+        ]
         site = EXAMPLES / "verify" / "site.yaml"
         for asked in (("equiv", "slab.yaml"), ("verify", "slab.yaml", "--site", site)):
-            assert f"Caution: {said}" in " ".join(run(*asked).stdout.split())
-        assert run_json("equiv", "slab.yaml")["caution"].startswith(said)
+            shown = " ".join(run(*asked).stdout.split())
+            assert f"Caution: {said[0]}" in shown and said[1] in shown
+        caution = run_json("equiv", "slab.yaml")["caution"]
+        assert caution.startswith(said[0]) and said[1] in caution
 
     def test_an_eta_above_one_is_said_with_the_energy_that_is_kept(self, tmp_path):
         """A stack that turns as a whole in one direction, and with its upper block only in the other."""

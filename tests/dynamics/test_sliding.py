@@ -268,8 +268,11 @@ def test_a_block_of_an_assembly_slides_as_a_block_does() -> None:
     two = {"b": {"polygon": box(-0.5, 0.5, 0, 2)}, "c": {"polygon": box(-0.5, 0.5, 2, 3)}}
     floor = {"floor": {"polygon": box(-9, 9, -1, 0)}}
     upper = made("assembly", friction=0.2, friction_of={"b and c": 0.1}, ground=floor, blocks=two)
-    with pytest.raises(MechanismError, match="no rocking model exists for sliding"):
-        build_models(upper, ("nonlinear",))
+    lid = {"lid": {"polygon": box(-2, 2, 2, 3)}}
+    confined = made("assembly", friction=0.2, ground=floor | lid, blocks={"b": two["b"]})  # it can only slide
+    for slides in (upper, confined):
+        with pytest.raises(MechanismError, match="no rocking model exists for sliding"):
+            build_models(slides, ("nonlinear",))
 
 
 def test_a_flat_block_that_only_slides_needs_no_restitution():

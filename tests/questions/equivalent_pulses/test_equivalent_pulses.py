@@ -173,7 +173,7 @@ class TestCommand:
         }  # fmt: skip
         assert set(data["structures"][1]) == {
             "mechanism", "name", "p", "lambda", "lambda_lin", "ag", "period", "eta", "own_eta", "peak_ratio",
-            "overturned", "unknown", "known_to", "known_to_reason", "peak_lower_bound", "opening",
+            "overturned", "unknown", "known_to", "known_to_reason", "peak_lower_bound", "opening", "caution",
         }  # fmt: skip
         assert data["structures"][0]["ag"] == pytest.approx(0.6)
         rows = rows_of("e.csv")
