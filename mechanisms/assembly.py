@@ -411,7 +411,7 @@ class Assembly(LinkedBodies):
             raise StructureError(f"in the {direction.label} direction {error}") from None
 
     def _as_it_rocks(self, direction: Direction) -> Assembly:
-        """Return the assembly whose weakest mechanism moves: itself, or without friction a block that slides on one joint.
+        """Return the assembly whose weakest mechanism moves: itself, or a block that slides on its joint, frictionless.
 
         Joints without a coefficient of friction never slide. Time histories check whether it slides instead.
         """

@@ -37,10 +37,10 @@ from tests.meshes import box, obj, ply
 
 BLOCK = rk.Block(width=0.7, height=2.8, name="block", friction=0.6)
 OTHER = rk.Block(width=0.5, height=2.0, name="other")
-WEAK = rk.Block(width=0.7, height=2.8, name="weak", friction=0.2)  # it slides before it rocks
+WEAK = rk.Block(width=0.7, height=2.8, name="weak", friction=0.26)  # it slides as it rocks
 PULSE, STRONG = "sine:0.3g:0.5s", "sine:0.9g:0.5s"
 FRAME = rk.load_structure(EXAMPLES / "frame.yaml").model_copy(update={"friction": 0.3})
-LEANING = WEAK.model_copy(update={"one_sided": "positive", "rebound": 0.5})
+LEANING = WEAK.model_copy(update={"friction": 0.2, "one_sided": "positive", "rebound": 0.5})
 PORTAL = rk.load_structure(EXAMPLES / "assembly.yaml")
 TIME = 0.01 * np.arange(200)
 RECORD = rk.GroundMotion("record", 0.01, 3.0 * np.sin(2 * np.pi * TIME / 0.8) * np.exp(-TIME))
@@ -104,7 +104,7 @@ CALLS = {
          "hull": True, "up": "y", "north": 30.0, "out": "odd.yaml", "page": "p.html", "command": "odd"},
     ),
     "respond": (
-        {"structure": WEAK, "motion": RECORD, "neighbours": 2, "opening": 1.0},
+        {"structure": WEAK, "motion": RECORD.scaled(1.2), "neighbours": 2, "opening": 1.0},
         {"structure": BLOCK, "motion": PULSE, "models": "nonlinear", "polarity": "both", "vertical": RECORD,
          "vertical_dt": 0.1, "vertical_channel": "2", "with_pulse": "sine", "release": 0.2,
          "opening": 0.0, "engine": "auto", "impacts": True, "title": "odd", "out": "o.csv",
@@ -166,10 +166,10 @@ CALLS = {
         {"structure": WEAK, "motion": PULSE, "polarity": "-1", "opening": 0.0} | AROUND,
     ),
     "survey": (
-        {"structures": [FRAME, WEAK], "motions": RECORD},
+        {"structures": [FRAME, WEAK], "motions": RECORD.scaled(1.2)},
         {"structures": [OTHER], "motions": PULSE, "polarity": "-1", "site": SITE, "opening": 1.0, "top": 1,
          "page": "p.html", "map": "m.png", "sheets": "odd", "sheet_format": "docx", "language": "it", "project": "odd",
-         "place": "odd", "author": "odd", "logo": "in.svg", "origin": "odd"},
+         "place": "odd", "author": "odd", "logo": "in.svg", "origin": "odd"} | AROUND,
     ),
     "design": (
         {"structure": LEANING, "vary": "width=0.5m:0.9m", "until": "peak_ratio < 0.2", "motions": RECORD, "points": 3,
@@ -314,7 +314,7 @@ def answered(verb, arguments):
 def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(rocking_cli.questions.report.study, "MAP_POINTS", 4)
-    Path("in.yaml").write_text("mechanism: block\nwidth: 0.7\nheight: 2.8\nfriction: 0.2\n")
+    Path("in.yaml").write_text("mechanism: block\nwidth: 0.7\nheight: 2.8\nfriction: 0.26\n")
     rows = zip(TIME, RECORD.acceleration, strict=True)
     Path("in.txt").write_text("time,a\n" + "".join(f"{t},{a}\n" for t, a in rows))
     Path("in.csv").write_text(DRAWN)
