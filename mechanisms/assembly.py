@@ -411,11 +411,11 @@ class Assembly(LinkedBodies):
             raise StructureError(f"in the {direction.label} direction {error}") from None
 
     def _as_it_rocks(self, direction: Direction) -> Assembly:
-        """Return the assembly whose weakest mechanism moves: itself, or a single block that slides, without friction.
+        """Return the assembly whose weakest mechanism moves: itself, or a block that slides on its joint, frictionless.
 
         Joints without a coefficient of friction never slide. Time histories check whether it slides instead.
         """
-        return self._unable_to_slide if len(self.blocks) == 1 and self._groups(direction).slides else self
+        return self._unable_to_slide if len(self._contacts) == 1 and self._groups(direction).slides else self
 
     @cached_property
     def _unable_to_slide(self) -> Assembly:

@@ -342,6 +342,7 @@ def simulate_neighbours(
         fell_to=np.where(stands | outcomes.fell, outcomes.fell_to, 1),  # the direction 1 is a placeholder
         unknown=outcomes.unknown & stands,
         peak_ratio=np.where(stands, outcomes.peak_ratio, np.nan),
+        slip=outcomes.slip * stands,
     )
 
 

@@ -188,7 +188,7 @@ FRAMES = {
     "respond_each": (
         "structure; model; motion; scale; polarity; eta; pga_g [g]; pgv [m/s]; outcome; overturned; unknown; "
         "peak_ratio; peak_rotation [rad]; peak_displacement [m]; impact_count; uplift_time [s]; overturning_time [s]; "
-        "end_time [s]; known_to [s]; peak_ratio_at_least; opening",
+        "end_time [s]; known_to [s]; peak_ratio_at_least; opening; slip [m]",
         {"peak_ratio": lambda _, data: [data[model]["peak_ratio"][0][0][0] for model in MODELS]},
     ),
     "respond_around": (
@@ -227,7 +227,7 @@ FRAMES = {
     "shares": ("overturned; stands; unknown; checked", {"stands": lambda _, data: [data["stands"]]}),
     "survey": (
         "rank; name; mechanism; side; row; line; share_lowest; share_highest; overturned; unknown; peak_ratio; "
-        "peak_over; outcome; worst; lambda; "
+        "slip [m]; peak_over; outcome; worst; lambda; "
         "uplift [g]; direction; p [rad/s]; phi_cr [rad]; kappa1; kappa2; eta; no_block; doubt; caution",
         {"p [rad/s]": lambda _, data: [row["p"] for row in data["rows"]]},
     ),

@@ -128,7 +128,8 @@ def test_the_time_near_the_peak_is_that_of_the_demand():
 
 
 def test_less_friction_than_lambda_slides_before_it_rocks():
-    weak, motion = BLOCK.model_copy(update={"friction": 0.15}), shaking()
+    """A block beside a wall does, as its slip is not known in closed form."""
+    weak, motion = BLOCK.model_copy(update={"friction": 0.15, "one_sided": "negative"}), shaking()
     history, found = checked(weak, motion, opening=0.005)
     assert found.slides == pytest.approx(history.uplift_time) and not found.holds
     above = _stretches(found.times, found.demand, 0.15)
@@ -327,7 +328,7 @@ def test_of_several_motions_those_are_named_under_which_joints_do_not_hold(tmp_p
     file = tmp_path / "block.yaml"
     asked = (file, "--pulse", "sine:0.4g:0.8s", "--pulse", "sine:0.1g:0.8s", "--neighbours", 0)
     text = (EXAMPLES / "block.yaml").read_text(encoding="utf-8")
-    file.write_text(text + "friction: 0.2\n", encoding="utf-8")
+    file.write_text(text + "friction: 0.27\n", encoding="utf-8")
     said = " ".join(run("respond", *asked).stdout.split())
     assert said.count("Sliding would start") == 1 and "sine:0.4g:0.8s: Sliding would start at joint" in said
     assert "sine:0.1g:0.8s:" not in said

@@ -13,7 +13,7 @@ from rocking_cli.dynamics.batch import Runs
 from rocking_cli.errors import StructureError
 from rocking_cli.studies.engines import blocks, engine_of, memory
 from rocking_cli.studies.engines.blocks import BlockModel
-from rocking_cli.studies.engines.free_blocks import FAR, HalfPlane, free_blocks
+from rocking_cli.studies.engines.free_blocks import FARTHEST_GROUND, HalfPlane, free_blocks
 from tests.conftest import EXAMPLES, RECORDS, SHARED
 
 pytest.importorskip("mujoco", reason="free blocks need mujoco")
@@ -132,8 +132,11 @@ def test_a_block_falls_off_an_edge_only_where_one_is_drawn_within_its_reach(sign
     history = engine_of("blocks").respond(structure_of(cube), motion)["blocks"]
     assert (history.fell, history.off_edge) == (off, off)
     assert history.blocks.off == ("podium" if off else "")
-    assert history.words == ("falls off the edge of podium" if off else "comes to rest")
-    assert not off or (history.blocks.fell == "cube" and history.fell_to == -sign)
+    assert history.words == ("falls off the edge of podium" if off else "does not uplift")
+    if off:
+        assert history.blocks.fell == "cube" and history.fell_to == -sign
+    else:
+        assert history.blocks.moved[0] == pytest.approx(reach, rel=0.005)
 
 
 def test_a_stele_that_overturns_at_an_edge_does_not_fall_off_it():
@@ -175,7 +178,7 @@ def test_ground_at_two_levels_is_as_wide_as_the_step_between_them_allows():
     free = free_blocks(rk.load_structure(EXAMPLES / "frame.yaml"))
     corners = np.concatenate([z for pieces in free.ground.values() for z in pieces])
     low, high = free.box
-    assert np.ptp(corners.real) > 2 * FAR * abs(high - low)
+    assert np.ptp(corners.real) > 2 * FARTHEST_GROUND * abs(high - low)
 
 
 def test_the_bound_on_the_time_after_a_motion_is_named(monkeypatch):

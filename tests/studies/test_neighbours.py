@@ -287,8 +287,11 @@ class TestWords:
 
     @pytest.mark.parametrize("unknown", [0.0, 0.25, None])
     def test_data_have_no_peak_where_a_neighbour_overturns_or_is_unknown(self, unknown):
-        data = neighbours_data(Neighbours(Neighbourhood(20), "nonlinear", 0.3, OPEN, 0.85, unknown=unknown))
+        slips = np.repeat([0.02, np.inf], [5, 15])
+        found = Neighbours(Neighbourhood(20), "nonlinear", 0.3, OPEN, 0.85, unknown=unknown, slips=slips)
+        data = neighbours_data(found)
         assert data["peak_ratio"] == {"16": 0.1, "50": None, "84": None}
+        assert data["slip"] == {"16": 0.02, "50": None, "84": None}
         assert (data["overturned"], data["unknown"], data["sensitive"]) == (0.3, unknown, True)
 
     def test_deviations_that_are_not_given_are_those_of_the_structure(self):
@@ -320,11 +323,15 @@ class TestWords:
         assert "unknown" in said or "unknown" not in words
 
 
-def test_what_no_slenderness_leaves_standing_overturns_for_certain():
-    """Of two neighbours that slide one has no slenderness left: it has overturned, and its outcome is not unknown."""
-    block = parse_structure("mechanism: block\nwidth: 1\nheight: 5\nfriction: 0.1\n", "block", "block")
+@pytest.mark.parametrize(("friction", "unknown"), [(0.1, False), (0.21, True)])
+def test_what_no_slenderness_leaves_standing_overturns_for_certain(friction, unknown):
+    """Of two neighbours that slide one has no slenderness left: it has overturned, and its outcome is not unknown.
+
+    That of the other is unknown unless it only slides, with less friction than .2.
+    """
+    block = parse_structure(f"mechanism: block\nwidth: 1\nheight: 5\nfriction: {friction}\n", "block", "block")
     model = build_model(block, "nonlinear")
     draws = Draws(np.ones(2), np.array([-0.1, 1.0]), np.full((2, 2), np.nan))
     found = simulate_neighbours(model, ACCEL, draws)
-    assert found.fell.tolist() == [True, False] and found.unknown.tolist() == [False, True]
-    assert np.isnan(found.peak_ratio[0])
+    assert found.fell.tolist() == [True, False] and found.unknown.tolist() == [False, unknown]
+    assert np.isnan(found.peak_ratio[0]) and (found.slip > 0).tolist() == [False, not unknown]
