@@ -413,7 +413,7 @@ def check_one_sided(mechanism: Mechanism) -> None:
 
 def check_stops(mechanism: Mechanism) -> None:
     """Refuse stops of bodies that do not exist, or without a distance."""
-    names = [body.name for body in mechanism.bodies()]
+    names = [body.name for body in mechanism.bodies()] if mechanism.stops else []
     for k, stop in enumerate(mechanism.stops or ()):
         if stop.gap == 0:
             raise RefusedFields(("stops", k), "gap", "must not be 0: describe what leans on a wall by `one_sided`")

@@ -108,5 +108,5 @@ def test_fields_without_names_are_told_their_names(name):
 
 
 def test_units_are_beside_the_names():
-    with pytest.raises(rk.InputError, match=r"^Block takes its fields by name: width \[m\], height \[m\]; also name, "):
+    with pytest.raises(rk.InputError, match=r"^Block takes its fields by name: width \[m\], height \[m\]; also plane, name, "):
         rk.Block(0.5, height=2.2)
