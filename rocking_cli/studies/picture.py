@@ -38,6 +38,7 @@ from rocking_cli.studies.hung import Carried, End, Strand, carried, strands, wal
 NODES_PER_SIDE = 60  # linear interpolation in the table of positions has an error of 1e-4 of the size
 MAX_LIMIT_SHARE = 0.999  # a linkage has no derivatives at its kinematic limit
 SAME_POINT_SHARE = 1e-6  # share of the size within which points coincide
+TOO_SMALL = "it is too small to be drawn: check the sizes and their units"
 MIN_SIZE = 1e-150  # m; scales of smaller drawings overflow
 MIN_TURN = 1e-9  # rate below which a body does not turn
 START_SHARE = 0.05  # displacement of the fastest part over the size, in a drawing of an initial motion
@@ -550,14 +551,16 @@ def _picture(mechanism: Mechanism, collapses: Mapping[Direction, CollapseMechani
     met: dict[Direction, Bound] = {}
     starts = not all(each.lead or not each.velocities for each in collapses.values())
     if not starts:
+        if not extent(mechanism) > MIN_SIZE:
+            raise StructureError(TOO_SMALL)
         phi_cr = {direction: _critical(mechanism, direction) for direction in mechanism.directions}
         limit = {direction: MAX_LIMIT_SHARE * mechanism.limit(direction) for direction in mechanism.directions}
         met = {side: each for side, each in mechanism.bounds.items() if each is not None and each.kind != "yields"}
         limit |= {direction: bound.phi for direction, bound in met.items()}
         sketch = replace(sketch, notes=[*sketch.notes, *(f"{side.label}: {each.words}" for side, each in met.items())])
     seen = {direction: limit[direction] if phi is None else phi for direction, phi in phi_cr.items()}
-    if not starts and not (min(seen.values()) > 0 and extent(mechanism) > MIN_SIZE):
-        raise StructureError("it is too small to be drawn: check the sizes and their units")
+    if not starts and not min(seen.values()) > 0:
+        raise StructureError(TOO_SMALL)
     parts = tuple(
         DrawnPart(
             body.name,
