@@ -17,6 +17,10 @@ from rocking_cli.views.view import Table, View, force_unit, heading, number
 MAX_NAMED_BLOCKS = 6  # blocks of a part that are named; of a larger part, only SAMPLE_OF_BLOCKS
 SAMPLE_OF_BLOCKS = 3
 FRICTION_TOLERANCE = 1e-6  # relative difference within which a mechanism uses all of the given friction
+PASSIVE = (
+    "Ties of steel have no force before the structure moves: lambda is that without them. `rocking verify` counts "
+    "their strength."
+)
 MAX_JOINT_ROWS = 24  # number of joints up to which all are listed; with more, only those that move
 
 
@@ -26,6 +30,7 @@ def view(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism]) -> 
     for direction, each in found.items():
         parts += [_hinges(direction, each), *_sentences(mechanism, each)]
         parts += _thrust(direction, each, *force_unit(mechanism))
+    parts += [PASSIVE] if mechanism.hung.bars else []
     parts += [f"Caution: {caution}"] if (caution := mechanism.own_caution()) else []
     theorems = (
         " lambda is both the greatest acceleration that can be carried without tension (static theorem) and the "
