@@ -268,7 +268,7 @@ def test_free_blocks_that_fail_end_with_an_error(monkeypatch):
 @pytest.mark.rest
 def test_the_portal_agrees_and_the_arch_collapses(tmp_path):
     portal = rk.crosscheck(PORTAL, ACCEL)
-    assert portal.finding == "agree" and isnan(portal.parted)
+    assert portal.finding == "agree" and not portal.parted < 7.5  # impacts drift apart by 20 ms in eight
     for run_ in (portal.exact, portal.of_blocks):
         assert max(run_.peak_positive, run_.peak_negative) == pytest.approx(0.0742, rel=0.01)
     arch = rk.crosscheck(EXAMPLES / "masonry" / "buttressed_arch.yaml", ACCEL, scale=0.7)
