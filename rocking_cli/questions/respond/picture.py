@@ -81,6 +81,9 @@ def draw_history(
     -------
     matplotlib.figure.Figure
     """
+    histories = _valid(histories)
+    reversed_histories = _valid(reversed_histories) if reversed_histories is not None else None
+    slides = [run for each in (histories, reversed_histories or {}) for run in each.values() if run.slid is not None]
     responses = {"": histories}
     if reversed_histories is not None:
         responses = {"polarity 1": histories, "polarity -1": reversed_histories}
@@ -89,7 +92,7 @@ def draw_history(
     watched = Watched(structure.mechanism) if structure is not None else None
     tied = watched is not None and bool(watched.ties) and any(not run.by_blocks for run in histories.values())
     each_has = [1.8, 1.0] if tied else [1.8]
-    shaken, rubs = motion is not None, bool(contacts)
+    shaken, rubs = motion is not None, bool(contacts or slides)
     height = 1.5 * shaken + (3.2 + 1.8 * tied) * len(responses) + 1.7 * rubs
     ratios = [1.0] * shaken + each_has * len(responses) + [0.9] * rubs
     figure, every = style.panels(height, len(ratios), sharex=True, height_ratios=ratios)
@@ -116,7 +119,7 @@ def draw_history(
             _hatch_unknown(axes, until[what], (start, end))
             keys.append((axes, _draw_forces(axes, each, watched)))
     if rubs:
-        keys.append((panels[-1], _draw_contacts(panels[-1], contacts)))
+        keys.append((panels[-1], _draw_slips(panels[-1], slides) if slides else _draw_contacts(panels[-1], contacts)))
         _hatch_unknown(panels[-1], max(list(until.values())[: len(contacts)]), (start, end))
     figure.align_ylabels(panels)  # not those of others in a figure of the user
     unnamed = name_points(marks)
@@ -124,6 +127,24 @@ def draw_history(
         mark.set_label(str(mark.get_label()).replace("\n", ", "))
     style.legends_below(figure, [(axes, [*curves, *unnamed.get(axes, [])]) for axes, curves in keys])
     return figure
+
+
+def _valid(histories: Runs) -> Runs:
+    """Return the histories of a structure that slides without those of its blocks, which rock; or all of them."""
+    slides = any(run.slid is not None for run in histories.values())
+    return {name: run for name, run in histories.items() if not slides or run.slid is not None or run.by_blocks}
+
+
+def _draw_slips(axes: Axes, slides: Sequence[History]) -> list[Line2D]:
+    """Draw the slip of one history, or of those of both polarities; return the curves."""
+    curves = []
+    for k, run in enumerate(slides):
+        assert run.slid is not None
+        label = f"slip, polarity {1 - 2 * k}" if len(slides) > 1 else "slip of the foot"
+        look = {**style.family(k), "linewidth": style.MEDIUM, "label": label}
+        curves += axes.plot(run.time, run.slid.displacement, **look)
+    style.tidy(axes, y="slip [m],\nto the right")
+    return curves
 
 
 def _last(run: History) -> float:

@@ -6,6 +6,7 @@ import csv
 
 import pytest
 
+import rocking_cli as rk
 from tests.cli.test_cli import run, run_json
 
 G = 9.80665
@@ -72,3 +73,14 @@ def test_margins_know_that_it_stands():
     found = run_json("margin", "cube.yaml", "--pulse", "sine:0.5g:1s", "--neighbours", 20)
     (motion,) = found["motions"]
     assert set(motion["shares"]) == {0.0} and set(motion["unknown"]) == {0.0}
+
+
+def test_the_picture_of_a_body_that_slides_has_its_slip_and_no_block_that_rocks():
+    plinth = rk.Block(width=0.4, height=0.9, friction=0.15)
+    answer = rk.respond(plinth, "sine:0.9g:1s", neighbours=0)
+    assert answer["linear2"].fell  # an equivalent block cannot slide
+    *_, rotation, slip = answer.figure().axes
+    assert slip.get_ylabel().startswith("slip")
+    (curve,) = slip.get_lines()[:1]
+    assert max(abs(curve.get_ydata())) == pytest.approx(abs(answer["nonlinear"].slid.largest), rel=0.01)
+    assert not any("linear, " in str(line.get_label()) for line in rotation.get_lines())
