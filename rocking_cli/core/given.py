@@ -83,7 +83,7 @@ class Stop(Described):
 
     name: Name = Field("the stop", description="what to call it")
     body: Name | None = Field(None, description="the body, by its name in the picture; optional for a single body")
-    point: Vertex = point("the point of the body that meets it", alias="point")
+    point: Vertex = point("the point of the body that meets it")
     gap: float = quantity(
         "distance to it at rest, to the right of the point; negative: to the left",
         unit="m",

@@ -352,7 +352,7 @@ def _is_final(member: object) -> bool:
 
 
 PLACES_OF_POINTS = 1025  # rotations at which it is looked how far a point has moved, or a tie is stretched
-SCANNED = 65  # rotations at which the potential energy is compared with that at rest, and stops are looked for
+SCANNED = 65  # rotations at which the potential energy is compared with that at rest
 SAME_PLACE = 1e-6  # difference of the rotations at which a wall is met, and its stop, by rounding
 SHARE_OF_LIMIT = 0.999  # of the kinematic limit, at which linkages have no derivatives
 RESTITUTION_ROUNDING = 1e-9  # relative excess over the bound that is allowed, as equal sides reach the bound

@@ -1248,9 +1248,9 @@ def follow(structure, motion, start, loose, rtol, most_impacts, brief, watch, sa
                     for last_moment in range(2):
                         pressed, at = later, end if last_moment == 1 else tau
                         later = pressure(structure, law, s * (u0 + ramp * at), g + grade * at)
-                    until = end if later > 0 else tau
-                    if later <= 0 < pressed:
-                        until += (end - tau) * pressed / (pressed - later)
+                    until = tau
+                    if pressed > 0:
+                        until = end if later > 0 else tau + (end - tau) * pressed / (pressed - later)
                     if watched and until > tau:
                         later = max(later, 0.0)
                         there, ground = State(q, 0.0, 0.0), Ground(s * u0, s * ramp, g, grade)

@@ -396,7 +396,8 @@ class BarAtStrength(Spring):
 
     def pull(self, e: Reals, going: Reals) -> Reals:
         """Return the force with which one tie acts [N], at rest in a direction that stretches it."""
-        return np.where((e == 0) & (going < 0), 0.0, self.force(e))
+        # A tie across the motion neither stretches nor shortens at first, whatever rounding says of its rate [m/rad].
+        return np.where((e == 0) & (going < -COINCIDENT_DISTANCE), 0.0, self.force(e))
 
     def energy(self, e: Reals) -> Reals:
         """Return the work of the strength [J]; a slack tie takes up none."""
