@@ -121,9 +121,10 @@ def test_weight_on_small_blocks_stiffens_contacts():
     bare = heavy(1.0)[2]
     for ratio in (1.0, 10.0, 100.0, 1000.0):
         exact, free, time_constant = heavy(ratio)
-        assert free == pytest.approx(exact, rel=0.015)
+        most = 0.015 if ratio == 100.0 else 0.005  # that second maximum depends on the smallest change
+        assert free == pytest.approx(exact, rel=most)
     without = heavy(ratio, time_constant / bare)
-    assert abs(without[1] / exact - 1) > 2 * abs(free / exact - 1)
+    assert abs(without[1] / exact - 1) > 0.01
 
 
 def portal(scale=1.0, mirrored=False):
