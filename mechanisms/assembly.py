@@ -257,22 +257,8 @@ class Assembly(LinkedBodies):
         for direction in self.directions:
             self._check_collapses(direction)
         for direction in self.directions:
-            collapse = self._collapse(direction)
-            if not collapse.unique:
-                examples = in_short(
-                    list(dict.fromkeys(in_short(shared.moves, " and ") for shared in collapse.several)), "; "
-                )
-                what = "Change a size or a density by a little, or tie what should not part"
-                if self.friction is not None and isclose(
-                    collapse.multiplier, self.friction, rel_tol=SLIDING_DIFFERENCE
-                ):
-                    what = "This equals the friction given: the blocks slide, and no rocking model exists for sliding"
-                raise self._refused(
-                    ("blocks",),
-                    f"in the {direction.label} direction several mechanisms start at {collapse.multiplier:.6g} g, "
-                    f"with these moving blocks: {examples}. {what}",
-                )
-            self._check_lead(direction)
+            if self._collapse(direction).unique:
+                self._check_lead(direction)
 
     def _check_collapses(self, direction: Direction) -> None:
         try:
@@ -442,14 +428,17 @@ class Assembly(LinkedBodies):
     def _linkage(self, direction: Direction) -> LinkageMotion:
         if direction not in self.directions:
             raise StructureError(f"it cannot rock in the {direction.label} direction")
-        mechanism = self._as_it_rocks(direction)._groups(direction)
+        rocking = self._as_it_rocks(direction)
+        if not rocking._collapse(direction).unique:
+            raise StructureError(rocking._several(direction))
+        mechanism = rocking._groups(direction)
         if mechanism.slides:
             where = in_short([self._joint(k) for k in mechanism.slides])
             raise StructureError(
                 f"in the {direction.label} direction the mechanism slides between {where} at "
                 f"{self._collapse(direction).multiplier:.4g} g{self._beside(direction)}: no rocking model exists for "
-                "sliding. `rocking "
-                "collapse` shows the mechanism and the friction required"
+                "sliding, which free blocks can simulate. `rocking collapse` shows the mechanism and the friction "
+                "required"
             )
         pins = [
             Pin(letter, tuple(name for name in (contact.a, contact.b) if name in self.blocks), at)
@@ -489,6 +478,18 @@ class Assembly(LinkedBodies):
                 "let another block lead"
             )
         return linkage
+
+    def _several(self, direction: Direction) -> str:
+        """Return which mechanisms start together, and what makes one of them start first."""
+        collapse = self._collapse(direction)
+        moving = in_short(list(dict.fromkeys(in_short(each.moves, " and ") for each in collapse.several)), "; ")
+        what = "Change a size or a density by a little, tie what should not part, or simulate it as free blocks"
+        if self.friction is not None and isclose(collapse.multiplier, self.friction, rel_tol=SLIDING_DIFFERENCE):
+            what = "This equals the friction given: the blocks slide, which free blocks alone can simulate"
+        return (
+            f"in the {direction.label} direction several mechanisms start at {collapse.multiplier:.6g} g, with these "
+            f"moving blocks: {moving}. {what}"
+        )
 
     def _check_slips_off(self, direction: Direction, linkage: LinkageMotion) -> None:
         """Raise an error if a corner that slips along a frictionless face does not lift off this face."""
@@ -708,7 +709,7 @@ class Assembly(LinkedBodies):
         state = self._collapse(direction)
         friction, thrust = self._needed(direction), self._thrust(direction)
         parts = {name: "+".join(group) for group in mechanism.groups for name in group}
-        no_model = "" if mechanism.slides else self._no_model(direction)
+        no_model = "" if mechanism.slides and state.unique else self._no_model(direction)
         moves = not mechanism.slides and not no_model
         valid = self._valid_to(direction) if moves else None
         return CollapseMechanism(

@@ -229,6 +229,17 @@ def test_a_deck_falls_off_its_seat():
     assert "where deck falls off the edge of left" in answer.view.data["verdict"]
 
 
+def test_columns_that_start_together_move_as_each_alone():
+    ground, motion = {"floor": box(-5, 12, -0.5, 0)}, sine(0.3, 0.8)
+    pair = assembly({"a": box(0, 1, 0, 4), "b": box(5, 6, 0, 4)}, ground, 0.6)
+    with pytest.raises(StructureError, match=r"several mechanisms start at 0\.25 g, with these moving blocks: a; b"):
+        rk.respond(pair, motion)
+    answer = rk.respond(pair, motion, engine="auto")
+    alone = rk.respond(assembly({"a": box(0, 1, 0, 4)}, ground, 0.6), motion, engine="blocks")["blocks"]
+    turned = answer.to_dict()["responses"]["blocks"]["blocks"]["rotation"]
+    assert turned == pytest.approx(max(alone.peak_positive, alone.peak_negative), rel=0.02)
+
+
 def test_architraves_over_one_column_and_several_motions():
     answers = rk.respond(ARCHITRAVES, [sine(0.3, 0.3), sine(1.0, 1.5)], engine="auto")
     first, second = (each["blocks"] for each in answers.values())

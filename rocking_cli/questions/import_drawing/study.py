@@ -14,7 +14,7 @@ import numpy as np
 from rocking_cli.arrays import Points
 from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
-from rocking_cli.errors import StructureError
+from rocking_cli.errors import MechanismError, StructureError
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, LineDrawing
 from rocking_cli.questions.import_drawing import mortar
 from rocking_cli.questions.import_drawing.attached import DECIMALS, BodyFinder, DrawnAttachments, attached, rounded
@@ -42,7 +42,6 @@ EXTENT = 1e-5  # to which width and height are known [m]
 CIRCLE_SHARE = 0.05  # of the closing distance, to which depths of overlaps are known
 MAX_MORTAR = 0.05  # width of gaps that may be joints [m]
 MAX_ANALYSED = 60  # bodies up to which it is checked too that they stand, by limit analysis
-TOGETHER = "several mechanisms start"  # what an assembly says that only a change of its sizes mends
 MAX_CHECKED = 300  # bodies up to which the mechanism checks its fields; of more, this study alone
 
 
@@ -227,7 +226,7 @@ def structure_from(drawing: LineDrawing, options: ImportOptions, name: str, file
         kind, fields, bodies, [ring.chords(options.tolerance) for ring in ground], _joints(bodies, ground), units, per,
         origin, [*notes, *extra.notes], extra.comments, mended, grey, [at for _, at, _, _ in extra.supports],
     )  # fmt: skip
-    return replace(result, notes=[*result.notes, *_refused_together(result, file)])
+    return replace(result, notes=[*result.notes, *_checked_by_mechanism(result, file)])
 
 
 def _extent(bodies: Sequence[DrawnBody]) -> tuple[Any, Any]:
@@ -543,8 +542,8 @@ def _check_weights(
         raise DrawingError("density", what, file, frame.pairs([body.ring.moments.centroid for body in blamed]))
 
 
-def _refused_together(result: Imported, file: str) -> list[ImportNote]:
-    """Return a note if several mechanisms start together; such a file is written, as only its user can change it.
+def _checked_by_mechanism(result: Imported, file: str) -> list[ImportNote]:
+    """Return a note if the structure has no rocking model, as one in which several mechanisms start together.
 
     Of many bodies the joints are checked, but not whether they stand, as the limit analysis takes long.
 
@@ -562,25 +561,28 @@ def _refused_together(result: Imported, file: str) -> list[ImportNote]:
     try:
         if len(result.bodies) > MAX_ANALYSED:
             mechanism.model_validate(dict(result.fields), context={"folder": None, "weights": []})
-        else:
-            mechanism.from_fields(result.fields)
+            return []
+        structure = mechanism.from_fields(result.fields)
     except ValidationError as error:
         faults = error.errors(include_url=False)
         words = [": ".join(filter(None, (".".join(map(str, each["loc"])), each["msg"]))) for each in faults[:3]]
-        if not all(TOGETHER in fault["msg"] for fault in faults):
-            blamed = [
-                body.ring.moments.centroid for body in result.bodies
-                if len(result.bodies) == 1 or any(body.name in f["loc"] or repr(body.name) in f["msg"] for f in faults)
-            ]  # fmt: skip
-            at = DrawingFrame(result.per_unit, result.shift).pairs(blamed)
-            if any(fault.get("ctx", {}).get("field") == ("depth",) for fault in faults):
-                what = "a density needs the depth of the structure: give `depth`"
-                raise DrawingError("density", what, file, at) from None
-            what = f"{result.kind} cannot take it: {'; '.join(words)}{_nearest_gap(result, joined)}"
-            raise DrawingError("mechanism", what, file, at) from None
-        return [ImportNote("together", 1, f"other commands refuse the file as it is: {'; '.join(words)}")]
+        blamed = [
+            body.ring.moments.centroid for body in result.bodies
+            if len(result.bodies) == 1 or any(body.name in f["loc"] or repr(body.name) in f["msg"] for f in faults)
+        ]  # fmt: skip
+        at = DrawingFrame(result.per_unit, result.shift).pairs(blamed)
+        if any(fault.get("ctx", {}).get("field") == ("depth",) for fault in faults):
+            what = "a density needs the depth of the structure: give `depth`"
+            raise DrawingError("density", what, file, at) from None
+        what = f"{result.kind} cannot take it: {'; '.join(words)}{_nearest_gap(result, joined)}"
+        raise DrawingError("mechanism", what, file, at) from None
     except StructureError as error:  # the analysis of the assembly found no answer
         raise DrawingError("mechanism", f"{result.kind} cannot take it: {error}", file) from None
+    try:
+        for direction in structure.directions:
+            structure.uplift(direction)
+    except MechanismError as error:
+        return [ImportNote("no_model", 1, f"most commands refuse the file as it is: {error}")]
     return []
 
 
