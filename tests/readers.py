@@ -10,6 +10,7 @@ import random
 import re
 import subprocess
 import sys
+import tempfile
 import warnings
 import zipfile
 from functools import cache
@@ -19,6 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tests import hostile
+from tests.excitation import networks
 from tests.excitation.test_record_formats import MADE
 
 MEMORY = 10**9  # bytes of address space of a process, where the system can limit it
@@ -37,10 +39,13 @@ class Sample(NamedTuple):
 
 @cache
 def samples() -> dict[str, Sample]:
-    """A small good file for each record reader, and two packed ones; SAC and miniSEED only if obspy is installed."""
+    """A small good file for each record reader, and two packed ones; those of obspy only if it is installed."""
     texts = dict(zip([*MADE, "peer_at2", "text", "column"], hostile.records(), strict=True))
     found = {name: Sample(text.encode()) for name, text in texts.items()}
     found["column"] = found["column"]._replace(options=("--dt", "0.01"))
+    for name, make in networks.MADE.items():
+        found[name] = Sample(make().encode(), ("--channel", "1"))
+    found["geonet_v1a"] = Sample(networks.geonet_v1a(names=("N10E",)).encode())
     for name, content in _seismic().items():
         found[name] = Sample(content, ("--units", "g"))
     found["gzip"] = Sample(gzip.compress(found["peer_at2"].content, mtime=0))
@@ -60,12 +65,15 @@ def _seismic() -> dict[str, bytes]:
         except ImportError:
             return {}
         values = np.array([0.0, 0.5, -0.25, 0.75, -1.0, 0.125] * 40, dtype=np.float32)
-        trace = obspy.Trace(values, {"delta": 0.005, "network": "XX", "station": "STA", "channel": "HNE"})
         found = {}
-        for name, form in (("sac", "SAC"), ("miniseed", "MSEED")):
-            written = io.BytesIO()
-            obspy.Stream([trace]).write(written, format=form)
-            found[name] = written.getvalue()
+        forms = {"sac": "SAC", "miniseed": "MSEED", "slist": "SLIST", "gse": "GSE2", "obspy": "AH"}
+        for name, form in forms.items():
+            samples = (8 * values).astype("i4") if form == "GSE2" else values
+            trace = obspy.Trace(samples, {"delta": 0.005, "network": "XX", "station": "STA", "channel": "HNE"})
+            path = Path(tempfile.gettempdir()) / f"{os.getpid()}.{name}"  # not all of obspy writes to a buffer
+            obspy.Stream([trace]).write(str(path), format=form)
+            found[name] = path.read_bytes()
+            path.unlink()
     return found
 
 

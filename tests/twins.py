@@ -129,11 +129,11 @@ def shaking(vertical: bool, factor: float = 1.0) -> tuple[GroundMotion, Ground]:
     u, v = factor * (1.1 * np.cos(11 * t) - 5.0 * np.sin(6.0 * t)), 3.0 * np.cos(9.0 * v_t) - 0.5
     u[0] = u[-1] = 0.0
     v[0] = v[-1] = 0.0
-    up = GroundMotion("up", v_dt, v)
+    up = GroundMotion("up", v_dt, v, unit="m/s2")
     both = np.union1d(np.round(t, 12), np.round(v_t, 12))
     ground = Ground(
         both.tolist(),
         np.interp(both, t, u, right=0.0).tolist(),
         np.interp(both, v_t, v, right=0.0).tolist() if vertical else None,
     )
-    return GroundMotion("shaking", dt, u, vertical=up if vertical else None), ground
+    return GroundMotion("shaking", dt, u, vertical=up if vertical else None, unit="m/s2"), ground

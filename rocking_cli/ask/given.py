@@ -14,7 +14,7 @@ from rocking_cli.ask.ground_motions import type_in_words
 from rocking_cli.ask.numbers import refuse_idle
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.core import CollapseMechanism, Direction, Mechanism
-from rocking_cli.core.mechanism import doubts
+from rocking_cli.core.plausible import doubts
 from rocking_cli.core.structure_file import default_name, parse_structure
 from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.errors import InputError, MechanismError, Problem, RockingError, of_structure
@@ -23,7 +23,7 @@ from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.excitation.records.opening import STANDARD_INPUT, name_of, original
 from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import decoded, read_text
-from rocking_cli.names import OPENING
+from rocking_cli.names import LANGUAGES, OPENING
 from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.text import numbered, one_line
@@ -159,6 +159,15 @@ def site_of(given: SiteLike) -> SiteFile:
     if isinstance(given, Mapping):
         return site_in(parse(json_text(given), "site", "site", SITE_HINT))
     return read_site(Path(given))
+
+
+def language_of(asked: str | None, site: SiteFile | None, watch: Watcher = SILENT) -> str:
+    """Return the language of an answer: as asked, or that of the site; the watcher is told in it from then on."""
+    language = asked or (site.site.language if site is not None else None) or LANGUAGES[0]
+    if language not in LANGUAGES:
+        raise InputError(Problem(f"must be one of {', '.join(LANGUAGES)}, got {language!r}", field="`language`"))
+    watch.speak(language)
+    return language
 
 
 def joined(errors: Sequence[RockingError]) -> InputError:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import warnings
 from contextlib import AbstractContextManager, nullcontext
 from typing import TYPE_CHECKING, Any, Protocol
 
-from rocking_cli.errors import DoubtWarning, RockingError
+from rocking_cli.errors import DoubtWarning, RockingError, warn
 
 if TYPE_CHECKING:
     from rocking_cli.ask.answer import Answer
@@ -32,12 +31,15 @@ class Watcher:
     def __repr__(self) -> str:
         return f"{type(self).__name__}()"  # as it stands in the signature of a verb
 
+    def speak(self, language: str) -> None:
+        """Take the language of the answer."""
+
     def note(self, text: str) -> None:
         """Take a note, such as which record was read."""
 
     def warn(self, text: str) -> None:
         """Take a warning, such as of a record that drifts: here, a `DoubtWarning` of Python."""
-        warnings.warn(DoubtWarning(text), stacklevel=2)
+        warn(DoubtWarning(text))
 
     def detail(self, text: str) -> None:
         """Take a detail, for those who ask for it."""

@@ -38,8 +38,8 @@ class Doubt(NamedTuple):
     final_displacement [m]; clipped [number of samples]; p_dt [1].
 
     Keywords that a reader sets for a file: columns [number of rows; the line number in free text], digits [line
-    number], count [number of points], header_peak [unit of the header], header_time, header_length and uneven [s],
-    resolution [g].
+    number], count [number of points], run_on [columns], header_peak [unit of the header], header_time, header_length
+    and uneven [s], resolution [g].
     """
 
     kind: str
@@ -84,10 +84,11 @@ class GroundMotion:
     acceleration : ndarray, shape (npts,)
         Ground acceleration at t = 0, dt, 2 dt, ..., in `unit`; the motion keeps a read-only copy in m/s2.
     unit : str
-        Unit in which the acceleration is given, such as "g", "cm/s2" or "gal"; m/s2 by default. The motion itself is
-        always in m/s2.
+        Unit in which the acceleration is given, such as "g", "m/s2" or "gal", which is never guessed. The motion itself
+        is always in m/s2.
     source_unit : str
-        Unit of the source, such as that of a record's file, for information only: `unit` by default.
+        Unit of the source, such as that of a record's file, for information only: `unit` by default. With it, the
+        acceleration may be given in m/s2 without a `unit`.
     format : str
         Source of the motion: a record format, or `"array"`.
     vertical : GroundMotion, optional
@@ -110,7 +111,7 @@ class GroundMotion:
     ------
     InputError
         If there are fewer than two samples, they are complex or have several dimensions, a sample or dt is not finite,
-        dt is not positive, `every` is below 1, or `unit` is not that of an acceleration.
+        dt is not positive, `every` is below 1, or `unit` is missing or not that of an acceleration.
 
     Examples
     --------
@@ -123,7 +124,7 @@ class GroundMotion:
     dt: float
     acceleration: Reals
     _: KW_ONLY
-    unit: InitVar[str] = "m/s2"
+    unit: InitVar[str | None] = None
     source_unit: str = ""
     format: str = ARRAY
     vertical: GroundMotion | None = None
@@ -134,11 +135,16 @@ class GroundMotion:
     ground: GroundMotion | None = None
     origin: Origin = NOT_SAID
 
-    def __post_init__(self, unit: str) -> None:
+    def __post_init__(self, unit: str | None) -> None:
+        if unit is None and not self.source_unit:
+            hint = "give it, such as unit='g' or unit='m/s2'"
+            raise InputError(
+                Problem("is missing: samples in an array need their unit", self.name, field="`unit`", hint=hint)
+            )
         if np.iscomplexobj(self.acceleration):
             raise InputError(Problem("must be real numbers", self.name, field="`acceleration`"))
         samples = _own(np.ma.filled(self.acceleration, np.nan), np.float64)
-        if unit != "m/s2":
+        if unit not in (None, "m/s2"):
             try:
                 samples = _own(samples * read(f"1 {unit}", "m/s2"), np.float64)
             except UnitError as error:
@@ -157,6 +163,7 @@ class GroundMotion:
         if self.every < 1:
             raise InputError(f"{self.name}: a history keeps one of at least 1 sample, got {self.every}")
         object.__setattr__(self, "acceleration", samples)
+        object.__setattr__(self, "unit", "m/s2")  # of the copy, also for `replace`
         if self.points is not None:
             object.__setattr__(self, "points", _own(self.points, np.intp))
 

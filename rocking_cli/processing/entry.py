@@ -108,7 +108,7 @@ def of_reading(reading: Reading, folder: Path) -> dict[str, Any]:
         Folder to which the entry's files are to be relative.
     """
     items = {
-        option.key or name: value if isinstance(value, float | str) else str(value)
+        option.key or name: value if isinstance(value, bool | float | str) else str(value)
         for name, option in READING.items()
         if (value := reading.options.get(name)) is not None
     }

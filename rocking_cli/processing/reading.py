@@ -18,7 +18,7 @@ from rocking_cli.processing.reading_options import ALL_AZIMUTHS, READING, Readin
 from rocking_cli.processing.steps import Factor, Lowpass, Resample, Step, of_vertical, process
 from rocking_cli.text import exact
 
-OF_FILES = ("dt", "units", "channel", "quantity", "gain")
+OF_FILES = ("dt", "units", "channel", "quantity", "gain", "run_on", "despite_header")
 OF_PAIRS = ("other", "other_channel", "azimuth")
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 ALL_AZIMUTHS = "all"
 """The azimuth that stands for every direction."""
 QUANTITIES = ("acceleration", "velocity", "displacement")
-UNITS = ("g", "m/s2", "cm/s2", "mm/s2", "gal", "mg", "%g")
+UNITS = ("g", "m/s2", "cm/s2", "mm/s2", "gal", "mg", "%g", "ft/s2", "in/s2")
 """Units of acceleration, repeated here so that the help needs no numpy; a test compares both lists."""
 
 
@@ -35,7 +35,7 @@ class Option(NamedTuple):
     parse : callable
         Returns the value of what the user gives, as text or in another form. Raises `InputError`.
     metavar : str
-        Placeholder of its value in the help.
+        Placeholder of its value in the help; empty for a flag.
     key : str
         Its name in files, and with dashes on the command line; empty if it is that of the argument.
     """
@@ -94,6 +94,15 @@ def _gain(value: Any) -> Any:
     return value if isinstance(value, Gain) else Gain.parse(str(value))
 
 
+def _flag(name: str) -> Callable[[Any], bool]:
+    def parse(value: Any) -> bool:
+        if not isinstance(value, bool):
+            raise _refused(name, f"must be true or false, got {value!r}", "leave it out for false")
+        return value
+
+    return parse
+
+
 def _channel(value: Any) -> str:
     if isinstance(value, bool) or not isinstance(value, str | int):
         raise _refused("channel", f"must be a number, from 1, or a name, got {value!r}", "messages list the channels")
@@ -145,6 +154,11 @@ class ReadingArguments(TypedDict, total=False):
     gain: Annotated["Gain | str | None", Option(
         "Instrument sensitivity: the value of one unit of the record, such as 0.05m/V or 4.7e-6m/s2/count.",
         _gain, "GAIN")]
+    run_on: Annotated[bool | None, Option(
+        "Read a text without times as one series that runs on over its rows.", _flag("run_on"), "")]
+    despite_header: Annotated[bool | None, Option(
+        "Accept a text with other numbers of points or peaks than its header states, as it was cut on purpose.",
+        _flag("despite_header"), "")]
     other: Annotated["str | Path | None", Option(
         "Second horizontal component, perpendicular to the record; the two are rotated into the plane of the "
         "structure.", _file, "FILE", "with")]

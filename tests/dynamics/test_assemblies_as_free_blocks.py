@@ -25,7 +25,7 @@ def test_seventy_assemblies_as_two_other_engines_of_free_blocks_have_them():
     for name, one in given.items():
         fields = {key: value for key, value in one["structure"].items() if key != "mechanism"}
         structures.append(Structure(Registry()["assembly"](**fields)))
-        motions.append(GroundMotion(name, one["record"]["dt"], 9.80665 * np.array(one["record"]["a_g"])))
+        motions.append(GroundMotion(name, one["record"]["dt"], 9.80665 * np.array(one["record"]["a_g"]), unit="m/s2"))
     models = [structure.model("nonlinear") for structure in structures]
     runs = Runs.of(range(len(given)), range(len(given)))
     engine = engine_of("blocks", [structure.mechanism for structure in structures])

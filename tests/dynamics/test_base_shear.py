@@ -12,7 +12,7 @@ from tests import oracle
 from tests.following import build_model
 
 TIME = 0.005 * np.arange(500)
-SHAKING = GroundMotion("two sines", 0.005, 3.2 * np.sin(5 * TIME) * np.sin(1.3 * TIME))
+SHAKING = GroundMotion("two sines", 0.005, 3.2 * np.sin(5 * TIME) * np.sin(1.3 * TIME), unit="m/s2")
 MASS = 5000.0
 
 

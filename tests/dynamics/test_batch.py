@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+import rocking_cli as rk
 from mechanisms.arch import Arch
 from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
@@ -33,6 +34,23 @@ FREE = {"free frame": lambda k=1.0: UncheckedFrame(**MECHANISMS["frame"](k).mode
 COLUMNS = OUTCOME_FIELDS
 
 
+@pytest.mark.parametrize("friction", [0.25, 0.8])
+def test_columns_are_out_of_step_where_one_alone_is_unknown(friction):
+    """On a friction by which a column that carries nothing slides, and does not overturn, three are not known."""
+    frame = {"column_width": 0.5, "column_height": 2.5, "mass_ratio": 2.0, "friction": friction}
+    motion = rk.parse_pulse("sine:0.5g:0.3s").sampled()
+    two = respond(rk.SymmetricFrame(**frame, columns=2), motion, models=("nonlinear",))["nonlinear"]
+    alone = respond(Block(width=0.5, height=2.5, friction=friction), motion, models=("nonlinear",))["nonlinear"]
+    assert not (two.unknown or two.fell or alone.fell) and two.impact_count > 0
+    assert alone.unknown == (friction == 0.25)
+    made = rk.SymmetricFrame(**frame, columns=3)
+    three = respond(made, motion, models=("nonlinear",))["nonlinear"]
+    many = respond_many(build_models(made, ("nonlinear",)), [motion], Runs.of(0, 0, scale=[1.0, 1.0]))
+    assert three.unknown == alone.unknown and many.unknown.tolist() == [alone.unknown] * 2
+    if alone.unknown:
+        assert three.apart and three.known_to == two.first_impact == many.known_to[0]
+
+
 @cache
 def models(name, k=1.0):
     return build_models((MECHANISMS | FREE)[name](k))
@@ -44,13 +62,13 @@ def motions():
     rng = np.random.default_rng(5)
     envelope = np.hanning(120)
     shaking = [3.0 * envelope * rng.normal(size=120), 3.0 * np.sin(np.arange(61) * 0.2)]
-    up = [GroundMotion("up", dt, 4.0 * rng.normal(size=n)) for dt, n in ((0.02, 100), (0.0137, 300))]
+    up = [GroundMotion("up", dt, 4.0 * rng.normal(size=n), unit="m/s2") for dt, n in ((0.02, 100), (0.0137, 300))]
     return [
-        GroundMotion("level", 0.02, shaking[0]),
-        GroundMotion("wave", 0.05, shaking[1]),
-        GroundMotion("both", 0.02, shaking[0], vertical=up[0]),
-        GroundMotion("both, at two intervals", 0.05, shaking[1], vertical=up[1]),
-        GroundMotion("short", 0.01, np.array([0.0, 9.0, 0.0])),
+        GroundMotion("level", 0.02, shaking[0], unit="m/s2"),
+        GroundMotion("wave", 0.05, shaking[1], unit="m/s2"),
+        GroundMotion("both", 0.02, shaking[0], vertical=up[0], unit="m/s2"),
+        GroundMotion("both, at two intervals", 0.05, shaking[1], vertical=up[1], unit="m/s2"),
+        GroundMotion("short", 0.01, np.array([0.0, 9.0, 0.0]), unit="m/s2"),
     ]
 
 
@@ -215,7 +233,7 @@ def test_an_interruption_in_progress_stops_what_has_not_begun(monkeypatch, error
 
 
 def test_memory_grows_by_a_few_numbers_a_run_and_not_by_its_samples():
-    long = GroundMotion("long", 0.001, np.zeros(20_000))
+    long = GroundMotion("long", 0.001, np.zeros(20_000), unit="m/s2")
     many = [Runs.of(np.zeros(count), 0) for count in (1, 1000, 11_000)]
     peaks = []
     for runs in many:  # the first call loads what is loaded once

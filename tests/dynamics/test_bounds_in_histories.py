@@ -17,7 +17,7 @@ from rocking_cli.structure import build_models
 B, H, G = 0.2, 1.1, 9.80665  # half the width and the height [m]
 ALPHA, RADIUS = math.atan(B / H), math.hypot(B, H)
 P2, ETA = 0.75 * G / RADIUS, 1 - 1.5 * math.sin(ALPHA) ** 2
-PUSH = GroundMotion("push", 0.05, np.array([0, -3.5, -5, -5, -4, 1, 4, 5, 5, 4, 2, 0, -2, -3, 0.0]))
+PUSH = GroundMotion("push", 0.05, np.array([0, -3.5, -5, -5, -4, 1, 4, 5, 5, 4, 2, 0, -2, -3, 0.0]), unit="m/s2")
 
 
 def block(gap, restitution=None):
@@ -89,6 +89,19 @@ def test_a_history_ends_at_the_moment_at_which_its_bound_is_met(gap):
     assert history.bound.name == "the stop"
 
 
+@pytest.mark.parametrize("side", [1, -1])
+def test_the_bound_that_ends_a_history_is_plain_data(side):
+    stop = {"point": [side * B, 2 * H], "gap": side * 0.05, "name": "wall"}
+    stopped = rk.Block(width=2 * B, height=2 * H, density=1000, depth=1, stops=[stop])
+    told = rk.respond(stopped, PUSH, polarity=side, neighbours=0).to_dict()["responses"]["nonlinear"]
+    assert told["outcome"] == "unknown" and told["bound"] == {
+        "phi": pytest.approx(math.asin(0.05 / 2.2), rel=1e-9), "kind": "meets", "name": "wall", "body": "block",
+        "at": [side * B, 2 * H], "restitution": None, "direction": "positive" if side > 0 else "negative",
+    }  # fmt: skip
+    still = rk.respond(stopped, PUSH.scaled(0.4), neighbours=0).to_dict()["responses"]
+    assert [each["bound"] for each in still.values()] == [None] * len(still)
+
+
 @pytest.mark.parametrize("restitution", [0.0, 0.3, 0.9])
 def test_a_stop_throws_a_block_back(restitution):
     gap = 0.03
@@ -114,7 +127,7 @@ def test_neighbours_meet_what_does_not_scale_with_their_slenderness():
     (model,) = build_models(block(gap), ("nonlinear",))
     runs = Runs.of([0, 0], 0, scale=[1.0, 1.0], slender=[1.0, factor])
     outcome = respond_many([model], [PUSH], runs)
-    weaker = GroundMotion("weaker", PUSH.dt, PUSH.acceleration / factor)
+    weaker = GroundMotion("weaker", PUSH.dt, PUSH.acceleration / factor, unit="m/s2")
     for k, (motion, bound) in enumerate([(PUSH, math.asin(gap / 2.2)), (weaker, math.asin(gap / 2.2) / factor)]):
         _, (met, *_) = by_hand(motion, bound, None, 3.0)
         assert outcome.known_to[k] == pytest.approx(met, abs=1e-7)

@@ -58,7 +58,9 @@ def test_a_key_rests_in_its_groove(deep):
     low, high = 1.0 - deep, 2.0
     lower = [[0, 0], [1, 0], [1, 1], [0.7, 1], [0.65, low], [0.35, low], [0.3, 1], [0, 1]]
     upper = [[0, 1], [0.3, 1], [0.35, low], [0.65, low], [0.7, 1], [1, 1], [1, high], [0, high]]
-    free = simulated(assembly(lower=lower, upper=upper), GroundMotion("still", 0.01, np.zeros(20)), most=0.2)
+    free = simulated(
+        assembly(lower=lower, upper=upper), GroundMotion("still", 0.01, np.zeros(20), unit="m/s2"), most=0.2
+    )
     assert np.abs(free.motion.moved).max() < 1e-5
 
 
@@ -141,7 +143,7 @@ def test_ten_times_the_size_has_the_same_rotation_in_longer_time(scale):
     for factor in (1.0, scale):
         dt = 0.005 * sqrt(factor)
         push = 4.4 * np.sin(2 * np.pi * np.arange(141) * 0.005 / 0.7)
-        found.append(simulated(portal(factor), GroundMotion("pulse", dt, push)).phi[:400])
+        found.append(simulated(portal(factor), GroundMotion("pulse", dt, push, unit="m/s2")).phi[:400])
     assert found[1] == pytest.approx(found[0], abs=0.01 * np.abs(found[0]).max())
 
 

@@ -59,7 +59,7 @@ def missing(structure, rtol):
     (model,) = build_models(structure, ("nonlinear",))
     if model.phi_cr[0] < 1e-3:
         return 0.0
-    still = GroundMotion("still", 0.002, np.zeros(2))
+    still = GroundMotion("still", 0.002, np.zeros(2), unit="m/s2")
     history = follow(model, still, release=0.3, rtol=rtol)
     end = history.impacts[0, 0] if len(history.impacts) else history.time[-1]
     before = (history.time < end) & np.isfinite(history.phi) & (history.phi > 0)
@@ -90,11 +90,15 @@ def test_what_the_ground_puts_in_less_what_impacts_lose_is_stored(structure, str
     dt = 0.05
     t = dt * np.arange(31)
     u, v = strength * np.sin(pace * t), (2.0 if both_ways else 0.0) * np.cos(pace * t)
-    motion = GroundMotion("u", dt, u, vertical=GroundMotion("v", dt, v))
+    motion = GroundMotion("u", dt, u, vertical=GroundMotion("v", dt, v, unit="m/s2"), unit="m/s2")
     fine = 48  # samples of the history in each interval: the rule of Boole sees the corners of ties
     dense = np.arange(30 * fine + 1) * dt / fine
     shaken = GroundMotion(
-        "u", dt / fine, np.interp(dense, t, u), vertical=GroundMotion("v", dt / fine, np.interp(dense, t, v))
+        "u",
+        dt / fine,
+        np.interp(dense, t, u),
+        vertical=GroundMotion("v", dt / fine, np.interp(dense, t, v), unit="m/s2"),
+        unit="m/s2",
     )
     (model,) = build_models(structure, ("nonlinear",))
     history = follow(model, shaken, rtol=1e-11)

@@ -41,7 +41,7 @@ def uplift(model):
 
 
 def shake(model, dt, samples, mechanism=BLOCK, **options):
-    motion = None if samples is None else GroundMotion("test", dt, np.asarray(samples, float))
+    motion = None if samples is None else GroundMotion("test", dt, np.asarray(samples, float), unit="m/s2")
     return respond(mechanism, motion, models=(model,), **options)[model]
 
 
@@ -200,7 +200,7 @@ def test_a_motion_that_all_but_touches_the_ground_is_that_of_one_that_just_does(
     shape = -side * uplift(model) * np.interp(np.arange(0.0, 0.5, dt), [0.0, 0.2, 0.4], [0.0, 1.0, 0.0])
 
     def caught(push):
-        return follow(built, GroundMotion("test", dt, push * shape), release=0.03 * side)
+        return follow(built, GroundMotion("test", dt, push * shape, unit="m/s2"), release=0.03 * side)
 
     low, high = graze(caught)
     touches, passes = caught(low), caught(high)
@@ -222,7 +222,7 @@ def test_a_faint_impact_is_no_rest_while_the_ground_pushes_outwards(model):
     shape = -uplift(model) * np.array([0.0, 1.0, 0.0, 0.0])
 
     def caught(push):
-        return follow(built, GroundMotion("test", 0.2, push * shape), release=0.03)
+        return follow(built, GroundMotion("test", 0.2, push * shape, unit="m/s2"), release=0.03)
 
     push = graze(caught)[0] * (1 - 2e-12)
     history, rest_rate = caught(push), 1e-6 * ONE.p * ONE.phi_cr
@@ -479,7 +479,7 @@ def hollow(end):
 
 
 def test_what_swings_in_a_hollow_beyond_phi_cr_is_still_rocking_and_has_not_overturned():
-    motion = GroundMotion("push", 0.1, np.array([0.0, *[-4.8] * 8, *[2.6] * 10, 0.0]))
+    motion = GroundMotion("push", 0.1, np.array([0.0, *[-4.8] * 8, *[2.6] * 10, 0.0]), unit="m/s2")
     history = follow(hollow(10.0), motion)
     assert history.still_rocking
     assert history.impact_count == 0
@@ -492,7 +492,7 @@ def test_what_swings_in_a_hollow_beyond_phi_cr_is_still_rocking_and_has_not_over
 
 
 def test_what_is_thrown_out_of_a_hollow_ends_at_its_limit():
-    motion = GroundMotion("push", 0.1, np.array([0.0, *[-8.0] * 30, 0.0]))
+    motion = GroundMotion("push", 0.1, np.array([0.0, *[-8.0] * 30, 0.0]), unit="m/s2")
     history = follow(hollow(4.0), motion)
     assert history.overturned
     assert history.overturning_time < history.end_time < 3.0
@@ -598,7 +598,7 @@ def anything(seed):
     )[rng.integers(5)]
     scale = float(rng.choice([0.5, 1.0, 1.0001, 2.0, rng.uniform(0.8, 6)]))
     release = (None, None, float(rng.uniform(-0.99, 0.99)))[rng.integers(3)]
-    return name, mechanism, GroundMotion(f"seed {seed}", dt, scale * threshold * shape()), release
+    return name, mechanism, GroundMotion(f"seed {seed}", dt, scale * threshold * shape(), unit="m/s2"), release
 
 
 def check(name, mechanism, history):

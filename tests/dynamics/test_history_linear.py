@@ -40,7 +40,9 @@ def noise(name, seed, amplitude, npts=80):
 
 def both(name, model, dt, samples, release=None, **options):
     """The engine's history and the 50-digit one."""
-    history = respond(structure(name), GroundMotion("test", dt, samples), models=(model,), release=release)[model]
+    history = respond(
+        structure(name), GroundMotion("test", dt, samples, unit="m/s2"), models=(model,), release=release
+    )[model]
     exact = Linear(equivalence(name), int(model[-1]), structure(name).gravity)
     return history, exact.follow(dt, samples, release or 0.0, **options)
 
@@ -102,7 +104,7 @@ def test_uplift_is_at_lambda_lin_with_kappa_1_and_at_lambda_with_kappa_2(name, s
         uplift = multiplier * structure(name).gravity
         for factor, lifts in ((1 - 1e-11, False), (1 + 1e-11, True)):
             samples = -s * factor * uplift * np.array([0.0, 1.0, 0.0])
-            history = respond(structure(name), GroundMotion("test", 0.5, samples), models=(model,))[model]
+            history = respond(structure(name), GroundMotion("test", 0.5, samples, unit="m/s2"), models=(model,))[model]
             assert (not np.isnan(history.uplift_time)) == lifts, (model, factor)
 
 
@@ -110,7 +112,7 @@ def test_the_two_models_lift_at_different_moments():
     block = equivalence("frame").positive
     assert abs(block.lambda_lin / block.lambda_ - 1) > 1e-3
     samples = -2 * block.lambda_ * structure("frame").gravity * np.array([0.0, 1.0, 0.0])
-    histories = respond(structure("frame"), GroundMotion("test", 1.0, samples))
+    histories = respond(structure("frame"), GroundMotion("test", 1.0, samples, unit="m/s2"))
     assert histories["linear1"].uplift_time == pytest.approx(block.lambda_lin / block.lambda_ / 2, rel=1e-13)
     assert histories["linear2"].uplift_time == pytest.approx(1 / 2, rel=1e-13)
     assert histories["nonlinear"].uplift_time == pytest.approx(1 / 2, rel=1e-13)
@@ -130,7 +132,7 @@ def test_a_ramp_of_thousands_of_1_over_p_overflows_nothing(model):
     # It lifts half-way up a ramp of 1000 s and overturns within seconds: phi = slope/p (sinh pt - pt).
     block = equivalence("block").positive
     multiplier = {"linear1": block.lambda_lin, "linear2": block.lambda_}[model]
-    motion = GroundMotion("test", 1000.0, -multiplier * 9.80665 * np.array([0.0, 2.0, 0.0, 0.0]))
+    motion = GroundMotion("test", 1000.0, -multiplier * 9.80665 * np.array([0.0, 2.0, 0.0, 0.0]), unit="m/s2")
     history = respond(structure("block"), motion, models=(model,), tail=0.0)[model]
     assert history.uplift_time == pytest.approx(500.0, rel=1e-14)
     slope = block.phi_cr * 2 / 1000.0
@@ -176,7 +178,7 @@ def test_after_the_record_the_motion_overturns_exactly_where_its_energy_suffices
     low, high = 1.0, 20.0
     for _ in range(36):
         middle = (low + high) / 2
-        motion = GroundMotion("test", 0.05, middle * lobe)
+        motion = GroundMotion("test", 0.05, middle * lobe, unit="m/s2")
         fell = respond(structure("frame"), motion, models=(model,))[model].overturned
         low, high = (low, middle) if fell else (middle, high)
     for scale, fell in ((low * (1 - 1e-9), False), (high * (1 + 1e-9), True)):

@@ -62,7 +62,7 @@ def noise(name, seed, amplitude, npts=36):
 
 
 def nonlinear(mechanism, dt, samples, **options):
-    motion = None if samples is None else GroundMotion("test", dt, np.asarray(samples, float))
+    motion = None if samples is None else GroundMotion("test", dt, np.asarray(samples, float), unit="m/s2")
     return respond(mechanism, motion, models=("nonlinear",), **options)["nonlinear"]
 
 
@@ -218,7 +218,8 @@ def test_restitution_acts_on_the_rate_of_rotation_not_on_theta():
 def test_a_symmetric_structure_answers_a_reversed_record_with_the_mirror_image(name, model):
     dt, samples = pulse(name, 2.5, 5.0)
     one, other = (
-        respond(structure(name), GroundMotion("test", dt, sign * samples), models=(model,))[model] for sign in (1, -1)
+        respond(structure(name), GroundMotion("test", dt, sign * samples, unit="m/s2"), models=(model,))[model]
+        for sign in (1, -1)
     )
     early = one.time < one.impacts[5, 0]
     scale = abs(one.phi).max()
@@ -270,14 +271,18 @@ def test_joints_of_a_symmetric_structure_open_alike_under_the_reversed_record(am
 def test_a_mirrored_structure_answers_a_reversed_record_with_the_mirror_image(model):
     dt, samples = pulse("leaning", 2.5, 6.0)
     mirrored = RigidBody(polygon=[[-x, y] for x, y in reversed(LEANING)])
-    one = respond(structure("leaning"), GroundMotion("test", dt, samples), models=(model,), release=0.2)[model]
-    other = respond(mirrored, GroundMotion("test", dt, -samples), models=(model,), release=-0.2)[model]
+    one = respond(structure("leaning"), GroundMotion("test", dt, samples, unit="m/s2"), models=(model,), release=0.2)[
+        model
+    ]
+    other = respond(mirrored, GroundMotion("test", dt, -samples, unit="m/s2"), models=(model,), release=-0.2)[model]
     assert not one.overturned
     assert other.peak_positive == pytest.approx(one.peak_negative, rel=1e-9)
     assert other.peak_negative == pytest.approx(one.peak_positive, rel=1e-9)
     np.testing.assert_allclose(other.impacts[:6, 0], one.impacts[:6, 0], rtol=0, atol=1e-9)
     # Both peaks mean something: the body leans, and its two directions differ.
-    unmirrored = respond(structure("leaning"), GroundMotion("test", dt, -samples), models=(model,), release=-0.2)[model]
+    unmirrored = respond(
+        structure("leaning"), GroundMotion("test", dt, -samples, unit="m/s2"), models=(model,), release=-0.2
+    )[model]
     assert np.isnan(unmirrored.peak_positive) or unmirrored.peak_positive != pytest.approx(one.peak_negative, rel=1e-3)
 
 
@@ -286,7 +291,7 @@ def test_a_mirrored_structure_answers_a_reversed_record_with_the_mirror_image(mo
 def test_a_block_k_times_larger_is_slower_by_the_root_of_k_and_otherwise_alike(model, k):
     dt, samples = noise("block", 2, 2.0)
     large = Block(width=0.7 * k, height=2.8 * k)
-    one = respond(structure("block"), GroundMotion("test", dt, samples), models=(model,))[model]
-    other = respond(large, GroundMotion("test", dt * sqrt(k), samples), models=(model,))[model]
+    one = respond(structure("block"), GroundMotion("test", dt, samples, unit="m/s2"), models=(model,))[model]
+    other = respond(large, GroundMotion("test", dt * sqrt(k), samples, unit="m/s2"), models=(model,))[model]
     assert other.peak_ratio == pytest.approx(one.peak_ratio, rel=1e-8)
     np.testing.assert_allclose(other.impacts[:8, 0], sqrt(k) * one.impacts[:8, 0], rtol=1e-8)

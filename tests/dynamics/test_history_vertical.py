@@ -50,8 +50,8 @@ def uplift(name, model):
 
 
 def shaken(dt, samples, v_dt, v):
-    vertical = GroundMotion("up", v_dt, np.asarray(v, float))
-    return GroundMotion("test", dt, np.asarray(samples, float), vertical=vertical)
+    vertical = GroundMotion("up", v_dt, np.asarray(v, float), unit="m/s2")
+    return GroundMotion("test", dt, np.asarray(samples, float), vertical=vertical, unit="m/s2")
 
 
 def both(name, model, dt, samples, v_dt, v, release=None, **options):
@@ -141,7 +141,9 @@ def test_uplift_impacts_and_peaks_are_those_of_an_independent_integration(name, 
     assert release is not None or expected.uplift is not None
     assert not history.unknown
     agree(history, expected)
-    level = respond(STRUCTURES[name], GroundMotion("test", dt, samples), models=(model,), release=release)[model]
+    level = respond(STRUCTURES[name], GroundMotion("test", dt, samples, unit="m/s2"), models=(model,), release=release)[
+        model
+    ]
     assert abs(level.impacts[0, 0] - history.impacts[0, 0]) > 1e-4
 
 
@@ -192,7 +194,7 @@ def test_the_vertical_component_may_lift_a_structure_between_two_samples_of_the_
     history = respond(BLOCK, motion, models=(model,))[model]
     assert history.uplift_time == pytest.approx(0.2 + 0.1 * 0.5 / 0.8, abs=1e-14)
     assert history.impact_count > 0
-    assert respond(BLOCK, GroundMotion("level", 0.5, samples), models=(model,))[model].impact_count == 0
+    assert respond(BLOCK, GroundMotion("level", 0.5, samples, unit="m/s2"), models=(model,))[model].impact_count == 0
 
 
 @every_model
@@ -224,7 +226,7 @@ def test_a_constant_vertical_acceleration_is_another_gravity(model, name, c):
     vertical = c * np.ones(400)  # longer than the motion
     history = respond(STRUCTURES[name], shaken(dt, samples, 0.5, vertical), models=(model,))[model]
     other = STRUCTURES[name].model_copy(update={"gravity": G + c})
-    expected = respond(other, GroundMotion("test", dt, samples), models=(model,))[model]
+    expected = respond(other, GroundMotion("test", dt, samples, unit="m/s2"), models=(model,))[model]
     assert history.at_rest and expected.at_rest
     assert history.uplift_time == pytest.approx(expected.uplift_time, abs=1e-12)
     early = np.count_nonzero(expected.impacts[:, 2] > 1e-4 * expected.impacts[:, 2].max())
@@ -307,7 +309,7 @@ def test_overturning_is_not_certain_while_the_ground_may_still_take_the_weight_a
     assert expected.impacts[0][1] == side
     assert max(expected.peaks[side], 0) > 1.45 * blocks("block").positive.phi_cr
     agree(history, expected)
-    level = respond(BLOCK, GroundMotion("test", dt, samples), models=(model,), release=0.8 * side)[model]
+    level = respond(BLOCK, GroundMotion("test", dt, samples, unit="m/s2"), models=(model,), release=0.8 * side)[model]
     assert level.overturned
     assert level.fell_to == Direction(side)
     assert level.end_time < 53 * dt  # which was certain before the vertical component would have begun

@@ -41,7 +41,7 @@ def of_block(mu=MU, opening=0.005):
     """The watch of a block of usual size on a foot with friction."""
     block = Block(width=2 * HALF_WIDTH, height=2 * HALF_HEIGHT, density=DENSITY, depth=1.0, friction=mu)
     model = build_model(block, "nonlinear", opening)
-    deck = lay_out([model], [GroundMotion("still", 0.01, np.zeros(2))])
+    deck = lay_out([model], [GroundMotion("still", 0.01, np.zeros(2), unit="m/s2")])
     room = kernels.Room(
         np.empty((2, kernels.COLUMNS)), np.empty((1, kernels.KEPT)), np.empty(kernels.NOTES), np.empty(4, np.int64)
     )

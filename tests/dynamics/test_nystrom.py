@@ -83,7 +83,7 @@ def test_a_violent_blow_in_a_calm_record_is_followed_by_steps_of_its_own():
     samples = -one.lambda_ * block.gravity * shape
     dt = 0.3 / one.p
     expected = Nonlinear(block).follow(dt, samples)
-    history = respond(block, GroundMotion("test", dt, samples), models=("nonlinear",))["nonlinear"]
+    history = respond(block, GroundMotion("test", dt, samples, unit="m/s2"), models=("nonlinear",))["nonlinear"]
     assert expected.ended == "fallen"
     assert history.overturning_time == pytest.approx(expected.crossings[-1], abs=2e-12)
     assert history.impacts[0, 0] == pytest.approx(expected.impacts[0][0], abs=2e-12)
@@ -99,7 +99,9 @@ def test_the_tolerance_is_kept_however_coarse_the_record(interval):
     expected = Nonlinear(block).follow(dt, samples, 0.5)
     last, errors = len(expected.impacts), []
     for rtol in (1e-4, 1e-6, 1e-8, 1e-10):
-        history = respond(block, GroundMotion("test", dt, samples), models=("nonlinear",), release=0.5, rtol=rtol)
+        history = respond(
+            block, GroundMotion("test", dt, samples, unit="m/s2"), models=("nonlinear",), release=0.5, rtol=rtol
+        )
         got = history["nonlinear"].impacts[:last]
         errors.append(max(abs(a[0] - b[0]) for a, b in zip(got, expected.impacts, strict=True)))
         assert errors[-1] < rtol

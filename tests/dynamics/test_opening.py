@@ -14,7 +14,7 @@ from rocking_cli.core import Direction
 from rocking_cli.core.released import Undetermined, released, tabulated_impulses
 from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.batch import Runs, respond_many
-from rocking_cli.dynamics.joints import _calm
+from rocking_cli.dynamics.joints import _calm, _within
 from rocking_cli.dynamics.modes import modes
 from rocking_cli.dynamics.outcome import OUTCOME_FIELDS
 from rocking_cli.errors import InputError
@@ -88,7 +88,7 @@ def test_seventy_assemblies_followed_by_two_engines_of_free_blocks():
     stated, wrong = 0, []
     for name, case in json.loads(BLOCKS.read_text(encoding="utf-8")).items():
         made = Registry()["assembly"](**{k: v for k, v in case["structure"].items() if k != "mechanism"})
-        motion = GroundMotion(name, case["record"]["dt"], 9.80665 * np.array(case["record"]["a_g"]))
+        motion = GroundMotion(name, case["record"]["dt"], 9.80665 * np.array(case["record"]["a_g"]), unit="m/s2")
         found = respond(made, motion, models=("nonlinear",))["nonlinear"]
         theirs = case["opening"]
         assert found.check.reach == pytest.approx(theirs["D_cr"], rel=1e-3), name
@@ -214,7 +214,7 @@ def test_a_lone_block_that_jumps_is_known_no_further():
     """Its foot's force by hand, N/m = g + R [sin(a - phi) phi.. - cos(a - phi) phi.^2], and its opening by sums."""
     r, g, dt = np.sqrt(2), 9.80665, 1e-4
     u = 2.25 * g * np.sin(6 * np.pi * np.arange(4000) * dt)
-    motion, made = GroundMotion("sine", dt, u), Registry()["block"](width=2.0, height=2.0)
+    motion, made = GroundMotion("sine", dt, u, unit="m/s2"), Registry()["block"](width=2.0, height=2.0)
     found = respond(made, motion, models=("nonlinear",))["nonlinear"]
     whole = respond(made, motion, opening=1e3, models=("nonlinear",))["nonlinear"]
     part = slice(0, u.size)
@@ -298,6 +298,18 @@ def test_where_the_quick_bounds_hold_nothing_slides_either_way():
     assert held > 100 and min(least) >= 0
 
 
+@pytest.mark.parametrize("rises", [True, False])
+def test_the_quick_bounds_of_a_cell_are_those_of_its_weaker_end(rises):
+    """A normal force of n - q.^2, n from 1 to 9 or back over one cell, bears up to n."""
+    row = np.zeros((1, 1, 5, 4))
+    row[0, 0, 0, :2] = (1.0, 8.0) if rises else (9.0, -8.0)
+    row[0, 0, 2, 0] = -1.0
+    within = _within(row, np.array([[0, -1, -1, 0]]), np.array([[np.nan, np.inf]]))
+    ends = np.linspace(*((1.0, 9.0) if rises else (9.0, 1.0)), len(within) + 1)
+    least = np.minimum(ends[:-1], ends[1:])
+    assert (within[:, 4] <= least).all() and (within[:, 4] > least / 2).all()
+
+
 @pytest.mark.parametrize("case", ["portal", "lifted", "sliding"])
 def test_the_quick_bounds_change_nothing(case):
     """The same histories with every step looked at; a force that lifts does not fall with the weight."""
@@ -309,7 +321,7 @@ def test_the_quick_bounds_change_nothing(case):
     else:
         lift = {"name": "lift", "force": [0.0, 0.8 * 1000 * g], "at": [0.0, 2.5]}
         made, factors = Registry()["block"](width=1.0, height=5.0, mass=1000.0, loads=[lift]), [1.0, 0.5]
-        up = GroundMotion("up", 0.01, 0.3 * g * np.sin(4 * np.pi * motion.time))
+        up = GroundMotion("up", 0.01, 0.3 * g * np.sin(4 * np.pi * motion.time), unit="m/s2")
         motion = replace(motion.scaled(0.1), vertical=up)
     (model,) = build_models(made, ("nonlinear",))
     within = model.joints.within.copy()
@@ -411,7 +423,9 @@ def test_what_slides_in_one_motion_adds_to_what_slid_before():
         for at, size in ((0.5, 0.5), (5.0, 0.3))
     )
     slips = [
-        respond(made, GroundMotion("pulses", 0.005, a), opening=1e3, models=("nonlinear",))["nonlinear"].check.largest
+        respond(made, GroundMotion("pulses", 0.005, a, unit="m/s2"), opening=1e3, models=("nonlinear",))[
+            "nonlinear"
+        ].check.largest
         for a in (one, other, one + other)
     ]
     assert min(slips) > 0.1 and slips[2] == pytest.approx(slips[0] + slips[1], rel=1e-9)
@@ -473,8 +487,8 @@ def test_crushing_ends_a_history_at_once():
 
 
 def test_nothing_is_known_where_the_ground_falls_away():
-    motion = GroundMotion("x", 0.01, np.zeros(200))
-    down = GroundMotion("y", 0.01, np.where(np.arange(200) == 100, -12.0, 0.0))
+    motion = GroundMotion("x", 0.01, np.zeros(200), unit="m/s2")
+    down = GroundMotion("y", 0.01, np.where(np.arange(200) == 100, -12.0, 0.0), unit="m/s2")
     found = respond(structure("block.yaml"), replace(motion, vertical=down), models=("nonlinear",))["nonlinear"]
     assert found.unknown
     assert found.known_to == pytest.approx(0.99 + 0.01 * 9.80665 / 12, rel=1e-9)  # on the ramp to -12 m/s2

@@ -205,8 +205,8 @@ def test_the_peak_is_had_at_the_first_sample_that_is_as_large_but_for_rounding()
 
 def test_the_strongest_to_come_is_that_of_both_senses_and_of_the_vertical_one_by_sense():
     """Of samples of .01 s, and vertical ones of .005 s: from each on, the last not counted, as nothing follows it."""
-    up = GroundMotion("up", 0.005, np.array([0.0, 1.0, -4.0, 2.0, -1.0, 3.0, 0.5]))
-    motion = GroundMotion("push", 0.01, np.array([1.0, -5.0, 2.0, -3.0]), vertical=up)
+    up = GroundMotion("up", 0.005, np.array([0.0, 1.0, -4.0, 2.0, -1.0, 3.0, 0.5]), unit="m/s2")
+    motion = GroundMotion("push", 0.01, np.array([1.0, -5.0, 2.0, -3.0]), vertical=up, unit="m/s2")
     deck = lay_out([build_model(BLOCK, "nonlinear")], [motion])
     assert deck.ahead.tolist() == [5.0, 5.0, 3.0, 0.0]
     assert deck.v_ahead.tolist() == [4.0, 4.0, 1.0, 0.0]  # downwards, at 0, 2, 4 and 6 vertical samples

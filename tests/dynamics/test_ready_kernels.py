@@ -30,8 +30,8 @@ from rocking_cli.structure import Structure
 from tests.conftest import EXAMPLES, PROJECT
 
 RNG = np.random.default_rng(31)
-SHAKING = GroundMotion("shaking", 0.01, 3.0 * RNG.standard_normal(150))
-BOTH = replace(SHAKING, vertical=GroundMotion("vertical", 0.007, 2.0 * RNG.standard_normal(180)))
+SHAKING = GroundMotion("shaking", 0.01, 3.0 * RNG.standard_normal(150), unit="m/s2")
+BOTH = replace(SHAKING, vertical=GroundMotion("vertical", 0.007, 2.0 * RNG.standard_normal(180), unit="m/s2"))
 
 
 @pytest.fixture
@@ -187,7 +187,7 @@ class TestSameBits:
 
 BLOCK = (
     "import sys; from rocking_cli import GroundMotion, Registry, respond;"
-    "respond(Registry()['block'](width=0.7, height=2.8), GroundMotion('x', 0.01, [0.0, 4.0, 0.0]));"
+    "respond(Registry()['block'](width=0.7, height=2.8), GroundMotion('x', 0.01, [0.0, 4.0, 0.0], unit='m/s2'));"
     "print('numba' in sys.modules)"
 )
 """A program whose history needs no numba."""

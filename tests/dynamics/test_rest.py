@@ -73,6 +73,29 @@ negative:
 """
 
 
+# Slender stones on bases carry a beam: statics does not determine the forces of its many joints.
+STONES = """
+density: 2400
+depth: 1
+bodies:
+  left base: {polygon: [[0, 0], [1, 0], [1, 1], [0, 1]]}
+  left stone: {polygon: [[0.4, 1], [0.6, 1], [0.6, 3], [0.4, 3]]}
+  right base: {polygon: [[4, 0], [5, 0], [5, 1], [4, 1]]}
+  right stone: {polygon: [[4.4, 1], [4.6, 1], [4.6, 3], [4.4, 3]]}
+  beam: {polygon: [[0.4, 3], [4.6, 3], [4.6, 3.4], [0.4, 3.4]]}
+positive:
+  lead: left base
+  joints:
+    A: {pivot: left base, at: [1, 0]}
+    B: {hinge: [left stone, beam], at: [0.4, 3]}
+    C: {hinge: [right stone, beam], at: [4.4, 3]}
+    D: {pivot: right base, at: [5, 0]}
+    one: {fixed: [left base, left stone]}
+    two: {fixed: [right base, right stone]}
+negative: mirror
+"""
+
+
 def of(text):
     return rk.Linkage(**{key: each for key, each in yaml.safe_load(text).items() if key != "mechanism"})
 
@@ -96,8 +119,8 @@ def slid(time, u, v, friction):
 def pulse(a, period, dt=0.01, cycles=1, vertical=0.0):
     time = np.arange(int(cycles * period / dt) + 2) * dt
     wave = np.where(time < cycles * period, np.sin(2 * np.pi * time / period), 0.0)
-    up = GroundMotion("up", dt, vertical * G * np.cos(9 * time)) if vertical else None
-    return GroundMotion("pulse", dt, a * G * wave, vertical=up)
+    up = GroundMotion("up", dt, vertical * G * np.cos(9 * time), unit="m/s2") if vertical else None
+    return GroundMotion("pulse", dt, a * G * wave, vertical=up, unit="m/s2")
 
 
 @pytest.mark.parametrize("vertical", [0.0, 0.1])
@@ -124,7 +147,7 @@ def test_a_squat_block_slides_as_far_as_the_ground_leaves_it(a, vertical):
 
 def test_what_slides_at_the_end_of_a_motion_slides_on_until_friction_stops_it():
     """Half a sine leaves it at a speed that friction takes more than half a second to take away."""
-    motion = GroundMotion("half", 0.01, np.append(0.45 * G * np.sin(np.linspace(0.0, np.pi, 41)), 0.0))
+    motion = GroundMotion("half", 0.01, np.append(0.45 * G * np.sin(np.linspace(0.0, np.pi, 41)), 0.0), unit="m/s2")
     block = rk.Block(**SQUAT, **WEAK, friction=0.1)
     end, total = motion.time[-1], slid(motion.time, motion.acceleration, 0 * motion.time, 0.1)
     whole = respond(block, motion, opening=10.0, models=("nonlinear",))["nonlinear"]
@@ -151,12 +174,12 @@ def test_each_scale_and_slenderness_of_many_runs_is_its_own_history():
 def test_on_uneven_ground_of_records_it_slides_between_its_motions_too():
     """Lifted by a first pulse, at rest again, it slides under a second that does not lift it."""
     first, second = pulse(0.6, 0.3).acceleration, pulse(0.45, 0.5).acceleration
-    motion = GroundMotion("two", 0.01, np.concatenate([first, np.zeros(400), second, np.zeros(5)]))
+    motion = GroundMotion("two", 0.01, np.concatenate([first, np.zeros(400), second, np.zeros(5)]), unit="m/s2")
     block = rk.Block(**SQUAT, **WEAK, friction=0.35, restitution=0.5)
     found = respond(block, motion, opening=10.0, models=("nonlinear",))["nonlinear"]
     began = (len(first) + 400) * 0.01
     assert found.lifted and found.end_time < began
-    single = GroundMotion("one", 0.01, motion.acceleration[: len(first) + 300])
+    single = GroundMotion("one", 0.01, motion.acceleration[: len(first) + 300], unit="m/s2")
     alone = respond(block, single, opening=10.0, models=("nonlinear",))
     before = alone["nonlinear"].check.largest
     after = slid(motion.time - began, np.where(motion.time >= began, motion.acceleration, 0.0), 0 * motion.time, 0.35)
@@ -197,6 +220,20 @@ def test_a_crack_that_a_file_says_is_closed_opens_and_ends_what_is_known():
     assert found.unknown and found.check.joint == "middle and upper" and found.known_to < 1.31
     tied = of(CRACKS.replace("middle]}", "middle], bonded: true}").replace("upper]}", "upper], bonded: true}"))
     assert not respond(tied, motion, models=("nonlinear",))["nonlinear"].unknown
+
+
+@pytest.mark.parametrize("friction", [None, 0.8, 0.05])
+def test_stones_that_rock_on_their_bases_open_first_unless_all_slides_before(friction):
+    """Under a level beam each rocks from its width over its height, whatever it carries."""
+    made = of(STONES).replace(friction=friction)
+    still = resting(made)
+    for direction in Direction:
+        failure = first_failure(still, direction)
+        slides = friction == 0.05
+        assert failure.push / G == pytest.approx(0.05 if slides else 0.2 / 2.0, rel=1e-6)
+        assert (failure.slides, failure.opens) == (slides, not slides)
+        assert made.uplift(direction) > 0.3
+    assert len(still.modes) == (0 if slides else 2)  # what would open later than all slides is not looked for
 
 
 def test_a_frame_on_smooth_feet_slides_as_a_whole():

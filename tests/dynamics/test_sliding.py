@@ -31,8 +31,8 @@ def run(mechanism: Mechanism, motion: GroundMotion, **options: float) -> History
 
 def noise(seed: int, *, dt: float = 0.05, size: float = 6.0, vertical: float | None = None) -> GroundMotion:
     random = np.random.default_rng(seed)
-    up = GroundMotion("up", vertical, random.normal(0.0, 2.0, 200)) if vertical is not None else None
-    return GroundMotion("noise", dt, size * random.normal(0.0, 1.0, 120), vertical=up)
+    up = GroundMotion("up", vertical, random.normal(0.0, 2.0, 200), unit="m/s2") if vertical is not None else None
+    return GroundMotion("noise", dt, size * random.normal(0.0, 1.0, 120), vertical=up, unit="m/s2")
 
 
 def stepped(
@@ -59,7 +59,7 @@ def stepped(
 
 
 def test_slip_of_a_flat_block_is_that_of_the_closed_form() -> None:
-    motion = GroundMotion("step", 0.01, np.full(41, 0.5 * G))
+    motion = GroundMotion("step", 0.01, np.full(41, 0.5 * G), unit="m/s2")
     found = run(made(width=1.0, height=0.8, friction=0.2), motion)
     speed = 0.3 * G * 0.4
     distance = 0.3 * G * 0.4**2 / 2 + speed**2 / (2 * 0.2 * G)
@@ -145,9 +145,13 @@ def test_a_thrust_decides_at_the_extremes_of_the_vertical_motion() -> None:
 
     light = next(up for up in np.arange(0.0, -G, -1e-3) if far(up) >= 1)
     for up, holds in ((light + 0.01, True), (light - 0.01, False)):
-        motion = GroundMotion("both", 0.1, [0.0, 1.0, 0.0], vertical=GroundMotion("up", 0.1, [0.0, up, 0.0]))
+        motion = GroundMotion(
+            "both", 0.1, [0.0, 1.0, 0.0], vertical=GroundMotion("up", 0.1, [0.0, up, 0.0], unit="m/s2"), unit="m/s2"
+        )
         assert (follow(model, motion).slid is not None) is holds
-    weightless = GroundMotion("both", 0.1, [0.0, 1.0, 0.0], vertical=GroundMotion("up", 0.1, [0.0, -G, 0.0]))
+    weightless = GroundMotion(
+        "both", 0.1, [0.0, 1.0, 0.0], vertical=GroundMotion("up", 0.1, [0.0, -G, 0.0], unit="m/s2"), unit="m/s2"
+    )
     assert run(made(width=1.0, height=0.8, friction=0.2), weightless).slid is None
 
 
@@ -165,7 +169,7 @@ def test_ties_and_walls_at_its_side_leave_a_body_as_it_was() -> None:
 
 def test_each_neighbour_is_judged_with_its_own_slenderness() -> None:
     (model,) = build_models(made(width=0.4, height=0.9, friction=0.42), ("nonlinear",))
-    motion = GroundMotion("step", 0.01, np.full(60, 0.9 * G))
+    motion = GroundMotion("step", 0.01, np.full(60, 0.9 * G), unit="m/s2")
     found = neighbours(model, motion, Neighbourhood(1000))
     expected = NormalDist().cdf(log(0.42 / (0.4 / 0.9)) / 0.10)
     assert found.unknown == pytest.approx(expected, abs=0.03)
@@ -235,7 +239,7 @@ def test_stops_bound_the_slip() -> None:
 
 
 def test_it_is_known_until_it_arrives() -> None:
-    motion = GroundMotion("step", 0.01, np.full(41, 0.5 * G))  # it slides to the left
+    motion = GroundMotion("step", 0.01, np.full(41, 0.5 * G), unit="m/s2")  # it slides to the left
     (model,) = build_models(assembly(floor=box(-0.1, 9, -1, 0)), ("nonlinear",))
     found = follow(model, motion)
     assert found.known_to == pytest.approx((2 * 0.1 / (0.3 * G)) ** 0.5, rel=1e-12)
@@ -246,7 +250,7 @@ def test_it_is_known_until_it_arrives() -> None:
     assert why_unknown(found) == "it slides to the edge of floor, 0.1 m away"
     assert not follow(model, motion.scaled(-1)).unknown
     # On the way after the record, too: v^2/2 = mu g s.
-    short = GroundMotion("short", 0.01, np.full(21, 0.5 * G))
+    short = GroundMotion("short", 0.01, np.full(21, 0.5 * G), unit="m/s2")
     late = follow(model, short)
     speed, gone = 0.3 * G * 0.2, 0.15 * G * 0.2**2
     left = (speed**2 - 2 * 0.2 * G * (0.1 - gone)) ** 0.5
@@ -278,6 +282,6 @@ def test_a_block_of_an_assembly_slides_as_a_block_does() -> None:
 def test_a_flat_block_that_only_slides_needs_no_restitution():
     flat = Registry()["block"](width=1.0, height=0.3, friction=0.3)
     (model,) = build_models(flat, ("nonlinear",))
-    found = follow(model, GroundMotion("push", 0.2, np.full(3, 0.5 * G)))
+    found = follow(model, GroundMotion("push", 0.2, np.full(3, 0.5 * G), unit="m/s2"))
     speed = 0.2 * G * 0.4
     assert abs(found.slid.largest) == pytest.approx(speed * 0.4 / 2 + speed**2 / (2 * 0.3 * G), rel=1e-12)

@@ -17,6 +17,7 @@ from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
 from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.records import usc as usc_v1
+from rocking_cli.excitation.records.record_units import Asked
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 from tests.damage import CHANGES, MOST_SILENT, REAL, Kind, Read, read, survey
@@ -427,7 +428,7 @@ class TestSimCenter:
 
 
 def found_in(values: np.ndarray) -> list[Doubt]:
-    motion = GroundMotion("made", 0.01, values)
+    motion = GroundMotion("made", 0.01, values, unit="m/s2")
     return [each for each in doubts(motion, measure(motion)) if each.kind in ("spike", "dropout")]
 
 
@@ -510,7 +511,7 @@ def test_a_small_film_makes_no_large_motion():
     content = usc(times=[*0.01 * np.arange(10), 999.0]).replace("  0.090 10.000", "  0.091 10.000")
     tracemalloc.start()
     try:
-        assert usc_v1.read(content, "film").npts == 999_001
+        assert usc_v1.read(content, "film", Asked()).npts == 999_001
         _, peak = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()

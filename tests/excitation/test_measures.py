@@ -21,7 +21,7 @@ from rocking_cli.excitation.records import read_record
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS
 
 MOTIONS = arrays(np.float64, st.integers(2, 30), elements=st.floats(-10, 10).map(lambda x: round(x, 3)))
-NOISE = GroundMotion("noise", 0.02, np.random.default_rng(5).normal(size=400))
+NOISE = GroundMotion("noise", 0.02, np.random.default_rng(5).normal(size=400), unit="m/s2")
 
 
 def kinds(motion):
@@ -37,7 +37,7 @@ def clean():
 
 class TestClosedForms:
     def test_a_constant_acceleration(self):
-        found = measure(GroundMotion("constant", 0.01, np.full(201, 3.0)))
+        found = measure(GroundMotion("constant", 0.01, np.full(201, 3.0), unit="m/s2"))
         assert (found.pgv, found.pgd) == (pytest.approx(6), pytest.approx(6))
         assert found.arias == pytest.approx(pi / (2 * G) * 9 * 2)
         assert (found.t_5, found.t_95) == (pytest.approx(0.1), pytest.approx(1.9))
@@ -47,18 +47,20 @@ class TestClosedForms:
 
     @pytest.mark.parametrize("samples", [2, 3, 50])
     def test_a_ramp_whatever_the_number_of_samples(self, samples):
-        found = measure(GroundMotion("ramp", 4 / (samples - 1), np.linspace(0, 2, samples)))
+        found = measure(GroundMotion("ramp", 4 / (samples - 1), np.linspace(0, 2, samples), unit="m/s2"))
         assert (found.pgv, found.pgd) == (pytest.approx(4), pytest.approx(2 * 4**2 / 6))
         assert found.arias == pytest.approx(pi / (2 * G) * 4 * 4 / 3)
         assert (found.t_5, found.t_95) == (pytest.approx(4 * 0.05 ** (1 / 3)), pytest.approx(4 * 0.95 ** (1 / 3)))
 
     def test_a_velocity_that_peaks_between_two_samples(self):
-        found = measure(GroundMotion("descent", 1.0, np.array([1.0, -1.0])))
+        found = measure(GroundMotion("descent", 1.0, np.array([1.0, -1.0]), unit="m/s2"))
         assert found.pgv == pytest.approx(0.25) and found.final_velocity == 0
         assert found.pgd == found.final_displacement == pytest.approx(1 / 6)
 
     def test_a_displacement_that_peaks_between_two_samples(self):
-        found = measure(GroundMotion("descent", 1.0, np.array([1.0, -2.0])))  # v = t - 1.5 t^2, zero at 2/3
+        found = measure(
+            GroundMotion("descent", 1.0, np.array([1.0, -2.0]), unit="m/s2")
+        )  # v = t - 1.5 t^2, zero at 2/3
         assert found.pgd == pytest.approx((2 / 3) ** 2 / 2 - (2 / 3) ** 3 / 2)
         assert abs(found.final_displacement) < 1e-15
 
@@ -66,7 +68,7 @@ class TestClosedForms:
     def test_a_sine_pulse_to_second_order(self, samples):
         a, omega = 2.0, pi  # a full sine of 2 s
         t = np.linspace(0, 2, samples)
-        found = measure(GroundMotion("sine", t[1], a * np.sin(omega * t)))
+        found = measure(GroundMotion("sine", t[1], a * np.sin(omega * t), unit="m/s2"))
         error = (omega * t[1]) ** 2
         assert found.pgv == pytest.approx(2 * a / omega, rel=error)
         assert found.pgd == pytest.approx(2 * pi * a / omega**2, rel=error)
@@ -90,7 +92,7 @@ class TestAgainstPolynomials:
                 top = max(abs(curve(t)) for t in (0.0, dt, *inner))
                 top_v, top_u = (max(top_v, top), top_u) if tops == "v" else (top_v, max(top_u, top))
             v, u = parabola(dt), cubic(dt)
-        found = measure(GroundMotion("any", dt, a))
+        found = measure(GroundMotion("any", dt, a, unit="m/s2"))
         near = {"rel": 1e-6, "abs": 1e-9}
         assert found.pgv == pytest.approx(top_v, **near) and found.pgd == pytest.approx(top_u, **near)
         assert found.final_velocity == pytest.approx(v, **near)
@@ -139,7 +141,7 @@ class TestScaling:
         assert (other.t_5, other.t_95) == (pytest.approx(one.t_5), pytest.approx(one.t_95))
 
     def test_no_motion_has_no_duration(self):
-        found = measure(GroundMotion("nothing", 0.01, np.zeros(10)))
+        found = measure(GroundMotion("nothing", 0.01, np.zeros(10), unit="m/s2"))
         assert found.pga == found.pgv == found.pgd == found.arias == 0
         assert found.significant_duration is None and found.mean_period is None
 
@@ -150,36 +152,36 @@ class TestScaling:
 
 class TestDoubts:
     def test_none_of_a_clean_motion(self):
-        assert kinds(GroundMotion("clean", 0.01, clean())) == []
+        assert kinds(GroundMotion("clean", 0.01, clean(), unit="m/s2")) == []
         assert kinds(read_record(EXAMPLES / "accel.csv")) == []
 
     def test_an_offset_also_drifts(self):
-        motion = GroundMotion("offset", 0.01, clean() + 0.02)
+        motion = GroundMotion("offset", 0.01, clean() + 0.02, unit="m/s2")
         assert kinds(motion)[0] == "offset" and "final_velocity" in kinds(motion)
         offset = doubts(motion, measure(motion))[0]
         assert offset.value == pytest.approx(0.02 / G, rel=1e-3) and "0.002 g" in offset.text
 
     def test_a_start_that_is_not_at_rest(self):
-        motion = GroundMotion("cut", 0.01, clean()[400:])
+        motion = GroundMotion("cut", 0.01, clean()[400:], unit="m/s2")
         assert "start" in kinds(motion)
         start = next(d for d in doubts(motion, measure(motion)) if d.kind == "start")
         assert start.value * G == clean()[400]
 
     def test_a_velocity_that_drifts(self):
-        motion = GroundMotion("drift", 0.01, clean() + np.where(np.arange(1001) > 500, 0.004, 0.0))
+        motion = GroundMotion("drift", 0.01, clean() + np.where(np.arange(1001) > 500, 0.004, 0.0), unit="m/s2")
         drift = next(d for d in doubts(motion, measure(motion)) if d.kind == "final_velocity")
         assert drift.value == pytest.approx(0.02, rel=0.01) and "drifts" in drift.text and "0.02 m/s" in drift.text
 
     def test_a_displacement_that_stays(self):
         t = np.linspace(0, 10, 1001)
         step = np.where((t > 4) & (t < 6), 0.5 * np.sin(pi * (t - 4)), 0.0)  # there and not back: 0.318 m
-        assert kinds(GroundMotion("fling", 0.01, clean() + step)) == ["final_displacement"]
+        assert kinds(GroundMotion("fling", 0.01, clean() + step, unit="m/s2")) == ["final_displacement"]
 
     @pytest.mark.parametrize("share", [0.9, 0.6])
     def test_clipped_peaks(self, share):
         a = clean()
         limit = share * np.abs(a).max()
-        motion = GroundMotion("clipped", 0.01, np.clip(a, -limit, limit))
+        motion = GroundMotion("clipped", 0.01, np.clip(a, -limit, limit), unit="m/s2")
         found = [d for d in doubts(motion, measure(motion)) if d.kind == "clipped"]
         assert len(found) == 2  # above and below
         longest = max(map(len, "".join("x" if x == limit else " " for x in motion.acceleration).split()))
@@ -187,20 +189,20 @@ class TestDoubts:
 
     def test_the_zeros_that_a_one_sided_pulse_never_goes_below_are_not_clipping(self):
         pulse = np.concatenate([np.zeros(50), np.sin(np.linspace(0, pi, 100)), np.zeros(50)])
-        assert "clipped" not in kinds(GroundMotion("one-sided", 0.01, pulse))
+        assert "clipped" not in kinds(GroundMotion("one-sided", 0.01, pulse, unit="m/s2"))
 
     def test_a_few_equal_samples_elsewhere_are_not_clipping(self):
         a = clean()
         a[300:320] = a[300]
-        assert "clipped" not in kinds(GroundMotion("flat", 0.01, a))
+        assert "clipped" not in kinds(GroundMotion("flat", 0.01, a, unit="m/s2"))
 
     def test_a_coarse_interval(self):
-        assert kinds(GroundMotion("seconds?", 1.0, clean()))[0] == "dt"
+        assert kinds(GroundMotion("seconds?", 1.0, clean(), unit="m/s2"))[0] == "dt"
 
     def test_fewer_than_five_samples_to_a_mean_period(self):
         t = np.arange(2000) * 0.02
         for period, doubted in ((0.2, False), (0.08, True)):
-            motion = GroundMotion("sine", 0.02, np.sin(pi * t / 40) ** 2 * np.sin(2 * pi * t / period))
+            motion = GroundMotion("sine", 0.02, np.sin(pi * t / 40) ** 2 * np.sin(2 * pi * t / period), unit="m/s2")
             assert ("mean_period" in kinds(motion)) is doubted
 
     @pytest.mark.parametrize("pga", [0.001, 5.0])
@@ -210,7 +212,7 @@ class TestDoubts:
         assert found.kind == "pga" and found.value == pytest.approx(pga) and "really gal" in found.text
 
     def test_an_interval_too_coarse_for_a_structure(self):
-        motion = GroundMotion("clean", 0.02, clean())
+        motion = GroundMotion("clean", 0.02, clean(), unit="m/s2")
         assert coarse_for(motion, 4.9) == []
         (found,) = coarse_for(motion, 10.0)
         assert found.kind == "p_dt" and found.value == pytest.approx(0.2) and "p dt = 0.2" in found.text

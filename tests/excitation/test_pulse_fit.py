@@ -30,7 +30,7 @@ def hidden(pulse, start=3.217, sign=1, noise=0.0, dt=0.01, npts=2000):
     t = dt * np.arange(npts)
     rng = np.random.default_rng(7)
     a = sign * pulse.acceleration(t - start) + noise * pulse.amplitude * np.diff(rng.normal(size=npts + 1))
-    return GroundMotion("made", dt, a)
+    return GroundMotion("made", dt, a, unit="m/s2")
 
 
 def series(motion, criterion):
@@ -212,9 +212,9 @@ class TestEdges:
 
     def test_nothing_to_find(self):
         with pytest.raises(InputError, match="zero throughout"):
-            fit_pulse(GroundMotion("none", 0.01, np.zeros(500)), "sine", "velocity")
+            fit_pulse(GroundMotion("none", 0.01, np.zeros(500), unit="m/s2"), "sine", "velocity")
         with pytest.raises(InputError, match="20 samples are too few"):
-            fit_pulse(GroundMotion("short", 0.01, np.ones(20)), "sine", "acceleration")
+            fit_pulse(GroundMotion("short", 0.01, np.ones(20), unit="m/s2"), "sine", "acceleration")
 
 
 def test_coarser_levels_are_the_same_record_at_the_same_times():
@@ -225,7 +225,7 @@ def test_coarser_levels_are_the_same_record_at_the_same_times():
 
 
 def test_the_best_of_a_grid_is_not_always_the_best(monkeypatch):
-    motion = GroundMotion("noise", 0.01, np.random.default_rng(6).normal(size=600))
+    motion = GroundMotion("noise", 0.01, np.random.default_rng(6).normal(size=600), unit="m/s2")
     fit = fit_pulse(motion, "mavroeidis", "acceleration")
     monkeypatch.setattr("rocking_cli.excitation.pulse_fit.MAX_REFINED", 1)
     assert fit.captured > fit_pulse(motion, "mavroeidis", "acceleration").captured + 1e-5

@@ -12,7 +12,8 @@ import pytest
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY as G
-from rocking_cli.excitation.records import mseed, read_record, sac
+from rocking_cli.excitation.records import read_record
+from rocking_cli.excitation.records.formats import miniseed, sac
 from tests.excitation.test_record_formats import claims
 
 VALUES = np.array([0.0, 0.5, -0.25, 0.75, -1.0, 0.125] * 40, dtype=np.float32)
@@ -262,8 +263,8 @@ def test_miniseed_3_is_recognised_though_not_read(tmp_path):
 
 def test_each_claims_its_own(made):
     assert sac.sniff(made("SAC", ("HNE", VALUES)).read_bytes())
-    assert not mseed.sniff(made("SAC", ("HNE", VALUES)).read_bytes())
-    assert mseed.sniff(made("MSEED", ("HNE", VALUES)).read_bytes())
+    assert not miniseed.sniff(made("SAC", ("HNE", VALUES)).read_bytes())
+    assert miniseed.sniff(made("MSEED", ("HNE", VALUES)).read_bytes())
     assert not sac.sniff(made("MSEED", ("HNE", VALUES)).read_bytes())
 
 
@@ -274,13 +275,13 @@ def test_an_implausible_header_is_not_of_sac(made, offset, word):
 
 @pytest.mark.parametrize("offset, word", [(0, b"x"), (6, b"V"), (7, b"x"), (20, b"\0\0"), (22, b"\xff\xff")])
 def test_an_implausible_header_is_not_of_miniseed(made, offset, word):
-    assert not mseed.sniff(patch(made("MSEED", ("HNE", VALUES)), offset, word).read_bytes())
+    assert not miniseed.sniff(patch(made("MSEED", ("HNE", VALUES)), offset, word).read_bytes())
 
 
 @pytest.mark.parametrize("content", [b"", b"000001D ", bytes(47), bytes(632), bytes(10_000), b"\xff" * 10_000])
 def test_other_bytes_are_claimed_by_neither(content):
     assert not sac.sniff(content)
-    assert not mseed.sniff(content)
+    assert not miniseed.sniff(content)
 
 
 def test_numbers_with_a_letter_are_text():

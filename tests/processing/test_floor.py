@@ -67,7 +67,7 @@ class TestFloor:
     def test_resonance_over_damping(self):
         """Long after the start of a sine of its own period the top is amplified by about gamma/(2 xi)."""
         t = np.arange(0, 40, 0.01)
-        wave = GroundMotion("wave", 0.01, np.sin(2 * np.pi * t / 0.5))
+        wave = GroundMotion("wave", 0.01, np.sin(2 * np.pi * t / 0.5), unit="m/s2")
         found = Floor(0.5, 0.05, 1.0, 1.0).of(wave)
         assert np.abs(found.acceleration[-400:]).max() == pytest.approx(np.hypot(1, 1 / 0.1), rel=5e-3)
 
@@ -124,7 +124,7 @@ class TestFloor:
         assert "give heights in metres, such as z=6m,H=9m, or their ratio, such as z/H=0.67" in said
 
     def test_a_floor_that_no_memory_holds(self):
-        long = GroundMotion("long", 0.01, np.zeros(1_000_001))
+        long = GroundMotion("long", 0.01, np.zeros(1_000_001), unit="m/s2")
         with pytest.raises(InputError, match=r"needs 6.4e\+07 samples"):
             Floor(1e-3, 0.05, 1, 1.5).of(long)
 

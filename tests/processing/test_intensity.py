@@ -25,9 +25,9 @@ from rocking_cli.questions.record.study import intensities, reference_of
 from rocking_cli.structure import Structure
 from tests.conftest import EXAMPLES
 
-NOISE = GroundMotion("noise", 0.02, np.random.default_rng(5).normal(size=400))
+NOISE = GroundMotion("noise", 0.02, np.random.default_rng(5).normal(size=400), unit="m/s2")
 A, T = 3.0, 0.9
-SINE = GroundMotion("sine", T / 900, A * np.sin(2 * pi * np.linspace(0, 1, 901)))
+SINE = GroundMotion("sine", T / 900, A * np.sin(2 * pi * np.linspace(0, 1, 901)), unit="m/s2")
 
 
 DU = parse_measure("Du")
@@ -79,12 +79,12 @@ class TestDefinitions:
     def test_mean_period_of_many_cycles_is_that_of_one_whatever_zeros_follow(self):
         t = np.arange(0, 60, 0.01)
         cycles = 2 * np.sin(2 * pi * t / 0.8) * np.sin(pi * t / 60)
-        assert value("Tm", GroundMotion("cycles", 0.01, cycles)) == pytest.approx(0.8, rel=2e-3)
-        padded = GroundMotion("padded", NOISE.dt, np.concatenate([NOISE.acceleration, np.zeros(1000)]))
+        assert value("Tm", GroundMotion("cycles", 0.01, cycles, unit="m/s2")) == pytest.approx(0.8, rel=2e-3)
+        padded = GroundMotion("padded", NOISE.dt, np.concatenate([NOISE.acceleration, np.zeros(1000)]), unit="m/s2")
         assert value("Tm", padded) == pytest.approx(value("Tm"), rel=5e-3)
 
     def test_spectrum_intensity_by_another_integrator_and_rule(self):
-        short = GroundMotion("short", 0.02, SINE.acceleration[::20])
+        short = GroundMotion("short", 0.02, SINE.acceleration[::20], unit="m/s2")
         periods = np.linspace(0.1, 2.5, 41)
         sv = [2 * pi / period * displacement(short, period, 0.05) for period in periods]
         assert value("SI", short) == pytest.approx(simpson(sv, x=periods), rel=2e-3)
@@ -96,7 +96,7 @@ class TestDefinitions:
             assert value(f"Sa({period}, 2%)") == pytest.approx((2 * pi / period) ** 2 * sd / G, rel=2e-3)
 
     def test_an_average_spectral_acceleration(self):
-        short = GroundMotion("short", 0.02, SINE.acceleration[::20])
+        short = GroundMotion("short", 0.02, SINE.acceleration[::20], unit="m/s2")
         periods = 0.2 + 0.3 * np.arange(100) / 99
         sa = [(2 * pi / period) ** 2 * displacement(short, period, 0.05) / G for period in periods]
         assert value("Sa_avg(0.2:0.5)", short) == pytest.approx(np.exp(np.mean(np.log(sa))), rel=2e-3)
@@ -120,7 +120,7 @@ class TestDefinitions:
         assert DU.value(NOISE, Reference(1.0, level / 9.0, 9.0)) == pytest.approx(counted, abs=1e-4)
 
     def test_uniform_duration_of_level_stretches(self):
-        steps = GroundMotion("steps", 1.0, np.array([0.0, 2.0, 2.0, -2.0, -2.0, 0.0]))
+        steps = GroundMotion("steps", 1.0, np.array([0.0, 2.0, 2.0, -2.0, -2.0, 0.0]), unit="m/s2")
         found = [DU.value(steps, Reference(1.0, level, 1.0)) for level in (1.0, 2.0, 2.5)]
         assert found == [pytest.approx(0.5 + 1 + 0.5 + 1 + 0.5), pytest.approx(2.0), 0.0]
 
@@ -139,7 +139,7 @@ class TestDefinitions:
             intensities(SINE, [parse_measure("Du")])
 
     def test_a_motion_that_is_none_has_no_duration(self):
-        nothing = GroundMotion("nothing", 0.01, np.zeros(50))
+        nothing = GroundMotion("nothing", 0.01, np.zeros(50), unit="m/s2")
         for name in ("D5-75", "D5-95", "Tm", "PGV/PGA"):
             assert np.isnan(value(name, nothing))
         for name in ("PGA", "CAV", "Arias", "SI", "Sa_avg(0.2:2)"):

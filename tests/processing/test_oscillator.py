@@ -14,7 +14,7 @@ from rocking_cli.processing.oscillator import _turning_point, relative_response,
 @pytest.fixture(scope="module")
 def rough() -> GroundMotion:
     samples = np.random.default_rng(0).normal(size=2000).cumsum()
-    return GroundMotion("rough", 0.01, np.concatenate([[0.0], samples - samples.mean(), [0.0]]))
+    return GroundMotion("rough", 0.01, np.concatenate([[0.0], samples - samples.mean(), [0.0]]), unit="m/s2")
 
 
 @pytest.mark.parametrize("damping", [0.0, 0.05, 0.6])
@@ -34,7 +34,7 @@ def test_a_step_of_the_ground() -> None:
     period, xi, a = 0.8, 0.1, 2.0
     w = 2 * pi / period
     w_d = w * sqrt(1 - xi**2)
-    motion = GroundMotion("step", 0.013, np.full(200, a))
+    motion = GroundMotion("step", 0.013, np.full(200, a), unit="m/s2")
     x, _, parts = relative_response(motion, period, xi)
     t = np.arange(x.size) * motion.dt / parts
     decay = np.exp(-xi * w * t)
@@ -45,7 +45,7 @@ def test_a_step_of_the_ground() -> None:
 
 def test_what_comes_after_the_motion_counts() -> None:
     """A short pulse of impulse J leaves an undamped oscillator swinging by J/w."""
-    motion = GroundMotion("knock", 1e-4, np.array([0.0, 3.0, 0.0]))
+    motion = GroundMotion("knock", 1e-4, np.array([0.0, 3.0, 0.0]), unit="m/s2")
     assert response_spectrum(motion, [2.0], 0.0).sd[0] == pytest.approx(3e-4 * 2.0 / (2 * pi), rel=1e-6)
     for xi in (0.02, 0.3):  # the peak of e^(-xi w t) sin(w_d t)/w_d
         w, d = pi, pi * sqrt(1 - xi**2)
@@ -58,7 +58,7 @@ def test_resonance_builds_up_as_it_must() -> None:
     """Undamped, under sin(w t): x = (sin w t - w t cos w t)/(2 w^2), times -1."""
     period, dt = 1.0, 0.002
     t = np.arange(0, 5.0 + dt / 2, dt)
-    motion = GroundMotion("sine", dt, np.sin(2 * pi * t))
+    motion = GroundMotion("sine", dt, np.sin(2 * pi * t), unit="m/s2")
     w = 2 * pi / period
     x, _, _ = relative_response(motion, period, 0.0)
     assert x == pytest.approx(-(np.sin(w * t) - w * t * np.cos(w * t)) / (2 * w**2), abs=2e-5 * np.abs(x).max())
@@ -73,10 +73,10 @@ def test_the_ends_of_a_spectrum(rough: GroundMotion) -> None:
 
 
 def test_peaks_between_samples_are_seen() -> None:
-    coarse = GroundMotion("coarse", 0.05, np.array([0.0, 1.0, -1.5, 2.0, -0.3, 0.0]))
+    coarse = GroundMotion("coarse", 0.05, np.array([0.0, 1.0, -1.5, 2.0, -0.3, 0.0]), unit="m/s2")
     parts = 400
     t = np.arange(5 * parts + 1) / parts
-    fine = GroundMotion("fine", 0.05 / parts, np.interp(t, np.arange(6), coarse.acceleration))
+    fine = GroundMotion("fine", 0.05 / parts, np.interp(t, np.arange(6), coarse.acceleration), unit="m/s2")
     for period in (0.06, 0.11, 0.4):
         x, _, _ = relative_response(fine, period, 0.05)
         assert response_spectrum(coarse, [period], 0.05).sd[0] == pytest.approx(np.abs(x).max(), rel=3e-5)

@@ -28,7 +28,7 @@ def motion():
     rng = np.random.default_rng(3)
     t = 0.01 * np.arange(1501)
     samples = np.exp(-(((t - 6) / 3) ** 2)) * rng.normal(size=t.size) + 0.05 * t + 0.2
-    return GroundMotion("noise", 0.01, samples)
+    return GroundMotion("noise", 0.01, samples, unit="m/s2")
 
 
 def done(motion, *steps):
@@ -43,7 +43,7 @@ class TestAgainstScipy:
 
     def test_half_of_the_amplitude_is_left_at_the_corner(self):
         t = 0.005 * np.arange(20_001)
-        wave = GroundMotion("wave", 0.005, np.sin(2 * np.pi * 2 * t))
+        wave = GroundMotion("wave", 0.005, np.sin(2 * np.pi * 2 * t), unit="m/s2")
         middle = slice(6000, 14000)
         for name in ("highpass", "lowpass"):
             assert done(wave, f"{name} 2")[middle] == pytest.approx(wave.acceleration[middle] / 2, abs=1e-6)
@@ -56,13 +56,13 @@ class TestAgainstScipy:
         left = done(motion, "baseline quadratic")
         for power in range(3):
             assert np.sum(left * t**power) == pytest.approx(0, abs=1e-9 * np.sum(np.abs(a) * t**power))
-        parabola = GroundMotion("p", 0.01, 3 + 2 * t - 0.7 * t**2)
+        parabola = GroundMotion("p", 0.01, 3 + 2 * t - 0.7 * t**2, unit="m/s2")
         assert done(parabola, "baseline quadratic") == pytest.approx(0 * t, abs=1e-9)
 
     def test_taper(self, motion):
         n = motion.npts
         assert done(motion, "taper 0.05") == pytest.approx(motion.acceleration * signal.windows.tukey(n, 0.1))
-        shape = done(GroundMotion("one", 0.01, np.ones(1001)), {"taper": "5%"})
+        shape = done(GroundMotion("one", 0.01, np.ones(1001), unit="m/s2"), {"taper": "5%"})
         assert shape[25] == pytest.approx(0.5) and shape[0] == 0 and (shape[51:950] == 1).all()
 
     def test_coarser_samples(self, motion):
@@ -74,7 +74,7 @@ class TestAgainstScipy:
     def test_coarser_samples_hold_nothing_folded_back(self):
         t = 0.005 * np.arange(8001)
         slow, fast = np.sin(2 * np.pi * t), np.sin(2 * np.pi * 70 * t)
-        found = process(GroundMotion("two", 0.005, slow + fast), parse_steps(["resample 0.01"]))
+        found = process(GroundMotion("two", 0.005, slow + fast, unit="m/s2"), parse_steps(["resample 0.01"]))
         assert found.acceleration[200:-200] == pytest.approx(slow[::2][200:-200], abs=0.01)
 
 
@@ -96,7 +96,7 @@ class TestShape:
     @pytest.mark.parametrize("count", [100, 101, 102, 103])
     @pytest.mark.parametrize(("dt", "parts", "of"), [(0.015, 2, 3), (0.02, 1, 2), (0.03, 1, 3)])
     def test_a_coarser_interval_keeps_every_sample_within_the_record(self, count, dt, parts, of):
-        found = process(GroundMotion("one", 0.01, np.ones(count)), parse_steps([{"resample": dt}]))
+        found = process(GroundMotion("one", 0.01, np.ones(count), unit="m/s2"), parse_steps([{"resample": dt}]))
         assert found.npts == (count - 1) * parts // of + 1
 
     def test_a_negative_factor_leaves_the_vertical_upright(self, motion, tmp_path):
@@ -204,7 +204,7 @@ class TestRefusals:
             parse_step(name, given)
 
     def test_intervals_that_no_memory_holds(self):
-        long = GroundMotion("long", 0.01, np.zeros(200_001))
+        long = GroundMotion("long", 0.01, np.zeros(200_001), unit="m/s2")
         with pytest.raises(InputError, match=r"would make 2e\+08 samples"):
             done(long, "resample 0.00001")
         with pytest.raises(InputError, match="is more than 100000 of the"):
@@ -212,9 +212,9 @@ class TestRefusals:
 
     def test_too_few_samples(self):
         with pytest.raises(InputError, match="12 samples are too few for a filter"):
-            done(GroundMotion("short", 0.01, np.ones(12)), "lowpass 20")
+            done(GroundMotion("short", 0.01, np.ones(12), unit="m/s2"), "lowpass 20")
         with pytest.raises(InputError, match="nothing would be left"):
-            done(GroundMotion("short", 0.01, np.array([0.0, 1.0, 0.0])), "baseline quadratic")
+            done(GroundMotion("short", 0.01, np.array([0.0, 1.0, 0.0]), unit="m/s2"), "baseline quadratic")
 
 
 @pytest.mark.parametrize("name", ["highpass", "lowpass", "taper", "trim", "resample", "factor"])
@@ -226,7 +226,7 @@ def test_what_is_said_reads_back_to_the_last_digit(name):
 
 def test_doubts_of_samples_are_those_of_the_record_as_read():
     samples = np.clip(np.sin(np.arange(800) / 20), -0.6, 0.6)
-    clipped = GroundMotion("clipped", 0.01, samples)
+    clipped = GroundMotion("clipped", 0.01, samples, unit="m/s2")
     kinds = [each.kind for each in doubts(clipped, measure(clipped))]
     filtered = process(clipped, parse_steps(["lowpass 20"]))
     assert "clipped" in kinds
@@ -375,5 +375,5 @@ def test_a_floor_of_equal_storeys_is_named_by_their_number():
 @pytest.mark.parametrize(("dt", "every"), [(0.004, 2), (0.0005, 16), (0.02, 1)])
 def test_a_resampled_pulse_is_shown_as_often_as_before(dt, every):
     """Every eighth sample of 1 ms is shown, one in 8 ms; where samples are farther apart than that, each."""
-    pulse = GroundMotion("pulse", 0.001, np.sin(np.linspace(0.0, 6.0, 1001)), every=8)
+    pulse = GroundMotion("pulse", 0.001, np.sin(np.linspace(0.0, 6.0, 1001)), every=8, unit="m/s2")
     assert process(pulse, parse_steps([{"resample": dt}])).every == every

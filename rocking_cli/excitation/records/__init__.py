@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.opening import decoded, open_record
 from rocking_cli.excitation.records.record_units import QUANTITIES, Gain, Quantity, Wanted, as_acceleration
 from rocking_cli.excitation.records.registry import Reader, load_readers, reader_for, takes_bytes, takes_wanted
+from rocking_cli.excitation.records.text import TITLE, Followed
 
 __all__ = ["read_measured", "read_record"]
 
@@ -26,6 +31,8 @@ def read_record(
     quantity: Quantity | None = None,
     gain: str | Gain | None = None,
     uneven: bool = False,
+    run_on: bool = False,
+    despite_header: bool = False,
 ) -> GroundMotion:
     """Read a recorded ground motion; the format is found from the content, not from the file's name.
 
@@ -51,6 +58,10 @@ def read_record(
     uneven : bool, optional
         Whether to accept uneven times: the values are interpolated to an even grid, and a remark states how uneven the
         times are.
+    run_on : bool, optional
+        Whether the values of a text without times are one series that runs on over the rows, from left to right.
+    despite_header : bool, optional
+        Whether to accept a text with other numbers of points or peaks than its header states; a remark states them.
 
     Returns
     -------
@@ -62,7 +73,17 @@ def read_record(
     InputError
         If the file cannot be read, or anything in it is missing, contradictory or not a number.
     """
-    measured, of = read_measured(path, dt=dt, units=units, channel=channel, quantity=quantity, gain=gain, uneven=uneven)
+    measured, of = read_measured(
+        path,
+        dt=dt,
+        units=units,
+        channel=channel,
+        quantity=quantity,
+        gain=gain,
+        uneven=uneven,
+        run_on=run_on,
+        despite_header=despite_header,
+    )
     return as_acceleration(measured, of)
 
 
@@ -75,6 +96,8 @@ def read_measured(
     quantity: Quantity | None = None,
     gain: str | Gain | None = None,
     uneven: bool = False,
+    run_on: bool = False,
+    despite_header: bool = False,
 ) -> tuple[GroundMotion, Quantity]:
     """Read measured values, in SI units in place of accelerations, and their quantity.
 
@@ -82,16 +105,23 @@ def read_measured(
     """
     if dt is not None and (isinstance(dt, str) or not (math.isfinite(dt) and dt > 0)):
         raise InputError(Problem(f"the sample interval must be a positive number of seconds, got {dt}", field="`dt`"))
+    if not isinstance(path, str | Path):
+        hint = 'samples are a ground motion by GroundMotion("mine", 0.01, samples, unit="g")'
+        raise InputError(Problem(f"must be a file, got {type(path).__name__}", field="`path`", hint=hint))
     gain = Gain.parse(gain) if isinstance(gain, str) else gain
-    wanted = _wanted(quantity, gain, units, uneven=uneven)
+    wanted = _wanted(quantity, gain, units)._replace(uneven=uneven, run_on=run_on, despite_header=despite_header)
     data, file, name, member, channel = open_record(path, channel)
     text = decoded(data, file)
     reader = reader_for(text, file, load_readers(), data)
     content = data if takes_bytes(reader) else text
     del data, text  # frees memory, as a long record is large
     try:
-        more = {"wanted": wanted} if _must_be_asked(reader, wanted, file) else {}
-        motion = reader.read(content, file, dt=dt, units=units, channel=channel, **more)
+        more: dict[str, Any] = {"wanted": wanted} if _must_be_asked(reader, wanted, file) else {}
+        read = partial(reader.read, dt=dt, units=units, **more)
+        try:
+            motion = read(content, file, channel=channel)
+        except Followed as error:
+            motion = _of_several(str(content), file, reader, read, channel, error)
     except InputError as error:
         if type(error) is not InputError:  # errors of plugins keep their own message
             raise
@@ -109,19 +139,52 @@ def read_measured(
     return replace(motion, name=f"{name} channel {chosen}" if chosen else name), wanted.quantity
 
 
-def _wanted(quantity: Quantity | None, gain: Gain | None, units: str | None, *, uneven: bool) -> Wanted:
+def _of_several(
+    text: str, file: str, reader: Reader, read: Callable[..., GroundMotion], channel: str | None, error: Followed
+) -> GroundMotion:
+    """Return the requested one of several records that follow each other, or raise `error` if these are none."""
+    lines, starts, followed = Lines(text), [0], error
+    while True:
+        starts.append(starts[-1] + followed.end)
+        rest = "\n".join(lines[starts[-1] :])
+        if not reader.sniff(rest):
+            raise followed
+        try:
+            read(rest, file, channel="1")
+        except Followed as more:
+            followed = more
+            continue
+        except InputError:  # raised again if this record is chosen
+            pass
+        break
+    number, _, inside = (channel or "").partition(":")
+    if not (number.isdecimal() and 1 <= int(number) <= len(starts)):
+        wrong = f", none of which is called '{channel}'" if channel else ", and only one can shake a structure"
+        listed = "".join(f"\n    {k}: line {start + 1}, {lines[start].strip()}" for k, start in enumerate(starts, 1))
+        hint = f"choose one with `channel`, and a channel in it behind a colon:{listed}"
+        raise InputError(Problem(f"the file holds {len(starts)} records{wrong}", file, hint=hint))
+    start, end = [*starts, len(lines)][int(number) - 1 : int(number) + 1]
+    try:
+        motion = read("\n".join(lines[start:end]), file, channel=inside or None)
+    except InputError as wrong:
+        raise InputError(*(replace(each, line=each.line and each.line + start) for each in wrong.problems)) from None
+    inside = motion.name.removeprefix(Path(file).name).removeprefix(" channel ")
+    return replace(motion, name=f"{Path(file).name} channel {':'.join(filter(None, (number, inside)))}")
+
+
+def _wanted(quantity: Quantity | None, gain: Gain | None, units: str | None) -> Wanted:
     """Return the request to the reader, after checking that the arguments agree."""
     if quantity is not None and quantity not in QUANTITIES:
         raise InputError(Problem(f"must be one of {', '.join(QUANTITIES)}, got '{quantity}'", field="`from`"))
     if gain is None:
-        return Wanted(quantity or "acceleration", uneven=uneven)
+        return Wanted(quantity or "acceleration")
     if quantity is not None and quantity != gain.quantity:
         message = f"{gain} is of a {gain.quantity}, but `from` says {quantity}"
         raise InputError(Problem(message, field="`gain`", hint="leave `from` out: the gain says it"))
     if units is not None:
         message = "the gain says what unit the values become"
         raise InputError(Problem(message, field="`units`", hint="leave `units` or `gain` out"))
-    return Wanted(gain.quantity, raw=True, uneven=uneven)
+    return Wanted(gain.quantity, raw=True)
 
 
 def _must_be_asked(reader: Reader, wanted: Wanted, file: str) -> bool:
@@ -129,6 +192,10 @@ def _must_be_asked(reader: Reader, wanted: Wanted, file: str) -> bool:
 
     Raises `InputError` if it does not, and something other than accelerations is requested.
     """
+    for name in ("run_on", "despite_header"):
+        if getattr(wanted, name) and reader.TITLE != TITLE:
+            message = f"has no effect on a file of this format ({reader.TITLE})"
+            raise InputError(Problem(message, file, field=f"`{name}`", hint="leave it out"))
     if takes_wanted(reader):
         return True
     if wanted.raw or wanted.quantity != "acceleration":

@@ -11,14 +11,17 @@ import numpy as np
 
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.records.header_words import component, without_sign
 from rocking_cli.excitation.records.record_units import (
     Wanted,
     header_units,
+    is_acceleration,
     is_unit,
     other_quantity,
     plural,
     quantity_of,
 )
+from rocking_cli.excitation.records.shapes import runs_on
 from rocking_cli.text import regex
 
 MAX_COLUMNS = 1000
@@ -31,6 +34,9 @@ _BARE_T = regex(r"t", re.IGNORECASE)  # a label that may stand for the time or t
 _WORDS = regex(r"[^\s\[(]+(?: *(?:\[[^\]]*\]|\([^)]*\)))?")  # a word, with the brackets that follow it
 _GAPS = regex(r"\s{2,}|\t")
 _COLUMN = regex(r"col(?:umn)?\.? *(\d{1,4})")
+_NO_NAME = regex(r"=|:$|^[+-]?\.?\d(?!\d{0,2} ?deg)")
+_NO_AZIMUTH = regex(r"=|:$|^[+-]?\d*\.\d|^\d{4}")  # beside a time, numbers may be names
+_BREAKS = regex(r"[;,\s]+")
 _BRACKETED = regex(r"[\[(]\s*([^\])]+?)\s*[\])]")
 
 
@@ -77,11 +83,18 @@ class Choice:
     channel: str
 
 
-def labels(lines: Sequence[tuple[int, str]], delimiter: str | None, columns: int) -> tuple[list[Label], list[int]]:
+def labels(
+    file: str, lines: Sequence[tuple[int, str]], delimiter: str | None, columns: int
+) -> tuple[list[Label], list[int]]:
     """Return the names of the columns of a table, from the header above it.
+
+    Labels are the nearest line above the table with as many words as there are columns, of which one is a time, a unit
+    or a known component.
 
     Parameters
     ----------
+    file : str
+        The file, for messages.
     lines : sequence of (int, str)
         Line number and text of every line of the header.
     delimiter : str or None
@@ -92,18 +105,38 @@ def labels(lines: Sequence[tuple[int, str]], delimiter: str | None, columns: int
     Returns
     -------
     list of Label
-        A label for each column; empty labels if no line has as many words as there are columns.
+        A label for each column; empty labels if there are no labels.
     list of int
         Numbers of the lines from which the labels are.
+
+    Raises
+    ------
+    InputError
+        If two lines name the same components in another order.
     """
-    rows = [(number, cells) for number, line in lines[-LABEL_LINES:] if (cells := _cells(line, delimiter, columns))]
-    if not rows:
+    nearest_lines = sorted(lines)[-LABEL_LINES:]
+    rows = [(number, cells) for number, line in reversed(nearest_lines) if (cells := _cells(line, delimiter, columns))]
+    fitting = [(number, cells) for number, cells in rows if any(map(_is_label, cells))]
+    if not fitting:
         return [Label("")] * columns, []
-    number, names = rows[-1]
-    if len(rows) > 1 and all(not cell or cell == "-" or is_unit(cell.strip("[]() ")) for cell in names):
-        (above, names), units = rows[-2], [cell.strip("[]()- ") for cell in names]
-        return [Label(name, unit) for name, unit in zip(names, units, strict=True)], [above, number]
-    return [Label(name) for name in names], [number]
+    number, names = fitting[0]
+    of = [[component(cell) for cell in cells] for _, cells in fitting]
+    for (other, _), components in zip(fitting[1:], of[1:], strict=True):
+        if components != of[0] and set(components) == set(of[0]):
+            message = f"lines {other} and {number} name the columns in different orders"
+            raise InputError(Problem(message, file, number, hint="take out the one that is wrong"))
+    above = [row for row in rows if row[0] < number]
+    if above and all(not cell or cell == "-" or is_unit(cell.strip("[]() ")) for cell in names):
+        (above_number, above_names), units = above[0], [cell.strip("[]()- ") for cell in names]
+        labelled = zip(above_names, units, strict=True)
+        return [Label(without_sign(name), unit) for name, unit in labelled], [above_number, number]
+    return [Label(without_sign(name)) for name in names], [number]
+
+
+def _is_label(cell: str) -> bool:
+    """Return whether a cell above a column is a time, a unit, a quantity or a known component."""
+    named = Label(cell).is_time or component(cell) is not None or is_unit(cell.strip("[]() "))
+    return named or bool(header_units(cell)) or other_quantity(cell) is not None or is_acceleration(cell)
 
 
 def choose(
@@ -167,7 +200,8 @@ def _cells(line: str, delimiter: str | None, columns: int) -> list[str]:
         return []
     for cells in _ways(line, delimiter):
         stripped = [cell.strip().strip("\"'").strip() for cell in cells]
-        if len(stripped) == columns and any(re.search(r"[^\W\d_]", cell) for cell in stripped):
+        no_name = _NO_AZIMUTH if stripped and Label(stripped[0]).is_time else _NO_NAME
+        if len(stripped) == columns and not any(map(no_name.search, stripped)):
             # A phrase such as "acceleration in g" is not the labels of three columns.
             of_cells = any(map(header_units, stripped)) or all(is_unit(cell.strip("[]() ")) for cell in stripped)
             return stripped if of_cells or not header_units(line) else []
@@ -187,6 +221,7 @@ def _ways(line: str, delimiter: str | None) -> Iterator[list[str]]:
     yield line.split()
     for mark in (";", "\t", ","):
         yield line.split(mark)
+    yield _BREAKS.split(line.partition(":")[2].strip())  # for example: sequence: time U(+); N(+)
 
 
 def _times(table: Reals, names: Sequence[Label], increases: Callable[[Reals], bool]) -> list[int]:
@@ -213,10 +248,8 @@ def _place(
         message = (
             f"the table has {len(values)} columns that may be {_values(wanted)}, and only one can shake a structure"
         )
-        if not any(label.name for label in names) and not times:
-            listed += (
-                "\n  values that run on from line to line do not form a table: give the file as the data centre made it"
-            )
+        if not any(label.name for label in names) and not times and runs_on(table) is None:
+            listed += "\n  if the values run on from line to line, and the columns are no components, give `run_on`"
         raise InputError(Problem(message, file, hint=f"choose one with `channel`, by place or name:{listed}"))
     word = _plain(requested)
     if (number := _COLUMN.fullmatch(word)) and int(number[1]) - 1 in values:

@@ -1,4 +1,4 @@
-"""COSMOS V1 and V2c (format 1.20): text, integer, real and comment headers that state their lengths, then values."""
+"""COSMOS V0, V1 and V2c (format 1.20): text, integer, real and comment headers that state their lengths; values."""
 
 from __future__ import annotations
 
@@ -10,15 +10,13 @@ import numpy as np
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import Doubt, GroundMotion, Origin
-from rocking_cli.excitation.records import layout
+from rocking_cli.excitation.records import formats, layout
 from rocking_cli.excitation.records.header_fields import Field, read_head
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.origins import magnitude, origin, peak_doubts
+from rocking_cli.excitation.records.record_units import Asked
 from rocking_cli.excitation.records.text import numbers_in
 from rocking_cli.text import regex
-
-TITLE = "COSMOS"
-SIGN = "a first line with (Format v01.20 with 13 text lines)"
 
 _FIRST_LINE = regex(r"(.*?)\(Format v(\S+) with\s+(\d+) text lines\)", re.I)
 _NUMBERS = regex(r"\s*(\d+)\s+(Integer|Real)-header values follow on\s+\d+ lines?[ ,]*Format *=? *(\S+)", re.I)
@@ -32,6 +30,7 @@ _DATA = regex(
 _WIDTH = regex(r"\( *\d*[A-Z](\d+)(?:\.\d+)?(?:E\d*)? *\)", re.I)
 _MAX_LINE_CHARACTERS = 300  # the format has 80 characters in a line
 _CODE = regex(r"units *=[^(,]*\((\d{1,3})\)", re.I)
+_RAW = regex(r"(?:raw|uncor\w*|counts?)\b", re.I)  # numbers of a digitiser, in V0
 _UNIT_CODES = {2: "g", 4: "cm/s2"}
 _END = regex(r"End-of-data for Chan *(\S+)", re.I)
 # Places, from 1, of the interval of processed data [ms] and of raw records [s]; the latter is for unprocessed data.
@@ -62,15 +61,8 @@ class _Headers:
     origin: Origin
 
 
-def sniff(text: str) -> bool:
-    """Return whether the first line states the version and the number of text lines."""
-    return _FIRST_LINE.match(text[:_MAX_FIRST_LINE].split("\n")[0]) is not None
-
-
-def read(
-    text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
-) -> GroundMotion:
-    """Read a COSMOS V1 or V2c file; arguments, result and errors are those of `registry.Reader.read`."""
+def read(text: str, file: str, asked: Asked) -> GroundMotion:
+    """Read a COSMOS V0, V1 or V2c file; see `registry.Reader.read`."""
     lines = layout.lines_of(text)
     channels: list[layout.Channel] = []
     others: list[str] = []
@@ -82,15 +74,14 @@ def read(
         headers = _headers(file, lines, index)
         index = headers.data
         while index == headers.data or (index < len(lines) and _announced(lines[index])):
-            content, index = _history(file, lines, headers, index, units)
+            content, index = _history(file, lines, headers, index, asked)
             if isinstance(content, layout.Channel):
                 channels.append(content)
             else:
                 others.append(content)
     if not channels:
-        message = f"the file holds no acceleration, but {', '.join(dict.fromkeys(others))}"
-        raise InputError(Problem(message, file, hint="give the file with the acceleration"))
-    return layout.choose(file, TITLE, channels, channel, dt)
+        raise layout.lacking(file, asked.wanted, others)
+    return layout.choose(file, formats.cosmos.TITLE, channels, asked)
 
 
 def _headers(file: str, lines: Lines, start: int) -> _Headers:
@@ -123,12 +114,10 @@ def _headers(file: str, lines: Lines, start: int) -> _Headers:
     return _Headers(head.text("azimuth") or "", reals, reals_line, index, where)
 
 
-def _history(
-    file: str, lines: Lines, headers: _Headers, index: int, units: str | None
-) -> tuple[layout.Channel | str, int]:
+def _history(file: str, lines: Lines, headers: _Headers, index: int, asked: Asked) -> tuple[layout.Channel | str, int]:
     """Read the values announced at line index `index`, and return the index after them.
 
-    If they are not accelerations, the name of their quantity is returned in place of the channel.
+    If they are not of the requested quantity, the name of theirs is returned in place of the channel.
     """
     line_number = index + 1
     line = lines[index] if index < len(lines) else ""
@@ -143,12 +132,12 @@ def _history(
     count = layout.whole_number(file, line_number, line, match[1], "number of points", least=2)
     block = layout.RecordBlock(line_number, count, _width(file, line_number, match[5]), line_number)
     values, end, remarks = layout.fixed_width(file, lines, block)
-    if not match[2].lower().startswith("acc"):
+    if layout.quantity_called(match[2]) != asked.wanted.quantity and not (asked.wanted.raw and _RAW.match(match[2])):
         return match[2], end
-    unit = layout.stated_unit(file, line_number, match[4].strip(), units)
+    unit, size = layout.stated_unit(file, line_number, match[4].strip(), asked)
     code = _CODE.search(line)
     coded = _UNIT_CODES.get(int(code[1])) if code else None
-    if coded is not None and coded != unit:
+    if coded is not None and coded != unit and asked.wanted.quantity == "acceleration":
         message = f"the header says the unit is {unit}, but its code ({code[1] if code else ''}) stands for {coded}"
         hint = "one of the two is damaged: download the file again"
         raise InputError(Problem(message, file, line_number, excerpt=line.strip()[:100], hint=hint))
@@ -156,9 +145,10 @@ def _history(
     interval = _interval(file, headers, count, length)
     mark = _END.match(lines[end]) if end < len(lines) else None
     name = mark[1] if mark and not mark[1].isdecimal() else headers.name
-    remarks += _peak(headers, values, interval, unit)
+    if not asked.wanted.raw:  # the peak of V0 may be one of accelerations
+        remarks += _peak(headers, values, interval, unit)
     return layout.Channel(
-        name, interval, layout.in_si(values, unit), unit, headers.reals_line, remarks=remarks, origin=headers.origin
+        name, interval, values * size, unit, headers.reals_line, remarks=remarks, origin=headers.origin
     ), end
 
 

@@ -7,12 +7,10 @@ import re
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records import csmip_v1, layout
+from rocking_cli.excitation.records import formats, layout
 from rocking_cli.excitation.records.origins import of_csmip, peak_doubts
+from rocking_cli.excitation.records.record_units import Asked
 from rocking_cli.text import regex
-
-TITLE = "CSMIP V2"
-SIGN = "a line such as 3251 POINTS OF ACCEL DATA EQUALLY SPACED AT .020 SEC"
 
 _DATA = regex(r"\s*(\d+) +POINTS OF (ACCEL|VELOC|DISPL)\w* +DATA EQUALLY SPACED AT +(\S+?) *SEC\b(.*)", re.I)
 _FIRST_LINE = regex(r"\s*CORRECTED ACCELEROGRAM\b", re.I)
@@ -22,25 +20,17 @@ _FORMAT = regex(r"\b\d+F(\d+)\.\d+", re.I)
 _CHANNEL = regex(r"\bCHAN(?:NEL)? +\d+: *(.*\S)", re.I)
 _PEAK = regex(r"PEAK ACCELERATION *= *(\S+) +CM/SEC/SEC +AT +(\S+) *SEC", re.I)
 _DEFAULT_WIDTH = 10  # characters per number, as in 8F10.3
-_SEARCHED_CHARACTERS = 100_000  # characters within which the format is recognised
 
 
-def sniff(text: str) -> bool:
-    """Return whether a line announces a history, in a file that is not an uncorrected record."""
-    return not csmip_v1.sniff(text) and any(
-        _DATA.match(line) for line in text[:_SEARCHED_CHARACTERS].expandtabs().split("\n")
-    )
-
-
-def read(
-    text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
-) -> GroundMotion:
-    """Read a CSMIP V2 file; arguments, result and errors are those of `registry.Reader.read`."""
+def read(text: str, file: str, asked: Asked) -> GroundMotion:
+    """Read a CSMIP V2 file; see `registry.Reader.read`."""
     lines = layout.lines_of(text)
-    channels = []
+    channels: list[layout.Channel] = []
+    held: list[str] = []  # quantities in the file
+    of_accelerations = math.nan  # s
     name = ""
     peak: tuple[int, str, str] | None = None
-    index = start = 0
+    index = start = end = 0
     while index < len(lines):
         line = lines[index]
         index += 1
@@ -60,24 +50,28 @@ def read(
         width = layout.column_width(file, index, line, form[1]) if form else _DEFAULT_WIDTH
         block = layout.RecordBlock(index, count, width, index)
         values, index, remarks = layout.fixed_width(file, lines, block)
-        if data[2].upper() == "ACCEL":
+        end = index
+        held.append(data[2])
+        if layout.quantity_called(data[2]) == "acceleration":
+            of_accelerations = interval
+        elif not math.isnan(of_accelerations) and not math.isclose(interval, of_accelerations):
+            message = f"the interval is {interval:g} s, but that of its accelerations {of_accelerations:g} s"
+            hint = "one of the two is damaged: download the file again"
+            raise InputError(Problem(message, file, block.header_line, excerpt=line.strip()[:100], hint=hint))
+        if layout.quantity_called(data[2]) == asked.wanted.quantity:
             spelling = _UNIT.search(data[4])
-            unit = layout.stated_unit(file, block.header_line, spelling[1] if spelling else "", units)
-            if peak is not None:
-                remarks += peak_doubts(100 * layout.in_si(values, unit), interval, "cm/s2", *peak)
+            unit, size = layout.stated_unit(file, block.header_line, spelling[1] if spelling else "", asked)
+            if peak is not None and asked.wanted.of_accelerations:
+                remarks += peak_doubts(100 * (values * size), interval, "cm/s2", *peak)
             origin = of_csmip(lines[start : min(start + _TEXT_LINES, block.header_line)])
             line_number = block.header_line
             channels.append(
-                layout.Channel(
-                    name, interval, layout.in_si(values, unit), unit, line_number, remarks=remarks, origin=origin
-                )
+                layout.Channel(name, interval, values * size, unit, line_number, remarks=remarks, origin=origin)
             )
             peak = None
-        elif channels and not math.isclose(interval, channels[-1].dt):
-            message = f"the interval is {interval:g} s, but that of its accelerations {channels[-1].dt:g} s"
-            hint = "one of the two is damaged: download the file again"
-            raise InputError(Problem(message, file, block.header_line, excerpt=line.strip()[:100], hint=hint))
+    if channels and start >= end:
+        hint = "the file may have been cut: download it again"
+        raise InputError(Problem("the channel that begins here has no values", file, start + 1, hint=hint))
     if not channels:
-        message = "the file holds no acceleration, only velocity or displacement"
-        raise InputError(Problem(message, file, hint="give the file with the corrected acceleration"))
-    return layout.choose(file, TITLE, channels, channel, dt)
+        raise layout.lacking(file, asked.wanted, held)
+    return layout.choose(file, formats.csmip_v2.TITLE, channels, asked)

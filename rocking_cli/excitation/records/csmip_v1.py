@@ -7,14 +7,12 @@ from dataclasses import replace
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records import layout
+from rocking_cli.excitation.records import formats, layout
 from rocking_cli.excitation.records.header_fields import Field, read_head
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.origins import length_doubts, of_csmip
+from rocking_cli.excitation.records.record_units import Asked
 from rocking_cli.text import regex
-
-TITLE = "CSMIP V1"
-SIGN = "a first line that begins with UNCORRECTED ACCELEROGRAM DATA"
 
 _FIRST_LINE = regex(r"\s*UNCORRECTED ACCELEROGRAM DATA\b", re.I)
 _FIELDS = {
@@ -42,15 +40,8 @@ _INTEGERS, _REALS = (100, 5), (50, 10)  # count, and characters per number
 _PAIRS_WIDTH, _VALUES_WIDTH = 7, 9  # characters per number: 10F7.3 for five points a line, and by default 8F9.6
 
 
-def sniff(text: str) -> bool:
-    """Return whether the first line is that of an uncorrected channel."""
-    return _FIRST_LINE.match(text[:200]) is not None
-
-
-def read(
-    text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
-) -> GroundMotion:
-    """Read a CSMIP V1 file; arguments, result and errors are those of `registry.Reader.read`.
+def read(text: str, file: str, asked: Asked) -> GroundMotion:
+    """Read a CSMIP V1 file; see `registry.Reader.read`.
 
     The points of a digitised film are interpolated to a constant interval by `layout.straight_lines`.
     """
@@ -60,14 +51,14 @@ def read(
     while start < len(lines):
         if lines[start].strip() and not lines[start].startswith("/&"):
             head = lines[start : start + _TEXT_LINES]
-            part, start = _channel(file, lines, start, units)
+            part, start = _channel(file, lines, start, asked)
             channels.append(replace(part, origin=of_csmip(head)))
         else:
             start += 1
-    return layout.choose(file, TITLE, channels, channel, dt)
+    return layout.choose(file, formats.csmip_v1.TITLE, channels, asked)
 
 
-def _channel(file: str, lines: Lines, start: int, units: str | None) -> tuple[layout.Channel, int]:
+def _channel(file: str, lines: Lines, start: int, asked: Asked) -> tuple[layout.Channel, int]:
     """Read the channel that begins at line index `start`; return it and the index after it."""
     if not _FIRST_LINE.match(lines[start]):
         message = "a channel must begin with the line UNCORRECTED ACCELEROGRAM DATA here"
@@ -81,18 +72,18 @@ def _channel(file: str, lines: Lines, start: int, units: str | None) -> tuple[la
     line = lines[index] if index < len(lines) else ""
     for pattern in _EVEN_HEADERS:
         if match := pattern.match(line):
-            channel, end = _evenly(file, lines, index, match, name, units)
+            channel, end = _evenly(file, lines, index, match, name, asked)
             if length := head.items.get("length"):
                 lasting = channel.acceleration.size * channel.dt
                 tolerance = max(_LENGTH_TOLERANCE, _LENGTH_TOLERANCE_SHARE * lasting)
                 doubts = length_doubts(lasting, length.line_number, length.groups[0], tolerance)
                 channel = replace(channel, remarks=channel.remarks + doubts)
             return channel, end
-    return _film(file, lines, start, index, name, units)
+    return _film(file, lines, start, index, name, asked)
 
 
 def _evenly(
-    file: str, lines: Lines, index: int, match: re.Match[str], name: str, units: str | None
+    file: str, lines: Lines, index: int, match: re.Match[str], name: str, asked: Asked
 ) -> tuple[layout.Channel, int]:
     """Read samples at a constant interval, announced at line index `index`; return them and the index after them."""
     line_number, line = index + 1, lines[index]
@@ -105,17 +96,17 @@ def _evenly(
     else:
         interval = 1 / layout.number(file, line_number, line, match["rate"], "number of points per second")
     stated, form = _STATED.search(match[4]), _FORMAT.search(match[4])
-    unit = layout.old_unit(file, line_number, stated[1] if stated else "", units)
+    unit, size = layout.old_unit(file, line_number, stated[1] if stated else "", asked)
     width = layout.column_width(file, line_number, line, form[1]) if form else _VALUES_WIDTH
     values, end, remarks = layout.fixed_width(file, lines, layout.RecordBlock(line_number, count, width, line_number))
-    return layout.Channel(name, interval, layout.in_si(values, unit), unit, line_number, remarks=remarks), end
+    return layout.Channel(name, interval, values * size, unit, line_number, remarks=remarks), end
 
 
-def _film(file: str, lines: Lines, start: int, index: int, name: str, units: str | None) -> tuple[layout.Channel, int]:
+def _film(file: str, lines: Lines, start: int, index: int, name: str, asked: Asked) -> tuple[layout.Channel, int]:
     """Read pairs of time and acceleration from line index `index` on; return them and the index after them."""
     head = read_head(file, lines, _OF_FILM, _TEXT_LINES, start)
-    unit = layout.old_unit(file, head["unit"].line_number, head["unit"].groups[0], units)
+    unit, size = layout.old_unit(file, head["unit"].line_number, head["unit"].groups[0], asked)
     block = layout.RecordBlock(index, 2 * head.count, _PAIRS_WIDTH, head["count"].line_number)
     pairs, end, remarks = layout.fixed_width(file, lines, block)
     interval, values, points = layout.straight_lines(file, pairs, f"lines {index + 1} to {end}")
-    return layout.Channel(name, interval, layout.in_si(values, unit), unit, points=points, remarks=remarks), end
+    return layout.Channel(name, interval, values * size, unit, points=points, remarks=remarks), end

@@ -2,34 +2,22 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion, Origin
-from rocking_cli.excitation.records import layout
+from rocking_cli.excitation.records import formats, layout
 from rocking_cli.excitation.records.origins import length_doubts, origin, peak_doubts
+from rocking_cli.excitation.records.record_units import Asked
 from rocking_cli.text import regex
-
-TITLE = "ESM ASCII"
-SIGN = "header lines SAMPLING_INTERVAL_S: and NDATA:"
 
 _KEY = regex(r"([A-Z][A-Z0-9_/^]*):(.*)")
 _DAY, _TIME = regex(r"(\d{4})(\d{2})(\d{2})"), regex(r"(\d{2})(\d{2})(\d{2})")
 _HEADER_CHARACTERS = 20_000
 
 
-def sniff(text: str) -> bool:
-    """Return whether the header states the interval and the number of points by their names in ESM."""
-    return all(
-        re.search(rf"^{key}:", text[:_HEADER_CHARACTERS], re.MULTILINE) for key in ("SAMPLING_INTERVAL_S", "NDATA")
-    )
-
-
-def read(
-    text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
-) -> GroundMotion:
-    """Read an ESM ASCII file; arguments, result and errors are those of `registry.Reader.read`."""
+def read(text: str, file: str, asked: Asked) -> GroundMotion:
+    """Read an ESM ASCII file; see `registry.Reader.read`."""
     lines = layout.lines_of(text)
     header: dict[str, tuple[int, str]] = {}
     start = 0
@@ -38,33 +26,29 @@ def read(
         start += 1
 
     kind_line, kind = header.get("DATA_TYPE", (start, ""))
-    if kind and not kind.upper().startswith("ACC"):
-        message = f"the header says the data are of type {kind}, not ACCELERATION"
-        hint = "give the file with the acceleration"
-        raise InputError(Problem(message, file, kind_line, field="DATA_TYPE", hint=hint))
+    if kind and layout.quantity_called(kind) != asked.wanted.quantity:
+        raise layout.lacking(file, asked.wanted, [kind], kind_line)
     for key in ("SAMPLING_INTERVAL_S", "NDATA"):
         if key not in header:
             message = f"the header, which ends before this line, does not state {key}"
             excerpt = lines[start].strip()[:100] if start < len(lines) else None
             raise InputError(Problem(message, file, min(start + 1, len(lines)), field=key, excerpt=excerpt))
     unit_line, spelling = header.get("UNITS", (start, ""))
-    unit = layout.stated_unit(file, unit_line, spelling, units)
+    unit, size = layout.stated_unit(file, unit_line, spelling, asked)
     dt_line, dt_text = header["SAMPLING_INTERVAL_S"]
     interval = layout.number(file, dt_line, lines[dt_line - 1], dt_text, "sampling interval")
     count_line, count_text = header["NDATA"]
     count = layout.whole_number(file, count_line, lines[count_line - 1], count_text, "number of points", least=2)
-    values, _, remarks = layout.fixed_width(file, lines, layout.RecordBlock(start, count, None, count_line))
+    values, end, remarks = layout.fixed_width(file, lines, layout.RecordBlock(start, count, None, count_line))
+    layout.check_end(file, lines, end)
     peak_line, peak = header.get("PGA_CM/S^2", (0, ""))
-    remarks += peak_doubts(
-        100 * layout.in_si(values, unit), interval, "cm/s2", peak_line, peak, header.get("TIME_PGA_S", (0, ""))[1]
-    )
+    peak_time = header.get("TIME_PGA_S", (0, ""))[1]
+    remarks += peak_doubts(100 * (values * size), interval, "cm/s2", peak_line, peak, peak_time)
     length_line, length = header.get("DURATION_S", (0, ""))
     remarks += length_doubts(count * interval, length_line, length, interval)
     _, stream = header.get("STREAM", (0, ""))
-    only = layout.Channel(
-        stream, interval, layout.in_si(values, unit), unit, dt_line, remarks=remarks, origin=_origin(header)
-    )
-    return layout.choose(file, TITLE, [only], channel, dt)
+    only = layout.Channel(stream, interval, values * size, unit, dt_line, remarks=remarks, origin=_origin(header))
+    return layout.choose(file, formats.esm.TITLE, [only], asked)
 
 
 def _origin(header: Mapping[str, tuple[int, str]]) -> Origin:

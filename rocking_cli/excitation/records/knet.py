@@ -6,14 +6,12 @@ import numpy as np
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records import layout
+from rocking_cli.excitation.records import formats, layout
 from rocking_cli.excitation.records.header_fields import Field, read_head
 from rocking_cli.excitation.records.origins import peak_doubts
+from rocking_cli.excitation.records.record_units import Asked
 from rocking_cli.excitation.records.text import sensible
 from rocking_cli.text import regex
-
-TITLE = "K-NET/KiK-net"
-SIGN = "header lines Sampling Freq(Hz) and Scale Factor"
 
 _FIELDS = {
     "rate": Field(regex(r"^Sampling Freq\.? *\(Hz\)\s+([\d.]+) *Hz\s*$"), "sampling frequency", ", such as 100Hz"),
@@ -33,15 +31,7 @@ _HEADER_LINES = 17
 _NUMBER_WIDTH, _BLANKS_AFTER = 9, 1  # characters per number, and blanks after it
 
 
-def sniff(text: str) -> bool:
-    """Return whether the header states the rate and the scale factor by their names in K-NET."""
-    head = text[:5000].expandtabs().split("\n")[:_HEADER_LINES]
-    return all(any(line.startswith(key) for line in head) for key in ("Sampling Freq", "Scale Factor"))
-
-
-def read(
-    text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
-) -> GroundMotion:
+def read(text: str, file: str, asked: Asked) -> GroundMotion:
     """Read a K-NET or KiK-net file, and subtract the mean, which is the zero of the digitiser.
 
     Arguments, result and errors are those of `registry.Reader.read`.
@@ -50,21 +40,21 @@ def read(
     head = read_head(file, lines, _FIELDS, _HEADER_LINES)
     scale_line, scale_text, (_, spelling, _) = head["scale"]
     length_line, length_text, _ = head["duration"]
-    unit = layout.stated_unit(file, scale_line, spelling, units)
+    unit, size = layout.stated_unit(file, scale_line, spelling, asked)
     rate, length = head.number("rate"), head.number("duration")
     full, counts = head.number("scale"), head.number("scale", 2)
     # The format states no number of points; the rate times the duration gives it.
     count = layout.whole_number(file, length_line, length_text, f"{round(rate * length)}", "number of points", least=2)
-    values, _, remarks = layout.fixed_width(
+    values, end, remarks = layout.fixed_width(
         file, lines, layout.RecordBlock(_HEADER_LINES, count, _NUMBER_WIDTH, length_line, after=_BLANKS_AFTER)
     )
+    layout.check_end(file, lines, end)
     if not sensible(float(np.abs(values).max()) * (full / counts)):
         message = "the scale factor makes accelerations beyond all measure"
         raise InputError(Problem(message, file, scale_line, excerpt=scale_text.strip()[:100]))
     scaled = (values - values.mean()) * (full / counts)
-    acceleration = layout.in_si(scaled, unit)
     if peak := head.items.get("peak"):
         remarks += peak_doubts(scaled, 1 / rate, spelling, peak.line_number, *peak.groups)
     name, rate_line = head.text("direction") or "", head["rate"].line_number
-    only = layout.Channel(name, 1 / rate, acceleration, unit, rate_line, remarks=remarks, origin=head.origin)
-    return layout.choose(file, TITLE, [only], channel, dt)
+    only = layout.Channel(name, 1 / rate, scaled * size, unit, rate_line, remarks=remarks, origin=head.origin)
+    return layout.choose(file, formats.knet.TITLE, [only], asked)

@@ -17,8 +17,16 @@ from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import MOST_SAMPLES, NOT_SAID, STANDARD_GRAVITY, Doubt, GroundMotion, Origin
 from rocking_cli.excitation.records.lines import Lines
-from rocking_cli.excitation.records.record_units import CHOICES, UNITS, canonical, resolve_unit
-from rocking_cli.excitation.records.text import check_interval, numbers_in, sensible
+from rocking_cli.excitation.records.record_units import (
+    GAIN_EXAMPLE,
+    QUANTITIES,
+    UNITS,
+    Asked,
+    Quantity,
+    Wanted,
+    units_of,
+)
+from rocking_cli.excitation.records.text import Followed, check_interval, numbers_in, sensible
 from rocking_cli.excitation.records.widths import PrintedRows, odd_digits, split_numbers
 from rocking_cli.text import regex
 
@@ -238,36 +246,36 @@ def _no_columns(leaving: Sequence[int], rows: int, block: RecordBlock) -> Doubt:
     return Doubt("columns", float(len(leaving)), text)
 
 
-def stated_unit(file: str, line_number: int, unit: str, units: str | None) -> str:
-    """Return the canonical unit of the accelerations that a header, or the definition of a format, states.
-
-    Parameters
-    ----------
-    file, line_number : str, int
-        File and line that state the unit, for messages.
-    unit : str
-        The unit as spelled in the file.
-    units : str, optional
-        The unit the user gave, which must not contradict it.
-
-    Returns
-    -------
-    str
-        One of `UNITS`.
-    """
-    return resolve_unit(file, [(line_number, f"units: {unit}")], units)
+def stated_unit(file: str, line_number: int, unit: str, asked: Asked) -> tuple[str, float]:
+    """Return name and size of the unit that a line of the header, or the definition of a format, states."""
+    return asked.unit(file, [(line_number, f"units: {unit}")])
 
 
-def old_unit(file: str, line_number: int, spelling: str, units: str | None) -> str:
-    """Return the canonical unit as `stated_unit` does, or a tenth of g, which only digitised films have."""
+def old_unit(file: str, line_number: int, spelling: str, asked: Asked) -> tuple[str, float]:
+    """Return the unit as `stated_unit` does, or a tenth of g, which only digitised films have."""
     if spelling.replace(" ", "").lower() != TENTH_OF_G:
-        return stated_unit(file, line_number, spelling, units)
-    if units is not None:
-        if canonical(units) is None:
-            raise InputError(Problem(f"unknown unit '{units}'", field="`units`", hint=f"choose one of: {CHOICES}"))
-        message = f"the header says the unit is {TENTH_OF_G}, but `units` says {units}"
+        return stated_unit(file, line_number, spelling, asked)
+    if asked.units is not None:
+        unit, _ = asked.unit(file, [])  # refuses an unknown one
+        message = f"the header says the unit is {TENTH_OF_G}, but `units` says {unit}"
         raise InputError(Problem(message, file, line_number, hint="leave `units` out"))
-    return TENTH_OF_G
+    return TENTH_OF_G, UNITS["g"] / 10
+
+
+def quantity_called(word: str) -> Quantity | None:
+    """Return the quantity that a header calls by a word such as ACCEL or velocity; None if it is another."""
+    return next((each for each in QUANTITIES if word.lower().startswith(each[:3])), None)
+
+
+def lacking(file: str, wanted: Wanted, held: Sequence[str], line_number: int | None = None) -> InputError:
+    """Return the error of a file that holds other quantities than the requested one, by their names in the file."""
+    message = f"the file holds no {wanted.quantity}, but {', '.join(dict.fromkeys(held))}"
+    hint = f"give the file with the {wanted.quantity}"
+    if other := next(filter(None, map(quantity_called, held)), None):
+        hint += f", or say `from` {other}"
+    elif not wanted.raw:
+        hint += f", or the `gain` of the instrument, such as {GAIN_EXAMPLE}"
+    return InputError(Problem(message, file, line_number, hint=hint))
 
 
 def straight_lines(file: str, pairs: Reals, where: str) -> tuple[float, Reals, NDArray[np.intp]]:
@@ -311,6 +319,14 @@ def straight_lines(file: str, pairs: Reals, where: str) -> tuple[float, Reals, N
     return step * _FILM_DT, np.interp(grid, ticks, values), ((ticks - ticks[0]) // step).astype(np.intp)
 
 
+def check_end(file: str, lines: Lines, end: int) -> None:
+    """Raise `Followed` if anything but blanks follows the only record of a file, from line index `end` on."""
+    for index, line in enumerate(lines.since(end), start=end):
+        if line.strip():
+            message = "only blanks or another record may follow a record"
+            raise Followed(index, Problem(message, file, index + 1, excerpt=line.strip()[:100]))
+
+
 def whole_number(
     file: str, line_number: int, line: str, token: str, what: str, *, least: int = 1, most: int = MOST_SAMPLES
 ) -> int:
@@ -338,9 +354,7 @@ def number(file: str, line_number: int, line: str, token: str, what: str) -> flo
     return value
 
 
-def choose(
-    file: str, form: str, channels: Sequence[Channel], requested: str | None = None, dt: float | None = None
-) -> GroundMotion:
+def choose(file: str, form: str, channels: Sequence[Channel], asked: Asked) -> GroundMotion:
     """Return the ground motion of the requested channel, or of the only one.
 
     Parameters
@@ -351,23 +365,22 @@ def choose(
         Name of the format.
     channels : sequence of Channel
         Channels of the file.
-    requested : str, optional
-        The requested channel, by its number, from 1, or by its name.
-    dt : float, optional
-        Sampling interval given by the user [s], which must agree with the file.
+    asked : Asked
+        The requested channel and its quantity, and the sampling interval [s], which must agree with the file.
 
     Returns
     -------
     GroundMotion
         Accelerations [m/s2], named after the file, and after the channel if there are several.
     """
-    if requested is None and len(channels) > 1:
+    if asked.channel is None and len(channels) > 1:
         message = f"the file has {len(channels)} channels, and only one can shake a structure"
-        raise InputError(Problem(message, file=file, hint=f"choose one with `channel`:{_listed(channels)}"))
-    chosen = channels[0] if requested is None else _find(file, channels, requested)
+        hint = f"choose one with `channel`:{_listed(channels, asked.wanted)}"
+        raise InputError(Problem(message, file=file, hint=hint))
+    chosen = channels[0] if asked.channel is None else _find(file, channels, asked.channel, asked.wanted)
     if chosen.flaw is not None:
         raise InputError(chosen.flaw)
-    check_interval(file, chosen.dt_line, chosen.dt, dt)
+    check_interval(file, chosen.dt_line, chosen.dt, asked.dt)
     name = Path(file).name
     if len(channels) > 1:
         name += f" channel {chosen.name or 1 + list(channels).index(chosen)}"
@@ -383,16 +396,11 @@ def choose(
     )
 
 
-def in_si(values: Reals, unit: str) -> Reals:
-    """Return accelerations [m/s2] from values in one of `UNITS`, or in tenths of g."""
-    return values * (UNITS["g"] / 10 if unit == TENTH_OF_G else UNITS[unit])
-
-
 def _is_row(line: str) -> bool:
     return bool(line.strip()) and not (_NO_ROW.search(line) and _NO_ROW.search(_NOT_FINITE.sub("0", line)))
 
 
-def _find(file: str, channels: Sequence[Channel], requested: str) -> Channel:
+def _find(file: str, channels: Sequence[Channel], requested: str, wanted: Wanted) -> Channel:
     """Return the channel with a number or name; a number such as 90 is tried as the channel's number first."""
     word = _plain(requested)
     if word.isdecimal() and 1 <= int(word) <= len(channels):
@@ -401,7 +409,7 @@ def _find(file: str, channels: Sequence[Channel], requested: str) -> Channel:
     if len(named) == 1:
         return named[0]
     message = f"{len(named)} channels are called '{requested}'" if named else f"there is no channel '{requested}'"
-    hint = f"there {'is' if len(channels) == 1 else 'are'}:{_listed(channels)}"
+    hint = f"there {'is' if len(channels) == 1 else 'are'}:{_listed(channels, wanted)}"
     raise InputError(Problem(message, file=file, field="`channel`", hint=hint))
 
 
@@ -410,13 +418,16 @@ def _plain(name: str) -> str:
     return re.sub(r"(?<=\d) ?deg(?:rees)?$", "", " ".join(name.lower().split()))
 
 
-def _listed(channels: Sequence[Channel]) -> str:
+def _listed(channels: Sequence[Channel], wanted: Wanted) -> str:
     """Return text that lists all channels with number, name, points and peak, or why they cannot be used."""
     out = ""
     for place, channel in enumerate(channels, start=1):
         out += f"\n    {place}: {channel.name + ', ' if channel.name else ''}{channel.acceleration.size} points, "
         if channel.flaw:
             out += channel.flaw.message
-        else:
+        elif wanted.of_accelerations:
             out += f"PGA {float(np.abs(channel.acceleration).max()) / STANDARD_GRAVITY:.4g} g"
+        else:
+            unit = "" if wanted.raw else f" {units_of(wanted.quantity)[0]}"
+            out += f"peak {float(np.abs(channel.acceleration).max()):.4g}{unit}"
     return out

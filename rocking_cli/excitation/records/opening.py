@@ -1,4 +1,4 @@
-"""Open a record: a file, standard input, a gzip file, or a file in a zip archive."""
+"""Open a record: a file, standard input, a gzip file, a file in a zip archive, or a sheet of a spreadsheet."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from weakref import WeakKeyDictionary, WeakSet
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.files import read_at_most, read_bytes
+from rocking_cli.io.spreadsheets import OLE, sheets_of
 from rocking_cli.text import regex
 
 STANDARD_INPUT = "-"
@@ -28,7 +29,8 @@ MAX_LISTED_FILES = 30
 _GZIP = b"\x1f\x8b\x08"
 _ZIP = (b"PK\x03\x04", b"PK\x05\x06", b"PK\x07\x08")
 _TAR = slice(257, 262), b"ustar"
-_SPREADSHEET = "[Content_Types].xml"
+_OFFICE = "[Content_Types].xml"
+_WORKBOOK = frozenset(["xl/workbook.xml", "xl/workbook.bin", "content.xml"])  # of .xlsx, .xlsb and .ods
 _UNPACK = "unpack it, and give the record in it"
 
 _taken: WeakKeyDictionary[Any, bytes] = WeakKeyDictionary()
@@ -108,6 +110,11 @@ def open_record(path: str | Path, channel: str | None = None) -> Opened:
     elif data.startswith(_ZIP):
         data, inside, several, channel = _of_zip(data, file, channel)
         file, member = f"{file}/{inside}", inside if several else ""
+    elif data.startswith(OLE):
+        data, inside, several, channel = _of_spreadsheet(data, file, channel)
+        file, member = f"{file}/{inside}", inside if several else ""
+    elif data[_TAR[0]] == _TAR[1]:
+        raise InputError(Problem("this is a tar archive", file, hint=_UNPACK))
     else:
         return Opened(data, file, name, member, channel)
     if data.startswith((_GZIP, *_ZIP)) or data[_TAR[0]] == _TAR[1]:
@@ -169,8 +176,12 @@ def _of_zip(data: bytes, file: str, channel: str | None) -> tuple[bytes, str, bo
     except Exception as error:  # the library raises many kinds of errors, without a common base
         raise InputError(_damaged("zip archive", error, file)) from None
     names = [_printable(member.filename) for member in members]
-    if _SPREADSHEET in names:
-        message = "this is a spreadsheet or a document of an office program, and no record"
+    if _WORKBOOK.intersection(names):
+        if sum(member.file_size for member in members) > _most(len(data)):
+            raise InputError(_too_large(file, len(data)))
+        return _of_spreadsheet(data, file, channel)
+    if _OFFICE in names:
+        message = "this is a document of an office program, and no record"
         raise InputError(Problem(message, file, hint="save the table in it as CSV, and give that"))
     if not names:
         raise InputError(Problem("the archive holds no file", file))
@@ -191,14 +202,26 @@ def _of_zip(data: bytes, file: str, channel: str | None) -> tuple[bytes, str, bo
     return content, names[place], len(names) > 1, channel
 
 
+def _of_spreadsheet(data: bytes, file: str, channel: str | None) -> tuple[bytes, str, bool, str | None]:
+    """Return the table of the requested or only sheet as text, its name, whether there are several, and the channel."""
+    sheets = sheets_of(data, file)
+    if not sheets:
+        raise InputError(Problem("the spreadsheet is empty", file))
+    place, channel = _chosen(file, list(sheets), channel, of=("spreadsheet", "sheet"))
+    name, rows = list(sheets.items())[place]
+    return "\n".join(map("\t".join, rows)).encode(), _printable(name), len(sheets) > 1, channel
+
+
 def _is_no_record(member: zipfile.ZipInfo) -> bool:
     """Return whether a member of an archive is a folder, or a hidden file that a file manager adds."""
     parts = member.filename.split("/")
     return member.is_dir() or parts[0] == "__MACOSX" or parts[-1].startswith(".")
 
 
-def _chosen(file: str, names: Sequence[str], channel: str | None) -> tuple[int, str | None]:
-    """Return the index of the requested file of an archive, and the channel in it."""
+def _chosen(
+    file: str, names: Sequence[str], channel: str | None, of: tuple[str, str] = ("archive", "file")
+) -> tuple[int, str | None]:
+    """Return the index of the requested file of an archive, or sheet of a spreadsheet, and the channel in it."""
     if channel is not None:
         for requested, rest in ((channel, None), channel.rpartition(":")[::2]):
             if (place := _place(names, requested.strip(), alone=len(names) == 1)) is not None:
@@ -208,9 +231,9 @@ def _chosen(file: str, names: Sequence[str], channel: str | None) -> tuple[int, 
     listed = [f"\n    {place}: {name}" for place, name in enumerate(names, start=1)]
     if len(names) > MAX_LISTED_FILES:
         listed[MAX_LISTED_FILES:] = [f"\n    and {len(names) - MAX_LISTED_FILES} more"]
-    message = f"the archive holds {len(names)} files, and only one can be the record"
+    message = f"the {of[0]} holds {len(names)} {of[1]}s, and only one can be the record"
     if channel is not None:
-        message = f"there is no file '{channel}' in the archive"
+        message = f"there is no {of[1]} '{channel}' in the {of[0]}"
     hint = f"choose one with `channel`, and a channel in it behind a colon:{''.join(listed)}"
     raise InputError(Problem(message, file, field=None if channel is None else "`channel`", hint=hint))
 
@@ -258,7 +281,8 @@ def _printable(text: str) -> str:
 
 # Bytes that are in no text file. Ctrl-Z (0x1a) is allowed, as DOS programs end text files with it.
 _BINARY = regex(rb"[\x00-\x08\x0e-\x19\x1b-\x1f]")
-_BLANK_WITH_NUL = regex(rb"^[ \t\r]*\0[\0 \t\r]*$", re.MULTILINE)
+_LINE_OF_NUL = regex(rb"^[ \t\r]*\0[\0 \t\r]*$", re.MULTILINE)
+_ROW = regex(rb"^[ \t\0]*[+-]?\.?[0-9]", re.MULTILINE)
 _UTF16_BYTES = 2000  # searched for UTF-16 without a byte order mark
 
 
@@ -268,20 +292,20 @@ def decoded(data: bytes, file: str) -> str | None:
     Parameters
     ----------
     data : bytes
-        Content of the file. NUL bytes at the end of the file are removed, and those that fill up a line of ASCII text
-        become blanks. A line of NUL bytes alone is not padding, as it may have been a value.
+        Content of the file. NUL bytes at the end of the file are removed, and those that fill up lines become blanks.
+        A line of NUL bytes alone among the rows of numbers is not padding, as it may have been a value.
     file : str
         Name of the file in messages.
 
     Raises
     ------
     InputError
-        If the file is empty, or damaged UTF-16.
+        If the file is empty, damaged UTF-16, or has a line of NUL bytes among its rows.
     """
     encoding = _utf_16(data)
     if encoding is None:
         if b"\0" in data:
-            data = _without_padding(data)
+            data = _without_padding(data, file)
         if _BINARY.search(data):
             return None
         try:
@@ -315,11 +339,16 @@ def _utf_16(data: bytes) -> str | None:
     return None
 
 
-def _without_padding(data: bytes) -> bytes:
-    """Return the bytes without NUL bytes if these are padding of lines of ASCII text; else unchanged."""
-    stripped = data.rstrip(b"\0")
-    if not stripped.isascii() or not re.search(rb"[\r\n]", stripped) or _BLANK_WITH_NUL.search(stripped):
+def _without_padding(data: bytes, file: str) -> bytes:
+    """Return the bytes without NUL bytes if these are padding of lines of text; else unchanged."""
+    stripped = data.rstrip(b"\0 \t\r\n")
+    row = _ROW.search(stripped)
+    if row is None or b"\n" not in stripped or _BINARY.search(stripped.replace(b"\0", b"")):
         return data
+    if lost := _LINE_OF_NUL.search(stripped, row.end()):
+        message = "this line has NUL bytes alone: a row of numbers may have been lost here"
+        number = stripped.count(b"\n", 0, lost.start()) + 1
+        raise InputError(Problem(message, file, number, hint="the file is damaged: download it again"))
     return stripped.replace(b"\0", b" ")
 
 

@@ -13,15 +13,13 @@ import numpy as np
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import NOT_SAID, GroundMotion
+from rocking_cli.excitation.records import formats
 from rocking_cli.excitation.records.layout import lines_of, whole_number
 from rocking_cli.excitation.records.origins import of_peer
-from rocking_cli.excitation.records.record_units import UNITS, resolve_unit
+from rocking_cli.excitation.records.record_units import Asked
 from rocking_cli.excitation.records.text import check_interval, numbers_in, only_channel, usable
 from rocking_cli.excitation.records.widths import PrintedRows, odd_digits, odd_row, split_numbers
 from rocking_cli.text import regex
-
-TITLE = "PEER AT2"
-SIGN = "a title with PEER and DATABASE, or a line with NPTS="
 
 _FLOAT = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?"
 _NPTS = regex(r"\bNPTS\s*=\s*(\d+)", re.IGNORECASE)
@@ -43,23 +41,13 @@ class _PeerHeader:
     data: int
 
 
-def sniff(text: str) -> bool:
-    """Return whether this is a PEER file: its title, or a line with NPTS that is not a comment, is near the top."""
-    head = text[:100_000].split("\n")[:_HEADER_LINES]
-    if text.lstrip().startswith("{"):  # JSON may quote the header of a PEER file
-        return False
-    return any(_SIGNATURE.match(line) or _NPTS.search(line) or _OLD_STYLE.match(line) for line in head if _plain(line))
-
-
-def read(
-    text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
-) -> GroundMotion:
-    """Read a PEER AT2 file; arguments, result and errors are those of `registry.Reader.read`."""
-    only_channel(file, channel)
+def read(text: str, file: str, asked: Asked) -> GroundMotion:
+    """Read a PEER AT2 file; see `registry.Reader.read`."""
+    only_channel(file, asked.channel)
     lines = lines_of(text)
     header = _header(file, lines)
-    unit = resolve_unit(file, list(enumerate(lines[: header.data], start=1)), units)
-    check_interval(file, header.dt_line, header.dt, dt)
+    unit, size = asked.unit(file, list(enumerate(lines[: header.data], start=1)))
+    check_interval(file, header.dt_line, header.dt, asked.dt)
     values = np.concatenate([_page_values(file, first, page) for first, page in lines.pages(header.data)])
     rows = PrintedRows(lines, header.data, lambda line: split_numbers(line) if _plain(line) else [])
     if (odd := odd_row(rows)) is not None:
@@ -78,7 +66,7 @@ def read(
     origin = of_peer(lines[1]) if len(lines) > 1 and _SIGNATURE.match(lines[0]) else NOT_SAID
     name = Path(file).name
     return GroundMotion(
-        name, header.dt, values * UNITS[unit], source_unit=unit, format=TITLE, remarks=remarks, origin=origin
+        name, header.dt, values * size, source_unit=unit, format=formats.peer_at2.TITLE, remarks=remarks, origin=origin
     )
 
 

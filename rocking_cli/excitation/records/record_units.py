@@ -18,30 +18,33 @@ from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
 from rocking_cli.excitation.doubts import of_samples
+from rocking_cli.excitation.records.header_words import WORDS, plain
 from rocking_cli.text import did_you_mean, exact, regex
 from rocking_cli.units import KINDS, UnitError, number_of, split
 
-_READ = ("g", "m/s2", "cm/s2", "mm/s2", "gal", "mg", "%g")
+_READ = ("g", "m/s2", "cm/s2", "mm/s2", "gal", "mg", "%g", "ft/s2", "in/s2")
 UNITS: dict[str, float] = {name: float(KINDS["acceleration"][name]) for name in _READ}
 """Size of each unit that can be read [m/s2], under its canonical name."""
 
 CHOICES = ", ".join(UNITS)
 
 _S = r"s(?:ec)?"
-_PER_S2 = rf"(?: ?/ ?{_S} ?(?:\^|\*\*)? ?2| ?/ ?{_S} ?/ ?{_S}|[ .·*]?{_S} ?(?:\^|\*\*)? ?-2|[ p]?s2)"
+_OVER_S2 = rf" ?/ ?{_S} ?(?:\^|\*\*)? ?2| ?/ ?{_S} ?/ ?{_S}"
+_PER_S2 = rf"(?:{_OVER_S2}|[ .·*]?{_S} ?(?:\^|\*\*)? ?-2|[ p]?s2)"
 # A unit ends where its word ends, and is not the first part of something else: g/10, cm/s of cm/s2, g = 9.81.
 _END = r"(?! ?[/^*=]|\w)"
 _OF_G = r"milli-? ?g|mg|(?:%|percent|pct) ?g"
-_SPELLED = rf"(?:(?:mm|cm|m){_PER_S2}|gal|{_OF_G}){_END}"  # units that are clear by themselves, which a bare "g" is not
+# Units that are clear by themselves, which a bare "g" is not.
+_SPELLED = rf"(?:(?:mm|cm|m){_PER_S2}|(?:ft|in)(?:{_OVER_S2})|gals?|{_OF_G}){_END}"
 _UNIT = rf"(?:{_SPELLED}|g{_END})"
 _SPEED = rf"(?:mm|cm|m|km|in|ft)(?: ?/ ?(?:{_S}|h)| s-1){_END}"
 _LENGTH = rf"(?:mm|cm|m|km|inch(?:es)?|ft|feet){_END}"
-_FOREIGN = rf"(?:(?:km|in|ft){_PER_S2}|counts?){_END}"
+_FOREIGN = rf"(?:km{_PER_S2}|counts?){_END}"
 
-_ACCELERATION = r"\bacc(?:l|n|el|eln|els|eleration|elerations)?(?![a-z])\.?"
+_ACCELERATION = rf"\b(?:acc(?:l|n|el|eln|els|eleration|elerations)?|{WORDS['acceleration']})(?![a-z])\.?"
 _MOTION = regex(r"\b(?:vel|velocity|velocities|disp|displ|displacements?)\b")
 _GAP = r"[ ,:;=-]*(?:in |of )?"
-_UNITS_OF = r"\bunits?[ :=]*(?:of |are |is |in )?[ :=]*"
+_UNITS_OF = rf"\b(?:{WORDS['unit']})[ :=]*(?:(?:of|are|is|in|di|de) |{_ACCELERATION})*[ :=]*"
 
 _BRACKETED = regex(rf"[\[(]\s*({_UNIT})\s*[\])](?! ?/)")
 _NAMED = [
@@ -53,11 +56,11 @@ _NAMED = [
         rf"\bin ({_SPELLED})",
         rf"\ba ?g?[ ,:;=-]*({_SPELLED})",  # for example: a_m/s2; but a_g is the ground acceleration, in any unit
         rf"^(?:s|secs?|seconds?)[ ,;\t]+({_UNIT})$",  # for example a row of units: s,g
-        rf"^({_SPELLED})$",
+        rf"(?:^|, *)({_SPELLED})(?:,|$)",
     )
 ]
 # A line about one value, such as the peak, whose unit may differ from that of the record.
-_ABOUT_A_VALUE = regex(r"\b(?:pg[avd]|peak|max\w*|min|minimum|rms|arias|scaled?|factor|gravity)\b")
+_ABOUT_A_VALUE = regex(rf"\b(?:{WORDS['about a value']})\b")
 _NOT_USABLE = regex(rf"(?:{_UNITS_OF}|{_ACCELERATION}{_GAP})[\[(]?({_SPEED}|{_FOREIGN})|{_UNITS_OF}({_LENGTH})")
 # Text in place of a unit: after the word, or in brackets in the label of a column other than the time.
 _STATED_UNIT = regex(
@@ -72,8 +75,8 @@ def canonical(spelling: str) -> str | None:
     word = _normal(spelling)
     if not re.fullmatch(_UNIT, word):
         return None
-    if word in ("g", "gal"):
-        return word
+    if word[:2] in ("g", "ga"):
+        return word.rstrip("s")
     if re.fullmatch(_OF_G, word):
         return "mg" if word.startswith("m") else "%g"
     return word[: word.index("s")].rstrip(" ./·*p") + "/s2"
@@ -96,6 +99,11 @@ def in_g(value: object) -> float:
 def is_unit(word: str) -> bool:
     """Return whether a word is the unit of a time, a length, a speed or an acceleration, and nothing else."""
     return re.fullmatch(rf"m?s|secs?|seconds?|{_UNIT}|{_SPEED}|{_LENGTH}|{_FOREIGN}", _normal(word)) is not None
+
+
+def is_acceleration(line: str) -> bool:
+    """Return whether a header line names an acceleration."""
+    return re.search(_ACCELERATION, _normal(line)) is not None
 
 
 def header_units(line: str) -> set[str]:
@@ -164,13 +172,13 @@ def _not_said(file: str, header: Sequence[tuple[int, str]]) -> Problem:
 
 def _refuse_other_quantities(file: str, header: Sequence[tuple[int, str]]) -> None:
     """Raise `InputError` if a header states a velocity or displacement, or a unit that cannot be read."""
-    about_acceleration = any(header_units(line) or re.search(_ACCELERATION, _normal(line)) for _, line in header)
+    about_acceleration = any(header_units(line) or is_acceleration(line) for _, line in header)
     for index, (number, line) in enumerate(header):
         label = index == len(header) - 1
         what = other_quantity(line, label=label)
         # Only labels surely describe the columns; elsewhere "peak velocity" may be mere information.
         if what and (label or not about_acceleration):
-            hint = f"give the ground acceleration, in one of: {CHOICES}"
+            hint = f"give the ground acceleration, in one of: {CHOICES}; or say what it is by `from`, or by the `gain`"
             raise InputError(Problem(what, file=file, line=number, excerpt=line.strip()[:100], hint=hint))
 
 
@@ -198,7 +206,7 @@ def other_quantity(line: str, *, label: bool = True) -> str | None:
         if re.fullmatch(_FOREIGN, unit):
             return f"accelerations in '{unit}' cannot be read"
         return f"the header gives the unit '{unit}': a velocity or displacement, not an acceleration"
-    if _MOTION.search(line) and not re.search(_ACCELERATION, line):
+    if _MOTION.search(line) and not is_acceleration(line):
         return "the header speaks of velocity or displacement, not acceleration"
     return None
 
@@ -209,9 +217,10 @@ def _same(unit: str, other: str) -> bool:
 
 
 def _normal(line: str) -> str:
-    """Return a line in lower case, with one spelling of powers and minus signs, and spaces for underscores."""
-    for old, new in (("_", " "), ("²", "2"), ("⁻", "-"), ("\N{MINUS SIGN}", "-"), ('"', " "), ("'s", "")):
-        line = line.lower().replace(old, new)
+    """Return a line made plain, with one spelling of powers and minus signs."""
+    line = plain(line)
+    for old, new in (("\N{MINUS SIGN}", "-"), ('"', " "), ("'s", "")):
+        line = line.replace(old, new)
     return line.strip()
 
 
@@ -229,8 +238,10 @@ TIME_UNITS = frozenset(
 )
 MAX_STEP_OVER_PEAK = 0.05  # acceleration of one step of the last digit over the peak
 
-_IN_HEADER = regex(r"[\[(]\s*([^\])\s]+)\s*[\])]|\bin\s+([^\s,;]+)")
+_IN_HEADER = regex(rf"[\[(]\s*([^\])]+?)\s*[\])]|\bin\s+(?!units?\b)([^\s,;]+)|{_UNITS_OF}([^\s,;]+)", re.IGNORECASE)
+_OF_UNITS = regex(rf"{_UNITS_OF}([^\s,;]+)", re.IGNORECASE)
 _STATED = regex(r"[\[(]\s*([^\])\s]+)\s*[\])]")
+_PER_SECOND = regex(r"/sec(?:onds?)?$|[.*]?s\^?-1$")
 _FORM = regex(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.ASCII)
 _PER = regex(r"(.+?)\s*(?:/|\bper\b)\s*([^\W\d_%]{1,20}|%)")
 
@@ -255,11 +266,22 @@ class Wanted(NamedTuple):
     uneven : bool
         Whether times may be uneven: the values are then interpolated to an even grid, and a `Doubt` states how uneven
         the times are.
+    run_on : bool
+        Whether the values are one series that runs on over the rows, from left to right.
+    despite_header : bool
+        Whether the numbers of points and the peaks that the header states may be those of another, longer record.
     """
 
     quantity: Quantity = "acceleration"
     raw: bool = False
     uneven: bool = False
+    run_on: bool = False
+    despite_header: bool = False
+
+    @property
+    def of_accelerations(self) -> bool:
+        """Whether accelerations are requested, and not the output of an instrument."""
+        return self.quantity == "acceleration" and not self.raw
 
     def unit(self, file: str, header: Sequence[tuple[int, str]], units: str | None) -> tuple[str, float]:
         """Return name and size of the unit of the values; arguments and errors are those of `units.resolve_unit`."""
@@ -276,9 +298,11 @@ class Wanted(NamedTuple):
         return self._other_unit(file, header, units)
 
     def _refuse_another(self, file: str, header: Sequence[tuple[int, str]]) -> None:
-        """Raise `InputError` if the labels have units in brackets, and all of these are of other quantities."""
-        for number, line in header[-1:]:
-            stated = {each: unit for unit in _STATED.findall(line) if (each := quantity_of(unit)) is not None}
+        """Raise `InputError` if all units of the labels, or of a line on units, are of other quantities."""
+        for number, line in header:
+            units = _STATED.findall(line) if number == header[-1][0] else []
+            units += _OF_UNITS.findall(line)
+            stated = {each: unit for unit in units if (each := quantity_of(unit)) is not None}
             if stated and self.quantity not in stated:
                 other, unit = next(iter(stated.items()))
                 message = f"the header says that the values are in {unit}, a unit of {plural(other)}"
@@ -288,7 +312,7 @@ class Wanted(NamedTuple):
     def _stated(self, header: Sequence[tuple[int, str]]) -> _Stated | None:
         """Return the unit that the header states; None if it states none."""
         for number, line in reversed(header):
-            for one in (a or b for a, b in _IN_HEADER.findall(line)):
+            for one in map("".join, _IN_HEADER.findall(line)):
                 if (size := size_of(one, self.quantity)) is not None:
                     return _Stated(one, size, number)
         return None
@@ -313,6 +337,22 @@ class Wanted(NamedTuple):
         raise InputError(Problem(message, file, hint=hint))
 
 
+ACCELERATIONS = Wanted()
+
+
+class Asked(NamedTuple):
+    """Arguments of a reader of this package: those of `registry.Reader.read`, and what is wanted."""
+
+    dt: float | None = None
+    units: str | None = None
+    channel: str | None = None
+    wanted: Wanted = ACCELERATIONS
+
+    def unit(self, file: str, header: Sequence[tuple[int, str]]) -> tuple[str, float]:
+        """Return name and size of the unit of the values, as `Wanted.unit`."""
+        return self.wanted.unit(file, header, self.units)
+
+
 def plural(quantity: Quantity) -> str:
     """Return the plural of a quantity, in words."""
     return "velocities" if quantity == "velocity" else f"{quantity}s"
@@ -328,7 +368,8 @@ def size_of(unit: str, quantity: Quantity) -> float | None:
     if quantity == "acceleration":
         name = canonical(unit)
         return None if name is None else UNITS[name]
-    size = KINDS["velocity" if quantity == "velocity" else "length"].get("".join(unit.split()))
+    word = _PER_SECOND.sub("/s", "".join(_normal(unit).split()))
+    size = KINDS["velocity" if quantity == "velocity" else "length"].get(word)
     return None if size is None else float(size)
 
 

@@ -1,9 +1,9 @@
 """Installed record readers, found by the entry points `rocking.records`, and the choice of the reader of a file.
 
-A reader is a module, or any object, with a `TITLE` (the name of its format), a `SIGN` (by which it recognises a file,
-for messages) and the functions `sniff` and `read` of `Reader`. A reader with `BINARY = True` is given the bytes of a
-file instead of its text. A reader with `TAKES_WANTED = True` can read other values than accelerations: its `read` takes
-`wanted`, a `record_units.Wanted`.
+The readers of this package are the `Format`s of `formats`, and `text`. A reader is a module, or any object, with a
+`TITLE` (the name of its format), a `SIGN` (by which it recognises a file, for messages) and the functions `sniff` and
+`read` of `Reader`. A reader with `BINARY = True` is given the bytes of a file instead of its text. A reader with
+`TAKES_WANTED = True` can read other values than accelerations: its `read` takes `wanted`, a `record_units.Wanted`.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.plugins.errors import blame
 from rocking_cli.plugins.registry import Plugins, leave_out, origin
 
-FALLBACK = "text"
-"""Name of the reader that is tried last, as delimited text accepts nearly anything with numbers in it."""
+FALLBACKS = ("text", "obspy")
+"""Names of the readers that are tried last, in this order; delimited text accepts nearly anything with numbers."""
 
 
 class Reader(Protocol):
@@ -173,7 +173,7 @@ def takes_wanted(reader: Reader) -> bool:
 
 
 def reader_for(text: str | None, file: str, readers: dict[str, Reader], data: bytes = b"") -> Reader:
-    """Return the one reader that claims a file, or the fallback if none of the others does.
+    """Return the one reader that claims a file, or the first fallback that does if none of the others does.
 
     Parameters
     ----------
@@ -201,9 +201,10 @@ def reader_for(text: str | None, file: str, readers: dict[str, Reader], data: by
         content = data if takes_bytes(readers[name]) else text
         return content is not None and readers[name].sniff(content)
 
-    claims = [name for name in readers if name != FALLBACK and claimed(name)]
-    if not claims and FALLBACK in readers and claimed(FALLBACK):
-        claims = [FALLBACK]
+    claims = [name for name in readers if name not in FALLBACKS and claimed(name)]
+    for name in FALLBACKS:
+        if not claims and name in readers and claimed(name):
+            claims = [name]
     if len(claims) == 1:
         return readers[claims[0]]
     if claims:

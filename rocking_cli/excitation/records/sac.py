@@ -10,14 +10,10 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
+from rocking_cli.excitation.records import formats
 from rocking_cli.excitation.records.layout import choose
-from rocking_cli.excitation.records.record_units import Wanted
+from rocking_cli.excitation.records.record_units import Asked
 from rocking_cli.excitation.records.seismo import channel_of, origin_of, traces, velocity_code
-
-TITLE = "SAC"
-SIGN = "a binary header with version 6 or 7 in its 77th word"
-BINARY = True
-TAKES_WANTED = True
 
 _HEADER, _FOOTER = 632, 176  # bytes; version 7 repeats part of the header at its end, in double precision
 _VERSIONS = (6, 7)
@@ -43,22 +39,8 @@ class _SacHeader:
     even: int
 
 
-def sniff(data: bytes) -> bool:
-    """Return whether the version in the header is a valid one, and the words beside it are plausible."""
-    header = _header(data)
-    return header is not None and header.delta > 0 and header.even in (0, 1) and 0 < header.kind < 200
-
-
-def read(
-    data: bytes,
-    file: str,
-    *,
-    dt: float | None = None,
-    units: str | None = None,
-    channel: str | None = None,
-    wanted: Wanted = Wanted(),  # noqa: B008 - it does not change
-) -> GroundMotion:
-    """Read a SAC file; arguments, result and errors are those of `registry.Reader.read`."""
+def read(data: bytes, file: str, asked: Asked) -> GroundMotion:
+    """Read a SAC file; see `registry.Reader.read`."""
     header = _header(data)
     if header is None:
         raise InputError(Problem("this is not the header of a SAC file", file))
@@ -68,9 +50,9 @@ def read(
     if header.kind not in (_TIME_SERIES, _XY):
         message = f"the header says this is not a time series (IFTYPE = {header.kind})"
         raise InputError(Problem(message, file, hint="give the file with the acceleration"))
-    quantity = _OTHER_QUANTITIES.get(header.quantity, wanted.quantity)
-    if quantity != wanted.quantity and not wanted.raw:
-        message = f"the header says the values are a {quantity}, not {_WITH_ARTICLE[wanted.quantity]} (IDEP)"
+    quantity = _OTHER_QUANTITIES.get(header.quantity, asked.wanted.quantity)
+    if quantity != asked.wanted.quantity and not asked.wanted.raw:
+        message = f"the header says the values are a {quantity}, not {_WITH_ARTICLE[asked.wanted.quantity]} (IDEP)"
         raise InputError(Problem(message, file, hint="give the file with the acceleration, or say `from` what it is"))
     if header.npts > MOST_SAMPLES:
         message = f"the header says {header.npts} points: a record has at most {MOST_SAMPLES}"
@@ -79,15 +61,15 @@ def read(
     if len(data) != size + (_FOOTER if header.version == 7 else 0):
         message = f"the header says {header.npts} points, which do not make the {len(data)} bytes of the file"
         raise InputError(Problem(message, file, hint="the file may have been cut short: download it again"))
-    unit = wanted.unit(file, [], units)
+    unit = asked.unit(file, [])
     (trace,) = traces(data[:size], file, "SAC")
     name = trace.stats.channel
-    flaw = None if header.quantity == _ACCELERATION_KIND else velocity_code(file, name, wanted)
+    flaw = None if header.quantity == _ACCELERATION_KIND else velocity_code(file, name, asked.wanted)
     # The interval is a 32-bit float, 0.004999999888 for 0.005; its shortest decimal form restores it.
     interval = float(str(np.float32(header.delta)))
     only = channel_of(file, name, interval, trace.data, unit, flaw)
     only = replace(only, remarks=_extremes(header, trace.data), origin=origin_of(trace))
-    return choose(file, TITLE, [only], channel, dt)
+    return choose(file, formats.sac.TITLE, [only], asked)
 
 
 def _extremes(header: _SacHeader, samples: NDArray[np.float32]) -> tuple[Doubt, ...]:

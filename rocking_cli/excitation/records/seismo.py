@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import io
 import warnings
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from importlib import import_module
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -26,37 +30,13 @@ _MAX_ACCELERATION = (
 
 
 def traces(data: bytes, file: str, form: str) -> list[Any]:
-    """Read the traces of a file with obspy, an optional package that is imported here.
+    """Read the traces of a file with obspy, by its name of the format; `file` is the path, for messages.
 
-    Parameters
-    ----------
-    data : bytes
-        Content of the file.
-    file : str
-        Path of the file, for messages.
-    form : str
-        Name of the format in obspy.
-
-    Returns
-    -------
-    list of obspy.Trace
-        Traces in the order of the file.
-
-    Raises
-    ------
-    InputError
-        If obspy is not installed, or cannot read the file or a part of it.
+    Raises `InputError` if obspy is not installed, or cannot read the file or a part of it.
     """
     with warnings.catch_warnings(record=True) as warned:
-        warnings.simplefilter("ignore")  # deprecations in obspy do not concern the user
-        try:
-            import obspy
-            from obspy.io.mseed import InternalMSEEDWarning
-        except ImportError as error:
-            message = f"obspy, which reads such files, cannot be imported: {error}"
-            hint = "install it: pip install 'rocking-cli[seismo]'"
-            raise InputError(Problem(message, file, hint=hint)) from None
-        warnings.simplefilter("always", InternalMSEEDWarning)  # obspy skips data that it cannot read
+        obspy = obspy_for(file)
+        warnings.simplefilter("always", import_module("obspy.io.mseed").InternalMSEEDWarning)  # data that it skips
         try:
             read = list(obspy.read(io.BytesIO(data), format=form))
         except Exception as error:  # obspy raises many kinds of errors, without a common base
@@ -68,6 +48,17 @@ def traces(data: bytes, file: str, form: str) -> list[Any]:
         hint = "it may be damaged: download it again; if you know it is whole, write it again with obspy"
         raise InputError(Problem(message, file, hint=hint))
     return read
+
+
+def obspy_for(file: str) -> Any:
+    """Import obspy for a file, and ignore what it warns of; raise `InputError` if it is not installed."""
+    warnings.simplefilter("ignore")  # deprecations in obspy do not concern the user
+    try:
+        return import_module("obspy")
+    except ImportError as error:
+        message = f"obspy, which reads such files, cannot be imported: {error}"
+        hint = "install it: pip install 'rocking-cli[seismo]'"
+        raise InputError(Problem(message, file, hint=hint)) from None
 
 
 def origin_of(trace: Any) -> Origin:
@@ -88,6 +79,24 @@ def channel_of(
     values = samples.astype(np.float64) if samples.dtype.kind in "iuf" else np.full(samples.size, np.nan)
     flaw = flaw or _flaw(file, name, values, unit, whole=samples.dtype.kind in "iu")
     return Channel(name, dt, values if flaw else values * unit[1], unit[0], flaw=flaw)
+
+
+def channels_of(file: str, found: Iterable[Any], unit: tuple[str, float], wanted: Wanted) -> list[Channel]:
+    """Make a channel of the traces of each one, which obspy splits at gaps; one with a gap has a flaw."""
+    segments: dict[str, list[Any]] = {}
+    for trace in found:
+        segments.setdefault(trace.id, []).append(trace)
+    codes = {name: parts[0].stats.channel for name, parts in segments.items()}
+    if len(set(codes.values())) == len(codes):  # unique channel codes need no station and network
+        segments = {codes[name]: parts for name, parts in segments.items()}
+    channels = []
+    for name, parts in segments.items():
+        parts = sorted(parts, key=lambda segment: segment.stats.starttime)
+        flaw = velocity_code(file, parts[0].stats.channel, wanted) or _gap(file, name, parts)
+        samples = np.concatenate([segment.data for segment in parts])
+        joined = channel_of(file, name, parts[0].stats.delta, samples, unit, flaw)
+        channels.append(replace(joined, origin=origin_of(parts[0])))
+    return channels
 
 
 def velocity_code(file: str, code: str, wanted: Wanted) -> Problem | None:
@@ -123,3 +132,19 @@ def _flaw(file: str, name: str, values: Reals, unit: tuple[str, float], *, whole
 
 def _in_a_line(reason: object) -> str:
     return " ".join(str(reason).split())
+
+
+def _gap(file: str, name: str, segments: Sequence[Any]) -> Problem | None:
+    """Return the problem of the first gap in time between two segments; None if there is none."""
+    count = 0
+    for one, two in pairwise(segments):
+        count += one.stats.npts
+        where = f"after sample {count}, at {one.stats.endtime}"
+        if not np.isclose(one.stats.delta, two.stats.delta, rtol=1e-6):
+            message = f"channel {name} goes from {one.stats.delta:g} s to {two.stats.delta:g} s between samples {where}"
+            return Problem(message, file, hint="resample it at a constant interval first")
+        missing = two.stats.starttime - one.stats.endtime - one.stats.delta
+        if abs(missing) > one.stats.delta / 2:
+            message = f"channel {name} has {'a gap' if missing > 0 else 'an overlap'} of {abs(missing):g} s {where}"
+            return Problem(message, file, hint="give a file that holds the whole motion without a break")
+    return None

@@ -13,27 +13,17 @@ import numpy as np
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
-from rocking_cli.excitation.records.layout import in_si
+from rocking_cli.excitation.records import formats
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.origins import of_info
-from rocking_cli.excitation.records.record_units import resolve_unit
+from rocking_cli.excitation.records.record_units import Asked
 from rocking_cli.excitation.records.text import check_interval, only_channel, sensible
 from rocking_cli.excitation.records.widths import PrintedRows, odd_digits
 
-TITLE = "SimCenter JSON"
-SIGN = 'a JSON object with "accel_data"'
 
-
-def sniff(text: str) -> bool:
-    """Return whether this is a JSON object with accelerations."""
-    return text.lstrip().startswith("{") and '"accel_data"' in text
-
-
-def read(
-    text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
-) -> GroundMotion:
-    """Read a SimCenter JSON file; arguments, result and errors are those of `registry.Reader.read`."""
-    only_channel(file, channel)
+def read(text: str, file: str, asked: Asked) -> GroundMotion:
+    """Read a SimCenter JSON file; see `registry.Reader.read`."""
+    only_channel(file, asked.channel)
     if text.count(",") > MOST_SAMPLES:
         raise InputError(Problem(f"a record has at most {MOST_SAMPLES} samples, this file has more values", file))
 
@@ -54,7 +44,7 @@ def read(
         raise InputError(Problem(f"not valid JSON: {reason}", file=file, line=line, column=column)) from None
     # JSON may hold lone surrogates, which cannot be printed or written.
     info = str(data.get("info", "")).encode("utf-8", "backslashreplace").decode().replace("\n", " ")
-    unit = resolve_unit(file, [(_line_of(text, "info"), info)], units)
+    unit, size = asked.unit(file, [(_line_of(text, "info"), info)])
 
     interval: Any = data.get("dT")
     if not (_is_number(interval) and 0 < interval < np.inf):
@@ -65,7 +55,7 @@ def read(
         )
         hint = 'it is the time between samples in seconds, such as "dT": 0.01'
         raise InputError(Problem(message, file=file, line=_line_of(text, "dT"), field="dT", hint=hint))
-    check_interval(file, _line_of(text, "dT"), interval, dt)
+    check_interval(file, _line_of(text, "dT"), interval, asked.dt)
 
     values = data.get("accel_data")
     line = _line_of(text, "accel_data")
@@ -88,10 +78,16 @@ def read(
     if one_too_many:  # files by SimCenter itself state one value too many
         missing = f"it says numPoints = {stated:g} and has one value less, as files of SimCenter do: or was one lost?"
         remarks = (Doubt("count", float(stated), missing), *remarks)
-    acceleration = in_si(np.array(values, dtype=np.float64), unit)
+    acceleration = np.array(values, dtype=np.float64) * size
     origin = of_info(info)
     return GroundMotion(
-        Path(file).name, float(interval), acceleration, source_unit=unit, format=TITLE, remarks=remarks, origin=origin
+        Path(file).name,
+        float(interval),
+        acceleration,
+        source_unit=unit,
+        format=formats.simcenter.TITLE,
+        remarks=remarks,
+        origin=origin,
     )
 
 

@@ -6,17 +6,22 @@ import numpy as np
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion, Origin
-from rocking_cli.excitation.records import layout
+from rocking_cli.excitation.records import formats, layout
 from rocking_cli.excitation.records.header_fields import Field, RecordHead, read_head
 from rocking_cli.excitation.records.origins import origin, peak_doubts
+from rocking_cli.excitation.records.record_units import Asked, Quantity
 from rocking_cli.text import regex
-
-TITLE = "USGS SMC"
-SIGN = "a first line such as 2 CORRECTED ACCELEROGRAM, and * on the second"
 
 _FIRST_LINE = regex(r"(\d) +([A-Z].*)")
 _UNCORRECTED = "1"
-_ACCELERATIONS = (_UNCORRECTED, "2")  # uncorrected and corrected; 3 to 5 are velocity, displacement and spectra
+# Quantity and unit of each kind, which the format fixes; a program may not have known them (0), and 5 are spectra.
+_KINDS: dict[str, tuple[Quantity, str]] = {
+    _UNCORRECTED: ("acceleration", "cm/s2"),
+    "2": ("acceleration", "cm/s2"),
+    "3": ("velocity", "cm/s"),
+    "4": ("displacement", "cm"),
+}
+_UNKNOWN = "0"
 _MAX_RATE = 1e6  # samples per second; files without a rate state 1.7e38 or zero
 _TEXT_LINES = 11
 _INTEGERS = layout.RecordBlock(_TEXT_LINES, 48, 10, 1)
@@ -38,22 +43,15 @@ _RATE_PLACE = 2  # place of the rate in samples per second
 _EXTREMES_PLACES = ((29, 30), (31, 32))  # places of time and value of the largest and of the smallest acceleration
 
 
-def sniff(text: str) -> bool:
-    """Return whether the first line is one of the titles of SMC, and the second is a single asterisk."""
-    head = text[:1000].split("\n")
-    return bool(_FIRST_LINE.match(head[0])) and len(head) > 1 and head[1].strip() == "*"
-
-
-def read(
-    text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
-) -> GroundMotion:
-    """Read a USGS SMC file; arguments, result and errors are those of `registry.Reader.read`."""
+def read(text: str, file: str, asked: Asked) -> GroundMotion:
+    """Read a USGS SMC file; see `registry.Reader.read`."""
     lines = layout.lines_of(text)
     kind = _FIRST_LINE.match(lines[0])
-    if kind is None or kind[1] not in _ACCELERATIONS:
-        message = f"the header says this is not an acceleration: {lines[0].strip()}"
-        raise InputError(Problem(message, file, 1, hint="give the file with the acceleration"))
-    unit = layout.stated_unit(file, 1, "cm/s2", units)  # the format fixes the unit; the file does not state it
+    assert kind is not None  # as the format was recognised by it
+    quantity, stated = (asked.wanted.quantity, "") if kind[1] == _UNKNOWN else _KINDS.get(kind[1], (None, ""))
+    if quantity != asked.wanted.quantity:
+        raise layout.lacking(file, asked.wanted, [quantity or lines[0].strip()], 1)
+    unit, size = layout.stated_unit(file, 1, stated, asked)
     integers = layout.fixed_width(file, lines, _INTEGERS, last=False).values
     reals, start, _ = layout.fixed_width(file, lines, _REALS, last=False)
     comments, count, rate = int(integers[_COMMENTS - 1]), int(integers[_COUNT - 1]), float(reals[_RATE_PLACE - 1])
@@ -74,15 +72,16 @@ def read(
         message = f"the header says {comments} comment lines, but another number begins with |"
         raise InputError(Problem(message, file, comment_line, hint="the file may have been edited: download it again"))
     block = layout.RecordBlock(start + comments, count, _DATA_WIDTH, count_line)
-    values, _, remarks = layout.fixed_width(file, lines, block)
+    values, end, remarks = layout.fixed_width(file, lines, block)
+    layout.check_end(file, lines, end)
     extremes = [(reals[peak - 1], reals[time - 1]) for time, peak in _EXTREMES_PLACES if not np.isnan(reals[peak - 1])]
     if extremes:
         peak, time = max(extremes, key=lambda extreme: abs(extreme[0]))
         remarks += peak_doubts(values, 1 / rate, unit, _REALS.start + 6, f"{peak:.7E}", f"{time:.7E}")
     head = read_head(file, lines, _FIELDS, _TEXT_LINES)
     name, origin = head.text("component") or "", _origin(head)
-    only = layout.Channel(name, 1 / rate, layout.in_si(values, unit), unit, rate_line, remarks=remarks, origin=origin)
-    return layout.choose(file, TITLE, [only], channel, dt)
+    only = layout.Channel(name, 1 / rate, values * size, unit, rate_line, remarks=remarks, origin=origin)
+    return layout.choose(file, formats.smc.TITLE, [only], asked)
 
 
 def _origin(head: RecordHead) -> Origin:

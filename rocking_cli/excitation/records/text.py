@@ -7,8 +7,10 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from datetime import date
 from itertools import islice
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,8 +19,11 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
 from rocking_cli.excitation.record_csv import DONE_PREFIX
 from rocking_cli.excitation.records.columns import MAX_COLUMNS, Choice, Label, choose, labels
+from rocking_cli.excitation.records.header_words import component
 from rocking_cli.excitation.records.lines import Lines
-from rocking_cli.excitation.records.record_units import Wanted, plural
+from rocking_cli.excitation.records.record_units import UNITS, Wanted, other_quantity, plural
+from rocking_cli.excitation.records.shapes import FEWEST_ROWS, counts_rows, runs_on
+from rocking_cli.excitation.records.statements import Statements, statements
 from rocking_cli.excitation.records.widths import PrintedRows, unlike_the_others
 from rocking_cli.text import regex
 
@@ -31,11 +36,32 @@ _NOT_FINITE = regex(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
 _OTHER_TIME = regex(r"(?<![a-z])(?:t|time)[ _]*[\[(]?\s*(ms|msec|milliseconds?|min|minutes?)\b", re.IGNORECASE)
 _FIRST_CELL = regex(r'"([^"]*)"|[^\s,;]*')
 _QUOTED = regex(r'"([^"]*)"')
+# A date, a time of day or both, before other numbers of a row.
+_STAMP = regex(
+    r'\s*"?(?:(\d{4})[-/](\d\d?)[-/](\d\d?)[T ,;]+)?(\d\d?):(\d\d):(\d\d)(?:[.,](\d+))?(?:Z|[+-]\d\d:?\d\d)?"?'
+    r'(?=[\s,;]+["\d.+-])'
+)
+_TOUCHING = regex(r"(?<![^\s+-])([+-]?\d*\.\d*(?:[EeDd][+-]?\d+)?)(?=[+-])")
+_COMMA_NUMBER = regex(r"[+-]?\d*,\d+(?:[EeDd][+-]?\d+)?")
+_SURE_COMMA = regex(r"[+-]?\d*,0\d|-\d*,\d\d|-0?,")  # no pair of whole numbers is written like that
+_DAMAGED = regex(r"(?!.*[^\W\d_]{2})\S*\.\d\S*")
+_WORD = regex(r"[^\W\d_]{2,}")
+DESPITE = ("count", "header_peak")
+"""Doubts that `despite_header` has in place of a refusal."""
 _SEARCHED_CHARACTERS = 100_000  # the format is recognised within them, so that a large file is not searched to its end
 _MAX_VALUE = 1e30  # above any time or acceleration in any unit, and far below overflow
 _INTERVAL_RANGE = (1e-9, 1e6)  # s; sums overflow beyond these bounds, and no record has such intervals
 MAX_NUMBERS = 4 * MOST_SAMPLES
+_MOST_FALLS = 0.1  # share of steps backwards among damaged times
 _DT_TOLERANCE = 1e-3  # relative difference; either the given interval or that of the file may be rounded
+
+
+class Followed(InputError):
+    """Error: from line index `end` on, something follows a record, which may be another record."""
+
+    def __init__(self, end: int, problem: Problem) -> None:
+        super().__init__(problem)
+        self.end = end
 
 
 def sniff(text: str) -> bool:
@@ -54,36 +80,25 @@ def read(
     wanted: Wanted = Wanted(),  # noqa: B008 - it does not change
 ) -> GroundMotion:
     """Read delimited text; arguments, result and errors are those of `registry.Reader.read`."""
-    lines = Lines(text)
-    start = _first_row(lines)
-    if start is None:
-        raise InputError(Problem("no numbers found", file=file))
-    lines.check_lengths(file)
-    head = lines[:start]
-    if '"' in lines[start]:
-        text = _unquoted(file, start + 1, lines[start], text)
-        lines = Lines(text)
-    delimiter = next((mark for mark in (";", "\t", ",") if mark in _clean(lines[start])), None)  # None splits at blanks
-    commas = delimiter in (";", "\t") and any("," in _clean(line) for line in next(lines.pages(start))[1])
-    cells = _clean(lines[start]).split(delimiter)
-    # A title such as "6 km south of" is not a row of four columns.
-    numbers_in(file, start + 1, lines[start], [cell.replace(",", ".") for cell in cells] if commas else cells)
-    columns = len(cells)
-    if columns > MAX_COLUMNS:
-        raise InputError(Problem(f"a table of {columns} columns cannot be a record", file, start + 1))
-    header = _header(file, head, delimiter, columns)
-    names, label_lines = labels(header, delimiter, columns)
+    rows = _rows(text, file)
+    header = _header(file, rows)
+    names, label_lines = labels(file, header, rows.delimiter, rows.columns)
     _refuse_other_times(file, names, label_lines)
+    stated = statements(file, [*header, *rows.stated])
+    interval = stated.interval(dt) or dt
 
+    table, names, remarks = _shaped(file, rows, names, stated, wanted, channel)
+    columns = len(names)
     choice = Choice(columns - 1, 0 if columns == 2 else None, "")
-    table = None
-    if columns > 2 or (columns == 2 and channel is not None and label_lines):
-        table = _table(file, lines, start, delimiter, names, commas=commas)
+    if columns > 2 or (columns == 2 and (_are_components(table, names) or (channel is not None and label_lines))):
         choice = choose(file, table, names, channel, increasing if wanted.uneven else is_even, wanted)
         header = [entry for entry in header if entry[0] not in label_lines]
         header += [(number, str(names[choice.column])) for number in label_lines[:1]]
     elif channel is not None and channel.strip().lower() != names[-1].name.lower():
         only_channel(file, channel)
+    if choice.time is not None and interval not in (None, 1.0):
+        numbered = not names[choice.time].is_time and counts_rows(table[choice.time])
+        choice = replace(choice, time=None if numbered else choice.time)
 
     problems: list[Problem] = []
     unit, size = "", 1.0
@@ -91,28 +106,164 @@ def read(
         unit, size = wanted.unit(file, header, units)
     except InputError as error:
         problems.extend(error.problems)
-    if choice.time is None and dt is None:
+    if choice.time is None and interval is None:
         problems.append(_no_interval(file, wanted, columns))
     if problems:
         raise InputError(*problems)
 
-    if table is None:
-        table = _table(file, lines, start, delimiter, names, commas=commas)
     values, uneven = table[choice.column], None
     if choice.time is not None:
         column = _called(names, choice.time) if columns > 2 else ""
-        with _uneven_rows(file, lines, start, column):
+        with _uneven_rows(file, rows, column):
             interval, values, uneven = _at_even_times(table[choice.time], values, as_it_comes=wanted.uneven)
+        stated.check_interval(interval, 0.5 * interval / (table.shape[1] - 1))
         check_interval(file, None, interval, dt)
-        dt = interval
-    assert dt is not None  # a missing interval was refused above
-    name = Path(file).name + (f" channel {choice.channel}" if choice.channel else "")
-    remarks = unlike_the_others(
-        PrintedRows(lines, start, lambda line: _clean(line).split(delimiter)[choice.column :][:1])
-    )
+    assert interval is not None  # a missing interval was refused above
+    remarks += _against_header(stated, table, names, choice, unit, wanted)
+    if columns == rows.columns:
+        place = slice(choice.column, choice.column + 1)
+        remarks += unlike_the_others(PrintedRows(rows.lines, rows.start, lambda line: rows.cells(line)[place]))
     if uneven is not None:
         remarks = (*remarks, uneven)
-    return GroundMotion(name, dt, values * size, source_unit=unit, format="text", remarks=remarks)
+    name = Path(file).name + (f" channel {choice.channel}" if choice.channel else "")
+    despite = ("despite header",) * any(each.kind in DESPITE for each in remarks)
+    return GroundMotion(
+        name, interval, values * size, source_unit=unit, format="text", remarks=remarks, processing=despite
+    )
+
+
+class _Rows(NamedTuple):
+    """The rows of numbers of a text, how they are written, and a first line with number of points and interval."""
+
+    lines: Lines
+    start: int  # index of the first row
+    end: int  # index after the last row that is as long as the others
+    delimiter: str | None  # None for blanks
+    commas: bool  # in place of decimal points
+    columns: int
+    tail: list[float]  # numbers of the last row, if it is shorter
+    stated: list[tuple[int, str]]
+
+    def cells(self, line: str) -> list[str]:
+        """Return the numbers of a row as printed, also those that touch; none for a comment."""
+        return _cells(_clean(line), self.delimiter)
+
+
+def _rows(text: str, file: str) -> _Rows:
+    """Find the rows of numbers in a text, their delimiter and the number of their columns."""
+    lines = Lines(text)
+    start = _first_row(lines)
+    if start is None:
+        raise InputError(Problem("no numbers found", file=file))
+    lines.check_lengths(file)
+    if _STAMP.match(lines[start]):
+        lines = Lines(_with_seconds(lines, start))
+    elif '"' in lines[start]:
+        lines = Lines(_unquoted(file, start + 1, lines[start], text))
+    stated = []
+    if _is_count_and_interval(lines, start):
+        stated = [(start + 1, f"{lines[start].strip()} NPTS, DT")]
+        start += 1 + (_first_row(lines.since(start + 1)) or 0)
+    first = _clean(lines[start])
+    delimiter = next((mark for mark in (";", "\t", ",") if mark in first), None)  # None splits at blanks
+    page = [row for line in next(lines.pages(start))[1] if (row := _clean(line))]
+    commas = delimiter in (";", "\t") and any("," in row for row in page)
+    if delimiter == "," and all(map(_COMMA_NUMBER.fullmatch, page)) and any(map(_SURE_COMMA.match, page)):
+        delimiter, commas = None, True
+    cells = _cells(first, delimiter)
+    # A title such as "6 km south of" is not a row of four columns.
+    numbers_in(file, start + 1, lines[start], [cell.replace(",", ".") for cell in cells] if commas else cells)
+    columns = len(cells)
+    if columns > MAX_COLUMNS:
+        raise InputError(Problem(f"a table of {columns} columns cannot be a record", file, start + 1))
+    last = next(index for index in range(len(lines) - 1, start - 1, -1) if _clean(lines[index]))
+    ends = _cells(_clean(lines[last]), delimiter)
+    tail = [value for cell in ends if (value := _value(cell)) is not None and sensible(value)]
+    if not len(tail) == len(ends) < columns:
+        return _Rows(lines, start, len(lines), delimiter, commas, columns, [], stated)
+    return _Rows(lines, start, last, delimiter, commas, columns, tail, stated)
+
+
+def _cells(row: str, delimiter: str | None) -> list[str]:
+    """Split a clean row; numbers of Fortran that touch are parted at their signs."""
+    return _TOUCHING.sub(r"\1 ", row).split() if delimiter is None else row.split(delimiter) if row else []
+
+
+def _is_count_and_interval(lines: Lines, start: int) -> bool:
+    """Return whether a row is a number of points and an interval [s], and not one of the table below."""
+    below = (re.split(r"[,;\s]+", row) for line in lines.since(start) if (row := _clean(line)))
+    rows = list(islice(below, 3))
+    if len(rows) < 3 or len(rows[0]) != 2 or not rows[0][0].isdecimal() or not 0 < (_value(rows[0][1]) or 0) < 1:
+        return False
+    first, second = (_value(row[0]) or 0.0 for row in rows[1:])
+    return len(rows[1]) != 2 or ("." in rows[1][0] and first < min(float(rows[0][0]), second))
+
+
+def _with_seconds(lines: Lines, start: int) -> str:
+    """Return the text with seconds since the first row in place of dates and times of day."""
+    zero: int | None = None
+    out = lines[:start]
+    for line in lines.since(start):
+        if match := _STAMP.match(line):
+            *day, hours, minutes, seconds = (int(each or 1) for each in match.groups()[:-1])
+            whole = ((date(*day).toordinal() * 24 + hours) * 60 + minutes) * 60 + seconds
+            zero = whole if zero is None else zero
+            line = f"{whole - zero}.{match[7] or 0}{line[match.end() :]}"
+        out.append(line)
+    return "\n".join(out)
+
+
+def _shaped(
+    file: str, rows: _Rows, names: list[Label], stated: Statements, wanted: Wanted, channel: str | None
+) -> tuple[Reals, list[Label], tuple[Doubt, ...]]:
+    """Return the table without numbers of its rows, or the series that runs on over them, with labels and doubts."""
+    table, tail = _table(file, rows, names), rows.tail
+    if len(table) > 1 and not names[-1].name and counts_rows(table[-1]):
+        table, tail = table[:-1], tail[:-1]
+    columns, count = table.shape
+    names = names[:columns]
+    may_run_on = columns > 1 and not any(label.name for label in names)
+    may_run_on &= not (increasing if wanted.uneven else is_even)(table[0])
+    may_run_on &= columns > 2 or _are_components(table, names)
+    if wanted.run_on and not may_run_on:
+        message = "its first column is a time or its columns are labelled, so that its values do not run on"
+        raise InputError(Problem(message, file, field="`run_on`", hint="leave it out"))
+    stated_counts = {each.value for each in stated.counts}
+    seen = False if stated_counts == {count} or not may_run_on else runs_on(table)
+    if wanted.run_on or seen or (may_run_on and tail and stated_counts == {table.size + len(tail)}):
+        text = f"its values are read as one series that runs on over the rows, {columns} in each"
+        doubts = () if wanted.run_on else (Doubt("run_on", float(columns), text),)
+        return np.append(table.T.ravel(), tail)[np.newaxis], [Label("")], doubts
+    if rows.tail:
+        hint = "if the values run on from line to line, give `run_on`" if may_run_on else None
+        message = f"this row has {len(rows.tail)} column{'s' * (len(rows.tail) > 1)}, the rows before it have "
+        excerpt = rows.lines[rows.end].strip()[:100]
+        raise InputError(Problem(f"{message}{rows.columns}", file, rows.end + 1, excerpt=excerpt, hint=hint))
+    if may_run_on and seen is None and channel is not None and count >= FEWEST_ROWS:
+        text = f"nothing tells whether its {columns} columns are components, as it is read, or values that run on"
+        return table, names, (Doubt("run_on", float(columns), text),)
+    return table, names, ()
+
+
+def _are_components(table: Reals, names: Sequence[Label]) -> bool:
+    """Return whether the first of two columns is a component and not a time: by its name, or as it goes up and down."""
+    falls = np.diff(table[0]) <= 0
+    if names[0].is_time or not falls.any():
+        return False
+    return component(names[0].name) is not None or float(falls.mean()) > _MOST_FALLS
+
+
+def _against_header(
+    stated: Statements, table: Reals, names: Sequence[Label], choice: Choice, unit: str, wanted: Wanted
+) -> tuple[Doubt, ...]:
+    """Return doubts if points or peak are not those of the header; refuse the record without `despite_header`."""
+    columns = [k for k in range(len(table)) if k != choice.time and not other_quantity(str(names[k]))]
+    despite = wanted.despite_header
+    doubts = stated.check_count(table.shape[1], len(columns), despite=despite)
+    if wanted.raw or wanted.quantity != "acceleration":
+        return doubts
+    peaks = [(names[k].name, UNITS[unit] * float(np.abs(table[k]).max())) for k in columns]
+    return doubts + stated.check_peak(peaks, columns.index(choice.column), unit, despite=despite)
 
 
 def _no_interval(file: str, wanted: Wanted, columns: int) -> Problem:
@@ -205,10 +356,18 @@ def _clean(line: str) -> str:
 def _first_row(lines: Iterable[str]) -> int | None:
     """Return the index of the first data line, which begins with a number and is not a comment; None if none does."""
     for index, line in enumerate(lines):
-        match = _FIRST_CELL.match(_clean(line))
+        match = _FIRST_CELL.match(row := _clean(line))
+        if _STAMP.match(row):
+            return index
         if match and _value(match[0] if match[1] is None else match[1].strip().replace(",", ".")) is not None:
             return index
     return None
+
+
+def _is_title(cells: Sequence[str], columns: int) -> bool:
+    """Return whether a line among numbers has words, and is no damaged row: the header of another record."""
+    numbers = sum(_value(cell.strip()) is not None for cell in cells)
+    return bool(_WORD.search(cells[0])) and (len(cells) > 1 if columns == 1 else len(cells) != columns or not numbers)
 
 
 def _unquoted(file: str, line_number: int, row: str, text: str) -> str:
@@ -231,10 +390,11 @@ def _with_points(file: str, first: int, page: Sequence[str]) -> list[str]:
     return [row.replace(",", ".") for row in rows]
 
 
-def _header(file: str, lines: Sequence[str], delimiter: str | None, columns: int) -> list[tuple[int, str]]:
+def _header(file: str, rows: _Rows) -> list[tuple[int, str]]:
     """Return line number and text of comments and header lines, with the column labels last."""
     comments, header = [], []
-    for number, line in enumerate(lines, start=1):
+    above = rows.stated[0][0] - 1 if rows.stated else rows.start
+    for number, line in enumerate(rows.lines[:above], start=1):
         line = line.strip()
         if line.startswith(DONE_PREFIX):  # skipped: its file names and gains belong to the original file
             continue
@@ -242,10 +402,13 @@ def _header(file: str, lines: Sequence[str], delimiter: str | None, columns: int
             comments.append((number, line.lstrip("#% \t")))
         elif line:
             header.append((number, line))
+    columns = rows.columns
+    if header and columns == 1 and _DAMAGED.fullmatch(header[-1][1]):
+        raise InputError(_not_a_number(file, *header[-1], header[-1][1], known=False))
     if header and columns > 1:
         # A damaged first time, such as O.00 for 0.00, must not pass for a header, as its sample would be lost.
         number, line = header[-1]
-        cells = [cell.strip() for cell in _clean(line).split(delimiter)]
+        cells = [cell.strip() for cell in _clean(line).split(rows.delimiter)]
         if len(cells) == columns and all(_value(cell) is not None for cell in cells[1:]):
             raise InputError(_not_a_number(file, number, line, cells[0], known=False))
         if columns == 2 == len(cells) and Label(cells[1]).is_time and not Label(cells[0]).is_time:
@@ -266,29 +429,29 @@ def _refuse_other_times(file: str, names: Sequence[Label], lines: Sequence[int])
             raise InputError(Problem(message, file=file, line=lines[0], hint="give the times in seconds"))
 
 
-def _table(
-    file: str, lines: Lines, start: int, delimiter: str | None, names: Sequence[Label], *, commas: bool
-) -> Reals:
+def _table(file: str, rows: _Rows, names: Sequence[Label]) -> Reals:
     """Return all columns as rows of an array, by numpy's parser, or the slower one for a page that numpy refuses."""
-    columns, rows = len(names), len(lines) - start
-    if rows > MOST_SAMPLES or rows * columns > MAX_NUMBERS:  # checked before memory is reserved
-        limit = MOST_SAMPLES if rows > MOST_SAMPLES else MAX_NUMBERS // columns
-        message = f"a record has at most {limit} samples in each column, this file has {rows} lines"
+    columns, count = len(names), len(rows.lines) - rows.start
+    if count > MOST_SAMPLES or count * columns > MAX_NUMBERS:  # checked before memory is reserved
+        limit = MOST_SAMPLES if count > MOST_SAMPLES else MAX_NUMBERS // columns
+        message = f"a record has at most {limit} samples in each column, this file has {count} lines"
         raise InputError(Problem(message, file))
-    table = np.empty((columns, rows))  # may be too wide, as blank lines and comments have no numbers
+    table = np.empty((columns, count))  # may be too wide, as blank lines and comments have no numbers
     filled = 0
-    for first, page in lines.pages(start):
-        if commas:
+    for first, page in rows.lines.pages(rows.start):
+        page = page[: max(rows.end - first, 0)]
+        if rows.commas:
             page = _with_points(file, first, page)
-        part = _quick_table(page, delimiter, columns)
-        if part is None:  # try again without comments and empty cells
-            part = _quick_table([row for line in page if (row := _clean(line))], delimiter, columns)
+        part = _quick_table(page, rows.delimiter, columns)
+        if part is None:  # try again without comments and empty cells, and with blanks between numbers that touch
+            clean = [(rows.delimiter or " ").join(cells) for line in page if (cells := rows.cells(line))]
+            part = _quick_table(clean, rows.delimiter, columns)
         if part is None:
-            part = _careful_table(file, first, page, delimiter, names)
+            part = _careful_table(file, first, page, rows, names)
         table[:, filled : filled + len(part)] = part.T
         filled += len(part)
-    if filled < 2:
-        raise InputError(Problem("a record needs at least two samples, this has one", file=file, line=start + 1))
+    if filled < 2 and not rows.tail:
+        raise InputError(Problem("a record needs at least two samples, this has one", file=file, line=rows.start + 1))
     return table[:, :filled]
 
 
@@ -303,15 +466,16 @@ def _quick_table(lines: Sequence[str], delimiter: str | None, columns: int) -> R
     return table if table.shape[1] == columns and usable(table) else None
 
 
-def _careful_table(file: str, first: int, lines: Sequence[str], delimiter: str | None, names: Sequence[Label]) -> Reals:
+def _careful_table(file: str, first: int, lines: Sequence[str], rows: _Rows, names: Sequence[Label]) -> Reals:
     """Parse lines from index `first` on one by one, to report errors or accept numbers such as 1D-3."""
     values: list[float] = []
     columns = len(names)
     for number, line in enumerate(lines, start=first + 1):
-        row = _clean(line)
-        if not row:
+        cells = rows.cells(line)
+        if not cells:
             continue
-        cells = row.split(delimiter)
+        if number > rows.start + FEWEST_ROWS and _is_title(cells, columns):
+            raise Followed(number - 1, _not_a_number(file, number, line, cells[0].strip(), known=False))
         if len(cells) != columns:
             numbers_in(file, number, line, cells)  # a word or an empty cell makes the better message
             message = f"this row has {len(cells)} column{'s' * (len(cells) > 1)}, the rows before it have {columns}"
@@ -331,7 +495,7 @@ def _called(names: Sequence[Label], place: int) -> str:
 
 
 @contextmanager
-def _uneven_rows(file: str, lines: Lines, start: int, column: str) -> Iterator[None]:
+def _uneven_rows(file: str, rows: _Rows, column: str) -> Iterator[None]:
     """Turn errors of uneven times into problems at their rows, counted without blank lines and comments.
 
     `column` is the name of the column of times, if there are several columns.
@@ -341,9 +505,9 @@ def _uneven_rows(file: str, lines: Lines, start: int, column: str) -> Iterator[N
     except UnevenTimeError as error:
         problem = Problem(error.message, file=file, field=column or None, hint=error.hint)
         if error.row is not None:
-            numbers = (number for number, line in enumerate(lines, start=1) if number > start and _clean(line))
-            number = next(islice(numbers, error.row, None))
-            problem = replace(problem, line=number, excerpt=lines[number - 1].strip()[:100])
+            below = enumerate(rows.lines.since(rows.start), start=rows.start + 1)
+            number, line = next(islice(((number, line) for number, line in below if _clean(line)), error.row, None))
+            problem = replace(problem, line=number, excerpt=line.strip()[:100])
         raise InputError(problem) from None
 
 

@@ -5,13 +5,11 @@ from __future__ import annotations
 import re
 
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records import layout
+from rocking_cli.excitation.records import formats, layout
 from rocking_cli.excitation.records.header_fields import Field, read_head
 from rocking_cli.excitation.records.origins import length_doubts
+from rocking_cli.excitation.records.record_units import Asked
 from rocking_cli.text import regex
-
-TITLE = "USC V1"
-SIGN = "a first line with UNCORRECTED ACCELEROGRAM DATA OF VOLUME I"
 
 _FIRST_LINE = regex(r"FILE\s+\d+ OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I\b")
 _FIELDS = {
@@ -26,15 +24,8 @@ _TEXT_LINES = 30  # lines with the items of the header
 _INTEGERS, _REALS = 100, 50
 
 
-def sniff(text: str) -> bool:
-    """Return whether the first line is that of an uncorrected record of Volume I."""
-    return _FIRST_LINE.match(text[:200]) is not None
-
-
-def read(
-    text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
-) -> GroundMotion:
-    """Read a USC V1 file; arguments, result and errors are those of `registry.Reader.read`.
+def read(text: str, file: str, asked: Asked) -> GroundMotion:
+    """Read a USC V1 file; see `registry.Reader.read`.
 
     The record is linear between its points, whose times are whole milliseconds. The motion has the largest constant
     interval that includes all of these times: it has more samples than the file has points, but is not an
@@ -43,16 +34,16 @@ def read(
     lines = layout.lines_of(text)
     head = read_head(file, lines, _FIELDS, _TEXT_LINES)
     count, count_line = head.count, head["count"].line_number
-    unit = layout.old_unit(file, head["unit"].line_number, head["unit"].groups[0], units)
+    unit, size = layout.old_unit(file, head["unit"].line_number, head["unit"].groups[0], asked)
 
     start = next((index for index, line in enumerate(lines) if not re.search(r"[A-Za-z]", line)), len(lines))
-    for size, width in ((_INTEGERS, 5), (_REALS, 10)):
-        _, start, _ = layout.fixed_width(file, lines, layout.RecordBlock(start, size, width, 1), last=False)
+    for length, width in ((_INTEGERS, 5), (_REALS, 10)):
+        _, start, _ = layout.fixed_width(file, lines, layout.RecordBlock(start, length, width, 1), last=False)
     pairs, end, remarks = layout.fixed_width(file, lines, layout.RecordBlock(start, 2 * count, 7, count_line, margin=1))
+    layout.check_end(file, lines, end)
     step, values, points = layout.straight_lines(file, pairs, f"lines {start + 1} to {end}")
-    acceleration = layout.in_si(values, unit)
     if (duration := head.items.get("duration")) and duration.line_number == count_line:
         remarks += length_doubts(float(pairs[-2]), count_line, duration.groups[0], 0.0)
     name = head.text("component") or ""
-    only = layout.Channel(name, step, acceleration, unit, points=points, remarks=remarks, origin=head.origin)
-    return layout.choose(file, TITLE, [only], channel, dt)
+    only = layout.Channel(name, step, values * size, unit, points=points, remarks=remarks, origin=head.origin)
+    return layout.choose(file, formats.usc_v1.TITLE, [only], asked)

@@ -118,7 +118,7 @@ class _Printing(OnTerminal):
     """Watcher that prints the JSON of every record as soon as it is ready, a line for each polarity."""
 
     def take(self, answer: Answer[Any]) -> bool:
-        """Print an answer as JSON, if that is asked for; all are kept."""
+        """Print an answer as JSON, if requested; all are kept."""
         from rocking_cli.questions.record.view import data
 
         for seen in answer.examined if self._as_json else ():

@@ -39,7 +39,7 @@ from rocking_cli.units import KINDS, read
 
 GRAVITY = 9.80665  # m/s2, repeated here as are all expected values
 MOTIONS = tuple(
-    GroundMotion(f"motion {k}", dt, np.array(samples, dtype=np.float64))
+    GroundMotion(f"motion {k}", dt, np.array(samples, dtype=np.float64), unit="m/s2")
     for k, (dt, samples) in enumerate(
         (
             (0.1, (0, 2, 4, 3, -1, -4, -3, 0)),
@@ -357,7 +357,7 @@ def neighbours(quick: bool) -> float:
         (1.02, 0.04, near.Neighbourhood(slenderness=0.0)),
         (1.06, 0.1, near.Neighbourhood(amplitude=0.0)),
     ):
-        held = GroundMotion("held", 0.5, np.full(20, x * tan(of.alpha) * GRAVITY))
+        held = GroundMotion("held", 0.5, np.full(20, x * tan(of.alpha) * GRAVITY), unit="m/s2")
         computed.append(near.neighbours(model, held, around).overturned)
         expected.append(normal(log(x) / deviation))
     for eta in (0.85, 0.9, 0.95):
@@ -375,7 +375,7 @@ def openings(quick: bool) -> float:
     A released block first slides when the shear force at its corner exceeds mu N, both by Newton's law.
     """
     cube = made("block", width=2.0, height=2.0, friction=0.2, one_sided="positive", rebound=0.5)
-    history = follow(cube.model("nonlinear"), GroundMotion("held", 0.01, np.full(60, -0.21 * GRAVITY)))
+    history = follow(cube.model("nonlinear"), GroundMotion("held", 0.01, np.full(60, -0.21 * GRAVITY), unit="m/s2"))
     slip = 0.005 * 2 * sqrt(2) * sin(pi / 8)
     of, mu, top = block(0.7, 2.8), 0.15, 0.95
     rough = made("block", width=0.7, height=2.8, friction=mu)
@@ -439,7 +439,7 @@ def filters(quick: bool) -> float:
     worst = 0.0
     for kind, corner, f in (("highpass", 1.0, 0.8), ("highpass", 1.0, 2.0), ("lowpass", 4.0, 5.0), ("lowpass", 4.0, 2)):
         sine = np.sin(2 * pi * f * dt * np.arange(count))
-        filtered = process(GroundMotion("sine", dt, sine), [parse_step(kind, str(corner))]).acceleration
+        filtered = process(GroundMotion("sine", dt, sine, unit="m/s2"), [parse_step(kind, str(corner))]).acceleration
         r = (tan(pi * f * dt) / tan(pi * corner * dt)) ** (8 if kind == "lowpass" else -8)
         worst = max(worst, largest_difference(filtered[middle], sine[middle] / (1 + r)))
     return worst
@@ -449,7 +449,7 @@ SIZES = {
     "length": {"m": 1, "mm": 1e-3, "cm": 1e-2, "dm": 0.1, "km": 1e3, "in": 0.0254, "ft": 0.3048},
     "acceleration": {
         "m/s2": 1, "cm/s2": 1e-2, "mm/s2": 1e-3, "gal": 1e-2, "g": 9.80665, "mg": 9.80665e-3, "%g": 9.80665e-2,
-        "ft/s2": 0.3048,
+        "ft/s2": 0.3048, "in/s2": 0.0254,
     },
     "mass": {"kg": 1, "g": 1e-3, "t": 1e3, "Mg": 1e3, "lb": 0.45359237},
     "force": {
@@ -466,11 +466,12 @@ SIZES = {
     },
     "density": {"kg/m3": 1, "t/m3": 1e3, "g/cm3": 1e3, "kg/dm3": 1e3, "lb/ft3": 0.45359237 / 0.3048**3},
     "mass per length": {"kg/m": 1, "t/m": 1e3},
+    "mass per area": {"kg/m2": 1, "t/m2": 1e3},
     "weight density": {
         "N/m3": 1, "daN/m3": 10, "kN/m3": 1e3, "kgf/m3": 9.80665, "lbf/ft3": 4.4482216152605 / 0.3048**3,
     },
     "time": {"s": 1, "ms": 1e-3, "min": 60},
-    "velocity": {"m/s": 1, "cm/s": 1e-2, "mm/s": 1e-3, "in/s": 0.0254},
+    "velocity": {"m/s": 1, "cm/s": 1e-2, "mm/s": 1e-3, "in/s": 0.0254, "ft/s": 0.3048},
     "angle": {"rad": 1, "deg": pi / 180, "°": pi / 180, "mrad": 1e-3},
 }  # fmt: skip
 """Sizes of units by their definitions, in the first one of each kind."""
@@ -553,7 +554,7 @@ def _computed(quick: bool) -> Iterator[NDArray[Any]]:
     responses = exact_many(free.equivalence, Sine(1.0, 1.0), amplitudes, periods, kappa=2, gravity=GRAVITY)
     yield from (getattr(responses, name) for name in OUTCOME_FIELDS)
     for motion in MOTIONS[:1] if quick else MOTIONS:
-        both = replace(motion, vertical=GroundMotion("vertical", 0.07, motion.acceleration[::-1] / 2))
+        both = replace(motion, vertical=GroundMotion("vertical", 0.07, motion.acceleration[::-1] / 2, unit="m/s2"))
         for model in (*free.models(("nonlinear", "linear2")), two.model("nonlinear"), tied.model("nonlinear")):
             for each in (motion, both):
                 history = follow(model, each, eta=0.9, most_kept=20)
@@ -591,13 +592,18 @@ class RecordFile(NamedTuple):
 
 FOLDER = Path(__file__).with_name("records")
 FILES = {
-    name: RecordFile(title, unit, FOLDER / name)
+    name: RecordFile(title, unit, FOLDER / name, {"channel": "1"} if name in ("afad", "asa", "cwa", "jma") else {})
     for name, title, unit in (
+        ("afad", "AFAD", 0.01),
+        ("asa", "ASA", 0.01),
         ("cosmos", "COSMOS", 0.01),
         ("csmip_v1", "CSMIP V1", GRAVITY / 10),
         ("csmip_v2", "CSMIP V2", 0.01),
+        ("cwa", "CWA", 0.01),
         ("esm", "ESM ASCII", 0.01),
+        ("geonet_v1a", "GeoNet V1A", 0.001),
         ("geonet_v2a", "GeoNet V2A", 0.001),
+        ("jma", "JMA", 0.01),
         ("knet", "K-NET/KiK-net", 0.01),
         ("peer_at2", "PEER AT2", GRAVITY),
         ("simcenter", "SimCenter JSON", GRAVITY),
@@ -608,12 +614,16 @@ FILES = {
 }
 """A file of each format that this package reads, by the name of its reader."""
 OBSPY_FILES = {
+    "gse": RecordFile("GSE2", 0.01, FOLDER / "gse", {"gain": "0.25 cm/s2"}),
     "miniseed": RecordFile("miniSEED", 0.01, FOLDER / "miniseed", {"units": "cm/s2"}),
+    "obspy": RecordFile("AH", 0.01, FOLDER / "obspy", {"units": "cm/s2"}),
     "sac": RecordFile("SAC", 0.01, FOLDER / "sac", {"units": "cm/s2"}),
+    "slist": RecordFile("SLIST", 0.01, FOLDER / "slist"),
 }
 """Files of the formats that are read by obspy, by the name of their reader."""
 UNIT_SPELLINGS = {
     "g": GRAVITY, "m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "gal": 0.01, "mg": GRAVITY / 1000, "%g": GRAVITY / 100,
+    "ft/s2": 0.3048, "in/s2": 0.0254,
 }  # fmt: skip
 """Units of the accelerations of text files, as their headings spell them, and their sizes [m/s2]."""
 
@@ -633,7 +643,7 @@ def records(quick: bool) -> float:
 def records_by_obspy(quick: bool) -> float:
     """Return the same as `records` for formats that obspy reads. Raises `NotRun` if it is not installed."""
     if find_spec("obspy") is None:
-        raise NotRun("obspy, which reads SAC and miniSEED, is not installed: pip install 'rocking-cli[seismo]'")
+        raise NotRun("obspy, which reads SAC, miniSEED and more, is not installed: pip install 'rocking-cli[seismo]'")
     return _records(OBSPY_FILES)
 
 

@@ -194,7 +194,7 @@ class TestCleanFile:
     def test_it_reads_back_number_for_number(self, tmp_path_factory, values, dt):
         path = tmp_path_factory.getbasetemp() / "back.csv"
         with path.open("wb") as stream:
-            write_record_csv(stream, GroundMotion("any", dt, np.array(values)))
+            write_record_csv(stream, GroundMotion("any", dt, np.array(values), unit="m/s2"))
         back = read_record(path)
         assert back.acceleration.tolist() == values
         assert abs(back.dt - dt) <= np.spacing(dt)
@@ -202,7 +202,7 @@ class TestCleanFile:
     @pytest.mark.parametrize("npts", [2, 1991, 5372, 10_000, 10_001, 34_717])
     def test_usual_intervals_come_back_too_over_block_borders(self, npts, tmp_path):
         with (tmp_path / "back.csv").open("wb") as stream:
-            write_record_csv(stream, GroundMotion("any", 0.005, np.linspace(-1, 1, npts)))
+            write_record_csv(stream, GroundMotion("any", 0.005, np.linspace(-1, 1, npts), unit="m/s2"))
         back = read_record(tmp_path / "back.csv")
         assert back.dt == 0.005 and (back.acceleration == np.linspace(-1, 1, npts)).all()
 
@@ -274,7 +274,7 @@ class TestMeasures:
 
     def test_in_python_one_call_has_the_measures_of_a_structure(self):
         """0.5 g for 0.2 s; the step that overturns a block by energy and momentum, with I_O = 4/3 m R^2."""
-        step = rk.GroundMotion("step", 0.2, np.array([1.0, 1.0, 0.0, 0.0]) * 0.5 * 9.80665)
+        step = rk.GroundMotion("step", 0.2, np.array([1.0, 1.0, 0.0, 0.0]) * 0.5 * 9.80665, unit="m/s2")
         block = rk.Block(width=0.7, height=2.8)
         found = rk.record(step, structure=block, measures=["pga/(g lambda)", "PGV/v_imp"]).measures
         R, cosine = np.hypot(0.35, 1.4), 1.4 / np.hypot(0.35, 1.4)

@@ -32,7 +32,7 @@ POLICIES = {"one per event": {}, "any": {"one_per": "none"}, "narrow factors": {
 
 
 def motion(name: str, event: str | None = None, station: str | None = None, dt: float = 0.01) -> GroundMotion:
-    return GroundMotion(name, dt, np.array([0.0, 1.0, 0.0]), origin=Origin(event, station))
+    return GroundMotion(name, dt, np.array([0.0, 1.0, 0.0]), origin=Origin(event, station), unit="m/s2")
 
 
 def made(count: int, seed: int, rough: float, scatter: float = 0.4) -> Candidates:
@@ -327,7 +327,7 @@ def test_close_points_of_the_target_weigh_no_more_on_average():
 
 def test_candidates_have_the_spectra_of_their_motions():
     time = np.arange(400) * 0.01
-    motions = [GroundMotion(f"m{k}", 0.01, np.sin((5 + k) * time)) for k in range(3)]
+    motions = [GroundMotion(f"m{k}", 0.01, np.sin((5 + k) * time), unit="m/s2") for k in range(3)]
     done = []
     found = candidates(motions, CODE, SetRequirements(2, BAND, damping=0.02), done.append)
     assert sum(done) == 3
@@ -375,7 +375,7 @@ def test_a_target_is_read(tmp_path, text, unit, sa):
         ("0.2,0.5\n0.1,0.4\n", 2, "periods must increase"),
         ("0.1,0.5\n0.2,-0.4\n", 2, "must not be negative"),
         ("0.1,0.5\n0.2,nan\n", 2, "not a finite number"),
-        ("T [s],Sa [ft/s2]\n0.1,0.5\n", 1, "no unit of acceleration"),
+        ("T [s],Sa [km/s2]\n0.1,0.5\n", 1, "no unit of acceleration"),
         ("f [Hz],Sa [g]\n0.1,0.5\n", 1, "periods in s"),
         ("0,1;0,5\n0,2;0,4\n", 1, "a comma within a number"),
         ("0.1,0.5\n", None, "1 point: at least two"),

@@ -163,7 +163,7 @@ class TestEachCheck:
         readers = Readers()
         own = {name for name in readers if readers.package_of(name).startswith("rocking-cli ")}
         assert {*checks.FILES, *checks.OBSPY_FILES} == own
-        assert len(checks.FILES) == 11 and sum(checks.SAMPLES) == 0
+        assert len(checks.FILES) == 16 and sum(checks.SAMPLES) == 0
         assert set(checks.UNIT_SPELLINGS) == set(record_units.UNITS)
 
     @pytest.mark.every(2)
