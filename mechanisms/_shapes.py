@@ -175,7 +175,7 @@ class BodyPart(Described):
 
     polygon: list[Vertex] = quantity(
         "corners [x, y] in order around it", unit="m", example=[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], min_length=3,
-        max_length=1000,
+        max_length=10_000,
     )  # fmt: skip
     density: float | None = quantity(
         "its density; if omitted, that of the body", unit="kg/m3", default=None, gt=0, le=1e6

@@ -54,6 +54,7 @@ ZERO_OPENING = 1e-7  # opening of a joint that counts as zero, over its length
 LIGHT_WEIGHT = 1e-9  # weight of blocks that the analysis does not see, over the total weight
 MAX_NAMED_LIGHT = 3  # light blocks in a message
 SAME_PLACE = 1e-6  # difference of equal normals; that of equal points, over the size of the assembly
+MISFIT_SHARE = 0.01  # distance of ends of joints that should be one point, over the size of the smallest block
 JOINT_DECIMALS = 12  # of the points of joints in a file [m]
 ZERO_ROTATION_RATE = 1e-8  # rotation rates that count as zero, over the fastest one
 
@@ -429,9 +430,9 @@ class Assembly(LinkedBodies):
         if direction not in self.directions:
             raise StructureError(f"it cannot rock in the {direction.label} direction")
         rocking = self._as_it_rocks(direction)
+        mechanism = rocking._groups(direction)  # raises an error of its own if it does not stand
         if not rocking._collapse(direction).unique:
             raise StructureError(rocking._several(direction))
-        mechanism = rocking._groups(direction)
         if mechanism.slides:
             where = in_short([self._joint(k) for k in mechanism.slides])
             raise StructureError(
@@ -791,7 +792,7 @@ class Assembly(LinkedBodies):
             try:
                 return here.admissible(forces[None])[0]
             except analysis.NoAnswer:
-                raise StructureError(f"the forces in its joints at {phi:.4g} rad could not be found") from None
+                raise StructureError(self._misfit()) from None
 
         def margin(phi: float) -> float:
             nonlocal known
@@ -811,6 +812,23 @@ class Assembly(LinkedBodies):
             return None
         state = held(first)
         return first, state.contact if state.contact is not None else 0, at(first)[2]
+
+    def _misfit(self) -> str:
+        """Return which joints do not fit, so that the bodies jam: their ends are next to each other, not one point."""
+        ends = [(end, contact) for contact in self._contacts for end in contact.ends]
+        z = np.array([end for end, _ in ends])
+        apart = np.abs(z[:, None] - z)
+        least = np.array([min(size_of(np.array(shape.corners)) for shape in self.blocks.values())])
+        misfit = (apart > SAME_PLACE * size_of(z)) & (apart <= MISFIT_SHARE * least)
+        if not misfit.any():
+            return "its joints jam as it moves, and no forces in them were found"
+        i, j = np.unravel_index(np.where(misfit, apart, 0.0).argmax(), apart.shape)
+        (at, one), (_, other) = ends[int(i)], ends[int(j)]
+        return (
+            f"joints do not fit, so that it jams: the ends of `{_name(one)}` and `{_name(other)}` at ({at.real:.6g}, "
+            f"{at.imag:.6g}) are {1000 * apart[i, j]:.3g} mm apart, and {np.count_nonzero(misfit) // 2 - 1} more such "
+            "pairs are. Draw corners that meet at one point; `rocking import` with a larger `close` joins them"
+        )
 
     @per_direction
     def _needed(self, direction: Direction) -> analysis.Friction:

@@ -71,7 +71,7 @@ class Block(SingleBody):
 
         See Sorrentino, Al Shawa and Decanini (2011).
         """
-        if self.crushing is not None or any(load.force is None for load in self.loads or ()):
+        if self.crushing is not None or any(not load.is_force for load in self.loads or ()):
             return None
         sine, cosine = sin(self.alpha(Direction.POSITIVE)), cos(self.alpha(Direction.POSITIVE))
         return (1 - 1.5 * sine**2) ** 2 * abs(1 - 1.5 * cosine**2)

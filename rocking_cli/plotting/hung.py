@@ -75,7 +75,7 @@ def symbols(picture: Picture, rotation: float, scale: float, enlargement: float 
         if load.force is None:
             weights.append(place + WEIGHT_OUTLINE * WEIGHT_HALF_WIDTH / scale)
         elif load.force:
-            forces.append((_tail(load.acting(first=first), place, scale), place))
+            forces.append((tail(load.acting(first=first), place, scale), place))
     return Symbols(lines, anchors, weights, forces)
 
 
@@ -117,7 +117,7 @@ def name_hung(picture: Picture, panel: Panel, labels: Labels) -> None:
             continue
         text, size = _fitted(load.name, f", {load.text}")
         if load.force:
-            out = _tail(load.force, place, panel.scale)
+            out = tail(load.force, place, panel.scale)
             labels.write(text, labels.around(out, out - place, 0.02, size), color=style.CURSOR, **look)
         else:
             middle = place + 0.5j * WEIGHT_HEIGHT / panel.scale
@@ -162,7 +162,7 @@ def margins(picture: Picture) -> tuple[float, float, float, float]:
     return left, right, below, above
 
 
-def _tail(force: complex, place: complex, scale: float) -> complex:
+def tail(force: complex, place: complex, scale: float) -> complex:
     """Return the tail of the arrow of a force, whose tip is at the point of action [m]."""
     return place - force / abs(force) * ARROW_LENGTH / scale
 

@@ -14,7 +14,7 @@ import rocking_cli as rk
 from mechanisms.assembly import from_the_left
 from rocking_cli.core import Direction
 from rocking_cli.core.released import released
-from rocking_cli.errors import InputError, MechanismError
+from rocking_cli.errors import InputError, MechanismError, StructureError
 from rocking_cli.studies.contact import Contacts
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
@@ -706,6 +706,23 @@ def test_blocks_that_slide_at_the_friction_given_are_told_so():
     tall = {"a": rectangle(0.0, 0.0, 1.0, 1.0), "b": rectangle(0.0, 1.0, 1.0, 2.0)}
     said = unmodelled(tall, "several mechanisms start at 0.3 g", friction=0.3)
     assert "This equals the friction given: the blocks slide" in said
+
+
+def test_joints_that_do_not_fit_are_named():
+    """A fan of leaning walls in two courses, drawn to some millimetres: each joint has corners of its own."""
+    random, foot, tops = np.random.default_rng(8), [0.2, 1.25, 2.3, 3.35, 4.4, 5.45], [0.0, 1.45, 2.9, 4.35, 5.8, 7.25]
+    rise = [2.7, 1.4, 2.0, 1.4, 2.7]
+    blocks = {}
+    for k, y in enumerate(rise):
+        left, right = (foot[j] + (tops[j] - foot[j]) * y / 4 for j in (k, k + 1))
+        low = [(foot[k], 0), (foot[k + 1], 0), (right, y), (left, y)]
+        for name, corners in ((f"l{k}", low), (f"u{k}", [(left, y), (right, y), (tops[k + 1], 4), (tops[k], 4)])):
+            off = random.uniform(-0.004, 0.004, (4, 2))
+            off[:2, 1] *= name[0] == "u"
+            blocks[name] = {"polygon": (np.array(corners) + off).tolist()}
+    fan = assembly(blocks)
+    with pytest.raises(StructureError, match=r"joints do not fit, .* the ends of `[lu]\d and [lu]\d` .* mm apart"):
+        fan.collapse(POSITIVE)
 
 
 def test_a_friction_that_there_is_not_is_no_number(tmp_path):

@@ -425,7 +425,7 @@ class TestFiles:
         found = rk.load_structure(tmp_path / "s.yaml")
         assert found.directions == [Direction.POSITIVE]
         assert found.uplift(Direction.POSITIVE) == pytest.approx(0.4, rel=1e-12)
-        answer = rk.respond(found, rk.GroundMotion("r", 0.01, 4.5 * np.sin(np.linspace(0, 6, 40))))
+        answer = rk.respond(found, rk.GroundMotion("r", 0.01, 4.5 * np.sin(np.linspace(0, 6, 40)), unit="m/s2"))
         assert 0 < answer["nonlinear"].peak_ratio < 1
 
 

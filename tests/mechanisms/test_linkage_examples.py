@@ -39,7 +39,7 @@ def test_a_linkage_of_the_gallery_is_equivalent_to_a_block_and_holds_the_contrac
 @pytest.mark.every(2)
 @pytest.mark.parametrize("name", MASONRY)
 def test_a_worked_example_rocks(name):
-    shaking = rk.GroundMotion("sine", 0.01, 8 * np.sin(2 * np.pi * np.arange(101) / 100))
+    shaking = rk.GroundMotion("sine", 0.01, 8 * np.sin(2 * np.pi * np.arange(101) / 100), unit="m/s2")
     assert follow(build_model(structure(f"masonry/{name}"), "nonlinear"), shaking).lifted
     assert (EXAMPLES.parent / "docs" / "masonry" / f"{name}.md").exists()
 

@@ -93,8 +93,10 @@ def test_drive_is_the_share_of_the_motion_that_moves_it():
     assert one.v_imp == pytest.approx(other.v_imp / share, rel=1e-14)
     assert (one.p, one.phi_cr, one.eta) == (other.p, other.phi_cr, other.eta)
     time = 0.01 * np.arange(300)
-    up = GroundMotion("up", 0.01, 2.0 * np.sin(9 * time))
-    motions = [GroundMotion("m", 0.01, each * 4.0 * np.sin(9 * time), vertical=up) for each in (1.0, share)]
+    up = GroundMotion("up", 0.01, 2.0 * np.sin(9 * time), unit="m/s2")
+    motions = [
+        GroundMotion("m", 0.01, each * 4.0 * np.sin(9 * time), vertical=up, unit="m/s2") for each in (1.0, share)
+    ]
     histories = [respond(each, motion) for each, motion in zip((driven, plain), motions, strict=True)]
     for model, history in histories[0].items():
         assert history.peak_ratio == pytest.approx(histories[1][model].peak_ratio, rel=1e-5)
@@ -107,7 +109,7 @@ def test_drive_is_the_share_of_the_motion_that_moves_it():
 
 def test_what_a_share_of_the_motion_leaves_open_is_refused_or_not_known():
     driven = numbers(drive=0.9, polygon=box(-0.3, 0.0, 0.6, 2.4))
-    motion = GroundMotion("m", 0.01, 4.0 * np.sin(0.04 * np.arange(300)))
+    motion = GroundMotion("m", 0.01, 4.0 * np.sin(0.04 * np.arange(300)), unit="m/s2")
     history = respond(driven, motion)["nonlinear"]
     assert history.check is None
     demand = Contacts(driven).check(history, motion)

@@ -112,6 +112,10 @@ class LineDrawing:
         Size of one unit on the paper [m], for a drawing to scale; None if it is not known.
     doubt : str
         Why the unit of the file is not believed; empty if it states none.
+    faults : sequence of str
+        What was mended, or is at fault, in a damaged file.
+    annotations : sequence of ndarray of complex
+        Lines of dimensions and leaders, which mean nothing, for the picture.
     """
 
     format: str
@@ -122,6 +126,8 @@ class LineDrawing:
     unit: str | None = None
     paper: float | None = None
     doubt: str = ""
+    faults: Sequence[str] = ()
+    annotations: Sequence[Points] = ()
 
 
 @dataclass(frozen=True, eq=False)

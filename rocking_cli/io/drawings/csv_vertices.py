@@ -13,8 +13,7 @@ import csv
 import io
 import re
 from collections.abc import Iterator, Sequence
-from itertools import chain, groupby
-from typing import NamedTuple
+from itertools import groupby
 
 import numpy as np
 
@@ -35,16 +34,6 @@ _COLUMNS = {each: each for each in ("x", "y", "outline", "layer", "bulge")} | {"
 _TWO_NUMBERS = re.compile(r"\s*[-+]?[\d.]+(?:,\d+)?(?:[eE][-+]?\d+)?[\s,;]+[-+]?[\d.]*\d", re.ASCII)
 
 
-class _Corner(NamedTuple):
-    """A row: its line, the name of its outline, or else how many blank lines are before it, and its values."""
-
-    line: int
-    outline: str | int
-    layer: str
-    at: complex
-    bulge: float
-
-
 def sniff(data: bytes, ending: str) -> bool:
     """Return whether a file is a CSV of vertices: by its ending, and a row of numbers near its start."""
     start = data[:10_000].replace(b"\0", b"").decode("latin-1").splitlines()[:SNIFFED_LINES]
@@ -60,111 +49,94 @@ def read(data: bytes, file: str) -> LineDrawing:
     except InputError as error:
         (problem,) = error.problems
         raise DrawingError("not_csv", problem.message, file, hint=problem.hint, line=problem.line) from None
-    table = _Table(text, file)
-    chains: list[DrawnLine] = []
-    labels: list[DrawnText] = []
-    done: set[str | int] = set()
-    for name, rows in groupby(table.corners(), lambda corner: corner.outline):
-        first, *more = rows
+    left, chains, labels = list[OmittedKind](), list[DrawnLine](), list[DrawnText]()
+    done = set[str]()
+    for name, rows in groupby(_corners(text, file, left), lambda corner: corner[0]):
+        _, lines, layers, points, bulges = (list(column) for column in zip(*rows, strict=True))
         if name in done:
-            raise table.fault(f"the outline `{cut(str(name))}` begins a second time", first.line)
+            raise _fault(f"the outline `{cut(name)}` begins a second time", file, lines[0])
         done.add(name)
         check_count(len(done), MAX_ELEMENTS, "outlines", file)
-        for each in more:
-            if each.layer != first.layer:
-                message = f"the outline is on two layers, `{cut(first.layer)}` and `{cut(each.layer)}`"
-                raise table.fault(message, each.line)
-        corners = [first, *more]
-        if more and first.at == more[-1].at:
-            del corners[-1]
-        if len(corners) < 2:
-            raise table.fault("the outline that starts here has one corner", first.line)
-        points, bulges = np.array([each.at for each in corners]), np.array([each.bulge for each in corners])
-        is_closed, handle = len(points) > 2 or bool(bulges.any()), name if isinstance(name, str) else ""
-        chains.append(DrawnLine(points, bulges, is_closed, first.layer, "outline", handle))
+        for line, layer in zip(lines, layers, strict=True):
+            if layer != layers[0]:
+                what = f"the outline is on two layers, `{cut(layers[0])}` and `{cut(layer)}`"
+                raise _fault(what, file, line)
+        count = len(points) - (len(points) > 1 and points[0] == points[-1])
+        if count < 2:
+            raise _fault("the outline that starts here has one corner", file, lines[0])
+        z, turns, handle = np.array(points[:count]), np.array(bulges[:count]), name.lstrip("\n")
+        chains.append(DrawnLine(z, turns, count > 2 or bool(turns.any()), layers[0], "outline", handle))
         if handle:
-            labels.append(DrawnText(handle, inside([points]), first.layer, "name"))
+            labels.append(DrawnText(handle, inside([z]), layers[0], "name"))
     if not chains:
         raise DrawingError("empty", "the file has no rows of numbers", file)
-    why = "it is not x, y, outline, layer or bulge"
-    left = [OmittedKind(f"column `{cut(name)}`", "", why, 1) for name in table.unknown]
     return LineDrawing(TITLE, chains, labels, (), left)
 
 
-class _Table:
-    """The cells of a file, and what its columns are."""
+def _corners(text: str, file: str, left: list[OmittedKind]) -> Iterator[tuple[str, int, str, complex, float]]:
+    """Yield the outline, line, layer, place and bulge of each row; an outline without a name is its blank lines.
 
-    def __init__(self, text: str, file: str) -> None:
-        lines = enumerate(io.StringIO(text, newline=None), start=1)
-        self.rows: Iterator[tuple[int, str]] = ((line, row) for line, row in lines if not row.lstrip().startswith("#"))
-        self.file = file
-        line, row = first = next(((line, row) for line, row in self.rows if row.strip()), (0, ""))
-        self.separator = _separator(row)
-        cells = self._cells(line, row)
-        self.unknown: list[str] = []
-        self.places, self.width = {"x": 0, "y": 1}, 2
-        if cells and self._number(cells[0]) is None:
-            self._head(cells, line)
-        else:
-            self.rows = chain([first], self.rows)
-
-    def _head(self, cells: Sequence[str], line: int) -> None:
-        """Take the headings."""
-        self.places, self.width = {}, len(cells)
-        for k, cell in enumerate(cells):
-            meaning = _COLUMNS.get(unit_in(cell, KINDS["length"])[0].lower())
-            if meaning is None:
-                self.unknown.append(cell)
-            elif self.places.setdefault(meaning, k) != k:
-                raise self.fault(f"two columns, `{cut(cell)}` is the second, mean the same: rename one", line)
-        if not {"x", "y"} <= self.places.keys():
-            raise self.fault(f"the headings have no x and y: `{cut(', '.join(cells))}`", line)
-
-    def corners(self) -> Iterator[_Corner]:
-        """Yield the corners of all outlines."""
-        count = blanks = 0
-        for line, row in self.rows:
-            cells = self._cells(line, row)
-            if not any(cells):
-                blanks += 1
-                continue
-            count += 1
-            check_count(count, MAX_SIDES, "sides", self.file)
-            cells += [""] * (self.width - len(cells))
-            if any(cells[self.width :]):
-                hint = "separate cells with semicolons if numbers have decimal commas; more columns need headings"
-                raise self.fault(f"the row has {len(cells)} cells instead of {self.width}", line, hint)
-            given = {column: cells[place] for column, place in self.places.items()}
-            x, y = (self._value(given[column], column, line) for column in "xy")
-            bulge = self._value(given["bulge"], "bulge", line) if given.get("bulge") else 0.0
-            yield _Corner(line, given.get("outline", blanks), given.get("layer", ""), complex(x, y), bulge)
-
-    def _cells(self, line: int, row: str) -> list[str]:
-        if self.separator is None:
-            return row.split()
-        if '"' not in row:
-            return [cell.strip() for cell in row.split(self.separator)]
+    Columns that mean nothing are added to `left`.
+    """
+    places, width, separator, blanks, count = dict[str, int](), 0, None, "", 0
+    for line, row in enumerate(io.StringIO(text, newline=None), start=1):
+        if row.lstrip().startswith("#"):
+            continue
+        if not width:
+            separator = _separator(row)
         try:
-            return [cell.strip() for cell in next(csv.reader([row], delimiter=self.separator, strict=True))]
+            cells = next(csv.reader([row], delimiter=separator, strict=True)) if separator else row.split()
         except csv.Error as error:
-            raise self.fault(f"the row is not valid CSV: {error}", line) from None
+            raise _fault(f"the row is not valid CSV: {error}", file, line) from None
+        cells = [cell.strip() for cell in cells]
+        if not any(cells):
+            blanks += "\n"
+            continue
+        if not width:
+            is_head = _number(cells[0], separator) is None
+            width = len(cells) if is_head else 2
+            places = _places(cells, file, line, left) if is_head else {"x": 0, "y": 1}
+            if is_head:
+                continue
+        count += 1
+        check_count(count, MAX_SIDES, "sides", file)
+        cells += [""] * (width - len(cells))
+        if any(cells[width:]):
+            hint = "separate cells with semicolons if numbers have decimal commas; more columns need headings"
+            raise _fault(f"the row has {len(cells)} cells instead of {width}", file, line, hint)
+        given = {column: cells[place] for column, place in places.items()}
+        numbers = {column: _number(given.get(column, ""), separator) for column in ("x", "y", "bulge")}
+        for column, number in numbers.items():
+            if number is None and (column != "bulge" or given.get(column)):
+                raise _fault(f"{column} is `{cut(given[column])}`, which is not a number", file, line)
+            if number is not None and not abs(number) < MAX_NUMBER:
+                raise DrawingError("number", f"{column} is beyond {MAX_NUMBER:g}", file, line=line)
+        x, y, bulge = (number or 0.0 for number in numbers.values())
+        yield given.get("outline", blanks), line, given.get("layer", ""), complex(x, y), bulge
 
-    def _number(self, cell: str) -> float | None:
-        """Return the number in a cell; None if it is not one."""
-        plain = cell if self.separator == "," or "." in cell else cell.replace(",", ".")
-        return float(plain) if NUMBER.fullmatch(plain) else None
 
-    def _value(self, cell: str, column: str, line: int) -> float:
-        number = self._number(cell)
-        if number is None:
-            raise self.fault(f"{column} is `{cut(cell)}`, which is not a number", line)
-        if not abs(number) < MAX_NUMBER:
-            raise DrawingError("number", f"{column} is beyond {MAX_NUMBER:g}", self.file, line=line)
-        return number
+def _places(cells: Sequence[str], file: str, line: int, left: list[OmittedKind]) -> dict[str, int]:
+    """Return the places of columns by their headings."""
+    places = dict[str, int]()
+    for k, cell in enumerate(cells):
+        meaning = _COLUMNS.get(unit_in(cell, KINDS["length"])[0].lower())
+        if meaning is None:
+            left.append(OmittedKind(f"column `{cut(cell)}`", "", "it is not x, y, outline, layer or bulge", 1))
+        elif places.setdefault(meaning, k) != k:
+            raise _fault(f"two columns, `{cut(cell)}` is the second, mean the same: rename one", file, line)
+    if not {"x", "y"} <= places.keys():
+        raise _fault(f"the headings have no x and y: `{cut(', '.join(cells))}`", file, line)
+    return places
 
-    def fault(self, message: str, line: int, hint: str | None = None) -> DrawingError:
-        """Return the error for a file that is not a table of vertices."""
-        return DrawingError("not_csv", message, self.file, hint=hint, line=line)
+
+def _number(cell: str, separator: str | None) -> float | None:
+    """Return the number in a cell; None if it is not one."""
+    plain = cell if separator == "," or "." in cell else cell.replace(",", ".")
+    return float(plain) if NUMBER.fullmatch(plain) else None
+
+
+def _fault(message: str, file: str, line: int, hint: str | None = None) -> DrawingError:
+    return DrawingError("not_csv", message, file, hint=hint, line=line)
 
 
 def _separator(row: str) -> str | None:

@@ -6,27 +6,24 @@ stay exact if the placing of the plane keeps circles; otherwise they become stra
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain, islice, pairwise, product
-from math import floor, pi
+from itertools import islice
+from math import pi
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from rocking_cli.arrays import Points, Reals
 from rocking_cli.io.drawings.arcs import STRAIGHT_BULGE, inner_points, level_count
-from rocking_cli.io.drawings.dxf_groups import DxfEntity, Groups, library
 
 FULL_TURN = 1e-6  # rad that a full circle may be short of
 SAME_SHARE = 1e-9  # share of its size within which points of a line coincide, and a placing keeps circles
 MEETING_SHARE = 1e-6  # share of its size within which the edges of a hatch meet
 FLATTENING_SHARE = 1e-6  # distance of a curve from its straight sides over its size
 MIN_SIDES_PER_SPAN, MAX_CURVE_CORNERS = 8, 50_000
-CLOSED, SPLINE_FIT, IS_3D, MESH = 1, 4, 8, 16 | 64  # flags of a POLYLINE
-CONTROL_POINT = 16  # flag of a VERTEX
-POLYLINE_LOOP, TEXT_BOX = 2, 8  # flags of a loop of a HATCH
+SPLINE_FIT, MESH, CONTROL_POINT = 4, 16 | 64, 16  # flags of a POLYLINE, and of its vertices
+TEXT_BOX = 8  # flag of a loop of a HATCH
 
 
 class Placing(NamedTuple):
@@ -108,52 +105,36 @@ def straightened(points: Points, bulges: Reals) -> Points:
     return np.concatenate(corners)
 
 
-def shapes_of(entity: DxfEntity) -> Sequence[DxfShape] | None:
-    """Return the lines of an entity; None if it is not of a kind that has any.
+def shapes_of(entity: Any) -> list[DxfShape] | None:
+    """Return the lines of an entity of ezdxf; None if it is not of a kind that has any.
 
-    Raises `ValueError` if its numbers do not describe what it is, `OverflowError` if they are too many, and
-    `InputError` if it is a curve and ezdxf is not installed.
+    Raises `OverflowError` if its numbers are too many, and many kinds of errors if they do not describe what it is.
     """
-    make = MAKERS.get(entity.kind)
-    if make is None or (make is _polyline and entity.whole(70) & MESH):
+    make = MAKERS.get(entity.dxftype())
+    if make is None or (make is _polyline and entity.dxf.flags & MESH):
         return None
     return list(make(entity))
 
 
-def _flat(points: Sequence[complex] | Points, heights: Sequence[float] = (), **given: Any) -> DxfShape:
-    """Return a line of straight sides."""
-    z = np.array(points, np.complex128)
-    return DxfShape(z, np.zeros(len(z)), np.array(heights) if len(heights) else np.zeros(len(z)), **given)
+def _flat(points: Any, placing: Placing | None = None, **given: Any) -> DxfShape:
+    """Return a line of straight sides through points in space."""
+    x, y, z = np.array([(*each, 0.0)[:3] for each in points]).T
+    return DxfShape(x + 1j * y, np.zeros(len(x)), z, placing=placing, **given)
 
 
-def _level(points: Points, bulges: Reals, entity: DxfEntity, height: float, **given: Any) -> DxfShape:
+def _level(points: Points, bulges: Reals, entity: Any, height: float, **given: Any) -> DxfShape:
     """Return a line in the plane of an entity's extrusion."""
     return DxfShape(points, bulges, np.full(len(points), height), placing=plane_of(entity), **given)
 
 
-def _normal(entity: DxfEntity) -> Reals:
-    """Return the extrusion of an entity, of length 1."""
-    normal = np.array([entity.number(210), entity.number(220), entity.number(230, 1.0)])
-    length = np.sqrt(normal @ normal)
-    return normal / length if length > 0 else np.array([0.0, 0.0, 1.0])
-
-
-def plane_of(entity: DxfEntity) -> Placing | None:
+def plane_of(entity: Any) -> Placing | None:
     """Return the placing of the plane of an entity's extrusion; None for the plane of the drawing."""
-    if not {210, 220, 230} & entity.first.keys():
-        return None
-    normal = _normal(entity)
-    if normal[2] == 1:
-        return None
-    is_steep = max(abs(normal[0]), abs(normal[1])) < 1 / 64  # the rule of the format for the axes
-    across = np.cross([0.0, 1.0, 0.0] if is_steep else [0.0, 0.0, 1.0], normal)
-    across /= np.sqrt(across @ across)
-    return Placing(np.array([across, np.cross(normal, across), normal]).T, np.zeros(3))
+    ocs = entity.ocs()
+    return Placing(np.array([ocs.ux, ocs.uy, ocs.uz]).T, np.zeros(3)) if ocs.transform else None
 
 
-def _line(entity: DxfEntity) -> Iterator[DxfShape]:
-    (x, y, z), (u, v, w) = entity.point(10), entity.point(11)
-    yield _flat([complex(x, y), complex(u, v)], [z, w])
+def _line(entity: Any) -> Iterator[DxfShape]:
+    yield _flat([entity.dxf.start, entity.dxf.end])
 
 
 def _arc(centre: complex, radius: float, start: float, turn: float) -> tuple[Points, Reals, bool]:
@@ -168,196 +149,140 @@ def _arc(centre: complex, radius: float, start: float, turn: float) -> tuple[Poi
     return points, bulges, full
 
 
-def _circle(entity: DxfEntity) -> Iterator[DxfShape]:
-    x, y, z = entity.point(10)
-    start, end = 0.0, 360.0
-    if entity.kind == "ARC":
-        start, end = entity.number(50), entity.number(51)
-    turn = np.radians((end - start) % 360)
-    points, bulges, full = _arc(complex(x, y), entity.number(40), float(np.radians(start)), turn)
+def _circle(entity: Any) -> Iterator[DxfShape]:
+    x, y, z = entity.dxf.center
+    is_arc = entity.dxftype() == "ARC"
+    start, end = (entity.dxf.start_angle, entity.dxf.end_angle) if is_arc else (0.0, 360.0)
+    points, bulges, full = _arc(complex(x, y), entity.dxf.radius, np.radians(start), np.radians((end - start) % 360))
     yield _level(points, bulges, entity, z, closed=full)
 
 
-def _ellipse(entity: DxfEntity) -> Iterator[DxfShape]:
-    major = np.array(entity.point(11))
-    minor = entity.number(40) * np.cross(_normal(entity), major)
-    start, end = entity.number(41), entity.number(42, 2 * pi)
-    placing = Placing(np.array([major, minor, _normal(entity)]).T, np.array(entity.point(10)))
-    points, bulges, full = _arc(0j, 1.0, start, (end - start) % (2 * pi))
+def _ellipse(entity: Any) -> Iterator[DxfShape]:
+    """Take an ellipse as a circle in a plane that is stretched, in which unequal axes make it straight sides."""
+    dxf = entity.dxf
+    placing = Placing(np.array([dxf.major_axis, entity.minor_axis, dxf.extrusion]).T, np.array(dxf.center))
+    points, bulges, full = _arc(0j, 1.0, dxf.start_param, (dxf.end_param - dxf.start_param) % (2 * pi))
     yield DxfShape(points, bulges, np.zeros(len(points)), full, placing)
 
 
-def _corners(groups: Groups) -> tuple[Points, Reals]:
-    """Return the corners and bulges that groups list."""
-    x, y, bulges = [], [], []
-    for code, value in groups:
-        if code == 10:
-            x.append(float(value))
-            bulges.append(0.0)
-        elif code == 20:
-            y.append(float(value))
-        elif code == 42 and bulges:
-            bulges[-1] = float(value)
-    if len(x) != len(y):
-        raise ValueError
-    return np.array(x) + 1j * np.array(y), np.array(bulges)
+def _bulged(corners: Any) -> tuple[Points, Reals]:
+    """Return corners and bulges from rows of x, y and bulge."""
+    x, y, bulges = np.array(corners, float).T
+    return x + 1j * y, bulges
 
 
-def _lwpolyline(entity: DxfEntity) -> Iterator[DxfShape]:
-    points, bulges = _corners(entity.groups)
-    if len(points):
-        yield _level(points, bulges, entity, entity.number(38), closed=bool(entity.whole(70) & CLOSED))
+def _lwpolyline(entity: Any) -> Iterator[DxfShape]:
+    if len(entity):
+        yield _level(*_bulged(entity.get_points("xyb")), entity, entity.dxf.elevation, closed=entity.closed)
 
 
-def _polyline(entity: DxfEntity) -> Iterator[DxfShape]:
-    flags = entity.whole(70)
-    corners = [each for each in entity.parts if not each.whole(70) & CONTROL_POINT]
+def _polyline(entity: Any) -> Iterator[DxfShape]:
+    corners = [each.dxf for each in entity.vertices if not each.dxf.flags & CONTROL_POINT]
     if not corners:
         return
-    closed, curved = bool(flags & CLOSED), bool(flags & SPLINE_FIT)
-    x, y, z = np.array([each.point(10) for each in corners]).T
-    if flags & IS_3D:
-        yield _flat(x + 1j * y, z, closed=closed, is_straightened=curved)
+    given = {"closed": entity.is_closed, "is_straightened": bool(entity.dxf.flags & SPLINE_FIT)}
+    if entity.is_3d_polyline:
+        yield _flat([each.location for each in corners], **given)
     else:
-        bulges = np.array([each.number(42) for each in corners])
-        yield _level(x + 1j * y, bulges, entity, entity.number(30), closed=closed, is_straightened=curved)
+        points, bulges = _bulged([(*each.location.vec2, each.get("bulge", 0.0)) for each in corners])
+        yield _level(points, bulges, entity, entity.dxf.elevation.z, **given)
 
 
-def _face(entity: DxfEntity) -> Iterator[DxfShape]:
+def _face(entity: Any) -> Iterator[DxfShape]:
     """Return the outline of a 3DFACE, or of a SOLID, whose last two corners are the other way round."""
-    codes = (10, 11, 12, 13) if entity.kind == "3DFACE" else (10, 11, 13, 12)
-    x, y, z = np.array([entity.point(code if code in entity.first else 12) for code in codes]).T
-    placing = None if entity.kind == "3DFACE" else plane_of(entity)
-    yield _flat(x + 1j * y, z, closed=True, placing=placing)
+    corners = [entity.dxf.get(f"vtx{k}", entity.dxf.vtx2) for k in range(4)]
+    if entity.dxftype() == "3DFACE":
+        yield _flat(corners, closed=True)
+    else:
+        yield _flat([corners[k] for k in (0, 1, 3, 2)], plane_of(entity), closed=True)
 
 
-def _spline(entity: DxfEntity) -> Iterator[DxfShape]:
-    x, y, z = _flattened(entity, 71, 41, 3)
-    yield _flat(x + 1j * y, z, is_straightened=True)
+def _spline(entity: Any) -> Iterator[DxfShape]:
+    given = entity.control_points if len(entity.control_points) else entity.fit_points
+    yield _flat(_flattened(entity.construction_tool, np.array(given)), is_straightened=True)
 
 
-def _flattened(entity: DxfEntity, degree: int, weight: int, dimensions: int) -> Reals:
-    """Return the corners of straight sides along a curve, shape (dimensions, n); two numbers are group codes."""
-    library()
-    from ezdxf.math import BSpline, fit_points_to_cad_cv
-
-    control, fitted = (np.array([entity.numbers(code + 10 * k) for k in range(dimensions)]).T for code in (10, 11))
-    given = control if len(control) else fitted
+def _flattened(curve: Callable[[], Any], given: Reals) -> Reals:
+    """Return the corners of straight sides along a curve of ezdxf, whose control or fit points are given."""
     if len(given) > MAX_CURVE_CORNERS // MIN_SIDES_PER_SPAN:
         raise OverflowError
     if not len(given) or not np.isfinite(given).all():
         raise ValueError
     size = float(np.ptp(given, axis=0).sum())
     if size == 0:
-        return given.T
-    try:
-        if len(control):
-            order, knots, weights = entity.whole(degree) + 1, entity.numbers(40), entity.numbers(weight)
-            curve = BSpline(control - given[0], order, knots or None, weights or None)
-        else:
-            curve = fit_points_to_cad_cv(fitted - given[0])
-        sides = curve.flattening(FLATTENING_SHARE * size, MIN_SIDES_PER_SPAN)
-        corners = np.array([point.xyz for point in islice(sides, MAX_CURVE_CORNERS)])
-    except Exception:  # ezdxf raises many kinds
-        raise ValueError from None
+        return given
+    sides = curve().flattening(FLATTENING_SHARE * size, MIN_SIDES_PER_SPAN)
+    corners = np.array([point.xyz for point in islice(sides, MAX_CURVE_CORNERS)])
     if len(corners) == MAX_CURVE_CORNERS:
         raise OverflowError
-    shifted: Reals = (corners[:, :dimensions] + given[0]).T
-    return shifted
+    return corners
 
 
-def _hatch(entity: DxfEntity) -> Iterator[DxfShape]:
-    codes = [code for code, _ in entity.groups]
-    begin = codes.index(91)
-    end = codes.index(75, begin) if 75 in codes[begin:] else len(codes)
-    for loop in _split(entity.groups[begin:end], 92):
-        flags = int(loop[0][1])
-        if flags & TEXT_BOX:  # around a text: not an opening
+def _hatch(entity: Any) -> Iterator[DxfShape]:
+    for path in entity.paths.paths:
+        if path.path_type_flags & TEXT_BOX:  # around a text: not an opening
             continue
-        if flags & POLYLINE_LOOP:
-            rings = [(*_corners(loop), False)]
+        if hasattr(path, "vertices"):
+            rings = [(*_bulged(path.vertices), True, False)] if len(path.vertices) else []
         else:
-            edges = [_edge(DxfEntity("EDGE", each)) for each in _split(loop, 72)]
-            straight = any(is_straightened for *_, is_straightened in edges)
-            rings = [(*each, straight) for each in _joined([each[:2] for each in edges])]
-        for points, bulges, is_straightened in rings:
-            yield _level(points, bulges, entity, entity.number(30), closed=True, is_straightened=is_straightened)
+            rings = list(_joined([_edge(each) for each in path.edges])) if path.edges else []
+        for points, bulges, closed, is_straightened in rings:
+            given = {"closed": closed, "is_straightened": is_straightened}
+            yield _level(points, bulges, entity, entity.dxf.elevation.z, **given)
 
 
-def _split(groups: Groups, code: int) -> Iterator[Groups]:
-    """Yield the pieces of groups that begin with a code."""
-    starts = [k for k, (each, _) in enumerate(groups) if each == code]
-    for start, end in pairwise([*starts, len(groups)]):
-        yield groups[start:end]
-
-
-def _edge(edge: DxfEntity) -> tuple[Points, Reals, bool]:
+def _edge(edge: Any) -> tuple[Points, Reals, bool]:
     """Return the corners and bulges of an edge of a hatch, and whether it is straightened."""
-    kind, sense = edge.whole(72), 1 if edge.whole(73) else -1
-    (x, y, _), (u, v, _), radius = edge.point(10), edge.point(11), edge.number(40)
-    if kind == 4:
-        x, y = _flattened(edge, 94, 42, 2)
+    if hasattr(edge, "control_points"):
+        given = edge.control_points or edge.fit_points
+        x, y, *_ = np.array([(*each, 0.0) for each in _flattened(edge.construction_tool, np.array(given))]).T
         return x + 1j * y, np.zeros(len(x)), True
-    if kind in (2, 3):
-        start, end = np.radians([edge.number(50), edge.number(51)])
-        if kind == 3:  # angles from the centre, as parameters
-            start, end = np.arctan2(np.sin([start, end]), radius * np.cos([start, end]))
-        points, bulges, full = _arc(0j, 1.0, sense * start, sense * ((end - start) % (2 * pi)))
+    if hasattr(edge, "center"):  # its angles run anticlockwise, in whatever sense the edge does
+        if hasattr(edge, "radius"):
+            axes, start, end = (edge.radius, 0.0, 1.0), np.radians(edge.start_angle), np.radians(edge.end_angle)
+        else:
+            axes, start, end = (*edge.major_axis, edge.ratio), edge.start_param, edge.end_param
+        points, bulges, full = _arc(0j, 1.0, start, (end - start) % (2 * pi))
         if full:
             points, bulges = np.append(points, points[0]), np.append(bulges, 0.0)
-        a, b = (radius, 0.0) if kind == 2 else (u, v)
-        ratio = 1.0 if kind == 2 else radius
-        placing = Placing(np.array([[a, -ratio * b, 0], [b, ratio * a, 0], [0, 0, 1]]), np.array([x, y, 0]))
+        a, b, ratio = axes
+        placing = Placing(np.array([[a, -ratio * b, 0], [b, ratio * a, 0], [0, 0, 1]]), np.array([*edge.center, 0.0]))
         shape = DxfShape(points, bulges, np.zeros(len(points)), placing=placing).placed(None)
         return shape.points, shape.bulges, shape.is_straightened
-    return np.array([complex(x, y), complex(u, v)]), np.zeros(2), False
+    return np.array([complex(*edge.start), complex(*edge.end)]), np.zeros(2), False
 
 
-def _joined(edges: Sequence[tuple[Points, Reals]]) -> Iterator[tuple[Points, Reals]]:
-    """Yield the loops of edges, which may stand in any order and direction; a gap becomes a straight side."""
-    every = np.concatenate([points for points, _ in edges])
+def _joined(edges: Sequence[tuple[Points, Reals, bool]]) -> Iterator[tuple[Points, Reals, bool, bool]]:
+    """Yield the lines that edges make in any order and sense, and whether each is closed and straightened."""
+    from ezdxf import edgeminer
+
+    every = np.concatenate([points for points, _, _ in edges])
     tolerance = MEETING_SHARE * float(np.ptp(every.real) + np.ptp(every.imag)) or 1.0
-    ends = [(complex(points[0]), complex(points[-1])) for points, _ in edges]
-
-    def cell(z: complex) -> tuple[int, int]:
-        return floor(z.real / (4 * tolerance)), floor(z.imag / (4 * tolerance))
-
-    there = defaultdict(list)
-    for k, pair in enumerate(ends):
-        for side, z in enumerate(pair):
-            there[cell(z)].append((k, side))
-    left = dict.fromkeys(range(len(edges)))
-
-    def following(k: int, z: complex) -> tuple[int, int]:
-        """Return the edge that goes on at a point, and its end there; if there is none, the next edge."""
-        beside = {cell(z + tolerance * complex(*corner)) for corner in product((-1, 1), repeat=2)}
-        for other, side in chain(((k + 1, 0), (k + 1, 1)), *(there[each] for each in beside)):
-            if other in left and abs(ends[other][side] - z) <= tolerance:
-                return other, side
-        other = next(iter(left))
-        return other, int(abs(ends[other][1] - z) < abs(ends[other][0] - z))
-
-    while left:
-        k, side = next(iter(left)), 0
-        begin, at, loop = ends[k][0], ends[k][0], []  # type: complex, complex, list[tuple[Points, Reals]]
-        while True:
-            del left[k]
-            points, bulges = edges[k]
-            if side:
+    made = []
+    for points, bulges, is_straightened in edges:
+        start, end = ((z.real, z.imag) for z in (points[0], points[-1]))
+        if abs(points[0] - points[-1]) <= tolerance:
+            yield points[:-1], bulges[:-1], True, is_straightened
+        else:
+            made.append(edgeminer.make_edge(start, end, payload=(points, bulges, is_straightened)))
+    if not made:
+        return
+    for chain in edgeminer.find_all_simple_chains(edgeminer.Deposit(made, gap_tol=tolerance)):
+        corners, turns = [], []
+        for edge in chain:
+            points, bulges, _ = edge.payload
+            if edge.is_reverse:
                 points, bulges = points[::-1], np.append(-bulges[-2::-1], 0.0)
-            if loop and abs(points[0] - at) <= tolerance:
-                loop[-1] = loop[-1][0][:-1], loop[-1][1][:-1]
-            loop.append((points, bulges))
-            at = complex(points[-1])
-            if not left or abs(at - begin) <= tolerance:
-                break
-            k, side = following(k, at)
-        if abs(at - begin) <= tolerance:
-            loop[-1] = loop[-1][0][:-1], loop[-1][1][:-1]
-        yield np.concatenate([points for points, _ in loop]), np.concatenate([bulges for _, bulges in loop])
+            corners.append(points[:-1])
+            turns.append(bulges[:-1])
+        closed = edgeminer.is_loop(chain, gap_tol=tolerance)
+        if not closed:
+            corners.append(points[-1:])
+            turns.append(np.zeros(1))
+        yield np.concatenate(corners), np.concatenate(turns), closed, any(each.payload[2] for each in chain)
 
 
-MAKERS: Mapping[str, Callable[[DxfEntity], Iterator[DxfShape]]] = {
+MAKERS: Mapping[str, Callable[[Any], Iterator[DxfShape]]] = {
     "3DFACE": _face,
     "ARC": _circle,
     "CIRCLE": _circle,
@@ -365,6 +290,7 @@ MAKERS: Mapping[str, Callable[[DxfEntity], Iterator[DxfShape]]] = {
     "HATCH": _hatch,
     "LINE": _line,
     "LWPOLYLINE": _lwpolyline,
+    "MPOLYGON": _hatch,
     "POLYLINE": _polyline,
     "SOLID": _face,
     "SPLINE": _spline,

@@ -11,7 +11,7 @@ from __future__ import annotations
 import json
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -30,7 +30,9 @@ MAX_DEPTH = 50  # of collections within collections
 _LARGEST_IN_DEGREES = 0.05
 _DISTANCE_IN_DEGREES = 100  # sizes of what is drawn
 _DEGREES = re.compile(r"(?i)crs84|epsg:+(?:[\d.]*:)?4326\b|wgs ?84'")
-_SHAPES = {"Point", "MultiPoint", "LineString", "MultiLineString", "Polygon", "MultiPolygon"}
+_LISTS = {"Point": 0, "MultiPoint": 1, "LineString": 1, "MultiLineString": 2, "Polygon": 2, "MultiPolygon": 3}
+"""Lists within lists that hold the positions of each shape."""
+_COLLECTIONS = {"FeatureCollection": "features", "GeometryCollection": "geometries"}
 
 
 def sniff(data: bytes, ending: str) -> bool:
@@ -42,171 +44,133 @@ def sniff(data: bytes, ending: str) -> bool:
 
 def read(data: bytes, file: str) -> LineDrawing:
     """Return the drawing in a file. Raises `DrawingError`."""
+    import shapely
+    from shapely.geometry import shape
+
     check_content(data, MAX_BYTES, file)
-    reader = _Features(file)
-    whole = reader.parsed(data)
-    reader.collect(whole)
-    reader.check_degrees(whole)
-    left = [OmittedKind(kind, layer, why, count) for (kind, layer, why), count in reader.left.items()]
-    return LineDrawing(TITLE, reader.chains, reader.labels, reader.spots, left)
-
-
-class _Features:
-    """Reading of one file."""
-
-    def __init__(self, file: str) -> None:
-        self.file = file
-        self.chains: list[DrawnLine] = []
-        self.labels: list[DrawnText] = []
-        self.spots: list[DrawnPoint] = []
-        self.left: Counter[tuple[str, str, str]] = Counter()
-        self.count = self.shapes = 0
-
-    def fault(self, message: str, line: int | None = None) -> DrawingError:
-        """Return the error for a file that is not GeoJSON."""
-        return DrawingError("not_geojson", message, self.file, line=line)
-
-    def parsed(self, data: bytes) -> Any:
-        """Return the content of the file."""
-
-        def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-            members = dict(pairs)
-            if len(members) < len(pairs):
-                key = Counter(key for key, _ in pairs).most_common(1)[0][0]
-                raise self.fault(f"an object has the key `{cut(key)}` twice")
-            return members
-
-        def refuse(word: str) -> float:
-            raise self.fault(f"{word} is not a number that a drawing may have")
-
+    whole, sides = _parsed(data, file), 0
+    chains, labels, spots = list[DrawnLine](), list[DrawnText](), list[DrawnPoint]()
+    left = Counter[tuple[str, str, str]]()
+    for kind, value, feature in _shapes(whole, {}, file):
+        layer, handle = _property(feature, "layer", "Layer"), _text(feature.get("id"))
+        if value is None:
+            left[kind, layer, "it has no shape"] += 1
+            continue
+        geometry = {"type": kind, "coordinates": _positions(kind, value, _LISTS[kind], file)}
         try:
-            text = data.decode(json.detect_encoding(data))
-            return json.loads(text, object_pairs_hook=once, parse_constant=refuse, parse_int=float)
-        except UnicodeDecodeError as error:
-            line = data[: error.start].count(b"\n") + 1
-            raise self.fault("not UTF-8 text", line) from None
-        except json.JSONDecodeError as error:
-            ends = not text[error.pos :].strip()
-            raise self.fault(
-                "the file is cut short" if ends else f"not valid JSON: {error.msg}", error.lineno
-            ) from None
-        except RecursionError:
-            raise self.fault("the values are nested too deep") from None
-
-    def collect(self, item: Any, feature: Mapping[str, Any] | None = None, depth: int = 0) -> None:
-        """Add a feature, a shape, or a collection of them."""
-        kind = str(item.get("type")) if isinstance(item, dict) else ""
-        if depth > MAX_DEPTH:
-            raise self.fault("collections are nested too deep")
-        if kind in ("FeatureCollection", "GeometryCollection"):
-            for each in self._list(item, "features" if kind == "FeatureCollection" else "geometries"):
-                self.collect(each, feature, depth + 1)
-        elif kind == "Feature":
-            if item.get("geometry") is None:
-                self.left["Feature", _layer(item), "it has no shape"] += 1
-            else:
-                self.collect(item["geometry"], item, depth + 1)
-        elif kind in _SHAPES:
-            self._shape(kind, self._list(item, "coordinates"), feature or {})
-        else:
-            what = f"the type `{cut(kind)}`" if kind else f"`{cut(str(item))}`"
-            raise self.fault(f"{what} is not a feature or a shape of GeoJSON")
-
-    def _list(self, item: Mapping[str, Any], key: str) -> list[Any]:
-        value = item.get(key)
-        if not isinstance(value, list):
-            raise self.fault(f"`{item['type']}` without a list of `{key}`")
-        return value
-
-    def _shape(self, kind: str, coordinates: list[Any], feature: Mapping[str, Any]) -> None:
-        """Add the lines or points of each part of a shape."""
-        layer = _layer(feature)
-        match kind:
-            case "Point":
-                parts = [[[coordinates]]] if coordinates else []
-            case "Polygon" | "MultiPolygon":
-                parts = [coordinates] if kind == "Polygon" else coordinates
-            case "MultiLineString":
-                parts = [[line] for line in coordinates]
-            case _:
-                parts = [[coordinates]]
-        parts = [part for part in parts if part not in ([], [[]])]
+            parts = [shape(geometry)] if "Point" in kind else shapely.get_parts(shape(geometry)).tolist()
+        except (shapely.GEOSException, ValueError):  # of a line with one corner, or a ring with two
+            parts = []
+        parts = [part for part in parts if not part.is_empty]
         if not parts:
-            self.left[kind, layer, "it is empty"] += 1
+            left[kind, layer, "it is empty, or a point"] += 1
         for part in parts:
-            if not isinstance(part, list):
-                raise self.fault(f"a `{kind}` has coordinates that are not nested as they must be")
-            self._part(kind, layer, part, feature)
-
-    def _part(self, kind: str, layer: str, part: list[Any], feature: Mapping[str, Any]) -> None:
-        """Add one polygon, line, or set of points."""
-        rings = [self._points(ring, kind) for ring in part]
-        handle, name = _text(feature.get("id")), _text(_properties(feature).get("name"))
-        outer = rings[0][0]
-        is_closed = "Polygon" in kind or ("Line" in kind and len(outer) > 3 and bool(outer[0] == outer[-1]))
-        if "Point" in kind:
-            self.spots += (DrawnPoint(complex(each), layer, kind, handle) for each in outer)
-            at = complex(outer[0])
-        else:
-            self.shapes += 1
-            shape = f"{kind} {self.shapes}" if len(rings) > 1 else ""
-            for points, heights in rings:
-                z = points[:-1] if is_closed and points[0] == points[-1] else points
-                if len(z) < 2:
-                    self.left[kind, layer, "it is a point"] += 1
-                    continue
-                straight = np.zeros(len(z))
-                self.chains.append(DrawnLine(z, straight, is_closed, layer, kind, handle, shape, heights=heights))
-            at = inside([points for points, _ in rings]) if is_closed else complex(outer[:2].mean())
-        if name:
-            self.labels.append(DrawnText(name, at, layer, "name", handle))
-
-    def _points(self, positions: Any, kind: str) -> tuple[Points, tuple[float, float]]:
-        """Return the points of a list of positions, and their least and greatest z."""
-        if not isinstance(positions, list) or not positions:
-            raise self.fault(f"a `{kind}` has coordinates that are not nested as they must be")
-        self.count += len(positions)
-        check_count(len(self.chains) + 1, MAX_ELEMENTS, "lines", self.file)
-        check_count(self.count, MAX_SIDES, "sides", self.file)
-        for each in positions:
-            if not (isinstance(each, list) and len(each) >= 2 and all(type(x) is float for x in each)):
-                raise self.fault(f"a `{kind}` has the position `{cut(str(each))}`: give two or three numbers")
-            if not all(abs(x) < MAX_NUMBER for x in each):
-                raise DrawingError("number", f"a `{kind}` has a coordinate beyond {MAX_NUMBER:g}", self.file)
-        z = [each[2] if len(each) > 2 else 0.0 for each in positions]
-        return np.array([complex(each[0], each[1]) for each in positions]), (min(z), max(z))
-
-    def check_degrees(self, whole: Mapping[str, Any]) -> None:
-        """Raise `DrawingError` if the numbers are degrees."""
-        points = [chain.points for chain in self.chains] + [np.array([spot.at]) for spot in self.spots]
-        if not points:
-            return
-        z = np.concatenate(points)
-        if np.abs(z.real).max() > 180 or np.abs(z.imag).max() > 90:
-            return
-        size = max(np.ptp(z.real), np.ptp(z.imag))
-        stated = _DEGREES.search(repr(whole.get("crs")))
-        looks_so = 0 < size < min(_LARGEST_IN_DEGREES, np.abs(z).max() / _DISTANCE_IN_DEGREES)
-        if stated or looks_so:
-            why, hint = f"the coordinates look like degrees: {z[0].real:.6g}, {z[0].imag:.6g}", ""
-            if stated:
-                why, hint = "the file says in `crs` that its coordinates are degrees", "; if not, take `crs` out"
-            hint = f"save it in a projection in metres, such as UTM{hint}"
-            raise DrawingError("degrees", why, self.file, [[float(z[0].real), float(z[0].imag)]], hint)
+            rings = shapely.get_rings(part) if "Polygon" in kind else [part]
+            corners = [shapely.get_coordinates(ring, include_z=True) for ring in rings]
+            outlines: list[Points] = [each[:, :2] @ np.array([1, 1j]) for each in corners]
+            first, of = outlines[0], f"{kind} {len(chains) + 1}" if len(rings) > 1 else ""
+            is_closed = bool("Polygon" in kind or ("Line" in kind and len(first) > 3 and first[0] == first[-1]))
+            if "Point" in kind:
+                spots += [DrawnPoint(complex(each), layer, kind, handle) for each in first]
+            else:
+                for points, (*_, z) in zip(outlines, (each.T for each in corners), strict=True):
+                    points, levels = points[: len(points) - is_closed], (float(z.min()), float(z.max()))
+                    straight = np.zeros(len(points))
+                    chains.append(DrawnLine(points, straight, is_closed, layer, kind, handle, of, heights=levels))
+            if name := _property(feature, "name"):
+                at = inside(outlines) if is_closed else complex(first[: 2 - ("Point" in kind)].mean())
+                labels.append(DrawnText(name, at, layer, "name", handle))
+            sides += sum(map(len, outlines))
+            check_count(sides, MAX_SIDES, "sides", file)
+            check_count(len(chains), MAX_ELEMENTS, "lines", file)
+    _check_degrees(np.concatenate([*(each.points for each in chains), [each.at for each in spots]]), whole, file)
+    omitted = [OmittedKind(kind, layer, why, count) for (kind, layer, why), count in left.items()]
+    return LineDrawing(TITLE, chains, labels, spots, omitted)
 
 
-def _properties(feature: Mapping[str, Any]) -> Mapping[str, Any]:
+def _parsed(data: bytes, file: str) -> Any:
+    """Return the content of a file."""
+
+    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        if len(members := dict(pairs)) < len(pairs):
+            key = Counter(key for key, _ in pairs).most_common(1)[0][0]
+            raise _fault(f"an object has the key `{cut(key)}` twice", file)
+        return members
+
+    def refuse(word: str) -> float:
+        raise _fault(f"{word} is not a number that a drawing may have", file)
+
+    try:
+        text = data.decode(json.detect_encoding(data))
+        return json.loads(text, object_pairs_hook=once, parse_constant=refuse, parse_int=float)
+    except UnicodeDecodeError as error:
+        raise _fault("not UTF-8 text", file, data[: error.start].count(b"\n") + 1) from None
+    except json.JSONDecodeError as error:
+        what = f"not valid JSON: {error.msg}" if text[error.pos :].strip() else "the file is cut short"
+        raise _fault(what, file, error.lineno) from None
+    except RecursionError:
+        raise _fault("the values are nested too deep", file) from None
+
+
+def _shapes(item: Any, feature: Mapping[str, Any], file: str, depth: int = 0) -> Iterator[tuple[str, Any, Any]]:
+    """Yield the type, the coordinates and the feature of each shape; coordinates are None in a feature without one."""
+    kind = str(item.get("type")) if isinstance(item, dict) else ""
+    if depth > MAX_DEPTH:
+        raise _fault("collections are nested too deep", file)
+    if kind == "Feature" and item.get("geometry") is None:
+        yield kind, None, item
+    elif kind == "Feature":
+        yield from _shapes(item["geometry"], item, file, depth + 1)
+    elif kind in _LISTS or kind in _COLLECTIONS:
+        key = _COLLECTIONS.get(kind, "coordinates")
+        if not isinstance(value := item.get(key), list):
+            raise _fault(f"`{kind}` without a list of `{key}`", file)
+        if kind in _LISTS:
+            yield kind, value, feature
+        for each in value if kind in _COLLECTIONS else ():
+            yield from _shapes(each, feature, file, depth + 1)
+    else:
+        what = f"the type `{cut(kind)}`" if kind else f"`{cut(str(item))}`"
+        raise _fault(f"{what} is not a feature or a shape of GeoJSON", file)
+
+
+def _positions(kind: str, value: Any, lists: int, file: str) -> list[Any]:
+    """Return coordinates as positions of three numbers within some lists. Raises `DrawingError`."""
+    if lists or value == []:
+        if not isinstance(value, list):
+            raise _fault(f"a `{kind}` has coordinates that are not nested as they must be", file)
+        return [_positions(kind, each, lists - 1, file) for each in value if lists < 2 or each != []]
+    if not (isinstance(value, list) and len(value) >= 2 and all(type(x) is float for x in value)):
+        raise _fault(f"a `{kind}` has the position `{cut(str(value))}`: give two or three numbers", file)
+    if not all(abs(x) < MAX_NUMBER for x in value):
+        raise DrawingError("number", f"a `{kind}` has a coordinate beyond {MAX_NUMBER:g}", file)
+    return [*value, 0.0][:3]
+
+
+def _check_degrees(z: Points, whole: Mapping[str, Any], file: str) -> None:
+    """Raise `DrawingError` if the numbers are degrees."""
+    if not z.size or np.abs(z.real).max() > 180 or np.abs(z.imag).max() > 90:
+        return
+    size = max(np.ptp(z.real), np.ptp(z.imag))
+    stated = _DEGREES.search(repr(whole.get("crs")))
+    if stated or 0 < size < min(_LARGEST_IN_DEGREES, np.abs(z).max() / _DISTANCE_IN_DEGREES):
+        why, hint = f"the coordinates look like degrees: {z[0].real:.6g}, {z[0].imag:.6g}", ""
+        if stated:
+            why, hint = "the file says in `crs` that its coordinates are degrees", "; if not, take `crs` out"
+        hint = f"save it in a projection in metres, such as UTM{hint}"
+        raise DrawingError("degrees", why, file, [[float(z[0].real), float(z[0].imag)]], hint)
+
+
+def _fault(message: str, file: str, line: int | None = None) -> DrawingError:
+    return DrawingError("not_geojson", message, file, line=line)
+
+
+def _property(feature: Mapping[str, Any], *names: str) -> str:
     properties = feature.get("properties")
-    return properties if isinstance(properties, dict) else {}
-
-
-def _layer(feature: Mapping[str, Any]) -> str:
-    properties = _properties(feature)
-    return _text(properties.get("layer", properties.get("Layer")))
+    values = [properties[name] for name in names if name in properties] if isinstance(properties, dict) else []
+    return _text(values[0]) if values else ""
 
 
 def _text(value: object) -> str:
     """Return a text or number as a text; empty for others."""
-    if isinstance(value, float):
-        return f"{value:.15g}"
-    return value if isinstance(value, str) else ""
+    return f"{value:.15g}" if isinstance(value, float) else value if isinstance(value, str) else ""

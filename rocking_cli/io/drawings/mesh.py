@@ -1,10 +1,12 @@
-"""Reader of meshes in OBJ, PLY and STL, as they are: nothing is merged, turned or repaired. trimesh reads PLY."""
+"""Reader of meshes in OBJ, PLY and STL by trimesh, as they are: nothing is merged, turned or repaired."""
 
 from __future__ import annotations
 
 import io
 import re
 import warnings
+from functools import partial
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -22,11 +24,9 @@ MAX_BYTES = 110_000_000
 MAX_TEXT_BYTES = 64_000_000  # numbers as text need more than ten times their size while they are read
 MAX_COUNT = 2_000_000
 FEWER = f"reduce the mesh to a million triangles, and save it as binary PLY or STL; at most {MAX_COUNT:,} are read"
-STL_HEAD = 84  # bytes
-STL_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")])
-_OBJ_POINT = re.compile(rb"^[ \t]*v[ \t]+([^#\n]*)", re.MULTILINE)
-_OBJ_FACE = re.compile(rb"^[ \t]*f[ \t]+([^#\n]*)", re.MULTILINE)
-_STL_POINT = re.compile(rb"^[ \t]*vertex[ \t]+(.*)", re.MULTILINE | re.IGNORECASE)
+STL_HEAD, STL_TRIANGLE = 84, 50  # bytes
+_OBJ_ROW = re.compile(rb"^[ \t]*([vf])[ \t]+(.*)", re.MULTILINE)
+_OBJ_ASIDE = re.compile(rb"\\\r?\n|/\S*|#.*")  # ends of lines that go on, seams of texture and normals, comments
 _PLY_COUNT = re.compile(rb"^element[ \t]+(\w+)[ \t]+(\d+)[ \t\r]*$", re.MULTILINE)
 _SNIFFED = 4096  # bytes
 
@@ -53,34 +53,41 @@ def _is_ascii_stl(data: bytes) -> bool:
 
 def _counted(data: bytes) -> int:
     """Return the size that a binary STL file announces [bytes]."""
-    return STL_HEAD + STL_TRIANGLE.itemsize * int.from_bytes(data[STL_HEAD - 4 : STL_HEAD], "little")
+    return STL_HEAD + STL_TRIANGLE * int.from_bytes(data[STL_HEAD - 4 : STL_HEAD], "little")
 
 
 def read(data: bytes, file: str, /) -> MeshSurface:
     """Read a mesh; its points are in single precision if the file has them so.
 
-    Raises `DrawingError` if it is damaged or too large, `InputError` if it is PLY and trimesh is not installed.
+    Raises `DrawingError` if it is damaged or too large, `InputError` if a package is missing.
     """
     known = _format_of(data, file[file.rfind(".") :].lower())
     as_text = known == "OBJ" or _is_ascii_stl(data) or b"\nformat ascii" in data[:_SNIFFED]
     if len(data) > (MAX_TEXT_BYTES if as_text else MAX_BYTES):
         raise DrawingError("too_large", f"has {len(data) / 1e6:.0f} MB", file, hint=FEWER)
+    if not (find_spec("trimesh") and find_spec("shapely")):
+        raise InputError(Problem("is a mesh, which needs more packages", file, hint="pip install 'rocking-cli[mesh]'"))
+    if known == "STL" and as_text and not re.search(rb"\n\s*endsolid[^\n]*\s*\Z", data, re.IGNORECASE):
+        raise DrawingError("cut", "is cut short: its last line does not end the solid", file, hint="save it again")
+    if known == "STL" and not as_text:
+        count, held = ((each - STL_HEAD) // STL_TRIANGLE for each in (_counted(data), max(len(data), STL_HEAD)))
+        _check_size(len(data) - _counted(data), f"{count:,} faces", f"{held:,}", file)
+    if known == "PLY" and as_text:
+        head, _, body = data.partition(b"end_header")
+        counts = {name: int(count) for name, count in _PLY_COUNT.findall(head)}
+        count, faces = (counts.get(each, 0) for each in (b"vertex", b"face"))
+        rows = len(body.strip().splitlines())
+        has = f"{min(rows, count):,} and {max(rows - count, 0):,}"
+        _check_size(rows - sum(counts.values()), f"{count:,} points and {faces:,} faces", has, file)
     try:
-        if known == "OBJ":
-            points, triangles = _obj(data, file)
-        elif known == "PLY":
-            points, triangles = _ply(data, as_text, file)
-        else:
-            points, triangles = _stl(data, as_text, file)
-    except InputError:
-        raise
-    except ImportError:
-        hint = "pip install 'rocking-cli[mesh]'"
-        raise InputError(Problem("is a mesh, which needs another package", file, hint=hint)) from None
+        points, triangles = _surface(known, data)
     except Exception as error:  # trimesh raises what numpy does
         advice = "if its faces differ in their number of corners, save it with triangles alone"
         what = f"cannot be read as {known}: it is damaged or cut short ({error})"
         raise DrawingError("damaged", what, file, hint=advice if known == "PLY" else None) from None
+    for of, count in (("triangles", len(triangles)), ("points", len(points) if known != "STL" else 0)):
+        if count > MAX_COUNT:
+            raise DrawingError("too_large", f"has {count:,} {of}", file, hint=FEWER)
     if not len(points):
         raise DrawingError("empty", "has no triangles" if known == "STL" else "has no points", file)
     if not np.isfinite(points).all():
@@ -90,96 +97,46 @@ def read(data: bytes, file: str, /) -> MeshSurface:
     return MeshSurface(known, points, triangles)
 
 
-def _bounded(count: int, of: str, file: str) -> None:
-    if count > MAX_COUNT:
-        raise DrawingError("too_large", f"has {count:,} {of}", file, hint=FEWER)
+def _check_size(more: int, announced: str, held: str, file: str) -> None:
+    """Raise `DrawingError` if a file has more or less data than it announces."""
+    if more < 0:
+        raise DrawingError("cut", f"is cut short: it announces {announced}, and has {held}", file, hint="save it again")
+    if more > 0:
+        what = f"has more data than the {announced} that it announces"
+        raise DrawingError("damaged", what, file, hint="save it again")
 
 
-def _cut(file: str, announced: str, held: str) -> DrawingError:
-    return DrawingError("cut", f"is cut short: it announces {announced}, and has {held}", file, hint="save it again")
+def _surface(known: str, data: bytes) -> tuple[NDArray[Any], Integers]:
+    """Return the points of a mesh, and its faces cut into triangles."""
+    from trimesh.exchange import obj, ply, stl
 
-
-def _more(file: str, announced: str) -> DrawingError:
-    return DrawingError("damaged", f"has more data than the {announced} that it announces", file, hint="save it again")
-
-
-def _obj(data: bytes, file: str) -> tuple[NDArray[Any], Integers]:
-    data = data.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ")  # lines that go on
-    rows = _OBJ_POINT.findall(data)
-    _bounded(len(rows), "points", file)
-    numbers, counts = _numbers(b"\n".join(rows), np.float64)
-    points = numbers[(np.cumsum(counts) - counts)[:, None] + np.arange(3)]
-    rows = _OBJ_FACE.findall(data)
-    _bounded(len(rows), "faces", file)
-    corners, counts = _numbers(re.sub(rb"/\S*", b"", b"\n".join(rows)), np.int64)
-    if (corners < 0).any():  # these count back from the points before the face
-        at, before = ([each.start() for each in kind.finditer(data)] for kind in (_OBJ_FACE, _OBJ_POINT))
-        corners[corners < 0] += (np.repeat(np.searchsorted(before, at), counts) + 1)[corners < 0]
-    return points, _triangles(corners - 1, counts, len(points), file)
-
-
-def _stl(data: bytes, as_text: bool, file: str) -> tuple[NDArray[Any], Integers]:
-    if as_text:
-        if not re.match(rb"\s*endsolid", data.rstrip().rpartition(b"\n")[2], re.IGNORECASE):
-            raise DrawingError("cut", "is cut short: its last line does not end the solid", file, hint="save it again")
-        rows = _STL_POINT.findall(data)
-        count, left = divmod(len(rows), 3)
-        _bounded(count, "triangles", file)
-        numbers, counts = _numbers(b"\n".join(rows), np.float64)
-        if left or (counts != 3).any():
-            raise ValueError("not every triangle has three corners of three coordinates")
-        points: NDArray[Any] = numbers.reshape(-1, 3)
-    else:
-        count = (_counted(data) - STL_HEAD) // STL_TRIANGLE.itemsize
-        if len(data) < _counted(data):
-            held = max(len(data) - STL_HEAD, 0) // STL_TRIANGLE.itemsize
-            raise _cut(file, f"{count:,} faces", f"{held:,}")
-        if len(data) > _counted(data):
-            raise _more(file, f"{count:,} faces")
-        points = np.frombuffer(data, STL_TRIANGLE, count, STL_HEAD)["corners"].reshape(-1, 3).astype(np.float32)
-        _bounded(count, "triangles", file)
-    return points, np.arange(3 * count).reshape(-1, 3)
-
-
-def _ply(data: bytes, as_text: bool, file: str) -> tuple[NDArray[Any], Integers]:
-    head, _, body = data.partition(b"end_header")
-    counts = {name.decode(): int(count) for name, count in _PLY_COUNT.findall(head)}
-    count, faces_count = (counts.get(each, 0) for each in ("vertex", "face"))
-    announced = f"{count:,} points and {faces_count:,} faces"
-    _bounded(count, "points", file)
-    _bounded(faces_count, "faces", file)
-    if as_text and body.strip() and body.strip().count(b"\n") >= sum(counts.values()):
-        raise _more(file, announced)
-    from trimesh.exchange import ply
-
-    loaded = ply.load_ply(io.BytesIO(data))
-    points = np.asarray(loaded.get("vertices", np.zeros((0, 3))))
-    faces = np.asarray(loaded.get("faces", np.zeros((0, 3))), np.int64)
-    if len(points) < count or len(faces) < faces_count:
-        raise _cut(file, announced, f"{len(points):,} and {len(faces):,}")
-    return points, _triangles(faces.ravel(), np.full(len(faces), faces.shape[1]), len(points), file)
-
-
-def _numbers(text: bytes, kind: type) -> tuple[NDArray[Any], Integers]:
-    """Return the numbers of lines that have three or more each, all in a row, and how many each line has."""
-    if not text:
-        return np.zeros(0, kind), np.zeros(0, np.int64)
-    code = np.frombuffer(b"\n" + text + b"\n", np.uint8)
-    blank = code <= ord(" ")
-    starts = np.flatnonzero(blank[:-1] & ~blank[1:])
-    counts = np.diff(np.searchsorted(starts, np.flatnonzero(code == ord("\n"))))
-    if counts.min() < 3:
-        raise ValueError("a line has fewer than three numbers")
+    load: Any = {"OBJ": partial(obj.load_obj, maintain_order=True), "PLY": ply.load_ply, "STL": stl.load_stl}[known]
     with warnings.catch_warnings():
-        warnings.simplefilter("error", DeprecationWarning)  # older versions of numpy warn of what newer ones refuse
-        return np.fromstring(text, kind, sep=" "), counts
+        warnings.simplefilter("error", DeprecationWarning)  # older versions of numpy warn of what is no number
+        loaded = load(io.BytesIO(_plain(data) if known == "OBJ" else data))
+    points, triangles = np.zeros((0, 3), np.float32), np.zeros((0, 3), np.int64)
+    for each in loaded.get("geometry", {"": loaded}).values():  # the solids of a file
+        faces = np.asarray(triangles[:0] if each.get("faces") is None else each["faces"], np.int64) + len(points)
+        fans = [faces[:, [0, k, k + 1]] for k in range(1, faces.shape[1] - 1)]
+        points, triangles = np.concatenate([points, each["vertices"]]), np.concatenate([triangles, *fans])
+    if triangles.size and not 0 <= triangles.min() <= triangles.max() < len(points):
+        raise ValueError(f"a face names a point that does not exist, of {len(points):,}")
+    return points, triangles
 
 
-def _triangles(corners: Integers, counts: Integers, points: int, file: str) -> Integers:
-    """Return the triangles of faces whose corners are all in a row; faces of more corners are cut into triangles."""
-    _bounded(len(corners) - 2 * len(counts), "triangles", file)
-    if corners.size and (corners.min() < 0 or corners.max() >= points):
-        raise ValueError(f"a face names a point that does not exist, of {points:,}")
-    face = np.repeat(np.arange(len(counts)), counts - 2)
-    first, second = (np.cumsum(counts) - counts)[face], np.arange(len(face)) + 2 * face + 1
-    return np.stack([corners[first], corners[second], corners[second + 1]], axis=1)
+def _plain(data: bytes) -> bytes:
+    """Return an OBJ file with points and faces alone, whose corners all count from its first point.
+
+    trimesh counts those that are negative back from the last point, not from the face, and takes no notice of others
+    that name no point.
+    """
+    rows, points = list[bytes](), 0
+    for kind, row in _OBJ_ROW.findall(_OBJ_ASIDE.sub(b" ", data)):
+        points += kind == b"v"
+        if kind == b"f":
+            corners = [k + (points + 1) * (k < 0) for k in map(int, row.split())]
+            if len(corners) < 3 or min(corners) < 1:
+                raise ValueError("a face has fewer than three corners, or a point that does not exist")
+            row = b" ".join(b"%d" % k for k in corners)
+        rows.append(kind + b" " + row)
+    return b"\n".join(rows)

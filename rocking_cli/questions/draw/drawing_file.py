@@ -17,7 +17,6 @@ from rocking_cli.core.hung.ties import Tie
 from rocking_cli.core.kinematics import distance
 from rocking_cli.errors import RockingError
 from rocking_cli.io.drawings import dxf
-from rocking_cli.io.drawings.dxf_groups import library
 from rocking_cli.io.field_problems import unit_at
 from rocking_cli.questions.import_drawing.attached import LOAD_FIELDS, TIE_FIELDS
 from rocking_cli.questions.import_drawing.rings import ArcRing, PlaneMoments
@@ -35,10 +34,10 @@ READ_AS = "the drawing"  # in messages of its import
 TEXT_SHARE, ARROW_SHARE, ANCHOR_SHARE = 0.02, 0.15, 0.02  # sizes of texts, arrows and anchorages over the size
 SAME_SHARE = 1e-6  # relative difference of equal numbers; that of equal points, over the size
 UNSAID = ("friction", "friction_of", "restitution", "one_sided", "rebound", "crushing", "interlock", "corner_radius",
-          "gap", "gravity", "strength", "uncertainty")  # fmt: skip
+          "gap", "gravity", "strength", "uncertainty", "unusual")  # fmt: skip
 """Fields of structures that a drawing does not have."""
-DRAWN_FIELDS = {*LOAD_FIELDS, *TIE_FIELDS, "yield_stress", "name", "mass", "mass_per_metre", "force", "at", "start",
-                "end", "path", "each"}  # fmt: skip
+DRAWN_FIELDS = {*LOAD_FIELDS, *TIE_FIELDS, "yield_stress", "name", "mass", "mass_per_metre", "mass_per_area", "span",
+                "force", "force_per_metre", "at", "start", "end", "path", "each"}  # fmt: skip
 """Fields of loads and ties that it has."""
 
 
@@ -82,7 +81,7 @@ def drawn_file(drawing: Picture, ratio: float | None) -> tuple[bytes, str, str]:
         If ezdxf is not installed.
     """
     mechanism, weighed = drawing.mechanism, {body.name: body for body in drawing.mechanism.weighed()}
-    document = library().new("R2000", units=METRES)
+    document = dxf.library().new("R2000", units=METRES)
     drawn = _Drawn(document, abs(drawing.reach[1] - drawing.reach[0]))
     searched = any(mechanism.collapse(side) for side in drawing.directions) or bool(drawing.sketch.lines)
     given = (

@@ -125,7 +125,7 @@ def attached(drawing: LineDrawing, of: Sorted, places: BodyFinder) -> DrawnAttac
             made.notes.append(ImportNote("left out", 1, words, [at]))
     counts = {"hinge": len(made.hinges), "support": len(made.supports), "load": len(made.loads), "tie": len(made.ties)}
     if named := [many(count, name) for name, count in counts.items() if count]:
-        made.notes.append(ImportNote("attached", sum(counts.values()), f"it has {', '.join(named)}"))
+        made.notes.append(ImportNote("attached", sum(counts.values()), f"drawn: {', '.join(named)}"))
     return made
 
 

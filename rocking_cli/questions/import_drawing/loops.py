@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -17,7 +18,6 @@ from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote,
 from rocking_cli.questions.import_drawing.rings import (
     CHORD,
     ArcRing,
-    RingsInRow,
     anticlockwise,
     chord_count,
     following,
@@ -34,6 +34,7 @@ MOST_NEIGHBOURS = 50  # ends within the closing distance of an end, on average, 
 TANGLE_SAMPLE, MOST_ACROSS = 200, 200_000  # lines of a sample, and pairs of lines that may cross
 MOST_COMPARED = 4000  # ends that are compared with one another for a message
 MOST_PLACES = 100  # places of a message
+OVERSHOOT, OVERSHOOT_SHARE = 0.1, 0.1  # length of an end beyond a corner [m], and over the length of the outline
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,8 +63,11 @@ class Mended:
     joined: list[complex] = field(default_factory=list)
     widest: float = 0.0
     split: list[complex] = field(default_factory=list)
+    crumbs: list[complex] = field(default_factory=list)
+    trimmed: list[complex] = field(default_factory=list)
+    longest: float = 0.0
     faces: int = 0
-    arcs_in_faces: int = 0
+    arcs_cut: int = 0
 
     def notes(self, frame: DrawingFrame) -> list[ImportNote]:
         """Return a note for each kind."""
@@ -81,9 +85,16 @@ class Mended:
         if self.split:
             words = f"{many(len(self.split), 'line')} split where another line ends on them"
             notes.append(ImportNote("split", len(self.split), words, places(self.split)))
+        if self.crumbs:
+            words = f"{many(len(self.crumbs), 'line')} left out, shorter than `close` or drawn there and back"
+            notes.append(ImportNote("crumbs", len(self.crumbs), words, places(self.crumbs)))
+        if self.trimmed:
+            words = f"{many(len(self.trimmed), 'end')} of lines beyond a corner left out, up to "
+            words += length_in_words(self.longest)
+            notes.append(ImportNote("trimmed", len(self.trimmed), words, places(self.trimmed)))
         if self.faces:
             words = f"{many(self.faces, 'outline')} found as faces between lines that cross or branch"
-            words += f"; their {many(self.arcs_in_faces, 'arc')} became chords" if self.arcs_in_faces else ""
+            words += f"; their {many(self.arcs_cut, 'arc')} became chords" if self.arcs_cut else ""
             notes.append(ImportNote("faces", self.faces, words))
         return notes
 
@@ -169,6 +180,9 @@ def loops(lines: Sequence[Placed], close: float, frame: DrawingFrame, file: str)
         Of the class "unclosed", if a line closes nothing.
     """
     mended = Mended()
+    crumbs = [line for line in lines if _is_crumb(line, close)]
+    mended.crumbs = [complex(line.z[0]) for line in crumbs]
+    lines = [line for line in lines if line not in crumbs]
     closed = [line for line in lines if line.closed]
     open_ = [line for line in lines if not line.closed]
     turned = anticlockwise([ArcRing(line.z, line.bulges) for line in closed])
@@ -178,6 +192,12 @@ def loops(lines: Sequence[Placed], close: float, frame: DrawingFrame, file: str)
     rings = tidied([loop.ring for loop in made], close)
     made = [Loop(ring, loop.sources) for ring, loop in zip(rings, made, strict=True)]
     return _once(made, close, mended), mended
+
+
+def _is_crumb(line: Placed, close: float) -> bool:
+    """Return whether a line is no longer than the closing distance, or goes straight there and back."""
+    there_and_back = line.closed and len(line.z) < 3 and not line.bulges.any()
+    return there_and_back or (float(np.ptp(line.z.real) + np.ptp(line.z.imag)) <= close and not line.bulges.any())
 
 
 def _with_open(
@@ -293,12 +313,9 @@ def _followed(
     part = part_of[start]
     crossed = np.zeros(parts, bool)
     crossed[part[_crossing(edges, start, end, close)]] = True
-    made, loose = _traced(edges, start, end, sources, ~crossed[part], mended)
-    if crossed.any():
-        more, open_parts = _faces(edges, part, crossed, sources, close, mended)
-        made, loose = made + more, loose | open_parts
+    made, loose = _faces(edges, crossed[part], sources, close, mended)
     is_open = np.zeros(parts, bool)
-    is_open[part[list(loose)]] = True
+    is_open[part[loose]] = True
     return [loop for loop, k in made if not is_open[part[k]]], edges.chosen(is_open[part])
 
 
@@ -415,113 +432,64 @@ def _crossing(edges: DrawnEdges, start: Integers, end: Integers, close: float) -
     return np.stack([one[cross], other[cross]])
 
 
-def _traced(
-    edges: DrawnEdges,
-    start: Integers,
-    end: Integers,
-    sources: Sequence[DrawnLine],
-    which: NDArray[np.bool_],
-    mended: Mended,
-) -> tuple[list[tuple[Loop, int]], set[int]]:
-    """Follow the faces between edges that meet only at their ends; arcs stay exact.
-
-    Returns the loops, each with the number of an edge, and edges with the same face on both sides, which close nothing.
-    """
-    chosen, n = np.flatnonzero(which), len(edges)
-    if not len(chosen):
-        return [], set()
-    # A half edge k runs from start to end, k + n back. The next one of a face is the first to the right at its end.
-    tail, ways = np.concatenate([start[chosen], end[chosen]]), np.concatenate([chosen, chosen + n])
-    order = np.lexsort((np.angle(_away(edges, start, end)[ways]), tail))
-    tail, ways = tail[order], ways[order]
-    firsts = np.flatnonzero(np.append(True, tail[1:] != tail[:-1]))
-    to_the_right = np.arange(-1, len(ways) - 1)
-    to_the_right[firsts] = np.append(firsts[1:], len(ways)) - 1
-    following_way = np.empty(2 * n, np.intp)
-    following_way[(ways + n) % (2 * n)] = ways[to_the_right]
-    face_of, around, faces = _cycles(following_way.tolist(), ways.tolist())
-    k, forward = around % n, around < n
-    z = np.where(forward, edges.a[k], edges.b[k])
-    bulges = np.where(forward, edges.bulge[k], -edges.bulge[k])
-    made: list[tuple[Loop, int]] = []
-    is_branch = (np.bincount(np.append(start, end)) > 2)[start[k]]
-    rings = RingsInRow(z, bulges, np.array(faces[:-1])).rings()
-    for ring, (first, last) in zip(rings, pairwise(faces), strict=True):
-        if ring.moments.area > 0:
-            of = dict.fromkeys(edges.of[k[first:last]].tolist())
-            made.append((Loop(ring, [sources[j] for j in of]), int(k[first])))
-            mended.faces += bool(is_branch[first:last].any())
-    loose = {k for k in chosen.tolist() if face_of[k] == face_of[k + n]}
-    return made, loose
-
-
-def _cycles(following_way: Sequence[int], ways: Sequence[int]) -> tuple[Sequence[int], Integers, Sequence[int]]:
-    """Return the cycle of each way, the ways cycle by cycle, and where in them each cycle begins, and the last ends."""
-    cycle_of, around, begins = [-1] * len(following_way), [], [0]
-    for first in ways:
-        way = first
-        while cycle_of[way] < 0:
-            cycle_of[way] = first
-            around.append(way)
-            way = following_way[way]
-        if len(around) > begins[-1]:
-            begins.append(len(around))
-    return cycle_of, np.array(around, np.intp), begins
-
-
-def _reach(edges: DrawnEdges, start: Integers, end: Integers) -> Reals:
-    """Return the distance from the nodes of each edge at which directions are compared, less than any edge there."""
-    length = np.abs(edges.b - edges.a)
-    shortest = np.full(int(max(start.max(), end.max())) + 1, np.inf)
-    for nodes in (start, end):
-        np.minimum.at(shortest, nodes, length)
-    return np.asarray(np.minimum(shortest[start], shortest[end]) / 100)
-
-
-def _away(edges: DrawnEdges, start: Integers, end: Integers) -> Points:
-    """Return the direction of each half edge from its node: that of the point of its arc at a distance."""
-    chord = np.concatenate([edges.b - edges.a, edges.a - edges.b])
-    turn = 4 * np.arctan(np.concatenate([edges.bulge, -edges.bulge]))
-    diameter = np.abs(chord) / np.sin(np.where(turn == 0, 1.0, np.abs(turn) / 2))
-    reach = np.tile(_reach(edges, start, end), 2)
-    to_chord = np.sign(turn) * 2 * np.arcsin(np.minimum(reach / diameter, 1.0))  # turn of the arc up to the distance
-    return np.asarray(chord * np.exp(-0.5j * (turn - to_chord)))
-
-
 def _faces(
-    edges: DrawnEdges,
-    part: Integers,
-    crossed: NDArray[np.bool_],
-    sources: Sequence[DrawnLine],
-    close: float,
-    mended: Mended,
-) -> tuple[list[tuple[Loop, int]], set[int]]:
-    """Return the faces between lines that cross, as `_traced` does; their arcs become chords."""
+    edges: DrawnEdges, crossed: NDArray[np.bool_], sources: Sequence[DrawnLine], close: float, mended: Mended
+) -> tuple[list[tuple[Loop, int]], Integers]:
+    """Return the faces between edges, each with the number of an edge, and the edges that close nothing.
+
+    Edges that cross others are cut there. An arc that is not cut stays exact; the pieces of one that is are chords.
+    """
     import shapely
 
-    chosen = np.flatnonzero(crossed[part])
-    lines = edges.chosen(chosen).curves(close)
-    faces, cuts, dangles, _ = shapely.polygonize_full([shapely.node(shapely.multilinestrings(lines))])
-    loose = np.concatenate([shapely.get_parts(dangles), shapely.get_parts(cuts)])
+    lines = edges.curves(close)
+    cut = shapely.get_parts(shapely.node(shapely.multilinestrings(lines[crossed])))
+    faces, bridges, dangles, _ = shapely.polygonize_full([*lines[~crossed], *cut])
+    faces = shapely.get_parts(faces)
+    faces = faces[shapely.area(faces) > close**2]
+    loose = np.concatenate([_loose(shapely.get_parts(dangles), faces, mended), shapely.get_parts(bridges)])
     tree = shapely.STRtree(lines)
-    _, at_loose = tree.query(loose[shapely.length(loose) > close], predicate="dwithin", distance=EXACT * close)
-    open_parts = set(chosen[at_loose].tolist())
-    middles = shapely.STRtree(shapely.line_interpolate_point(lines, 0.5, normalized=True))
-    parts = shapely.get_parts(faces)
-    parts = parts[shapely.area(parts) > close**2]
-    face_of, on = middles.query(parts, predicate="dwithin", distance=close)
-    starts = np.searchsorted(face_of, np.arange(len(parts) + 1))
-    made = []
-    corners = [shapely.get_coordinates(each)[:-1] @ [1, 1j] for each in shapely.get_exterior_ring(parts)]
-    rings = anticlockwise([ArcRing(z, np.zeros(len(z))) for z in corners])
-    for k, (face, ring) in enumerate(zip(parts, rings, strict=True)):
-        sides = chosen[on[starts[k] : starts[k + 1]]]
-        sides = sides if len(sides) else chosen[tree.query_nearest(face, all_matches=False)]
-        of = dict.fromkeys(edges.of[sides].tolist())
-        made.append((Loop(ring, [sources[each] for each in of]), int(sides[0])))
-    mended.faces += len(made)
-    mended.arcs_in_faces += int(np.count_nonzero(edges.bulge[chosen]))
-    return made, open_parts
+    _, at_loose = tree.query(loose, predicate="dwithin", distance=EXACT * close)
+    ways, degree = dict[tuple[Any, Any], tuple[int, int, float, Any]](), Counter[Any]()
+    for k, line in enumerate(lines):
+        corners = [*map(tuple, shapely.get_coordinates(line).tolist())]
+        for way, bulge in ((corners, edges.bulge[k]), (corners[::-1], -edges.bulge[k])):
+            ways[way[0], way[1]] = k, len(way) - 1, float(bulge), way[-1]
+            degree[way[0]] += 1
+    made, whole = [], set[int]()
+    for face in faces:
+        corners = [*map(tuple, shapely.get_coordinates(face.exterior)[:-1].tolist())]
+        first = next((k for k, each in enumerate(corners) if degree[each]), 0)
+        corners = [*corners[first:], *corners[:first], corners[first]]
+        z, bulges, of, at = list[complex](), list[float](), list[int](), 0
+        while at < len(corners) - 1:
+            k, step, bulge, end = ways.get((corners[at], corners[at + 1]), (-1, 1, 0.0, None))
+            if at + step >= len(corners) or corners[at + step] != end:  # a piece of an edge that is cut
+                k, step, bulge = int(tree.nearest(shapely.LineString(corners[at : at + 2]).centroid)), 1, 0.0
+            else:
+                whole.add(k)
+            z.append(complex(*corners[at]))
+            bulges.append(bulge)
+            of.append(k)
+            at += step
+        ring = ArcRing.of(np.array(z), np.array(bulges))
+        made.append((Loop(ring, [sources[j] for j in dict.fromkeys(edges.of[of].tolist())]), of[0]))
+        mended.faces += bool(crossed[of].any()) or any(degree[each.real, each.imag] > 2 for each in z)
+    mended.arcs_cut += len({*np.flatnonzero(edges.bulge * crossed).tolist()} - whole)
+    return made, at_loose
+
+
+def _loose(dangles: Any, faces: Any, mended: Mended) -> Any:
+    """Return lines that end freely, without short ones that go on beyond a corner of a face."""
+    import shapely
+
+    length = shapely.length(dangles)
+    line, face = shapely.STRtree(faces).query(dangles, predicate="intersects")
+    short = length[line] <= np.minimum(OVERSHOOT, OVERSHOOT_SHARE * shapely.length(faces[face]))
+    beyond = np.unique(line[short])
+    if len(beyond):
+        mended.longest = max(mended.longest, float(length[beyond].max()))
+        mended.trimmed += (shapely.get_coordinates(shapely.centroid(dangles[beyond])) @ [1, 1j]).tolist()
+    return np.delete(dangles, beyond)
 
 
 def _unclosed(edges: DrawnEdges, close: float, frame: DrawingFrame, file: str) -> DrawingError:

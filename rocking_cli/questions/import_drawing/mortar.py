@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import cos, radians
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from rocking_cli.arrays import Points, Reals
 from rocking_cli.core.polygons import nearby
 from rocking_cli.io.drawings.arcs import arc_circle
-from rocking_cli.questions.import_drawing.rings import ArcRing, following
+from rocking_cli.questions.import_drawing.rings import ArcRing, following, polygons_of
 
 PARALLEL = cos(radians(3.0))
 LEAST_SHARE = 0.02  # of the length of a side, over which it must face another one
@@ -113,7 +114,8 @@ def close_gaps(rings: Sequence[ArcRing], ground: Sequence[ArcRing], most: float,
     """
     sides = Sides.from_rings([*rings, *ground])
     pairs = facing(sides, -overlap, most + SAME_GAP if most else 0.0)
-    moved = (sides.ring[pairs.one] < len(rings)) & ~_across_others(sides, pairs, [*rings, *ground])
+    across = _across_others(sides, pairs, polygons_of([*rings, *ground], overlap))
+    moved = (sides.ring[pairs.one] < len(rings)) & ~across
     one, gap = pairs.one[moved], pairs.gap[moved]
     with_ground = sides.ring[pairs.other[moved]] >= len(rings)
     wide = np.abs(gap) > NO_GAP
@@ -137,7 +139,7 @@ def close_gaps(rings: Sequence[ArcRing], ground: Sequence[ArcRing], most: float,
     return Closed(closed, np.abs(gap).tolist(), middles[chosen].tolist(), middles[uneven].tolist())
 
 
-def _across_others(sides: Sides, pairs: Facing, rings: Sequence[ArcRing]) -> NDArray[np.bool_]:
+def _across_others(sides: Sides, pairs: Facing, polygons: Any) -> NDArray[np.bool_]:
     """Return which pairs of sides have another ring between them."""
     import shapely
 
@@ -145,8 +147,7 @@ def _across_others(sides: Sides, pairs: Facing, rings: Sequence[ArcRing]) -> NDA
     way = sides.normal[pairs.one] * pairs.gap
     z = np.stack([middle + IN_GAP * way, middle + (1 - IN_GAP) * way], axis=1)
     lines = shapely.linestrings(np.stack([z.real, z.imag], axis=2))
-    tree = shapely.STRtree([shapely.Polygon(np.stack([ring.z.real, ring.z.imag], axis=1)) for ring in rings])
-    pair, ring = tree.query(lines, predicate="intersects")
+    pair, ring = shapely.STRtree(polygons).query(lines, predicate="intersects")
     other = (ring != sides.ring[pairs.one[pair]]) & (ring != sides.ring[pairs.other[pair]]) & (pairs.gap[pair] > NO_GAP)
     between = np.zeros(len(middle), bool)
     between[pair[other]] = True

@@ -16,8 +16,8 @@ from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnPoint
 from rocking_cli.questions.import_drawing.loops import DrawnEdges, Loop, Placed, loops
 from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, length_in_words, many
 from rocking_cli.questions.import_drawing.rings import ArcRing, PlaneMoments, polygons_of
-from rocking_cli.questions.import_drawing.roles import Role, Roles, counted
-from rocking_cli.text import in_short, seen
+from rocking_cli.questions.import_drawing.roles import Role, Roles, counted, proposed
+from rocking_cli.text import cut, in_short, seen
 from rocking_cli.units import UnitError, mass_of_weight, read
 
 FLATNESS = 1e-9  # area up to which an outline encloses nothing, over the square of its size
@@ -32,6 +32,9 @@ MEETING_SHARE = 0.75  # of the ends of a layer that lie on other lines, from whi
 MAX_MEETING = 4_000  # lines up to which this is looked for; more may hold outlines
 SAME_HEIGHT = 1e-6  # difference of heights of bodies of which the left one comes first [m]
 ROW = 0.5  # share of its height by which a body must be above the first one of a row to begin another row
+DENSITY = re.compile(r"(?<![\d.,])(\d+(?:[.,' ]\d+)*)\s*([A-Za-z]+\s*/\s*[dc]?m\s*3)")
+PER_VOLUME = re.compile(r"/\s*[dc]?m\s*3\b")
+THOUSANDS = re.compile(r"\d{1,3}[.,' ]\d{3}")
 GRID = 1e-3  # share of the closing distance to which shapes are cut; without a grid GEOS has errors at common sides
 TOUCHES = 4  # length of an outline that the corner of an opening alone may reach, over the closing distance
 
@@ -98,22 +101,21 @@ def by_role(drawing: LineDrawing, roles: Roles, file: str) -> Sorted:
             if layer not in counts and (count := outline_count(of, [*of_bodies, *beside[layer]]))
         }  # fmt: skip
     notes = []
-    if counts and not chains[Role.BODIES]:
-        if len(counts) > 1:
-            raise _which(counts, file)
+    if len(counts) == 1 and not of_bodies:
         (layer,) = counts
         roles = Roles({**roles.given, layer: Role.BODIES})
         chains[Role.BODIES] = unknown.pop(layer)
         words = f"the layer {seen(layer) or '(none)'} alone has outlines: they are taken as bodies"
         notes.append(ImportNote("layers", 1, words))
     elif counts:
-        known = Counter(chain.layer for chain in chains[Role.BODIES])
-        strange = sorted(map(seen, counts))
-        counts |= {layer: outline_count([c for c in chains[Role.BODIES] if c.layer == layer]) for layer in known}
-        some = f"{strange[0]} has" if len(strange) == 1 else f"{len(strange)} of them have"
-        take, cut, leave = (quote(f"{role}={','.join(strange)}") for role in (Role.BODIES, Role.OPENINGS, Role.NOTHING))
-        what = f"which layers are bodies? {counted(counts)}; {some} no known role: give `layers` {take}"
-        raise DrawingError("layers", f"{what}, {cut} or {leave}" if len(strange) == 1 else what, file)
+        guess = proposed({layer: unknown[layer] for layer in counts} | {each.layer: [each] for each in of_bodies})
+        named = {role: ",".join(seen(layer) for layer in of if layer in counts) for role, of in guess.items()}
+        give = " ".join(f"`layers` {quote(f'{role}={of}')}" for role, of in named.items() if of)
+        some = f"{seen(next(iter(counts)))} has" if len(counts) == 1 else f"{len(counts)} of them have"
+        for layer in dict.fromkeys(each.layer for each in of_bodies):
+            counts[layer] = outline_count([each for each in of_bodies if each.layer == layer])
+        what = f"which layers are bodies? {counted(counts)}; {some} no known role: by what is drawn there, {give}"
+        raise DrawingError("layers", f"{what} (other roles: {', '.join(Role)})", file)
     if not chains[Role.BODIES]:
         held: list[DrawnLine | DrawnText | DrawnPoint] = [*drawing.chains, *drawing.labels, *drawing.spots]
         kinds = Counter(each.kind for each in held)
@@ -121,7 +123,10 @@ def by_role(drawing: LineDrawing, roles: Roles, file: str) -> Sorted:
             kinds[each.kind] += each.count
         what = in_short([f"{count:,} {kind}" for kind, count in kinds.most_common()]) or "an empty page"
         where = in_short([f"{seen(layer) or 'no layer'} ({len(lines)} lines)" for layer, lines in unknown.items()])
-        if where:
+        if dropped := sorted({seen(each.layer) for each in chains[Role.NOTHING] if _is_shape(each)}):
+            give = quote(f"{Role.BODIES}={','.join(dropped)}")
+            what += f", on {in_short(dropped)}, whose name says that nothing on it counts: give `layers` {give}"
+        elif where:
             what += f"; lines that do not close are on {where}: give `layers` bodies=LAYER if they are bodies"
         raise DrawingError("empty", f"there is no outline in it, only {what}", file)
     left = Counter((chain.kind, layer) for layer, of in unknown.items() for chain in of)
@@ -189,12 +194,6 @@ def _mostly_meet(open_: Sequence[DrawnLine], around: Sequence[DrawnLine]) -> boo
     others = of != np.array([id(chain) for chain in open_])[point // 2]
     met = len(np.unique(point[others]))
     return met >= LEAST_ENDS and met >= MEETING_SHARE * ends.size
-
-
-def _which(counts: Mapping[str, int], file: str) -> DrawingError:
-    first = max(counts, key=counts.__getitem__)
-    what = f"which layers are bodies? {counted(counts)}: give `layers` {quote(f'bodies={seen(first)}')}"
-    return DrawingError("layers", what, file)
 
 
 def placed(chains: Sequence[DrawnLine], frame: DrawingFrame, close: float, file: str) -> list[Placed]:
@@ -525,7 +524,12 @@ def name_and_weigh(
         for k, home in tree.query(shapely.points(at.real, at.imag), predicate="within").T.tolist():
             used.add(k)
             for text in filter(None, map(seen, texts[k].text.splitlines())):
-                if (density := density_in(text)) is not None:
+                try:
+                    density = density_in(text)
+                except UnitError as error:
+                    at_text = complex(texts[k].at)
+                    raise DrawingError("density", f"{error}", file, [[at_text.real, at_text.imag]]) from None
+                if density is not None:
                     bodies[home].density = density
                 elif any(each.isalpha() for each in text):
                     names.setdefault(home, []).append(text)
@@ -551,14 +555,25 @@ def name_and_weigh(
 
 
 def density_in(text: str) -> float | None:
-    """Return the density [kg/m3] that a text such as `2200 kg/m3` gives; None if it gives none."""
-    if "/" not in text:
+    """Return the density [kg/m3] that a text such as `gamma = 22,5 kN/m3` gives; None if it is about none.
+
+    Raises
+    ------
+    UnitError
+        If it has a unit of density, and its number or its unit cannot be read.
+    """
+    plain = re.sub(r"/\s*mc\b", "/m3", text.replace("\u00b3", "3").replace("^3", "3"))
+    if not PER_VOLUME.search(plain):
         return None
-    try:
-        weight = mass_of_weight(text, "kg/m3")
-        return weight if weight is not None else read(text, "kg/m3")
-    except UnitError:
-        return None
+    match = DENSITY.search(plain)
+    if match is None:
+        raise UnitError(f"{cut(repr(text))} is not a density: write it as 2200 kg/m3")
+    number, unit = match[1], re.sub(r"\s", "", match[2])
+    if THOUSANDS.fullmatch(number) and unit == "kg/m3":  # as no masonry of 2.2 kg/m3 exists
+        number = re.sub("[.,' ]", "", number)
+    given = f"{number.replace(',', '.')} {unit}"
+    weight = mass_of_weight(given, "kg/m3")
+    return weight if weight is not None else read(given, "kg/m3")
 
 
 def cleaned(text: str) -> str:

@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import product
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from rocking_cli.arrays import Points
 from rocking_cli.plotting import style
 from rocking_cli.questions.import_drawing.study import Imported
-from rocking_cli.text import cut
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
-MAX_NAMED = 150  # bodies with names; of more, only every so many
-LONGEST_NAME = 12
+MAX_NAMED = 150  # bodies with names
 TICK = 0.012  # length of the tick of a joint over the size drawn
 ROOM = 0.08
+ANY_SIZE = complex(inf, inf)
 
 
 def draw_import(found: Imported, title: str, tolerance: float) -> Figure:
@@ -35,23 +36,15 @@ def draw_import(found: Imported, title: str, tolerance: float) -> Figure:
     for ground in found.ground:
         axes.add_patch(_patch(ground, facecolor="none", edgecolor=style.EARTH, hatch="////", linewidth=style.THIN))
     for line in found.grey:
-        axes.plot(line.real, line.imag, color=style.FAINT, linewidth=style.THIN, zorder=1)
+        axes.plot(line.real, line.imag, color=style.FAINT, linewidth=style.THIN, zorder=1.5)
     for k, (body, outline) in enumerate(zip(found.bodies, outlines, strict=True)):
         fill = style.BODIES[k % len(style.BODIES)]
-        axes.add_patch(_patch(outline, facecolor=fill, edgecolor=style.INK, linewidth=style.THIN, zorder=2))
+        axes.add_patch(_patch(outline, facecolor=fill, edgecolor="none", zorder=1))
+        axes.add_patch(_patch(outline, facecolor="none", edgecolor=style.INK, linewidth=style.THIN, zorder=2))
         for hole in body.openings:
             edge = hole.chords(tolerance)
-            axes.add_patch(_patch(edge, facecolor=style.PAPER, edgecolor=style.INK, linewidth=style.THIN, zorder=2))
+            axes.add_patch(_patch(edge, facecolor=style.PAPER, edgecolor=style.INK, linewidth=style.THIN, zorder=1))
     _draw_joints(axes, found, TICK * size)
-    every = -(-len(found.bodies) // MAX_NAMED)
-    crowd = len(found.bodies) * (3 if style.is_narrow() else 1)
-    points = style.TICK if crowd <= 12 else style.SMALL if crowd <= 40 else style.TINY
-    for body in found.bodies[::every]:
-        at = body.moments.centroid
-        axes.text(
-            at.real, at.imag, cut(body.name, LONGEST_NAME), ha="center", va="center", fontsize=points, zorder=5,
-            color=style.INK, path_effects=style.HALO, clip_on=True,
-        )  # fmt: skip
     _draw_attached(axes, found)
     if found.mended:
         at_mended = np.array(found.mended)
@@ -69,7 +62,34 @@ def draw_import(found: Imported, title: str, tolerance: float) -> Figure:
     axes.margins(0.0)
     if axes.get_legend_handles_labels()[0]:
         style.legend_below(figure, ncols=5, grows=True)
+    _draw_names(axes, found, outlines)
     return figure
+
+
+def _draw_names(axes: Axes, found: Imported, outlines: Sequence[Points]) -> None:
+    """Write the names of the largest bodies: upright, in lines or turned, as large as fits, and none over another."""
+    if style.given() is None and isinstance(axes.figure, Figure):
+        style.lay_out(axes.figure)
+    axes.apply_aspect()
+    scale = style.inches(axes).real / float(np.ptp(axes.get_xlim()))
+    boxes = [scale * complex(np.ptp(each.real), np.ptp(each.imag)) for each in outlines]
+    middles, extents = np.empty(0, np.complex128), np.empty(0, np.complex128)
+    for k in sorted(range(len(boxes)), key=lambda k: -min(boxes[k].real, boxes[k].imag))[:MAX_NAMED]:
+        name, at = style.plain(found.bodies[k].name), found.bodies[k].moments.centroid
+        ways = [(name, 0, boxes[k]), (name.replace(" ", "\n"), 0, boxes[k]), (name, 90, boxes[k])]
+        tried = [*product((style.TICK, style.SMALL, style.TINY), ways), (style.TINY, (name, 0, ANY_SIZE))]
+        for points, (text, turn, box) in tried:
+            size = style.size_of(text, points)
+            extent = complex(size.imag, size.real) if turn else size
+            away, least = middles - scale * at, (extents + extent) / 2
+            apart = (np.abs(away.real) >= least.real) | (np.abs(away.imag) >= least.imag)
+            if apart.all() and extent.real <= box.real and extent.imag <= box.imag:
+                axes.text(
+                    at.real, at.imag, text, ha="center", va="center", fontsize=points, rotation=turn, zorder=5,
+                    color=style.INK, path_effects=style.HALO, clip_on=True,
+                )  # fmt: skip
+                middles, extents = np.append(middles, scale * at), np.append(extents, extent)
+                break
 
 
 def _draw_attached(axes: Axes, found: Imported) -> None:

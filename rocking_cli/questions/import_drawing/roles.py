@@ -10,6 +10,9 @@ from dataclasses import dataclass
 from enum import StrEnum
 from fnmatch import fnmatchcase
 from functools import lru_cache
+from math import nan
+
+import numpy as np
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.drawings.contract import DrawnLine, DrawnPoint, DrawnText, LineDrawing, OmittedKind
@@ -30,16 +33,25 @@ class Role(StrEnum):
 
 
 WORDS: Mapping[Role, str] = {
-    Role.NOTHING: "defpoints dim dims dimension* quota quote quotat* asse assi testo testi text texts frame frames "
-    "border* squadratur* cartigli* retin* tratteggi* hatch* displaced thrust names",
-    Role.HINGES: "hinge* cernier*",
-    Role.LOADS: "load loads caric* forza forze",
-    Role.TIES: "tie ties caten? tirant*",
-    Role.OPENINGS: "opening* hole holes window* foro fori apertur* finestr*",
-    Role.SUPPORTS: "support supports floor floors solai* carrell*",
-    Role.GROUND: "ground soil* rock rocks terren* suolo suoli",
-    Role.BODIES: "body bodies *block* *stone* voussoir* masonry *brick* corpo corpi *blocc* conci* *pietr* *murat* "
-    "*matton* parament*",
+    Role.NOTHING: "defpoints dim dims dimension* displaced thrust names text texts frame frames border* hatch* axis "
+    "axes quota quote quotat* asse assi testo testi squadratur* cartigli* retin* tratteggi* sfond* "
+    "mass masse bemass* achs* beschrift* schraff* rahmen* schriftfeld* hintergrund* "
+    "cota cotas eje ejes texto* sombread* marco* cajetin* fondo* cote cotes axe texte* hachur* cadre* cartouche* fond",
+    Role.HINGES: "hinge* cernier* gelenk* rotul* articulac*",
+    Role.LOADS: "load loads caric* forza forze last lasten kraft krafte carga* fuerza* charge charges force forces",
+    Role.TIES: "tie ties caten? tirant* zuganker* zugstab* zugstang* tensor*",
+    Role.OPENINGS: "opening* hole holes window* door doors foro fori apertur* finestr* porta porte offnung* fenster* "
+    "tur turen hueco* vano vanos abertur* ventan* puert* ouvertur* fenetr* baie baies",
+    Role.SUPPORTS: "support supports floor floors solai* carrell* decke decken auflager* forjad* apoyo* plancher* "
+    "appui*",
+    Role.GROUND: "ground soil* rock rocks terren* suolo suoli pavimento boden baugrund erdreich gelande fels suelo* "
+    "roca* sol sols terrain* rocher*",
+    Role.BODIES: "body bodies *block* *stone* voussoir* masonry *brick* wall walls arch arches column* pier piers "
+    "buttress* vault* plinth* capital* corpo corpi *blocc* conci* *pietr* *murat* *matton* parament* muro muri arco "
+    "archi colonn* pilastr* contraffort* volta volte basament* capitell* facciat* *mauer* bogen *gewolb* saule* "
+    "pfeiler* strebepfeiler* widerlager* *stein *steine *ziegel* muros arcos *piedra* *ladrill* pilar* "
+    "contrafuert* boved* estribo* sillar* dovela* mur murs arc arcs pilier* colonne* contrefort* voute* culee* "
+    "*pierre* *brique*",
 }
 """Patterns of words in the names of layers, in the order in which they count: TESTO_PIETRE has texts, no stones."""
 
@@ -118,3 +130,23 @@ def counted(layers: Mapping[str, int]) -> str:
     named = [f"{cut(name) or 'no layer'} has {layers[name]}" for name in most]
     first = f"{named[0]} outline{'' if layers[most[0]] == 1 else 's'}"
     return in_short([first, *named[1:]])
+
+
+def proposed(layers: Mapping[str, Sequence[DrawnLine]]) -> dict[Role, list[str]]:
+    """Return the role that layers of no role may have by what is drawn on them: hatches and frames are no bodies.
+
+    A frame is an outline around all that is drawn on other layers.
+    """
+    boxes = {name: _box([each for each in lines if each.closed]) for name, lines in layers.items()}
+    roles: dict[Role, list[str]] = {}
+    for name, lines in layers.items():
+        (left, low, right, top), others = boxes[name], [box for other, box in boxes.items() if other != name]
+        around = others and all(left < a and low < b and c < right and d < top for a, b, c, d in others)
+        none = around or all(each.is_fill for each in lines if each.closed)
+        roles.setdefault(Role.NOTHING if none else Role.BODIES, []).append(name)
+    return roles
+
+
+def _box(lines: Sequence[DrawnLine]) -> tuple[float, float, float, float]:
+    z = np.concatenate([each.points for each in lines]) if lines else np.array([nan + 0j])
+    return float(z.real.min()), float(z.imag.min()), float(z.real.max()), float(z.imag.max())

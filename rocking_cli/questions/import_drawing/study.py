@@ -30,9 +30,10 @@ from rocking_cli.questions.import_drawing.outlines import (
     name_and_weigh,
     placed,
 )
-from rocking_cli.questions.import_drawing.rings import ArcRing, polygons_of
+from rocking_cli.questions.import_drawing.rings import ArcRing, following, polygons_of
 from rocking_cli.questions.import_drawing.roles import Role, Roles
 from rocking_cli.questions.import_drawing.scaling import metres_per_unit
+from rocking_cli.text import in_short
 
 GROUND_ROOM = 0.1  # depth of the ground below its lowest point, and its room at the sides, over the size drawn
 KINDS = ("rigid_body", "assembly", "linkage")
@@ -42,6 +43,9 @@ EXTENT = 1e-5  # to which width and height are known [m]
 CIRCLE_SHARE = 0.05  # of the closing distance, to which depths of overlaps are known
 MAX_MORTAR = 0.05  # width of gaps that may be joints [m]
 MAX_ANALYSED = 60  # bodies up to which it is checked too that they stand, by limit analysis
+MAX_SLOPE = 0.01  # of a base that is put level
+CURVED_CORNERS = 5  # of a curve that is within the closing distance of the ground, at least
+FLAT_SHARE = 0.5  # least width of the base over that of what is within the closing distance of the ground
 MAX_CHECKED = 300  # bodies up to which the mechanism checks its fields; of more, this study alone
 
 
@@ -180,6 +184,11 @@ def structure_from(drawing: LineDrawing, options: ImportOptions, name: str, file
     close = options.close
     bodies, notes, mended = bodies_of(of, frame, close, options.nested, file)
     notes = [*of.notes, *notes, *name_and_weigh(bodies, of, options.densities, frame, close, file)]
+    if drawing.faults:
+        words = (
+            f"{many(len(drawing.faults), 'fault')} of the file mended as it was read: {in_short(drawing.faults, '; ')}"
+        )
+        notes.insert(0, ImportNote("faults", len(drawing.faults), words))
     left, low = (float(part.min()) for part in _extent(bodies))
     shift = -complex(left, low)
     ground, is_drawn = _ground(of.chains[Role.GROUND], bodies, frame, close, file)
@@ -212,16 +221,19 @@ def structure_from(drawing: LineDrawing, options: ImportOptions, name: str, file
         if is_drawn and not _is_level(lowest.ring, ground, close):
             what = f"the ground below {lowest.name} is not level or does not meet it, as a rigid_body needs"
             raise DrawingError("below", f"{what}: leave out `kind`, or the ground", file)
+        _check_foot(lowest, close, frame, shift, file)
         notes += _levelled(bodies, close, frame, shift)
     _check_weights(kind, bodies, options, DrawingFrame(per, origin), file)
     if kind != "rigid_body":  # which cuts notches out of its parts
         check_notches(bodies, DrawingFrame(per, origin), close, file)
+    if kind == "assembly" and extra.hinges:
+        at = [frame.to_drawing(each[0] - shift) for each in extra.hinges]
+        words = f"left out: {many(len(at), 'hinge')}, as an assembly hinges at the joints that open first"
+        extra.notes.append(ImportNote("left out", len(at), words, at))
     fields = FIELDS[kind](name, bodies, ground, is_drawn, extra, options, file)
-    grey = [
-        frame.to_metres(chain.points) + shift
-        for chain in drawing.chains
-        if of.roles(chain.layer) in (None, Role.NOTHING) and len(chain.points) > 1
-    ]
+    nothing = [chain for chain in drawing.chains if of.roles(chain.layer) in (None, Role.NOTHING)]
+    lines = [chain.points[[*range(len(chain.points)), *([0] * chain.closed)]] for chain in nothing]
+    grey = [frame.to_metres(points) + shift for points in (*lines, *drawing.annotations) if len(points) > 1]
     result = Imported(
         kind, fields, bodies, [ring.chords(options.tolerance) for ring in ground], _joints(bodies, ground), units, per,
         origin, [*notes, *extra.notes], extra.comments, mended, grey, [at for _, at, _, _ in extra.supports],
@@ -370,16 +382,34 @@ def _is_level(ring: ArcRing, ground: Sequence[ArcRing], close: float) -> bool:
 
 
 def _levelled(bodies: Sequence[DrawnBody], close: float, frame: DrawingFrame, shift: complex) -> list[ImportNote]:
-    """Put corners within the closing distance of the level ground onto it, and say so."""
+    """Put corners within the closing distance of the level ground, and ends of a sloping base, onto it, and say so."""
     at: list[complex] = []
     for body in bodies:
         z = body.ring.z
         off = np.abs(z.imag) <= close
+        side, lowest = following(z) - z, int(z.imag.argmin())
+        for k, end in ((lowest, (lowest + 1) % len(z)), (lowest - 1, lowest - 1)) if off[lowest] else ():
+            is_base = abs(side[k].imag) <= MAX_SLOPE * abs(side[k].real) and abs(side[k]) > np.ptp(z.real) / 2
+            off[end] |= is_base and not body.ring.bulges[k]
         at += [frame.to_drawing(each - shift) for each in z[off & (np.abs(z.imag) > mortar.NO_GAP)]]
         body.ring = ArcRing(np.where(off, z.real, z), body.ring.bulges)
     if not at:
         return []
     return [ImportNote("levelled", len(at), f"{many(len(at), 'corner')} put onto the level ground", at)]
+
+
+def _check_foot(body: DrawnBody, close: float, frame: DrawingFrame, shift: complex, file: str) -> None:
+    """Raise `DrawingError` "point" if a body stands on an arc, or on another curve."""
+    ring, z = body.ring, body.ring.level()
+    lowest, least = int(ring.z.imag.argmin()), float(z.imag.min())
+    below = least < float(ring.z.imag.min()) - CIRCLE_SHARE * close
+    on_arc = below or bool(ring.bulges[lowest] and ring.bulges[lowest - 1])
+    foot, flat = (z.real[z.imag <= least + reach] for reach in (close, CIRCLE_SHARE * close))
+    on_curve = any(each.is_straightened for each in body.sources) and len(foot) >= CURVED_CORNERS
+    if on_arc or (on_curve and np.ptp(flat) < FLAT_SHARE * np.ptp(foot)):
+        at = complex(float(flat.mean()), 0.0) - shift
+        what = f"{body.name} stands on one point of a curve at {frame.place(at)}: a round foot rolls, without a model"
+        raise DrawingError("point", what, file, frame.pairs([at]), "draw the foot on which it stands")
 
 
 # The fields of each kind of structure
@@ -505,6 +535,8 @@ def _linkage(
                 {"pivot": on[0], "at": rounded(at)} if len(on) == 1 else {"hinge": list(on), "at": rounded(at)}
             )
             lead = lead or (on[0] if len(on) == 1 else "")
+        standing = {pair[0] for pair in touching if "ground" in pair}
+        lead = lead or next((body for _, on, _ in hinges for body in on if body not in standing), "")
         if not lead:
             what = f"no hinge of the {direction} direction is on the ground: one must be on a single body"
             raise DrawingError("hinge", what, file)

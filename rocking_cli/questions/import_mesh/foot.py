@@ -8,12 +8,15 @@ from math import atan2, cos, degrees, hypot, radians, sqrt
 
 import numpy as np
 
-from rocking_cli.arrays import Reals
-from rocking_cli.questions.import_mesh.solid import Moments
+from rocking_cli.arrays import Integers, Points, Reals
+from rocking_cli.questions.import_mesh.solid import TOUCH, MeshNote, Moments, Triangles, encloses, moments
+from rocking_cli.units import STANDARD_GRAVITY
 
+GRAVITY = float(STANDARD_GRAVITY)
 STRAIGHT = 1e-6  # distance of a corner of the foot from the line of its neighbours, over the size, that is none
 SINGLE = 2.0**-23  # relative precision of coordinates in single precision
 EQUAL_WAYS = 1e-6  # relative difference of the ways to two edges that meet in the corner towards which a body goes
+INWARDS = 0.99  # of the corners of a foot from its middle, below which what carries it is looked for
 LEVEL_TURN = 1e-9  # sine of a turn that is none
 LEVELS = (0.0, 0.001, 0.002, 0.005, 0.010, 0.020)
 """Heights above the ground [m] up to which points count as standing on it, in the table of feet."""
@@ -118,48 +121,28 @@ def foot_of(points: Reals, level: float) -> Sequence[complex]:
     level : float
         Height [m].
     """
+    import shapely
+
     size = float(np.abs(points).max())
-    low = points[points[:, 2] <= level + SINGLE * size]
-    return _convex(np.unique(low[:, 0] + 1j * low[:, 1]).tolist(), STRAIGHT * size)
+    low = points[points[:, 2] <= level + SINGLE * size, :2]
+    hull = shapely.convex_hull(shapely.multipoints(low))
+    plain = shapely.simplify(shapely.orient_polygons(hull), STRAIGHT * size, preserve_topology=False)
+    corners: Points = shapely.get_coordinates(hull if plain.is_empty else plain) @ np.array([1, 1j])
+    if plain.is_empty:  # all of the foot lies along a line
+        corners = corners[[0, np.abs(corners - corners[0]).argmax()]]
+    return (corners[:-1] if plain.area else corners).tolist()  # type: ignore[no-any-return]
 
 
-def _convex(z: Sequence[complex], tolerance: float) -> list[complex]:
-    """Return the corners of the convex hull of points sorted by x and y, without those that hardly stand out."""
-
-    def chain(each: Sequence[complex]) -> list[complex]:
-        corners: list[complex] = []
-        for point in each:
-            while len(corners) > 1 and not _turns(corners[-2], corners[-1], point) > 0:
-                corners.pop()
-            corners.append(point)
-        return corners
-
-    corners = list(z) if len(z) < 3 else chain(z)[:-1] + chain(z[::-1])[:-1]
-    k = 0
-    while len(corners) > 2 and k < len(corners):
-        before, after = corners[k - 1], corners[(k + 1) % len(corners)]
-        if _turns(before, corners[k], after) <= tolerance * max(abs(after - before), tolerance):
-            del corners[k]
-            k = max(k - 1, 0)
-        else:
-            k += 1
-    return corners
-
-
-def _turns(a: complex, b: complex, c: complex) -> float:
-    return ((b - a).conjugate() * (c - a)).imag
-
-
-def edges_of(corners: Sequence[complex], height: float, whole: Moments, gravity: float) -> list[FootEdge]:
-    """Return the edges of a foot whose corners are given from below the centre of mass, at a height above it [m]."""
-    edges = []
+def edges_of(corners: Sequence[complex], whole: Moments) -> list[FootEdge]:
+    """Return the edges of a foot whose corners are given from below the centre of mass of a body [m]."""
+    edges, height = list[FootEdge](), float(whole.centroid[2])
     for number, (start, end) in enumerate(zip(corners, [*corners[1:], *corners[:1]], strict=True), 1):
         along = (end - start) / abs(end - start)
         normal = -1j * along
         c = (normal.conjugate() * (start + end)).real / 2
         u = np.array([along.real, along.imag, 0.0])
         inertia = float(u @ whole.inertia @ u) / whole.volume
-        p = sqrt(gravity * hypot(c, height) / (c**2 + height**2 + inertia))
+        p = sqrt(GRAVITY * hypot(c, height) / (c**2 + height**2 + inertia))
         azimuth = round(degrees(atan2(normal.imag, normal.real)), 9) % 360
         edges.append(FootEdge(number, start, end, azimuth, c, c / height, atan2(c, height), inertia, p))
     return edges
@@ -187,16 +170,55 @@ def _way(edge: FootEdge, azimuth: float) -> float:
     return edge.c / share if share > EQUAL_WAYS else np.inf
 
 
-def levels_of(points: Reals, height: float, whole: Moments, gravity: float) -> list[LevelRow]:
+def levels_of(points: Reals, whole: Moments) -> list[LevelRow]:
     """Return what each height of `LEVELS` gives for points from below the centre of mass."""
-    rows = []
-    for level in LEVELS:
-        corners = foot_of(points, level)
-        edges = edges_of(corners, height, whole, gravity) if len(corners) > 2 else []
-        weakest = weakest_of(edges) if edges and min(each.c for each in edges) > 0 else None
-        row = (None, None) if weakest is None else (weakest.lambda_, weakest.azimuth)
-        rows.append(LevelRow(level, len(corners), *row))
-    return rows
+    feet = [(level, corners := foot_of(points, level), weakest_on(corners, whole)) for level in LEVELS]
+    rows = [(level, len(foot), (edge.lambda_, edge.azimuth) if edge else (None, None)) for level, foot, edge in feet]
+    return [LevelRow(level, count, *least) for level, count, least in rows]
+
+
+def weakest_on(corners: Sequence[complex], whole: Moments) -> FootEdge | None:
+    """Return the weakest edge of a foot; None if the body does not stand on it."""
+    edges = edges_of(corners, whole) if len(corners) > 2 else []
+    return weakest_of(edges) if edges and min(each.c for each in edges) > 0 else None
+
+
+def glued(points: Reals, triangles: Triangles, part: Integers, level: float) -> list[MeshNote]:
+    """Return a note on the parts of a body that rest on others, as the weakest of them would be alone.
+
+    Parameters
+    ----------
+    points, triangles, part : ndarray
+        The body as it stands, from the ground, and the part to which each triangle belongs.
+    level : float
+        Height up to which points of a part bear, and up to which it touches what is below [m].
+    """
+    bodies = [triangles[part == each] for each in np.unique(part)]
+    within = max(level, TOUCH * float(np.ptp(points, axis=0).max()))
+    carries, feet = np.eye(len(bodies), dtype=bool), list[tuple[float, Points]]()
+    for k, body in enumerate(bodies):
+        corners = points[np.unique(body)]
+        base = float(corners[:, 2].min())
+        foot = np.array(foot_of(corners - [0, 0, base], within))
+        under = [*(INWARDS * foot + (1 - INWARDS) * foot.mean()), foot.mean()]
+        probes = np.array([[z.real, z.imag, base - within] for z in under])
+        carries[:, k] |= [bool(encloses(points[other], probes).any()) for other in bodies]
+        feet.append((base, foot))
+    above, alone = np.linalg.matrix_power(carries, len(bodies)), []
+    for k in np.flatnonzero(carries.sum(axis=0) > 1).tolist():
+        whole = moments(points, np.concatenate([body for body, on in zip(bodies, above[k], strict=True) if on]))
+        (base, foot), (x, y, _) = feet[k], whole.centroid
+        moved = Moments(whole.volume, whole.centroid - [x, y, base], whole.inertia)
+        edge = weakest_on((foot - complex(x, y)).tolist(), moved)
+        alone.append((0.0 if edge is None else edge.lambda_, whole.volume, base))
+    if not alone:
+        return []
+    least, volume, base = min(alone)
+    rests = "1 part rests on another and counts as glued to it: alone, it"
+    if len(alone) > 1:
+        rests = f"{len(alone)} parts rest on others and count as glued to them: the weakest alone, with all it carries,"
+    would = f"would have lambda = {least:.3g}" if least else "would not stand"
+    return [MeshNote("glued", len(alone), f"{rests} {would} ({volume:.3g} m3 from {base:.3g} m above the ground)")]
 
 
 def settled(planes: Reals, centroid: Reals) -> tuple[Reals, float]:
@@ -216,6 +238,8 @@ def settled(planes: Reals, centroid: Reals) -> tuple[Reals, float]:
     float
         Its angle [deg].
     """
+    from scipy.spatial.transform import Rotation
+
     normals = planes[:, :3]
     far = -planes[:, 3] - normals @ centroid
     down, height = np.array([0.0, 0.0, -1.0]), np.inf
@@ -225,9 +249,5 @@ def settled(planes: Reals, centroid: Reals) -> tuple[Reals, float]:
         if far[below] >= height * (1 - LEVEL_TURN):
             break
         down, height = normals[below], far[below]
-    x, y, cosine = -down[1], down[0], -down[2]
-    sine = hypot(x, y)
-    if sine < LEVEL_TURN:
-        return np.diag([1.0, np.sign(cosine), np.sign(cosine)]), 0.0 if cosine > 0 else 180.0
-    turn = np.array([[0.0, 0.0, y], [0.0, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + turn + (1 - cosine) / sine**2 * turn @ turn, degrees(atan2(sine, cosine))
+    turn, _ = Rotation.align_vectors([0, 0, -1], down)
+    return turn.as_matrix(), degrees(turn.magnitude())

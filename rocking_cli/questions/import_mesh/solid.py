@@ -8,20 +8,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.arrays import Bools, Reals
+from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.io.drawings.contract import DrawingError
 
 Triangles = NDArray[np.int64]
-Names = NDArray[np.intp]
 CRUMB = 1e-3  # volume of a shell over that of the largest, below which it is left out
 MAX_SHELLS = 100  # larger ones
-PROBED, PASSES = 10_000, 25_000_000  # triangles of shells that are looked for in others, and times theirs
+PROBED, PASSES = 10_000, 5_000_000  # triangles of shells that are looked for in others, and times theirs
 TOUCH = 1e-5  # depth to which shells that touch may overlap, over the size
 NEAR_CORNER = np.array([[1, 1, 1], [2.9, 0.05, 0.05], [0.05, 2.9, 0.05], [0.05, 0.05, 2.9]]) / 3
 MAX_HULL_POINTS, MAX_HULL_CORNERS = 1_000_000, 100_000  # which take seconds
-PER_BATCH = 1 << 18  # triangles whose integrals are summed at once
 LEAST_VOLUME = 1e-9  # volume over the cube of the size, below which there is no inside
-MIX, HALF = np.uint64(0x9E3779B97F4A7C15), np.uint64(32)  # of the keys by which equal points are found
+ANGLE_DIGITS = 6  # of the angle between triangles that lie on each other [rad]
 
 
 @dataclass(frozen=True)
@@ -55,25 +53,17 @@ class Moments:
     inertia: Reals
 
 
-def merged(points: Reals, triangles: Triangles) -> tuple[Reals, Triangles]:
-    """Return corners without those at one place, and triangles that name these; triangles without area are dropped."""
-    points = np.ascontiguousarray(points + 0.0)  # turns -0 into 0
-    key = np.zeros(len(points), np.uint64)
-    for bits in points.view(np.uint64).T:  # of numbers in single precision, the lower half is zero
-        key = (key ^ (bits >> HALF) ^ bits) * MIX
-        key ^= key >> HALF
-    order = key.argsort()
-    new = np.append(True, np.diff(key[order]) != 0)
-    names, first = np.empty(len(key), np.intp), np.minimum.reduceat(order, np.flatnonzero(new))
-    names[order] = np.cumsum(new) - 1
-    # In the order of the file, neighbours are near in memory, so that all that follows takes half the time.
-    kept = np.argsort(first)
-    first, names = first[kept], np.argsort(kept)[names]
-    if (points[first][names] != points).any():  # two places have one key
-        _, first, names = np.unique(points, axis=0, return_index=True, return_inverse=True)
-    triangles = names.ravel()[triangles]
-    a, b, c = triangles.T
-    return points[first], triangles[(a != b) & (b != c) & (c != a)]
+def merged(points: Reals, triangles: Triangles) -> tuple[Reals, Triangles, int]:
+    """Return corners that lie apart, the triangles with an area that join them, and how many were repeated."""
+    from trimesh import Trimesh
+    from trimesh.grouping import unique_rows
+
+    mesh = Trimesh(points, triangles, process=False)
+    mesh.merge_vertices(merge_tex=True, merge_norm=True)
+    a, b, c = mesh.faces.T
+    triangles = np.asarray(mesh.faces)[(a != b) & (b != c) & (c != a)]
+    kept = np.sort(unique_rows(turned_to_least(triangles))[0])
+    return np.asarray(mesh.vertices), triangles[kept], len(triangles) - len(kept)
 
 
 def turned_to_least(triangles: Triangles) -> Triangles:
@@ -82,95 +72,70 @@ def turned_to_least(triangles: Triangles) -> Triangles:
     return np.take_along_axis(triangles, (least + np.arange(3)) % 3, axis=1)
 
 
-def once(triangles: Triangles, count: int) -> Triangles:
-    """Return triangles without those that repeat one in the same sense; `count` is the number of corners."""
-    a, b, c = turned_to_least(triangles).T
-    sides = a * count + b
-    order = np.lexsort((c, sides))
-    again = (np.diff(sides[order]) == 0) & (np.diff(c[order]) == 0)
-    return np.delete(triangles, order[1:][again], axis=0)
+def sides_of(triangles: Triangles) -> tuple[Triangles, Integers, Bools]:
+    """Return the sides of triangles, three each, from the lesser to the greater corner.
 
-
-def loose_sides(triangles: Triangles, count: int) -> tuple[Triangles, int]:
-    """Return the sides of triangles that are not passed as often there as back, and how many of them lie in pairs.
-
-    Parameters
-    ----------
-    triangles : ndarray of int, shape (m, 3)
-        Corners of the triangles, below `count`.
-    count : int
-        Number of corners.
-
-    Returns
-    -------
-    ndarray of int, shape (k, 2)
-        The sides, in the sense in which they are passed once too often.
-    int
-        How many of these are passed twice in one sense: there, a triangle is turned over.
+    With them comes a number of each side, equal for those with the same ends, and whether it is passed that way.
     """
-    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
-    there, back = (
-        np.sort(np.minimum(start, end)[way] * count + np.maximum(start, end)[way]) for way in (start < end, start > end)
-    )
-    if np.array_equal(there, back):
-        return np.zeros((0, 2), np.int64), 0
-    sides, names = np.unique(np.concatenate([there, back]), return_inverse=True)
-    of_each = np.bincount(names, np.repeat([1.0, -1.0], [there.size, back.size])).astype(np.int64)
-    passes = np.bincount(names)[of_each != 0]
-    ends = np.stack(np.divmod(sides, count), axis=1)[of_each != 0]
-    ends = np.where(of_each[of_each != 0, None] > 0, ends, ends[:, ::-1])
-    return ends, int((passes % 2 == 0).sum())
+    from trimesh.grouping import unique_rows
+
+    sides = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    ends = np.sort(sides, axis=1)
+    return ends, unique_rows(ends)[1], sides[:, 0] < sides[:, 1]
 
 
-def joined(sides: Triangles, count: int) -> NDArray[np.int32]:
-    """Return a number for each of `count` corners: the same for those that sides, or triangles, join."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
+def shells_of(points: Reals, triangles: Triangles) -> Integers:
+    """Return for each triangle of a closed surface that faces outwards the number of its shell, from 0.
 
-    pairs = np.concatenate([sides[:, [k, k + 1]] for k in range(sides.shape[1] - 1)])
-    graph = coo_array((np.ones(len(pairs), np.int8), (pairs[:, 0], pairs[:, 1])), (count, count))
-    labels: NDArray[np.int32] = connected_components(graph, directed=False)[1]
-    return labels
+    Where more than two triangles meet in a side, those with matter between them belong together.
+    """
+    from trimesh.graph import connected_component_labels
 
-
-def six_volumes(points: Reals, triangles: Triangles) -> Reals:
-    """Return six times the signed volume between each triangle and the origin [m3]."""
-    a, b, c = (points[triangles[:, k]] for k in range(3))
-    return np.asarray(np.einsum("ij,ij->i", a, np.cross(b, c)))
+    ends, name, forward = sides_of(triangles)
+    angle, many = np.zeros(len(ends)), np.bincount(name)[name] > 2
+    start = points[ends[many, 0]]
+    along = points[ends[many, 1]] - start
+    x = np.cross(along, np.eye(3)[np.abs(along).argmin(axis=1)])
+    y = np.cross(along, x) / np.linalg.norm(along, axis=1)[:, None]
+    away = points[triangles[:, [2, 0, 1]].ravel()[many]] - start
+    turn = np.arctan2((away * y).sum(axis=1), (away * x).sum(axis=1))
+    angle[many] = np.round(np.mod(turn + 1, 2 * np.pi), ANGLE_DIGITS)
+    order = np.lexsort((~forward, angle, name))  # matter begins at a side that is passed backwards
+    first = np.flatnonzero(np.diff(name[order], prepend=-1))
+    following = np.roll(order, -1)
+    following[np.append(first[1:], len(order)) - 1] = order[first]
+    links = np.stack([order, following], axis=1)[~forward[order]] // 3
+    shells: Integers = connected_component_labels(links, len(triangles))
+    return shells
 
 
 def moments(points: Reals, triangles: Triangles) -> Moments:
     """Return the moments of the volume that a closed surface encloses."""
+    from trimesh.triangles import mass_properties
+
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
-    points = points - middle
-    volume, first, second = 0.0, np.zeros(3), np.zeros((3, 3))
-    for k in range(0, len(triangles), PER_BATCH):
-        some = triangles[k : k + PER_BATCH]
-        six = six_volumes(points, some)
-        corners = [points[some[:, j]] for j in range(3)]
-        total = corners[0] + corners[1] + corners[2]
-        volume += six.sum() / 6
-        first += six @ total / 24
-        for each in (*corners, total):
-            second += (each * six[:, None]).T @ each / 120
-    centroid = first / volume
-    second -= volume * np.outer(centroid, centroid)
-    return Moments(float(volume), centroid + middle, np.trace(second) * np.eye(3) - second)
+    mass = mass_properties((points - middle)[triangles])
+    return Moments(float(mass.volume), mass.center_mass + middle, np.asarray(mass.inertia))
 
 
 def closed(points: Reals, triangles: Triangles, file: str) -> None:
-    """Raise `DrawingError` if a surface has holes."""
-    ends, turned = loose_sides(triangles, len(points))
-    if not len(ends):
+    """Raise `DrawingError` if not every side of the triangles is passed as often there as back."""
+    from trimesh.graph import connected_component_labels
+
+    ends, name, forward = sides_of(triangles)
+    loose = np.bincount(name, np.where(forward, 1.0, -1.0)) != 0
+    if not loose.any():
         return
+    first, count = np.unique(name, return_index=True)[1][loose], int(loose.sum())
+    ends = ends[first]
     at = [points[ends[0, 0]].tolist()]
-    if turned == len(ends):
-        what = f"its surface is closed, but {turned:,} edges join triangles that face opposite ways"
+    if (np.bincount(name)[loose] % 2 == 0).all():  # passed twice in one sense
+        what = f"its surface is closed, but {count:,} edges join triangles that face opposite ways"
         raise DrawingError("open", what, file, at, "orient its faces outwards, or give `hull` for the convex hull")
-    labels = joined(ends, len(points))[ends[:, 0]]
+    labels = connected_component_labels(ends, len(points))[ends[:, 0]]
     holes = [np.ptp(points[ends[labels == each]].reshape(-1, 3), axis=0) for each in np.unique(labels)[:MAX_SHELLS]]
     _, wide, long = np.sort(max(holes, key=np.linalg.norm))
-    what = f"its surface is not closed: {len(ends):,} loose sides, the largest hole {long:.3g} x {wide:.3g} m"
+    what = f"its surface is not closed: {count:,} loose sides, the largest hole {long:.3g} x {wide:.3g} m"
     raise DrawingError("open", what, file, at, "close its holes, or give `hull` for the convex hull, which is heavier")
 
 
@@ -200,102 +165,90 @@ def hull_of(points: Reals, file: str) -> tuple[Reals, Triangles, Reals]:
     return points, triangles, planes
 
 
-def solid(points: Reals, triangles: Triangles, file: str) -> tuple[Triangles, list[MeshNote]]:
+def solid(points: Reals, triangles: Triangles, file: str) -> tuple[Triangles, Integers, list[MeshNote]]:
     """Return the triangles of one body: outer surfaces face outwards, cavities inwards, and crumbs are left out.
 
-    Raises `DrawingError` if they enclose nothing, or have too many shells, or two that cross.
+    With them come the numbers of the parts of the body that they belong to. Raises `DrawingError` if they enclose
+    nothing, or have too many shells, or two that cross.
     """
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
-    points = points - middle
-    shell = joined(triangles, len(points))[triangles[:, 0]].astype(np.intp)
-    shell = np.unique(shell, return_inverse=True)[1]
-    volumes = np.bincount(shell, six_volumes(points, triangles)) / 6
-    size = float(np.abs(volumes).max())
-    if not size > LEAST_VOLUME * float(np.ptp(points, axis=0).max()) ** 3:
+    a, b, c = np.moveaxis((points - middle)[triangles], 1, 0)
+    pieces = (a * np.cross(b, c)).sum(axis=1) / 6
+    if not abs(pieces.sum()) > LEAST_VOLUME * float(np.ptp(points, axis=0).max()) ** 3:
         raise DrawingError("thin", "encloses nothing: its surface has no inside", file)
+    if inside_out := bool(pieces.sum() < 0):
+        triangles, pieces = triangles[:, ::-1], -pieces
+    shell = shells_of(points, triangles)
+    volumes = np.bincount(shell, pieces).astype(float)
+    size = float(np.abs(volumes).max())
     notes = list[MeshNote]()
 
     def note(kind: str, which: Bools, one: str, many: str) -> None:
         count = int(which.sum())
         if count:
-            at = [
-                (points[triangles[(shell == k).argmax(), 0]] + middle).tolist()
-                for k in np.flatnonzero(which)[:MAX_SHELLS]
-            ]
+            at = [points[triangles[(shell == k).argmax(), 0]].tolist() for k in np.flatnonzero(which)[:MAX_SHELLS]]
             words = f"{one if count == 1 else many.format(count)}, {np.abs(volumes[which]).sum():.3g} m3"
             notes.append(MeshNote(kind, count, words, at))
 
-    if inside_out := bool(volumes[np.abs(volumes).argmax()] < 0):
-        triangles, volumes = triangles[:, ::-1], -volumes
     counts = np.abs(volumes) >= CRUMB * size
     if counts.sum() > MAX_SHELLS:
         raise DrawingError("shells", f"has {counts.sum():,} closed surfaces", file, hint="keep those of one body")
-    within = _depths(points, triangles, shell, volumes, counts, middle, file) % 2 == 1
+    lies_in = _nested(points, triangles, shell, volumes, counts, file)
+    if (lies_in[counts] & lies_in[counts].T).any():
+        raise DrawingError("shells", "two of its surfaces lie on each other", file, hint="leave one of them out")
+    within = lies_in.sum(axis=1) % 2 == 1
     turned = counts & ~within & (volumes < 0)
     note("crumbs", ~counts, "1 crumb is left out", "{} crumbs are left out")
     note("cavities", counts & within & (volumes < 0), "1 cavity is cut out", "{} cavities are cut out")
     swallowed = counts & within & (volumes > 0)
     note("within", swallowed, "1 part inside the body is left out: its faces point outwards, unlike those of a cavity",
          "{} parts inside the body are left out: their faces point outwards, unlike those of cavities")  # fmt: skip
-    note("parts", counts & ~within & (np.abs(volumes) < size), "1 separate part counts as part of the body",
+    others = counts & ~within & (np.arange(len(volumes)) != np.abs(volumes).argmax())
+    note("parts", others, "1 separate part counts as part of the body",
          "{} separate parts count as parts of the body")  # fmt: skip
     note("turned", turned | inside_out & counts, "1 surface is turned outwards", "{} surfaces are turned outwards")
     triangles = np.where(turned[shell, None], triangles[:, ::-1], triangles)
-    return triangles[(counts & ~swallowed)[shell]], notes
+    holder = np.where(lies_in, np.abs(volumes[counts]), np.inf).argmin(axis=1)  # of a cavity
+    part = np.where(within, np.flatnonzero(counts)[holder], np.arange(len(volumes)))
+    kept = (counts & ~swallowed)[shell]
+    return triangles[kept], part[shell][kept], notes
 
 
-def _depths(
-    points: Reals, triangles: Triangles, shell: Names, volumes: Reals, counts: Bools, middle: Reals, file: str
-) -> Names:  # fmt: skip
-    """Return in how many of some shells each of them lies, by rays upwards from points just within its surface.
+def _nested(points: Reals, triangles: Triangles, shell: Integers, volumes: Reals, counts: Bools, file: str) -> Bools:
+    """Return which shells lie in which of those that count, by points just within their surface.
 
     Raises `DrawingError` if only some of these points lie in another shell.
     """
-    depths, which = np.zeros(len(volumes), np.intp), np.flatnonzero(counts)
-    if len(which) == 1:
-        return depths
-    corners = points[triangles]
-    low, high, of_which = corners.min(axis=1), corners.max(axis=1), counts[shell]
+    which = np.flatnonzero(counts)
+    nested = np.zeros((len(volumes), len(which)), bool)
+    corners = {k: points[triangles[shell == k]] for k in which.tolist()}
     touch = TOUCH * float(np.ptp(points, axis=0).max())
-    for k in which:
-        mine = np.flatnonzero(shell == k)
-        beside = of_which & (shell != k) & (low[:, :2] <= high[mine, :2].max(axis=0)).all(axis=1)
-        beside &= (high >= low[mine].min(axis=0)).all(axis=1)
-        count = max(min(PROBED, PASSES // max(int(beside.sum()), 1)) // len(which), 1)
-        some = corners[mine[np.linspace(0, len(mine) - 1, min(count, len(mine))).astype(np.intp)]]
+    share = max(min(PROBED, PASSES // len(triangles)) // len(which), 1)
+    for k, mine in corners.items():
+        some = mine[np.linspace(0, len(mine) - 1, min(share, len(mine))).astype(np.intp)]
         normals = np.cross(some[:, 1] - some[:, 0], some[:, 2] - some[:, 0])
         lengths = np.linalg.norm(normals, axis=1)
         plain = lengths > touch * np.ptp(some, axis=1).max(axis=1)  # the normal of a sliver leads anywhere
-        if not beside.any() or not plain.any():
-            continue
         inwards = -np.sign(volumes[k]) * touch * normals[plain] / lengths[plain, None]
         probes = (NEAR_CORNER @ some[plain] + inwards[:, None]).reshape(-1, 3)
-        within = np.zeros((len(probes), len(volumes)), bool)
-        floor, roof, others, surface = low[beside, :2], high[beside], corners[beside], shell[beside]
-        for each, p in zip(within, probes, strict=True):
-            over = np.flatnonzero((floor <= p[:2]).all(axis=1) & (roof >= p).all(axis=1))
-            each[:] = np.bincount(surface[over], _crossings(others[over], p), minlength=len(volumes)) != 0
-        crossed = within.any(axis=0) & ~within.all(axis=0)
-        if crossed.any():
-            at = probes[within[:, crossed.argmax()].argmax()] + middle
-            what = (
-                f"two of its surfaces cross: one is partly inside the other, at ({', '.join(f'{x:.4g}' for x in at)}) m"
-            )
-            advice = "join the two in the program that made them, or give `hull` for the convex hull, which is heavier"
-            raise DrawingError("shells", what, file, [at.tolist()], advice)
-        depths[k] = within[0].sum()
-    return depths
+        for j in np.flatnonzero(which != k).tolist():
+            within = encloses(corners[which[j]], probes)
+            if within.any() and not within.all():
+                at = probes[within.argmax()].tolist()
+                place = ", ".join(f"{x:.4g}" for x in at)
+                what = f"two of its surfaces cross: one is partly inside the other, at ({place}) m"
+                advice = "join them in the program that made them, or give `hull` for the convex hull, which is heavier"
+                raise DrawingError("shells", what, file, [at], advice)
+            nested[k, j] = within.any()
+    return nested
 
 
-def _crossings(corners: Reals, p: Reals) -> Reals:
-    """Return for each triangle whether a ray upwards from a point crosses it: 1 on the way out, -1 on the way in."""
-    ends = np.roll(corners, -1, axis=1)
-    swap = (corners[..., 1] > ends[..., 1])[..., None]
-    a, b = np.where(swap, ends, corners), np.where(swap, corners, ends)  # a side crosses alike in both its triangles
-    spans = (a[..., 1] > p[1]) != (b[..., 1] > p[1])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        share = (p[1] - a[..., 1]) / (b[..., 1] - a[..., 1])
-        right = spans & (a[..., 0] + share * (b[..., 0] - a[..., 0]) > p[0])
-        normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        z = corners[:, 0, 2] - ((p - corners[:, 0])[:, :2] * normal[:, :2]).sum(axis=1) / normal[:, 2]
-    return np.asarray(np.where((right.sum(axis=1) % 2 == 1) & (z > p[2]), np.sign(normal[:, 2]), 0.0))
+def encloses(corners: Reals, probes: Reals) -> Bools:
+    """Return which of some points lie within the closed surface of triangles, shape (m, 3, 3), by its solid angle."""
+    inside = ((corners.min(axis=(0, 1)) <= probes) & (probes <= corners.max(axis=(0, 1)))).all(axis=1)
+    for k in np.flatnonzero(inside):
+        a, b, c = np.moveaxis(corners - probes[k], 1, 0)
+        p, q, r = (np.linalg.norm(each, axis=1) for each in (a, b, c))
+        cosine = p * q * r + (a * b).sum(axis=1) * r + (b * c).sum(axis=1) * p + (c * a).sum(axis=1) * q
+        inside[k] = abs(np.arctan2((a * np.cross(b, c)).sum(axis=1), cosine).sum()) > np.pi
+    return np.asarray(inside)

@@ -19,12 +19,13 @@ from rocking_cli.questions.import_mesh.foot import (
     LevelRow,
     edges_of,
     foot_of,
+    glued,
     levels_of,
     settled,
     towards,
     weakest_of,
 )
-from rocking_cli.questions.import_mesh.silhouette import sides_of, silhouette
+from rocking_cli.questions.import_mesh.silhouette import Cuts, cuts_of, silhouette
 from rocking_cli.questions.import_mesh.solid import (
     MeshNote,
     Moments,
@@ -33,15 +34,13 @@ from rocking_cli.questions.import_mesh.solid import (
     hull_of,
     merged,
     moments,
-    once,
     solid,
 )
 from rocking_cli.short_repr import short_repr
-from rocking_cli.units import KINDS, STANDARD_GRAVITY
+from rocking_cli.units import KINDS
 
 UPWARDS = {"z": np.eye(3), "y": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])}
 """Turns from the axes of a file to z upwards, by the axis that points upwards there."""
-GRAVITY = float(STANDARD_GRAVITY)
 DIGITS = 7  # decimals of lengths in a file [m]
 ROLLS = 12  # sides of a foot from which it is called round
 GUESSES = ("mm", "cm", "m")
@@ -130,8 +129,8 @@ class ImportedMesh:
         return len(self.edges) >= ROLLS
 
     @cached_property
-    def _sides(self) -> Triangles:
-        return sides_of(self.triangles)
+    def _cuts(self) -> Cuts:
+        return cuts_of(self.points, self.triangles)
 
     @cached_property
     def structures(self) -> Sequence[Mechanism]:
@@ -146,13 +145,13 @@ class ImportedMesh:
         """The structure of the first azimuth, or that of the weakest edge. Raises `DrawingError` without a density."""
         return self.structures[0]
 
-    def structure_of(self, row: AzimuthRow | None, name: str | None = None) -> Mechanism:
+    def structure_of(self, row: AzimuthRow | None) -> Mechanism:
         """Return the structure that rocks as the body does towards an azimuth, or over its weakest edge."""
         if self.mass is None:
             raise DrawingError("density", "the mass of the body is not known: give `density`", self.file)
         edge, drive = (self.weakest, 1.0) if row is None else (row.edge, row.drive)
         back = (row or towards(self.edges, edge.azimuth, self.height)).back
-        outline = silhouette(self.points, self._sides, np.radians(edge.azimuth))
+        outline = silhouette(self._cuts, np.radians(edge.azimuth))
         fields: dict[str, Any] = {
             "mass": _short(self.mass),
             "centroid": [0.0, round(self.height, DIGITS)],
@@ -163,8 +162,6 @@ class ImportedMesh:
         }
         if _short(drive) < 1:
             fields["drive"] = _short(drive)
-        if name is not None:
-            fields["name"] = name
         return Registry()["rigid_body"](**fields)
 
 
@@ -191,18 +188,13 @@ def imported(surface: MeshSurface, file: str, options: MeshOptions, azimuths: Se
     turn = UPWARDS[options.up]
     points, triangles, notes = surface.points @ turn.T * scale, surface.triangles, _rounding(surface, file, scale)
     if len(triangles):
-        points, triangles = merged(points, triangles)
-        kept = once(triangles, len(points))
-        if again := len(triangles) - len(kept):
-            words = (
-                f"{again:,} triangles repeat others, and do not count" if again > 1 else "1 triangle repeats another"
-            )
-            notes.append(MeshNote("again", again, words))
-        triangles = kept
-        loose = int((np.bincount(triangles.ravel(), minlength=len(points)) == 0).sum())
-        if loose and not options.hull:
+        if loose := len(points) - len(np.unique(triangles)):
             words = f"{loose:,} points belong" if loose > 1 else "1 point belongs"
-            notes.append(MeshNote("loose", loose, f"{words} to no face: the file may be cut short"))
+            notes.append(MeshNote("loose", loose, f"{words} to no face, and left out: the file may be cut short"))
+        points, triangles, again = merged(points, triangles)
+        if again:
+            words = f"{again:,} triangles repeat others" if again > 1 else "1 triangle repeats another"
+            notes.append(MeshNote("again", again, f"{words}, and left out"))
     if options.hull:
         enclosed = _volume(points, triangles)
         points, triangles, planes = hull_of(points, file)
@@ -212,10 +204,10 @@ def imported(surface: MeshSurface, file: str, options: MeshOptions, azimuths: Se
         raise DrawingError("open", what, file, hint=advice)
     else:
         closed(points, triangles, file)
-    triangles, shells = solid(points, triangles, file)
+    triangles, part, shells = solid(points, triangles, file)
     notes += [replace(each, at=(np.array(each.at) @ turn).tolist()) for each in shells]
-    used = np.bincount(triangles.ravel(), minlength=len(points)) > 0
-    points, triangles = points[used], (np.cumsum(used) - 1)[triangles]
+    used, triangles = np.unique(triangles, return_inverse=True)
+    points = points[used]
     whole, turned = moments(points, triangles), 0.0
     if options.hull:
         more = "more than the body" if enclosed is None else f"{100 * (whole.volume / enclosed - 1):.2g} % more"
@@ -231,11 +223,12 @@ def imported(surface: MeshSurface, file: str, options: MeshOptions, azimuths: Se
     height = float(whole.centroid[2])
     corners = foot_of(points, options.level)
     edges = _standing(points, whole, corners, options.level, file)
+    notes += glued(points, triangles, part, options.level)
     return ImportedMesh(
         file=file, format=surface.format, options=options, points=points, triangles=triangles, shift=shift.tolist(),
         whole=whole, turned=turned, foot=corners, edges=edges,
         azimuths=[towards(edges, azimuth, height) for azimuth in azimuths], weakest=weakest_of(edges),
-        levels=levels_of(points, height, whole, GRAVITY), notes=notes,
+        levels=levels_of(points, whole), notes=notes,
     )  # fmt: skip
 
 
@@ -290,7 +283,7 @@ def _standing(points: Reals, whole: Moments, corners: Sequence[complex], level: 
         what = f"stands on {on} {within} of the ground, {angle:.2f} degrees from a facet of its hull"
         at = [[each.real, each.imag] for each in corners]
         raise DrawingError("point", what, file, at, "`settle` lays it down; a larger `level` takes in more points")
-    edges = edges_of(corners, float(whole.centroid[2]), whole, GRAVITY)
+    edges = edges_of(corners, whole)
     least = min(each.c for each in edges)
     if not least > 0:
         what = f"its centre of mass is not above its foot {within} of the ground, but {-least:.3g} m beside it"

@@ -23,7 +23,7 @@ from rocking_cli.studies.movements import Watched
 from tests.following import respond
 
 BLOCK = Block(width=0.7, height=2.8)
-PULSE = GroundMotion("pulse", 0.01, -0.35 * STANDARD_GRAVITY * np.sin(np.linspace(0, 2 * np.pi, 81)))
+PULSE = GroundMotion("pulse", 0.01, -0.35 * STANDARD_GRAVITY * np.sin(np.linspace(0, 2 * np.pi, 81)), unit="m/s2")
 
 
 def words(axes):
@@ -78,7 +78,7 @@ def test_what_happens_is_named_at_the_curve_and_on_no_other():
 def test_the_axes_fit_what_happens_end_at_a_tick_and_say_what_is_left_out():
     """A motion of 40 s of which the structure rocks for a few, and hardly: .05 phi_cr fills the panel."""
     shaking = np.concatenate([np.zeros(1000), PULSE.scaled(0.8).acceleration, np.zeros(3000)])
-    motion = GroundMotion("late", 0.01, shaking)
+    motion = GroundMotion("late", 0.01, shaking, unit="m/s2")
     run = respond(BLOCK, motion, models=("nonlinear",))["nonlinear"]
     assert 0.005 < run.peak_ratio < 0.05 and run.at_rest
     axes = draw_history({"nonlinear": run}, motion, "a block").axes[1]
@@ -87,7 +87,7 @@ def test_the_axes_fit_what_happens_end_at_a_tick_and_say_what_is_left_out():
     start, end = axes.get_xlim()
     assert start < run.uplift_time < run.end_time < end < 25 and {start, end} <= set(axes.get_xticks())
     assert axes.get_xlabel() == f"time [s]; not shown: 0 to {start:g} s and {end:g} to {motion.duration:.4g} s, at rest"
-    cut = GroundMotion("cut", 0.01, shaking[: int(run.uplift_time / 0.01) + 30])
+    cut = GroundMotion("cut", 0.01, shaking[: int(run.uplift_time / 0.01) + 30], unit="m/s2")
     short = respond(BLOCK, cut, models=("nonlinear",), tail=0.0)["nonlinear"]
     label = draw_history({"nonlinear": short}, cut, "a block").axes[1].get_xlabel()
     assert short.end_time > short.time[-1] and label.endswith(f"to {short.end_time:.4g} s, still moving")
@@ -194,7 +194,7 @@ def test_a_record_is_drawn_with_its_integrals_and_the_build_up():
 
 
 def test_a_record_of_zeros_can_be_drawn():
-    still = GroundMotion("still", 0.01, np.zeros(100))
+    still = GroundMotion("still", 0.01, np.zeros(100), unit="m/s2")
     assert len(draw_record(still, measure(still)).axes) == 4
 
 
@@ -216,7 +216,9 @@ class TestThinning:
             assert (drawn.min(), drawn.max()) == (part.min(), part.max())
 
     def test_a_record_far_longer_than_the_response_shown_is_not_thinned_away(self):
-        long = GroundMotion("long", 0.01, np.concatenate([PULSE.scaled(5).acceleration, np.zeros(300_000)]))
+        long = GroundMotion(
+            "long", 0.01, np.concatenate([PULSE.scaled(5).acceleration, np.zeros(300_000)]), unit="m/s2"
+        )
         figure = draw_history(respond(BLOCK, long, models=("nonlinear",)), long, "falls at once")
         above, below = figure.axes
         end = below.get_xlim()[1]

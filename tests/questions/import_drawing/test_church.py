@@ -71,7 +71,7 @@ def test_it_is_what_formulas_give(church):
 
 def test_what_is_not_the_structure_is_left_out_and_said(church):
     words = " / ".join(note.words for note in church.notes)
-    assert "it has 1 support, 2 loads, 1 tie" in words
+    assert "drawn: 1 support, 2 loads, 1 tie" in words
     for left in ("HATCH on RETINO", "LWPOLYLINE on SQUADRATURA", "DIMENSION on QUOTE", "LINE on ASSI"):
         assert f"left out: {2 if 'DIM' in left else 1} {left}" in words
 

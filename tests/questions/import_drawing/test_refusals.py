@@ -1,10 +1,13 @@
 """Every class of refusal of `rocking import`, reached by the command line with a file of its own."""
 
+import io
 import json
 import re
 
+import ezdxf
 import pytest
 from click.testing import CliRunner
+from ezdxf.xclip import XClip
 
 from rocking_cli.cli.main import main
 from tests import meshes
@@ -17,7 +20,7 @@ LEANING = meshes.extruded([(0.0, 0.0), (0.3, 0.0), (3.0, 3.0), (0.0, 3.0)], 0.5)
 INSERT = (
     "0\nSECTION\n2\nBLOCKS\n0\nBLOCK\n2\nK\n70\n{}\n1\nother.dwg\n0\nLINE\n11\n1\n0\nENDBLK\n0\nENDSEC\n0\nSECTION\n2\n"
 )
-INSERT += "ENTITIES\n0\nINSERT\n2\nK\n70\n32000\n71\n32000\n0\nENDSEC\n0\nEOF\n"
+INSERT += "ENTITIES\n0\nINSERT\n2\nK\n70\n32000\n71\n32000\n44\n1\n45\n1\n0\nENDSEC\n0\nEOF\n"
 PLY = "ply\nformat ascii 1.0\nelement vertex 8\nelement face 5000000\nend_header\n"
 
 
@@ -42,16 +45,25 @@ def drawing(*shapes):
     return json.dumps({"type": "FeatureCollection", "features": shapes}).encode()
 
 
+def clipped():
+    """A DXF file with an insert of which a part is hidden."""
+    document = ezdxf.new()
+    document.blocks.new("WALL").add_lwpolyline([(0, 0), (2, 0), (2, 3), (0, 3)], close=True)
+    XClip(document.modelspace().add_blockref("WALL", (0, 0), {"layer": "MURO"})).set_wcs_clipping_path([(0, 0), (1, 3)])
+    document.write(stream := io.StringIO())
+    return stream.getvalue().encode()
+
+
 WALL = box(100, 0, 1, 2)
 M, D = ["--units", "m"], ["--units", "m", "--density", "2000"]
 REFUSED = [  # class, ending, content, options, words, and place
     ("units", "geojson", drawing(box(0, 0, 600, 2400)), [], "give --units .it is 2400 units large: 2.4 m if mm", []),
     ("units", "csv", b"0,0\n6,0\n6,24\n", ["--units", "km"], "would be 2.4e.04 m large: give other --units", []),
     ("units", "obj", meshes.obj(MESH), [], "a mesh does not say its units: give --units", []),
-    ("layers", "geojson", drawing(*(box(9 * k, 0, 1, 1, name) for k, name in enumerate(("MURO", "0", "MURO")))), M,
-     "MURO has 2 outlines, 0 has 1: give --layers bodies=MURO", []),
+    ("layers", "geojson", drawing(*(box(9 * k, 0, 1, 1, name) for k, name in enumerate(("FOGLIO", "0", "FOGLIO")))), M,
+     "FOGLIO has 2 outlines, 0 has 1; 2 of them .* --layers bodies=FOGLIO,0 ", []),
     ("layers", "geojson", drawing(WALL, box(9, 0, 1, 1, "MATTE")), M,
-     "bodies=MATTE, openings=MATTE or nothing=MATTE", []),
+     "MATTE has no known role: by what is drawn there, --layers bodies=MATTE .other roles: nothing", []),
     ("empty", "geojson", drawing(shape("Point", [500, 0])), M, "no outline in it, only 1 Point", []),
     ("empty", "obj", b"# nothing\n", D, "has no points", []),
     ("unclosed", "csv", b"0,0\n1,0\n\n1,0\n1,2\n\n1,2\n0,2\n\n0,2\n0,0.03\n", M,
@@ -80,6 +92,7 @@ REFUSED = [  # class, ending, content, options, words, and place
      "a tie ends on no body", [[106, 1]]),
     ("mechanism", "geojson", drawing(WALL, box(105, 3, 1, 1)), M, "'b2' touches nothing", [[105.5, 3.5]]),
     ("xref", "dxf", INSERT.format(4).encode(), M, "refers to another file, other.dwg", []),
+    ("clipped", "dxf", clipped(), M, r"INSERT \w+ on layer MURO shows only a part of its block WALL \(XCLIP\)", []),
     ("xref", "svg", b'<svg><use href="b.svg#a"/></svg>', M, "another file, b.svg#a", []),
     ("degrees", "geojson", drawing(body([12.49, 41.89], [12.4901, 41.89], [12.49, 41.8902])), M, "look like degrees",
      [[12.49, 41.89]]),
@@ -100,12 +113,13 @@ REFUSED = [  # class, ending, content, options, words, and place
     ("thin", "obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2 1\n", D, "its surface has no inside", []),
     ("cut", "stl", meshes.stl(MESH)[:-20], D, "announces 12 faces, and has 11", []),
     ("damaged", "obj", b"v 0 0 0\nv 1 0 0\nf 1 2 9\n", D, "cannot be read as OBJ", []),
-    ("too_large", "ply", PLY.encode(), D, "has 5,000,000 faces", []),
+    ("cut", "ply", PLY.encode(), D, "announces 8 points and 5,000,000 faces, and has 0 and 0", []),
 ]  # fmt: skip
 HINTS = {
-    "xref": "bind it", "xref svg": "put its content into", "degrees": "save it in a projection", "cut": "save it again",
+    "xref": "bind it", "clipped": "explode it", "xref svg": "put its content into",
+    "degrees": "save it in a projection", "cut": "save it again",
     "too_large": "save what is needed", "not_svg": "save the drawing as SVG", "open": "close its holes, or give --hull",
-    "point": "--settle", "falls": "--settle", "shells": "keep those of one body", "too_large ply": "reduce the mesh",
+    "point": "--settle", "falls": "--settle", "shells": "keep those of one body",
 }  # fmt: skip
 LINES = {"xref svg": 1, "number csv": 2, "not_svg": 1, "not_geojson": 1, "not_csv": 2}
 

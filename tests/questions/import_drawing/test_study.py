@@ -181,8 +181,8 @@ def test_moments_are_those_of_an_integral_along_the_edge(bulge):
 REFUSED = {
     "units": (([box(0, 0, 600, 2400)], {"units": None}), "it is 2400 units large: 2.4 m if mm, 24 m if cm"),
     "layers": (
-        ([box(0, 0, 1, 1, "MURO"), box(3, 0, 1, 1, "MURO"), box(6, 0, 1, 1, "0")], {}),
-        "MURO has 2 outlines, 0 has 1",
+        ([box(0, 0, 1, 1, "FOGLIO"), box(3, 0, 1, 1, "FOGLIO"), box(6, 0, 1, 1, "0")], {}),
+        "FOGLIO has 2 outlines, 0 has 1",
     ),
     "crosses": (([outline([(0, 0), (1, 1), (1, 0), (0, 1)])], {}), r"crosses itself at (0.5, 0.5)"),
     "unclosed": (
@@ -231,8 +231,8 @@ class TestLayers:
 
     def test_lines_that_close_only_with_those_of_another_layer_are_not_left_out(self):
         walls = [box(0, 0, 1, 2, "SPALLE"), box(3, 0, 1, 2, "SPALLE")]
-        lintel = [line((0, 2.5), (4, 2.5), "ARCO"), line((0, 2), (0, 2.5), "ARCO"), line((4, 2), (4, 2.5), "ARCO")]
-        with pytest.raises(DrawingError, match="ARCO has 1") as caught:
+        lintel = [line((0, 2.5), (4, 2.5), "ALTO"), line((0, 2), (0, 2.5), "ALTO"), line((4, 2), (4, 2.5), "ALTO")]
+        with pytest.raises(DrawingError, match="ALTO has 1") as caught:
             imported(*walls, *lintel)
         assert caught.value.refused == "layers"
         axes = [line((0.5, -1), (0.5, 3), "A1"), line((3.5, -1), (3.5, 3), "A1"), line((-1, 1), (5, 1), "A1")]
