@@ -45,6 +45,8 @@ class Bound(NamedTuple):
         Its point that meets a stop, at rest [m].
     restitution : float or None
         Ratio of the rates after and before, of a stop that throws the structure back; None: the model ends there.
+    direction : Direction
+        The direction.
     """
 
     phi: float
@@ -53,6 +55,7 @@ class Bound(NamedTuple):
     body: str = ""
     at: complex = 0j
     restitution: float | None = None
+    direction: Direction = Direction.POSITIVE
 
     @property
     def words(self) -> str:
@@ -112,7 +115,7 @@ def meeting(mechanism: Jointed, direction: Direction, end: float) -> Bound | Non
         phi = search.meet(one, other, first.phi if first is not None else search.phi[-1])
         if phi is not None:
             moves, met = (one, other) if one.link else (other, one)
-            first = Bound(phi, "meets", met.name, moves.name)
+            first = Bound(phi, "meets", met.name, moves.name, direction=direction)
     return first
 
 

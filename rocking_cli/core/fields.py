@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import (
@@ -38,17 +38,25 @@ Name = Annotated[str, AfterValidator(_shown_as_it_is)]
 
 
 MIN_BY_UNIT = {
-    "m": 1e-6, "m2": 1e-12, "m3": 1e-18, "s": 1e-6, "kg": 1e-6, "kg/m": 1e-6, "kg/m3": 1e-6, "kg m2": 1e-18,
-    "N/m3": 1e-6, "Pa": 1e-3, "m/s2": 1e-6, "g": 1e-6, "deg": 1e-6, "years": 1e-6,
+    "m": 1e-6, "m2": 1e-12, "m3": 1e-18, "s": 1e-6, "kg": 1e-6, "kg/m": 1e-6, "kg/m2": 1e-6, "kg/m3": 1e-6,
+    "kg m2": 1e-18, "N/m3": 1e-6, "Pa": 1e-3, "m/s2": 1e-6, "g": 1e-6, "deg": 1e-6, "years": 1e-6,
 }  # fmt: skip
 """Least value of a quantity that must be positive, by its unit: far below any structure, far above underflow."""
 
 
-LENGTH_POWERS = {"m": 1, "m2": 2, "m3": 3, "kg m2": 2, "kg/m": -1}
-"""Power of a scale factor on lengths, by the unit of a field; a mass per metre falls, so that its mass stays."""
+LENGTH_POWERS = {"m": 1, "m2": 2, "m3": 3, "kg m2": 2, "kg/m": -1, "kg/m2": -2, "force_per_metre": -1}
+"""Power of a scale factor on lengths, by a field or its unit; a load per metre falls, so that the whole stays."""
 
 
-def quantity(description: str, *, unit: str = "", symbol: str = "", example: Any = None, **bounds: Any) -> Any:
+def quantity(
+    description: str,
+    *,
+    unit: str = "",
+    columns: Sequence[str] = (),
+    symbol: str = "",
+    example: Any = None,
+    **bounds: Any,
+) -> Any:
     """Declare a numeric field of a mechanism: its description, unit, symbol, example and bounds.
 
     Parameters
@@ -57,7 +65,10 @@ def quantity(description: str, *, unit: str = "", symbol: str = "", example: Any
         What the field is, a few words.
     unit : str
         SI unit of the field, or degrees if its name says so; empty if dimensionless. A plain number is in this unit,
-        and a text such as `800 mm` may have any unit of the same quantity, see `rocking_cli.units`.
+        and a text such as `800 mm` may have any unit of the same quantity, see `rocking_cli.units`; a dimensionless
+        number may be a percentage, `5 %`.
+    columns : sequence of str
+        Units of the columns of a table instead.
     symbol : str
         The paper's symbol.
     example : any
@@ -65,9 +76,8 @@ def quantity(description: str, *, unit: str = "", symbol: str = "", example: Any
     **bounds
         Passed to `pydantic.Field`: `gt`, `ge`, `lt`, `le`, `default`, ...
     """
-    return Field(
-        description=description, examples=[example], json_schema_extra={"unit": unit, "symbol": symbol}, **bounds
-    )
+    extra: Any = {"unit": unit, "columns": [*columns], "symbol": symbol}
+    return Field(description=description, examples=[example], json_schema_extra=extra, **bounds)
 
 
 def length(description: str, *, symbol: str = "", example: Any = None, **bounds: Any) -> Any:
@@ -100,11 +110,12 @@ def geometry_error(field: str | tuple[str | int, ...], message: str) -> Pydantic
     )
 
 
-def in_unit(value: Any, unit: str, weights: list[str]) -> Any:
-    """Return a value, or nested lists of values, with each text such as `800 mm` replaced by its number in `unit`.
+def in_unit(value: Any, units: str | Sequence[str], weights: list[str]) -> Any:
+    """Return a value, or nested lists of values, with each text such as `800 mm` replaced by its number in its unit.
 
-    Other values stay as they are. A weight for a mass is divided by standard gravity, and `weights` receives a remark
-    on it. Raises `ValidationError` with the places of all texts whose unit is wrong.
+    Several units are those of columns. Other values stay as they are. A weight for a mass is divided by standard
+    gravity, and `weights` receives a remark on it. Raises `ValidationError` with the places of all texts whose unit
+    is wrong.
     """
     wrong: list[InitErrorDetails] = []
 
@@ -113,7 +124,8 @@ def in_unit(value: Any, unit: str, weights: list[str]) -> Any:
             items = [number(item, (*place, k)) for k, item in enumerate(each)]
             return tuple(items) if isinstance(each, tuple) else items
         parts = split(each) if isinstance(each, str) else None
-        if parts is None or not parts[1]:
+        unit = units if isinstance(units, str) else dict(enumerate(units)).get(place[-1] if place else 0, "")
+        if parts is None or not parts[1] or not (unit or parts[1] == "%"):
             return each
         try:
             mass = mass_of_weight(each, unit)
@@ -132,6 +144,12 @@ def in_unit(value: Any, unit: str, weights: list[str]) -> Any:
     if wrong:
         raise ValidationError.from_exception_data("quantity", wrong)
     return converted
+
+
+def units_of_field(field: FieldInfo) -> Any:
+    """Return the unit of a field, or those of its columns; None if it is not a quantity."""
+    extra = field.json_schema_extra
+    return extra.get("columns") or extra.get("unit", "") if isinstance(extra, dict) else None
 
 
 def least(field: FieldInfo) -> float:
@@ -199,7 +217,8 @@ class Described(BaseModel):
         changed = {}
         for key, info in type(self).model_fields.items():
             extra, value = info.json_schema_extra, getattr(self, key)
-            power = LENGTH_POWERS.get(str(extra.get("unit")), 0) if isinstance(extra, dict) else 0
+            unit = str(extra.get("unit")) if isinstance(extra, dict) else ""
+            power = LENGTH_POWERS.get(key, LENGTH_POWERS.get(unit, 0))
             if (new := _multiplied(value, factor, power)) != value:
                 changed[key] = new
         return self.model_copy(update=changed)
@@ -213,9 +232,9 @@ class Described(BaseModel):
             value = list(value)
         if not isinstance(value, str | list | tuple):
             return value
-        extra, weights = cls.model_fields[info.field_name or ""].json_schema_extra, list[str]()
-        if isinstance(extra, dict) and extra.get("unit"):
-            value = in_unit(value, str(extra["unit"]), weights)
+        units, weights = units_of_field(cls.model_fields[info.field_name or ""]), list[str]()
+        if units is not None:
+            value = in_unit(value, units, weights)
         if info.context is not None:
             info.context["weights"] += weights
         return value

@@ -209,6 +209,7 @@ class Given(Described):
         examples=[{"slenderness": 0.05, "restitution": 0.02}],
         description="how well it is known; `rocking mechanisms uncertainty` lists its fields",
     )
+    unusual: list[Name] | None = Field(None, examples=[["width"]], description="fields whose unusual values are meant")
     strength: Strength | None = Field(
         None,
         examples=[{"stress": 3e6, "width": 0.05}],
@@ -326,9 +327,9 @@ class Given(Described):
         """Sentences, without a full stop, on weights that were read as masses, and on masses per metre."""
         depth = self.depth or 0.0
         over = [
-            f"{load.name}: {load.mass_per_metre:.6g} kg/m over a depth of {depth:g} m is "
-            f"{load.mass_per_metre * depth:.6g} kg{load.carried_in_words}"
-            for load in self.loads or () if load.mass_per_metre is not None
+            f"{load.name}: {load.on_a_metre:.6g} kg/m over a depth of {depth:g} m is "
+            f"{load.on_a_metre * depth:.6g} kg{load.carried_in_words}"
+            for load in self.loads or () if load.on_a_metre is not None
         ]  # fmt: skip
         return [*self._weights, *over]
 

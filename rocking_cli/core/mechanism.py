@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from itertools import pairwise
-from math import isclose, nan, sqrt
+from math import nan, sqrt
 from typing import Any, Self, final
 
 import numpy as np
@@ -28,7 +28,6 @@ from rocking_cli.core.hung.attachments import (
     RefusedFields,
     as_validation_error,
     attach,
-    far_off,
     followed,
     interlocked,
 )
@@ -39,7 +38,6 @@ from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.core.sketch import Outline
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.plugins.errors import failed, guard
-from rocking_cli.units import STANDARD_GRAVITY
 
 
 class Mechanism(Jointed):
@@ -143,11 +141,6 @@ class Mechanism(Jointed):
         if len(outlines) < len(bodies) and (sketch := self.sketch()).uniform:
             outlines = {**sketch.outlines, **outlines}
         return Carrier({body.name: body for body in bodies}, outlines, self.alike(), self.piece, self.depth)
-
-    @final
-    def far_off(self) -> list[str]:
-        """Return a sentence, without a full stop, for each load that is far from the body that carries it."""
-        return list(far_off(self.carrier, self.loads)) if self.loads else []
 
     @property
     @final
@@ -280,7 +273,7 @@ class Mechanism(Jointed):
         first = _first(beyond, end)
         if first is None:
             return None
-        return Bound(first, "meets", stop.name, body, at, stop.restitution)
+        return Bound(first, "meets", stop.name, body, at, stop.restitution, direction)
 
     @final
     def yields(self, direction: Direction, end: float) -> Bound | None:
@@ -292,7 +285,7 @@ class Mechanism(Jointed):
                 return bar.elongation(self.followed(phi, direction))[0] - bar.yield_elongation
 
             if (first := _first(beyond, end)) is not None:
-                bounds.append(Bound(first, "yields", bar.name))
+                bounds.append(Bound(first, "yields", bar.name, direction=direction))
         return min(bounds, key=lambda bound: bound.phi, default=None)
 
     @final
@@ -540,9 +533,6 @@ def why_none(eta: float) -> str:
     )
 
 
-MIN_USUAL_SIZE, MAX_USUAL_SIZE = 0.01, 100.0  # m: other sizes are usually mistakes of unit
-
-
 def extent(mechanism: Mechanism) -> float:
     """Return the largest length of a structure [m]: of the box around its bodies, or from a pivot to a centroid.
 
@@ -553,58 +543,3 @@ def extent(mechanism: Mechanism) -> float:
     moved = [motion.carry(body.centroid)[1][0] for body, motion in zip(
         bodies, mechanism.motion(np.zeros(1), Direction.POSITIVE), strict=True)]  # fmt: skip
     return float(max(abs(complex(np.ptp(z.real), np.ptp(z.imag))), *np.abs(moved)))
-
-
-def doubtful_size(mechanism: Mechanism) -> str | None:
-    """Return what is unusual about the size of a structure, a sentence without a full stop; None if nothing is.
-
-    Parameters
-    ----------
-    mechanism : Mechanism
-        Any structure. If its plugin fails here, the size is not judged.
-    """
-    try:
-        with np.errstate(all="ignore"):
-            size = extent(mechanism)
-    except Exception:  # a plugin may fail in any way; its next use reports it
-        return None
-    if MIN_USUAL_SIZE <= size <= MAX_USUAL_SIZE or not np.isfinite(size):
-        return None
-    odd = []
-    for key, info in type(mechanism).model_fields.items():
-        extra, value = info.json_schema_extra, getattr(mechanism, key)
-        if not isinstance(extra, dict) or extra.get("unit") != "m" or not isinstance(value, float | list):
-            continue
-        length = value if isinstance(value, float) else float(np.ptp(value, axis=0).max())
-        says = f"{key} {'is' if isinstance(value, float) else 'spans'} {length:g} m"
-        if size > MAX_USUAL_SIZE and length > MAX_USUAL_SIZE:
-            odd.append((says, f"{length:g} mm"))
-        elif size < MIN_USUAL_SIZE and 0 < length < MIN_USUAL_SIZE:
-            odd.append((says, f"{1000 * length:g} m"))
-    if not odd:
-        return f"it is {size:.3g} m large: are the units right?"
-    return f"{', '.join(says for says, _ in odd)}: did you mean {' and '.join(meant for _, meant in odd)}?"
-
-
-MIN_USUAL_DENSITY = 100.0  # kg/m3; a smaller number is usually a unit weight in kN/m3
-MIN_USUAL_WEIGHT = 5.0  # kN/m3; a smaller number is usually a density in t/m3
-MAX_USUAL_DENSITY = 25_000.0  # kg/m3; no building material is heavier
-
-
-def _doubtful_density(density: float) -> str | None:
-    """Return a sentence on a density [kg/m3] that no building material has; None for any other."""
-    if density < MIN_USUAL_DENSITY:
-        unit = "t/m3" if density < MIN_USUAL_WEIGHT else "kN/m3"
-        return f"density is {density:g} kg/m3: did you mean {density:g} {unit}?"
-    if density <= MAX_USUAL_DENSITY:
-        return None
-    weight = density * float(STANDARD_GRAVITY) / 1000  # kN/m3
-    as_given = isclose(weight, round(weight), rel_tol=1e-9) and weight <= MAX_USUAL_DENSITY
-    meant = f"did you mean {weight:g} kg/m3?" if as_given else "are the units right?"
-    return f"density is {density:g} kg/m3, more than any building material: {meant}"
-
-
-def doubts(mechanism: Mechanism) -> list[str]:
-    """Return what is unusual about the size or density of a structure or the places of its loads, as sentences."""
-    density = _doubtful_density(mechanism.density) if mechanism.density is not None else None
-    return [*filter(None, (doubtful_size(mechanism), density)), *mechanism.far_off()]

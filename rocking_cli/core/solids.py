@@ -33,7 +33,7 @@ class Solid:
     depth : float
         Size out of plane [m]; 1 for a cone.
     corners : sequence of complex
-        Corners of a polygon, anticlockwise [m].
+        Corners of a polygon or a level rectangle, anticlockwise [m]; empty if its place is not known.
     sign : int
         1, or -1 for a part that is taken out.
     count : float
@@ -56,7 +56,7 @@ class Solid:
         x, y = (sorted(getattr(corner, part) for corner in corners) for part in ("real", "imag"))
         width, height = x[-1] - x[0], y[-1] - y[0]
         if len(corners) == 4 and abs(area_of(corners) - width * height) <= LEVEL_SHARE * width * height:
-            return cls("rectangle", (width, height), density, depth, sign=sign)
+            return cls("rectangle", (width, height), density, depth, corners, sign)
         return cls("polygon", (), density, depth, corners, sign)
 
     @property

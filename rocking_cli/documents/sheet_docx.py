@@ -29,6 +29,7 @@ COUNT_WIDTH = 1.1  # cm of the column with the numbers of steps
 CELL_MARGIN = 3  # characters that are as wide as the margins of a cell
 MAX_COLUMN_LENGTH = 18  # characters of the text of a cell that its column is made wide for; a word is not broken
 LOGO_HEIGHT = 1.6  # cm
+BLANK = "_" * 40  # what is filled in by hand in the heading
 SIGNATURE_LINES = 5  # empty lines of the place for a signature or a stamp
 PICTURE_PREFIXES = ("data:image/png;", "data:image/jpeg;")
 """Beginnings of the data addresses of pictures that a document can contain."""
@@ -82,7 +83,7 @@ class _Writer:
             self._logo(sheet.logo)
         self._text(self.document.add_heading(level=0), sheet.heading)
         self._text(self.document.add_paragraph(), sheet.subtitle)
-        self._table([*sheet.about.items()])
+        self._table([(name, text or BLANK) for name, text in sheet.about.items()])
         for k, each in enumerate(sheet.parts):
             self._part(each, 1)
             if k == 0:
@@ -122,6 +123,9 @@ class _Writer:
         section.page_width, section.page_height = Cm(21.0), Cm(29.7)
         section.left_margin = section.right_margin = section.top_margin = section.bottom_margin = Cm(2.0)
         self._field(section.footer.paragraphs[0], "PAGE", "1")
+        section.different_first_page_header_footer = True
+        self._field(section.first_page_footer.paragraphs[0], "PAGE", "1")
+        self._text(section.header.paragraphs[0], self.sheet.running)
         normal = self.document.styles["Normal"]
         normal.font.size = Pt(10)
         for name, size in FONT_SIZES.items():

@@ -48,6 +48,7 @@ def render(sheet: Sheet, *, still: bool = False) -> str:
     moving = [] if still else [each for part in sheet.parts for each in _moving(part)]
     page = template(
         "document.html",
+        css=css_text,
         formula=formula,
         math=math,
         is_wide=is_wide,
@@ -123,6 +124,11 @@ def formula(text: str) -> Markup:
     """Return a text with its sub- and superscripts as HTML."""
     pieces = (Markup(f"<{place}>{escape(text)}</{place}>") if place else escape(text) for text, place in runs(text))
     return Markup("").join(pieces)
+
+
+def css_text(text: str) -> Markup:
+    """Return a text as it stands between quotes in CSS: whatever is no letter or digit by its number."""
+    return Markup(re.sub(r"[^\w ]", lambda sign: f"\\{ord(sign[0]):x} ", text))
 
 
 def math(text: str) -> Markup:

@@ -100,7 +100,8 @@ def _files(sheet: Sheet) -> dict[str, bytes]:
 
     say = sheet.language
     content = {
-        "language": say.key, "heading": printable(sheet.heading), "subtitle": printable(sheet.subtitle),
+        "language": say.key, "heading": printable(sheet.heading), "running": printable(sheet.running),
+        "subtitle": printable(sheet.subtitle),
         "about": [[printable(name), printable(text)] for name, text in sheet.about.items()],
         "signed": [*map(say, sheet.signature)], "contents": say("Contents"), "logo-name": say("Logo"), "logo": None,
         "parts": _parts(sheet, sheet.parts, item),

@@ -8,17 +8,20 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from rocking_cli.dynamics.resting import early_failures
+from rocking_cli.core import Mechanism
+from rocking_cli.core.contacts import MASONRY_FRICTION
+from rocking_cli.core.plausible import OddNumber, questions
+from rocking_cli.dynamics.resting import early_failures, glued
 from rocking_cli.errors import InputError, PluginError, Problem
 from rocking_cli.io.yaml_file import Document, parse, read_text
 from rocking_cli.plugins.errors import blame
 from rocking_cli.structure import Structure
-from rocking_cli.studies.conclusion import LeftOut
+from rocking_cli.studies.conclusion import Effect, LeftOut
 from rocking_cli.studies.file_part import problems_of
 from rocking_cli.text import did_you_mean
 from rocking_cli.verification.code import DEFAULT_CODE, SITE_HINT, Code, SiteFile, codes
 from rocking_cli.verification.demand import SiteDemand
-from rocking_cli.verification.results import Control, Histories, Verification, Verified
+from rocking_cli.verification.results import Control, Histories, Remark, Verification, Verified
 
 
 def read_site(path: Path) -> SiteFile:
@@ -111,6 +114,23 @@ def refuse(site: SiteFile, *, control: bool = False, motions: bool = False) -> N
         raise InputError(Problem(f"{code.key} has no method with time histories", hint=hint))
 
 
+def questioned(structure: Structure, site: SiteFile) -> list[OddNumber]:
+    """Return what is unusual of masonry about a structure and a site, if the code of the site is for masonry.
+
+    Raises `InputError` with what is not possible, unless the files say that it is meant.
+    """
+    if not code_of(site).masonry:
+        return []
+    fields, odd = type(structure.mechanism).model_fields, questions(structure.mechanism, site.site)
+    if impossible := [each for each in odd if each.impossible]:
+        raise site.placed(InputError(*(
+            Problem(each.words, structure.file if each.name.partition(".")[0] in fields else None, field=each.name,
+                    hint=f"if it is meant, add `unusual: [{each.name}]`")
+            for each in impossible
+        )))  # fmt: skip
+    return odd
+
+
 def verify(
     structure: Structure,
     site: SiteFile,
@@ -135,6 +155,7 @@ def verify(
         If the structure does not stand.
     """
     refuse(site, control=control is not None)
+    unusual = questioned(structure, site)
     structure.ask("verification")
     structure.statics  # noqa: B018 - what does not stand, or jumps, is refused with its name
     code = code_of(site)
@@ -142,11 +163,13 @@ def verify(
     try:
         mechanism = structure.mechanism.at_strength()
         verification = _held(code.verify(mechanism, site.site, **taken), code, "verify")
-        # At rest between two directions a tie of steel has no force.
-        resting = structure.mechanism if mechanism.rocks_both_ways else mechanism
-        before = {each.failure.joint: 0 for each in early_failures(resting) if each.direction in mechanism.directions}
+        before = {each.failure.joint: 0 for each in early_failures(mechanism) if each.direction in mechanism.directions}
         starts_first = [LeftOut("mechanism", joint, "starts_first") for joint in before]
-        return replace(verification, left_out=[*verification.left_out, *starts_first])
+        left_out = [*verification.left_out, *starts_first]
+        remarks = [*_of_glue(mechanism), *verification.remarks]
+        remarks += [Remark.of("unusual", what=each.name) for each in unusual]
+        effects = {**verification.effects, "glued": Effect.CONDITION, "bonded": Effect.UNDECIDED}
+        return replace(verification, left_out=left_out, remarks=remarks, effects=effects)
     except InputError as error:
         mechanism_fields = type(structure.mechanism).model_fields
         placed = site.placed(error).problems
@@ -158,6 +181,15 @@ def verify(
                 for each in placed
             )
         ) from None
+
+
+def _of_glue(mechanism: Mechanism) -> list[Remark]:
+    """Return a remark on joints that need more friction than is usual, with what starts first without it."""
+    first = min(glued(mechanism), key=lambda each: each.failure.push, default=None)
+    if first is None:
+        return []
+    starts = {"usual": MASONRY_FRICTION, "push": first.failure.push / mechanism.gravity, "lambda_": first.lambda_}
+    return [Remark("bonded" if first.needed is None else "glued", {"needed": first.needed, **starts})]
 
 
 def _held(answer: object, code: Code, method: str) -> Verification:

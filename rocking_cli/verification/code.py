@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.metadata import EntryPoint
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import Field, PrivateAttr
 
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.fields import Name
@@ -23,7 +23,7 @@ from rocking_cli.studies.file_part import Part
 from rocking_cli.verification.demand import SiteDemand
 from rocking_cli.verification.results import Control, Histories, Verification, Verified
 
-CODE_METHODS = ("verify", "with_histories", "of_each", "located", "demand", "showing", "sheet")
+CODE_METHODS = ("verify", "with_histories", "strengthened", "of_each", "located", "demand", "showing", "sheet")
 """Methods that a code may define: any failure in them is reported as an error of the plugin."""
 
 
@@ -69,6 +69,8 @@ class Code(ABC):
         Numbers of the direction that governs, which a survey has for each structure in addition to the `ratio`.
     takes_control : bool
         Whether `verify` takes a control point.
+    masonry : bool
+        Whether it is for masonry, of which unusual numbers are questioned; its texts and its site then have `unusual`.
     """
 
     key: ClassVar[str]
@@ -79,6 +81,7 @@ class Code(ABC):
     numbers: ClassVar[Mapping[str, Number]] = {}
     row_numbers: ClassVar[Mapping[str, Number]] = {}
     takes_control: ClassVar[bool] = False
+    masonry: ClassVar[bool] = False
 
     def __init_subclass__(cls, **named: Any) -> None:
         """Wrap the methods of a subclass, so that errors in them are reported as errors of the plugin."""
@@ -120,6 +123,11 @@ class Code(ABC):
         Parameters are those of `rocking_cli.verification.check.with_histories`.
         """
         raise NotImplementedError
+
+    def strengthened(self, found: Any, other: Any, site: Any) -> Any:
+        """Return a verification beside that of the strengthened structure; a code may judge each by the other."""
+        del site
+        return replace(found, strengthened=other)
 
     @property
     def has_demand(self) -> bool:
@@ -164,6 +172,15 @@ class Site(Part):
 
     code: str = Field(DEFAULT_CODE, description="the code to verify by")
     name: Name | None = Field(None, description="what to call the site")
+    language: Literal["en", "it"] | None = Field(
+        None, examples=["it"], description="language of all answers at this site, en or it"
+    )
+    _named: dict[str, Path] = PrivateAttr(default_factory=dict)
+
+    @property
+    def named(self) -> dict[str, Path]:
+        """The files that fields name, by field, as `Code.located` found them."""
+        return self._named
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.listed import Scaled
 from rocking_cli.short_repr import short_repr
-from rocking_cli.studies.conclusion import Concluded, Conclusion, LeftOut, worst
+from rocking_cli.studies.conclusion import Concluded, Conclusion, Effect, LeftOut, Limit, worst
 
 Standing = Literal["print", "transcription", "code", "ours", "plain"]
 """How far a formula of a code was checked: `print`, `transcription` or `code`, or that it is not of the code.
@@ -340,10 +340,13 @@ class Remark(NamedTuple):
         Key of the sentence among the texts of the code.
     values : mapping of str to object
         Numbers, names and further remarks in the sentence.
+    states : sequence of str, optional
+        The limit states whose conclusion it limits, see `Verification.effects`; by default all.
     """
 
     key: str
     values: Mapping[str, Any]
+    states: Sequence[str] | None = None
 
     @classmethod
     def of(cls, key: str, /, **values: Any) -> Remark:
@@ -369,6 +372,8 @@ class Requirement(NamedTuple):
         Names of the ground motions by which it was verified, if any.
     motion : str
         The ground motion that takes the structure past its capacity, or whose outcome is unknown; empty if none does.
+    required : float or None
+        The ratio that is required; None if it is not known.
     """
 
     state: str
@@ -377,6 +382,7 @@ class Requirement(NamedTuple):
     concluded: Concluded
     motions: Sequence[str] = ()
     motion: str = ""
+    required: float | None = 1.0
 
     @classmethod
     def of(cls, state: str, method: str, ratio: float | None, passed: bool | None) -> Requirement:
@@ -439,6 +445,7 @@ class Verified:
             Conclusion(
                 concluded=check.concluded, limit_state=check.state, method=check.method,
                 direction=self.direction.label, ratio=check.ratio, motions=check.motions, motion=check.motion,
+                required=check.required,
             )
             for check in self.checks
         ]  # fmt: skip
@@ -474,8 +481,10 @@ class Verification:
         Remarks on the verification: sentences, or keys of the texts of the code.
     left_out : sequence of LeftOut
         What was given and does not count.
-    relies_on : sequence of Remark
-        What a satisfied verification relies on and may not be there, such as the force of a tie that stretches far.
+    rules : sequence of Remark
+        The rules of the code by which its limit states and the required ratio were chosen, if it has several.
+    effects : mapping of str to Effect
+        What remarks do to the conclusion, by their keys; remarks with other keys do nothing.
     strengthened : Verification, optional
         The same verification of the strengthened structure, with which this one is compared.
     """
@@ -488,7 +497,8 @@ class Verification:
     workings: Sequence[Working] = field(default=(), kw_only=True)
     remarks: Sequence[str | Remark] = field(default=(), kw_only=True)
     left_out: Sequence[LeftOut] = field(default=(), kw_only=True)
-    relies_on: Sequence[Remark] = field(default=(), kw_only=True)
+    rules: Sequence[Remark] = field(default=(), kw_only=True)
+    effects: Mapping[str, Effect] = field(default_factory=dict, kw_only=True)
     strengthened: Verification | None = field(default=None, kw_only=True)
 
     @property
@@ -499,8 +509,8 @@ class Verification:
 
     @property
     def conclusion(self) -> Conclusion:
-        """The worst check of all directions and limit states: "satisfied" needs all of them."""
-        conclusions = [conclusion for each in self.directions.values() for conclusion in each.conclusions]
+        """The worst check of all directions and limit states: "satisfied" needs all of them, and no remark on them."""
+        conclusions = [each for verified in self.directions.values() for each in self._limited(verified)]
         governs = worst(conclusions)
         alike = [
             each for each in conclusions if each.ratio is not None and governs.ratio is not None
@@ -508,23 +518,43 @@ class Verification:
             == (governs.concluded, governs.limit_state, governs.method) and _are_close(each.ratio, governs.ratio)
         ]  # fmt: skip
         preceded = any(each.what == "mechanism" for each in self.left_out)
-        satisfied = governs.concluded is Concluded.SATISFIED
+        uncovered = preceded and governs.concluded in (Concluded.SATISFIED, Concluded.SATISFIED_IF)
         return replace(
             governs,
-            concluded=Concluded.NOT_CHECKED if preceded and satisfied else governs.concluded,
-            relies=satisfied and not preceded and bool(self.relies_on),
+            concluded=Concluded.NOT_CHECKED if uncovered else governs.concluded,
             direction="" if len(alike) == len(self.directions) else governs.direction,
             limit_states=list(dict.fromkeys(each.limit_state for each in conclusions if each.limit_state)),
             directions=[direction.label for direction in self.directions],
             motions=list(dict.fromkeys(name for each in conclusions for name in each.motions)),
             left_out=self.left_out,
+            rules=[each.key for each in self.rules],
+            limits=[each for each in self.limits if each.stands_with(governs.concluded) and not uncovered],
         )
 
+    def concluded(self, verified: Verified, state: str) -> Concluded:
+        """Return the conclusion on a direction at a limit state: by its methods, or by histories in their place."""
+        at = [each for each in self._limited(verified) if each.limit_state == state]
+        return worst([each for each in at if each.method in verified.methods] or at).concluded
+
+    def _limited(self, verified: Verified) -> list[Conclusion]:
+        return [each.limited(self._limits(verified, each.limit_state)) for each in verified.conclusions]
+
     @property
-    def relied_on(self) -> Sequence[Remark]:
-        """What the conclusion relies on, without repetitions: nothing if the verification is not satisfied."""
-        relies = self.conclusion.relies
-        return [each for k, each in enumerate(self.relies_on) if relies and each not in self.relies_on[:k]]
+    def limits(self) -> list[Limit]:
+        """What limits a conclusion on the structure, whatever it is, each once."""
+        every = [
+            limit for verified in self.directions.values() for check in verified.checks
+            for limit in self._limits(verified, check.state)
+        ]  # fmt: skip
+        return [each for k, each in enumerate(every) if each not in every[:k]]
+
+    def _limits(self, verified: Verified, state: str) -> list[Limit]:
+        """Return what limits the conclusion on a direction at a limit state."""
+        return [
+            Limit(each.key, each.values, self.effects[each.key])
+            for each in (*verified.remarks, *self.remarks)
+            if isinstance(each, Remark) and each.key in self.effects and (each.states is None or state in each.states)
+        ]
 
     @property
     def deciding(self) -> Any:

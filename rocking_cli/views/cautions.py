@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from math import isclose
+from typing import Any
 
 from rocking_cli.core import Mechanism
+from rocking_cli.core.bounds import Bound
+from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.core.equivalence import EQUAL_DIRECTIONS
 from rocking_cli.core.mechanism import why_none
-from rocking_cli.dynamics.resting import early_failures
+from rocking_cli.dynamics.resting import MAX_FRICTION, early_failures, glued
 from rocking_cli.dynamics.sliding import sliding_of
 from rocking_cli.names import digits_apart, percent
+from rocking_cli.views.sheet.language import ENGLISH, Language
 from rocking_cli.views.verdict import SENSE
 
 OPENING_CAUTION = (
@@ -21,14 +25,12 @@ ONLY_SLIDES = "Stronger motions make it slide and not rock: time histories give 
 NEAR_FRICTION = 0.2  # relative difference of friction from that which decides, up to which there is a caution
 
 
-def cautions_of(mechanism: Mechanism) -> list[str]:
+def cautions_of(mechanism: Mechanism, say: Language = ENGLISH) -> list[str]:
     """Return all cautions on a structure; those on what starts before it rocks come first."""
+    cautions = [*before_rocking(mechanism), *of_friction(mechanism), *of_restitution(mechanism), *of_bounds(mechanism)]
     return [
-        *before_rocking(mechanism),
-        *of_friction(mechanism),
-        *of_restitution(mechanism),
-        *of_bounds(mechanism),
-        *mechanism.cautions(),
+        say.caution(mechanism.mechanism, each) if each == mechanism.caution else say.recognised("caution", each)
+        for each in (*cautions, *mechanism.cautions())
     ]
 
 
@@ -44,6 +46,12 @@ def of_bounds(mechanism: Mechanism) -> list[str]:
         for direction, bound in mechanism.bounds.items()
         if bound is not None
     ]
+
+
+def bound_data(bound: Bound) -> dict[str, Any]:
+    """Return the bound of a direction as plain data; the point is that which meets a stop."""
+    at = [bound.at.real, bound.at.imag] if bound.at else None
+    return bound._asdict() | {"body": bound.body or None, "at": at, "direction": bound.direction.label}
 
 
 def of_restitution(mechanism: Mechanism) -> list[str]:
@@ -113,7 +121,25 @@ def before_rocking(mechanism: Mechanism) -> list[str]:
             first = "Another mechanism starts first" if failure.opens else "The structure slides before it rocks"
             what += OPENING_CAUTION if failure.opens else ONLY_SLIDES if only_slides else SLIDING_CAUTION
         joints.setdefault((first, what), []).append(direction.label)
-    return [
+    early = [
         f"{first} in {'both directions' if len(labels) > 1 else f'the {labels[0]} direction'}: {what}."
         for (first, what), labels in joints.items()
+    ]
+    return [*early, *_of_glue(mechanism)]
+
+
+def _of_glue(mechanism: Mechanism) -> list[str]:
+    """Return what friction joints without any given need, and when the structure starts with the usual one."""
+    sides = glued(mechanism)
+    if not sides:
+        return []
+    needed = [f"more than {MAX_FRICTION:g}" if each.needed is None else f"{each.needed:.3g}" for each in sides]
+    starts = [f"{each.failure.push / mechanism.gravity:.4g} g instead of {each.lambda_:.4g} g" for each in sides]
+    needs, would = (
+        " and ".join(f"{text} in the {each.direction.label} direction" for text, each in zip(texts, sides, strict=True))
+        for texts in (needed, starts)
+    )
+    return [
+        "Joints without `friction` never slide and may carry shear without a normal force, which raises lambda. They "
+        f"need a friction of {needs}. With a friction of {MASONRY_FRICTION:g} it would be {would}: give `friction`."
     ]

@@ -13,7 +13,9 @@ from rocking_cli.studies.conclusion import (
     LEAST_SHARE,
     Concluded,
     Conclusion,
+    Effect,
     LeftOut,
+    Limit,
     NeighbourShare,
     NextStep,
     are_alike,
@@ -30,15 +32,14 @@ NEXT_STEPS: Mapping[str, str] = {
     **REMEDIES,
     NextStep.STRENGTHEN: "hold the structure or change its size: `rocking design` finds a value with which it stands",
     NextStep.MARGIN: "`rocking margin` shows from which scale factor on neighbours overturn, or are unknown",
-    NextStep.CHECK_HOLD: "check that what the caution names still holds the structure when it has moved that far, "
-    "anchorages included",
+    NextStep.CONDITIONS: "check each condition and give what it names in the files",
     NextStep.YIELD_FORCE: "give the tie `steel` (or `yield`) in place of its stiffness or modulus, so that it counts",
     NextStep.MORE_MOTIONS: "give at least as many records as the code requires",
     NextStep.FIRST_MECHANISM: "describe the mechanism that starts first as a structure, and verify that structure",
     NextStep.SITE_VALUES: "give the values that the code requires in the site file (`rocking new site` prints one)",
     NextStep.RESPOND: "`rocking respond` under this motion names the joint that opens or slides, and when",
     NextStep.CROSSCHECK: "`rocking crosscheck` simulates what happens from then on, as free blocks",
-    NextStep.DESIGN: "`rocking design` finds the value of a field at which the ratio reaches 1",
+    NextStep.DESIGN: "`rocking design` finds the value of a field at which the ratio reaches what is required",
 }
 
 
@@ -57,17 +58,48 @@ def of_verification(found: Verification, say: Language = ENGLISH, title: str | N
     end = found.conclusion
     covers = all(each.what != "mechanism" for each in end.left_out)
     first = end.concluded.value if covers or end.concluded is not Concluded.NOT_CHECKED else "not_covered"
-    if end.concluded is Concluded.SATISFIED and len(end.limit_states) > 1:
-        first = "satisfied_at"
-    sentences = [say(f"end_{first}", states=", ".join(end.limit_states))]
+    if end.concluded is Concluded.SATISFIED and (len(end.limit_states) > 1 or not end.required):
+        first = "satisfied_at" if end.required else "not_asked"
+    sentences = [say(f"end_{first}", states=", ".join(end.limit_states), reasons=reasons_of(end, say))]
     if end.concluded is not Concluded.NOT_CHECKED:
-        sentences.append(_governs(end, say, title or _method(found, end)))
-    sentences += map(say, found.relied_on)
+        sentences.append(_governs(end, say, title or say(_method(found, end))))
+    sentences += [*replaced_in_words(end, say), *map(say, found.rules)]
     others = [
         each._replace(name=say.joint(found.mechanism.mechanism, each.name)) if each.what == "mechanism" else each
         for each in end.left_out if each.what != "tie"
     ]  # fmt: skip
     return uncounted_ties(end, say) + sentences + not_counted(others, say)
+
+
+def limits_in_words(end: Conclusion, say: Language = ENGLISH) -> list[str]:
+    """Return sentences on what limits a conclusion: its conditions, or why it is not decided; and replaced numbers."""
+    reasons = reasons_of(end, say)
+    return [say(f"end_{end.concluded.value}", reasons=reasons)] * bool(reasons.values) + replaced_in_words(end, say)
+
+
+def reasons_of(end: Conclusion, say: Language = ENGLISH) -> Remark:
+    """Return the conditions of a conclusion, or why it is not decided, as clauses; without values if there are none."""
+    each = [_remark(limit, say) for limit in end.limits if limit.effect is not Effect.REPLACES]
+    values = {f"reason{k}": reason for k, reason in enumerate(each)}
+    return Remark("; ".join(f"{{{key}}}" for key in values), values)
+
+
+def replaced_in_words(end: Conclusion, say: Language = ENGLISH) -> list[str]:
+    """Return sentences on the numbers of a conclusion that count in place of others."""
+    return [limit_in_words(each, say) for each in end.limits if each.effect is Effect.REPLACES]
+
+
+def limit_in_words(limit: Limit, say: Language = ENGLISH) -> str:
+    """Return what limits a conclusion: a clause, or a sentence on a number that is replaced."""
+    return say(_remark(limit, say))
+
+
+def _remark(limit: Limit, say: Language) -> Remark:
+    values = dict(limit.values)
+    if isinstance(text := values.get("text"), str):  # of a mechanism
+        values["text"] = say.recognised("caution", text)
+    key = f"end_{limit.key}"
+    return Remark(key if key in say.texts else limit.key, values)
 
 
 def uncounted_ties(end: Conclusion, say: Language = ENGLISH) -> list[str]:
@@ -85,9 +117,11 @@ def not_counted(left_out: Sequence[LeftOut], say: Language = ENGLISH) -> list[st
 
 def _governs(end: Conclusion, say: Language, method: str) -> str:
     if end.ratio is not None:
-        ratio = Remark.of("end_ratio", ratio=end.ratio, digits=digits_beside_one(end.ratio))
+        key = f"end_ratio_{end.method}" if f"end_ratio_{end.method}" in say.texts else "end_ratio"
+        ratio = Remark.of(key, ratio=end.ratio, digits=digits_beside(end.ratio, end.required or 1.0))
     else:
-        ratio = Remark.of(f"end_{'unproven' if end.concluded is Concluded.UNKNOWN else 'past'}", motion=end.motion)
+        key = {Concluded.UNKNOWN: "end_unproven", Concluded.NOT_DECIDED: "end_missing"}.get(end.concluded, "end_past")
+        ratio = Remark.of(key, motion=end.motion)
     direction = Remark.of(f"end_direction_{end.direction}") if end.direction else ""
     values = {"state": end.limit_state, "direction": direction, "ratio": ratio}
     if end.limit_state:
@@ -101,9 +135,10 @@ def _method(found: Verification, end: Conclusion) -> str:
     return title.removesuffix(f" at {end.limit_state}")
 
 
-def digits_beside_one(ratio: float) -> int:
-    """Return how many digits of a ratio show on which side of 1 it is, at least three."""
-    return next((n for n in range(3, MAX_DIGITS) if (float(f"{ratio:.{n}g}") < 1) == (ratio < 1)), MAX_DIGITS)
+def digits_beside(ratio: float, required: float = 1.0) -> int:
+    """Return how many digits of a ratio show on which side of what is required it is, at least three."""
+    shown = ((n, float(f"{ratio:.{n}g}")) for n in range(3, MAX_DIGITS))
+    return next((n for n, printed in shown if (printed < required) == (ratio < required)), MAX_DIGITS)
 
 
 CLAUSES = {
@@ -208,10 +243,10 @@ def _of_neighbours(share: NeighbourShare) -> str:
     return f"{percent(share.lowest)} of its {share.of} neighbours overturn"
 
 
-def next_in_words(end: Conclusion) -> str:
+def next_in_words(end: Conclusion, say: Language = ENGLISH) -> str:
     """Return what to do next as a sentence; empty if there is nothing to do."""
-    steps = "; ".join(NEXT_STEPS[each] for each in end.next)
-    return f"Next: {steps}." if steps else ""
+    steps = "; ".join(say.texts.get(f"next_{each}", NEXT_STEPS[each]) for each in end.next)
+    return say("Next: {steps}.", steps=steps) if steps else ""
 
 
 def headline(end: Conclusion, over: str) -> str:
@@ -225,18 +260,25 @@ def headline(end: Conclusion, over: str) -> str:
         return f"{names.ROCKS} to {end.peak_ratio:.3g} {over}"
     if end.concluded is Concluded.SLIDES:
         return f"{names.SLIDES} by up to {end.slip:.3g} m"
-    words = end.concluded.value.replace("_", " ")
+    words = concluded_in_words(end.concluded)
     if ties := [each.name for each in end.left_out if each.what == "tie"]:
         words = f"{words} without {in_short(ties)}"
     return f"{end.limit_state} {words}" if end.limit_state and end.concluded is not Concluded.SATISFIED else words
 
 
+def concluded_in_words(concluded: Concluded | str) -> str:
+    """Return a keyword of a conclusion as words."""
+    words = concluded.replace("_", " ")
+    return f"{words} ..." if concluded == Concluded.SATISFIED_IF else words
+
+
 def conclusion_data(end: Conclusion) -> dict[str, Any]:
     """Return a conclusion as plain data: absent texts are null, and what does not apply is left out."""
-    lists = ("limit_states", "motions", "polarities", "directions")
+    lists = ("rules", "limit_states", "motions", "polarities", "directions")
     data = {key: list(each) if key in lists else None if each == "" else each for key, each in asdict(end).items()}
     data["left_out"] = [each._asdict() for each in end.left_out]
     data["share"] = end.share._asdict() if end.share is not None else None
-    del data["remedy"], data["relies"]
+    data["limits"] = [{"key": each.key, "effect": each.effect, "text": limit_in_words(each)} for each in end.limits]
+    del data["remedy"], data["witness"]
     data["next"] = list(end.next)
     return data

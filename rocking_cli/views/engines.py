@@ -36,16 +36,16 @@ def engines_in_words(engine: EngineName, by_blocks: int, mechanism: Mechanism, o
     friction = (
         f"{mechanism.friction:g}, as given" if given else f"{MASONRY_FRICTION:g}, as usual for masonry: none is given"
     )
-    off = f"In {off_edge} of them, a block falls off an edge that the file draws: they count as overturned."
-    return [blocks_in_words(engine, histories, friction), *([off] if off_edge else [])]
+    return [blocks_in_words(engine, histories, friction, off_edge)]
 
 
-def blocks_in_words(engine: EngineName, histories: str, friction: str) -> str:
-    """Return which histories free blocks give, and how: their collapse, impacts and friction, in words."""
+def blocks_in_words(engine: EngineName, histories: str, friction: str, off_edge: int) -> str:
+    """Return which histories free blocks give, and how: their collapse, impacts, friction and falls, in words."""
+    off = f" In {off_edge:,} of them, a block falls off an edge that the file draws: they count as overturned."
     others = "; one degree of freedom for all others" if engine == "auto" else ""
     return (
         f"Engine: free blocks (MuJoCo) for {histories}{others}. Overturning is collapse: {COLLAPSE}. Impacts lose the "
-        f"energy that contact takes, whatever restitution the file gives. Friction is {friction}."
+        f"energy that contact takes, whatever restitution the file gives. Friction is {friction}.{off * (off_edge > 0)}"
     )
 
 

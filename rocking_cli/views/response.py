@@ -24,7 +24,7 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies.movements import Movements, PointPeak, TiePeak, Watched
 from rocking_cli.studies.response import ByPolarity, Histories, Question, Response
 from rocking_cli.views import processing
-from rocking_cli.views.cautions import cautions_of
+from rocking_cli.views.cautions import bound_data, cautions_of
 from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
 from rocking_cli.views.conclusion import conclusion_data, governing_polarity, headline, next_in_words
 from rocking_cli.views.contact import contact_data, contact_words
@@ -137,6 +137,7 @@ def histories_data(
             "impact_velocity": moved.impact_velocity if moved is not None else None,
             "points": {each.name: data_of(POINTS, each) for each in moved.points} if moved is not None else {},
             "slip": data_of(SLIP, run.slid) if run.slid is not None else None,
+            "bound": bound_data(run.bound) if run.bound is not None else None,
             "ties": {each.name: data_of(TIES, each) for each in moved.ties} if moved is not None else {},
             "blocks": data_of(BLOCKS, run.blocks) if run.blocks is not None else None,
         }

@@ -75,10 +75,8 @@ def joints_in_words(history: History, assumed_friction: float | None = None) -> 
     if history.unmeasured:
         return f"{_until(history)} Next: {REMEDIES[remedy(history)]}."
     if history.unknown:
-        step = remedy(history)
-        return " ".join(
-            [_until(history), *slides, NEXT_STEP.format(CROSSCHECK * (step != "stronger_bar"), REMEDIES[step])]
-        )
+        following = NEXT_STEP.format(CROSSCHECK * history.witness, REMEDIES[remedy(history)])
+        return " ".join([_until(history), *slides, following])
     if check is None or history.slip:
         return " ".join(slides)
     if isnan(check.warned) and check.alone:

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from copy import copy
+from dataclasses import replace
 from itertools import groupby
 from operator import itemgetter
-from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Self, TypeVar
 
-from rocking_cli.core import Direction
+from rocking_cli.core import Direction, Mechanism
 from rocking_cli.errors import InputError, PluginError, Problem
 from rocking_cli.plugins.errors import guard
 from rocking_cli.verification.code import codes
-from rocking_cli.verification.results import Verification, Verified, Working
+from rocking_cli.verification.results import Verification, Verified, Working, in_plain
 from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, table_of
 from rocking_cli.views.conclusion import conclusion_data, next_in_words, of_verification, uncounted_ties
-from rocking_cli.views.sheet.language import ENGLISH, Language
-from rocking_cli.views.view import Table, View, heading, number
+from rocking_cli.views.sheet.language import ENGLISH, Language, texts_of, translated
+from rocking_cli.views.view import Table, View, number
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -81,6 +83,9 @@ class Showing(Generic[F, V]):
         How the keys of remarks are said.
     say_in_short : Language, optional
         How they are said in the short view, which leaves out those that it says as empty texts; by default as `say`.
+    package : str
+        The package with texts in other languages: `texts/LANGUAGE.toml`, and `texts/LANGUAGE_in_short.toml` if shorter
+        ones are said in short.
     notation : str
         How clauses are cited, such as ": [formula] or §section".
     """
@@ -88,7 +93,18 @@ class Showing(Generic[F, V]):
     of_site: Sequence[str] = ()
     say: Language = ENGLISH
     say_in_short: Language | None = None
+    package: str = "rocking_cli.views.sheet"
     notation: str = ""
+
+    def in_language(self, key: str) -> Self:
+        """Return how they are shown in a language; a text that it lacks stays in English."""
+        if key == ENGLISH.key:
+            return self
+        spoken, texts, english = copy(self), texts_of(self.package, key), texts_of(self.package, ENGLISH.key)
+        meanings = {f"shown {in_plain(text)}": texts[name] for name, text in english.items() if name in texts}
+        spoken.say = Language(key, {**meanings, **texts}, is_plain=True)
+        spoken.say_in_short = replace(spoken.say, own={**spoken.say.own, **texts_of(self.package, f"{key}_in_short")})
+        return spoken
 
     def __init_subclass__(cls, **named: Any) -> None:
         """Wrap the methods of a subclass, so that errors in them are reported as errors of the plugin."""
@@ -157,7 +173,10 @@ def showing_by(code: str) -> Showing[Any, Any]:
     return shown_by
 
 
-def view(found: Verification, site: str | None = None, *, every_step: bool = False, in_short: bool = False) -> View:
+def view(
+    found: Verification, site: str | None = None, *, language: str = "en", every_step: bool = False,
+    in_short: bool = False,
+) -> View:  # fmt: skip
     """Show the methods side by side for each direction, which governs, and remarks.
 
     Parameters
@@ -166,53 +185,63 @@ def view(found: Verification, site: str | None = None, *, every_step: bool = Fal
         The verification.
     site : str, optional
         Name of the site.
+    language : str
+        Language of tables and sentences, such as "it"; the data are the same.
     every_step : bool
         Whether to show also every line of the calculation: symbol, formula, numbers, result and clause.
     in_short : bool
         Whether to show only what is needed to judge the verdict, with remarks in short.
     """
-    parts: list[Table | str] = []
+    shown_by = showing(found).in_language(language)
+    parts, say = list[Table | str](), shown_by.say
     if found.strengthened is None:
-        parts += _sentences(found, site)
+        parts += _sentences(found, site, say)
     else:
-        parts += _sentences(found, site, "Existing structure: ")
-        parts += _sentences(found.strengthened, site, "Strengthened structure: ")
-        parts += showing(found).compared(found, found.strengthened)
+        parts += _sentences(found, site, say, "Existing structure: ")
+        parts += _sentences(found.strengthened, site, say, "Strengthened structure: ")
+        parts += shown_by.compared(found, found.strengthened)
     if found.strengthened is None or not in_short:
-        parts += _in_short(found, shown(found)) if in_short else _in_full(found, shown(found))
+        parts += (_in_short if in_short else _in_full)(found, shown(found, say), shown_by)
     if found.strengthened is not None and not in_short:
-        parts += _in_full(found.strengthened, shown(found.strengthened), ", strengthened")
+        parts += _in_full(found.strengthened, shown(found.strengthened, say), shown_by, say(", strengthened"))
     every = list[Working]()
-    for lines, where in _workings(found):
+    for lines, where in _workings(found, say):
         every += lines
         parts += steps(lines, where) if every_step else ()
-    parts.append(standing(every, None if in_short else showing(found).notation))
+    parts.append(standing(every, None if in_short else shown_by.notation, say))
     mechanisms = [each.mechanism for each in (found, found.strengthened) if each is not None]
-    parts += dict.fromkeys(f"Caution: {text}" for each in mechanisms for text in cautions_of(each))
-    return View(lambda: data(found), [part for part in parts if part])
+    parts += dict.fromkeys(say("Caution: {text}", text=text) for each in mechanisms for text in cautions_of(each, say))
+    return translated(say, View(lambda: data(found), [part for part in parts if part]))
 
 
-def _sentences(found: Verification, site: str | None, of: str = "") -> list[str]:
+def named(mechanism: Mechanism, say: Language) -> str:
+    """Return name and type of a structure in a language, for a heading."""
+    return f"{mechanism.name}: {say.mechanism(mechanism.mechanism, mechanism.title)}"
+
+
+def _sentences(found: Verification, site: str | None, say: Language, of: str = "") -> list[str]:
     """Return the conclusion in sentences: first the ties that do not count; `of` begins each."""
-    by = f"{heading(found.mechanism)}, by the {found.name} ({found.edition}){f', at {site}' if site else ''}"
-    end = found.conclusion
-    first, concluded = uncounted_ties(end), of_verification(found)
-    answer = " ".join(filter(None, [f"{by}.", *concluded[len(first) :], next_in_words(end)]))
+    mechanism, by = found.mechanism, {"code": say(found.name), "edition": say(found.edition)}
+    end, of, where = found.conclusion, say(of), say(", at {site}", site=site) if site else ""
+    first, concluded = uncounted_ties(end, say), of_verification(found, say)
+    head = say("{structure}, by the {code} ({edition}){where}.", structure=named(mechanism, say), where=where, **by)
+    answer = " ".join(filter(None, [head, *concluded[len(first) :], next_in_words(end, say)]))
     return [f"{of}{each}" for each in (*first, answer)]
 
 
-def _workings(found: Verification, of: str = "") -> Iterator[tuple[Sequence[Working], str]]:
+def _workings(found: Verification, say: Language, of: str = "") -> Iterator[tuple[Sequence[Working], str]]:
     """Yield the lines of a calculation, and the direction to which they belong."""
     yield found.workings, ""
-    for where, each in shown(found).items():
+    for where, each in shown(found, say).items():
         yield each.workings, f"{where}{of}"
     if found.strengthened is not None:
-        yield from _workings(found.strengthened, ", strengthened")
+        yield from _workings(found.strengthened, say, say(", strengthened"))
 
 
-def _in_full(found: Verification, sides: Mapping[str, Any], of: str = "") -> Iterator[Table | str]:
+def _in_full(
+    found: Verification, sides: Mapping[str, Any], shown_by: Showing[Any, Any], of: str = ""
+) -> Iterator[Table | str]:
     """Yield the ground, all of each direction, which of them governs, and the remarks."""
-    shown_by = showing(found)
     if found.workings:
         yield _site(found, shown_by.of_site)
     for where, each in sides.items():
@@ -222,11 +251,10 @@ def _in_full(found: Verification, sides: Mapping[str, Any], of: str = "") -> Ite
     yield from map(shown_by.say, found.remarks)
 
 
-def _in_short(found: Verification, sides: Mapping[str, Any]) -> Iterator[Table | str]:
+def _in_short(found: Verification, sides: Mapping[str, Any], shown_by: Showing[Any, Any]) -> Iterator[Table | str]:
     """Yield what decides, and the remarks in short: tables that directions share, what each has alone, and the rest."""
-    shown_by = showing(found)
     say = shown_by.say_in_short or shown_by.say
-    both = BOTH if len(sides) > 1 else next(iter(sides))
+    both = say(BOTH) if len(sides) > 1 else next(iter(sides))
 
     def parts_of(each: Any, where: str) -> Iterator[Table | str]:
         yield from shown_by.in_short(found, each, where)
@@ -243,11 +271,11 @@ def _in_short(found: Verification, sides: Mapping[str, Any]) -> Iterator[Table |
     yield from map(say, found.remarks)
 
 
-def shown(found: Verification) -> dict[str, Any]:
+def shown(found: Verification, say: Language = ENGLISH) -> dict[str, Any]:
     """Return the directions that differ, by their names."""
     if len(found.distinct) < len(found.directions):
-        return {BOTH: found.distinct[0]}
-    return {f"{one.direction.label.capitalize()} direction": one for one in found.distinct}
+        return {say(BOTH): found.distinct[0]}
+    return {say(f"{one.direction.label.capitalize()} direction"): one for one in found.distinct}
 
 
 def _which_direction(found: Verification) -> str:
@@ -333,7 +361,7 @@ def table(found: Verification) -> Mapping[str, Sequence[Any]]:
     return {"structure": structures, **{key: [*rows[key], *of_both["strengthened"][key]] for key in rows}}
 
 
-def standing(workings: Sequence[Working], notation: str | None = "") -> str:
+def standing(workings: Sequence[Working], notation: str | None = "", say: Language = ENGLISH) -> str:
     """Return a sentence on how far the formulas were checked against the code; empty without formulas.
 
     `notation` is the form in which the code is cited, such as ": [formula] or §section"; None for the short form,
@@ -367,6 +395,6 @@ def standing(workings: Sequence[Working], notation: str | None = "") -> str:
     if ours and notation is None:
         sentences.append(f"Our own choices: {', '.join(ours)}.")
     elif ours:
-        named = ", ".join(f"{symbol} ({meaning})" for symbol, meaning in ours.items())
+        named = ", ".join(f"{symbol} ({say.recognised('shown', meaning)})" for symbol, meaning in ours.items())
         sentences.append(f"Our own choices ('ours'), where the code is silent or we depart from its wording: {named}.")
     return " ".join(sentences)

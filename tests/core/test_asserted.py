@@ -62,7 +62,7 @@ def test_a_roof_that_slides_ends_what_is_known_and_one_that_is_anchored_does_not
 def test_a_top_slides_from_where_its_force_exceeds_friction_under_what_the_roof_weighs_then():
     """The force by the equations of each body; the weight with the acceleration of the top by difference quotients."""
     wall = rk.SpanningWall(**{**ROOF, "overburden": 6000.0}, friction=0.8)
-    motion = GroundMotion("fine", 0.001, 1.3 * G * np.sin(np.pi * np.arange(1001) * 0.001 / 0.5))
+    motion = GroundMotion("fine", 0.001, 1.3 * G * np.sin(np.pi * np.arange(1001) * 0.001 / 0.5), unit="m/s2")
     assert not resting(wall).modes  # it rocks before its top slides
     found = nonlinear(wall, motion, opening=10.0)
     held = nonlinear(wall.model_copy(update={"support": 0.0}), motion, opening=10.0)
@@ -168,7 +168,7 @@ def test_a_prop_that_is_pushed_back_ends_what_is_known():
 def test_an_impact_on_a_prop_throws_it_back():
     """Under half a sine that pushes away from the prop alone: nothing fails until the pier comes back."""
     time = np.arange(41) * 0.01
-    half = GroundMotion("half", 0.01, np.append(-0.4 * G * np.sin(np.pi * time / 0.4), 0.0))
+    half = GroundMotion("half", 0.01, np.append(-0.4 * G * np.sin(np.pi * time / 0.4), 0.0), unit="m/s2")
     found = nonlinear(rk.load_structure(SLAB), half)
     wide = nonlinear(rk.load_structure(SLAB), half, opening=100.0)
     hit = wide.first_impact
@@ -193,10 +193,10 @@ def test_equiv_names_what_is_pushed_back(tmp_path):
 
 def test_a_leaning_block_slides_away_from_what_it_leans_on_and_not_into_it():
     block = rk.Block(width=0.8, height=1.6, density=2000.0, depth=1.0, friction=0.3, one_sided="positive", rebound=0.2)
-    outward = GroundMotion("out", 0.01, np.append(-0.4 * G * np.sin(np.pi * np.arange(31) / 30), 0.0))
+    outward = GroundMotion("out", 0.01, np.append(-0.4 * G * np.sin(np.pi * np.arange(31) / 30), 0.0), unit="m/s2")
     found = nonlinear(block, outward)
     assert found.unknown and found.check.reason == "slides"
-    inward = GroundMotion("in", 0.01, -outward.acceleration)
+    inward = GroundMotion("in", 0.01, -outward.acceleration, unit="m/s2")
     assert not nonlinear(block, inward).unknown
     assert "slides before it rocks" in " ".join(run_json_of(block))
 
@@ -289,9 +289,9 @@ def test_what_a_leaning_structure_fixes_opens_at_its_own_lever_arm_away_from_wha
     assert (failure.push / G, failure.joint) == (pytest.approx(0.1, rel=1e-9), "base and top") and failure.opens
     assert "opens from 0.1 g" in " ".join(run_json_of(stone))
     time = np.arange(61) * 0.01
-    out = GroundMotion("out", 0.01, np.append(-0.3 * G * np.sin(np.pi * time / 0.6), 0.0))
+    out = GroundMotion("out", 0.01, np.append(-0.3 * G * np.sin(np.pi * time / 0.6), 0.0), unit="m/s2")
     assert nonlinear(stone, out).unknown
-    assert not nonlinear(stone, GroundMotion("in", 0.01, -out.acceleration)).unknown
+    assert not nonlinear(stone, GroundMotion("in", 0.01, -out.acceleration, unit="m/s2")).unknown
 
 
 def test_of_a_leaning_structure_without_shapes_only_the_sliding_as_a_whole_is_known_at_rest():

@@ -147,7 +147,7 @@ def test_more_weight_may_bring_back_what_a_thrust_has_pushed_over():
     both = twin("block", loads=[{"name": "thrust", "force": [6000.0, 0.0], "at": [0.0, 5.0]}])
     dt, u, v = 0.1, np.zeros(30), np.zeros(30)
     u[1:3], v[6:15] = -0.45 * G, 30.0
-    motion = GroundMotion("push", dt, u, vertical=GroundMotion("rise", dt, v))
+    motion = GroundMotion("push", dt, u, vertical=GroundMotion("rise", dt, v, unit="m/s2"), unit="m/s2")
     (model,) = build_models(both.tool, ("nonlinear",))
     history = follow(model, motion)
     expected = simulate(both.oracle, Ground((dt * np.arange(30)).tolist(), u.tolist(), v.tolist()), impacts=1)
@@ -200,7 +200,7 @@ def test_what_rocks_to_one_side_never_goes_to_the_other():
         history = follow(model, motion)
         assert history.peak_negative == 0 and not (history.phi < 0).any()
     # Pushed against its side walls alone it does not move.
-    inwards = GroundMotion("inwards", 0.1, np.array([0.0, 9.0, 9.0, 0.0]))
+    inwards = GroundMotion("inwards", 0.1, np.array([0.0, 9.0, 9.0, 0.0]), unit="m/s2")
     assert follow(model, inwards).peak_ratio == 0 and follow(model, inwards.scaled(-1)).peak_ratio != 0
 
 

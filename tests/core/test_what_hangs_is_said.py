@@ -19,8 +19,8 @@ from tests.cli.test_cli import run
 from tests.following import build_model
 
 TIME = 0.01 * np.arange(400)
-WEAK = GroundMotion("weak", 0.01, 3.0 * np.sin(6 * TIME) * np.exp(-TIME))
-STRONG = GroundMotion("strong", 0.01, 9.0 * np.sin(2 * TIME))
+WEAK = GroundMotion("weak", 0.01, 3.0 * np.sin(6 * TIME) * np.exp(-TIME), unit="m/s2")
+STRONG = GroundMotion("strong", 0.01, 9.0 * np.sin(2 * TIME), unit="m/s2")
 FACADE = {"width": 0.6, "height": 8.0, "density": 1800.0, "depth": 5.0}
 COURSES = {"courses": 40, "overlap": 0.2, "thickness": 0.5, "walls": 2, "height": 8.0}
 
@@ -103,7 +103,13 @@ def test_a_tie_that_acts_in_tension_has_its_elongation_and_its_force_before_a_fa
 
 def test_friction_is_that_before_contact_is_lost():
     block = Block(width=0.6, height=3.0, mass=1000.0)
-    lifts = GroundMotion("u", 0.01, WEAK.acceleration, vertical=GroundMotion("v", 0.01, -14.0 * np.sin(9 * TIME)))
+    lifts = GroundMotion(
+        "u",
+        0.01,
+        WEAK.acceleration,
+        vertical=GroundMotion("v", 0.01, -14.0 * np.sin(9 * TIME), unit="m/s2"),
+        unit="m/s2",
+    )
     history = follow(build_model(block, "nonlinear"), lifts)
     found = Contacts(block).check(history, lifts)
     assert 0 < found.time <= found.lost == found.known_to == history.known_to

@@ -7,6 +7,7 @@ import random
 import re
 import subprocess
 import sys
+from cmath import phase
 from collections import defaultdict
 from dataclasses import replace
 from functools import cache
@@ -99,7 +100,7 @@ class Walk:
         self.direction, self.section, self.state, self.capacity = "", "", "", 0.0
         self.weights, self.blocks, self.held, self.corners = [], [], [], {}
         self.rest, self.tables, self.after, self.leads = {}, [], [], {}
-        self.also = []
+        self.also, self.code, self.decides = [], {}, ""
         self.failing_without_ties = {}
         read = {Heading: self.heading, Grid: self.grid, Step: self.step, Sentence: self.sentence}
         for item in sheet.items:
@@ -123,7 +124,7 @@ class Walk:
         if tie:
             plate = tie["plate"]
             sizes = {"n": tie["bars"], "d": tie["diameter"], "b": plate["width"], "h": plate["height"]}
-            sizes |= {"t": tie["wall"]["thickness"]}
+            sizes |= {"t": tie["wall"]["thickness"], "γ": tie.get("gamma", 1)}
             self.tie = {name: quantity(size) for name, size in sizes.items()}
 
     def fault(self, *what):
@@ -145,6 +146,8 @@ class Walk:
         self.see(numbers_in(item.text))
         if re.match(r"(Check, with the ground of SL|Controllo, con l'azione dello SL)", item.text):
             self.known["a_[g]"] = self.capacity
+        if "rocking --verbose verify" in item.text and state_of(item.text):
+            self.decides = self.decides or state_of(item.text)
         if re.match(r"T_\[1\] (and|e) ξ_\[1\]", item.text):
             self.known |= self.given["SLD"]
 
@@ -174,7 +177,8 @@ class Walk:
                 if [x, y] != [*map(number, row[2:4])] or not close(mass, number(row[4])):
                     self.fault("body", row)
             for row in item.rows:
-                x, y, M, weight, *rest = map(number, row[2:-1])  # but the seat
+                numbers = [cell for head, cell in zip(heads[2:-1], row[2:-1], strict=True) if head != "floor"]
+                x, y, M, weight, *rest = map(number, numbers)  # but the seat
                 length = quantity(self.structure["depth"]) if len(rest) == 3 else 1.0
                 if not close(M * G / 1e3, weight) or (len(rest) == 3 and not close(weight / length, rest[0])):
                     self.fault("weight", row)
@@ -444,8 +448,8 @@ def of_block(given, s):
     own = quantity(given["density"]) * width * height * depth
     weights = [Weight(1, 0.5j * height, own, own)]
     for load in given.get("loads", []):
-        P, slides = quantity(load["mass"]) * depth, load.get("floor") == "sliding"
-        weights.append(Weight(1, complex(*load["at"]), 0.5 * P if slides else P, 0.0 if slides else P))
+        P, floor = quantity(load["mass"]) * depth, load.get("floor")  # half of a floor is carried elsewhere
+        weights.append(Weight(1, complex(*load["at"]), 0.5 * P if floor else P, 0.0 if floor == "sliding" else P))
     ties = given.get("ties", [])
     return Chain(s, weights, [complex(s * width / 2, 0)], [1], tie_of(ties[0]) if ties else None)
 
@@ -460,7 +464,7 @@ def tie_of(tie):
         tie["bars"] * 2 * t * (b + h + 2 * t) * quantity(wall["shear"]),
         tie["bars"] * b * h * quantity(wall["compression"]),
     )
-    return complex(*tie["from"]["ground"]), complex(*tie["to"]["at"]), min(strengths)
+    return complex(*tie["from"]["ground"]), complex(*tie["to"]["at"]), min(strengths) / float(tie.get("gamma", 1))
 
 
 def of_blocks(walk, direction, s):
@@ -495,23 +499,39 @@ def lost_seat(given, chain):
     return min(ends, default=None)
 
 
+def broken(walk, chain):
+    """The rotation at which the tie of a block has its elongation at rupture; None without one."""
+    elongation = walk.structure["ties"][0].get("elongation") if chain.tie else None
+    if elongation is None:
+        return None
+    fixed, at, _ = chain.tie
+    longer = lambda phi: abs(chain.moved(1, at, phi) - fixed) / abs(at - fixed) - 1 - float(elongation)  # noqa: E731
+    return solve(longer, 0.0, chain.end) if longer(chain.end) > 0 else None
+
+
 def expected(walk, chain, seat):
     """Every result of a direction by section, limit state and symbol."""
     site, found = Site(walk.site), {}
     PQ, first, second = chain.sums
-    a0, d0, own = chain.alpha(0.0) * G / (chain.e_star * site.FC), chain.d(chain.end), own_period(walk)
+    a0, own, end, d_t = chain.alpha(0.0) * G / (chain.e_star * site.FC), own_period(walk), chain.end, None
+    if (phi_t := broken(walk, chain)) is not None:  # beyond, the curve is that without the tie
+        untied = replace(chain, tie=None)
+        end = max(phi_t, untied.end)
+        # A tie that gives more than half of the largest a* bounds the displacement by its rupture.
+        d_t = chain.d(phi_t) if untied.alpha(0.0) < 0.5 * chain.alpha(0.0) else None
+    d0 = chain.d(end)
     found["chain", ""] = {
         "α_[0]": chain.alpha(0.0), "Σ(P+Q)": PQ, "Σ(P+Q)x′": first, "Σ(P+Q)x′^(2)": second, "e^[*]": chain.e_star,
         "M^[*]": 1000 * chain.e_star * PQ / G,
         **{f"θ_[{k}]′": chain.turned(k) for k in chain.blocks},
     }  # fmt: skip
-    found["curve", ""] = {"a_[0]^[*]": a0, "φ_[0]": chain.end, "d_[0]^[*]": d0, "x_[C]′": first / PQ}
+    found["curve", ""] = {"a_[0]^[*]": a0, "φ_[0]": end, "d_[0]^[*]": d0, "x_[C]′": first / PQ}
     demands = {state: site.at(state) for state in ("SLD", "SLV", "SLC")}
     for state, demand in demands.items():
         found["ground", state] = of_ground(site, state, demand, own)
         found["start", state] = of_start(demand, a0, own)
     for state in SHARE:
-        demand, d = demands[state], min(SHARE[state] * d0, d0 if seat is None else seat)
+        demand, d = demands[state], min(SHARE[state] * d0, *(d0 if each is None else each for each in (seat, d_t)))
         phi = solve(lambda each, d=d: chain.d(each) - d, 0.0, chain.end)
         for section, end, a in (
             ("exact", "", chain.alpha(phi) * G / (chain.e_star * site.FC)), ("line", ",lin", a0 * (1 - d / d0)),
@@ -533,11 +553,14 @@ def expected(walk, chain, seat):
             found[method, state] |= lasting(site, state, asked, f"T_[R{end}]")
         found["exact", state] |= {f"d_[{state}]": d, f"φ_[{state}]": phi, f"α(φ_[{state}])": chain.alpha(phi)}
         found["exact", state] |= {} if seat is None else {"d_[a]": seat}
+        found["exact", state] |= {} if d_t is None else {"d_[t]": d_t}
     for state in found:
         if state[0] == "start":
             found[state] |= lasting(site, state[1], lambda of: of.start(own) - a0, "T_[R]")
     linear = demands["SLD"].ag * a0 / demands["SLD"].start(own) * walk.site.get("q", 2.0)
     found["linear", "SLD"] = {"a_[g,q]": linear, "ζ_[E]": linear / demands["SLV"].ag}
+    found["linear", "SLD"] |= lasting(site, "SLD", lambda of: of.start(own) - walk.site.get("q", 2.0) * a0, "T_[R]")
+    walk.asked = {state: demand.ag for state, demand in demands.items()}
     return found
 
 
@@ -576,6 +599,10 @@ def lasting(site, state, excess, symbol):
     return {symbol: solve(at, first, last)}
 
 
+PRINTED = ("chain", "curve", "ground", "exact", "start", "nonlinear")
+"""Sections that a sheet has of the limit state that decides; the straight line and the linear method are not shown."""
+
+
 def faults_of_code(walk):
     """Results that are not those of the formulas of the code from the files."""
     faults = []
@@ -589,9 +616,14 @@ def faults_of_code(walk):
         alpha, site = by_letter.alpha(0.0), Site(walk.site)
         walk.also += [alpha, alpha * G / (by_letter.e_star * site.FC)]
         walk.also += [*map(site.period, EXCEEDED)] if "hazard" in walk.site else []
-        for (section, state), values in expected(walk, chain, seat).items():
-            own = next(found for key, found in walk.results.items() if key[1:] == (section, state) and (
-                section == "ground" or key[0] == direction))  # fmt: skip
+        walk.code[direction] = expected(walk, chain, seat)
+        for (section, state), values in walk.code[direction].items():
+            own = next((found for key, found in walk.results.items() if key[1:] == (section, state) and (
+                section == "ground" or key[0] == direction)), None)  # fmt: skip
+            if own is None:
+                if state in ("", walk.decides) and section in PRINTED:
+                    faults.append((direction, section, state, "has no lines"))
+                continue
             for symbol, value in values.items():
                 if symbol not in own and value is not None:
                     faults.append((direction, section, state, symbol, "is not printed"))
@@ -625,9 +657,9 @@ def faults_of_variants(walk, chain):
                         faults += [] if is_printed(row[k], value) else [(head, row, value)]
                         continue
                 if what.startswith("verif"):
-                    if re.match(r"without|senza", head) and zeta < 1:
+                    if re.match(r"without|senza", head) and zeta < 1 and is_required(walk, name):
                         walk.failing_without_ties[name] = zeta
-                    faults += [] if is_satisfied(row[k]) == (zeta >= 1) else [(head, row, zeta)]
+                    faults += [] if says(row[k], is_required(walk, name), zeta >= 1) else [(head, row, zeta)]
                 elif what:
                     faults += [] if is_printed(row[k], zeta) else [(head, row, zeta)]
                 else:
@@ -649,6 +681,9 @@ def faults_of_tables(walk, direction, chain):
             rows = [
                 (f"block {row[0]}", [*map(number, row[1:5])], centres(chain, int(row[0]), phi)) for row in grid.rows
             ]
+            if grid.heads[-1] == "θ [rad]":
+                rows += [(f"turn of {row[0]}", [abs(number(row[-1]))], [turn(chain, int(row[0]), phi)])
+                         for row in grid.rows]  # fmt: skip
         elif grid.heads[0] in ("joint", "vincolo"):
             wanted = zip(grid.rows, hinges_at(grid, chain, phi), strict=True)
             rows = [(f"joint {row[0]}", [*map(number, row[3:5])], (at.real, at.imag)) for row, at in wanted]
@@ -674,6 +709,11 @@ def centres(chain, block, phi):
     now, rest = ([(chain.moved(block, each.at, turn), each) for each in own] for turn in (phi, 0.0))
     G_now, G_rest, P_now = barycentre(now, "PQ"), barycentre(rest, "PQ"), barycentre(now, "P")
     return chain.s * (G_now - G_rest).real, G_now.real, G_now.imag, P_now.real
+
+
+def turn(chain, block, phi):
+    """The size of the finite rotation of a block at a rotation of the mechanism."""
+    return abs(phase(chain.moved(block, 1, phi) - chain.moved(block, 0, phi)))
 
 
 def barycentre(places, share):
@@ -736,7 +776,7 @@ def faults_of_records(walk, sheet):
     faults, sentences = [], [each.text for each in sheet.items if isinstance(each, Sentence)]
     said = [each for each in sentences if re.match(r"(With|Without|Con|Senza) FC, SL", each)]
     for (direction, state), grid in records_of(walk).items():
-        capacity = walk.results[direction, "exact", state][f"d_[{state}]"]
+        capacity = walk.code[direction]["exact", state][f"d_[{state}]"]
         for column in (2, 3):
             found = peaks(grid, column)
             known = [each for each in found.values() if each is not None]
@@ -757,35 +797,47 @@ def faults_of_records(walk, sheet):
     return faults + [("no table has", each) for each in said]
 
 
+def is_required(walk, state):
+    """Whether a limit state decides: SLV, and SLD for class IV."""
+    return state == "SLV" or (state == "SLD" and str(walk.site.get("class")) == "IV")
+
+
+def says(text, required, holds):
+    """Whether the words of a verdict are those of what is required and of what holds; None is unknown."""
+    if not required:
+        return bool(re.search(r"not required|non richiesta|[Nn]o verification is required", text))
+    if holds is None:
+        return bool(re.search(r"not decided|non decisa|unknown|non nota", text))
+    return is_satisfied(text) == holds and bool(re.search(r"satisfied|soddisfatta", text))
+
+
 def row_of_state(walk, direction, row):
-    """The values of a row of the table of limit states, whether it is satisfied, and its ratio."""
-    state, of = state_of(row[0]), lambda section: walk.results[direction, section, state_of(row[0])]
+    """The values of a row of the table of limit states, whether it holds, and the ratio that decides."""
+    state, of = state_of(row[0]), lambda section: walk.code[direction][section, state_of(row[0])]
     start = of("start")
     if state == "SLD":
         ratio = start["ζ_[E]"]
-        return [start["a_[g,0]"], walk.ground[state]["a_[g]"], None, ratio, ratio], ratio >= 1, ratio
+        return [start["a_[g,0]"], walk.asked[state], None, None, ratio], ratio >= 1, ratio
     exact = of("exact")
     if "," in row[0]:  # time histories
         found = mean(peaks(records_of(walk)[direction, state], 2))
         ratio = None if found is None else exact[f"d_[{state}]"] / found
-        return [exact[f"d_[{state}]"], found, None, ratio, None], ratio is not None and ratio >= 1, ratio
+        return [exact[f"d_[{state}]"], found, None, ratio, None], None if ratio is None else ratio >= 1, ratio
     ratio, zeta = exact[f"ρ_[{state}]"], max(start["ζ_[E]"], of("nonlinear")["ζ_[E]"])
     values = [exact[f"d_[{state}]"], exact[f"S_[De](T_[{state}])"], exact[f"T_[{state}]"], ratio, zeta]
-    return values, ratio >= 1 or start["ζ_[E]"] >= 1, ratio
+    return values, zeta >= 1, zeta
 
 
 def row_of_method(walk, direction, row):
     """The values of a row of the table of methods, and its return period."""
     state, linear = state_of(row[0]), "linear" in row[0].lower() and "nonlinear" not in row[0].lower()
     linear = linear and "non lineare" not in row[0]
-    section = "linear" if linear else kind_of(row[0])
-    state = "SLD" if linear else state
-    exact = walk.results[direction, section, state]
-    line = walk.results.get((direction, f"{section} line", state), exact)
+    section, state = ("linear", "SLD") if linear else (kind_of(row[0]), state)
+    exact = walk.code[direction][section, state]
+    line = walk.code[direction].get((f"{section} line", state), exact)
     capacity = next(name for name in ("a_[g,q]", "a_[g,nl]", "a_[g,0]") if name in exact)
     of_line = line.get(f"{capacity[:-1]},lin]", exact[capacity])
-    asked = walk.ground["SLV" if linear else state].get("a_[g]", walk.given["SLV" if linear else state].get("a_[g]"))
-    return [exact[capacity], of_line, asked, exact["ζ_[E]"]], exact.get("T_[R]")
+    return [exact[capacity], of_line, walk.asked["SLV" if linear else state], exact["ζ_[E]"]], exact.get("T_[R]")
 
 
 def lasts(cell, period):
@@ -804,10 +856,12 @@ def faults_of_verdict(walk, sheet):
             values, holds, ratio = row_of_state(walk, direction, row)
             cells = [*row[1:5], row[7]]
             wrong = [pair for pair in zip(cells, values, strict=True) if not is_printed(*pair)]
-            if wrong or is_satisfied(row[5]) != holds:
+            required = ("," in row[0] and "SLD" not in row[0]) or is_required(walk, state_of(row[0]))
+            if wrong or not says(row[5], required, holds):
                 faults.append((direction, row, wrong, holds))
-            passed.append(holds)
-            ratios.append(ratio)
+            if required:
+                passed.append(holds)
+                ratios.append(ratio)
         for row in item.rows if item.heads[0] in ("method", "metodo") else ():
             values, period = row_of_method(walk, direction, row)
             wrong = [pair for pair in zip(row[1:5], values, strict=True) if not is_printed(*pair)]
@@ -819,7 +873,11 @@ def faults_of_verdict(walk, sheet):
     if said != failing:
         faults.append(("without ties", more, failing))
     least = "" if None in ratios else f" {min(ratios):.3g}".replace(".", "[.,]") + r"(\.|\s|$)"
-    if is_satisfied(answer.partition(".")[0]) != all(passed) or not re.search(least, answer):
+    if (
+        is_satisfied(answer.partition(".")[0]) != all(passed)
+        or state_of(answer) != walk.decides
+        or not re.search(least, answer)
+    ):
         faults.append(("the answer", answer, passed, ratios))
     return faults + faults_of_sentences(walk, sheet)
 
@@ -827,9 +885,8 @@ def faults_of_verdict(walk, sheet):
 def faults_of_sentences(walk, sheet):
     """Verdicts that do not follow from their ratios, and numbers of four digits or more that no line has."""
     faults = []
-    seen = {
-        f"{value:.4g}" for values in (walk.also, *(each.values() for each in walk.results.values())) for value in values
-    }
+    results = [*walk.results.values(), *(each for own in walk.code.values() for each in own.values())]
+    seen = {f"{value:.4g}" for values in (walk.also, *(each.values() for each in results)) for value in values}
     cells = [
         cell
         for each in sheet.items
@@ -842,19 +899,26 @@ def faults_of_sentences(walk, sheet):
         if (
             isinstance(each, Step)
             and each.symbol.startswith("ρ")
+            and re.search("satisfied|soddisfatta", each.what)
             and is_satisfied(each.what) != (number(each.result) >= 1)
         ):
             faults.append((each.symbol, each.what))
         if not isinstance(each, Sentence):
             continue
+        # A joint that opens is of a push of all blocks, not of the chain: no line has its displacement.
+        if re.match(r"(The joint|Il giunto) .* (opens|si apre) ", each.text):
+            continue
         for text in re.findall(r"(?<![\w.,§])\d+[.,]\d+(?: · 10\^\[[−\d]+\])?", each.text):
             if len(re.sub(r"\D", "", text.partition(" ")[0]).lstrip("0")) > 3 and f"{number(text):.4g}" not in seen:
                 faults.append((text, each.text))
         if found := re.match(
-            r"(?P<direction>[^,]*?), (?:[^,]*, )?(?P<state>SL.): (the verification|la verifica)", each.text
+            r"(?P<direction>[^,]*?), (?:[^,]*, )?(?P<state>SL.): ([Tt]he verification|la verifica|verifica|no verif)",
+            each.text,
         ):
+            if "ζ_[E] =" not in each.text:  # of time histories, which have records of their own
+                continue
             state, zeta = found["state"], number(re.search(r"ζ_\[E\] = (\d+[.,]?\d*)", each.text)[1])
-            if is_satisfied(each.text.partition(".")[0]) != (zeta >= 1):
+            if not says(each.text.partition(".")[0], is_required(walk, state), zeta >= 1):
                 faults.append((state, each.text))
     return faults
 
@@ -876,7 +940,7 @@ def faults(page):
 @pytest.mark.parametrize("name", NAMES)
 def test_every_line_of_a_sheet_follows_from_what_is_printed_and_from_the_code(name):
     steps = [each for each in Sheet.read(page_of(name)).items if isinstance(each, Step)]
-    assert len(steps) > 190 and sum(bool(each.formula and each.numbers) for each in steps) > 170
+    assert len(steps) > 80 and sum(bool(each.formula and each.numbers) for each in steps) > 75
     assert faults(page_of(name)) == []
 
 
@@ -893,6 +957,9 @@ def mutated(page, pick):
         [k for k, part in enumerate(parts) if re.search('id="(summary|remarks|workings)"', part[:900]) or k == 0]
     )
     found = [each for each in PLACES.finditer(parts[chosen]) if len(re.sub(r"\D", "", each[0]).lstrip("0")) > 3]
+    # The peak of a record, in the first column of its row, is of a file that is not on the page.
+    of_record = re.compile(r'channel [^<]*</th><td class="number">$')
+    found = [each for each in found if not of_record.search(parts[chosen][: each.start()][-200:])]
     place = pick.choice(found)
     digits = [
         each.start() for each in re.finditer(r"\d", place[0]) if re.search("[1-9]", place[0][: each.start() + 1])

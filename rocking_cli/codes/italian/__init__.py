@@ -29,7 +29,7 @@ def _zeta_at(state: str) -> Number:
     """Return zeta_E at a limit state, by the method that governs there; at SLD the onset of rocking."""
     return Number(
         f"capacity over demand at {state}, by the method that governs there",
-        of=lambda found: found.methods[found.governing.get(state, state)].zeta,
+        of=lambda found: found.zeta_at(state),
     )
 
 
@@ -51,7 +51,7 @@ class Italian(Code):
         "zeta_E": Number("capacity over demand by the method that governs", of=lambda found: found.zeta_E),
         "T0": Number("period of the element before it rocks", of=lambda found: found.T0, unit="s"),
     }
-    takes_control = True
+    takes_control = masonry = True
 
     def verify(self, mechanism: Mechanism, site: ItalianSite, control: Control | None = None) -> ItalianVerification:
         """Verify a structure by the damage, linear and nonlinear methods."""
@@ -64,6 +64,12 @@ class Italian(Code):
         from rocking_cli.codes.italian import dynamic
 
         return dynamic.with_histories(found, structure, site, asked)
+
+    def strengthened(
+        self, found: ItalianVerification, other: ItalianVerification, site: ItalianSite
+    ) -> ItalianVerification:
+        """Return a verification beside that of the strengthened structure, judged by the intervention of the site."""
+        return method.strengthened(found, other, site)
 
     def located(self, site: ItalianSite, folder: Path) -> ItalianSite:
         """Return the site with the hazard at its coordinates."""

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from math import pi
+from functools import cached_property, partial
+from math import inf, pi
+from operator import attrgetter
 
 import numpy as np
+from pydantic import ValidationError
 
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.rules import Rule
@@ -15,6 +17,7 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.hung.attached import Spot
 from rocking_cli.core.hung.element import INTERLOCK_NAME as INTERLOCK
+from rocking_cli.core.hung.element import ConstantForce, Element
 from rocking_cli.core.kinematics import Reals
 from rocking_cli.errors import InputError, Problem, StructureError
 from rocking_cli.short_repr import short_repr
@@ -45,6 +48,22 @@ class Seat:
     d: float
 
 
+@dataclass(frozen=True, order=True)
+class Break:
+    """End of a tie or of crossing walls: rotation [rad], name, and the elongation or slip at which it ends [m]."""
+
+    phi: float
+    name: str
+    length: float
+
+
+def against(chain: Chain) -> Sequence[str]:
+    """Return the names of the forces against the motion, which may stand for ties."""
+    loads, s = {load.name for load in chain.mechanism.loads or []}, chain.direction
+    forces = [each for each in chain.mechanism.hung.elements if isinstance(each, ConstantForce) and each.name in loads]
+    return [each.name for each in forces if s * each.in_direction(s).real < 0]
+
+
 @short_repr
 @dataclass(frozen=True, eq=False)
 class ExactCurve:
@@ -65,31 +84,84 @@ class ExactCurve:
     confidence: float
 
     @cached_property
-    def _bare(self) -> Mechanism:
-        """The structure without crossing walls, after their courses have slid apart."""
-        return self.chain.mechanism.model_copy(update={"interlock": None})
+    def breaks(self) -> Sequence[Break]:
+        """What ends on the way to the kinematic limit: ties, and the overlap of the courses of crossing walls."""
+        mechanism, breaks = self.chain.mechanism, list[Break]()
+        known = {tie.name: tie.known_elongation for tie in mechanism.ties or []}
+        if mechanism.interlock is not None:
+            known[INTERLOCK] = mechanism.interlock.overlap
+        for each in mechanism.hung.elements:
+            if most := known.get(each.name):
+                slides = partial(self.slid, each.spot) if isinstance(each, ConstantForce) else None
+                phi = self._reached(slides or partial(self._longer, each), most, mechanism.limit(self.chain.direction))
+                breaks += [] if phi is None else [Break(phi, each.name, most)]
+        return sorted(breaks)
 
-    @cached_property
-    def torn(self) -> float | None:
-        """Rotation at which the courses of crossing walls have slid by their overlap [rad]; None if never."""
-        interlock = self.chain.mechanism.interlock
-        if interlock is None:
-            return None
-        spot = next(each.spot for each in self.chain.mechanism.hung.elements if each.name == INTERLOCK)  # type: ignore[attr-defined]
-        phi = np.linspace(0.0, self.chain.mechanism.limit(self.chain.direction), STEPS_PER_CURVE + 1)[:-1]
-        over = self._slid(spot, phi) >= interlock.overlap
-        if not over.any():
-            return None
-        return self._lost(spot, interlock.overlap, phi, int(over.argmax()))
-
-    def _slid(self, spot: Spot, phi: Reals) -> Reals:
+    def slid(self, spot: Spot, phi: Reals) -> Reals:
+        """Return the sideways displacement of a point, in either sense, at rotations, shape (n,) [m]."""
         path = self.chain.mechanism.followed(phi, self.chain.direction)(spot).z
         return np.asarray(np.abs((path - spot.at).real))
 
+    def _longer(self, tie: Element, phi: Reals) -> Reals:
+        return tie.elongation(self.chain.mechanism.followed(phi, self.chain.direction))[0]
+
+    def _reached(self, way: Callable[[Reals], Reals], length: float, end: float) -> float | None:
+        """Return the first rotation below an end at which a way has a length; None if there is none."""
+        phi = np.linspace(0.0, end, STEPS_PER_CURVE + 1)[:-1]
+        k = int((way(phi) >= length).argmax())
+        return root(lambda x: float(way(np.array([x]))[0]) - length, phi[k - 1], phi[k]) if k else None
+
     @cached_property
+    def _held(self) -> dict[Collection[str], Mechanism]:
+        """The structure without what has ended so far, by names."""
+        return {frozenset(): self.chain.mechanism}
+
+    def without(self, gone: Collection[str]) -> Mechanism:
+        """Return the structure without some of its ties, forces and crossing walls, by their names."""
+        names, mechanism = frozenset(gone), self.chain.mechanism
+        if names not in self._held:
+            kept = {key: [each for each in getattr(mechanism, key) or [] if each.name not in names] or None
+                    for key in ("loads", "ties")}  # fmt: skip
+            interlock = None if INTERLOCK in names else mechanism.interlock
+            self._held[names] = mechanism.model_copy(update={**kept, "interlock": interlock})
+        return self._held[names]
+
+    def standing(self, phi: float, *, after: bool = False) -> Mechanism:
+        """Return the structure with what still restrains it at a rotation; where something ends before it, or `after`.
+
+        At the end of the curve, it is the structure with what holds up to collapse.
+        """
+        if phi == self.end and not after:
+            return self.without(self._last[1])
+        return self.without({each.name for each in self.breaks if each.phi < phi or (after and each.phi == phi)})
+
+    @property
+    def lost(self) -> Sequence[Break]:
+        """What ends before a* vanishes with it, so that d0* is that of the curve without it."""
+        return [each for each in self.breaks if each.name in self._last[1] or each.phi == self.end]
+
+    @property
+    def let_go(self) -> Sequence[str]:
+        """Names of ties and forces that never end, with which a* would not vanish, so that d0* is that without them."""
+        return sorted(self._last[1] - {each.name for each in self.breaks})
+
+    @property
     def end(self) -> float:
         """First rotation at which a* vanishes [rad], which ends the curve. Raises `InputError` if there is none."""
-        if self._first is None:
+        return self._last[0]
+
+    @cached_property
+    def _last(self) -> tuple[float, set[str]]:
+        """The end of the curve [rad], and the names of what does not hold up to there."""
+        gone = set[str]()
+        while more := {each.name for each in self.breaks if each.phi < self._vanishes(gone)} - gone:
+            gone |= more
+        if self._vanishes(gone) == inf:
+            gone |= {*against(self.chain), *(tie.name for tie in self.chain.mechanism.ties or [])}
+        end = self._vanishes(gone)
+        if end == 0 and self.breaks:  # it does not stand without what ends first
+            end, gone = self.breaks[0].phi, set()
+        if not 0 < end < inf:
             raise InputError(
                 Problem(
                     f"in the {self.chain.direction.label} direction, a* does not vanish before the kinematic limit: "
@@ -98,25 +170,27 @@ class ExactCurve:
                     hint="the code counts only restraints that act up to collapse: leave out the others",
                 )
             )
-        self._hold_to_a_function(self._first)
-        return self._first
+        self._hold_to_a_function(end)
+        return end, gone
 
     @property
     def is_endless(self) -> bool:
-        """Whether a* does not vanish before the kinematic limit."""
-        return self._first is None
+        """Whether a* does not vanish before the kinematic limit if no tie ends."""
+        return self._vanishes({INTERLOCK}) == inf
 
-    @cached_property
-    def _first(self) -> float | None:
-        return self._vanishes(self._bare if self.lost_on_the_way else self.chain.mechanism)
-
-    def _vanishes(self, mechanism: Mechanism) -> float | None:
+    def _vanishes(self, gone: Collection[str]) -> float:
+        """Return the rotation at which a* vanishes without something [rad]: infinite if nowhere, 0 if at rest."""
         try:
+            mechanism = self.without(gone)
+            if not mechanism.coefficients(np.zeros(1), self.chain.direction).restoring(mechanism.gravity)[0] > 0:
+                return 0.0
             return mechanism.critical_rotation(self.chain.direction)
+        except ValidationError:  # it is refused, as it does not stand
+            return 0.0
         except NoCriticalRotation:
             if not mechanism.attached:
                 raise
-            return None
+            return inf
 
     def _hold_to_a_function(self, end: float) -> None:
         phi = np.linspace(0.0, end, STEPS_PER_CURVE + 1)
@@ -129,10 +203,9 @@ class ExactCurve:
                 "choose another control point"
             )
 
-    def acceleration_at(self, phi: float, *, after: bool = False) -> float:
-        """Return a* at a rotation [m/s2]; at the rotation of a break the value before it, or `after` it."""
-        gone = self.torn is not None and (phi > self.torn or (after and phi == self.torn))
-        mechanism = self._bare if gone else self.chain.mechanism
+    def acceleration_at(self, phi: float, standing: Mechanism | None = None) -> float:
+        """Return a* at a rotation [m/s2], of what is `standing` there; at the rotation of a break the value before."""
+        mechanism = self.standing(phi) if standing is None else standing
         here = mechanism.coefficients(np.array([phi]), self.chain.direction)
         alpha = float(here.restoring(mechanism.gravity)[0] / here.B[0])
         return alpha * mechanism.gravity / (self.chain.e_star * self.confidence)
@@ -150,7 +223,11 @@ class ExactCurve:
     @cached_property
     def _rotations(self) -> dict[float, float]:
         """Rotations computed so far, by displacement, as all views need the same few; that of a break to begin with."""
-        return {} if self.broken is None or self.torn is None else {self.broken: self.torn}
+        return {self.displacement_at(each.phi): each.phi for each in self._reached_breaks}
+
+    @property
+    def _reached_breaks(self) -> Sequence[Break]:
+        return [each for each in self.breaks if each.phi < self.end]
 
     @cached_property
     def a0(self) -> float:
@@ -169,44 +246,28 @@ class ExactCurve:
     @cached_property
     def largest(self) -> float:
         """The largest a* of the curve [m/s2]."""
-        places = np.linspace(0.0, self.end, STEPS_PER_CURVE // 4 + 1).tolist()
-        if self.torn is not None and self.torn <= self.end:
-            places.append(self.torn)  # a curve that rises up to its break has its maximum there
-        return max(self.a0, *map(self.acceleration_at, places))
-
-    @property
-    def lost_on_the_way(self) -> bool:
-        """Whether the courses of crossing walls slide apart before a* vanishes."""
-        first = self._vanishes(self.chain.mechanism)
-        return self.torn is not None and (first is None or self.torn < first)
+        # A curve that rises up to a break has its maximum there.
+        places = [*np.linspace(0.0, self.end, STEPS_PER_CURVE // 4 + 1), *(each.phi for each in self._reached_breaks)]
+        return max(self.a0, *(self.acceleration_at(float(phi)) for phi in places))
 
     @cached_property
     def broken(self) -> float | None:
-        """Displacement of a break at which a* loses more than half of its largest value [m]; None without one."""
-        if self.torn is None or self.torn > self.end:
-            return None
-        lost = self.acceleration_at(self.torn) - self.acceleration_at(self.torn, after=True)
-        return self.displacement_at(self.torn) if lost > self.largest / 2 else None
+        """Displacement at which breaks so far take more than half of the largest a* [m]; None if they do not."""
+        for each in self._reached_breaks:
+            whole, left = self.chain.mechanism, self.standing(each.phi, after=True)
+            if self.acceleration_at(each.phi, whole) - self.acceleration_at(each.phi, left) > self.largest / 2:
+                return self.displacement_at(each.phi)
+        return None
 
     @cached_property
     def seat(self) -> Seat | None:
         """The first load that moves off its seat before the end of the curve; None if none does."""
-        phi, mechanism = np.linspace(0.0, self.end, STEPS_PER_CURVE + 1), self.chain.mechanism
-        spots = {mass.name: mass.spot for mass in mechanism.hung.masses}
-        lost = []
-        for load in mechanism.loads or []:
-            if load.seat is None:
-                continue
-            over = self._slid(spots[load.name], phi) >= load.seat
-            if over.any():
-                lost.append((self._lost(spots[load.name], load.seat, phi, int(over.argmax())), load.name, load.seat))
-        if not lost:
-            return None
-        at, name, length = min(lost)
-        return Seat(name, length, self.displacement_at(at))
-
-    def _lost(self, spot: Spot, length: float, phi: Reals, k: int) -> float:
-        return root(lambda x: float(self._slid(spot, np.array([x]))[0]) - length, phi[k - 1], phi[k])
+        spots, lost = {mass.name: mass.spot for mass in self.chain.mechanism.hung.masses}, list[Seat]()
+        for load in self.chain.mechanism.loads or []:
+            if load.seat is not None:
+                at = self._reached(partial(self.slid, spots[load.name]), load.seat, self.end)
+                lost += [] if at is None else [Seat(load.name, load.seat, self.displacement_at(at))]
+        return min(lost, key=attrgetter("d"), default=None)
 
     def points(self, count: int = 65) -> tuple[Reals, Reals]:
         """Return points of the curve: displacements [m] and accelerations [m/s2], shape (n,) each."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from rocking_cli.codes.italian.capacity import ExactCurve
+from rocking_cli.codes.italian.capacity import ExactCurve, against
 from rocking_cli.codes.italian.chain import Chain, ChainBlock
 from rocking_cli.core import Mechanism
 from rocking_cli.core.coefficients import Coefficients
@@ -117,16 +117,10 @@ class DisplacedChain:
         return sum(each.block.PQ * each.dx for each in self.blocks)
 
     @cached_property
-    def _standing(self) -> Mechanism:
-        """The structure with what still restrains it: without crossing walls whose courses have slid apart."""
-        torn = self.curve.torn is not None and self.phi > self.curve.torn
-        return self.chain.mechanism.model_copy(update={"interlock": None}) if torn else self.chain.mechanism
-
-    @cached_property
     def held(self) -> Sequence[ForceWork]:
         """The forces and ties in this position."""
         s, works = self.chain.direction, list[ForceWork]()
-        for element in self._standing.hung.elements:
+        for element in self.curve.standing(self.phi).hung.elements:
             if isinstance(element, ConstantForce):
                 force, rate = element.in_direction(s), complex(self._follow(element.spot).dz[0])
                 parts = [("x", s * force.real, s * rate.real), ("y", force.imag, rate.imag)]
@@ -143,7 +137,8 @@ class DisplacedChain:
     @cached_property
     def _own(self) -> tuple[float, float]:
         """The derivative V' [N m] of the potential, and the coefficient B [kg m]."""
-        here, g = self._standing.coefficients(np.array([self.phi]), self.chain.direction), self.chain.mechanism.gravity
+        standing, g = self.curve.standing(self.phi), self.chain.mechanism.gravity
+        here = standing.coefficients(np.array([self.phi]), self.chain.direction)
         return float(here.restoring(g)[0]) * g, float(here.B[0])
 
     @property
@@ -173,8 +168,7 @@ class DisplacedChain:
         return more if abs(more) > ROUNDING_SHARE * abs(self.driven) else 0.0
 
 
-MAX_STRAIN = 0.02
-"""Elongation of a tie over its length from which the output warns: steel yields at a tenth of it."""
+MIN_ELONGATION = 1e-6  # m; a smaller one is rounding
 MAX_OVERHANG_SHARE = 0.8
 """Displacement of the centroid of a block over half its thickness from which the output warns; it falls at 1."""
 
@@ -188,7 +182,7 @@ class Pull:
     name : str
         Name of the tie or force.
     force : float
-        Force at this displacement [N], tension positive.
+        Force at this displacement [N], tension positive; 0 where it is no longer known to hold.
     elongation : float
         Elongation since rest; for a force, displacement of its point against the force [m].
     strain : float or None
@@ -206,20 +200,23 @@ def pulls(curve: ExactCurve, d: float) -> Sequence[Pull]:
     chain, phi = curve.chain, curve.rotation(d)
     follow = chain.mechanism.followed(np.array([phi]), chain.direction)
     lengths = {tie.name: tie.length or tie.span for tie in chain.mechanism.ties or [] if tie.bed is None}
-    loads = {load.name for load in chain.mechanism.loads or []}
-    pulled = []
+    forces, pulled = against(chain), []
+    standing = {element.name for element in curve.standing(phi).hung.elements}
     for element in chain.mechanism.hung.elements:
         if isinstance(element, Spring):
             e, length = element.elongation(follow)[0], lengths[element.name]
             strain = float(e[0]) / length if length else None
-            pulled.append(Pull(element.name, float(element.force(e)[0]), float(e[0]), strain))
-        elif isinstance(element, ConstantForce) and element.name in loads:
-            force = element.in_direction(chain.direction)
-            if chain.direction * force.real < 0:
-                moved = complex(follow(element.spot).z[0]) - element.spot.at
-                against = -(moved.conjugate() * force).real / abs(force)
-                pulled.append(Pull(element.name, abs(force), against, None))
+            force = float(element.force(e)[0]) if element.name in standing else 0.0
+            pulled.append(Pull(element.name, force, float(e[0]), strain))
+        elif isinstance(element, ConstantForce) and element.name in forces:
+            e = element.elongation(follow, chain.direction)[0]
+            pulled.append(Pull(element.name, abs(element.thrust), float(e[0]), None))
     return pulled
+
+
+def beyond(pulled: Iterable[Pull]) -> list[str]:
+    """Return the forces that move against themselves, of which no length is known, by name."""
+    return [each.name for each in pulled if each.strain is None and each.elongation > MIN_ELONGATION]
 
 
 def strengths(mechanism: Mechanism) -> dict[str, TieStrength]:
@@ -246,14 +243,6 @@ def furthest(curve: ExactCurve, d: float) -> tuple[float, float]:
 def elastic(mechanism: Mechanism) -> Sequence[Tie]:
     """Return the ties and beds of springs whose force increases with the elongation."""
     return [tie for tie in mechanism.ties or [] if tie.is_elastic]
-
-
-def carried(curve: ExactCurve, d: float) -> dict[str, float]:
-    """Return the force of each elastic tie at a displacement [N], tension positive, by name; without beds."""
-    chain, phi = curve.chain, curve.rotation(d)
-    follow = chain.mechanism.followed(np.array([phi]), chain.direction)
-    bars = [each for each in chain.mechanism.hung.elements if isinstance(each, Spring) and each.stiffness > 0]
-    return {bar.name: float(bar.force(bar.elongation(follow)[0])[0]) for bar in bars}
 
 
 def lasting(mechanism: Mechanism) -> Mechanism:

@@ -23,7 +23,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import follow
-from rocking_cli.verification.results import Histories, where_it_stands
+from rocking_cli.verification.results import Histories, Remark, where_it_stands
 
 MIN_RECORDS_FOR_MEAN = 7
 
@@ -100,7 +100,15 @@ def with_histories(
             histories.refused,
         )  # fmt: skip
         directions[direction] = replace(each, dynamic={**each.dynamic, state: of_state})
-    return replace(verification, directions=directions)
+    remarks: list[str | Remark] = [
+        each._replace(states=[one for one in each.states or () if one != state])
+        if isinstance(each, Remark) and each.key == "long" and len(histories.records) >= MIN_RECORDS_FOR_MEAN
+        else each
+        for each in verification.remarks
+    ]
+    if unchecked is not None:
+        remarks.append(Remark("unchecked", {}, [state]))
+    return replace(verification, directions=directions, remarks=remarks)
 
 
 def _state_of_records(verification: ItalianVerification, state: str | None) -> str:

@@ -142,15 +142,21 @@ S_DE_FLOOR = Formula(
 # Strength of ties of steel: formulas in common use, not checked against a printed source
 TIE_NUMBER = Formula("n", "D/i", "{depth}/{spacing}", meaning="tie_number", standing="plain")
 TIE_YIELD = Formula(
-    "N_[y]", "n π d^[2]/4 f_[y]", "{n} · π · {d}^[2]/4 · {f}", "kN", clauses.ANCHORED, meaning="tie_yield"
+    "N_[y]", "n π d^[2]/4 f_[y]/γ", "{n} · π · {d}^[2]/4 · {f}/{gamma}", "kN", clauses.ANCHORED, meaning="tie_yield"
 )
-TIE_YIELD_OF_AREA = replace(TIE_YIELD, text="A f_[y]", numbers="{A} · {f}")
+TIE_YIELD_OF_AREA = replace(TIE_YIELD, text="A f_[y]/γ", numbers="{A} · {f}/{gamma}")
 TIE_PUNCHING = Formula(
-    "N_[p]", "n 2 t (b + h + 2 t) f_[v]", "{n} · 2 · {t} · ({b} + {h} + 2 · {t}) · {f}", "kN", clauses.ANCHORED,
-    meaning="tie_punching",
+    "N_[p]", "n 2 t (b + h + 2 t) f_[v]/γ", "{n} · 2 · {t} · ({b} + {h} + 2 · {t}) · {f}/{gamma}", "kN",
+    clauses.ANCHORED, meaning="tie_punching",
 )  # fmt: skip
-TIE_BEARING = Formula("N_[b]", "n b h f_[c]", "{n} · {b} · {h} · {f}", "kN", clauses.ANCHORED, meaning="tie_bearing")
-TIE = Formula("N", "min(N_[y]; N_[p]; N_[b])", "min({N}; …)", "kN", meaning="tie_strength", standing="plain")
+TIE_BEARING = Formula(
+    "N_[b]", "n b h f_[c]/γ", "{n} · {b} · {h} · {f}/{gamma}", "kN", clauses.ANCHORED, meaning="tie_bearing"
+)
+TIE_BENDING = Formula(
+    "N_[s]", "n 2 s^[2] f_[y]/γ min(b/h; h/b)", "{n} · 2 · {s}^[2] · {f}/{gamma} · min({b}/{h}; {h}/{b})", "kN",
+    clauses.ANCHORED, meaning="tie_bending",
+)  # fmt: skip
+TIE = Formula("N", "min(N_[y]; N_[p]; N_[b]{bends})", "min({N}; …)", "kN", meaning="tie_strength", standing="plain")
 
 # Kinematic chain
 P = Formula("P_[{k}]", "{P}", "{P} + …", "{unit}", clauses.ALPHA0, meaning="of_block_P")
@@ -303,7 +309,7 @@ PERIOD = {
     )
     for rule in RULES
 }  # fmt: skip
-RHO = Formula("ρ_[{on}]", "d_[{state}]/S_[De](T_[{on}])", "{d}/{demand}", "", clauses.NONLINEAR)
+RHO = Formula("ρ_[{on}]", "d_[{state}]/S_[De](T_[{on}])", "{d}/{demand}", "", clauses.NONLINEAR, meaning="rho")
 
 # Methods
 CAPACITY = Formula("{symbol}", "a_[g] · {capacity}/{demand}", "{ag} · {c}/{d}", "g", meaning="a_g_method")

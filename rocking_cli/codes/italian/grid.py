@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.files import read_at_most, read_bytes
+from rocking_cli.io.spreadsheets import sheets_of
 from rocking_cli.text import cut, one_line
 
 EARTH_RADIUS = 6371.0  # km
@@ -227,21 +228,12 @@ def _lines(path: Path) -> Iterator[tuple[int, list[str]]]:
 
 def _of_spreadsheet(path: Path, raw: bytes) -> Iterator[tuple[int, list[str]]]:
     """Yield the lines of the first sheet that has a longitude among its headings."""
-    try:
-        from python_calamine import CalamineError, CalamineWorkbook
-    except ImportError:
-        hint = "pip install 'rocking-cli[spreadsheet]', or save the sheet with the table as CSV for `grid`"
-        raise InputError(Problem("is a spreadsheet, which needs another package", str(path), hint=hint)) from None
-    try:
-        book = CalamineWorkbook.from_filelike(io.BytesIO(raw))
-        sheets = [book.get_sheet_by_name(name).to_python(skip_empty_area=False) for name in book.sheet_names]
-    except CalamineError as error:
-        raise InputError(Problem(f"the spreadsheet cannot be read: {error}", str(path))) from None
+    sheets = sheets_of(raw, str(path)).values()
     for rows in sheets:
-        if any(str(cell).lower().startswith("lon") for row in rows[:MAX_HEADING_ROWS] for cell in row):
+        if any(cell.lower().startswith("lon") for row in rows[:MAX_HEADING_ROWS] for cell in row):
             for number, row in enumerate(rows, 1):
-                if any(cell != "" for cell in row):
-                    yield number, [f"{cell:.15g}" if isinstance(cell, float) else str(cell) for cell in row]
+                if any(row):
+                    yield number, row
             return
     raise InputError(Problem("no sheet has a heading that names the longitude", str(path), hint=COLUMNS_HINT))
 

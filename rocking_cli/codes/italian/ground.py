@@ -46,17 +46,27 @@ class SiteGround:
         return Hazard(site.hazard, site.soil or "A", site.topography) if site.hazard is not None else None
 
     def return_period(self, state: str) -> float | None:
-        """Return the return period of a limit state [years]; None if the reference life is not known."""
+        """Return the return period of a limit state [years].
+
+        None if the reference life is not known, or if the hazard does not reach a limit state that is not required.
+        """
         life = self.site.life
         if life is None:
             return None
-        return bounded(return_period(life, state)) if self.hazard is None else self.hazard.counted(life, state)
+        if self.hazard is None:
+            return bounded(return_period(life, state))
+        try:
+            return self.hazard.counted(life, state)
+        except InputError:
+            if state in self.site.asked:
+                raise
+            return None
 
     def on_rock(self, state: str) -> RockMotion | None:
         """Return the ground on rock at a limit state; None if the site file does not give it on rock."""
-        TR = self.return_period(state)
-        if TR is not None and self.hazard is not None:
-            return self.hazard.parameters(TR)
+        if self.hazard is not None:
+            TR = self.return_period(state)
+            return None if TR is None else self.hazard.parameters(TR)
         shaking = self.site.shaking(state)
         if shaking is None or shaking.TC_star is None:
             return None
@@ -81,11 +91,6 @@ class SiteGround:
         """Return the spectrum at the support of the structure, ground or floor; None if the state is not given."""
         ground = self.on_ground(state)
         return None if ground is None else self._where_it_stands(ground, state)
-
-    def verified(self, state: str) -> DemandSpectrum | None:
-        """Return the spectrum at the support for a limit state to verify; None if it is left out or not given."""
-        states = self.site.states
-        return self.spectrum(state) if states is None or state in states else None
 
     @property
     def state_of_activation(self) -> str:

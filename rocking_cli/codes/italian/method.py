@@ -11,19 +11,21 @@ from dataclasses import dataclass, replace
 from functools import partial
 from math import pi, sqrt
 from operator import itemgetter
-from typing import Any
 
-from rocking_cli.codes.italian import clauses, remarks
+from pydantic import ValidationError
+
+from rocking_cli.codes.italian import capacity, clauses, remarks
 from rocking_cli.codes.italian.capacity import CapacityCurve, ExactCurve, StraightCurve, ends, with_elastic_branch
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.demand import REFERENCE_DAMPING, DemandSpectrum
 from rocking_cli.codes.italian.displaced import elastic, lasting
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerification, ItalianVerified, LimitState
-from rocking_cli.codes.italian.rules import DAMAGE, FIRST_STATE, LINEAR, NONLINEAR, OF_STATE, RULES, Rule
+from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, OF_STATE, RULES, THRESHOLDS, Rule
 from rocking_cli.codes.italian.sheet.steps import workings_of_direction, workings_of_site
 from rocking_cli.codes.italian.site import ItalianSite, of_structure
 from rocking_cli.core import Direction, Mechanism
+from rocking_cli.core.hung.element import INTERLOCK_NAME
 from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.studies.conclusion import LeftOut
 from rocking_cli.verification.results import Control, Later, Remark
@@ -45,14 +47,14 @@ class _Case:
         by, d = min(ends(curve, rule).items(), key=itemgetter(1))
         a = with_elastic_branch(curve.acceleration(d), d, site.own_period)
         T = rule.factor * pi * sqrt(d / a)
-        spectrum = self.ground.verified(rule.state)
+        spectrum = self.ground.spectrum(rule.state)
         return LimitState(d, by, a, T, None if spectrum is None else spectrum.displacement(T, rule.damping))
 
     def method(
         self, title: str, clause: str, state: str, demand: Callable[[DemandSpectrum], float], capacity: float
     ) -> ItalianMethod:
         """Return the capacity a_g by one method."""
-        spectrum = self.ground.verified(state)
+        spectrum = self.ground.spectrum(state)
         if spectrum is None:
             return ItalianMethod(title, None, None, clause)
         a_g = self.ground.capacity(spectrum, demand, capacity)
@@ -60,12 +62,12 @@ class _Case:
 
     def linear(self) -> ItalianMethod:
         """Return the capacity by the linear method: q times the a_g at which rocking starts at SLD [§C8.7.1.2.1.7]."""
-        start = self.ground.capacity(self.ground.of_activation, self.forces, self.curve.a0)
-        a_g = self.ground.site.q * start
-        shaking = self.ground.on_ground("SLV")
-        assert shaking is not None  # every site file has SLV
+        title, shaking = "linear (q times onset) at SLV", self.ground.on_ground("SLV")
+        if shaking is None:
+            return ItalianMethod(title, None, None, clauses.LINEAR)
+        a_g = self.ground.site.q * self.ground.capacity(self.ground.of_activation, self.forces, self.curve.a0)
         lasts = self.ground.lasts("SLV", lambda spectrum: spectrum.ag, a_g)
-        return ItalianMethod("linear (q times onset) at SLV", a_g, shaking.ag, clauses.LINEAR, *lasts)
+        return ItalianMethod(title, a_g, shaking.ag, clauses.LINEAR, *lasts)
 
     @property
     def of_damage(self) -> str:
@@ -117,49 +119,96 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
     MechanismError
         If the structure does not stand.
     """
-    ground, taken = SiteGround(of_structure(site, mechanism)), lasting(mechanism)
-    directions = {direction: _verified(taken, direction, ground, control) for direction in taken.directions}
-    otherwise = elastic(mechanism) if taken is not mechanism else []
-    notes = [Remark.of("at_rest", names=[tie.name for tie in otherwise])] if otherwise else []
-    return ItalianVerification(
-        taken, KEY, NAME, EDITION, directions,
-        workings=Later(partial(workings_of_site, ground)),
-        variants=partial(_variants, taken, site, control),
-        relies_on=remarks.relied_on(directions.values()),
-        remarks=[*notes, *remarks.of_site(ground, list(directions.values()))],
+    taken, otherwise = lasting(mechanism), elastic(mechanism)
+    letter = by_letter(taken)
+    verification = _by(letter, site, control)
+    notes: list[str | Remark] = []
+    if taken is not mechanism and otherwise:
+        notes.append(Remark.of("at_rest", names=[tie.name for tie in otherwise]))
+    variants = dict[str, Mechanism]()
+    if letter.ties:
+        with suppress(ValidationError):  # it may not stand without them
+            variants["without_ties"] = letter.model_copy(update={"ties": None})
+    if letter is not taken:
+        notes.append(remarks.of_letter(verification, _by(taken, site, control)))
+        variants["our_reading"] = taken
+    return replace(
+        verification,
+        variants=partial(_variants, variants, site, control),
+        remarks=[*notes, *verification.remarks],
         left_out=[
             LeftOut("tie", tie.name, "elastic", f"ties.{tie.name}.steel" if tie.bed is None else "")
-            for tie in otherwise
+            for tie in (otherwise if taken is not mechanism else ())
         ],
     )  # fmt: skip
 
 
-def _variants(mechanism: Mechanism, site: ItalianSite, control: Control | None) -> dict[str, ItalianVerified]:
-    """Return the direction that decides, without the ties, and by the letter of the code with every P in P + Q.
+def judged(found: ItalianVerification, site: ItalianSite, before: Mapping[str, float | None]) -> ItalianVerification:
+    """Return a verification by what is required at a site, with the zeta_E before its intervention as far as known."""
+    required = {state: THRESHOLDS[site.rule].at(state, before) for state in site.asked}
+    directions = {direction: replace(each, required=required) for direction, each in found.directions.items()}
+    return replace(found, directions=directions, rules=remarks.of_rules(site, before))
 
-    A variant that does not stand, or has no capacity, is left out.
+
+def strengthened(found: ItalianVerification, other: ItalianVerification, site: ItalianSite) -> ItalianVerification:
+    """Return a verification, as without an intervention, beside that of the strengthened structure, judged by both."""
+    known = {state: [side.zeta_at(state) for side in found.directions.values()] for state in site.asked}
+    before = {state: None if None in zetas else min(filter(None, zetas)) for state, zetas in known.items()}
+    existing = judged(found, site.model_copy(update={"intervention": None}), {})
+    return replace(existing, strengthened=judged(other, site, before))
+
+
+def _by(mechanism: Mechanism, site: ItalianSite, control: Control | None) -> ItalianVerification:
+    """Return the verification of a structure as it is taken."""
+    ground = SiteGround(of_structure(site, mechanism))
+    directions = {direction: _stronger(mechanism, direction, ground, control) for direction in mechanism.directions}
+    verification = ItalianVerification(
+        mechanism, KEY, NAME, EDITION, directions,
+        workings=Later(partial(workings_of_site, ground)),
+        effects=remarks.EFFECTS,
+        remarks=remarks.of_site(ground, list(directions.values()), site.FC),
+    )  # fmt: skip
+    return judged(verification, site, {})
+
+
+def by_letter(mechanism: Mechanism) -> Mechanism:
+    """Return a structure in which every weight that a load puts on it also moves sideways [C8.7.1.1].
+
+    Weights among the fields of the mechanism stay; without other ones it is the structure itself.
     """
-    changes = dict[str, dict[str, Any]]()
-    if mechanism.ties:
-        changes["without_ties"] = {"ties": None}
     shares = {
-        each.name: {
-            "floor": None, "weight": each.weight, "vertical": each.vertical,
-            "horizontal": max(each.weight, each.horizontal),
-        }
+        each.name: {"floor": None, "weight": each.weight, "vertical": each.vertical, "horizontal": each.weight}
         for each in mechanism.hung.masses if each.weight > each.horizontal
     }  # fmt: skip
-    if shares:
-        changes["by_letter"] = {
-            "loads": [load.model_copy(update=shares.get(load.name, {})) for load in mechanism.loads or []]
-        }
+    if not any(load.name in shares for load in mechanism.loads or []):
+        return mechanism
+    loads = [load.model_copy(update=shares.get(load.name, {})) for load in mechanism.loads or []]
+    return mechanism.model_copy(update={"loads": loads})
+
+
+def _variants(
+    mechanisms: Mapping[str, Mechanism], site: ItalianSite, control: Control | None
+) -> dict[str, ItalianVerified]:
+    """Return the direction that decides of each structure that stands and has a capacity."""
     variants = {}
-    for key, update in changes.items():
+    for key, mechanism in mechanisms.items():
         with suppress(InputError, MechanismError):
-            side = verify(mechanism.model_copy(update=update), site, control).deciding
-            if key != "by_letter" or side.chain.is_by_the_letter:  # weights among the fields of a mechanism stay
-                variants[key] = side
+            variants[key] = _by(mechanism, site, control).deciding
     return variants
+
+
+def _stronger(
+    mechanism: Mechanism, direction: Direction, ground: SiteGround, control: Control | None
+) -> ItalianVerified:
+    """Return the result in a direction, without ties that end d_SLV early if the capacity is larger without them."""
+    tied = _verified(mechanism, direction, ground, control)
+    names = [lost.name for lost in tied.exact.lost if lost.name != INTERLOCK_NAME]
+    if tied.states[tied.first].by != capacity.BREAK or not names:
+        return tied
+    bare = _verified(tied.exact.without(names), direction, ground, control)
+    if not (bare.ratio or 0.0) > (tied.ratio or 0.0):
+        return tied
+    return replace(bare, remarks=[Remark.of("stronger_without", names=names, ratio=tied.ratio), *bare.remarks])
 
 
 def _verified(
@@ -172,15 +221,26 @@ def _verified(
     states = {rule.state: case.state(rule) for rule in RULES}
     on_line = {rule.state: line.state(rule) for rule in RULES}
     methods = case.methods(states)
-    notes = remarks.of_direction(exact, states, ground)
+    governing = {state: _governs(methods, *pair) for state, pair in OF_STATE.items()}
+    moved = [
+        state for state in states if state in ground.site.asked and states[state].demand is not None
+        and governing[state] == OF_STATE[state][1]
+    ]  # fmt: skip
+    notes = remarks.of_reach(exact, states, methods, moved)
+    governing |= {state: OF_STATE[state][0] for each in notes for state in each.states or ()}
+    moved = [state for state in moved if governing[state] == OF_STATE[state][1]]
+    notes += remarks.of_direction(exact, states, ground, moved)
     if control is not None:
         usual = ExactCurve(chain, chain.barycentre, ground.site.FC)
         by_it = _Case(ground, usual)
         others = by_it.methods({rule.state: by_it.state(rule) for rule in RULES})
-        notes.append(remarks.of_control(methods[NONLINEAR], others[NONLINEAR], exact.d0, usual.d0))
+        _, nonlinear = OF_STATE[ground.site.asked[0]]
+        notes.append(remarks.of_control(methods[nonlinear], others[nonlinear], exact.d0, usual.d0))
+    first = ground.site.asked[0]
     verified = ItalianVerified(
         direction=direction,
-        first=FIRST_STATE,
+        first=first,
+        required=dict.fromkeys(ground.site.asked),
         exact=exact,
         lambda_=mechanism.uplift(direction),
         a0=exact.a0,
@@ -190,8 +250,8 @@ def _verified(
         straight_states=on_line,
         methods=methods,
         straight_methods=line.methods(on_line),
-        governing={state: _governs(methods, *pair) for state, pair in OF_STATE.items()},
-        governs=_governs(methods, DAMAGE, NONLINEAR),
+        governing=governing | {"SLD": "SLD"},
+        governs=governing[first],
         T0=ground.site.own_period,
         remarks=notes,
     )

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from math import isclose
+
+import numpy as np
 
 from rocking_cli.codes.italian.capacity import BREAK, SEAT, ExactCurve
 from rocking_cli.codes.italian.chain import Chain
-from rocking_cli.codes.italian.demand import FloorSpectrum, GroundSpectrum
+from rocking_cli.codes.italian.demand import FloorSpectrum, GroundSpectrum, TableSpectrum
 from rocking_cli.codes.italian.displaced import (
     MAX_OVERHANG_SHARE,
-    MAX_STRAIN,
-    carried,
+    beyond,
     elastic,
     furthest,
     pulls,
@@ -19,24 +20,38 @@ from rocking_cli.codes.italian.displaced import (
 )
 from rocking_cli.codes.italian.grid import EARTH_RADIUS
 from rocking_cli.codes.italian.ground import SiteGround, bounded, return_period
-from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified, LimitState
+from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerification, ItalianVerified, LimitState
 from rocking_cli.codes.italian.rules import (
     DAMAGE,
     FIRST_STATE,
     FURTHER_STATES,
     LINEAR,
+    LONG_PERIOD,
     NONLINEAR,
     OF_STATE,
     RULES,
     STATES,
+    THRESHOLDS,
 )
+from rocking_cli.codes.italian.site import ItalianSite
 from rocking_cli.core import Mechanism
+from rocking_cli.core.hung.element import INTERLOCK_NAME
+from rocking_cli.core.hung.steel import MAX_STRAIN
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import digits_apart
+from rocking_cli.studies.conclusion import Effect
 from rocking_cli.verification.results import Remark
 
-LONG_PERIOD = 4.0  # s; above it the code requires a study of the site, or records
-LARGEST_FC = 1.35  # confidence factor of the lowest knowledge level, LC1
+EFFECTS: Mapping[str, Effect] = {
+    **dict.fromkeys(("confidence", "letter", "onset_alone"), Effect.REPLACES),
+    **dict.fromkeys(
+        ("seats", "factors", "sources", "strength_alone", "carries", "wide", "one_mode", "low_floor", "same_mode",
+         "own_formula", "carried", "structure", "mid_height", "joint", "unchecked", "unusual"),
+        Effect.CONDITION,
+    ),
+    **dict.fromkeys(("long", "unsupported"), Effect.UNDECIDED),
+}  # fmt: skip
+"""What each remark does to the conclusion at the limit states that it names; other remarks do nothing."""
 ROUNDING_RATIO = 1e-9
 SAME_RATIO = 0.005  # relative difference of a_g below which two methods agree
 MAX_LINE_DEVIATION = 0.01  # share of a* by which the straight line may be off without a remark
@@ -47,40 +62,81 @@ def _capacities(states: Iterable[str]) -> list[Remark]:
     return [Remark.of(f"d_[{state}]") for state in states]
 
 
-def of_site(ground: SiteGround, directions: Collection[ItalianVerified]) -> list[Remark]:
-    """Return remarks on the site and on both directions."""
-    remarks: list[Remark] = [*of_ground(ground), *_of_spectrum(ground), *_of_lives(ground)]
-    periods = [state.T for each in directions for state in each.states.values() if state.demand is not None]
-    long = max(periods, default=0.0)
-    if long > LONG_PERIOD:
-        remarks.append(Remark.of("long", T=long, most=LONG_PERIOD))
-    missing = [state for state in FURTHER_STATES if ground.spectrum(state) is None]
-    if missing:
+def of_site(ground: SiteGround, directions: Collection[ItalianVerified], given_FC: float) -> list[Remark]:
+    """Return remarks on the site, with FC as its file gives it, and on both directions."""
+    asked = ground.site.asked
+    onset = [state for state in STATES if any(state not in each.by_displacement for each in directions)]
+    remarks: list[Remark] = [*of_ground(ground), *_of_spectrum(ground, onset), *_of_lives(ground)]
+    long = [
+        (at.T, state) for each in directions for state, at in each.states.items()
+        if state in asked and at.demand is not None and at.T > LONG_PERIOD
+        and not isinstance(ground.on_ground(state), TableSpectrum)
+    ]  # fmt: skip
+    if long:
+        decided = {state for each in directions for _, state in long if each.is_long(state)}
+        remarks.append(Remark("long", {"T": max(long)[0], "most": LONG_PERIOD}, sorted(decided)))
+    if missing := [state for state in asked if ground.spectrum(state) is None]:
         remarks.append(Remark.of("missing", states=missing))
-    if left_out := [state for state in FURTHER_STATES if state not in missing and ground.verified(state) is None]:
-        remarks.append(Remark.of("states_left_out", states=left_out))
-    crushes = any(each.chain.mechanism.crushing is not None for each in directions)
-    if ground.site.FC < LARGEST_FC and not crushes:
-        remarks.append(Remark.of("confidence", FC=ground.site.FC, least=LARGEST_FC))
-    loads = [load for each in directions for load in each.chain.mechanism.loads or [] if load.force is None]
-    if any(load.seat is None for load in loads):
-        remarks.append(Remark.of("seats", limited=_capacities(rule.state for rule in RULES)))
-    return remarks
+    if given_FC != ground.site.FC:
+        remarks.append(Remark.of("confidence", FC=given_FC, least=ground.site.FC))
+    if seats := _without_seat(directions):
+        by_displacement = {state for each in directions for state in each.by_displacement}
+        limited = _capacities(rule.state for rule in RULES)
+        remarks.append(Remark("seats", {"limited": limited, "seats": seats}, sorted(by_displacement)))
+    return remarks + _of_mechanism(next(iter(directions)).chain.mechanism)
 
 
-def _of_spectrum(ground: SiteGround) -> list[Remark]:
-    spectrum = ground.spectrum("SLV")
+def of_rules(site: ItalianSite, before: Mapping[str, float | None]) -> list[Remark]:
+    """Return by which rules limit states and zeta_E were chosen, with the zeta_E before an intervention if known."""
+    first, is_IV, threshold = site.asked[0], site.class_of_use == "IV", THRESHOLDS[site.rule]
+    use = site.class_of_use or Remark.of("no_class")
+    key = "IV" if is_IV and not site.states else "IV_without_SLD" if is_IV and "SLD" not in site.asked else "states"
+    rules = [Remark.of(f"rule_{key}", states=list(site.asked), use=use)]
+    if site.rule:
+        zeta = before.get(first)
+        known = Remark.of("rule_unknown") if zeta is None else Remark.of("rule_before", zeta=zeta, state=first)
+        values = {"case": site.case or "", "least": threshold.least or 0.0, "use": use, "before": known}
+        rules.append(Remark(f"rule_{site.rule.removesuffix(f'_{site.case}')}", values))
+    if threshold.more != 0 and site.rule and "SLD" in site.asked:
+        rules.append(Remark.of("rule_SLD"))
+    return rules
+
+
+def _without_seat(directions: Collection[ItalianVerified]) -> list[Remark]:
+    """Return each load without a seat, with the largest displacement of its point that decides."""
+    moved: dict[str, float] = {}
+    for each in directions:
+        mechanism = each.chain.mechanism
+        spots = {mass.name: mass.spot for mass in mechanism.hung.masses}
+        d = max((each.states[state].d for state in each.by_displacement), default=0.0)
+        phi = np.array([each.exact.rotation(d)])
+        for load in mechanism.loads or []:
+            if not load.is_force and load.seat is None:
+                moved[load.name] = max(moved.get(load.name, 0.0), float(each.exact.slid(spots[load.name], phi)[0]))
+    return [Remark.of("seat_of", name=name, length=length) for name, length in moved.items()]
+
+
+def _of_mechanism(mechanism: Mechanism) -> list[Remark]:
+    """Return the cautions on the statics of a structure that limit its verification."""
+    caution = mechanism.own_caution()
+    remarks = [Remark.of("structure", text=caution)] if caution and not mechanism.columns_alone() else []
+    return [*remarks, Remark.of("mid_height")] if mechanism.mechanism == "wall" else remarks
+
+
+def _of_spectrum(ground: SiteGround, onset: Sequence[str]) -> list[Remark]:
+    """Return remarks on the spectrum that decides; those on a floor limit what the onset of rocking decides."""
+    spectrum = ground.spectrum(ground.site.asked[0])
     remarks: list[Remark] = []
     on_ground = spectrum.ground if isinstance(spectrum, FloorSpectrum) else spectrum
     if isinstance(on_ground, GroundSpectrum) and on_ground.soil is None:
         remarks.append(Remark.of("no_soil"))
-    if ground.state_of_activation != "SLD":
+    if ground.state_of_activation != "SLD" and ground.on_ground("SLV") is not None:
         remarks.append(Remark.of("linear_SLV"))
     if isinstance(spectrum, FloorSpectrum):
-        remarks += [Remark.of("floor"), Remark.of("one_mode"), *_of_modes(ground)]
+        remarks += [Remark.of("floor"), Remark("one_mode", {}, onset), *_of_modes(ground)]
         if spectrum.peak < spectrum.ground.peak:
             floor, under = (peak / STANDARD_GRAVITY for peak in (spectrum.peak, spectrum.ground.peak))
-            remarks.append(Remark.of("low_floor", floor=floor, ground=under))
+            remarks.append(Remark("low_floor", {"floor": floor, "ground": under}, onset))
     return remarks
 
 
@@ -124,10 +180,14 @@ def of_ground(ground: SiteGround) -> list[Remark]:
     return remarks
 
 
-def of_direction(curve: ExactCurve, states: Mapping[str, LimitState], ground: SiteGround) -> list[Remark]:
-    """Return remarks on one direction."""
-    remarks = [*_of_line(curve, states), *_of_ties(curve, states), *_of_break(curve, states), *_of_seat(curve, states)]
-    remarks += [*_of_stretch(curve, states), *_of_letter(curve.chain, curve)]
+def of_direction(
+    curve: ExactCurve, states: Mapping[str, LimitState], ground: SiteGround, moved: Sequence[str]
+) -> list[Remark]:
+    """Return remarks on one direction, with the required limit states at which displacement governs."""
+    asked = {state: at for state, at in states.items() if state in ground.site.asked}
+    remarks = [*_of_line(curve, states), *_of_ties(curve, states, moved), *_of_break(curve, states)]
+    remarks += [*_of_seat(curve, states), *_of_stretch(curve, asked, moved), *_of_letter(curve.chain, curve)]
+    remarks += _of_joint(curve, states, moved)
     T0 = ground.site.own_period
     if T0 is not None:
         on = [rule.state for rule in RULES if states[rule.state].a < curve.acceleration(states[rule.state].d)]
@@ -147,15 +207,35 @@ def _of_line(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark
     return [Remark.of("line", most=100 * float(off), there=100 * abs(there), side=side)]
 
 
-def _of_ties(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark]:
-    remarks: list[Remark] = [*_of_strength(curve.chain.mechanism)]
-    if remarks and len(curve.chain.mechanism.bodies()) == 1:
+def of_reach(
+    curve: ExactCurve, states: Mapping[str, LimitState], methods: Mapping[str, ItalianMethod], moved: Iterable[str]
+) -> list[Remark]:
+    """Return what counts in place of displacements that rely on ties or forces beyond what is known of them.
+
+    It is the onset of rocking; if that fails and the displacement passes, nothing is decided.
+    """
+    by: dict[str, dict[str, list[str]]] = {"unsupported": {}, "onset_alone": {}}
+    for state in moved:
+        if names := beyond(pulls(curve, states[state].d)):
+            open_ = methods[OF_STATE[state][1]].passed and not methods[OF_STATE[state][0]].passed
+            by["unsupported" if open_ else "onset_alone"][state] = names
+    return [
+        Remark(key, {"states": [*of], "names": [*of.values()][-1]}, [*of])  # the largest displacement is the last
+        for key, of in by.items() if of
+    ]  # fmt: skip
+
+
+def _of_ties(curve: ExactCurve, states: Mapping[str, LimitState], moved: Sequence[str]) -> list[Remark]:
+    mechanism = curve.chain.mechanism
+    remarks: list[Remark] = [*_of_strength(mechanism)]
+    if remarks and len(mechanism.bodies()) == 1:
         remarks.append(Remark.of("bends"))
-    if not elastic(curve.chain.mechanism):
-        return remarks
-    remarks += [Remark.of("ties", largest=curve.largest, over=curve.largest / curve.a0)]
-    for name, force in carried(curve, states["SLV"].d).items():
-        remarks.append(Remark.of("carries", name=name, force=force / 1e3))
+    if elastic(mechanism):
+        remarks += [Remark.of("ties", largest=curve.largest, over=curve.largest / curve.a0)]
+    known = {tie.name for tie in mechanism.ties or []} - strengths(mechanism).keys()
+    for pull in pulls(curve, max((states[state].d for state in moved), default=0.0)):
+        if pull.name in known and pull.force > 0:
+            remarks.append(Remark.of("carries", name=pull.name, force=pull.force / 1e3))
     return remarks
 
 
@@ -164,54 +244,53 @@ def _of_strength(mechanism: Mechanism) -> Iterator[Remark]:
     for name, strength in strengths(mechanism).items():
         force = {key: value / 1e3 for key, value in strength.limits.items()}
         key = "strength" if "bearing" in force else "strength_alone"
-        yield Remark(key, {"name": name, "N": strength.force / 1e3, "governs": Remark.of(strength.governs), **force})
+        bends = Remark.of("plates_bend", bending=force["bending"]) if "bending" in force else ""
+        values = {"name": name, "N": strength.force / 1e3, "governs": Remark.of(strength.governs), **force}
+        yield Remark(key, {**values, "bends": bends})
+    ties = [tie for tie in mechanism.ties or [] if tie.is_steel]
+    bending = {tie.name: tie.plate for tie in ties if tie.plate is not None and tie.plate.thickness is not None}
+    factored = {tie.name: (tie, tie.wall, bending.get(tie.name)) for tie in ties}
+    sourced = {tie.name: (None if tie.steel else tie, tie.wall) for tie in ties}
+    for key, field, of in (("factors", "gamma", factored), ("sources", "source", sourced)):
+        if names := [name for name, parts in of.items() if None in (getattr(each, field) for each in parts if each)]:
+            yield Remark.of(key, names=names)
 
 
-def _of_stretch(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark]:
-    """Return remarks on ties of too large elongation, forces with large displacements, and blocks that move far."""
+def _of_stretch(curve: ExactCurve, states: Mapping[str, LimitState], moved: Sequence[str]) -> list[Remark]:
+    """Return remarks on forces with large displacements, and on blocks that move far."""
     remarks: dict[str, Remark] = {}
     for state, at in sorted(states.items(), key=lambda pair: -pair[1].d):  # largest displacements first
-        if state != "SLV" and at.demand is None:
-            continue
         held = pulls(curve, at.d)
         for pull in held:
             e = pull.elongation
             if pull.strain is None and e > 0:
                 far = {"most": 100 * MAX_STRAIN, "length": e / MAX_STRAIN}
                 remarks.setdefault(pull.name, Remark.of("follows", state=state, name=pull.name, e=e, **far))
-            elif pull.strain is not None and pull.strain > MAX_STRAIN:
-                strain = {"strain": 100 * pull.strain, "most": 100 * MAX_STRAIN}
-                remarks.setdefault(pull.name, Remark.of("stretched", state=state, name=pull.name, e=e, **strain))
-        moved, thickness = furthest(curve, at.d)
-        if held and moved > MAX_OVERHANG_SHARE * thickness / 2:
-            remarks.setdefault("", Remark.of("wide", state=state, moved=moved, thickness=thickness))
+        gone, thickness = furthest(curve, at.d)
+        if any(pull.force for pull in held) and gone > MAX_OVERHANG_SHARE * thickness / 2:
+            limits = [state] if state in moved else []
+            remarks.setdefault("", Remark("wide", {"state": state, "moved": gone, "thickness": thickness}, limits))
     return list(remarks.values())
 
 
-def relied_on(directions: Iterable[ItalianVerified]) -> list[Remark]:
-    """Return the remarks on ties that stretch and on blocks that move too far, in their form beside the conclusion.
-
-    If rocking starts at no limit state, the conclusion relies on no displacement.
-    """
-    key_of = {"stretched": "end_stretched", "wide": "end_wide"}
-    return [
-        Remark(key_of[each.key], each.values)
-        for verified in directions if _rocks(verified) for each in verified.remarks
-        if isinstance(each, Remark) and each.key in key_of
-    ]  # fmt: skip
-
-
-def _rocks(verified: ItalianVerified) -> bool:
-    """Return whether rocking starts at a limit state that the site gives."""
-    starts = (verified.methods[damage].zeta for damage, _ in OF_STATE.values())
-    return any(zeta is not None and zeta < 1 for zeta in starts)
+def _of_joint(curve: ExactCurve, states: Mapping[str, LimitState], moved: Sequence[str]) -> list[Remark]:
+    """Return the joint of a searched mechanism that opens before a displacement that decides."""
+    if (
+        not moved
+        or (weakest := curve.chain.mechanism.collapse(curve.chain.direction)) is None
+        or weakest.valid_to is None
+    ):
+        return []
+    past = [state for state in moved if curve.rotation(states[state].d) > weakest.valid_to]
+    d = curve.displacement_at(weakest.valid_to)
+    return [Remark("joint", {"joint": weakest.opens, "d": d}, past)] if past else []
 
 
 def _of_break(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark]:
-    if curve.torn is None or not curve.lost_on_the_way:
-        return []
-    d = curve.displacement_at(curve.torn)
-    remarks: list[Remark] = [Remark.of("torn", d=d)]
+    remarks = [Remark.of("let_go", names=curve.let_go)] if curve.let_go else []
+    for lost in curve.lost:
+        key = "torn" if lost.name == INTERLOCK_NAME else "tie_ends"
+        remarks.append(Remark.of(key, name=lost.name, d=curve.displacement_at(lost.phi), e=lost.length))
     if states["SLV"].by == BREAK:
         remarks.append(Remark.of("ends"))
     return remarks
@@ -229,13 +308,22 @@ def _of_letter(chain: Chain, curve: ExactCurve) -> list[Remark]:
     remarks: list[Remark] = []
     alpha0, lambda_ = chain.alpha0, chain.mechanism.uplift(chain.direction)
     if abs(alpha0 / lambda_ - 1) > ROUNDING_RATIO:
-        remarks.append(Remark.of("own_formula", alpha0=alpha0, lambda_=lambda_))
+        limits = None if lambda_ < alpha0 else ()
+        remarks.append(Remark("own_formula", {"alpha0": alpha0, "lambda_": lambda_}, limits))
     if not chain.is_by_the_letter:
         a_letter = curve.a0 * chain.start_by_the_letter
         same = isclose(chain.by_the_letter, alpha0, rel_tol=ROUNDING_RATIO)
         alpha = Remark("alpha0_same" if same else "alpha0_by_letter", _apart(chain.by_the_letter, alpha0))
-        remarks.append(Remark.of("letter", alpha0=alpha, **_apart(a_letter, curve.a0)))
+        limits = None if a_letter < curve.a0 * (1 - ROUNDING_RATIO) else ()
+        remarks.append(Remark("carried", {"alpha0": alpha, **_apart(a_letter, curve.a0)}, limits))
     return remarks
+
+
+def of_letter(verification: ItalianVerification, ours: ItalianVerification) -> Remark:
+    """Return what our reading of P + Q would give in place of the letter of the code that counts."""
+    side, reading = verification.deciding, ours.deciding
+    values = {"a_letter": side.a0, "a_own": reading.a0, "letter": side.chain.alpha0, "own": reading.chain.alpha0}
+    return Remark("letter", {**values, "ratio": ours.conclusion.ratio})
 
 
 def _apart(letter: float, own: float) -> dict[str, float | int]:
@@ -257,7 +345,7 @@ def of_control(chosen: ItalianMethod, usual: ItalianMethod, d0: float, usual_d0:
 def differences(verified: ItalianVerified, first: str) -> Iterator[Remark]:
     """Explain why the linear method and the straight line differ from the method and curve that govern."""
     linear, counts, at = verified.methods[LINEAR].a_g, verified.counts.a_g, verified.states[first]
-    if linear is None or counts is None:
+    if linear is None or counts is None or first != FIRST_STATE:  # the linear method is one at SLV
         return
     ratio, begins = linear / counts, verified.methods[DAMAGE].a_g or 0.0
     key = "linear_same" if abs(ratio - 1) <= SAME_RATIO else "linear_less" if ratio < 1 else "linear_more"

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
-from rocking_cli.codes.italian.rules import OF_STATE
+from rocking_cli.codes.italian.rules import LONG_PERIOD, OF_STATE, STATE_OF_METHOD
 from rocking_cli.core import Direction
 from rocking_cli.short_repr import short_repr
-from rocking_cli.studies.conclusion import SEVERITY, Concluded, Conclusion, LeftOut, worst
+from rocking_cli.studies.conclusion import Concluded, Conclusion, LeftOut, worst
 from rocking_cli.verification import results as frame
 from rocking_cli.verification.results import CAPACITY_TOLERANCE, MotionPlace, Requirement
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 HISTORIES = "histories"
 """The key of the method by time histories in a conclusion."""
+PASSED: Mapping[Concluded | None, bool] = {Concluded.SATISFIED: True, Concluded.NOT_SATISFIED: False}
 SAME_RATIO = 1e-9  # relative difference below which two directions are shown as one
 
 
@@ -45,13 +46,8 @@ class LimitState:
 
     @property
     def ratio(self) -> float | None:
-        """Displacement capacity over demand, at least 1 if the state passes; None without a demand."""
+        """Displacement capacity over demand; None without a demand."""
         return None if self.demand is None else self.d / self.demand
-
-    @property
-    def passes(self) -> bool | None:
-        """Whether the capacity meets the demand; None without a demand."""
-        return None if self.ratio is None else self.ratio >= 1 - CAPACITY_TOLERANCE
 
 
 @short_repr
@@ -230,7 +226,10 @@ class ItalianVerified(frame.Verified):
     Parameters
     ----------
     first : str
-        The limit state whose verification decides.
+        The limit state of displacement whose verification decides.
+    required : mapping of str to float or None
+        The zeta_E that the code requires at each limit state that it asks for; None if it depends on the structure
+        before an intervention, which is not known.
     lambda_, a0, d0, M : float
         Uplift acceleration over g; a0* [m/s2]; d0* [m]; M* [kg], None without masses.
     exact : ExactCurve
@@ -240,7 +239,7 @@ class ItalianVerified(frame.Verified):
     methods, straight_methods : mapping of str to ItalianMethod
         Result of each method on either curve.
     governing : mapping of str to str
-        The method that governs at each limit state; `governs` is that at the first one.
+        The method that governs at each limit state, SLD among them; `governs` is that at the first one.
     T0 : float, optional
         Period of an element that vibrates before it rocks [s].
     dynamic : mapping of str to Dynamic
@@ -249,6 +248,7 @@ class ItalianVerified(frame.Verified):
 
     methods: Mapping[str, ItalianMethod]
     first: str
+    required: Mapping[str, float | None]
     lambda_: float
     a0: float
     d0: float
@@ -285,51 +285,71 @@ class ItalianVerified(frame.Verified):
 
     def decides(self, method: str) -> str:
         """Return the limit state at which a method governs; empty if it governs at none."""
-        of = {key: state for state, key in self.governing.items()} | {"SLD": "SLD"}
-        return of.get(method, "")
+        state = STATE_OF_METHOD[method]
+        return state if self.governing[state] == method else ""
 
     def zeta_at(self, state: str) -> float | None:
         """Return zeta_E at a limit state, by the method that governs there."""
         return self.methods[self.governing[state]].zeta
 
+    def concluded(self, state: str) -> Concluded | None:
+        """Return what is concluded at a limit state by the static methods; None if it is not required."""
+        if state not in self.required:
+            return None
+        zeta, required = self.zeta_at(state), self.required[state]
+        if zeta is None or required is None:
+            return Concluded.NOT_CHECKED if zeta is None and state == self.first else Concluded.NOT_DECIDED
+        return Concluded.SATISFIED if zeta >= required * (1 - CAPACITY_TOLERANCE) else Concluded.NOT_SATISFIED
+
     def passes(self, state: str) -> bool | None:
-        """Return whether the direction passes at a limit state; None if the site does not give it."""
-        held = self.methods[self.governing[state]].passed
-        return None if held is None else held or bool(self.states[state].passes)
+        """Return whether the direction passes at a limit state; None if it is not required, or not decided."""
+        return PASSED.get(self.concluded(state))
 
     @property
     def passed(self) -> bool | None:
-        """Whether the direction passes at all limit states that the site gives, by the static methods."""
-        concluded = max((check.concluded for check in self._static), key=SEVERITY.index)
-        return None if concluded is Concluded.NOT_CHECKED else concluded is Concluded.SATISFIED
+        """Whether the direction passes at all limit states that are required, by the static methods."""
+        outcomes = [self.passes(state) for state in self.required]
+        return False if False in outcomes else None if None in outcomes else True
 
     @property
     def ratio(self) -> float | None:
-        """Smallest ratio over the limit states: of displacement, or zeta_E where the onset of rocking governs."""
-        known = [check.ratio for check in self._static]
-        return None if None in known else min(ratio for ratio in known if ratio is not None)
+        """Smallest zeta_E over the limit states that are required; None if one is not known."""
+        known = [self.zeta_at(state) for state in self.required]
+        return None if None in known else min(zeta for zeta in known if zeta is not None)
 
     @property
     def checks(self) -> Sequence[Requirement]:
-        """Requirements at the limit states that the site gives; those of time histories if these suffice, or fail."""
-        return [*self._static, *filter(None, (each.requirement for each in self.dynamic.values()))]
+        """Requirements at the limit states; those of time histories if there are enough of them.
+
+        Above the longest period of the code's spectrum, the time histories of a limit state are in place of its static
+        method.
+
+        Histories under the whole ground motion decide only whether zeta_E reaches 1.
+        """
+        histories = {each.state: each for one in self.dynamic.values() if (each := one.requirement) is not None}
+        checks = [
+            Requirement(state, self.governing[state], self.zeta_at(state), concluded, required=required)
+            for state, required in self.required.items()
+            if (concluded := self.concluded(state)) and not (state in histories and self.is_long(state))
+        ]  # fmt: skip
+        for each in histories.values():
+            required = self.required.get(each.state, 1.0)
+            fails = each.concluded is not Concluded.SATISFIED
+            is_open = required is None or required > 1 or (fails and required < 1)
+            checks.append(each._replace(concluded=Concluded.NOT_DECIDED) if is_open else each)
+        return checks
+
+    def is_long(self, state: str) -> bool:
+        """Return whether displacement governs at a limit state with a period beyond that of the code's spectrum."""
+        return state in self.by_displacement and self.states[state].T > LONG_PERIOD
 
     @property
-    def _static(self) -> list[Requirement]:
-        requirements = []
-        for state, at in self.states.items():
-            if at.demand is None and state != self.first:
-                continue
-            by = self.governing[state]
-            zeta = self.methods[by].zeta
-            ratio = zeta if by == OF_STATE[state][0] and zeta is not None else at.ratio
-            requirements.append(Requirement.of(state, by, ratio, self.passes(state)))
-        damage = self.methods["SLD"]
-        return (
-            requirements
-            if damage.passed is None
-            else [*requirements, Requirement.of("SLD", "SLD", damage.ratio, damage.passed)]
-        )
+    def by_displacement(self) -> list[str]:
+        """The required limit states at which displacement governs."""
+        return [
+            state for state, at in self.states.items()
+            if state in self.required and at.demand is not None and OF_STATE[state][1] == self.governing[state]
+        ]  # fmt: skip
 
     def is_like(self, other: frame.Verified) -> bool:
         """Return whether another direction has the same curve; False with histories, as motions are not symmetric."""
@@ -347,7 +367,7 @@ class ItalianVerification(frame.Verification):
     Parameters
     ----------
     variants : callable
-        Returns the direction that decides without the ties, and with every P in P + Q, by key; empty without either.
+        Returns the direction that decides without the ties, and by our reading of P + Q, by key; empty without either.
     """
 
     directions: Mapping[Direction, ItalianVerified]

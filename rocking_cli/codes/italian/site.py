@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from math import sqrt
 from pathlib import Path
@@ -11,9 +11,9 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import BeforeValidator, Field, PrivateAttr
 
 from rocking_cli.codes.italian.grid import Cell, read_grid
-from rocking_cli.codes.italian.rules import FIRST_STATE, STATES_OF_SITE
+from rocking_cli.codes.italian.rules import FIRST_STATE, OF_STATE, STATES_OF_SITE
 from rocking_cli.core import Mechanism
-from rocking_cli.core.fields import quantity
+from rocking_cli.core.fields import Name, quantity
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.yaml_file import Place
@@ -30,6 +30,7 @@ MIN_PERIOD = 0.001  # s
 MIN_REFERENCE_LIFE = 35.0  # years
 COEFFICIENTS_OF_USE = {"I": 0.7, "II": 1.0, "III": 1.5, "IV": 2.0}
 CONFIDENCE_FACTORS = {"LC1": 1.35, "LC2": 1.20, "LC3": 1.00}
+LARGEST_FC = CONFIDENCE_FACTORS["LC1"]
 Period = Annotated[float, Field(gt=0, le=100)]
 Ordinate = Annotated[list[Annotated[float, Field(ge=0, le=1000)]], Field(min_length=2, max_length=2)]
 Row = Annotated[list[Annotated[float, Field(gt=0, le=1e6)]], Field(min_length=4, max_length=4)]
@@ -45,7 +46,7 @@ def _confidence_factor(given: Any) -> Any:
 def _ordinates(**more: Any) -> Any:
     return quantity(
         "elastic spectrum at 5 % damping: [period in s, acceleration in g], starting at T = 0, linearly interpolated",
-        default=None, min_length=2, max_length=MAX_TABLE_ROWS, **more,
+        columns=("s", "g"), default=None, min_length=2, max_length=MAX_TABLE_ROWS, **more,
     )  # fmt: skip
 
 
@@ -115,7 +116,7 @@ class Mode(Part):
     """The first mode of a building at a limit state."""
 
     T1: Period = quantity("first period of the building", unit="s")
-    xi1: float = quantity("damping ratio of the building: 0.05 for 5 %", gt=0, le=0.5)
+    xi1: float = quantity("damping ratio of the building: 0.05, or 5 %", gt=0, le=0.5)
 
 
 class SiteFloor(Mode):
@@ -209,12 +210,16 @@ class ItalianSite(StateGround, Site):
         **dict.fromkeys(("topografia", "categoria_topografica"), "topography"),
         **dict.fromkeys(("classe", "classe_uso", "classe_d_uso"), "class"),
         **dict.fromkeys(("lc", "livello_conoscenza", "livello_di_conoscenza"), "FC: LC1, FC: LC2 or FC: LC3"),
-        "vita_nominale": "VN",
+        "vita_nominale": "VN", "stati_limite": "states", "scuola": "school", "bene_culturale": "heritage",
+        "intervento": "intervention: local (intervento locale), improvement (miglioramento) or upgrading (adeguamento)",
         "lon": "longitude", "longitudine": "longitude", "lat": "latitude", "latitudine": "latitude",
     }  # fmt: skip
 
     FC: Annotated[float, BeforeValidator(_confidence_factor)] = quantity(
         "confidence factor, by which accelerations are divided, or the knowledge level LC1, LC2 or LC3", ge=1, le=2
+    )
+    FC_without_strength: bool = Field(
+        False, description="whether FC is used as given, although no compressive strength is taken into account"
     )
     q: float = quantity("behaviour factor of the linear method", default=2.0, ge=1, le=10)
     SLC: StateGround | None = Field(None, description="the ground at collapse")
@@ -222,13 +227,20 @@ class ItalianSite(StateGround, Site):
     SLD: StateGround | None = Field(None, description="the ground at damage")
     SLO: StateGround | None = Field(None, description="the ground of SLO, which is shown and not verified")
     states: Annotated[list[Literal["SLD", "SLV", "SLC"]], Field(min_length=1, max_length=3)] | None = Field(
-        None, description="limit states to verify, SLV among them; if omitted, all that the site gives"
+        None, description="limit states to verify, SLV or SLC among them; if omitted, SLV, and SLD for class IV"
     )
+    intervention: Literal["local", "improvement", "upgrading"] | None = Field(
+        None, description="intervention of which the structure is the result; if omitted, zeta_E is compared with 1"
+    )
+    case: Literal["a", "b", "c", "d", "e"] | None = Field(None, description="case of an upgrading (§8.4.3), a to e")
+    school: bool = Field(False, description="whether an improvement is of a school of class III")
+    heritage: bool = Field(False, description="whether an improvement is of protected cultural heritage")
     soil: Literal["A", "B", "C", "D", "E"] | None = Field(None, description="category of the soil")
     topography: Literal["T1", "T2", "T3", "T4"] = Field("T1", description="category of the topography")
-    hazard: Annotated[list[Row], Field(min_length=2, max_length=MAX_TABLE_ROWS)] | None = Field(
-        None, description="rows of [return period in years, ag in g, F0, TC* in s], with VN, CU or class, and soil"
-    )
+    hazard: Annotated[list[Row], Field(min_length=2, max_length=MAX_TABLE_ROWS)] | None = quantity(
+        "rows of [return period in years, ag in g, F0, TC* in s], with VN, CU or class, and soil",
+        columns=("years", "g", "", "s"), default=None,
+    )  # fmt: skip
     longitude: float | None = quantity("longitude of the site", unit="deg", default=None, ge=-180, le=180)
     latitude: float | None = quantity("latitude of the site", unit="deg", default=None, ge=-90, le=90)
     grid: str | None = Field(
@@ -243,6 +255,7 @@ class ItalianSite(StateGround, Site):
     )
 
     element: VibratingElement | None = Field(None, description="instead of T0: the element, from which T0 follows")
+    unusual: list[Name] | None = Field(None, description="fields whose unusual values are meant")
     _cell: Cell | None = PrivateAttr(None)
 
     @property
@@ -263,7 +276,7 @@ class ItalianSite(StateGround, Site):
             raise InputError(Problem(f"names no file: {path}", field="grid", hint=hint))
         cell = read_grid(path).cell(self.longitude, self.latitude)
         located = self.model_copy(update={"hazard": cell.rows})
-        located._cell = cell
+        located._cell, located._named = cell, {"grid": path}
         return located
 
     @property
@@ -281,10 +294,30 @@ class ItalianSite(StateGround, Site):
         """Reference life V_R [years]; None if the site file does not give it."""
         return None if self.VN is None or self.use is None else max(self.VN * self.use, MIN_REFERENCE_LIFE)
 
+    @property
+    def class_of_use(self) -> str | None:
+        """Class of use, as given or of the coefficient of use; None without both."""
+        return self.class_ or {CU: use for use, CU in COEFFICIENTS_OF_USE.items()}.get(self.CU or 0.0)
+
+    @property
+    def asked(self) -> Sequence[str]:
+        """Limit states that are required, those of displacement first [§8.3]."""
+        chosen: Sequence[str] = self.states or ([FIRST_STATE, "SLD"] if self.class_of_use == "IV" else [FIRST_STATE])
+        return [state for state in (*OF_STATE, "SLD") if state in chosen]
+
+    @property
+    def rule(self) -> str:
+        """Key of the threshold on zeta_E among `THRESHOLDS`."""
+        if self.intervention != "improvement":
+            return f"upgrading_{self.case}" if self.intervention == "upgrading" else self.intervention or ""
+        use = f"_{self.class_of_use}" if self.class_of_use in ("I", "IV") else "_school" if self.school else ""
+        return f"improvement{'_heritage' if self.heritage else use}"
+
     def shaking(self, state: str) -> StateGround | None:
         """Return the ground at a limit state; the fields of the site itself are those of SLV."""
         ground: StateGround | None = getattr(self, state)
-        return self if ground is None and state == FIRST_STATE else ground
+        is_own = ground is None and state == FIRST_STATE and (self.ag is not None or self.spectrum is not None)
+        return self if is_own else ground
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
@@ -294,8 +327,15 @@ class ItalianSite(StateGround, Site):
         def there(*names: str) -> list[str]:
             return [name for name in names if given.get(name) is not None]
 
-        if there("states") and FIRST_STATE not in given["states"]:
-            yield ("states",), f"must include {FIRST_STATE}, by which local mechanisms are verified"
+        if there("states") and sound("states") and not {*OF_STATE} & {*given["states"]}:
+            yield ("states",), f"must include {' or '.join(OF_STATE)}, by which local mechanisms are verified"
+        for name, kind in (("case", "upgrading"), ("school", "improvement"), ("heritage", "improvement")):
+            if given.get(name) and given.get("intervention") != kind:
+                yield (name,), f"requires `intervention: {kind}`"
+        if given.get("intervention") == "upgrading" and not there("case"):
+            yield ("case",), "is missing: an upgrading has the case that requires it, a to e of NTC 2018, §8.4.3"
+        if given.get("intervention") == "improvement" and not (there("class", "CU") or given.get("heritage")):
+            yield ("class",), "is missing: what an improvement must reach depends on the class of use"
         if there("element") and there("T0"):
             yield ("element",), "cannot be combined with T0, which is computed from it: give one of the two"
         if there("CU") and there("class"):
@@ -306,14 +346,14 @@ class ItalianSite(StateGround, Site):
         source = "hazard" if there("hazard") else "grid" if there(*COORDINATES) else "TC_star" if on_rock else ""
         if source in ("hazard", "grid"):
             yield from cls._tabled(there, source)
-        for name in there("VN", "CU", "class") if not source else ():
+        for name in there("VN", "CU") if not source else ():
             yield (name,), "requires `hazard`, the table of return periods, or TC_star"
         if there("topography") and not source:
             yield ("topography",), "requires `hazard` or TC_star: S, as given, includes it"
         what = "S and T_C need" if source == "TC_star" else "a hazard needs"
         if source and not there("soil"):
             yield ("soil",), f"is missing: {what} the category of the soil, A to E"
-        if source in ("hazard", "grid") or (source and there("VN", "CU", "class")):
+        if source in ("hazard", "grid") or (source and there("VN", "CU")):
             for name, needed in (("VN", "nominal life"), ("CU", "coefficient of use, or `class`, the class of use")):
                 if not there(name) and not (name == "CU" and there("class")):
                     yield (name,), f"is missing: return periods need the {needed}"
@@ -338,7 +378,8 @@ class ItalianSite(StateGround, Site):
 
     @classmethod
     def _needs_sizes(cls, given: dict[str, Any]) -> bool:
-        return all(given.get(name) is None for name in ("hazard", *COORDINATES, FIRST_STATE))
+        needed = FIRST_STATE if FIRST_STATE in str(given.get("states") or FIRST_STATE) else "SLC"
+        return all(given.get(name) is None for name in ("hazard", *COORDINATES, needed))
 
 
 def _rows_that_do_not_grow(
@@ -372,8 +413,15 @@ def floor_at(site: ItalianSite, state: str) -> Floor | None:
 
 
 def of_structure(site: ItalianSite, mechanism: Mechanism) -> ItalianSite:
-    """Return the site with its vibrating element, which takes missing sizes from the structure. Raises `InputError`."""
-    return site if site.element is None else site.model_copy(update={"element": site.element.sized(mechanism)})
+    """Return the site as it counts for a structure.
+
+    Its vibrating element takes missing sizes from the structure. Without `crushing` no strength is counted, and FC is
+    at least that of LC1, unless the site says otherwise. Raises `InputError` if a size is missing.
+    """
+    update: dict[str, Any] = {} if site.element is None else {"element": site.element.sized(mechanism)}
+    if mechanism.crushing is None and not site.FC_without_strength:
+        update["FC"] = max(site.FC, LARGEST_FC)
+    return site.model_copy(update=update)
 
 
 def of_each(site: ItalianSite) -> ItalianSite:

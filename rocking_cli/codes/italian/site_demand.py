@@ -15,9 +15,8 @@ from rocking_cli.codes.italian.demand import (
 )
 from rocking_cli.codes.italian.ground import TOPOGRAPHY, SiteGround, corner_factor, soil_factor
 from rocking_cli.codes.italian.remarks import of_ground
-from rocking_cli.codes.italian.rules import FIRST_STATE, STATES, STATES_OF_SITE
+from rocking_cli.codes.italian.rules import STATES_OF_SITE
 from rocking_cli.codes.italian.site import ItalianSite
-from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.verification.demand import DemandParameter, DemandTable, SiteDemand, StateDemand
 from rocking_cli.verification.results import Remark
@@ -48,21 +47,17 @@ def site_demand(site: ItalianSite) -> SiteDemand:
     """
     ground, states, remarks = SiteGround(site), dict[str, StateDemand](), of_ground(SiteGround(site))
     for state in STATES_OF_SITE:
-        try:
-            spectrum = ground.spectrum(state)
-        except InputError:
-            if state in STATES:
-                raise
-            remarks.append(Remark.of("beyond_hazard", state=state))
-            continue
-        if spectrum is not None:
+        if (spectrum := ground.spectrum(state)) is not None:
             states[state] = _at(ground, state, spectrum)
+        elif ground.hazard is not None:
+            remarks.append(Remark.of("beyond_hazard", state=state))
     used = {key for each in states.values() for key, value in each.values.items() if value is not None}
     parameters = [each for each in PARAMETERS if each.key in used]
-    return SiteDemand(parameters, states, FIRST_STATE, _headline(states[FIRST_STATE].values), remarks, _tables(site))
+    first = site.asked[0]
+    return SiteDemand(parameters, states, first, _headline(first, states[first].values), remarks, _tables(site))
 
 
-def _headline(values: Mapping[str, float | None]) -> Remark:
+def _headline(state: str, values: Mapping[str, float | None]) -> Remark:
     """Return the remark on the peak accelerations of the limit state that decides."""
     parts: dict[str, str | Remark] = {"rock": "", "years": "", "floor": ""}
     if values["S"] is not None:
@@ -71,7 +66,7 @@ def _headline(values: Mapping[str, float | None]) -> Remark:
         parts["years"] = Remark.of("pga_of_years", TR=values["T_R"])
     if values["pfa"] is not None:
         parts["floor"] = Remark.of("pga_of_floor", peak=values["pfa"])
-    return Remark.of("pga", state=FIRST_STATE, pga=values["pga"], **parts)
+    return Remark.of("pga", state=state, pga=values["pga"], **parts)
 
 
 def _at(ground: SiteGround, state: str, spectrum: GroundSpectrum | TableSpectrum | FloorSpectrum) -> StateDemand:

@@ -15,18 +15,18 @@ from rocking_cli.codes.italian.results import (
     ItalianVerified,
     LimitState,
 )
-from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, OF_STATE
+from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, OF_STATE, STATE_OF_METHOD
 from rocking_cli.codes.italian.sheet import dynamic
-from rocking_cli.codes.italian.sheet.steps import STATE_OF_METHOD, TERMINAL, ties
+from rocking_cli.codes.italian.sheet.steps import PACKAGE, TERMINAL, ties
 from rocking_cli.codes.italian.sheet.summary import METHOD_NAMES, comparison, methods, verdicts
 from rocking_cli.studies.conclusion import Concluded
 from rocking_cli.verification.results import Verification, in_plain
 from rocking_cli.views.column import Column, frame_of, of
-from rocking_cli.views.conclusion import digits_beside_one, headline
+from rocking_cli.views.conclusion import digits_beside, headline
 from rocking_cli.views.sheet.document import Sentence
 from rocking_cli.views.sheet.language import texts_of
-from rocking_cli.views.verification import METHODS, MethodRow, Showing, cited, rows_of, shown
-from rocking_cli.views.view import Table, heading, number
+from rocking_cli.views.verification import METHODS, MethodRow, Showing, cited, named, rows_of, shown
+from rocking_cli.views.view import Table, number
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -41,8 +41,10 @@ COLUMNS: Sequence[Column[MethodRow]] = (
 )
 OTHER_ROLES = {DAMAGE: "not required", LINEAR: "comparison"}
 """Roles of the methods that decide at no limit state, by their kind: rocking may start before SLV and SLC."""
-IN_SHORT = replace(TERMINAL, own={**TERMINAL.own, **texts_of("rocking_cli.codes.italian", "en_in_short")})
-OUTCOMES = {Concluded.SATISFIED: "passes", Concluded.NOT_SATISFIED: "fails", Concluded.UNKNOWN: "unknown"}
+IN_SHORT = replace(TERMINAL, own={**TERMINAL.own, **texts_of(PACKAGE, "en_in_short")})
+OUTCOMES = {Concluded.SATISFIED: "passes", Concluded.NOT_SATISFIED: "fails", Concluded.UNKNOWN: "unknown",
+            Concluded.NOT_DECIDED: "undecided"}  # fmt: skip
+STATE_OUTCOMES = OUTCOMES | {Concluded.SATISFIED_IF: "only if"}
 OF_SITE = [
     in_plain(each.symbol.format(at="T_[0]"))
     for each in (
@@ -56,28 +58,29 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
     """How the results of the Italian code are shown."""
 
     of_site, say, say_in_short = OF_SITE, TERMINAL, IN_SHORT
-    notation = ": [formula] or §section"
+    package, notation = PACKAGE, ": [formula] or §section"
 
     def of_direction(self, found: ItalianVerification, each: ItalianVerified, where: str) -> Iterable[Table | str]:
         """Return the capacity curve, the methods, the verdicts, why the methods differ, and the time histories."""
         yield _capacity(each, where)
-        yield from ties(TERMINAL, each.exact, each.states)
-        yield from methods(TERMINAL, where, each)
-        yield from verdicts(TERMINAL, where, each)
-        yield from map(TERMINAL, [*differences(each, found.first), *each.remarks])
+        yield from ties(self.say, each.exact, each.states)
+        yield from methods(self.say, where, each)
+        yield from verdicts(self.say, where, found, each)
+        yield from map(self.say, [*differences(each, found.first), *each.remarks])
         for of_state in each.dynamic.values():
-            for item in dynamic.items(TERMINAL, of_state, each.exact.confidence):
+            for item in dynamic.items(self.say, of_state, each.exact.confidence):
                 yield item.text if isinstance(item, Sentence) else item
 
     def in_short(self, found: ItalianVerification, each: ItalianVerified, where: str) -> Iterable[Table | str]:
         """Return the methods, the limit states and the ties where they are verified, and the time histories."""
-        yield _methods_in_short(each, where)
+        say = self.say_in_short
+        yield _methods_in_short(found, each, where)
         yield from _states_in_short(each, where)
-        verified = {state: at for state, at in each.states.items() if at.demand is not None}
-        yield from ties(IN_SHORT, each.exact, verified)
-        texts = list(map(IN_SHORT, differences(each, found.first)))
+        verified = {state: at for state, at in each.states.items() if state in each.required}
+        yield from ties(say, each.exact, verified)
+        texts = list(map(say, differences(each, found.first)))
         for of_state in each.dynamic.values():
-            items = dynamic.items(IN_SHORT, of_state, each.exact.confidence)
+            items = dynamic.items(say, of_state, each.exact.confidence)
             texts += [item.text for item in items if isinstance(item, Sentence)]
         if each.dynamic:
             yield _histories_in_short(each, where)
@@ -85,11 +88,11 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
 
     def compared(self, found: ItalianVerification, strengthened: ItalianVerification) -> Iterable[Table]:
         """Return the capacity of the existing structure and of the strengthened one, side by side."""
-        return comparison(TERMINAL, found, strengthened)
+        return comparison(self.say, found, strengthened)
 
     def data(self, found: ItalianVerification, each: ItalianVerified) -> dict[str, Any]:
         """Return a direction as plain data."""
-        return _data(each)
+        return _data(found, each)
 
     def data_of_all(self, found: ItalianVerification) -> dict[str, Any]:
         """Return an empty mapping, because the values of the ground are already among the workings."""
@@ -106,7 +109,7 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
         """
         from rocking_cli.codes.italian.sheet.figures import draw_capacity
 
-        title, structures = heading(found.mechanism), dict[str, Verification]({"": found})
+        title, structures = named(found.mechanism, self.say), dict[str, Verification]({"": found})
         if found.strengthened is not None:
             title, structures = (
                 found.mechanism.name or title,
@@ -114,11 +117,11 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
             )
         sides, ends = dict[str, ItalianVerified](), dict[str, str]()
         for state, one in structures.items():
-            for where, each in shown(one).items():
-                sides[where + state] = each
+            for where, each in shown(one, self.say).items():
+                sides[side := where + self.say(state)] = each
                 if each is one.deciding or len(one.distinct) == 1:
-                    ends[where + state] = f" ({headline(one.conclusion, over='')})"
-        return draw_capacity(TERMINAL, sides, title, ends)
+                    ends[side] = f" ({self.say.recognised('shown', headline(one.conclusion, over=''))})"
+        return draw_capacity(self.say, sides, title, ends)
 
 
 def _capacity(each: ItalianVerified, where: str) -> Table:
@@ -142,23 +145,26 @@ def _capacity(each: ItalianVerified, where: str) -> Table:
         if at.demand is not None:
             rows += [
                 [f"demand at {name}", number(at.demand), number(line.demand), "m", clause[f"S_De(T_{name})"]],
-                [f"capacity/demand, {name}", number(at.ratio, 4), number(line.ratio, 4), "passes if >= 1", ""],
+                [f"d_{name}/demand", number(at.ratio, 4), number(line.ratio, 4), "", clause[f"rho_{name}"]],
             ]
     title = f"{where}: capacity, on the exact curve and on the straight line from a0* to d0*"
     return Table(title, ["", "exact\ncurve", "straight\nline", "unit", "clause"], rows, numbers=(1, 2))
 
 
-def _methods_in_short(each: ItalianVerified, where: str) -> Table:
+def _methods_in_short(found: ItalianVerification, each: ItalianVerified, where: str) -> Table:
     """Return a table of the capacity by each method on the exact curve, narrow enough for a small terminal."""
     rows = []
     for key, method in each.methods.items():
         if method.a_g is None or each.stands_back(key):
             continue
-        end = OTHER_ROLES.get(key.split("_")[0], f"at {STATE_OF_METHOD[key]}")
-        if state := each.decides(key):
-            passes = method.passed if state == "SLD" else each.passes(state)
-            end = f"{state} {'passes' if passes else 'fails'}"
-        name = METHOD_NAMES[key.split("_")[0]].capitalize()
+        name, end = METHOD_NAMES[key.split("_")[0]].capitalize(), f"at {STATE_OF_METHOD[key]}"
+        state = each.decides(key)
+        if state in each.required:
+            end = f"{state} {STATE_OUTCOMES[found.concluded(each, state)]}"
+        elif state:
+            name, end = f"{name.split()[0]} at {state}", OTHER_ROLES[DAMAGE]
+        else:
+            end = OTHER_ROLES.get(key.split("_")[0], end)
         rows.append([name, number(method.a_g, 4), number(method.demand, 4), _ratio(method.zeta), end])
     return Table(f"{where}: a_g [g] by each method", ["", "capacity", "demand", "zeta_E", ""], rows, numbers=(1, 2, 3))
 
@@ -170,7 +176,7 @@ def _states_in_short(each: ItalianVerified, where: str) -> list[Table]:
         for state, at in each.states.items()
         if at.demand is not None and each.governing[state] == OF_STATE[state][1]
     ]
-    heads = ["", "capacity", "demand", "ratio", "T [s]"]
+    heads = ["", "capacity", "demand", "ratio of d", "T [s]"]
     return [Table(f"{where}: displacement d [m] at limit states", heads, rows, range(1, 5))] if rows else []
 
 
@@ -186,10 +192,10 @@ def _histories_in_short(each: ItalianVerified, where: str) -> Table:
 
 
 def _ratio(ratio: float | None) -> str:
-    return number(ratio, 4 if ratio is None else max(4, digits_beside_one(ratio)))
+    return number(ratio, 4 if ratio is None else max(4, digits_beside(ratio)))
 
 
-def _data(each: ItalianVerified) -> dict[str, Any]:
+def _data(found: ItalianVerification, each: ItalianVerified) -> dict[str, Any]:
     control = each.exact.control
     periods = {  # return periods exist only with a hazard
         key: {"years": method.return_period, "beyond": method.beyond}
@@ -204,19 +210,24 @@ def _data(each: ItalianVerified) -> dict[str, Any]:
         "M_star": each.M,
         "a0_star": each.a0,
         "d0_star": each.d0,
-        "states": {name: _state(each, name, at) for name, at in each.states.items()},
+        "states": {name: _state(found, each, name, at) for name, at in each.states.items()},
         **({"ties": ties} if (ties := _ties(each)) else {}),
         "a_g": {key: method.a_g for key, method in each.methods.items() if key != "SLD"},
         "zeta": {key: method.zeta for key, method in each.methods.items()},
+        "zeta_E": each.zeta_E,
+        "required": dict(each.required),
         "governs": each.governs,
         "dynamic": {state: _histories(at) for state, at in each.dynamic.items()},
         **({"return_period": periods} if periods else {}),
     }
 
 
-def _state(each: ItalianVerified, name: str, at: LimitState) -> dict[str, Any]:
-    passes = each.passes(name)
-    by = {"governs": each.governing[name] if passes is not None else None, "passes": passes}
+def _state(found: ItalianVerification, each: ItalianVerified, name: str, at: LimitState) -> dict[str, Any]:
+    zeta, concluded = each.zeta_at(name), found.concluded(each, name) if name in each.required else None
+    by = {
+        "governs": None if zeta is None else each.governing[name], "zeta_E": zeta,
+        "passes": None if concluded is Concluded.NOT_DECIDED else each.passes(name), "concluded": concluded,
+    }  # fmt: skip
     return {"d": at.d, "a": at.a, "T": at.T, "demand": at.demand, "ratio": at.ratio, **by}
 
 

@@ -21,7 +21,6 @@ from rocking_cli.text import did_you_mean
 
 OUTSIDE_DISTANCE = 1e-6  # largest distance at which a point counts as on a body, over the size of the body
 OWN_NAMES = ("top", "centroid")  # names of points of the structure itself in results
-FAR_LOAD_DISTANCE = 1.0  # distance of a load from its body from which there is a warning, over the size of the body
 
 Loc = tuple[str | int, ...]
 
@@ -147,11 +146,11 @@ def attach(
         loc: Loc = ("loads", k)
         _own_name(load.name, names, reserved, loc)
         body = carrier.carrying(load.body, complex(*load.at), loc)  # a load may lie outside its body
-        mass = load.whole_mass(carrier.depth)
-        if load.force is None and mass is None:
-            reason = "is per metre of wall: give the `depth` of the structure over which it acts, or the whole mass"
-            raise RefusedFields(loc, "mass", reason)
-        yield loc, load.attached(body, mass, carrier.count(body, each=load.each))
+        if (whole := load.whole(carrier.depth)) is None:
+            key = "force" if load.is_force else "mass"
+            reason = f"is per metre of wall: give the `depth` of the structure over which it acts, or the whole {key}"
+            raise RefusedFields(loc, key, reason)
+        yield loc, load.attached(body, whole, carrier.count(body, each=load.each))
     for k, tie in enumerate(ties):
         loc = ("ties", k)
         _own_name(tie.name, names, reserved, loc)
@@ -200,18 +199,6 @@ def interlocked(interlock: Interlock, carrier: Carrier, density: float | None, g
     foot = carrier.foot(interlock.body, loc)
     carrier.spot(foot.body, foot.at + 1j * interlock.height, loc, "height")
     return interlock.attached(foot, density, gravity)
-
-
-def far_off(carrier: Carrier, loads: Sequence[Load]) -> Iterator[str]:
-    """Yield a sentence, without a full stop, for each load that is further from its body than the body is large."""
-    for load in loads:
-        at = complex(*load.at)
-        body = carrier.carrying(load.body, at, ())
-        if (off := carrier.off(body, at)) > FAR_LOAD_DISTANCE:
-            yield (
-                f"the load {load.name} at [{at.real:g}, {at.imag:g}] m is {off:.2g} times the size of {body} away from "
-                "it: are its coordinates those of `rocking draw`?"
-            )
 
 
 def _own_name(name: str, names: set[str], reserved: Collection[str], loc: Loc) -> None:

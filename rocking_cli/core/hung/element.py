@@ -554,6 +554,12 @@ FLOOR_MATERIALS: dict[str, dict[str, float]] = {
     "dragged": {"horizontal": 1.0, "vertical": 1 / 3, "weight": 1 / 2},
 }
 """Shares of the mass of a floor that turns about a support at its far end, by how the near end is supported."""
+BY_UNIT = {
+    ("mass", "mass per length"): "mass_per_metre", ("mass", "stiffness"): "mass_per_metre",
+    ("mass", "mass per area"): "mass_per_area", ("mass", "pressure"): "mass_per_area",
+    ("force", "stiffness"): "force_per_metre",
+}  # fmt: skip
+"""What `mass` and `force` are in a unit of a quantity; a weight per metre has that of a stiffness."""
 
 
 class Load(Described):
@@ -569,9 +575,18 @@ class Load(Described):
         "instead of mass: that of a metre of wall, over the depth of the structure; `mass: 12 kN/m` is this field",
         unit="kg/m", example=1200.0, default=None, gt=0, le=1e12,
     )  # fmt: skip
+    mass_per_area: float | None = quantity(
+        "instead of mass: that of a square metre of floor, with its span; `mass: 2.5 kN/m2` is this field",
+        unit="kg/m2", example=250.0, default=None, gt=0, le=1e9,
+    )  # fmt: skip
+    span: float | None = quantity("span of that floor", unit="m", example=5.0, default=None, gt=0, le=1e3)
     force: Annotated[list[Newtons], Field(min_length=2, max_length=2)] | None = quantity(
         "a constant force [Fx, Fy], to the right and up", unit="N", example=[0.0, -1000.0], default=None
     )
+    force_per_metre: Annotated[list[Newtons], Field(min_length=2, max_length=2)] | None = quantity(
+        "instead of force: that of a metre of wall; `force: [4 kN/m, -9 kN/m]` is this field",
+        unit="N/m", example=[0.0, -1000.0], default=None,
+    )  # fmt: skip
     at: Vertex = point(
         "where it acts, [x, y] in the coordinates of `rocking draw`; of a block from the middle of its base, to the "
         "right and up"
@@ -597,7 +612,7 @@ class Load(Described):
     @model_validator(mode="before")
     @classmethod
     def _by_its_unit(cls, data: Any) -> Any:
-        """Take a mass in kg/m or kN/m as one per metre, and refuse a weight where a force or a share is expected."""
+        """Take loads per metre or per area as such, and refuse a weight where a force or a share is expected."""
         if not isinstance(data, dict):
             return data
         for key in ("force", "weight"):
@@ -607,18 +622,24 @@ class Load(Described):
                     f"has two meanings in {data[key]}: write `mass: {data[key]}` for a weight that moves with the "
                     f"structure, or `force: [0, -{data[key]}]` for a force without inertia",
                 )
-        if _unit_kind(data.get("mass")) in ("mass per length", "stiffness") and "mass_per_metre" not in data:
-            return {**{key: value for key, value in data.items() if key != "mass"}, "mass_per_metre": data["mass"]}
+        for key in data.keys() & {"mass", "force"}:
+            values = data[key] if isinstance(data[key], list | tuple) else [data[key]]
+            of_unit = next((each for value in values if (each := BY_UNIT.get((key, _unit_kind(value) or "")))), key)
+            if of_unit not in data:
+                data = {of_unit if name == key else name: value for name, value in data.items()}
         return data
 
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
-        if [self.mass, self.mass_per_metre, self.force].count(None) != 2:
-            raise geometry_error("mass", "give one of `mass`, `mass_per_metre` and `force`")
+        kinds = ("mass", "mass_per_metre", "mass_per_area", "force", "force_per_metre")
+        if [getattr(self, key) for key in kinds].count(None) != len(kinds) - 1:
+            raise geometry_error("mass", "give one of `mass` and `force`, as a whole, per metre or per area")
+        if (self.span is None) != (self.mass_per_area is None):
+            raise geometry_error("span", "belongs to a load per area, such as `mass: 2.5 kN/m2`: give both")
         shares = [key for key in ("horizontal", "vertical", "weight") if getattr(self, key) is not None]
-        if self.force is not None and (shares or self.floor is not None):
+        if self.is_force and (shares or self.floor is not None):
             raise geometry_error(shares[0] if shares else "floor", "a force has no mass to share")
-        if self.force is not None and self.seat is not None:
+        if self.is_force and self.seat is not None:
             raise geometry_error("seat", "a force has no seat: it is of a mass")
         if self.floor is not None:
             for key in shares:
@@ -626,11 +647,22 @@ class Load(Described):
                     raise geometry_error(key, f"is already set by floor: {self.floor}; give one of the two")
         return self
 
-    def whole_mass(self, depth: float | None) -> float | None:
-        """Return the mass on a structure of a depth [kg]; None if it depends on a depth that is not given."""
-        if self.mass_per_metre is None:
-            return self.mass
-        return None if depth is None else self.mass_per_metre * depth
+    @property
+    def is_force(self) -> bool:
+        """Whether the load is a force, without a mass."""
+        return self.force is not None or self.force_per_metre is not None
+
+    @property
+    def on_a_metre(self) -> float | None:
+        """Mass on a metre of wall [kg/m]; None of a load that is given as a whole."""
+        return self.mass_per_metre if self.mass_per_area is None else self.mass_per_area * (self.span or 0.0)
+
+    def whole(self, depth: float | None) -> float | complex | None:
+        """Return the mass [kg] or force [N] on a structure of a depth; None if that depth is needed and not given."""
+        whole = self.mass if self.force is None else complex(*self.force)
+        if whole is not None or depth is None:
+            return whole
+        return depth * (complex(*self.force_per_metre) if self.force_per_metre else self.on_a_metre or 0.0)
 
     @property
     def carried_in_words(self) -> str:
@@ -641,12 +673,13 @@ class Load(Described):
             f", of which the structure carries {100 * FLOOR_MATERIALS[self.floor]['weight']:g} % (floor: {self.floor})"
         )
 
-    def attached(self, body: str, mass: float | None, count: float) -> PointMass | ConstantForce:
-        """Return `count` such loads, each of a mass [kg] or a force, as one term of the equation of motion."""
+    def attached(self, body: str, whole: float | complex, count: float) -> PointMass | ConstantForce:
+        """Return `count` such loads, each of a mass [kg] or a force [N], as one term of the equation of motion."""
         spot = Spot(body, complex(*self.at))
-        if self.force is not None:
-            return ConstantForce(self.name, spot, count * complex(*self.force))
-        assert mass is not None
+        if isinstance(whole, complex):
+            return ConstantForce(self.name, spot, count * whole)
         shares = {"horizontal": self.horizontal, "vertical": self.vertical, "weight": self.weight}
         given_shares = {key: value for key, value in shares.items() if value is not None}
-        return PointMass(self.name, spot, count * mass, **{**FLOOR_MATERIALS.get(self.floor or "", {}), **given_shares})
+        return PointMass(
+            self.name, spot, count * whole, **{**FLOOR_MATERIALS.get(self.floor or "", {}), **given_shares}
+        )

@@ -15,6 +15,7 @@ from rocking_cli.core.hung.attached import Spot
 from rocking_cli.core.hung.element import BarAtStrength, Element, Spring, SpringBed, SteelBar
 from rocking_cli.core.hung.steel import (
     MAX_NAMED_DIAMETER,
+    MAX_STRAIN,
     STEEL_MODULUS,
     STEELS,
     AnchorPlate,
@@ -22,6 +23,7 @@ from rocking_cli.core.hung.steel import (
     SteelName,
     TieStrength,
     circle,
+    partial_factor,
     tie_strength,
 )
 from rocking_cli.errors import MechanismError
@@ -34,7 +36,7 @@ LATER_FIELDS = {
 }  # fmt: skip
 STEEL_FIELDS = {
     key: "yield" if key == "yield_stress" else key
-    for key in ("bars", "spacing", "diameter", "steel", "yield_stress", "plate", "wall")
+    for key in ("bars", "spacing", "diameter", "steel", "yield_stress", "gamma", "source", "plate", "wall")
 }
 """Fields of a tie of steel, and how files write them."""
 
@@ -115,10 +117,16 @@ class Tie(Described):
         "instead of `steel`: its yield stress", unit="Pa", symbol="f_y", example=2.35e8, default=None, ge=1e7, le=1e12,
         alias="yield",
     )  # fmt: skip
+    gamma: float | None = partial_factor("its yield stress is")
+    source: Name | None = Field(None, description="where its yield stress is from, such as a test")
     plate: AnchorPlate | None = Field(
         None, description="anchor plate of each bar; its strength and that of the wall count"
     )
     wall: BearingWall | None = Field(None, description="masonry that the anchor plates bear on")
+    elongation: float | None = quantity(
+        "elongation over its length up to which it is known to hold, such as that of its steel at its greatest force; "
+        "if omitted, 0.02", example=0.05, default=None, gt=0, le=0.5,
+    )  # fmt: skip
     only: Literal["tension", "compression"] | None = Field(None, description="the one sense in which it can act")
     each: bool = Field(False, description="whether each of several bodies that move alike has one")
     _at_strength: bool = PrivateAttr(default=False)
@@ -153,7 +161,7 @@ class Tie(Described):
         return self
 
     def _check_bed(self) -> None:
-        for key in ("stiffness", "area", "length", "only", "prestress", *STEEL_FIELDS):
+        for key in ("stiffness", "area", "length", "only", "prestress", "elongation", *STEEL_FIELDS):
             if getattr(self, key):
                 raise geometry_error(STEEL_FIELDS.get(key, key), "a bed has a modulus and nothing else")
         if self.bed is not None and self.bed.start == self.bed.end:
@@ -238,6 +246,11 @@ class Tie(Described):
         return sum(abs(b - a) for a, b in pairwise(points))
 
     @property
+    def known_elongation(self) -> float | None:
+        """Elongation up to which the tie is known to hold [m]; None without a length, as for a bed of springs."""
+        return (self.elongation or MAX_STRAIN) * (self.length or self.span) or None
+
+    @property
     def is_steel(self) -> bool:
         """Whether the tie is of steel, and yields."""
         return self.steel is not None or self.yield_stress is not None
@@ -257,7 +270,7 @@ class Tie(Described):
 
     def strength(self, count: float) -> TieStrength:
         """Return the strength of a tie of steel with this number of bars."""
-        return tie_strength(self.section, self.yield_of_steel, count, self.plate, self.wall)
+        return tie_strength(self.section, self.yield_of_steel / (self.gamma or 1), count, self.plate, self.wall)
 
     def at_strength(self, *, on: bool) -> Self:
         """Return the tie as methods of codes count it, or, without `on`, as motions do: it matters for one of steel."""
@@ -305,7 +318,7 @@ class Tie(Described):
         kept: dict[str, Any] = {}
         if self.is_steel:  # the spacing is enlarged as the depth is, so that the number of bars stays
             kept = {"area": self.area, "diameter": self.diameter, "yield_stress": self.strength(1).force / self.section}
-            kept |= {"steel": None, "plate": None, "wall": None, "length": self.length or self.span}
+            kept |= {"steel": None, "gamma": None, "plate": None, "wall": None, "length": self.length or self.span}
         elif self.bed is None:
             kept = {"stiffness": self.k, "area": None, "modulus": None, "length": None}
         return super().enlarged(factor).model_copy(update=kept)

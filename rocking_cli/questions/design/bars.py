@@ -116,5 +116,6 @@ def _constant_force(mechanism: Mechanism, name: str) -> float | None:
 
 def _thinnest(tie: Tie, stress: float, count: float, force: float) -> Bars | None:
     """Return the bars of the smallest diameter with at least this strength; None if none has it."""
+    stress /= tie.gamma or 1
     every = (Bars(count, d, tie_strength(circle(d), stress, count, tie.plate, tie.wall)) for d in BAR_DIAMETERS)
     return next((bars for bars in every if bars.strength.force >= force), None)

@@ -36,7 +36,7 @@ def _aim(text: str) -> Any:
     "--until", required=True, type=Parsed("requirement", _aim), metavar="'METRIC OP NUMBER'",
     help="Requirement: one of lambda, phi_cr, p, peak_ratio, peak_displacement, drift, tie_force, overturned, ratio, "
     "or a number of a code (alpha0, zeta_SLD, zeta_SLV, zeta_SLC, zeta_damage, zeta_linear or zeta_nonlinear); one of "
-    "<, <=, > or >=; and a number.",
+    "<, <=, > or >=; and a number, or the word required for what the code of the site requires.",
 )  # fmt: skip
 @click.option(
     "--points", type=click.IntRange(2, 10_000), default=41, show_default=True, metavar="N",
@@ -61,8 +61,9 @@ def command(file: str | Path, asked: GroundMotions, output: Output, **question: 
     the control point (peak_displacement), of that of the top over its height (drift), or of the largest force of a tie
     (tie_force); an unknown outcome, because a joint opens or slides that the model keeps closed, counts as overturning.
     With several motions, or with --polarity both, the worst case governs. With --site, ratio is the ratio of capacity
-    to demand by the code of the site. alpha0 and, with --site, the zeta_E of a limit state or of a method are those of
-    `rocking verify` by the Italian code. Of each, the smaller of both directions governs.
+    to demand by the code of the site (zeta_E by the Italian code). alpha0 and, with --site, the zeta_E of a limit
+    state or of a method are those of `rocking verify` by the Italian code. Of each, the smaller of both directions
+    governs.
 
     If the field varies the force of a tie, the answer names bars of steel that give it.
 

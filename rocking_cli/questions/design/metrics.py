@@ -22,9 +22,8 @@ from rocking_cli.studies.conclusion import LeftOut
 from rocking_cli.studies.movements import centroid_moved, drifts, largest_on_the_way, largest_tie_force
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
 from rocking_cli.text import cut, did_you_mean
-from rocking_cli.verification.check import verify
+from rocking_cli.verification.check import code_of, verify
 from rocking_cli.verification.code import Number, SiteFile, codes
-from rocking_cli.verification.results import Remark
 
 
 @dataclass(frozen=True)
@@ -176,9 +175,15 @@ def taken_otherwise(structure: Structure, site: SiteFile) -> Sequence[LeftOut]:
     return [each for each in verify(structure, site).left_out if each.what == "tie"]
 
 
-def relied_on(structure: Structure, site: SiteFile) -> Sequence[Remark]:
-    """Return remarks on what a verification relies on but may be absent, such as the force of a long tie."""
-    return verify(structure, site).relies_on
+def required(structure: Structure, site: SiteFile) -> float:
+    """Return the one ratio that a code requires after a change of a structure. Raises `InputError` if there is none."""
+    existing = verify(structure, site)
+    after = code_of(site).strengthened(existing, existing, site.site).strengthened
+    levels = {check.state: check.required or 0.0 for side in after.directions.values() for check in side.checks}
+    if min(levels.values()) == 0 or len({*levels.values()}) > 1:
+        each = ", ".join(f"{state} {level:.4g}" for state, level in levels.items())
+        raise InputError(Problem(f"there is no one ratio that the code requires ({each}): give a number"))
+    return next(iter(levels.values()))
 
 
 METRICS: Mapping[str, Metric] = {

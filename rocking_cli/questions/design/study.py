@@ -5,7 +5,7 @@ from __future__ import annotations
 import operator
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, isfinite, isnan, nan
 
 import numpy as np
@@ -14,18 +14,20 @@ from rocking_cli.arrays import Bools, Reals
 from rocking_cli.errors import InputError, MechanismError, Problem, SolverError
 from rocking_cli.names import percent
 from rocking_cli.questions.design.bars import SteelAnswer, steel_answer
-from rocking_cli.questions.design.metrics import Excitation, Metric, metric, relied_on, taken_otherwise
+from rocking_cli.questions.design.metrics import Excitation, Metric, metric, required, taken_otherwise
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
-from rocking_cli.studies.conclusion import Concluded, Conclusion, LeftOut
+from rocking_cli.studies.conclusion import Concluded, Conclusion, LeftOut, Limit
 from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.text import cut
 from rocking_cli.units import UnitError, read, split
-from rocking_cli.verification.results import Remark
+from rocking_cli.verification.check import verify
 
 OPERATORS: dict[str, Callable[[float, float], bool]] = {
     "<=": operator.le, ">=": operator.ge, "<": operator.lt, ">": operator.gt,
 }  # fmt: skip
+REQUIRED = "required"
+"""The level of a requirement that is the ratio required by the code of the site."""
 SCAN_POINTS = 41
 EDGE_TOLERANCE = 1e-12  # share of the range to which an edge is found
 EDGE_TOLERANCE_OF_SHARES = 1e-3  # shares of histories change in steps, so that more precision has no meaning
@@ -45,7 +47,7 @@ class Aim:
     op : str
         One of `<`, `<=`, `>`, `>=`.
     level : float
-        The limit, in the unit of the metric.
+        The limit, in the unit of the metric; NaN for what the code of the site requires of the structure as given.
     """
 
     metric: Metric
@@ -60,7 +62,10 @@ class Aim:
             hint = "write METRIC OP NUMBER, such as `lambda >= 0.2`, with <, <=, > or >="
             raise InputError(Problem(f"{cut(repr(text))} is not a valid requirement", hint=hint))
         chosen, number = metric(match[1]), match[3]
-        return cls(chosen, match[2], _number(number, chosen.unit))
+        if number == REQUIRED and not chosen.sited:
+            hint = "give a number, or a metric of a verification, such as `ratio`"
+            raise InputError(Problem(f"no code requires a value of {chosen.name}", hint=hint))
+        return cls(chosen, match[2], nan if number == REQUIRED else _number(number, chosen.unit))
 
     def __str__(self) -> str:
         level, unit = (self.level / 1e3, "kN") if self.metric.unit == "N" else (self.level, self.metric.unit)
@@ -179,8 +184,8 @@ class Design:
         Names of the motions, of which the worst governs at each value.
     steel : SteelAnswer or None
         Bars of steel, if the field varies the force of a tie and the answer is the least that meets the requirement.
-    relies_on : sequence of Remark
-        What the verification at `decisive` relies on and may not be there, see `Verification`.
+    limits : sequence of Limit
+        What limits the verification at `decisive`, see `Verification`.
     """
 
     structure: str
@@ -199,7 +204,7 @@ class Design:
     taken_otherwise: Sequence[LeftOut] = ()
     motions: Sequence[str] = ()
     steel: SteelAnswer | None = None
-    relies_on: Sequence[Remark] = ()
+    limits: Sequence[Limit] = ()
 
     @property
     def has_effect(self) -> bool:
@@ -224,14 +229,14 @@ class Design:
 
     @property
     def conclusion(self) -> Conclusion:
-        """Whether the requirement is met at any value; unknown if it may be where outcomes are unknown."""
+        """Whether the requirement is met at any value, and what limits it; unknown if outcomes are unknown."""
         if self.holds:
             what = Concluded.SATISFIED
         elif any(each is not None and each.unknown and not each.half_overturn for each in self.behind):
             what = Concluded.UNKNOWN
         else:
             what = Concluded.NOT_SATISFIED
-        return Conclusion(concluded=what, motions=self.motions)
+        return Conclusion(concluded=what, motions=self.motions).limited(self.limits)
 
     @property
     def is_least(self) -> bool:
@@ -285,6 +290,9 @@ def design(
     """
     if aim.metric.sited:
         _check_site(aim.metric, excitation)
+        if isnan(aim.level):
+            assert excitation is not None and excitation.site is not None  # as just checked
+            aim = replace(aim, level=required(structure, excitation.site))
     if aim.metric.shaken and (excitation is None or not excitation.motions or not excitation.around.count):
         message = f"{aim.metric.name} needs a ground motion with neighbouring motions"
         raise InputError(Problem(message, hint="give `motions`"))
@@ -295,8 +303,9 @@ def design(
     def metric(value: float) -> float:
         return _at(structure, field, value, aim, excitation)[0]
 
-    values = np.linspace(*span, points)
-    numbers, reasons, behind = np.full(points, nan), dict[int, str](), list[Neighbours | None]()
+    values, whole = np.linspace(*span, points), structure.is_whole(field)
+    values = np.unique(values.round()) if whole else values
+    numbers, reasons, behind = np.full(len(values), nan), dict[int, str](), list[Neighbours | None]()
     for k, value in enumerate(values.tolist()):
         numbers[k], neighbours, reason = _at(structure, field, value, aim, excitation)
         behind.append(neighbours)
@@ -310,6 +319,8 @@ def design(
         ends = float(values[inside]), float(values[outside])
         if aim.metric.shaken and (not monotone or isnan(numbers[outside])):
             return ends[0]
+        if whole:
+            return float(round(_last_that_holds(lambda x: metric(round(x)), aim, *ends, 0.25)))  # less than one apart
         if aim.metric.shaken or isnan(numbers[outside]):
             closest = (EDGE_TOLERANCE_OF_SHARES if aim.metric.shaken else EDGE_TOLERANCE) * abs(ends[1] - ends[0])
             return _last_that_holds(metric, aim, *ends, closest)
@@ -327,7 +338,7 @@ def design(
         None if value is None else steel_answer(
             structure, field, value, float(values[-1] if met[-1] else values[0]), of_code=aim.metric.of_code
         ),
-        _relied_on(structure, field, _closest(values, numbers, aim.level) if value is None else value, aim, excitation),
+        _limits(structure, field, _closest(values, numbers, aim.level) if value is None else value, aim, excitation),
     )  # fmt: skip
 
 
@@ -376,14 +387,12 @@ def _closest(values: Reals, metric: Reals, level: float) -> float:
     return float(values[np.nan_to_num(np.abs(metric - level), nan=inf).argmin()])
 
 
-def _relied_on(
-    structure: Structure, field: str, value: float, aim: Aim, excitation: Excitation | None
-) -> Sequence[Remark]:
-    """Return what the verification at a value relies on and may not be there; nothing without a site, or there."""
+def _limits(structure: Structure, field: str, value: float, aim: Aim, excitation: Excitation | None) -> Sequence[Limit]:
+    """Return what limits the verification at a value; nothing without a site, or where it cannot be made."""
     if not aim.metric.sited or excitation is None or excitation.site is None:
         return ()
     try:
-        return relied_on(structure.varied(field, value), excitation.site)
+        return verify(structure.varied(field, value), excitation.site).limits
     except (InputError, MechanismError):  # the reason is listed in `not_built`
         return ()
 

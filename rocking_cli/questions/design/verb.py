@@ -11,7 +11,7 @@ from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.core.mechanism import doubtful_size
+from rocking_cli.core.plausible import doubts
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.names import OPENING
 from rocking_cli.questions.design.metrics import Excitation, Metric
@@ -48,7 +48,8 @@ def design(
         Field and its range, such as `"width=0.2m:0.8m"`, or `("ties.bar.prestress", 0.0, 5e4)` in the unit of the
         field. An entry of a list is given by its number, from 0, or its name.
     until : str
-        The requirement, such as `"lambda >= 0.2"`: a metric, `<`, `<=`, `>` or `>=`, and a number. The metrics are
+        The requirement, such as `"lambda >= 0.2"`: a metric, `<`, `<=`, `>` or `>=`, and a number, or `required` for
+        what the code of the site requires of the structure after the change. The metrics are
         `lambda`, `phi_cr`, `p`, `alpha0`, with motions `peak_ratio`, `peak_displacement`, `drift`, `tie_force` and
         `overturned`, of their neighbours, and with a site `ratio`, and `zeta_SLD`, `zeta_SLV`, `zeta_SLC`,
         `zeta_damage`, `zeta_linear` and `zeta_nonlinear` or the numbers of another code. A neighbour of unknown outcome
@@ -93,6 +94,7 @@ def design(
     """
     from rocking_cli.questions.design.study import design as study
     from rocking_cli.questions.design.view import columns, view
+    from rocking_cli.verification.check import questioned
 
     aim = until if isinstance(until, Aim) else Aim.parse(until)
     span = _span(vary)
@@ -113,6 +115,8 @@ def design(
     ends = span.in_unit(ready.unit_of(span.field))
     _warn_of_sizes(ready, span.field, ends, watch)
     where = site_of(site) if site is not None else None
+    for each in questioned(ready, where) if where is not None else ():
+        watch.warn(f"{ready.name}: {each.name} {each.words}")
     shaken = [each.motion.scaled(each.factor) for each in requested.gather(ready.growth, watch)] if requested else []
     excitation = Excitation(shaken, signs, around, where) if requested or where is not None else None
     with watch.progress(points, "values") as advance:
@@ -144,11 +148,11 @@ def _check(metric: Metric, *, motions: bool, neighbours: int, site: bool) -> Non
 
 def _warn_of_sizes(structure: Structure, field: str, span: tuple[float, float], watch: Watcher) -> None:
     """Warn if a range looks as if it were given in another unit."""
+    known = doubts(structure.mechanism)
     for value in span:
         try:
-            doubt = doubtful_size(structure.varied(field, value).mechanism)
+            odd = doubts(structure.varied(field, value).mechanism)
         except RockingError:  # the scan lists the values that cannot be built
             continue
-        if doubt is not None and doubt != doubtful_size(structure.mechanism):
-            at = f"{field} = {value:g} {structure.unit_of(field)}".strip()
-            watch.warn(f"at {at}: {doubt}")
+        for doubt in (each for each in odd if each not in known):
+            watch.warn(f"at {f'{field} = {value:g} {structure.unit_of(field)}'.strip()}: {doubt}")

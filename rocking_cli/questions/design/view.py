@@ -17,7 +17,7 @@ from rocking_cli.questions.design.study import Design
 from rocking_cli.studies.conclusion import Concluded, NextStep
 from rocking_cli.text import one_line
 from rocking_cli.views.column import Column, frame_of, only_shown, table_of
-from rocking_cli.views.conclusion import NEXT_STEPS, conclusion_data, not_counted
+from rocking_cli.views.conclusion import NEXT_STEPS, conclusion_data, not_counted, reasons_of, replaced_in_words
 from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.sheet.language import ENGLISH
 from rocking_cli.views.verdict import unchecked
@@ -29,7 +29,7 @@ MAX_SCAN_ROWS = 11  # values of the scan that the table lists
 def view(found: Design, excitation: Excitation | None = None) -> View:
     """Show the answer in a sentence, the scan, and remarks."""
     title = f"{found.structure}: {found.field} for {found.aim}"
-    first = " ".join(filter(None, [f"{title}. {answer(found)}", *in_steel(found)]))
+    first = " ".join(filter(None, [f"{title}. {answer(found)}", *in_steel(found), *limited(found)]))
     return View(lambda: data(found), [first, scan(found), *doubts(found, excitation)])
 
 
@@ -165,12 +165,19 @@ def _steel_data(steel: SteelAnswer) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def limited(found: Design) -> Iterator[str]:
+    """Yield sentences on what limits the verification at the answer, or at the value that is closest to one."""
+    end = found.conclusion
+    where = f"Caution, with {found.field} = {_with_unit(found, found.decisive)}: "
+    if (reasons := reasons_of(end)).values:
+        holds = "holds only if" if end.concluded is Concluded.SATISFIED_IF else "is not decided:"
+        yield f"{where}this {holds} {ENGLISH(reasons)}."
+    yield from (f"{where}{each}" for each in replaced_in_words(end))
+
+
 def doubts(found: Design, excitation: Excitation | None) -> list[str]:
     """Return remarks on the answer."""
     sentences = [f"{each} Next: {NEXT_STEPS[NextStep.YIELD_FORCE]}." for each in not_counted(found.taken_otherwise)]
-    where = "" if found.value is not None else f", with {found.field} = {_with_unit(found, found.decisive)}"
-    relied = dict.fromkeys(map(ENGLISH, found.relies_on))
-    sentences += [f"Caution{where}: {each.removeprefix('Caution: ')}" for each in relied]
     count = len(found.values)
     if not found.has_effect and not found.aim.metric.shaken:
         sentences.append(

@@ -22,7 +22,7 @@ from rocking_cli.questions.overturning.picture import draw_map
 from rocking_cli.questions.report.study import Assessment, MotionResult, PulseMap, amplitude_in_g
 from rocking_cli.questions.report.words import PACKAGE, context, language_of
 from rocking_cli.questions.respond.picture import draw_history
-from rocking_cli.studies.conclusion import Concluded
+from rocking_cli.studies.conclusion import SEVERITY, Concluded
 from rocking_cli.studies.film import Film
 from rocking_cli.text import in_short
 from rocking_cli.verification.results import Verification
@@ -41,9 +41,7 @@ TOTAL_BINS = 6000  # bins of the curves of all motions: each curve has some two 
 MIN_BINS, MAX_BINS = 300, 2500  # bins of the curves of one motion
 OWN_PARTS = frozenset({"drawing", "inputs", "basis-4"})
 """Parts of a calculation sheet that a report leaves out: it contains them already, or has another order."""
-BAD_CONCLUSIONS = frozenset(
-    {Concluded.OVERTURNS, Concluded.FALLS_OFF, Concluded.UNKNOWN, Concluded.NOT_SATISFIED, Concluded.NOT_CHECKED}
-)
+BAD_CONCLUSIONS = frozenset(SEVERITY[SEVERITY.index(Concluded.NOT_CHECKED) :])
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +125,7 @@ def document(content: Assessment, sources: SheetSources, verified: VerifiedRepor
         say,
         heading,
         say("report_subtitle"),
-        about(say, mechanism, content.title, sources),
+        about(say, mechanism, content.title.known, content.title, sources),
         parts,
         content.title.logo,
         author=content.title.author,

@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 from rocking_cli.ask.answer import Answer, drawn
-from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
+from rocking_cli.ask.given import SiteLike, StructureLike, language_of, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.errors import InputError, Problem, RockingError
-from rocking_cli.names import LANGUAGES, OPENING
+from rocking_cli.errors import InputError, RockingError
+from rocking_cli.names import OPENING
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.view import heading
 
@@ -46,9 +46,10 @@ def report(
     opening: float = OPENING,
     project: str | None = None,
     place: str | None = None,
+    client: str | None = None,
     author: str | None = None,
     logo: str | Path | None = None,
-    language: str = "en",
+    language: str | None = None,
     origin: str | None = None,
     watch: Watcher = SILENT,
     **options: Unpack[MotionArguments],
@@ -79,10 +80,10 @@ def report(
         Whether the motions are those of the floor of the site; if not, ground motions are carried to it.
     opening : float
         Largest opening of a joint up to which a history is valid, over D_cr.
-    project, place, author, logo : str, str, str, path, optional
+    project, place, client, author, logo : str, str, str, str, path, optional
         Entries for the heading of the report, and a picture in .png, .jpg or .svg.
-    language : {"en", "it"}
-        Language of the report.
+    language : {"en", "it"}, optional
+        Language of the report; by default that of the site.
     origin : str, optional
         What the report says of how it was made; by default this function and the structure.
     watch : Watcher
@@ -128,8 +129,6 @@ def report(
 
     if out is not None:
         files.check(Path(out), ".html", ".pdf", ".docx")
-    if language not in LANGUAGES:
-        raise InputError(Problem(f"there is no report in {language!r}", field="`language`", hint=", ".join(LANGUAGES)))
     signs, requested = signs_of(polarity), Motions.of(motions, options)
     if (state is not None or on_floor) and (verify is None or not requested):
         raise InputError("`state` and `on_floor` describe records of a verification: give `verify` and `motions`")
@@ -147,12 +146,13 @@ def report(
         raise InputError("a report shows how close the result is: `neighbours` must be at least 1")
     around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
     site = site_of(verify) if verify is not None else None
+    language = language_of(language, site, watch)
     if site is not None:  # checked before long computations
         sheet_of(site)
         refuse(site, motions=bool(requested))
     ready = structure_of(structure, watch, opening)
     source = SheetOrigin.of(origin or "rocking_cli.report(...)", ready)
-    title = Head(project, place, author, logo).block(source, language)
+    title = Head(project, place, client, author, logo).block(source, language)
     chosen = requested.gather(ready.growth, watch) if requested else []
     verified = None
     if verify is not None and site is not None:
@@ -161,12 +161,12 @@ def report(
     with watch.progress(count_steps(chosen), "parts of the report") as advance:
         content = gather(ready, source.structure, chosen, signs, around=around, title=title, progress=advance)
     if out is not None:
-        made = sheets.sources(ready.mechanism, verify, chosen, source)
+        made = sheets.sources(ready.mechanism, verify, chosen, source, site)
         try:
             sheets.write(Path(out), document(content, made, verified, language), watch, by_browser=True)
         except RockingError as error:
             watch.unwritten(error)
-    shown = view(content, verified.found if verified is not None else None)
+    shown = view(content, verified.found if verified is not None else None, language)
     figure = drawn("plotting.structure.draw_structure", content.picture, heading(content.mechanism))
     return Answer("report", content, shown, partial(_columns, content), figure)
 

@@ -19,10 +19,11 @@ from rocking_cli.views.conclusion import conclusion_data, headline, of_verificat
 from rocking_cli.views.response import fit_data, runs_data
 from rocking_cli.views.sheet import template
 from rocking_cli.views.sheet.document import Sentence, SheetPart
+from rocking_cli.views.sheet.language import Language
 from rocking_cli.views.view import View
 
 
-def view(content: Assessment, verified: Verification | None = None) -> View:
+def view(content: Assessment, verified: Verification | None = None, language: str = "en") -> View:
     """Show a report: its answer in a sentence, and all its content as plain data."""
     say, watched = language_of("en", is_plain=True), Watched(content.mechanism)
     values = context(content, say, verified)
@@ -30,8 +31,13 @@ def view(content: Assessment, verified: Verification | None = None) -> View:
     def said(name: str, **more: Any) -> list[SheetPart]:
         return template.parts(say, PACKAGE, name, {**values, **more})
 
-    of_site = of_verification(verified) if verified is not None else []
-    answer = " ".join([*of_site, *_sentences(said("answer"))])
+    def answer(say: Language) -> str:
+        parts = template.parts(say, PACKAGE, "answer", context(content, say, verified))
+        if verified is None:
+            return " ".join(_sentences(parts))
+        by_code = verification.showing(verified).in_language(say.key).say
+        return " ".join([*of_verification(verified, by_code), *_sentences(parts)])
+
     ends = [
         end for end in (verified.conclusion if verified is not None else None, content.conclusion) if end is not None
     ]
@@ -43,7 +49,7 @@ def view(content: Assessment, verified: Verification | None = None) -> View:
             "file": content.file.name,
             "sha256": content.file.checksum,
         },
-        "answer": answer,
+        "answer": answer(say),
         "conclusion": conclusion_data(worst(ends)) if ends else None,
         "doubts": _sentences(said("doubts")),
         "parameters": {side.direction.label: side.parameters for side in sides_of(content.structure)},
@@ -74,7 +80,7 @@ def view(content: Assessment, verified: Verification | None = None) -> View:
         "date": content.title.date,
         "versions": dict(content.versions),
     }
-    return View(data, [answer])
+    return View(data, [answer(language_of(language, is_plain=True))])
 
 
 def _sentences(parts: list[SheetPart]) -> list[str]:

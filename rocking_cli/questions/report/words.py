@@ -16,7 +16,7 @@ from rocking_cli.core.advice import Grade
 from rocking_cli.core.equivalence import EQUAL_DIRECTIONS
 from rocking_cli.core.hung.attached import Spot
 from rocking_cli.core.hung.element import ConstantForce, Element, SpringBed, SteelBar, Stretched
-from rocking_cli.core.mechanism import doubts as doubts_about_size
+from rocking_cli.core.plausible import doubts as doubts_about_size
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.verdict import disagree
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt
@@ -28,7 +28,7 @@ from rocking_cli.studies.conclusion import Conclusion, are_alike, worst
 from rocking_cli.studies.movements import Movements, Watched, largest
 from rocking_cli.text import in_short
 from rocking_cli.verification.results import MINUS, Verification
-from rocking_cli.views.cautions import cautions_of
+from rocking_cli.views.cautions import before_rocking, cautions_of
 from rocking_cli.views.conclusion import NEXT_STEPS, counted, does, headline, next_in_words
 from rocking_cli.views.contact import contact_words
 from rocking_cli.views.neighbours import deviations, neighbours_in_words
@@ -203,9 +203,7 @@ def _why_alone(content: Assessment) -> str:
 
 def _translated(mechanism: Mechanism, say: Language) -> list[Markup]:
     """Return the cautions on a structure in another language."""
-    of_mechanism = [say.caution(mechanism.mechanism, mechanism.caution)] if mechanism.caution else []
-    rest = [each for each in cautions_of(mechanism) if each != mechanism.caution]
-    return [*map(guarded, of_mechanism), *(guarded(say.recognised("caution", each)) for each in rest)]
+    return [*map(guarded, cautions_of(mechanism, say))]
 
 
 def context(content: Assessment, say: Language, verified: Verification | None = None) -> dict[str, Any]:
@@ -250,6 +248,10 @@ def context(content: Assessment, say: Language, verified: Verification | None = 
         "step": partial(next_step, say),
         "sizes": lambda: doubts_about_size(mechanism),
         "why_alone": lambda: guarded(say.recognised("reason", _why_alone(content))),
+        "early": [
+            printed(each) if say.key == "en" else guarded(say.recognised("caution", each))
+            for each in before_rocking(mechanism)
+        ],
         "translated_cautions": lambda: _translated(mechanism, say),
         "restitution_given": restitution_source(mechanism) == "given",
         "elastic": any(tie.is_elastic for tie in mechanism.ties or []),

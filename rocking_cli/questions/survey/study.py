@@ -13,7 +13,7 @@ import numpy as np
 
 from rocking_cli.arrays import Integers
 from rocking_cli.core import Mechanism
-from rocking_cli.core.mechanism import doubts
+from rocking_cli.core.plausible import doubts
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import Model, scatter_of
 from rocking_cli.dynamics.outcome import Outcomes
@@ -27,9 +27,8 @@ from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure, check_opening
 from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare
 from rocking_cli.studies.neighbours import Neighbourhood, neighbours
-from rocking_cli.verification.check import code_of, of_each, row_numbers, verify
+from rocking_cli.verification.check import code_of, of_each, questioned, row_numbers, verify
 from rocking_cli.verification.code import SiteFile
-from rocking_cli.verification.results import Remark
 
 STRUCTURES_PER_CHUNK = 8  # in the memory of a thread at a time: the tables of each are one megabyte, at most ten
 
@@ -142,8 +141,6 @@ class Surveyed:
         Whether a formula of that verification was not checked against the printed code.
     remarks : sequence of str
         Sentences on how fields of the structure were read, such as weights as masses.
-    relies_on : sequence of Remark
-        What the verification relies on and may not be there, if it is satisfied; see `Verification`.
     numbers : mapping of str to float or None
         Further numbers of that verification, those of `Survey.units`.
     """
@@ -168,7 +165,6 @@ class Surveyed:
     verified: Conclusion | None = None
     unprinted: bool = False
     remarks: Sequence[str] = ()
-    relies_on: Sequence[Remark] = ()
     numbers: Mapping[str, float | None] = field(default_factory=dict)
     side: str | None = None
 
@@ -369,7 +365,9 @@ def _part(
             made = entry.make()
             weaker = made.weaker_side()
             ready[k] = Structure(weaker or made, opening=opening)
-            alone = _alone(place, entry, ready[k], site)
+            asked = questioned(Structure(made), site) if site is not None else []
+            odd = [*doubts(made), *(f"{each.name} {each.words}" for each in asked)]
+            alone = replace(_alone(place, entry, ready[k], site), doubt="; ".join(odd) or None)
             rows[k] = replace(alone, side="depth" if weaker is not None else None, remarks=made.remarks)
             if _may_move(ready[k], shaking):
                 models[k] = ready[k].model("nonlinear")
@@ -424,12 +422,10 @@ def _alone(place: int, entry: SurveyEntry, structure: Structure, site: SiteFile 
         block.kappa2 if block is not None else nan,
         structure.etas[k],
         why.removeprefix(f"{structure.name}: ") if why is not None else None,
-        "; ".join(doubts(mechanism)) or None,
-        mechanism.own_caution() or None,
+        caution=mechanism.own_caution() or None,
         ratio=verification.ratio if verification is not None else None,
         verified=verification.conclusion if verification is not None else None,
         unprinted=verification is not None and verification.unprinted,
-        relies_on=verification.relied_on if verification is not None else (),
         numbers=row_numbers(verification, code_of(site)) if verification is not None and site is not None else {},
     )
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from rocking_cli.ask.answer import Answer, drawn
-from rocking_cli.ask.given import SiteLike, StructureLike, around_of, site_of, structure_of
+from rocking_cli.ask.given import SiteLike, StructureLike, around_of, language_of, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
@@ -23,6 +23,7 @@ from rocking_cli.text import one_line
 if TYPE_CHECKING:
     from rocking_cli.questions.survey.structure_table import StructureTable
     from rocking_cli.questions.survey.study import Survey, SurveyEntry
+    from rocking_cli.views.sheet.language import Language
 
 TableLike = str | Path | Mapping[str, Sequence[Any]]
 """CSV file, or columns by their headings."""
@@ -49,9 +50,10 @@ def survey(
     map: str | Path | None = None,
     sheets: str | Path | None = None,
     sheet_format: str = "html",
-    language: str = "en",
+    language: str | None = None,
     project: str | None = None,
     place: str | None = None,
+    client: str | None = None,
     author: str | None = None,
     logo: str | Path | None = None,
     origin: str | None = None,
@@ -94,9 +96,9 @@ def survey(
         Folder for the calculation sheets of the verifications, one for each structure.
     sheet_format : {"html", "docx", "pdf"}
         Format of the sheets; "docx" needs an extra package, "pdf" another one or a browser.
-    language : {"en", "it"}
-        Language of the sheets.
-    project, place, author, logo : str, str, str, path, optional
+    language : {"en", "it"}, optional
+        Language of the answer, the page, plots and sheets; by default that of the site.
+    project, place, client, author, logo : str, str, str, str, path, optional
         Entries for the heading of the sheets, and a picture in .png, .jpg or .svg.
     origin : str, optional
         What the sheets say of how they were made; by default this function.
@@ -126,17 +128,19 @@ def survey(
     >>> [row.name for row in rk.survey(table).rows]
     ['b', 'a']
     """
+    from rocking_cli.plotting.language import in_language
     from rocking_cli.questions.survey.study import survey as study
-    from rocking_cli.questions.survey.view import blocks, columns, title, view
+    from rocking_cli.questions.survey.view import blocks, columns, texts_in, title, view
 
     if sheets is None:
-        head = {"project": project, "place": place, "author": author, "logo": logo}
+        head = {"project": project, "place": place, "client": client, "author": author, "logo": logo}
         without = "without calculation sheets: give `sheets`"
-        idle = {"language": language != "en", "sheet_format": sheet_format != "html", "origin": origin}
+        idle = {"sheet_format": sheet_format != "html", "origin": origin}
         refuse_idle(without, **idle, **head)
     elif site is None:
         raise InputError("`sheets` requires a site to verify at: give `site`")
     signs, where = signs_of(polarity), site_of(site) if site is not None else None
+    say = texts_in(language := language_of(language, where, watch))
     entries, requested = _entries(structures, watch), Motions.of(motions, options)
     if not requested:
         refuse_idle("without ground motions", polarity=signs != (1,), opening=opening != OPENING, neighbours=neighbours)
@@ -148,7 +152,7 @@ def survey(
         from rocking_cli.questions.survey.sheets import SheetFolder
         from rocking_cli.questions.verify.sheets import Head
 
-        titled = Head(project, place, author, logo)
+        titled = Head(project, place, client, author, logo)
         call = origin or "rocking_cli.survey(...)"
         writer = SheetFolder(Path(sheets), where, site, f".{sheet_format}", language, titled, call)
         writer.check()
@@ -167,19 +171,19 @@ def survey(
         _note_remarks(result, watch)
     if page is not None and result.rows:
         file = getattr(entries, "sheet", None)
-        _write_page(Path(page), result, Path(file.file).name if file is not None else "structures", watch)
+        _write_page(Path(page), result, Path(file.file).name if file is not None else "structures", say, watch)
     if map is not None and result.rows:
-        _write_map(Path(map), result, title(result), watch)
+        _write_map(Path(map), result, title(result), say, watch)
     if writer is not None and result.rows:
         try:
             writer.write(result, entries, watch)
         except RockingError as error:
             watch.unwritten(error)
     figure, files = (
-        drawn("questions.survey.picture.draw_survey", result, title(result)),
+        in_language(say, drawn("questions.survey.picture.draw_survey", result, title(result))),
         partial(blocks, result, "."),
     )
-    return Answer("survey", result, view(result, top), partial(columns, result), figure, files)
+    return Answer("survey", result, view(result, top, say), partial(columns, result), figure, files)
 
 
 def _entries(given: Any, watch: Watcher) -> Sequence[SurveyEntry]:
@@ -227,7 +231,7 @@ def _note_remarks(found: Survey, watch: Watcher) -> None:
         watch.note(f"further remarks on how fields were read: {len(remarks) - MAX_LISTED_DOUBTS:,}")
 
 
-def _write_map(place: Path, found: Survey, title: str, watch: Watcher) -> None:
+def _write_map(place: Path, found: Survey, title: str, say: Language, watch: Watcher) -> None:
     from rocking_cli.io.files import write_whole
     from rocking_cli.plotting.style import save
     from rocking_cli.questions.survey.coordinates import coordinates
@@ -238,17 +242,19 @@ def _write_map(place: Path, found: Survey, title: str, watch: Watcher) -> None:
         watch.warn(f"not on the map: {wrong}")
     if len(where.wrong) > MAX_LISTED_DOUBTS:
         watch.warn(f"not on the map: {len(where.wrong) - MAX_LISTED_DOUBTS:,} more structures, for the same reason")
-    figure = draw_map(found, where, title)
+    from rocking_cli.plotting.language import in_language
+
+    figure = in_language(say, partial(draw_map, found, where, title))()
     write_whole(place, lambda stream: save(figure, stream, format=place.suffix[1:].lower()))
     watch.note(f"wrote {place}")
 
 
-def _write_page(place: Path, found: Survey, table: str, watch: Watcher) -> None:
+def _write_page(place: Path, found: Survey, table: str, say: Language, watch: Watcher) -> None:
     from rocking_cli import __version__
     from rocking_cli.io.files import write_whole
     from rocking_cli.questions.survey.page import render
 
-    today = datetime.now(UTC).strftime("%d %B %Y").lstrip("0")
-    page = render(found, table, [f"Written on {today} with rocking-cli {__version__}."]).encode()
+    written = say("Written on {day} with rocking-cli {version}.", day=say.day(datetime.now(UTC)), version=__version__)
+    page = render(found, table, [written], say).encode()
     write_whole(place, lambda stream: stream.write(page))
     watch.note(f"wrote {place} ({len(page) / 1e6:.2g} MB)")

@@ -17,9 +17,9 @@ from rocking_cli.questions.survey.study import Bad, Survey, Surveyed
 from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.text import cut, one_line
 from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, rounded, table_of
-from rocking_cli.views.conclusion import uncounted_ties
+from rocking_cli.views.conclusion import concluded_in_words, limits_in_words, uncounted_ties
 from rocking_cli.views.neighbours import deviations
-from rocking_cli.views.sheet.language import ENGLISH
+from rocking_cli.views.sheet.language import ENGLISH, Language, texts_of, translated
 from rocking_cli.views.view import Table, View, number
 
 DEFAULT_ROWS = 20
@@ -47,11 +47,6 @@ class RankedStructure(NamedTuple):
     cells: Sequence[str] = ()
 
 
-def spaced(key: str) -> str:
-    """Return a keyword of a conclusion as words."""
-    return key.replace("_", " ")
-
-
 def _limit_state(row: RankedStructure) -> str | None:
     return (row.found.verified.limit_state or None) if row.found.verified is not None else None
 
@@ -61,10 +56,11 @@ def _not_counted(row: RankedStructure) -> str | None:
     return ", ".join(each.name for each in verified.left_out) or None if verified is not None else None
 
 
-def caution_of(row: RankedStructure) -> str | None:
-    """Return the cautions on a structure and on what its verification relies on, as one text; None without any."""
-    relied = [ENGLISH(each).removeprefix("Caution: ") for each in row.found.relies_on]
-    return " ".join(filter(None, [row.found.caution, *(f"{each[0].upper()}{each[1:]}" for each in relied)])) or None
+def caution_of(row: RankedStructure, say: Language = ENGLISH) -> str | None:
+    """Return the cautions on a structure, and what limits its verification, as one text; None without any."""
+    limits = limits_in_words(row.found.verified, say) if row.found.verified is not None else []
+    caution = say.recognised("caution", row.found.caution or "")
+    return " ".join([caution] * (caution not in " ".join(limits)) + limits) or None
 
 
 def _share(row: RankedStructure) -> str | None:
@@ -89,7 +85,7 @@ STRUCTURE: tuple[Column[RankedStructure], ...] = (
 )
 OF_SITE: tuple[Column[RankedStructure], ...] = (
     Column("ratio", of("found.ratio"), head="ratio"),
-    Column("concluded", of("found.verified.concluded.value"), head="verified", form=spaced, text=True),
+    Column("concluded", of("found.verified.concluded.value"), head="verified", form=concluded_in_words, text=True),
     Column("limit_state", _limit_state, head="governs", text=True),
     Column("not_counted", _not_counted, head="not\ncounted", text=True),
 )
@@ -128,12 +124,17 @@ LEFT_TO_PAGES = {"phi_cr", "kappa2", "eta"}
 """Keys of the columns that terminals do not show beside those of a site, so that a row fits into a line."""
 
 
-def view(found: Survey, top: int = DEFAULT_ROWS) -> View:
+def texts_in(key: str) -> Language:
+    """Return a language with the texts of a survey."""
+    return Language(key, texts_of("rocking_cli.questions.survey", key), is_plain=True)
+
+
+def view(found: Survey, top: int = DEFAULT_ROWS, say: Language = ENGLISH) -> View:
     """Show the most vulnerable structures, and how many of all overturn."""
     parts: list[Table | str] = []
     if found.rows:
-        parts = [*counts(found), table(found, top), *sentences(found, top)]
-    return View(lambda: data(found), parts)
+        parts = [*counts(found), table(found, top), *sentences(found, top, say)]
+    return translated(say, View(lambda: data(found), parts))
 
 
 def data(found: Survey) -> dict[str, Any]:
@@ -237,7 +238,7 @@ def has_unknown(found: Survey) -> bool:
     return any(each.under is not None and each.under.unknown for each in found.rows)
 
 
-def table(found: Survey, top: int, longest: int | None = MAX_NAME_LENGTH) -> Table:
+def table(found: Survey, top: int, longest: int | None = MAX_NAME_LENGTH, say: Language = ENGLISH) -> Table:
     """Return a table of the first rows, with names of at most `longest` characters."""
     empty = set(OF_MOTIONS) if found.around.count else {"unknown"} if not has_unknown(found) else set[str]()
     if all(each.side is None for each in found.rows):
@@ -251,7 +252,7 @@ def table(found: Survey, top: int, longest: int | None = MAX_NAME_LENGTH) -> Tab
     empty |= {name for name in found.units if all(each.numbers[name] is None for each in found.rows)}
     shown = [column for column in _columns(found) if column.key not in empty]
     if any(caution_of(row) is not None for row in _ranked(found)):
-        mark = caution_of if longest is None else lambda row: caution_of(row) and "yes"
+        mark = partial(caution_of, say=say) if longest is None else lambda row: caution_of(row) and "yes"
         shown.append(only_shown("caution", mark, text=True))
     whole = table_of(title(found), shown, _ranked(found, stop=top))
     if longest is None:
@@ -291,32 +292,26 @@ def _of_site(rows: Sequence[Surveyed]) -> Iterator[str]:
     """Yield how many structures do not satisfy the verification, which limit states govern them, and the worst."""
     ends = [each.verified for each in rows if each.verified is not None]
     fail = [end for end in ends if end.concluded in (Concluded.NOT_SATISFIED, Concluded.UNKNOWN)]
-    passed = sum(end.concluded is Concluded.SATISFIED for end in ends)
+    passed, limited, undecided = (
+        sum(end.concluded is each for end in ends)
+        for each in (Concluded.SATISFIED, Concluded.SATISFIED_IF, Concluded.NOT_DECIDED)
+    )
     if fail:
         does = "does" if len(fail) == 1 else "do"
-        clauses = _governing(fail) + _relying(rows)
-        yield f"{len(fail):,} of {_structures(len(rows))} {does} not satisfy the verification{clauses}."
+        first = f"{len(fail):,} of {_structures(len(rows))} {does} not satisfy the verification{_governing(fail)}"
     elif passed == len(rows):
-        who = "All structures satisfy" if passed > 1 else "The structure satisfies"
-        yield f"{who} the verification{_relying(rows)}."
+        first = f"{'All structures satisfy' if passed > 1 else 'The structure satisfies'} the verification"
     else:
         satisfy = "satisfies" if passed == 1 else "satisfy"
-        yield f"{passed:,} of {_structures(len(rows))} {satisfy} the verification{_relying(rows)}."
+        first = f"{passed:,} of {_structures(len(rows))} {satisfy} the verification"
+    first += f"; {limited:,} only on conditions" if limited else ""
+    yield f"{first}; {undecided:,} not decided." if undecided else f"{first}."
     if without := [each for each, end in zip(rows, ends, strict=True) if end.concluded is Concluded.NOT_CHECKED]:
         yield f"Not verified: {_named(without)}; `rocking verify` gives the reason."
     least = rows[0].ratio
     if least is not None and not isnan(least):
         ratio = number(least, digits_apart(least, 1.0, 3))
         yield f"The smallest ratio of capacity to demand is {ratio}, that of {_named(rows[:1])}."
-
-
-def _relying(rows: Sequence[Surveyed]) -> str:
-    """Return how many structures satisfy the verification only by what may have failed by then, as a clause."""
-    count = sum(bool(each.relies_on) for each in rows)
-    if not count:
-        return ""
-    which = f"{count:,} of those that satisfy it {'relies' if count == 1 else 'rely'}" if len(rows) > 1 else "it relies"
-    return f"; {which} on ties or forces at displacements where these may have failed (caution)"
 
 
 def _governing(fail: Sequence[Conclusion]) -> str:
@@ -350,7 +345,7 @@ def _structures(count: int) -> str:
     return f"{count:,} structure{'s' * (count != 1)}"
 
 
-def sentences(found: Survey, top: int | None = None) -> list[str]:
+def sentences(found: Survey, top: int | None = None, say: Language = ENGLISH) -> list[str]:
     """Return sentences on how to read the rows."""
     rows, many = found.rows, len(found.rows)
     ranked = RANKED[found.by].format("neighbouring motions" if found.around.count else "motions")
@@ -369,9 +364,9 @@ def sentences(found: Survey, top: int | None = None) -> list[str]:
         )
         lines += _of_neighbours(found)
         lines += _not_known(rows)
-    cautions = [(each.name, caution_of(RankedStructure(0, each))) for each in rows]
+    cautions = [(each.name, caution_of(RankedStructure(0, each), say)) for each in rows]
     cautioned = [(name, caution) for name, caution in cautions if caution is not None]
-    lines += [f"Caution: {name}: {caution}" for name, caution in cautioned[:MAX_CAUTIONED]]
+    lines += [say("Caution: {text}", text=f"{name}: {caution}") for name, caution in cautioned[:MAX_CAUTIONED]]
     if len(cautioned) > MAX_CAUTIONED:
         lines.append(f"{len(cautioned) - MAX_CAUTIONED:,} more structures have such a caution: JSON lists them all.")
     if any(each.unprinted for each in rows):

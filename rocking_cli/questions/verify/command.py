@@ -151,4 +151,4 @@ def command(
     )  # fmt: skip
     output.show(answer)
     if in_short and not output.as_json:
-        terminal.note("--all shows also the ground, both curves, every clause, and the remarks in full")
+        output.watch.note("--all shows also the ground, both curves, every clause, and the remarks in full")

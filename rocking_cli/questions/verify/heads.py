@@ -11,12 +11,13 @@ from rocking_cli.cli import complete, defaults, options
 from rocking_cli.names import LANGUAGES
 from rocking_cli.processing.reading_options import CORRECTIONS
 
-HEAD_OPTIONS = ("project", "place", "author", "logo")
+HEAD_OPTIONS = ("project", "place", "client", "author", "logo")
 """Options of the heading of a document."""
 
 head: options.Decorator = options.in_order(
     click.option("--project", metavar="TEXT", help="Project name, for the heading of the document."),
     click.option("--place", metavar="TEXT", help="Location of the structure, for the heading."),
+    click.option("--client", metavar="TEXT", help="Client who ordered the document, for the heading."),
     click.option("--author", metavar="TEXT", help="Author of the document, for the heading."),
     click.option(
         "--logo",
@@ -25,11 +26,13 @@ head: options.Decorator = options.in_order(
         help="Author's logo (.png, .jpg or .svg), for the heading.",
     ),
 )
-"""The options of a head: `project`, `place`, `author` and `logo`."""
+"""The options of a head: `project`, `place`, `client`, `author` and `logo`."""
 
 
 language: options.Decorator = click.option(
-    "--language", type=click.Choice(LANGUAGES), default="en", show_default=True, help="Language of the document."
+    "--language",
+    type=click.Choice(LANGUAGES),
+    help="Language of the answer and of documents.  [default: that of the site, or en]",
 )
 
 

@@ -50,6 +50,7 @@ class Head(NamedTuple):
 
     project: str | None = None
     place: str | None = None
+    client: str | None = None
     author: str | None = None
     logo: str | Path | None = None
 
@@ -61,7 +62,7 @@ class Head(NamedTuple):
 
             picture = embedded(Path(self.logo))
         today = Language(language).day(datetime.now(UTC).date())
-        return TitleBlock(origin.command, today, self.project, self.place, self.author, picture)
+        return TitleBlock(origin.command, today, self.project, self.place, self.client, self.author, picture)
 
 
 def check(file: Path, site: SiteFile, language: str) -> None:
@@ -85,20 +86,22 @@ def sheet_for(
     title: TitleBlock, origin: SheetOrigin,
 ) -> Sheet:  # fmt: skip
     """Return the sheet of a verification, with the checksums of the files that were given."""
-    return sheet(found, site, Language(language), title, sources(found.mechanism, given, motions, origin))
+    return sheet(found, site, Language(language), title, sources(found.mechanism, given, motions, origin, site))
 
 
 def sources(
-    mechanism: Mechanism, site: SiteLike | None, motions: Sequence[Scaled], origin: SheetOrigin
-) -> SheetSources:
-    """Return the files that were given, with the versions of what computes."""
+    mechanism: Mechanism, site: SiteLike | None, motions: Sequence[Scaled], origin: SheetOrigin,
+    read: SiteFile | None,
+) -> SheetSources:  # fmt: skip
+    """Return the files that were given, and those that the site as it was read names, with the versions."""
     of_site = None
     if isinstance(site, str | Path):
         of_site = File(str(site), original(site))
     elif site is not None:
         of_site = File("site", json_text(site).encode())
     records = {str(each.file or each.motion.name): file_of_motion(each) for each in motions}
-    return SheetSources(origin.structure, of_site, records, versions(mechanism), origin.strengthened)
+    named = {} if read is None else {key: File(str(file), original(file)) for key, file in read.site.named.items()}
+    return SheetSources(origin.structure, of_site, records, versions(mechanism), origin.strengthened, named)
 
 
 def rendered(content: Sheet, suffix: str, *, by_browser: bool = False) -> bytes:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
+from rocking_cli.ask.given import SiteLike, StructureLike, language_of, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, each_of, signs_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
@@ -41,9 +40,10 @@ def verify(
     on_floor: bool = False,
     opening: float = OPENING,
     sheet: str | Path | None = None,
-    language: str = "en",
+    language: str | None = None,
     project: str | None = None,
     place: str | None = None,
+    client: str | None = None,
     author: str | None = None,
     logo: str | Path | None = None,
     every_step: bool = False,
@@ -78,9 +78,9 @@ def verify(
         Largest opening of a joint up to which a history is valid, over D_cr.
     sheet : str or Path, optional
         File for the calculation sheet: .html, or .docx and .pdf with extra packages (a browser does for .pdf).
-    language : {"en", "it"}
-        Language of the sheet.
-    project, place, author, logo : str, str, str, path, optional
+    language : {"en", "it"}, optional
+        Language of the answer and of the sheet; by default that of the site.
+    project, place, client, author, logo : str, str, str, str, path, optional
         Entries for the heading of the sheet, and a picture in .png, .jpg or .svg.
     every_step : bool
         Whether the answer lists every line of the calculation.
@@ -115,7 +115,7 @@ def verify(
     >>> round(answer.directions[rk.Direction.POSITIVE].counts.a_g, 6)
     0.193382
     """
-    from rocking_cli.verification.check import refuse, with_histories
+    from rocking_cli.verification.check import code_of, questioned, refuse, with_histories
     from rocking_cli.verification.check import verify as study
     from rocking_cli.verification.results import Histories, control_at
     from rocking_cli.views.verification import table, view
@@ -129,8 +129,9 @@ def verify(
     if not requested:
         refuse_idle("without ground motions", opening=opening != OPENING)
     if sheet is None:
-        head = {"project": project, "place": place, "author": author, "logo": logo}
-        refuse_idle("without a calculation sheet: give `sheet`", language=language != "en", **head)
+        head = {"project": project, "place": place, "client": client, "author": author, "logo": logo}
+        refuse_idle("without a calculation sheet: give `sheet`", **head)
+    language = language_of(language, known, watch)
     refuse(known, control=control is not None, motions=bool(requested))
     if sheet is not None:
         from rocking_cli.questions.verify import sheets
@@ -138,6 +139,9 @@ def verify(
         sheets.check(Path(sheet), known, language)
     ready = structure_of(structure, watch, opening)
     other = None if strengthened is None else structure_of(strengthened, watch, opening)
+    for one in filter(None, (ready, other)):
+        for each in questioned(one, known):
+            watch.warn(f"{one.name}: {each.name} {each.words}")
     sets: dict[str | None, list[Scaled]] = {}
     for key, given in requested.items():
         if isinstance(motions, Mapping):
@@ -155,17 +159,18 @@ def verify(
     with watch.progress(len(chosen) * (1 if other is None else 2), "records") as advance:
         verification = verified(ready, advance)
         if other is not None:
-            verification = replace(verification, strengthened=verified(other, advance))
+            verification = code_of(known).strengthened(verification, verified(other, advance), known.site)
     if sheet is not None:
         source = sheets.SheetOrigin.of(origin or "rocking_cli.verify(...)", ready, other)
-        title = sheets.Head(project, place, author, logo).block(source, language)
+        title = sheets.Head(project, place, client, author, logo).block(source, language)
         content = sheets.sheet_for(verification, known, site, chosen, language, title, source)
         try:
             sheets.write(Path(sheet), content, watch)
         except RockingError as error:
             watch.unwritten(error)
-    shown = view(verification, known.site.name, every_step=every_step, in_short=in_short)
-    return Answer("verification", verification, shown, partial(table, verification), partial(_figure, verification))
+    shown = view(verification, known.site.name, language=language, every_step=every_step, in_short=in_short)
+    figure = partial(_figure, verification, language)
+    return Answer("verification", verification, shown, partial(table, verification), figure)
 
 
 def _sets(
@@ -184,7 +189,7 @@ def _sets(
     return {key: Motions.of(each, options) for key, each in given.items()}
 
 
-def _figure(found: Verification) -> Figure:
+def _figure(found: Verification, language: str) -> Figure:
     from rocking_cli.views.verification import showing
 
-    return showing(found).draw(found)
+    return showing(found).in_language(language).draw(found)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from importlib.resources import files
 from typing import Any
@@ -41,6 +41,8 @@ class SheetSources:
     versions : mapping of str to str
     strengthened : File, optional
         The file of the strengthened structure, if two are compared.
+    named : mapping of str to File
+        The files that the site file names, by its field.
     """
 
     structure: File
@@ -48,6 +50,7 @@ class SheetSources:
     records: Mapping[str, File | None]
     versions: Mapping[str, str]
     strengthened: File | None = None
+    named: Mapping[str, File] = field(default_factory=dict)
 
 
 def listed(of_templates: Collection[str], file: File) -> tuple[str, int, int]:
@@ -63,11 +66,14 @@ def of_files(mechanism: Mechanism, title: TitleBlock, made: SheetSources, code: 
     return {"mechanism": mechanism, "command": title.command, "sources": made, "listed": partial(listed, known)}
 
 
-def about(say: Language, mechanism: Mechanism, title: TitleBlock, made: SheetSources, site: str = "") -> dict[str, str]:
-    """Return the entries of the heading of a document."""
+def about(
+    say: Language, mechanism: Mechanism, fields: Mapping[str, str], title: TitleBlock, made: SheetSources,
+    site: str = "",
+) -> dict[str, str]:  # fmt: skip
+    """Return the entries of the heading of a document, with `fields` of its title block; empty ones are blanks."""
     kind = say.mechanism(mechanism.mechanism, mechanism.title)
     entries = {say("Structure"): f"{mechanism.name}: {kind}"}
-    entries |= {say(name.capitalize()): text for name, text in title.known.items()}
+    entries |= {say(name.capitalize()): text for name, text in fields.items()}
     entries |= {say("Site"): site} if site else {}
     return entries | {say("Date"): title.date, say("Program"): f"rocking-cli {made.versions['rocking-cli']}"}
 
@@ -139,5 +145,10 @@ def sheet(found: Verification, site: SiteFile, language: Language, title: TitleB
         parts = template.parts(say, chapters.package, "sheet", context)
     heading = say("Calculation sheet: {name}", name=mechanism.name)
     subtitle = say("subtitle", structure=say.mechanism(mechanism.mechanism, mechanism.title))
-    head = about(say, mechanism, title, made, site.site.name or "")
-    return Sheet(say, heading, subtitle, head, parts, title.logo, SIGNATURE_FIELDS, OWN_PAGES, title.author)
+    where = site.site.name or ""
+    head = about(say, mechanism, title.fields, title, made, where)
+    running = [heading, title.project, title.place or where, title.client]
+    return Sheet(
+        say, heading, subtitle, head, parts, title.logo, SIGNATURE_FIELDS, OWN_PAGES, title.author,
+        " · ".join(filter(None, running)),
+    )  # fmt: skip

@@ -97,7 +97,7 @@ class Sheet:
     language : Language
     heading, subtitle : str
     about : mapping of str to str
-        Project, place, author, date, ...
+        Project, place, client, author, date, ...; an empty one is a blank to be filled in by hand.
     parts : sequence of SheetPart
     logo : str, optional
         The logo as a data URL.
@@ -107,6 +107,8 @@ class Sheet:
         Keys of the sections that begin a page.
     author : str, optional
         Whose the logo is.
+    running : str
+        What stands above each page on paper but the first: what the document is about, where that is, who ordered it.
     """
 
     language: Language
@@ -118,3 +120,4 @@ class Sheet:
     signature: Sequence[str] = ()
     own_pages: Sequence[str] = ()
     author: str | None = None
+    running: str = ""

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import date
-from functools import cached_property
+from functools import cache, cached_property
 from importlib.resources import files
 from math import isnan
 from string import Formatter
@@ -21,14 +21,17 @@ SIGNIFICANT_DIGITS = 6  # results recomputed from printed numbers agree to five 
 ABSENT = "–"
 GROUND_NAME = "the ground"
 OUTSIDE_SIGNS = str.maketrans("'[]|", "′()/")
+DECIMAL = re.compile(r"(?<![\w§.])(\d+)\.(\d+)(?![\d.]*\.\d)")  # as in 0.5, and not as in §8.3 or 8.7.1
+THOUSANDS = re.compile(r"\d{1,3}(,\d{3})+")
 SENTENCE_END = re.compile(r"(?<=\.) (?=[A-Z])")
 
 
 def texts_of(package: str, key: str) -> Mapping[str, str]:
-    """Return the texts that a package has in a language: by keys, or by their English form."""
+    """Return the texts that a package has in a language: by keys, or by their English form; none without a file."""
     import tomllib
 
-    text = (files(package) / "texts" / f"{key}.toml").read_text(encoding="utf-8")
+    file = files(package) / "texts" / f"{key}.toml"
+    text = file.read_text(encoding="utf-8") if file.is_file() else ""
     return {name: " ".join(each.split()) for name, each in tomllib.loads(text).items()}
 
 
@@ -89,8 +92,7 @@ class Language:
         translated = in_plain(translated) if self.is_plain else translated
         if not values:
             return translated
-        written = Formatter() if self.is_plain else _Printed(self)
-        return written.format(translated, **{name: self._value(value) for name, value in values.items()})
+        return _Printed(self).format(translated, **{name: self._value(value) for name, value in values.items()})
 
     def _value(self, value: Any) -> Any:
         if isinstance(value, Remark):
@@ -103,13 +105,15 @@ class Language:
     def number(self, value: float | None, digits: int = SIGNIFICANT_DIGITS) -> str:
         """Return a number as it is printed."""
         if self.is_plain:
-            return view.number(value, digits)
+            return self.formula(view.number(value, digits))
         if value is None or isnan(value):
             return ABSENT
         return self.printed(f"{value + 0.0:.{digits}g}")
 
     def printed(self, number: str) -> str:
         """Return a number that Python wrote, such as -1.2e-05, as the language prints it."""
+        if self.is_plain:
+            return self.formula(number)
         mantissa, _, power = number.partition("e")
         text = self.formula(mantissa.replace("-", MINUS))
         return f"{text} · 10^[{str(int(power)).replace('-', MINUS)}]" if power else text
@@ -137,7 +141,7 @@ class Language:
 
     def formula(self, formula: str) -> str:
         """Return a formula with the decimal marks of its constants, such as 1.68, as the language writes them."""
-        return re.sub(r"(?<=\d)\.(?=\d)", ",", formula) if self.key in WITH_COMMA else formula
+        return DECIMAL.sub(r"\1,\2", formula) if self.key in WITH_COMMA else formula
 
     def items(self, text: str) -> str:
         """Return items parted by commas, such as T1=0.4,n=3, with decimal marks as the language writes them."""
@@ -169,8 +173,8 @@ class Language:
     def recognised(self, family: str, text: str) -> str:
         """Return a text that a mechanism wrote in English, in this language; what is not recognised stays as it is.
 
-        Texts of a family are `FAMILY ENGLISH`, with slots for what varies; slots `name...` keep what is in them. Each
-        sentence is recognised alone; one that is not, is taken apart at semicolons, then at commas.
+        Texts of a family are `FAMILY ENGLISH`, with slots for what varies; slots `name...` and `given...` keep what is
+        in them. Each sentence is recognised alone; one that is not, is taken apart at semicolons, then at commas.
         """
         if len(sentences := SENTENCE_END.split(text)) > 1:
             return " ".join(self.recognised(family, each) for each in sentences)
@@ -185,24 +189,53 @@ class Language:
         """Return a text that is one of a family as a whole, in this language; None for any other."""
         for pattern, translated in self._patterns(family):
             if match := pattern.fullmatch(text):
-                parts = match.groupdict().items()
-                return translated.format(**{key: self._part(family, key, part) for key, part in parts})
+                parts = {key: self._part(family, key, part) for key, part in match.groupdict().items()}
+                pieces = Formatter().parse(translated)  # numbers are texts already: how they are written is passed over
+                return "".join(before + (parts[name] if name else "") for before, name, _, _ in pieces)
         return None
 
     def _part(self, family: str, key: str, part: str) -> str:
-        return plain(part) if key.startswith("name") else self.formula(self.recognised(family, part))
+        if key.startswith(("name", "given")):
+            return part if self.is_plain else plain(part)
+        part = part.replace(",", ".") if self.key in WITH_COMMA and THOUSANDS.fullmatch(part) else part
+        return self.formula(self.recognised(family, part))
 
     def _patterns(self, family: str) -> Iterator[tuple[re.Pattern[str], str]]:
         for key, text in self.texts.items():
             if key.startswith(f"{family} "):
-                pieces = Formatter().parse(key.removeprefix(f"{family} "))
-                slots = (re.escape(before) + _slot(slot) for before, slot, _, _ in pieces)
-                yield re.compile("".join(slots)), text
+                yield _pattern(key.removeprefix(f"{family} ")), text
+
+
+@cache
+def _pattern(english: str) -> re.Pattern[str]:
+    """Return the pattern of an English text with slots; a slot that stands twice is filled alike."""
+    known, pattern = set[str](), ""
+    for before, name, _, _ in Formatter().parse(english):
+        pattern += re.escape(before) + (f"(?P={name})" if name in known else _slot(name))
+        known |= {name} if name else set()
+    return re.compile(pattern)
 
 
 def _slot(name: str | None) -> str:
     """Return the pattern of a slot of a text: a name is not parted by semicolons and commas."""
     return f"(?P<{name}>{'[^;,]' if name.startswith('name') else '.'}*?)" if name else ""
+
+
+def translated(say: Language, shown: view.View) -> view.View:
+    """Return a view in a language: its texts of the family `shown`, and its numbers with the marks of the language."""
+    if say.key == ENGLISH.key:
+        return shown
+
+    def lines(text: str) -> str:
+        return "\n".join(say.recognised("shown", line) for line in text.split("\n"))
+
+    def table(each: view.Table) -> view.Table:
+        rows = [[say.formula(lines(cell)) if k in each.numbers else lines(cell) for k, cell in enumerate(row)]
+                for row in each.rows]  # fmt: skip
+        return replace(each, title=lines(each.title), columns=[*map(lines, each.columns)], rows=rows)
+
+    parts = [table(part) if isinstance(part, view.Table) else lines(part) for part in shown.parts]
+    return view.View(shown.data, parts)
 
 
 WORD_JOINER = "\N{WORD JOINER}"

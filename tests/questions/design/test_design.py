@@ -314,7 +314,7 @@ def test_a_range_that_looks_like_millimetres_is_warned_of(tmp_path):
     file = tmp_path / "block.yaml"
     file.write_text("mechanism: block\nwidth: 0.7\nheight: 2.8\n", encoding="utf-8")
     odd = run("design", file, "--vary", "width=200:800", "--until", "lambda > 0.1", "--points", "3").stderr
-    assert "at width = 200 m: width is 200 m: did you mean 200 mm?" in " ".join(odd.split())
+    assert "at width = 200 m: width is 200 m: did you mean 200 mm or 200 cm?" in " ".join(odd.split())
     right = run("design", file, "--vary", "width=200mm:800mm", "--until", "lambda > 0.1", "--points", "3").stderr
     assert "did you mean" not in right
 

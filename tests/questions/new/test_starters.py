@@ -17,7 +17,7 @@ from tests.conftest import EXAMPLES
 from tests.following import build_model
 
 WORKED = ("facade", "floor_wall", "gable", "statue", "column_with_tendon")
-SHAKING = GroundMotion("sine", 0.01, 10 * np.sin(2 * np.pi * np.arange(201) / 100))
+SHAKING = GroundMotion("sine", 0.01, 10 * np.sin(2 * np.pi * np.arange(201) / 100), unit="m/s2")
 
 
 @pytest.mark.parametrize("name", STARTERS)

@@ -334,7 +334,7 @@ def test_without_a_browser_the_result_is_printed_first(call, tmp_path, monkeypat
 
 
 def test_python_refuses_another_ending_and_language(tmp_path):
-    with pytest.raises(rk.InputError, match="there is no report in 'xx'"):
+    with pytest.raises(rk.InputError, match="must be one of en, it, got 'xx'"):
         rk.report(rk.Block(width=0.7, height=2.8), language="xx")
     with pytest.raises(rk.InputError, match=r"ends in \.html, \.pdf or \.docx"):
         rk.report(rk.Block(width=0.7, height=2.8), out=tmp_path / "r.txt")

@@ -6,7 +6,7 @@ import re
 import shutil
 import sys
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, partial
 from math import log, pi, sqrt
 from pathlib import Path
 from typing import ClassVar
@@ -21,12 +21,13 @@ from rocking_cli.codes.italian import formulas
 from rocking_cli.codes.italian.rules import RULES
 from rocking_cli.core import Direction
 from rocking_cli.verification.results import Formula, as_written, in_plain, put
+from rocking_cli.views.sheet.build import SheetOfCode
 from rocking_cli.views.sheet.document import Sentence, Steps
 from rocking_cli.views.verification import shown, view
 from rocking_cli.views.view import Table
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
-from tests.questions.verify.test_sheet import CASES, FACADE, FLOOR, HAZARD, HEAVY, PARAPET, SITE, SLC, parts_of
+from tests.questions.verify.test_sheet import CASES, FACADE, FLOOR, FULL, HAZARD, HEAVY, PARAPET, SITE, SLC, parts_of
 from tests.questions.verify.test_sheet import verified as verified_of
 from tests.questions.verify.test_sheet_structure import OF_STRUCTURE
 
@@ -60,7 +61,7 @@ class Springy(Block):
 
 LARGE = "mechanism: block\nname: large\nwidth: 20\nheight: 160\n"
 STEEL = """  - {name: bars, from: {ground: [-6, 7]}, to: {at: [-0.3, 7]}, spacing: 3, diameter: 0.012, steel: S235,
-     plate: {width: 0.2, height: 0.15}, wall: {thickness: 0.6, compression: 1e6, shear: 5e4}}
+     plate: {width: 0.2, height: 0.15, thickness: 0.02}, wall: {thickness: 0.6, compression: 1e6, shear: 5e4}}
   - {name: rod, from: {ground: [-6, 6]}, to: {at: [-0.3, 6]}, area: 1e-4, yield: 2e8}
 """
 MORE = {
@@ -91,7 +92,7 @@ def steps(language, verified, site):
         for below in each.parts:
             yield from of(below)
 
-    return [row for part in parts_of(verified, site, language) if part.key != "inputs" for row in of(part)]
+    return [row for part in parts_of(verified, site, language, FULL) if part.key != "inputs" for row in of(part)]
 
 
 def outputs(name):
@@ -238,7 +239,8 @@ def test_a_new_limit_state_is_a_rule_and_its_fields(with_one_more, site, languag
     verified = code.verify(block, given)
     side = verified.directions[Direction.POSITIVE]
     assert "SLN" in side.states
-    parts = by_key(parts_of(verified, given, language, build.SHEET))
+    full = SheetOfCode(importlib.import_module("one_more.sheet.steps").PACKAGE, partial(build.context, in_full=True))
+    parts = by_key(parts_of(verified, given, language, full))
     own = {key: items for key, items in parts.items() if "SLC" in key}
     assert "positive-SLC-line" in own and ("positive-nonlinear_SLC-line" in own) == (site != "not given")
     assert {key for key in parts if "SLN" in key} == {key.replace("SLC", "SLN") for key in own}

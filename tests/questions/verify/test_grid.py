@@ -1,7 +1,9 @@
 """The hazard at a site by its coordinates: cells of the reference grid, and the tables in which it comes."""
 
 import gzip
+import hashlib
 import os
+import re
 import sys
 import zipfile
 from functools import cache
@@ -322,6 +324,8 @@ class TestInASiteFile:
         assert "Nodi del reticolo di riferimento" in page and "pesata con l'inverso delle distanze" in page.replace(
             "&#39;", "'"
         )
+        checksum = hashlib.sha256((tmp_path / "grid.csv").read_bytes()).hexdigest()
+        assert re.search(rf"<code>grid</code></th><td>[^<]*grid.csv</td><td>{checksum}</td>", page)
         (tmp_path / "walls.csv").write_text(
             "name,mechanism,width,height\na,block,0.6,8\nb,block,0.7,9\n", encoding="utf-8"
         )

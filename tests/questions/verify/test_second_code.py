@@ -404,6 +404,7 @@ code: UNI-demo
 frequent: 0.8                     # acceleration of frequent earthquakes [m/s2] (> 0)
 rare: 2.0                         # acceleration of rare earthquakes [m/s2] (> 0, <= 50)
 # importance: 1.0                 # importance factor, gamma_I (>= 0.5)
+# language: it                    # language of all answers at this site, en or it
 """
 
 

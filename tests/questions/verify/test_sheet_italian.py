@@ -17,16 +17,19 @@ from rocking_cli.codes.italian.sheet import build
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.documents import sheet_page
+from rocking_cli.errors import InputError
 from rocking_cli.views.sheet.language import texts_of
+from rocking_cli.views.verification import view
+from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
-from tests.questions.verify.test_sheet import ARCH, CASES, FLOOR, SITE, SLC, TIED
+from tests.questions.verify.test_sheet import ARCH, CASES, FLOOR, SITE, SLC, TIED, verified
 
-PACKAGES = "rocking_cli.codes.italian", "rocking_cli.views.sheet"
-FAMILIES = "drawing", "caution", "source", "version", "shape", "point", "reason", "doubt", "figure", "support"
+PACKAGES = "rocking_cli.codes.italian", "rocking_cli.views.sheet", "rocking_cli.questions.survey"
+FAMILIES = "drawing", "caution", "source", "version", "shape", "point", "reason", "doubt", "figure", "support", "shown"
 OF_BOTH = """
-    quadrature coordinate m² ij scoreboard cos sin
+    quadrature coordinate ordinate curve width m² ij scoreboard cos sin
     ab all allegato area base bc cd circolare cli computer data de dm fc ferris file formula in kg km kn lc lin loi mpa
-    ntc per plugin python rad rocking sha slc sld slv software state tan tc tin validation δl δx π² s² t²
+    ii iii iv ntc per plugin python rad rocking sha slc sld slv software state tan tc tin validation δl δx π² s² t²
 """
 """Words of the English texts that Italian has too, symbols, and names."""
 FUNCTION_WORDS = """
@@ -63,7 +66,8 @@ def english_words(packages):
         english, italian = (texts_of(package, key) for key in ("en", "it"))
         texts += english.values()
         texts += [re.sub(rf"^({'|'.join(FAMILIES)}|body_\w+) ", "", key) for key in italian if not key.isidentifier()]
-        pages = (each.read_text(encoding="utf-8") for each in (files(package) / "texts" / "en").iterdir())
+        folder = files(package) / "texts" / "en"
+        pages = (each.read_text(encoding="utf-8") for each in (folder.iterdir() if folder.is_dir() else ()))
         texts += [re.sub(r"\{[{%].*?[%}]\}|<[^>]*>", "", page) for page in pages]
     return (words(re.sub(r"`[^`]*`|\{[^}]*\}", "", " ".join([*texts, FUNCTION_WORDS])))) - words(OF_BOTH)
 
@@ -120,8 +124,13 @@ def text_of(tmp_path, monkeypatch):
     return made
 
 
+SYMBOLS = {"alpha", "lambda", "eta", "kappa", "cr", "xi"}
+
+
 def check(text):
-    assert not {each: re.findall(rf".{{0,30}}{each}.{{0,30}}", text, re.IGNORECASE) for each in words(text) & ENGLISH}
+    assert not {
+        each: re.findall(rf".{{0,30}}{each}.{{0,30}}", text, re.IGNORECASE) for each in words(text) & ENGLISH - SYMBOLS
+    }
     assert len(text) > 5000
     places = r"§\S+|\[C?\d[\d.]*\]|par\. [\d.]+|(rocking-cli|Python|numpy|scipy|matplotlib) [\d.]+\S*"
     numbers = re.sub(places, " ", text)
@@ -232,3 +241,126 @@ def test_each_recognised_text_is_one_that_a_mechanism_writes():
     assert len(keys) > 80
     for key in keys:
         assert not {each for each in words(key.partition(" ")[2]) if len(each) > 3 and each not in known}, key
+
+
+def shown_in(view):
+    """The words of a view, without formulas and clauses."""
+    for part in view.parts:
+        if isinstance(part, str):
+            yield part
+            continue
+        yield part.title
+        kept = [k for k, head in enumerate(part.columns) if head not in ("formula", "clause", "norma")]
+        yield from (text for row in (part.columns, *part.rows) for k, text in enumerate(row) if k in kept)
+
+
+def english_in(texts, *names):
+    """The English words of texts besides the names of the user, each with what stands around it."""
+    text = re.sub(r"`[^`]*`|--all|JSON", " ", " ".join(texts))
+    for name in names:
+        text = re.sub(rf"(?<!\w){re.escape(name)}(?!\w)", " ", text)
+    found = words(text) & ENGLISH - SYMBOLS
+    return {each: re.findall(rf".{{0,30}}\b{each}\b.{{0,30}}", text, re.IGNORECASE) for each in found}
+
+
+PLACE = re.compile(r"§[\w.]+|\[C?[\d.]+\]")
+
+
+@pytest.mark.every(4)
+@pytest.mark.parametrize("in_short", [True, False])
+@pytest.mark.parametrize("name", [*CASES, *ODD])
+def test_the_terminal_is_italian_with_the_same_numbers(name, in_short):
+    structure, site = CASES[name] if name in CASES else (ODD[name], SITES["hazard"])
+    found, _ = verified(structure, site)
+    english, italian = (view(found, "Norcia", language=key, in_short=in_short) for key in ("en", "it"))
+    names = {*names_of(yaml.safe_load(structure)), "Norcia"}
+    assert not english_in(shown_in(italian), *sorted(names, key=len, reverse=True))
+    assert italian.data() == english.data()
+    if not in_short:  # in short, remarks have their own numbers
+        numbers = [sorted(NUMBER.findall(PLACE.sub("", " ".join(shown_in(each))))) for each in (english, italian)]
+        assert sorted(each.replace(",", ".") for each in numbers[1]) == numbers[0] and not any(
+            "." in n for n in numbers[1]
+        )
+
+
+def test_the_terminal_compares_and_shakes_in_italian():
+    facade, site = EXAMPLES / "verify" / "facade.yaml", str(EXAMPLES / "verify" / "site.yaml")
+    tied = EXAMPLES / "verify" / "tied_facade.yaml"
+    for options in ({"strengthened": tied}, {"motions": ["sine:0.09g:0.5s", "ricker:2g:1s"], "polarity": "both"}):
+        for in_short in (True, False):
+            answer = rk.verify(facade, site, language="it", in_short=in_short, **options)
+            assert not english_in(shown_in(answer.view), "facade", "an example site", "roof", "floor", "bar", "sine")
+
+
+def test_every_step_is_shown_in_italian():
+    """With the meanings of steps as on the sheet; their formulas are those of the code."""
+    found, _ = verified(*CASES["laden, on a hazard"])
+    english, italian = (view(found, language=key, every_step=True) for key in ("en", "it"))
+    tables = [part for part in italian.parts if not isinstance(part, str) and "significato" in part.columns]
+    meanings = [row[-1] for each in tables for row in each.rows]
+    assert len(meanings) > 60 and not english_in(meanings, "roof", "vault", "block")
+    assert len(english.parts) == len(italian.parts)
+
+
+def test_the_language_of_a_site_is_that_of_every_answer(tmp_path):
+    site = yaml.safe_load((EXAMPLES / "verify" / "site.yaml").read_text(encoding="utf-8"))
+    facade = EXAMPLES / "verify" / "facade.yaml"
+    wall = {"mechanism": ["block"], "width": [0.6], "height": [8]}
+    assert any("satisfied" in each for each in rk.verify(facade, site).sentences)
+    for place, asked, said in (({"language": "it"}, None, True), ({"language": "it"}, "en", False), ({}, "it", True)):
+        answers = [
+            rk.verify(facade, site | place, language=asked, sheet=tmp_path / "o.html"),
+            rk.survey(wall, site=site | place, language=asked, page=tmp_path / "p.html"),
+            rk.report(facade, verify=site | place, language=asked, out=tmp_path / "r.html"),
+        ]
+        for answer in answers:
+            assert ("soddisfa" in answer.sentences[0]) == said
+        for page in "opr":
+            assert f'lang="{"it" if said else "en"}"' in (tmp_path / f"{page}.html").read_text("utf-8")[:200]
+    with pytest.raises(InputError, match="language"):
+        rk.verify(facade, site, language="de")
+
+
+def test_notes_are_italian(tmp_path):
+    wall = "mechanism: block\nname: muro\nwidth: 0.6\nheight: 8\ndepth: 5\ndensity: 18 kN/m3\n"
+    loads = "loads: [{name: tetto, mass: 12 kN/m, at: [0, 8], floor: borne}]\n"
+    (tmp_path / "s.yaml").write_text(wall + loads)
+    (tmp_path / "site.yaml").write_text(f"language: it\n{SITE}")
+    said = run("verify", tmp_path / "s.yaml", "--site", tmp_path / "site.yaml", "--plot", tmp_path / "p.svg").stderr
+    assert "18 kN/m3 è un peso, assunto come massa: 1835,49 kg/m3 (diviso per 9,80665 m/s2)" in " ".join(said.split())
+    assert not english_in(said.splitlines(), "floor: borne", "p.svg", str(tmp_path))
+
+
+def test_a_survey_and_its_page_are_italian(tmp_path):
+    rows = {
+        "mechanism": ["block", "block", "block", "wall"], "name": ["A 1.5", "B", "C", "D"],
+        "width": [0.6, 0.9, 1.5, None], "height": [8, 6, 4, 3], "thickness": [None, None, None, 0.3],
+        "density": [1800] * 4, "depth": [5, 5, 0.9, 1], "longitude": [13.0, 13.1, 13.2, 13.3], "latitude": [42.0] * 4,
+    }  # fmt: skip
+    site = str(EXAMPLES / "verify" / "site.yaml")
+    for options in ({"site": site}, {"motions": ["sine:0.3g:0.5s"], "neighbours": 20}, {},
+                    {"motions": ["sine:0.3g:0.5s", "sine:2g:1s"]}):  # fmt: skip
+        answer = rk.survey(rows, language="it", page=tmp_path / "p.html", **options)
+        english = rk.survey(rows, language="en", **options)
+        names = (
+            "A 1.5",
+            "block",
+            "wall",
+            "sine",
+            "lambda",
+            "eta",
+            "kappa",
+            "structures",
+            "table",
+            "plane",
+            "survey",
+            "verify",
+            "spanning_wall",
+            "hinge: weakest",
+            "floor",
+            "κ₂",
+        )
+        assert not english_in(shown_in(answer.view), *names) and answer.to_dict() == english.to_dict()
+        assert any("A 1.5" in text for text in shown_in(answer.view))
+        page = (tmp_path / "p.html").read_text(encoding="utf-8")
+        assert not english_in([rest_of(page)], *names)

@@ -88,8 +88,8 @@ class TestUntilWhen:
 
     def test_weight_is_gone_at_the_moment_of_the_record_at_which_the_ground_falls_away(self, FC):
         """v_g'' falls to -2 g in 2 s: nothing holds the block down from 1 s on, whatever FC."""
-        up = rk.GroundMotion("up", 0.01, -2 * G * np.linspace(0.0, 1.0, 201))
-        motion = rk.GroundMotion("falls", 0.01, np.full(201, 0.01 * G), vertical=up)
+        up = rk.GroundMotion("up", 0.01, -2 * G * np.linspace(0.0, 1.0, 201), unit="m/s2")
+        motion = rk.GroundMotion("falls", 0.01, np.full(201, 0.01 * G), vertical=up, unit="m/s2")
         found = dynamic.peaks(WALL, curves(FC), motion, (1, -1))[Direction.POSITIVE]
         assert found.known_to_without == pytest.approx(1.0, rel=1e-9)
         assert found.known_to_with_confidence == pytest.approx(1.0, rel=1e-9)
@@ -105,7 +105,7 @@ class TestUntilWhen:
             return replace(rested, unknown=True, known_to=sample * motion.dt) if sample else rested
 
         monkeypatch.setattr(dynamic, "follow", follows)
-        motion = rk.GroundMotion("push", 0.01, np.array([0.0, 1.0, 0.0]))
+        motion = rk.GroundMotion("push", 0.01, np.array([0.0, 1.0, 0.0]), unit="m/s2")
         found = dynamic.peaks(WALL, curves(FC), motion, (1, -1))[Direction.POSITIVE]
         assert found.known_to_without == pytest.approx(0.9)
         assert found.known_to_with_confidence == pytest.approx(0.9)

@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import Dynamic, ItalianVerification, ItalianVerified
+from rocking_cli.codes.italian.rules import STATES
 from rocking_cli.codes.italian.sheet import dynamic, site, summary
 from rocking_cli.codes.italian.sheet.chain import named
 from rocking_cli.codes.italian.sheet.geometry import Composition
 from rocking_cli.codes.italian.sheet.steps import PACKAGE, DirectionSteps, title
 from rocking_cli.codes.italian.site import ItalianSite, of_structure
 from rocking_cli.codes.italian.site_demand import site_demand
-from rocking_cli.core import Direction
+from rocking_cli.core import Direction, Mechanism
 from rocking_cli.views.sheet.build import SheetOfCode
 from rocking_cli.views.sheet.language import Language
 
@@ -33,44 +34,51 @@ OF_STRUCTURE = {"": "", "existing": ", existing", "strengthened": ", strengthene
 SAME_MULTIPLIER = 1e-6  # relative difference up to which two multipliers agree
 
 
-def context(say: Language, verification: ItalianVerification, site_values: ItalianSite) -> dict[str, Any]:
-    """Return the values for the templates."""
+def context(
+    say: Language, verification: ItalianVerification, site_values: ItalianSite, *, in_full: bool = False
+) -> dict[str, Any]:
+    """Return the values for the templates; the lines are those of the limit state that decides, or of all `in_full`."""
     ground = SiteGround(of_structure(site_values, verification.mechanism))
     strengthened = verification.strengthened
     if strengthened is None:
-        subjects = [_subject(say, verification, site_values)]
+        subjects = [_subject(say, verification, site_values, in_full)]
     else:
         assert isinstance(strengthened, ItalianVerification)  # both are verified by the same code
         subjects = [
-            _subject(say, verification, site_values, "existing"),
-            _subject(say, strengthened, site_values, "strengthened"),
+            _subject(say, verification, site_values, in_full, "existing"),
+            _subject(say, strengthened, site_values, in_full, "strengthened"),
         ]
     return {
         "language": say, "verification": verification, "ground": ground, "site": site, "subjects": subjects,
         "both": None if strengthened is None else summary.both(verification, strengthened),
+        "structures": {each["state"]: each["verification"] for each in subjects},
         "title": partial(title, say), "named": partial(named, say), "figures": SheetFigures(say, ground),
         "is_same": partial(isclose, rel_tol=SAME_MULTIPLIER),
-        "dynamic": dynamic,
+        "dynamic": dynamic, "outcome": partial(summary.outcome, say),
+        "counts": [state for state in STATES if any(state in each["counts"] for each in subjects)], "in_full": in_full,
         "licence": metadata("rocking-cli")["License-Expression"],
     }  # fmt: skip
 
 
-def _subject(say: Language, found: ItalianVerification, site_values: ItalianSite, state: str = "") -> dict[str, Any]:
+def _subject(
+    say: Language, found: ItalianVerification, site_values: ItalianSite, in_full: bool, state: str = ""
+) -> dict[str, Any]:
     """Return the values of a structure, which is in the existing state or strengthened if two are compared.
 
     Both directions are one if they have the same numbers.
     """
     ground = SiteGround(of_structure(site_values, found.mechanism))
     both = say("Both directions") if len(found.distinct) < len(found.directions) else ""
-    of = say(OF_STRUCTURE[state])
+    of, counts = say(OF_STRUCTURE[state]), "" if in_full else found.conclusion.limit_state
     sides = [
-        DirectionSteps(ground, each, f"{both or say(DIRECTION_TITLES[each.direction])}{of}", state)
+        DirectionSteps(ground, each, f"{both or say(DIRECTION_TITLES[each.direction])}{of}", state, counts)
         for each in found.distinct
     ]
     variants = {"as_calculated": found.deciding, **found.variants()}
     return {
         "state": state, "ending": of, "of": f"{state}-" if state else "", "verification": found, "sides": sides,
-        "variants": variants, "failing_without_ties": _failing(variants.get("without_ties")),
+        "counts": [counts] if counts else STATES, "variants": variants,
+        "failing_without_ties": _failing(variants.get("without_ties")),
         "has_seats": any(load.seat for load in found.mechanism.loads or []),
         "structure": Composition(found.mechanism), "body": partial(say.body, found.mechanism.mechanism),
         **summary.context(say, found, sides),
@@ -78,13 +86,12 @@ def _subject(say: Language, found: ItalianVerification, site_values: ItalianSite
 
 
 def _failing(side: ItalianVerified | None) -> dict[str, float]:
-    """Return the zeta_E of each limit state that a direction does not pass."""
+    """Return the zeta_E of each required limit state that a direction does not pass."""
     if side is None:
         return {}
-    zeta = {state: side.zeta_at(state) for state, at in side.states.items() if at.demand is not None}
-    failing = {state: each for state, each in zeta.items() if each is not None and not side.passes(state)}
-    damage = side.methods["SLD"]
-    return failing | ({"SLD": damage.zeta} if damage.zeta is not None and not damage.passed else {})
+    return {
+        state: zeta for state in side.required if (zeta := side.zeta_at(state)) is not None and not side.passes(state)
+    }
 
 
 class SheetFigures(NamedTuple):
@@ -102,6 +109,10 @@ class SheetFigures(NamedTuple):
         heading = self.say("{name}: capacity and demand", name=side.found.chain.mechanism.name)
         sides, demand = {side.where: side.found}, site_demand(self.ground.site)
         return _drawn("figures", "draw_capacity", self.say, sides, heading, demand=demand)
+
+    def front(self, mechanism: Mechanism) -> Callable[[], Figure]:
+        """Return what draws the parts of a structure from the front."""
+        return _drawn("figures", "draw_front", self.say, mechanism.name, Composition(mechanism).strips)
 
     def hazard(self) -> Callable[[], Figure]:
         """Return what draws the hazard of the site."""

@@ -110,7 +110,7 @@ def _x_of_P(position: DisplacedChain, each: Moved) -> float:
 def of_steel(tie: Tie, depth: float | None) -> Iterator[Evaluated]:
     """Yield the steps to the strength of a tie of steel."""
     n, names = tie.number_of_bars(depth), {"tie": tie.name}
-    strength, stress = tie.strength(n), {"f": tie.yield_of_steel / KILO}
+    strength, stress = tie.strength(n), {"f": tie.yield_of_steel / KILO, "gamma": tie.gamma or 1.0}
     limits = {key: force / KILO for key, force in strength.limits.items()}
     if tie.spacing is not None:
         yield F.TIE_NUMBER.line(n, names, depth=depth, spacing=tie.spacing)
@@ -121,9 +121,14 @@ def of_steel(tie: Tie, depth: float | None) -> Iterator[Evaluated]:
     if tie.plate is None or tie.wall is None:
         return
     plate = {"n": n, "b": tie.plate.width, "h": tie.plate.height}
-    yield F.TIE_PUNCHING.line(limits["punching"], names, t=tie.wall.thickness, f=tie.wall.shear / KILO, **plate)
-    yield F.TIE_BEARING.line(limits["bearing"], names, f=tie.wall.compression / KILO, **plate)
-    yield F.TIE.line(strength.force / KILO, names, N=[*limits.values()])
+    wall, masonry = tie.wall, {**plate, "gamma": tie.wall.gamma or 1.0}
+    yield F.TIE_PUNCHING.line(limits["punching"], names, t=wall.thickness, f=wall.shear / KILO, **masonry)
+    yield F.TIE_BEARING.line(limits["bearing"], names, f=wall.compression / KILO, **masonry)
+    if tie.plate.thickness is not None:
+        steel = {**plate, "f": tie.plate.yield_stress / KILO, "gamma": tie.plate.gamma or 1.0}
+        yield F.TIE_BENDING.line(limits["bending"], names, s=tie.plate.thickness, **steel)
+    bends = "; N_[s]" if "bending" in limits else ""
+    yield F.TIE.line(strength.force / KILO, {**names, "bends": bends}, N=[*limits.values()])
 
 
 def named(say: Language, name: str) -> str:

@@ -10,16 +10,19 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 from matplotlib.text import Text
 
+from rocking_cli.codes.italian.capacity import SHARE, ExactCurve, ends
 from rocking_cli.codes.italian.demand import REFERENCE_DAMPING
 from rocking_cli.codes.italian.displaced import DisplacedChain
 from rocking_cli.codes.italian.ground import Hazard, SiteGround
 from rocking_cli.codes.italian.results import ItalianVerified
-from rocking_cli.codes.italian.rules import FIRST_STATE, RULES, STATES
+from rocking_cli.codes.italian.rules import RULES, STATES
 from rocking_cli.codes.italian.sheet.chain import Scale, named
 from rocking_cli.codes.italian.sheet.site import states
 from rocking_cli.core import Length
+from rocking_cli.core.solids import Solid
 from rocking_cli.plotting import dimensions, hung, style
 from rocking_cli.plotting.labels import MARK_COST, Labels
 from rocking_cli.plotting.panels import PANEL_GAP, Page, Panel, lay_out
@@ -37,6 +40,7 @@ CENTRE_SHARE = 1.0  # share of the size of a structure within which a centre of 
 SHORTEST_PERIOD, PERIODS_PER_SPECTRUM = 0.02, 400  # s, and number
 TALLEST_SHARE = 3.0  # of the largest acceleration of a capacity curve, above which a spectrum is cut off
 FORCE_DIGITS = 4
+FRONT_HEIGHT, FRONT_SHARE = 3.0, 0.75  # inches of a front view, and the share of them that its plates take
 OF_HAZARD = ("a_g [g]", "F_0", "T_C* [s]")  # labels of the parameters on rock
 LABEL_BACKGROUND = {**dimensions.TEXT_BACKGROUND, "alpha": 0.8}
 
@@ -81,7 +85,7 @@ def draw_chain(say: Language, side: ItalianVerified) -> Figure:
     around = np.maximum(dimensions.room(rows, low, high), hung.margins(drawing)).tolist()
     title = say("{name}: weights, forces and arms at rest, {way} direction", name=side.chain.mechanism.name,
                 way=say(side.direction.label))  # fmt: skip
-    held = _of_held(say, drawing, position, Scale.of(side.chain))
+    held = _of_held(say, drawing, position, Scale.of(side.chain), len(weights) + 1)
     room = style.page_width() - 2 * PANEL_GAP
     every = (*_of_weights(say, weights, Scale.of(side.chain)), *held.values())
     below = "\n".join(style.folded(each, room, style.TICK, "  ") for each in every)
@@ -99,7 +103,7 @@ def draw_chain(say: Language, side: ItalianVerified) -> Figure:
     hung.draw_hung(axes, drawing, 0.0, panel, labels)
     dimensions.draw_outside(axes, rows, panel, low, high, labels)
     _draw_weights(axes, weights, panel, labels)
-    _name_held(drawing, {name: _name(say, name) for name in held}, panel, labels)
+    _number_held(drawing, [*held], len(weights) + 1, panel, labels)
     for text, y, size in ((title, height - 0.09, style.TITLE), (below, panel.foot, style.TICK)):
         plain_text = text.replace(r"\$", "$")
         page.text(complex(PANEL_GAP, y), plain_text, va="top", fontsize=size, color=style.INK, parse_math=False)
@@ -173,8 +177,10 @@ def _name(say: Language, name: str) -> str:
     return style.plain(style.fitted(named(say, name), hung.MAX_NAME_WIDTH, style.TICK))
 
 
-def _of_held(say: Language, drawing: Picture, position: DisplacedChain, scale: Scale) -> dict[str, str]:
-    """Return name, force and arm of each tie and of each force, by its name; they stand below the drawing."""
+def _of_held(
+    say: Language, drawing: Picture, position: DisplacedChain, scale: Scale, first: int
+) -> dict[str, str]:  # fmt: skip
+    """Return number, name, force and arm of each tie and force, by its name; they stand below the drawing."""
     works = {each.name: each for each in position.held}
     texts: dict[str, str] = {}
     for name in [each.name for each in drawing.loads if each.force] + [each.name for each in drawing.ties]:
@@ -185,21 +191,28 @@ def _of_held(say: Language, drawing: Picture, position: DisplacedChain, scale: S
             for each in of
         ]
         if sizes:
-            texts[name] = f"{_name(say, name)}: {style.plain('; '.join(sizes))}"
+            texts[name] = f"{first + len(texts)} {_name(say, name)}: {style.plain('; '.join(sizes))}"
     return texts
 
 
-def _name_held(drawing: Picture, texts: Mapping[str, str], panel: Panel, labels: Labels) -> None:
-    """Write a name beside each tie, and beside the point of each force."""
+def _number_held(drawing: Picture, names: Sequence[str], first: int, panel: Panel, labels: Labels) -> None:
+    """Write a number beside each tie, and at the tail of the arrow of each force."""
     places, ties, _ = drawing.hung(0.0, hung.SYMBOL_OFFSET / panel.scale)
-    at = {each.name: (place, place) for each, place in zip(drawing.loads, places.tolist(), strict=True) if each.force}
+    pairs = [(each, place) for each, place in zip(drawing.loads, places.tolist(), strict=True) if each.force]
+    at = {each.name: (hung.tail(each.acting(first=True), place, panel.scale),) * 2 for each, place in pairs}
     for tie, pieces in zip(drawing.ties, ties, strict=True):
         at[tie.name] = max(pieces, key=lambda ends: abs(ends[1] - ends[0]))
-    for name, text in texts.items():
+    for text, name in zip(map(str, range(first, first + len(names))), names, strict=True):
         size = style.size_of(text, style.TICK)
         start, end = at[name]
-        spots = labels.around(start, 1j, 0.1, size, turning=0.6) if start == end else labels.along(start, end, size)
-        labels.write(text, spots, fontsize=style.TICK, color=style.TIE["color"], zorder=8)
+        spots = labels.around(start, 1j, 0.02, size, turning=0.6) if start == end else labels.along(start, end, size)
+        labels.write(text, spots, fontsize=style.LABEL, color=style.TIE["color"], zorder=8)
+
+
+def capacity_end(curve: ExactCurve) -> float:
+    """Return the displacement at which the capacity ends at all limit states: d0*, a break or a lost seat [m]."""
+    others = [[d for by, d in ends(curve, rule).items() if by != SHARE] for rule in RULES]
+    return max(min(each, default=curve.d0) for each in others)
 
 
 def _look(state: str) -> dict[str, Any]:
@@ -229,11 +242,12 @@ def draw_capacity(
     figure, panels = style.panels((3.4 if demand is None else 4.2) * len(sides), len(sides))
     every = panels[:, 0]
     for axes, (where, side) in zip(every, sides.items(), strict=True):
-        d, a = side.exact.points()
-        axes.plot(d, a, color=style.INK, linewidth=style.BOLD, label=say("exact curve"))
+        end, (d, a) = capacity_end(side.exact), side.exact.points()
+        there = np.append(d[d < end], end)
+        axes.plot(there, np.interp(there, d, a), color=style.INK, linewidth=style.BOLD, label=say("exact curve"))
         line = {"color": style.MEASURE, "linestyle": "--", "linewidth": style.MEDIUM}
-        axes.plot([0, side.d0], [side.a0, 0], label=say("straight line"), **line)
-        axes.set_xlim(0, 1.03 * max([side.d0, *(each.demand or 0.0 for each in side.states.values())]))
+        axes.plot([0, end], [side.a0, side.a0 * (1 - end / side.d0)], label=say("straight line"), **line)
+        axes.set_xlim(0, 1.03 * max([end, *(each.demand or 0.0 for each in side.states.values())]))
         tallest = max(side.exact.largest, side.a0)
         for rule in RULES:
             name, at, look = rule.state, side.states[rule.state], _look(rule.state)
@@ -253,7 +267,7 @@ def draw_capacity(
             axes.plot(at.demand, steep * at.demand, **{**mark, "fillstyle": "none"}, markersize=8,
                       label=say("demand at {state}", state=name))  # fmt: skip
             tallest = max(tallest, min(TALLEST_SHARE * tallest, spectrum[1].max()), 1.1 * steep * at.demand)
-            if name == FIRST_STATE:
+            if name == side.first:
                 label = say("line of the period T_{state}", state=name)
                 axes.axline((0, 0), slope=steep, color=style.FAINT, linewidth=style.MEDIUM, label=label)
                 style.note(axes, f"T_{name} = {at.T:.4g} s")
@@ -268,6 +282,23 @@ def draw_capacity(
     every[-1].set_xlabel(say(of if demand is None else "displacement d, S_De [m]"), fontsize=style.LABEL)
     if demand is not None:
         style.legend_below(figure, every[0].get_legend_handles_labels()[0], 3)
+    return in_language(say, figure)
+
+
+def draw_front(say: Language, name: str, plates: Sequence[Solid]) -> Figure:
+    """Draw plates from the front: each with its length out of plane, about a common middle."""
+    y = np.array([[f(corner.imag for corner in each.corners) for f in (min, max)] for each in plates])
+    figure, axes = style.one_panel(FRONT_HEIGHT, say("{name}: from the front", name=name))
+    room = FRONT_SHARE * FRONT_HEIGHT / (y.max() - y.min())  # inches per metre
+    for each, (low, high) in zip(plates, y, strict=True):
+        axes.add_patch(Rectangle((-each.depth / 2, low), each.depth, high - low, facecolor=style.SHADE,
+                                 edgecolor=style.INK, linewidth=style.THIN))  # fmt: skip
+        if (high - low) * room > style.size_of("L", style.LABEL).imag:
+            axes.text(0.0, (low + high) / 2, f"{say.number(each.depth, FORCE_DIGITS)} m", ha="center", va="center",
+                      fontsize=style.LABEL, color=style.INK)  # fmt: skip
+    axes.set_aspect("equal")
+    axes.autoscale_view()
+    style.tidy(axes, say("length [m]"), "y [m]")
     return in_language(say, figure)
 
 

@@ -100,6 +100,8 @@ class LoadRow:
         Whether the horizontal part of a force is always against the motion, as that of friction.
     seat : float or None
         Length of the seat of a load [m]; None if it has none.
+    floor : str
+        What the file says of a floor; empty without it.
     """
 
     name: str
@@ -113,6 +115,7 @@ class LoadRow:
     force: complex | None = None
     reverses: bool = False
     seat: float | None = None
+    floor: str = ""
 
 
 @dataclass(frozen=True)
@@ -207,6 +210,13 @@ class Composition:
         return (F.MASS_GIVEN if is_given else F.MASS_OF_MECHANISM).line(body.mass, {"k": k})
 
     @property
+    def strips(self) -> Sequence[Solid]:
+        """The plates of the structure, if they have different lengths out of plane."""
+        plates = [each for parts in self._solids.values() for each in parts if each.corners and each.sign > 0]
+        lengths = sorted(each.depth for each in plates)
+        return plates if plates and not isclose(lengths[0], lengths[-1], rel_tol=SAME_SIZE) else []
+
+    @property
     def polygons(self) -> Sequence[PartRow]:
         """The polygons whose areas are written out, with their corners."""
         rows = []
@@ -271,7 +281,8 @@ class Composition:
             if isinstance(attached, PointMass):
                 name, (body, at) = attached.name, attached.spot
                 values = self._weight(attached.mass) | {"carried": attached.weight, "sideways": attached.horizontal}
-                values["seat"] = next((load.seat for load in mechanism.loads or [] if load.name == name), None)
+                load = next((load for load in mechanism.loads or [] if load.name == name), None)
+                values |= {"seat": load.seat, "floor": load.floor or ""} if load is not None else {}
                 rows.append(LoadRow(name, body or "", at, **values))
             elif isinstance(attached, ConstantForce):
                 name, (body, at) = attached.name, attached.spot

@@ -47,6 +47,7 @@ OF_SITE = {
     "latitude": ("", "deg", "latitude"),
     "grid": ("", "", "reference grid"),
     "T0": ("T_[0]", "s", "given_T0"),
+    "states": ("", "", "limit states to verify"),
     "soil": ("", "", "soil class"),
 }
 OF_FLOOR = {
@@ -88,7 +89,7 @@ def data(say: Language, ground: SiteGround) -> Rows:
         rows += _values(say, at, OF_GROUND, state=state)
     rows += _values(say, site, OF_SITE)
     if ground.on_rock(FIRST_STATE) is not None:
-        rows.append(["", say("topographic class"), site.topography, ""])
+        rows.append([Markup("`topography`"), say("topographic class"), site.topography, ""])
     return [*rows, *_values(say, site.floor, OF_FLOOR), *modes]
 
 
@@ -100,9 +101,13 @@ def _values(say: Language, part: object, fields: Mapping[str, tuple[str, str, st
     """Return the table rows of those fields that the site file gives."""
     values = {key: getattr(part, key, None) for key in fields}
     return [
-        [Markup(symbol), say(meaning, **names), value if isinstance(value, str) else float(value), say(unit)]
+        [Markup(symbol or f"`{key.rstrip('_')}`"), Markup(say(meaning, **names)), _shown(value), say(unit)]
         for key, (symbol, unit, meaning) in fields.items() if (value := values[key]) is not None
     ]  # fmt: skip
+
+
+def _shown(value: Any) -> str | float:
+    return ", ".join(value) if isinstance(value, list) else value if isinstance(value, str) else float(value)
 
 
 def of_state(ground: SiteGround, state: str) -> list[Evaluated]:

@@ -15,7 +15,16 @@ from rocking_cli.codes.italian.demand import REFERENCE_DAMPING, DemandSpectrum, 
 from rocking_cli.codes.italian.displaced import DisplacedChain, pulls
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified, LimitState
-from rocking_cli.codes.italian.rules import DAMAGE, FIRST_STATE, LINEAR, NONLINEAR, OF_STATE, RULES, Rule
+from rocking_cli.codes.italian.rules import (
+    DAMAGE,
+    LINEAR,
+    NONLINEAR,
+    OF_STATE,
+    RULES,
+    STATE_OF_METHOD,
+    STATES,
+    Rule,
+)
 from rocking_cli.codes.italian.sheet import chain as chains
 from rocking_cli.codes.italian.sheet import site, spectra
 from rocking_cli.codes.italian.sheet.centres import ChainCentres
@@ -33,7 +42,6 @@ PACKAGE = "rocking_cli.codes.italian"
 ENGLISH = Language("en", texts_of(PACKAGE, "en"))
 TERMINAL = replace(ENGLISH, is_plain=True)
 OF_END = {BREAK: F.BROKEN, SEAT: F.SEAT}
-STATE_OF_METHOD = {key: state for state, pair in OF_STATE.items() for key in pair} | {LINEAR: FIRST_STATE, "SLD": "SLD"}
 RULE_OF_METHOD = {OF_STATE[rule.state][1]: rule for rule in RULES}
 TITLES = {
     DAMAGE: "Onset of rocking at {state}", "SLD": "Onset of rocking at {state}",
@@ -154,12 +162,15 @@ class DirectionSteps:
         Name of the direction, or of both, in the language of the sheet.
     state : str
         "existing" or "strengthened" if two structures are compared; otherwise empty.
+    counts : str
+        The limit state whose lines on the exact curve are shown; if empty, all are, on the straight line too.
     """
 
     ground: SiteGround
     found: ItalianVerified
     where: str = ""
     state: str = ""
+    counts: str = ""
 
     @property
     def key(self) -> str:
@@ -248,12 +259,17 @@ class DirectionSteps:
     @property
     def states(self) -> list[StateSteps]:
         """The lines to each limit state."""
-        return [self._state(rule) for rule in RULES]
+        return [self._state(rule) for rule in RULES if self.counts in ("", rule.state)]
 
     @property
     def methods(self) -> list[MethodSteps]:
         """The lines of each method whose limit state the site gives, on the curve and on the straight line."""
-        return list(self._methods())
+        if not self.counts:
+            return list(self._methods())
+        return [
+            each for each in self._methods()
+            if STATE_OF_METHOD[each.key] == self.counts and each.key != LINEAR and not each.on_line
+        ]  # fmt: skip
 
     def _accelerated(self, alpha: float) -> dict[str, float]:
         """Return values for the slots of the formula of a*, for a multiplier."""
@@ -303,8 +319,9 @@ class DirectionSteps:
         here = self.curve.acceleration_at(phi)
         lines.append(F.A_THERE.line(here, names, **self._accelerated(position.alpha)))
         lines += self._period_and_demand(rule, at, s, here)
+        on_line = [] if self.counts else list(self._on_line(rule))
         to_position = [*self._ends(rule), self._allowed(rule, at), F.PHI.line(phi, names)]
-        return StateSteps(s, position, to_position, [*self._seat_at(phi, at, s), *lines], list(self._on_line(rule)))
+        return StateSteps(s, position, to_position, [*self._seat_at(phi, at, s), *lines], on_line)
 
     def _ends(self, rule: Rule) -> Iterator[Evaluated]:
         """Yield the lines to what may end the displacement capacity besides a share of d0*: a break, or a lost seat."""
@@ -343,9 +360,7 @@ class DirectionSteps:
         if spectrum is None or at.demand is None or at.ratio is None:
             return
         yield from spectra.displacement(spectrum, spectra.At(f"T_[{name}]", at.T, rule.damping))
-        still = self.found.passes(s) and not at.passes and LINE_SUBSCRIPT not in name
-        meaning = "passes" if at.passes else "passes_still" if still else "fails"
-        yield replace(F.RHO, meaning=meaning).line(at.ratio, names, d=at.d, demand=at.demand)
+        yield F.RHO.line(at.ratio, names, d=at.d, demand=at.demand)
 
     def _on_line(self, rule: Rule) -> Iterator[Evaluated]:
         """Yield the steps of a limit state on the straight line."""
@@ -489,7 +504,7 @@ def workings_of_direction(ground: SiteGround, found: ItalianVerified) -> list[Wo
 
 def workings_of_site(ground: SiteGround) -> list[Working]:
     """Return the values of the site file and the steps to the ground at each limit state, in plain characters."""
-    parts = template.parts(ENGLISH, PACKAGE, "site", {"ground": ground, "site": site})
+    parts = template.parts(ENGLISH, PACKAGE, "site", {"ground": ground, "site": site, "counts": STATES})
     rows = [ENGLISH.written(each).in_plain("Site") for each in site.given(ground)]
     for state, part in zip(site.states(ground), parts, strict=True):
         rows += [replace(each, state=state) for each in workings([part])]

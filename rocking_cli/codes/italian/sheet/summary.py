@@ -27,7 +27,7 @@ METHOD_NAMES = {
     HISTORIES: "time histories",
 }  # fmt: skip
 """Names of the methods within a sentence, by their kind."""
-CAUTIONS = ("stretched", "wide", "same_mode", "letter")
+CAUTIONS = ("wide", "same_mode", "letter", "onset_alone", "unsupported", "confidence", "long")
 """Keys of the remarks that stand on the first page."""
 
 
@@ -44,10 +44,11 @@ def context(say: Language, verification: ItalianVerification, sides: Sequence[Di
     particular = say.recognised("caution", mechanism.own_caution())
     of_mechanism = [say("Caution: {text}", text=each) for each in (general, particular) if each]
     notes += [say(each) for each in remarks if each not in cautions]
-    sentences = [Markup(each) for side in sides for each in verdicts(say, side.where, side.found)]
+    sentences = [Markup(each) for side in sides for each in verdicts(say, side.where, verification, side.found)]
     return {
-        "answer": " ".join(of_verification(verification, say, say(METHOD_NAMES[end.method.split("_")[0]]))),
+        "answer": Markup(" ".join(of_verification(verification, say, say(METHOD_NAMES[end.method.split("_")[0]])))),
         "fails": end.concluded is not Concluded.SATISFIED,
+        "holds": end.concluded in (Concluded.SATISFIED, Concluded.SATISFIED_IF),
         "compared": _compared(verification) if len(sides) > 1 else None,
         "cautions": [Markup(each) for each in dict.fromkeys([*map(say, cautions), *of_mechanism])],
         "verdicts": sentences,
@@ -71,29 +72,34 @@ def both(existing: ItalianVerification, strengthened: ItalianVerification) -> di
 
 def comparison(say: Language, existing: ItalianVerification, strengthened: ItalianVerification) -> list[Table]:
     """Return a table of the existing structure and the strengthened one, each in the direction that decides."""
-    return tables(say, PACKAGE, "comparison", {"columns": both(existing, strengthened)})
+    structures = {"existing": existing, "strengthened": strengthened}
+    values = {"columns": both(existing, strengthened), "structures": structures, "outcome": partial(outcome, say)}
+    return tables(say, PACKAGE, "comparison", values)
 
 
-def verdicts(say: Language, where: str, each: ItalianVerified) -> Iterator[str]:
-    """Yield whether a direction passes at each limit state that the site gives, by what margin, and what governs."""
-    for state, at in each.states.items():
-        (damage, nonlinear), by = OF_STATE[state], each.governing[state]
-        counts = each.methods[by]
-        if at.demand is None or counts.a_g is None:
-            if state == each.first:
+def outcome(say: Language, found: ItalianVerification, each: ItalianVerified, state: str) -> str:
+    """Return what is concluded on a direction at a limit state, in words."""
+    return say((found.concluded(each, state) if state in each.required else "not required").replace("_", " "))
+
+
+def verdicts(say: Language, where: str, found: ItalianVerification, each: ItalianVerified) -> Iterator[str]:
+    """Yield what is concluded at each limit state that is required or given, by what margin, and what governs."""
+    for state in (*OF_STATE, "SLD"):
+        by = each.governing[state]
+        counts, at = each.methods[by], each.states.get(state)
+        if counts.zeta is None:
+            if state in each.required:
                 yield say("{where}: the site does not give {state}.", where=where, state=state)
             continue
-        values = {"a_g": counts.a_g, "asked": counts.demand, "other": each.methods[nonlinear].a_g or 0.0}
-        values |= {"d": at.d, "demand": at.demand, "ratio": at.ratio, "T": at.T}
-        why = Remark("why_damage" if by == damage else "why_nonlinear", values)
-        key = "verdict_passes" if each.passes(state) else "verdict_fails"
-        by = say("{where}, static methods", where=where) if state in each.dynamic else where
-        yield say(key, where=by, state=state, zeta=counts.zeta, why=why)
-    start = each.methods["SLD"]
-    if start.zeta is not None:
-        key = "verdict_passes" if start.passed else "verdict_fails"
-        why = Remark.of("why_SLD", a_g=start.a_g, asked=start.demand)
-        yield say(key, where=where, state="SLD", zeta=start.zeta, why=why)
+        values: dict[str, Any] = {"a_g": counts.a_g, "asked": counts.demand}
+        if at is not None:
+            other = each.methods[OF_STATE[state][1]].a_g or 0.0
+            values |= {"d": at.d, "demand": at.demand, "ratio": at.ratio, "T": at.T, "other": other}
+        why = Remark(f"why_{by.split('_')[0]}", values)
+        beside = state in each.dynamic and any(one.state == state and one.method == by for one in each.checks)
+        ends = say("{where}, static methods", where=where) if beside else where
+        key = f"verdict_{found.concluded(each, state) if state in each.required else 'not_required'}"
+        yield say(key, where=ends, state=state, zeta=counts.zeta, why=why)
 
 
 def methods(say: Language, where: str, each: ItalianVerified) -> list[Table]:

@@ -1,0 +1,328 @@
+"""What remarks do to a conclusion: each has a decision, no headline is without what limits it, and it can be mended."""
+
+import re
+from inspect import getsource
+
+import numpy as np
+import pytest
+import yaml
+
+import rocking_cli as rk
+from rocking_cli.codes.italian import remarks
+from rocking_cli.codes.italian.remarks import EFFECTS
+from rocking_cli.core.registry import Registry
+from rocking_cli.core.structure_file import parse_structure
+from rocking_cli.errors import InputError
+from rocking_cli.studies.conclusion import Concluded, Effect
+from rocking_cli.views.conclusion import limit_in_words, of_verification
+from rocking_cli.views.sheet.language import Language
+from tests.cli.test_cli import run, run_json
+from tests.conftest import EXAMPLES
+
+G = 9.80665
+NOTHING = {
+    # what was taken from the files, and how
+    "by_grid", "on_node", "between_nodes", "short_life", "rows", "row", "without_state", "bound", "at_rest", "missing",
+    "states_left_out", "same_mode_further",
+    # conservative, or our choice where the code is silent, of no effect on what decides
+    "no_soil", "floor", "linear_SLV", "line", "elastic", "ties", "control", "control_a_g", "control_same",
+    # the capacity ends there already
+    "seat", "torn", "ends",
+    # numbers beside `unsupported`, `onset_alone` and `wide`
+    "follows", "tie_ends", "stronger_without", "let_go", "plates_bend",
+    # by which rule limit states and zeta_E were chosen
+    "rule_states", "rule_IV", "rule_IV_without_SLD", "rule_SLD", "rule_before", "rule_unknown", "no_class",
+    "IV", "IV_without_SLD",
+    # the verdict is on this mechanism alone
+    "bends",
+    # why methods differ
+    "linear_same", "linear_less", "linear_more", "straight",
+    # parts of sentences
+    "above", "below", "more", "less", "seat_of", "alpha0_same", "alpha0_by_letter",
+}  # fmt: skip
+SITE = {"FC": 1.35, "soil": "C", "ag": 0.21, "F0": 2.42, "TC_star": 0.31}
+WALL = {"mechanism": "block", "name": "wall", "width": 0.6, "height": 8.0, "depth": 5.0, "density": 1800.0}
+WALL |= {"one_sided": "positive"}
+ROOF = {"name": "roof", "mass": 6000.0, "at": [0.0, 8.0], "floor": "borne", "seat": 0.3}
+BAR = {"name": "bar", "from": {"ground": [-5.0, 7.5]}, "to": {"at": [-0.3, 7.5]}, "bars": 1, "diameter": 0.024}
+BAR |= {"steel": "S235"}
+FORCE = {"name": "bar", "force": [-1.1e5, 0.0], "at": [-0.3, 7.5]}
+SHORT = {**WALL, "height": 2.2, "width": 0.5}
+
+
+def of(structure):
+    return parse_structure(yaml.safe_dump(structure), "s.yaml", "test", Registry())
+
+
+def verified(structure, **site):
+    return rk.verify(of(structure), {**SITE, **site})
+
+
+def keys(answer):
+    return [each.key for each in answer.conclusion.limits]
+
+
+def test_every_remark_has_a_decision():
+    """Keys in the code that makes remarks; families are written out."""
+    made = set(re.findall(r'Remark(?:\.of)?\(\s*"(\w+)"', getsource(remarks)))
+    made |= {"at_rest", "unchecked"} | set(re.findall(r'key = "(\w+)" if', getsource(remarks)))
+    made |= set(re.findall(r'" if [^"\n]* else "(\w+)"', getsource(remarks)))
+    families = {"torn", "strength", "strength_alone", "bearing", "SLD", "SLV"}
+    assert made - families <= EFFECTS.keys() | NOTHING and not EFFECTS.keys() & NOTHING
+    known = rk_texts("en")
+    assert {f"end_{key}" for key in EFFECTS} <= known.keys() and known.keys() - rk_texts("it").keys() == set()
+
+
+def rk_texts(language):
+    return Language(language).texts
+
+
+class TestKinds:
+    @pytest.mark.parametrize("mend", [{"crushing": {"strength": 2e6}}, {"FC_without_strength": True}])
+    def test_FC_without_a_strength_is_that_of_LC1(self, mend):
+        """Hand: a0* = b/h g/FC."""
+        alpha = 0.5 / 2.2
+        found = verified(SHORT, FC=1.0, ag=0.19)
+        assert found.directions[rk.Direction.POSITIVE].a0 == pytest.approx(alpha * G / 1.35, rel=1e-9)
+        assert keys(found) == ["confidence"] and "FC = 1.35 is used instead of 1" in found.sentences[0]
+        of_structure = {key: each for key, each in mend.items() if key == "crushing"}
+        of_site = {key: each for key, each in mend.items() if key != "crushing"}
+        mended = verified({**SHORT, **of_structure}, FC=1.0, ag=0.19, **of_site)
+        assert keys(mended) == [] and "FC" not in mended.sentences[0]
+        assert found.ratio < 1 < mended.ratio or of_structure
+        assert mended.conclusion.concluded is (Concluded.SATISFIED if of_site else mended.conclusion.concluded)
+
+    def test_the_letter_of_the_code_decides_on_weights_left_out(self):
+        """Hand: half of a sliding floor is carried; by the letter it moves sideways too."""
+        m, W = 6000.0, 0.6 * 8.0 * 5.0 * 1800.0
+        roof = {**ROOF, "floor": "sliding"}
+        found = verified({**WALL, "loads": [roof]})
+        side = found.directions[rk.Direction.POSITIVE]
+        lifted, carried = (W + m / 2) * 0.3, m / 2
+        assert side.chain.alpha0 == pytest.approx(lifted / (4 * W + 8 * carried), rel=1e-9)
+        assert keys(found) == ["letter"]
+        (limit,) = found.conclusion.limits
+        assert limit.values["own"] == pytest.approx(lifted / (4 * W), rel=1e-9)
+        ours = found.result.variants()["our_reading"]
+        assert limit.values["ratio"] == pytest.approx(ours.ratio, rel=1e-9)
+        assert f"capacity over demand would be {ours.ratio:.3g}" in found.sentences[0]
+        mended = verified({**WALL, "loads": [{**roof, "floor": "borne"}]})
+        assert keys(mended) == [] and "By the letter" not in " ".join(mended.sentences)
+
+    def test_a_long_period_is_not_decided_without_records_or_an_own_spectrum(self):
+        tall = {**WALL, "height": 16.0, "rebound": 0.4}
+        found = verified(tall, ag=0.12)
+        T = found.directions[rk.Direction.POSITIVE].states["SLV"].T
+        assert T > 4 and found.ratio > 1 and found.conclusion.concluded is Concluded.NOT_DECIDED
+        assert f"not decided: the period of {T:.3g} s is above 4 s" in found.sentences[0]
+        assert verified(tall).conclusion.concluded is Concluded.NOT_DECIDED and verified(tall).ratio < 1
+        own = {"FC": 1.35, "spectrum": [[0.0, 0.15], [0.5, 0.4], [1.0, 0.1], [2.0, 0.02], [8.0, 0.002]]}
+        assert rk.verify(of(tall), own).conclusion.concluded is Concluded.SATISFIED
+        weak = [f"sine:0.0{k}g:0.5s" for k in range(1, 8)]
+        by_records = rk.verify(of(tall), {**SITE, "ag": 0.12}, motions=weak).conclusion
+        assert by_records.concluded is Concluded.SATISFIED
+        assert (by_records.method, len(by_records.motions)) == ("histories", 7)
+        few = rk.verify(of(tall), {**SITE, "ag": 0.12}, motions=weak[:3]).conclusion
+        assert few.concluded is Concluded.NOT_DECIDED
+
+    def test_a_displacement_that_relies_on_a_force_against_it_does_not_count(self):
+        """The onset of rocking counts where it passes; if it fails, nothing is decided."""
+        wall = {**WALL, "loads": [ROOF, FORCE]}
+        for ag, concluded in ((0.12, None), (0.25, Concluded.NOT_DECIDED), (2.0, Concluded.NOT_SATISFIED)):
+            found = verified(wall, ag=ag, unusual=["ag"])
+            side, end = found.directions[rk.Direction.POSITIVE], found.conclusion
+            onset, reaches = side.methods["damage"], side.states["SLV"].ratio >= 1
+            assert end.ratio == pytest.approx(onset.zeta) and end.method == "damage"
+            assert end.concluded is concluded or (concluded is None and onset.passed)
+            assert ("unsupported" in keys(found)) == (reaches and not onset.passed)
+            assert ("onset_alone" in keys(found)) == (onset.passed or not reaches)
+
+    def test_a_load_without_a_seat_is_named_with_the_length_that_it_needs(self):
+        wall = {**WALL, "loads": [{key: each for key, each in ROOF.items() if key != "seat"}]}
+        found = verified(wall, ag=0.1)
+        side = found.directions[rk.Direction.POSITIVE]
+        phi = side.exact.rotation(side.states["SLV"].d)
+        moved = float(8 * np.sin(phi) + 0.3 * (1 - np.cos(phi)))
+        assert found.conclusion.concluded is Concluded.SATISFIED_IF and keys(found) == ["seats"]
+        assert f"(roof over {moved:.3g} m)" in found.sentences[0]
+        mended = verified({**wall, "loads": [{**ROOF, "seat": 1.001 * moved}]}, ag=0.1)
+        assert mended.conclusion.concluded is Concluded.SATISFIED and mended.ratio == pytest.approx(
+            found.ratio, rel=1e-9
+        )
+        assert mended.sentences[0].partition("The verification is ")[2].startswith("satisfied.")
+        shorter = verified({**wall, "loads": [{**ROOF, "seat": 0.9 * moved}]}, ag=0.1)
+        assert shorter.ratio < found.ratio
+
+    def test_a_narrow_depth_and_a_hinge_at_mid_height_are_conditions(self):
+        block = {"mechanism": "block", "name": "b", "width": 0.5, "height": 1.5, "depth": 0.4, "density": 1800.0}
+        block["unusual"] = ["width"]
+        found = verified(block, ag=0.1)
+        assert found.conclusion.concluded is Concluded.SATISFIED_IF and keys(found) == ["structure"]
+        assert "(Its depth, 0.4 m, is less than its width" in found.sentences[0]
+        assert verified({**block, "plane": "width"}, ag=0.1).conclusion.concluded is Concluded.SATISFIED
+        wall = {"mechanism": "wall", "name": "w", "thickness": 0.3, "height": 3.0, "density": 1800.0, "depth": 1.0}
+        wall["unusual"] = ["floor"]
+        assert keys(verified(wall, ag=0.05)) == ["mid_height"]
+        better = {**wall, "mechanism": "spanning_wall", "hinge": "weakest", "overburden": 3e4, "friction": 0.8}
+        assert verified(better, ag=0.05).conclusion.concluded is Concluded.SATISFIED
+
+    def test_a_floor_with_one_mode(self):
+        floor = {"z": 3.0, "H": 9.0, "T1": 0.4, "xi1": 0.1, "n": 3}
+        found = verified(
+            SHORT, ag=0.03, SLD={"ag": 0.02, "F0": 2.4, "TC_star": 0.3}, floor=floor, states=["SLV", "SLD"]
+        )
+        assert {"one_mode", "same_mode"} <= set(keys(found))
+        own = {**floor, "SLD": {"T1": 0.3, "xi1": 0.05}}
+        assert "same_mode" not in keys(verified(SHORT, ag=0.03, floor=own))
+
+
+def structures():
+    for folder in ("", "verify", "walls", "masonry", "linkages"):
+        for file in sorted((EXAMPLES / folder).glob("*.yaml")):
+            if "\nmechanism:" in file.read_text("utf-8") or file.read_text("utf-8").startswith("mechanism:"):
+                yield pytest.param(file, id=f"{folder}-{file.stem}")
+
+
+@pytest.mark.every(4)
+@pytest.mark.parametrize("file", [*structures()])
+@pytest.mark.parametrize("site", ["site", "ground"])
+def test_no_headline_of_an_example_is_without_what_limits_it(file, site):
+    """By the remarks themselves, in both languages; JSON has the same."""
+    answer = rk.verify(file, EXAMPLES / "verify" / f"{site}.yaml")
+    found, end = answer.result, answer.conclusion
+    effects = set()
+    for side in found.directions.values():
+        for check in side.checks:
+            every = [each for each in (*side.remarks, *found.remarks) if not isinstance(each, str)]
+            effects |= {EFFECTS[each.key] for each in every if each.key in EFFECTS
+                        and (each.states is None or check.state in each.states)}  # fmt: skip
+    if end.concluded is Concluded.SATISFIED:
+        assert effects <= {Effect.REPLACES}
+    if not {Effect.CONDITION, Effect.UNDECIDED} & effects:
+        assert end.concluded not in (Concluded.SATISFIED_IF, Concluded.NOT_DECIDED)
+    for say in (Language("en", is_plain=True), Language("it")):
+        said = " ".join(of_verification(found, say))
+        assert all(limit_in_words(each, say) in said for each in end.limits)
+    data = answer.to_dict()["conclusion"]["limits"]
+    assert [(each["key"], each["effect"]) for each in data] == [(each.key, each.effect.value) for each in end.limits]
+    assert all(each["text"] in answer.sentences[0] or each["text"] in " ".join(answer.sentences[:2]) for each in data)
+
+
+def test_it_stands_on_every_surface(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    wall = {**WALL, "rebound": 0.4, "loads": [{key: each for key, each in ROOF.items() if key != "seat"}]}
+    (tmp_path / "wall.yaml").write_text(yaml.safe_dump(wall), "utf-8")
+    (tmp_path / "site.yaml").write_text(yaml.safe_dump({**SITE, "ag": 0.1}), "utf-8")
+    (tmp_path / "rows.csv").write_text("file,name\nwall.yaml,one\n", "utf-8")
+    (limit,) = run_json("verify", "wall.yaml", "--site", "site.yaml")["conclusion"]["limits"]
+    assert limit["effect"] == "condition" and "roof over" in limit["text"]
+    first = run("survey", "rows.csv", "--site", "site.yaml").stdout
+    assert first.startswith("0 of 1 structure satisfy the verification; 1 only on conditions.")
+    (row,) = run_json("survey", "rows.csv", "--site", "site.yaml")["rows"]
+    assert row["concluded"] == "satisfied_only_if" and limit["text"] in row["caution"]
+    found = rk.design("wall.yaml", "width=0.4m:0.8m", "ratio >= 1", site="site.yaml", points=5)
+    assert found.conclusion.concluded is Concluded.SATISFIED_IF
+    assert "this holds only if each load without a `seat`" in found.sentences[0]
+    run("verify", "wall.yaml", "--site", "site.yaml", "--sheet", "o.html", "--language", "it")
+    page = (tmp_path / "o.html").read_text("utf-8")
+    assert "La verifica è soddisfatta soltanto se ogni carico privo di" in re.sub(r"<[^>]*>", "", page)
+
+
+def test_a_design_does_not_call_an_undecided_ratio_reached():
+    """Up to a height the wall passes by displacement; where its period is long, nothing is decided."""
+    found = rk.design(of({**WALL, "height": 16.0}), "width=0.4m:1m", "ratio >= 1", site={**SITE, "ag": 0.12}, points=5)
+    assert found.holds and found.conclusion.concluded is Concluded.NOT_DECIDED
+    assert "this is not decided: the period" in found.sentences[0]
+
+
+# The verdict by another program, from printed numbers alone
+
+
+def by_hand(data, structure):
+    """What is concluded, from the numbers and conditions of JSON and the structure file."""
+    words = []
+    for side in data["directions"].values():
+        for state, at in side["states"].items():
+            if state not in side["required"]:
+                continue
+            onset = side["zeta"]["damage" if state == "SLV" else f"damage_{state}"]
+            by_displacement = side["zeta"]["nonlinear" if state == "SLV" else f"nonlinear_{state}"]
+            starts, reaches = onset < 1 - 1e-12, at["d"] / at["demand"] >= 1 - 1e-12
+            moves = by_displacement >= onset
+            far = False
+            for tie in side.get("ties", {}).values():
+                strain, longer = tie.get(f"strain_{state}"), tie[f"elongation_{state}"]
+                far = far or (longer > 1e-6 if strain is None else strain > 0.02 * (1 + 1e-9))
+            if moves and far:
+                words.append("ok" if not starts else "open" if reaches else "fails")
+            elif moves and at["T"] > 4:
+                words.append("open")
+            else:
+                words.append("ok" if not starts or (moves and reaches) else "fails")
+        if "SLD" in side["required"]:
+            words.append("ok" if side["zeta"]["SLD"] >= 1 - 1e-12 else "fails")
+    conditional = any(each["effect"] == "condition" for each in data["conclusion"]["limits"])
+    if "fails" in words:
+        return "not_satisfied"
+    if "open" in words:
+        return "not_decided"
+    return "satisfied_only_if" if conditional else "satisfied"
+
+
+def random_case(random):
+    h = random.uniform(2, 18)
+    wall = {**WALL, "height": h, "width": random.uniform(0.3, 0.9), "depth": 5.0}
+    if random.random() < 0.4:
+        del wall["one_sided"]
+    loads = []
+    if random.random() < 0.6:
+        loads.append({"name": "roof", "mass": random.uniform(500, 9000), "at": [0.0, h]})
+        if kind := random.choice(["borne", "sliding", "dragged", ""]):
+            loads[0]["floor"] = str(kind)
+        if random.random() < 0.7:
+            loads[0]["seat"] = random.uniform(0.05, 0.4)
+    if "one_sided" in wall and random.random() < 0.6:
+        x, y = -wall["width"] / 2, 0.9 * h
+        if random.random() < 0.3:
+            loads.append({"name": "bar", "force": [-random.uniform(5e3, 8e4), 0.0], "at": [x, y]})
+        else:
+            steel = {"bars": 1, "diameter": random.uniform(0.008, 0.02), "steel": "S235"}
+            held = steel if random.random() < 0.6 else {"stiffness": 0.0, "prestress": random.uniform(5e3, 8e4)}
+            wall["ties"] = [
+                {"name": "bar", "from": {"ground": [x - random.uniform(1, 60), y]}, "to": {"at": [x, y]}, **held}
+            ]
+    if loads:
+        wall["loads"] = loads
+    site = {**SITE, "ag": random.uniform(0.02, 0.3), "FC": float(random.choice([1.0, 1.2, 1.35]))}
+    if random.random() < 0.5:
+        site["SLC"] = {"ag": 1.3 * site["ag"], "F0": 2.45, "TC_star": 0.33}
+    if random.random() < 0.5:
+        site["SLD"] = {"ag": 0.3 * site["ag"], "F0": 2.4, "TC_star": 0.28}
+    if random.random() < 0.5:
+        site["states"] = [state for state in ("SLV", "SLC", "SLD") if state == "SLV" or state in site]
+    return wall, site
+
+
+@pytest.mark.every(10)
+@pytest.mark.parametrize("part", range(10))
+def test_the_verdict_of_another_program_from_the_printed_numbers(part):
+    random, seen = np.random.default_rng(7300 + part), []
+    while len(seen) < 20:
+        wall, site = random_case(random)
+        try:
+            data = rk.verify(of(wall), site).to_dict()
+        except InputError:  # held at any displacement
+            continue
+        seen.append(data["conclusion"]["concluded"])
+        assert seen[-1] == by_hand(data, wall), (wall, site)
+        for side in data["directions"].values():  # FC as it counts
+            assert side["a0_star"] == pytest.approx(side["alpha0"] * G / (side["e_star"] * 1.35), rel=1e-9)
+        bare = any("seat" not in load and "force" not in load for load in wall.get("loads", ()))
+        moves = any(
+            at["governs"] and at["governs"].startswith("nonlinear")
+            for side in data["directions"].values() for at in side["states"].values()
+        )  # fmt: skip
+        limits = {each["key"] for each in data["conclusion"]["limits"]}
+        if seen[-1] in ("satisfied", "satisfied_only_if"):
+            assert ("seats" in limits) == (bare and moves)
+    assert len(set(seen)) >= 3
