@@ -196,7 +196,7 @@ def respond_many(
     >>> from rocking_cli import GroundMotion, Registry
     >>> from rocking_cli.dynamics.batch import Runs, respond_many
     >>> from rocking_cli.structure import build_models
-    >>> wave = GroundMotion("sine", 0.01, 6 * np.sin(2 * np.pi * np.arange(101) / 100))
+    >>> wave = GroundMotion("sine", 0.01, 6 * np.sin(2 * np.pi * np.arange(101) / 100), unit="m/s2")
     >>> models = build_models(Registry()["block"](width=0.7, height=2.8), ("nonlinear",))
     >>> [float(x) for x in respond_many(models, [wave], Runs.every(1, 1, scales=(0.3, 0.5))).peak_ratio.round(4)]
     [0.0, 0.2522]

@@ -91,9 +91,11 @@ class History(Outcome[bool, int, float]):
     unmeasured : bool
         Whether it is unknown from there on because the restitution is not known.
     slid : Slid, optional
-        The slip of a body that never rocks under the motion; None for others.
+        The slip of a body that never rocks under the motion, or of the block that slides farthest; None for others.
     blocks : BlockPeaks, optional
         What free blocks do; None for one degree of freedom.
+    witness : bool
+        Whether free blocks can simulate the structure, so that they tell what follows where it is unknown.
     """
 
     model: ModelName
@@ -112,6 +114,7 @@ class History(Outcome[bool, int, float]):
     unmeasured: bool = False
     slid: Slid | None = None
     blocks: BlockPeaks | None = None
+    witness: bool = False
 
     @property
     def rotates(self) -> bool:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rocking_cli.core.contacts import Contact
+from rocking_cli.core.contacts import MASONRY_FRICTION, Contact
 from rocking_cli.core.equivalence import EQUAL_DIRECTIONS
 from rocking_cli.core.hung.attached import PointMass
 from rocking_cli.core.hung.element import ConstantForce
@@ -24,6 +24,8 @@ from rocking_cli.core.released import ONE, PUSH, Pieces, Released, Undetermined,
 RELATIVE_TOLERANCE = 1e-6  # relative difference of equal points (over the structure's size) and equal accelerations
 MAX_ACCELERATION_G = 30.0  # stronger ground accelerations are not analysed
 ZERO_MISSING_FORCE = 1e-9  # missing force over the weight that counts as zero, as rounding
+MAX_FRICTION = 10.0  # largest coefficient of friction of a field
+FRICTION_ACCURACY = 1e-4  # relative error of the friction that is needed
 FEET_PLACE = "the ground and the feet"
 
 
@@ -214,8 +216,10 @@ def _first(
     )
 
 
-def _bears_at_uplift(mechanism: Mechanism, direction: Direction, uplift: float) -> bool:
+def _bears_at_uplift(mechanism: Mechanism, direction: Direction, uplift: float, friction: float | None = None) -> bool:
     """Return whether all joints bear at uplift in the forces of rocking, which are one state of equilibrium at rest.
+
+    Joints that are given no friction have `friction`, or never slide.
 
     The accelerations of the ground that the joints can bear at rest are an interval, so that all of them up to uplift
     are borne: this saves the search for most structures.
@@ -228,16 +232,17 @@ def _bears_at_uplift(mechanism: Mechanism, direction: Direction, uplift: float) 
         return False
     push = -int(direction) * uplift * mechanism.gravity
     least = -ZERO_MISSING_FORCE * np.abs(rocking.force[0, :, ONE]).sum()
-    return all(force[ONE] + push * force[PUSH] >= least for force, _, _ in _conditions(rocking))
+    return all(force[ONE] + push * force[PUSH] >= least for force, _, _ in _conditions(rocking, friction))
 
 
-def _conditions(joints: Released) -> Iterator[tuple[Reals, str, bool]]:
+def _conditions(joints: Released, friction: float | None = None) -> Iterator[tuple[Reals, str, bool]]:
     """Yield each force that must not be negative at rest, its joint, and whether the joint slides if it is."""
     for contact, (normal, shear) in zip(joints.contacts, joints.rows, strict=True):
         for row in normal:
             yield joints.force[0, row], contact.label, False
-        if contact.friction is not None and shear is not None:
-            total = contact.friction * joints.force[0, list(normal)].sum(axis=0)
+        mu = friction if contact.friction is None else contact.friction
+        if mu is not None and shear is not None:
+            total = mu * joints.force[0, list(normal)].sum(axis=0)
             for sense in (1, -1):
                 yield total - sense * joints.force[0, shear], contact.label, True
 
@@ -344,7 +349,12 @@ class EarlyFailure(NamedTuple):
 
 
 def early_failures(mechanism: Mechanism) -> list[EarlyFailure]:
-    """Return, by direction, which joint slides or opens before a structure rocks or pushes back its prop."""
+    """Return, by direction, which joint slides or opens before a structure rocks or pushes back its prop.
+
+    At rest between two directions a tie of steel has no force.
+    """
+    if mechanism.rocks_both_ways:
+        mechanism = mechanism.at_strength(on=False)
     still, failures = resting(mechanism), []
     for direction in Direction if mechanism.propped else mechanism.directions:
         failure = first_failure(still, direction)
@@ -354,3 +364,59 @@ def early_failures(mechanism: Mechanism) -> list[EarlyFailure]:
         ):
             failures.append(EarlyFailure(direction, failure, lambda_))
     return failures
+
+
+class Glued(NamedTuple):
+    """How a structure whose joints are given no friction fails first in a direction if they have the usual one.
+
+    Parameters
+    ----------
+    direction : Direction
+    failure : Failure
+        How it fails at rest with the usual friction of masonry.
+    lambda_ : float
+        The acceleration at which it rocks, or fails, without sliding [standard gravity of the structure].
+    needed : float or None
+        The least friction of all its joints with which this stays the same; None if it is larger than 10.
+    """
+
+    direction: Direction
+    failure: Failure
+    lambda_: float
+    needed: float | None
+
+
+def glued(mechanism: Mechanism) -> list[Glued]:
+    """Return the directions in which joints that are given no friction need more than masonry usually has.
+
+    None for a structure that searches for its mechanism, which compares both itself, and for a single body, which
+    slides on the ground in place of rocking and does not overturn.
+    """
+    if len(mechanism.bodies()) == 1:
+        return []
+    ways = mechanism.directions
+    lambdas = {direction: mechanism.uplift(direction) for direction in ways}
+    if mechanism.friction is not None or all(
+        _bears_at_uplift(mechanism, direction, lambdas[direction], MASONRY_FRICTION) for direction in ways
+    ):
+        return []
+    if mechanism.collapse(ways[0]) is not None:
+        return []
+    lambdas |= {each.direction: each.failure.push / mechanism.gravity for each in early_failures(mechanism)}
+
+    def fails(friction: float, direction: Direction) -> Failure | None:
+        failure = first_failure(resting(mechanism.model_copy(update={"friction": friction})), direction)
+        least = (1 - EQUAL_DIRECTIONS) * lambdas[direction] * mechanism.gravity
+        return failure if failure is not None and failure.push < least else None
+
+    unborne = []
+    for direction in ways:
+        if (failure := fails(MASONRY_FRICTION, direction)) is None:
+            continue
+        low, high = MASONRY_FRICTION, MAX_FRICTION
+        suffices = fails(high, direction) is None
+        while suffices and high - low > FRICTION_ACCURACY * high:
+            middle = (low + high) / 2
+            low, high = (low, middle) if fails(middle, direction) is None else (middle, high)
+        unborne.append(Glued(direction, failure, lambdas[direction], high if suffices else None))
+    return unborne

@@ -10,7 +10,6 @@ import functools
 import importlib
 import os
 import threading
-import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from math import ceil
@@ -20,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from rocking_cli.dynamics.calling import SETS, KernelSet
-from rocking_cli.errors import InputError, KernelWarning
+from rocking_cli.errors import InputError, KernelWarning, warn
 
 KERNELS_VARIABLE = "ROCKING_KERNELS"
 """Environment variable that selects how kernels are run; no alternative is then tried."""
@@ -76,7 +75,7 @@ def _choose(requested: str | None) -> tuple[str, dict[str, Kernel]]:
         if requested == MACHINE_CODE:
             raise InputError(f"{KERNELS_VARIABLE} is {requested!r}, but {fault}: leave it out") from fault
         text = f"time histories are computed by Python itself, which takes some sixty times longer ({fault})"
-        warnings.warn(KernelWarning(text), stacklevel=2)
+        warn(KernelWarning(text))
     return PYTHON, {name: in_python(of) for name, of in SETS.items()}
 
 

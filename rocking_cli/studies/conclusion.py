@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from math import isclose
-from typing import NamedTuple, Self, TypeVar
+from typing import Any, NamedTuple, Self, TypeVar
 
 from rocking_cli.short_repr import short_repr
 
@@ -24,7 +24,9 @@ class Concluded(StrEnum):
     COMES_TO_REST = "comes_to_rest"
     ROCKS = "rocks"
     SATISFIED = "satisfied"
+    SATISFIED_IF = "satisfied_only_if"
     NOT_CHECKED = "not_checked"
+    NOT_DECIDED = "not_decided"
     UNKNOWN = "unknown"
     FALLS_OFF = "falls_off_an_edge"
     OVERTURNS = "overturns"
@@ -32,6 +34,36 @@ class Concluded(StrEnum):
 
 
 SEVERITY = list(Concluded)
+
+
+class Effect(StrEnum):
+    """What a remark does to a conclusion: another number counts, it holds on a condition, or it is not decided."""
+
+    REPLACES = "replaces"
+    CONDITION = "condition"
+    UNDECIDED = "undecided"
+
+
+LIMITED: Mapping[Effect, Mapping[Concluded, Concluded]] = {
+    Effect.REPLACES: {},
+    Effect.CONDITION: {Concluded.SATISFIED: Concluded.SATISFIED_IF},
+    Effect.UNDECIDED: dict.fromkeys(
+        (Concluded.SATISFIED, Concluded.SATISFIED_IF, Concluded.NOT_SATISFIED), Concluded.NOT_DECIDED
+    ),
+}
+"""What a conclusion becomes by each effect; others stay as they are."""
+
+
+class Limit(NamedTuple):
+    """A remark that limits a conclusion: its key among the texts, the values in it, and its effect."""
+
+    key: str
+    values: Mapping[str, Any]
+    effect: Effect
+
+    def stands_with(self, concluded: Concluded) -> bool:
+        """Return whether it stands beside a conclusion: the reasons of this conclusion do, and replaced numbers."""
+        return self.effect is Effect.REPLACES or concluded in LIMITED[self.effect].values()
 
 
 class NextStep(StrEnum):
@@ -42,7 +74,7 @@ class NextStep(StrEnum):
     STRONGER_BAR = "stronger_bar"
     ASSUME_OVERTURNING = "assume_overturning"
     STRENGTHEN = "strengthen"
-    CHECK_HOLD = "check_hold"
+    CONDITIONS = "check_conditions"
     MARGIN = "margin"
     YIELD_FORCE = "give_yield_force"
     MORE_MOTIONS = "give_more_motions"
@@ -55,6 +87,7 @@ class NextStep(StrEnum):
 
 
 OF_VERIFICATION = {
+    Concluded.SATISFIED_IF: NextStep.CONDITIONS,
     Concluded.NOT_SATISFIED: NextStep.DESIGN,
     Concluded.UNKNOWN: NextStep.RESPOND,
     Concluded.NOT_CHECKED: NextStep.SITE_VALUES,
@@ -119,6 +152,10 @@ class Conclusion:
     ratio : float or None
         By how much: capacity over demand of a verification; the scale factor from which a tenth of the neighbours
         overturn, or are of unknown outcome, of a margin (infinite if none does).
+    required : float or None
+        The ratio that a code requires of what governs; None if not known, or for other than a verification.
+    rules : sequence of str
+        Keys of the rules of a code by which its limit states and the required ratio were chosen.
     peak_ratio : float or None
         Peak over phi_cr (or the limit) of the response that governs; None if it overturns or is unknown.
     slip : float or None
@@ -137,8 +174,10 @@ class Conclusion:
         What was given and does not count.
     remedy : NextStep or None
         What to do about the joint at which the response that governs ends; None if all of it is known.
-    relies : bool
-        Whether a satisfied verification relies on what may not hold any more at the displacement reached.
+    witness : bool
+        Whether free blocks can simulate what follows then.
+    limits : sequence of Limit
+        The remarks that limit it: replaced numbers, conditions under which it holds, or why it is not decided.
     """
 
     concluded: Concluded
@@ -149,6 +188,8 @@ class Conclusion:
     joint: str = ""
     polarity: int | None = None
     ratio: float | None = None
+    required: float | None = None
+    rules: Sequence[str] = ()
     peak_ratio: float | None = None
     slip: float | None = None
     known_until: float | None = None
@@ -159,7 +200,15 @@ class Conclusion:
     directions: Sequence[str] = ()
     left_out: Sequence[LeftOut] = ()
     remedy: NextStep | None = None
-    relies: bool = False
+    witness: bool = False
+    limits: Sequence[Limit] = ()
+
+    def limited(self, limits: Sequence[Limit]) -> Conclusion:
+        """Return the conclusion with what limits it."""
+        concluded = self.concluded
+        for each in limits:
+            concluded = LIMITED[each.effect].get(concluded, concluded)
+        return replace(self, concluded=concluded, limits=[each for each in limits if each.stands_with(concluded)])
 
     @property
     def next(self) -> Sequence[NextStep]:
@@ -167,10 +216,8 @@ class Conclusion:
         steps = [] if self.remedy is None else [self.remedy]
         if self.concluded in (Concluded.FALLS_OFF, Concluded.OVERTURNS):
             steps.append(NextStep.STRENGTHEN)
-        if self.relies:
-            steps.append(NextStep.CHECK_HOLD)
         neighbours_differ = self.share is not None and self.share.highest > 0 and self.share.lowest < 1
-        if self.remedy not in (None, NextStep.STRONGER_BAR):  # free blocks have no ties that yield
+        if self.witness:
             steps.append(NextStep.CROSSCHECK)
         if self.ratio is None and (self.remedy not in (None, NextStep.RESTITUTION) or neighbours_differ):
             steps.append(NextStep.MARGIN)

@@ -3,25 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
-from typing import Any, ClassVar, Self, get_args, get_origin
+from functools import reduce
+from operator import getitem
+from typing import Any, ClassVar, Self, cast, get_args, get_origin
 
-from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic import BaseModel, ValidationError, model_validator
 
-from rocking_cli.core.fields import geometry_error
+from rocking_cli.core.fields import Described, geometry_error
 from rocking_cli.errors import Problem
 from rocking_cli.io.field_problems import place_of, problems
-from rocking_cli.io.yaml_file import Document, Place, spell
+from rocking_cli.io.yaml_file import Document, Place
 from rocking_cli.short_repr import short_repr
+from rocking_cli.units import split
 
 Sound = Callable[..., bool]
 """Function that returns whether the value at a path of keys, within a part of the file, is valid by itself."""
 
 
 @short_repr
-class Part(BaseModel):
+class Part(Described):
     """A part of a study file, or of a site file."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
     meanings: ClassVar[Mapping[str, str]] = {}
     """Words in small letters that mean a field of another name, and what to write instead, for hints."""
 
@@ -49,7 +51,7 @@ class Part(BaseModel):
     @model_validator(mode="after")
     def _fits_together(self) -> Self:
         for place, message in self.between(self.model_dump(exclude_unset=True, by_alias=True), lambda *path: True):
-            raise geometry_error(spell(place) or "", message)
+            raise geometry_error(place, message)
         return self
 
 
@@ -67,12 +69,16 @@ def problems_of(
     Arguments are those of `field_problems.problems`; wrong fields among the `known` problems are left out.
     """
     already_listed = {(problem.field, problem.line) for problem in known}
-    alone: Any = [each for each in error.errors(include_url=False) if each["type"] != "geometry"]
+    errors = error.errors(include_url=False)
+    alone: Any = [each for each in errors if each["type"] != "geometry"]
     listed = problems(document, model, alone, owner=owner, lister=lister)
     listed = [problem for problem in listed if (problem.field, problem.line) not in already_listed]
     places = {place_of(document.data, each) for each in alone}
-    between = between_fields(model, document.data, places)
-    return listed + [document.at(place, message) for place, message in between]
+    # Numbers with units are compared once all fields are valid.
+    given = {place: reduce(getitem, place, cast("Any", document.data)) for place in document.values}
+    places |= {place for place, text in given.items() if isinstance(text, str) and (split(text) or ("", ""))[1]}
+    listed += [document.at(place, message) for place, message in between_fields(model, document.data, places)]
+    return listed if listed or known else problems(document, model, errors, owner=owner, lister=lister)
 
 
 def between_fields(

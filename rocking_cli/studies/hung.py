@@ -12,6 +12,7 @@ from rocking_cli.arrays import Bools, Points, Reals
 from rocking_cli.core import Direction, Mechanism, three_digits
 from rocking_cli.core.hung.attached import PointMass
 from rocking_cli.core.hung.element import COINCIDENT_DISTANCE, ConstantForce, Element, SpringBed, Stretched
+from rocking_cli.excitation.base import STANDARD_GRAVITY
 
 Copies = Mapping[str, Sequence[tuple[int, complex]]]
 """The parts as which each body is drawn: index of the part, and its offset from the body [m]."""
@@ -127,7 +128,7 @@ class Strand:
 
 def carried(mechanism: Mechanism, copies: Copies) -> Iterator[Carried]:
     """Yield the loads of a structure; a load that each of several equal bodies has, once for each body."""
-    each = _each(mechanism)
+    each, per_metre = _each(mechanism), {load.name: load.mass_per_metre for load in mechanism.loads or []}
     for load in mechanism.attached:
         if not isinstance(load, PointMass | ConstantForce):
             continue
@@ -136,12 +137,20 @@ def carried(mechanism: Mechanism, copies: Copies) -> Iterator[Carried]:
             point, name = load.spot.at + shift, load.name if k == 0 else ""
             if isinstance(load, PointMass):
                 mass = load.mass / count
-                text = f"{mass / TONNE:.3g} t" if mass >= TONNE else f"{mass:.3g} kg"
+                given = per_metre.get(load.name)
+                text = _as_given(mechanism, mass) if given is None else _as_given(mechanism, given, "/m")
                 yield Carried(name, text, part, point, mass=mass)
             else:
                 force = load.in_direction(mechanism.directions[0]) / count
                 text = f"{three_digits(abs(force) / 1000)} kN" if force else "0"
                 yield Carried(name, text, part, point, force=force, friction=load.friction)
+
+
+def _as_given(mechanism: Mechanism, mass: float, per: str = "") -> str:
+    """Return a mass [kg], or one `per` metre, in words: as a weight if it was given as one."""
+    if any(f": {mass:.6g} kg{per} (" in each for each in mechanism.remarks):
+        return f"{three_digits(mass * STANDARD_GRAVITY / 1000)} kN{per}"
+    return f"{mass / TONNE:.3g} t{per}" if mass >= TONNE else f"{mass:.3g} kg{per}"
 
 
 def strands(mechanism: Mechanism, copies: Copies, centroids: Sequence[complex]) -> Iterator[Strand]:

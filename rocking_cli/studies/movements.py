@@ -145,6 +145,19 @@ class Watched:
             yield f"{tie.name} elongation [m]", both.real
             yield f"{tie.name} force [N]", both.imag
 
+    def bodies(self, history: History) -> Iterator[tuple[str, NDArray[np.complex128], Reals]]:
+        """Yield name, place of the centroid (n,) [m] and clockwise rotation (n,) [rad] of each body in a history."""
+        slip = 0.0 if history.slid is None else history.slid.displacement
+        for k, body in enumerate(self.mechanism.bodies()):
+
+            def place(phi: Reals, way: Direction, k: int = k, at: complex = body.centroid) -> NDArray[np.complex128]:
+                return self.mechanism.motion(phi, way)[k].carry(at)[0]
+
+            def turn(phi: Reals, way: Direction, k: int = k) -> NDArray[np.complex128]:
+                return np.asarray(-self.mechanism.motion(phi, way)[k].psi, np.complex128)
+
+            yield body.name, self._signed(history.phi, place) + slip, self._signed(history.phi, turn).real
+
     def _before(self, history: History, direction: Direction) -> float:
         """Return the largest sampled rotation of a history in a direction before it overturns [rad]."""
         end = history.overturning_time if history.fell else np.inf

@@ -354,6 +354,8 @@ def can_lift(model: Model, motion: GroundMotion, factor: float) -> bool:
 
 def least_uplift(model: Model, motion: GroundMotion) -> float | None:
     """Return the least positive factor on a motion that uplifts a structure (vertical component ignored), or None."""
+    if model.sliding is not None and model.sliding.holds(np.ones(1), *np.zeros((2, 1)))[0]:
+        return None  # it only slides
     pushes = (
         (-s * motion.acceleration).max() / (model.gravity * lam)
         for s, lam in zip(Direction, model.lambda_, strict=True)

@@ -583,6 +583,10 @@ def _picture(mechanism: Mechanism, collapses: Mapping[Direction, CollapseMechani
                 letter, point = hinge.letter if k == carriers[0] else "", hinge.point + parts[k].shift
                 pins.append(DrawnHinge(letter, point, k, direction, hinge.slide))
     outlines = [outline for part in parts for outline in part.outlines]
+    if not (sketch.lengths or any(part.assumed for part in parts)):
+        low, high = box_around(outlines)
+        corner = complex(low.real, high.imag)
+        sketch = replace(sketch, lengths=[Length("width", corner, high), Length("height", low, corner)])
     lines = [np.asarray(each, np.complex128) for each in sketch.ground]
     whole = [name in {each.name for each in met.values()} for name in sketch.ground_names] or [False] * len(lines)
     ground = tuple(

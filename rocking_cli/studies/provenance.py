@@ -38,13 +38,13 @@ class File:
 @short_repr
 @dataclass(frozen=True)
 class TitleBlock:
-    """Heading of a report: the project, its place and author, and how and when the report was made.
+    """Heading of a report: the project, its place, client and author, and how and when the report was made.
 
     Parameters
     ----------
     command, date : str
         The command that wrote the report, and the date.
-    project, place, author : str, optional
+    project, place, client, author : str, optional
         As the user gave them.
     logo : str, optional
         Address of a picture to show in the heading.
@@ -54,14 +54,19 @@ class TitleBlock:
     date: str
     project: str | None = None
     place: str | None = None
+    client: str | None = None
     author: str | None = None
     logo: str | None = None
 
     @property
+    def fields(self) -> dict[str, str]:
+        """Project, place, client and author by name; empty where they are not given."""
+        return {name: getattr(self, name) or "" for name in ("project", "place", "client", "author")}
+
+    @property
     def known(self) -> dict[str, str]:
-        """Project, place and author, as far as they are given, by name."""
-        given = {"project": self.project, "place": self.place, "author": self.author}
-        return {name: text for name, text in given.items() if text}
+        """The fields that are given."""
+        return {name: text for name, text in self.fields.items() if text}
 
 
 def file_of_motion(given: Scaled) -> File | None:

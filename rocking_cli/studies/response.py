@@ -82,6 +82,7 @@ def _of_run(run: History, neighbours: Neighbours | None, motion: str, sign: int)
         else None,
         motions=[motion] if motion else [],
         remedy=NextStep(remedy(run)) if run.unknown else None,
+        witness=run.witness,
     )
 
 

@@ -22,7 +22,7 @@ from rocking_cli.verification.results import Requirement
 from rocking_cli.views.conclusion import (
     NEXT_STEPS,
     conclusion_data,
-    digits_beside_one,
+    digits_beside,
     governing,
     governing_polarity,
     next_in_words,
@@ -40,8 +40,12 @@ SITE = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2, "soil": "B"}
 
 
 def further(SLC, SLD):
-    """The fields of two more limit states, by their a_g [g]."""
-    return {"SLC": {"ag": SLC, "F0": 2.5, "TC": 0.55, "S": 1.2}, "SLD": {"ag": SLD, "F0": 2.5, "TC": 0.36, "S": 1.2}}
+    """The fields of two more limit states, by their a_g [g], which are required too."""
+    states = {"states": ["SLD", "SLV", "SLC"]}
+    return states | {
+        "SLC": {"ag": SLC, "F0": 2.5, "TC": 0.55, "S": 1.2},
+        "SLD": {"ag": SLD, "F0": 2.5, "TC": 0.36, "S": 1.2},
+    }
 
 
 FURTHER = {
@@ -73,7 +77,7 @@ def test_a_verification_concludes_the_same_everywhere(pillar, tmp_path, case):
     asked = pillar(case)
     data = run_json("verify", *asked)
     end, direction = data["conclusion"], data["directions"]["positive"]
-    ratios = {name: each["ratio"] for name, each in direction["states"].items() if each["demand"] is not None}
+    ratios = {name: each["zeta_E"] for name, each in direction["states"].items() if each["demand"] is not None}
     if direction["zeta"]["SLD"] is not None:
         ratios["SLD"] = direction["zeta"]["SLD"]
     least = min(ratios, key=ratios.get)
@@ -147,7 +151,7 @@ def test_an_elastic_tie_is_named_in_the_conclusion(pillar, tmp_path):
 
 
 def test_histories_count_only_if_there_are_as_many_as_the_code_requires():
-    """One record decides nothing, and it is said that it takes the structure past its capacity; seven do."""
+    """One record decides nothing, and the sentence says that it takes the structure past its capacity; seven do."""
     site = {**SITE, **FURTHER["all pass"]}
     block = rk.Block(**{key: each for key, each in PILLAR.items() if key != "mechanism"})
     for pulse, why in (("sine:0.1g:0.5s", "too_few"), ("sine:2g:1s", "too_few_and_past")):
@@ -292,12 +296,13 @@ def test_a_design_by_the_code_uses_the_limit_state_that_governs_and_no_mechanism
 
 def test_every_next_step_has_words_and_says_what_the_result_needs():
     assert set(NEXT_STEPS) == {*NextStep}
-    unknown = Conclusion(concluded=Concluded.UNKNOWN, remedy=NextStep.HOLD_JOINT)
+    unknown = Conclusion(concluded=Concluded.UNKNOWN, remedy=NextStep.HOLD_JOINT, witness=True)
     assert unknown.next == [NextStep.HOLD_JOINT, NextStep.CROSSCHECK, NextStep.MARGIN]
     assert replace(unknown, ratio=1.2).next == [
         NextStep.HOLD_JOINT,
         NextStep.CROSSCHECK,
     ]  # a margin need not name itself
+    assert replace(unknown, witness=False).next == [NextStep.HOLD_JOINT, NextStep.MARGIN]
     fails = Conclusion(concluded=Concluded.NOT_SATISFIED, method="nonlinear", ratio=0.8)
     assert fails.next == [NextStep.DESIGN] and "`rocking design`" in next_in_words(fails)
     tie = [LeftOut("tie", "bar", "elastic")]
@@ -383,7 +388,7 @@ def test_the_polarity_that_governs_is_that_of_the_conclusion():
 
 @pytest.mark.parametrize("ratio", [0.9999, 0.99999999, 1.0, 1.0001, 0.4, 12.345])
 def test_a_printed_ratio_shows_on_which_side_of_one_it_is(ratio):
-    printed = float(f"{ratio:.{digits_beside_one(ratio)}g}")
+    printed = float(f"{ratio:.{digits_beside(ratio)}g}")
     assert (printed < 1) == (ratio < 1) and printed == pytest.approx(ratio, rel=5e-3)
 
 

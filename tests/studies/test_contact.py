@@ -34,8 +34,12 @@ def shaking(size=0.35, vertical=0.0, dt=0.005):
     t = np.arange(0, 8, dt)
     on = (t > 0.5) & (t < 6.5)
     u = np.where(on, np.sin(9 * (t - 0.5)) + 0.6 * np.sin(23.7 * (t - 0.5)), 0.0)
-    up = GroundMotion("up", dt, vertical * G * np.where(on, np.sin(17 * (t - 0.5)), 0.0)) if vertical else None
-    return GroundMotion("sines", dt, size * G * u, vertical=up)
+    up = (
+        GroundMotion("up", dt, vertical * G * np.where(on, np.sin(17 * (t - 0.5)), 0.0), unit="m/s2")
+        if vertical
+        else None
+    )
+    return GroundMotion("sines", dt, size * G * u, vertical=up, unit="m/s2")
 
 
 def checked(structure, motion, opening=1.0, **options):
@@ -85,7 +89,7 @@ def test_a_block_state_by_state(vertical):
 
 def test_after_the_last_sample_nothing_shakes_it_any_longer():
     """A record that ends with a push: from then on each state is that of a free motion."""
-    motion = GroundMotion("push", 0.01, np.full(31, -0.35 * G))
+    motion = GroundMotion("push", 0.01, np.full(31, -0.35 * G), unit="m/s2")
     history, found = checked(BLOCK, motion)
     k = int(np.flatnonzero(history.time > 0.31)[0])
     assert history.phi[k] > 0 and history.first_impact > history.time[k]

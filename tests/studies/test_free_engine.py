@@ -17,7 +17,7 @@ pytest.importorskip("mujoco", reason="free blocks need mujoco")
 
 BLOCK = structure_of(rk.Block(width=1.0, height=2.0))  # it soon comes to rest
 ACCEL = rk.read_record(EXAMPLES / "accel.csv")
-HALF_SINE = rk.GroundMotion("half sine", 0.01, 8.0 * np.sin(np.pi * np.arange(41) / 40))
+HALF_SINE = rk.GroundMotion("half sine", 0.01, 8.0 * np.sin(np.pi * np.arange(41) / 40), unit="m/s2")
 
 
 @pytest.fixture(autouse=True)

@@ -87,7 +87,7 @@ def test_the_smallest_object_rocks_as_the_largest_in_longer_time():
     found = []
     for scale in (1.0, 1e-2, 1e2):
         push = 4.4 * np.sin(2 * np.pi * np.arange(101) / 100)
-        motion = rk.GroundMotion("pulse", 0.006 * scale**0.5, push)
+        motion = rk.GroundMotion("pulse", 0.006 * scale**0.5, push, unit="m/s2")
         free = free_blocks(rk.Block(width=0.6 * scale, height=2.0 * scale, friction=1.0))
         found.append(BlockModel(free).simulate(motion, most=200 * motion.dt).moved[:200, 0, 2])
     assert np.abs(found[0]).max() > 0.05
@@ -132,11 +132,36 @@ def test_a_block_falls_off_an_edge_only_where_one_is_drawn_within_its_reach(sign
     history = engine_of("blocks").respond(structure_of(cube), motion)["blocks"]
     assert (history.fell, history.off_edge) == (off, off)
     assert history.blocks.off == ("podium" if off else "")
-    assert history.words == ("falls off the edge of podium" if off else "does not uplift")
+    assert history.words == ("falls off the edge of podium" if off else "does not overturn; slides")
     if off:
         assert history.blocks.fell == "cube" and history.fell_to == -sign
+        assert history.slid is None and history.slip == 0
     else:
         assert history.blocks.moved[0] == pytest.approx(reach, rel=0.005)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_what_slides_is_said_to_slide_with_its_slip(sign, monkeypatch, tmp_path):
+    monkeypatch.setattr(memory, "place", lambda: tmp_path / "blocks.sqlite")
+    cube, motion = rk.Block(width=1.0, height=1.0, friction=0.2), sine(0.5, 1.0, sign)
+    answer = rk.respond(cube, motion, engine="blocks", neighbours=3, slenderness_deviation=0, amplitude_deviation=0)
+    exact = slip(motion, 0.2, 3.0)
+    most, path = exact[np.abs(exact).argmax()], np.abs(np.diff(exact)).sum()
+    told = answer.to_dict()["responses"]["blocks"]
+    assert told["outcome"] == "at_rest" and answer.conclusion.concluded == "slides"
+    assert told["slip"]["largest"] == pytest.approx(most, rel=0.005)
+    assert told["slip"]["residual"] == pytest.approx(exact[-1], abs=0.01 * abs(most))
+    assert told["slip"]["path"] == pytest.approx(path, rel=0.01)
+    said = " ".join(str(part) for part in answer.view.parts)
+    way = "right" if most > 0 else "left"
+    far = f"{1000 * abs(told['slip']['largest']):.3g} mm to the {way}"
+    assert f"the structure does not overturn, but slides by up to {far}" in said
+    near = answer.neighbours[1]
+    assert near.slides == 1 and list(near.slips) == pytest.approx([abs(told["slip"]["largest"])] * 3)
+    columns = answer.columns()
+    assert columns["blocks slip [m]"][-1] == pytest.approx(told["slip"]["residual"])
+    still = rk.respond(cube, motion.scaled(0.38), engine="blocks")["blocks"]
+    assert still.words == "does not uplift" and still.slip == 0 and still.slid is None
 
 
 def test_a_stele_that_overturns_at_an_edge_does_not_fall_off_it():

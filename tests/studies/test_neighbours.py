@@ -109,7 +109,7 @@ class TestDraws:
             Neighbourhood(**wrong)
 
 
-LIFTED = replace(ACCEL, vertical=GroundMotion("up", 0.02, 4.0 * np.sin(np.arange(500) * 0.7)))
+LIFTED = replace(ACCEL, vertical=GroundMotion("up", 0.02, 4.0 * np.sin(np.arange(500) * 0.7), unit="m/s2"))
 
 
 @pytest.mark.every(6)
@@ -205,7 +205,10 @@ def test_the_share_of_a_linear_block_is_that_of_its_islands(varied):
             assert below[0] < 1e-6 and below[-1] > 1 - 1e-6
             exact = np.diff(below)[falls[1:]].sum()
             motion = GroundMotion(
-                "sine", period / 20_000, Sine(amplitude, period).acceleration(np.arange(20_001) * period / 20_000)
+                "sine",
+                period / 20_000,
+                Sine(amplitude, period).acceleration(np.arange(20_001) * period / 20_000),
+                unit="m/s2",
             )
             deviations = {"amplitude": 0.0, "restitution": 0.0, "slenderness": 0.0, varied: deviation}
             found = neighbours(model, motion, Neighbourhood(1000, **deviations))
@@ -229,7 +232,7 @@ class TestWithoutShaking:
         assert can_lift(model, ACCEL, least * (1 + off)) == (off > 0) == lifted
 
     def test_a_motion_that_pushes_to_one_side_only_lifts_to_that_side(self):
-        push = GroundMotion("push", 0.1, np.array([0.0, 5.0, 0.0]))
+        push = GroundMotion("push", 0.1, np.array([0.0, 5.0, 0.0]), unit="m/s2")
         assert least_uplift(build_model(BLOCK, "nonlinear"), push) == pytest.approx(0.25 * BLOCK.gravity / 5.0)
         assert least_uplift(build_model(BLOCK, "nonlinear"), push.scaled(0)) is None
 
@@ -254,7 +257,7 @@ class TestWithoutShaking:
         """Each neighbour, tilted and pushed, is one of its own: both by the same k."""
         model, around = build_model(BLOCK, "nonlinear"), Neighbourhood(40, restitution=0.0)
         drawn, tilt = around.drawn(model), 0.6
-        push = GroundMotion("push", 0.01, np.append(-0.11 * STANDARD_GRAVITY * np.ones(60), np.zeros(5)))
+        push = GroundMotion("push", 0.01, np.append(-0.11 * STANDARD_GRAVITY * np.ones(60), np.zeros(5)), unit="m/s2")
         found = neighbours(model, push, around, release=tilt, release_is_angle=True)
         alone = [
             simulate_neighbours(model, push, Draws(*(each[k : k + 1] for each in drawn)), release=tilt / k_e).fell[0]

@@ -22,7 +22,7 @@ def model(name="block", **fields):
 
 def held(level, push=-1):
     """A ground acceleration of one size, in g times lambda, for long."""
-    return GroundMotion("held", 0.02, push * level * 9.80665 * np.ones(1501))
+    return GroundMotion("held", 0.02, push * level * 9.80665 * np.ones(1501), unit="m/s2")
 
 
 @pytest.mark.parametrize(("level", "restitution"), [(0.85, None), (0.9, None), (1.03, None), (1.1, None), (1.03, 0.5)])

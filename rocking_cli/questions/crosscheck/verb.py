@@ -101,6 +101,7 @@ def crosscheck(
     if animate is not None:
         check_film(Path(animate), signs, None, FRAMES_PER_SECOND)
     ready = structure_of(structure, watch, opening)
+    ready = ready if motions else ready.released()
     given = motions.gather(ready.growth, watch)[0] if motions else None
     scaled = given.motion.scaled(signs[0] * given.factor) if given is not None else None
     tilt = None if release is None else release if isinstance(release, Release) else Release.of(release)

@@ -15,7 +15,7 @@ from rocking_cli.core.equivalence import EQUAL_DIRECTIONS, alike
 from rocking_cli.core.hung.element import Element
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.structure import Structure
-from rocking_cli.views.cautions import before_rocking, cautions_of, of_bounds, of_restitution
+from rocking_cli.views.cautions import before_rocking, bound_data, cautions_of, of_bounds, of_restitution
 from rocking_cli.views.column import UNIT, Column, data_of, of, only_shown, table_across
 from rocking_cli.views.restitution import restitution_source, restitution_used
 from rocking_cli.views.verdict import uplift_in_words
@@ -209,7 +209,7 @@ def _data(side: EquivalentSide, bound: Bound | None) -> dict[str, Any]:
         "stiffening": side.statics.stiffening,
         "limit": side.statics.limit,
         "no_block": side.statics.why_no_block,
-        "bound": {key: value for key, value in bound._asdict().items() if key != "at"} if bound is not None else None,
+        "bound": bound_data(bound) if bound is not None else None,
     }
 
 

@@ -45,8 +45,8 @@ class UnknownRuns:
         Number of those with unknown outcome; None if the joints are not known, so that nothing was checked.
     checked : bool
         Whether the joints are known in all runs.
-    by_blocks : int
-        Number of runs that were simulated with free blocks.
+    by_blocks, off_edge : int
+        Number of runs that were simulated with free blocks, and of those in which a block falls off an edge.
     """
 
     structure: str
@@ -54,6 +54,7 @@ class UnknownRuns:
     unknown: int | None
     checked: bool
     by_blocks: int = 0
+    off_edge: int = 0
 
     @property
     def share(self) -> float | None:
@@ -214,9 +215,9 @@ def fitted(
 def unknown_runs(found: Mapping[str, Tally]) -> list[UnknownRuns]:
     """Return the number of runs of unknown outcome of each structure that has runs."""
     return [
-        UnknownRuns(name, int(tally.runs.sum()), tally.unknown_if_checked, tally.checked, tally.by_blocks)
-        for name, tally in found.items()
-        if tally.runs.any()
+        UnknownRuns(name, int(of.runs.sum()), of.unknown_if_checked, of.checked, of.by_blocks, of.off_edge)
+        for name, of in found.items()
+        if of.runs.any()
     ]
 
 
@@ -235,7 +236,7 @@ def curves(
             unknown = _undecided_runs(cells, limit, x > 0) if runs else _undecided_ladders(tally, limit)
             fit = partial(_curve, x=x, structure=structure, measure=measure, limit=limit, definition=definition)
             fragilities.append(_twice(fit, cells, unknown))
-        for each in _consistent(fragilities, cells.onset(measure)):
+        for each in _consistent(fragilities, cells.onset(measure), slides=tally.slides):
             yield _with_rate(each, hazard) if hazard is not None and measure == over else each
 
 
@@ -248,7 +249,7 @@ def _twice(fit: Callable[[Cells], Fitted], cells: Cells, unknown: int) -> Fitted
     return upper if tally.unknown_if_checked is not None else replace(upper, unknown=None)
 
 
-def _consistent(fits: Sequence[Fragility], onset: Onset | None) -> Iterator[Fragility]:
+def _consistent(fits: Sequence[Fragility], onset: Onset | None, *, slides: bool) -> Iterator[Fragility]:
     """Yield the curves of one structure over one measure, corrected so that none lies above a curve that it implies.
 
     Parameters
@@ -269,7 +270,7 @@ def _consistent(fits: Sequence[Fragility], onset: Onset | None) -> Iterator[Frag
         return curve if curve.kind == "none" else replace(curve, implied=known)
 
     for each in fits:
-        weaker = [other for other in fits if implies(each.limit, other.limit)]
+        weaker = [other for other in fits if implies(each.limit, other.limit, slides=slides)]
         lower = each.lower
         if lower is not None:
             under = {other.limit: (other.lower or other).curve for other in weaker}

@@ -112,12 +112,12 @@ LevelMeasure = Annotated[str, BeforeValidator(_level_measure)]
 Limit = Annotated[str | float, BeforeValidator(_limit)]
 
 
-def implies(limit: Limit, other: Limit) -> bool:
-    """Return whether every run that exceeds a limit state exceeds another one as well."""
+def implies(limit: Limit, other: Limit, *, slides: bool = False) -> bool:
+    """Return whether every run that exceeds a limit state exceeds another one, if a body may also only slide."""
     if limit == other or other in (OVERTURNING, SLIDING):
         return False
     if other == UPLIFT or limit == OVERTURNING:
-        return True
+        return not slides or limit == OVERTURNING or isinstance(limit, float)
     if isinstance(limit, float) and isinstance(other, float):
         return limit > other
     moved, less = metres(limit), metres(other)

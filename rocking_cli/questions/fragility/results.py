@@ -14,7 +14,6 @@ from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.names import OVERTURNS
 from rocking_cli.questions.fragility.assess import Bivariate, Fragility, UnknownRuns
 from rocking_cli.questions.fragility.definition import Definition, Limit
 from rocking_cli.questions.fragility.plan import Plan
@@ -78,7 +77,7 @@ class StudyAnswer(Answer[list[Fragility]]):
         The peak of a run that overturns is infinite, so that no comparison or quantile takes it for safe.
         """
         frame = self.frames["runs"]
-        frame.loc[frame["outcome"] == OVERTURNS, "phi_over_phi_cr"] = np.inf
+        frame.loc[frame["fell_to"] != 0, "phi_over_phi_cr"] = np.inf
         return frame
 
     def run_blocks(self) -> Iterator[Columns]:

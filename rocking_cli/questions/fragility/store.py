@@ -34,7 +34,7 @@ from rocking_cli.questions.fragility.workers import CONTINUE_HINT
 COMMIT_INTERVAL = 1.0  # s between two commits; runs that are not committed are repeated after a crash
 RUNS_PER_READ = 100_000
 MAX_RUN_NUMBER = 2**63 - 1  # larger than the number of any run
-STANDS, FAILED, UNKNOWN = 0, 2, 3  # outcomes; 1 and -1: overturns in the positive or the negative direction
+STANDS, FAILED, UNKNOWN, OFF_EDGE = 0, 2, 3, 4  # outcomes; 1 and -1: overturns to a side; 4 and -4: off an edge
 SEAL = "seal"  # key of the checksum of everything but the runs, in the table `study`
 MAX_NAMED_RUNS = 5  # damaged runs that an error message names
 SLIDE_COLUMN = "slide_time"  # only studies of sliding have this column
@@ -56,7 +56,7 @@ CREATE TABLE polarity (id INTEGER PRIMARY KEY, value INTEGER NOT NULL);
 CREATE TABLE run (
     id INTEGER PRIMARY KEY, scale REAL NOT NULL, eta REAL, outcome INTEGER NOT NULL,
     peak_ratio REAL, peak_positive REAL, peak_negative REAL, uplift_time REAL, overturning_time REAL,
-    known_to REAL, lower_bound REAL, opening REAL{columns}, checksum INTEGER NOT NULL
+    known_to REAL, lower_bound REAL, opening REAL, slip REAL{columns}, checksum INTEGER NOT NULL
 );
 -- What was measured, beyond the peaks of the records; the places that a value does not depend on are NULL.
 CREATE TABLE measured (
@@ -69,11 +69,13 @@ CREATE_VIEW = """
 CREATE VIEW runs AS SELECT
     run.id, sample.structure, sample.number AS sample, record.name AS record, level.value AS level,
     polarity.value AS polarity, run.eta, run.scale, run.scale * record.pga AS pga, run.scale * record.pgv AS pgv,
-    CASE WHEN run.outcome = 2 THEN 'failed' WHEN run.outcome = 3 THEN 'unknown' WHEN run.outcome != 0 THEN 'overturns'
-        WHEN run.uplift_time IS NULL THEN 'does not uplift' ELSE 'rocks' END AS outcome,
-    CASE WHEN run.outcome IN (1, -1) THEN run.outcome ELSE 0 END AS fell_to,
+    CASE WHEN run.outcome = 2 THEN 'failed' WHEN run.outcome = 3 THEN 'unknown'
+        WHEN run.outcome IN (4, -4) THEN 'falls off an edge' WHEN run.outcome != 0 THEN 'overturns'
+        WHEN run.uplift_time IS NOT NULL THEN 'rocks' WHEN run.slip > 0 THEN 'does not overturn; slides'
+        ELSE 'does not uplift' END AS outcome,
+    CASE WHEN run.outcome IN (1, -1, 4, -4) THEN run.outcome / abs(run.outcome) ELSE 0 END AS fell_to,
     run.peak_ratio, run.peak_positive, run.peak_negative, run.uplift_time, run.overturning_time,
-    run.known_to, run.lower_bound, run.opening{columns}
+    run.known_to, run.lower_bound, run.opening, run.slip{columns}
 FROM run
 JOIN sample ON sample.id = run.id / {sample}
 JOIN record ON record.id = run.id / {record} % {records}
@@ -98,7 +100,7 @@ class RunRows:
     eta : ndarray
         Coefficient of restitution; NaN for the one of the structure.
     outcome : ndarray of int
-        `STANDS`, `FAILED`, `UNKNOWN`, or the sign of the direction to which it overturned.
+        `STANDS`, `FAILED`, `UNKNOWN`, or the sign of the direction to which it overturned, times `OFF_EDGE` if off one.
     peak_ratio : ndarray
         Peak rotation over the critical one; NaN if the run overturned. For a run of unknown outcome, this and all other
         fields cover the time until `known_to`.
@@ -113,6 +115,8 @@ class RunRows:
         others.
     opening : ndarray
         Largest opening or slip of a joint over D_cr, as far as the run was simulated; NaN if the joints are not known.
+    slip : ndarray
+        Largest displacement of a body that slides and never rocks [m]; 0 for others.
     slide_time : ndarray, optional
         Time at which a joint first required more friction than available [s]; NaN if never. None if runs were not
         checked for sliding.
@@ -132,6 +136,7 @@ class RunRows:
     known_to: Reals
     lower_bound: Reals
     opening: Reals
+    slip: Reals
     slide_time: Reals | None = None
     by_blocks: Reals | None = None
 
@@ -161,8 +166,8 @@ class Endings:
     """The columns of finished runs that fragility needs, with one entry for each run.
 
     `peaks`, shape (n, 2), holds the peak rotations in the positive and the negative direction [rad]; `uplifts`,
-    `slides`, `checked` and `by_blocks` tell whether a run uplifts, slides, had its joints checked, and was simulated
-    with free blocks, which move in every joint and so count as checked.
+    `slides`, `checked` and `by_blocks` tell whether a run uplifts, slides (by `slip` without uplift [m]), had its
+    joints checked, and was simulated with free blocks, which move in every joint and so count as checked.
     """
 
     id: Integers
@@ -172,13 +177,19 @@ class Endings:
     uplifts: Bools
     slides: Bools
     lower_bound: Reals
+    slip: Reals
     checked: Bools
     by_blocks: Bools
 
     @property
     def overturned(self) -> Bools:
         """Whether each run is known to overturn."""
-        return np.asarray(np.abs(self.outcome) == 1)
+        return np.asarray((np.abs(self.outcome) == 1) | self.off_edge)
+
+    @property
+    def off_edge(self) -> Bools:
+        """Whether it overturns because a free block falls off an edge."""
+        return np.asarray(np.abs(self.outcome) == OFF_EDGE)
 
     @property
     def unknown(self) -> Bools:
@@ -575,18 +586,19 @@ class Store:
         counted : callable, optional
             Called with the number of runs read since the last call.
         """
-        names = "id", "outcome", "peak_ratio", "peak_positive", "peak_negative", "uplift_time", "lower_bound", "opening"
+        names = (*COLUMNS[:1], *COLUMNS[3:8], "lower_bound", "opening", "slip")
         optional = self.columns[len(COLUMNS) :]
         for start in range(first, stop, RUNS_PER_READ):
             end = min(start + RUNS_PER_READ, stop)
             table = self._table((*names, *optional), start, end)
             number, outcome = table[:2].astype(np.int64)
             uplifts, checked, never = np.isfinite(table[5]), np.isfinite(table[7]), np.zeros(table.shape[1], dtype=bool)
-            slips = np.isfinite(table[8]) if SLIDE_COLUMN in optional else never
-            by_blocks = table[8] == 1 if BLOCKS_COLUMN in optional else never
+            slides = np.isfinite(table[9]) if SLIDE_COLUMN in optional else never
+            by_blocks = table[9] == 1 if BLOCKS_COLUMN in optional else never
             yield Endings(
-                number, outcome, table[2], table[3:5].T, uplifts, slips, table[6], checked | by_blocks, by_blocks
-            )
+                number, outcome, table[2], table[3:5].T, uplifts, slides, table[6], table[8], checked | by_blocks,
+                by_blocks,
+            )  # fmt: skip
             counted(end - start)
 
 
@@ -622,7 +634,7 @@ def _salt(hash_: Any) -> int:
 
 
 APPLICATION_ID = 0x526F636B  # "Rock", in the header of the file
-SCHEMA_VERSION = 7
+SCHEMA_VERSION = 8
 LOCK_TIMEOUT = 60.0  # s, while another process reads the store
 AT_WORK = "at work"  # key of the process that adds runs, in the table `study`
 

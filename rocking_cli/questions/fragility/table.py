@@ -13,7 +13,7 @@ from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.questions.fragility.assess import Fragility
 from rocking_cli.questions.fragility.curves import FragilityCurve
 from rocking_cli.questions.fragility.plan import Plan
-from rocking_cli.questions.fragility.store import FAILED, SLIDE_COLUMN, STANDS, UNKNOWN, RunRows, Store
+from rocking_cli.questions.fragility.store import FAILED, OFF_EDGE, SLIDE_COLUMN, STANDS, UNKNOWN, RunRows, Store
 from rocking_cli.studies.fragility.quantities import USUAL_MEASURES, label
 
 CURVE_POINTS = 101
@@ -66,7 +66,7 @@ def points(found: Fragility) -> NDArray[np.float64]:
 RUNS_PER_BLOCK = 100_000
 HEADINGS = {
     "known_to": "known to [s]", "lower_bound": "phi/phi_cr at least", "opening": "opening/D_cr",
-    SLIDE_COLUMN: "sliding [s]",
+    "slip": "slip [m]", SLIDE_COLUMN: "sliding [s]",
 }  # fmt: skip
 """Headings of the columns that not every store has."""
 
@@ -109,11 +109,11 @@ def _of_runs(plan: Plan, rows: RunRows, measures: Sequence[str]) -> dict[str, Se
         "scale": rows.scale.tolist(),
         **{label(name): plan.intensities(name, sample, record, level, rows.scale).tolist() for name in measures},
         "outcome": [
-            "failed" if code == FAILED
-            else names.outcome(uplifts=uplifts, overturned=code != STANDS, unknown=code == UNKNOWN)
-            for code, uplifts in zip(rows.outcome.tolist(), np.isfinite(rows.uplift_time).tolist(), strict=True)
+            "failed" if code == FAILED else "falls off an edge" if abs(code) == OFF_EDGE
+            else names.outcome(uplifts=rise >= 0, overturned=code != STANDS, unknown=code == UNKNOWN, slides=slip > 0)
+            for code, rise, slip in np.stack([rows.outcome, rows.uplift_time, rows.slip], axis=1).tolist()
         ],
-        "fell_to": np.where(np.abs(rows.outcome) == 1, rows.outcome, 0).tolist(),
+        "fell_to": np.where(np.isin(rows.outcome, (FAILED, UNKNOWN)), 0, np.sign(rows.outcome)).tolist(),
         "phi/phi_cr": rows.peak_ratio.tolist(),
         "phi positive [rad]": rows.peak_positive.tolist(),
         "phi negative [rad]": rows.peak_negative.tolist(),

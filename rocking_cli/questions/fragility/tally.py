@@ -57,8 +57,10 @@ class Tally:
         Number of runs of unknown outcome.
     checked : bool
         Whether the joints of all runs are known; if not, no outcome is unknown because of a joint.
-    by_blocks : int
-        Number of runs that were simulated with free blocks.
+    by_blocks, off_edge : int
+        Number of runs that were simulated with free blocks, and of those in which a block falls off an edge.
+    slides : bool
+        Whether a body only slides in some run: it may then exceed displacements without uplift.
     lower : Tally or None
         The counts with undecided runs as not exceeding; None if no outcome is unknown.
     uplift : (float or None, float or None), optional
@@ -73,6 +75,8 @@ class Tally:
     unknown: int = 0
     checked: bool = True
     by_blocks: int = 0
+    off_edge: int = 0
+    slides: bool = False
     lower: Tally | None = None
     uplift: Pair | None = None
 
@@ -239,7 +243,7 @@ def count(
     there = np.zeros((len(samples), records, etas, levels, polarities) if ladders else 0, dtype=bool)
     rungs = (len(samples), records, etas, polarities)
     upper, lower = _Counts(limits, shape, rungs if ladders else None, levels), None
-    checked, by_blocks = True, 0
+    checked, slides, by_blocks, off_edge = True, False, 0, 0
     each = records * plan.block
     start = samples.start * each
     for endings in store.endings(start, samples.stop * each, counted):
@@ -252,7 +256,8 @@ def count(
         if ladders:
             there.ravel()[endings.id - start] = True
         checked &= bool(endings.checked.all())
-        by_blocks += int(endings.by_blocks.sum())
+        slides |= bool((endings.slip > 0).any())
+        by_blocks, off_edge = by_blocks + int(endings.by_blocks.sum()), off_edge + int(endings.off_edge.sum())
         doubtful = int(endings.unknown.sum())
         unknown += doubtful
         if doubtful and lower is None:  # up to the first unknown outcome, both counts are equal
@@ -264,12 +269,13 @@ def count(
                 known = known_to_exceed(endings, limit, rotations, phi_cr[sample])
                 lower.add(limit, known, cell, ladder, level)
 
-    # Free blocks may move in other ways than the mechanism, from other accelerations.
-    uplifts = store.facts().get(UPLIFT_FACT, {}).get(structure) if not by_blocks else None
+    # Free blocks may move in other ways than the mechanism, from other accelerations; a body that slides never uplifts.
+    uplifts = store.facts().get(UPLIFT_FACT, {}).get(structure) if not (by_blocks or slides) else None
 
     def tally(counts: _Counts, of_known: Tally | None) -> Tally:
         of_ladders = Ladders(counts.first, there) if ladders else None
-        return Tally(plan, samples, runs, counts.exceeding, of_ladders, unknown, checked, by_blocks, of_known, uplifts)
+        many = unknown, checked, by_blocks, off_edge, slides
+        return Tally(plan, samples, runs, counts.exceeding, of_ladders, *many, of_known, uplifts)
 
     checked |= store.fact("description")["model"] != "nonlinear"  # equivalent blocks have no joints
     return tally(upper, tally(lower, None) if lower is not None else None)
@@ -325,8 +331,8 @@ def known_to_exceed(found: Endings, limit: Limit, reach: Reals | None, phi_cr: R
     bound = found.lower_bound[:, None] * phi_cr
     with np.errstate(invalid="ignore"):
         could = found.peaks >= bound * (1 - ROTATION_TOLERANCE)
-        surely = (bound > reach) | ~could
-    return np.asarray(np.where(found.unknown, could.any(axis=1) & surely.all(axis=1), known))
+        surely = could.any(axis=1) & ((bound > reach) | ~could).all(axis=1)
+    return np.asarray(np.where(found.unknown, surely | _slides_past(found, limit), known))
 
 
 def _exceeds(found: Endings, limit: Limit, reach: Reals | None, ratio: Reals) -> Bools:
@@ -336,11 +342,16 @@ def _exceeds(found: Endings, limit: Limit, reach: Reals | None, ratio: Reals) ->
     overturned = found.overturned
     if reach is not None:
         # A NaN, of a run that overturned, exceeds nothing.
-        return np.asarray(overturned | (found.peaks > reach).any(axis=1))
+        return np.asarray(overturned | (found.peaks > reach).any(axis=1) | _slides_past(found, limit))
     if isinstance(limit, str):
         return overturned if limit == OVERTURNING else found.uplifts
     with np.errstate(invalid="ignore"):
         return np.asarray(overturned | (ratio > limit))
+
+
+def _slides_past(found: Endings, limit: Limit) -> Bools:
+    """Return which runs slide past a displacement without uplift; none past another limit state."""
+    return np.asarray(found.slip > (metres(limit) or np.inf))
 
 
 def peaks(store: Store, plan: Plan, structure: str) -> Reals:

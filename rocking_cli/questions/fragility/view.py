@@ -91,7 +91,7 @@ def out_of_reach(store: Store, plan: Plan, definition: Definition) -> list[str]:
     return [
         f"{structure}: its top never moves by {limit}"
         + ("" if all(never) else f" in {sum(never)} of {len(never)} samples")
-        + ", whatever its rotation: this limit is then exceeded only by overturning."
+        + ", whatever its rotation: this limit is then exceeded only by overturning or sliding."
         for (structure, limit), never in outcomes.items()
         if any(never)
     ]
@@ -311,7 +311,7 @@ def _engines_in_words(outcomes: Sequence[UnknownRuns], engine: EngineName) -> li
     several = len(outcomes) > 1
     named = [f"{count}{f' runs of {structure}' if several else ' runs'}" for structure, count in counts.items()]
     friction = f"that of the structure's file, or {MASONRY_FRICTION:g}, as usual for masonry, if it gives none"
-    return [blocks_in_words(engine, " and ".join(named), friction)]
+    return [blocks_in_words(engine, " and ".join(named), friction, sum(each.off_edge for each in outcomes))]
 
 
 def without_logarithm(measure: str, runs: int) -> Iterator[str]:

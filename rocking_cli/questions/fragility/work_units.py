@@ -20,7 +20,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.names import OPENING
 from rocking_cli.questions.fragility.plan import Plan
 from rocking_cli.questions.fragility.sources import KeptMotions
-from rocking_cli.questions.fragility.store import COLUMNS, FAILED, UNKNOWN, RunRows
+from rocking_cli.questions.fragility.store import COLUMNS, FAILED, OFF_EDGE, UNKNOWN, RunRows
 from rocking_cli.questions.fragility.study import Sample
 from rocking_cli.structure import Structure, with_restitution
 from rocking_cli.studies.contact import Contacts
@@ -83,7 +83,7 @@ def carry_out(unit: WorkUnit) -> RunRows:
     def known(values: Reals) -> Reals:
         return np.where(outcomes.failed, np.nan, values)
 
-    outcome = np.where(outcomes.unknown, UNKNOWN, outcomes.fell_to)
+    outcome = np.where(outcomes.unknown, UNKNOWN, outcomes.fell_to * np.where(outcomes.off_edge, OFF_EDGE, 1))
     return RunRows(
         id=unit.id,
         scale=unit.runs.scale,
@@ -97,6 +97,7 @@ def carry_out(unit: WorkUnit) -> RunRows:
         known_to=known(outcomes.known_to),
         lower_bound=known(np.where(outcomes.unknown, outcomes.lower_bound, np.nan)),
         opening=known(outcomes.opening),
+        slip=known(outcomes.slip),
         slide_time=slides,
         by_blocks=outcomes.by_blocks.astype(np.float64),
     )

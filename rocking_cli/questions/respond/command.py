@@ -79,6 +79,9 @@ def _models(text: str) -> tuple[str, ...]:
 @options.opening
 @options.engine
 @click.option("--impacts", is_flag=True, help="List the impacts: time, and angular velocity before and after.")
+@click.option(
+    "--each-block", is_flag=True, help="Let --out write the motion of each block: time, block, x, z, rotation."
+)
 @options.out(".csv", ".parquet", what="Write the time histories (.csv or .parquet).")
 @options.plot("Plot the time histories")
 @click.option(
@@ -145,5 +148,7 @@ def _check(asked: GroundMotions, output: Output, question: Mapping[str, Any]) ->
     if not asked and question["release"] is None:
         raise click.UsageError("No excitation given: add --record FILE, --pulse PULSE or --release TILT.")
     asked.check(question["vertical"])
+    if question["each_block"] and output.out is None:
+        raise click.UsageError("--each-block is about the table: give --out FILE.")
     if question["contact"] and (output.plot is None or "nonlinear" not in (question["models"] or options.MODELS)):
         raise click.UsageError("--contact adds a panel to the plot of the nonlinear history: give --plot FILE.")

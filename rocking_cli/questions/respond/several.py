@@ -29,7 +29,7 @@ from rocking_cli.views.engines import engines_in_words
 from rocking_cli.views.neighbours import deviations, neighbour_columns
 from rocking_cli.views.response import apart, model_heads, models_used
 from rocking_cli.views.restitution import restitution_used
-from rocking_cli.views.verdict import unchecked, unknown_after
+from rocking_cli.views.verdict import CROSSCHECK, unchecked, unknown_after
 from rocking_cli.views.view import ABSENT, Table, heading, number
 
 
@@ -74,7 +74,7 @@ class Several:
         self._rows: list[MotionRow] = []
         self._ends: list[Conclusion] = []
         self._asked = asked
-        self._checked, self._doubtful = True, False
+        self._checked, self._doubtful, self._witness = True, False, True
         self._until: dict[str, str] = {}
         self._around: Neighbourhood | None = None
         self._mechanism = structure.mechanism
@@ -98,6 +98,7 @@ class Several:
             self._doubtful |= neighbours is not None and bool(neighbours.unknown)
             if run.unknown:
                 self._until[name] = unknown_after(run).replace("The", "the", 1)
+                self._witness &= run.witness
             self._checked &= run.model != "nonlinear" or run.check is not None
             self._around = neighbours.around if neighbours is not None else None
             if sign in found.contacts:
@@ -170,10 +171,7 @@ class Several:
         for name, until in self._until.items():
             yield f"{name}: {until}"
         if self._until:
-            yield (
-                "Next: `rocking crosscheck` simulates what happens from then on, as free blocks; `rocking margin` "
-                "shows up to which scale factor the outcomes are known."
-            )
+            yield f"Next: {CROSSCHECK * self._witness}`rocking margin` shows up to which factor the outcomes are known."
         asks = {name: demand for name, demand in self._contacts.items() if demand.friction_needed >= 0}
         order = sorted(asks, key=lambda name: -asks[name].friction_needed)
         if len(order) > 1:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
@@ -67,6 +67,7 @@ def respond(
     engine: str = "exact",
     impacts: bool = False,
     contact: bool = False,
+    each_block: bool = False,
     title: str | None = None,
     out: str | Path | None = None,
     plot: str | Path | None = None,
@@ -110,6 +111,9 @@ def respond(
         Whether the answer lists the impacts: the first in a table, without chatter, all in the data.
     contact : bool
         Whether the plot shows the friction required; it does if the structure gives `friction`.
+    each_block : bool
+        Whether frame and table have the motion of each block, to play it back: time, name, place of its centroid and
+        clockwise rotation, by the nonlinear model.
     title : str, optional
         Title of tables and plot; by default the name of the structure.
     out, plot : str or Path, optional
@@ -166,7 +170,7 @@ def respond(
     drawn_around = around_of(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
     if motions.reading.azimuth == ALL_AZIMUTHS:
         _refuse_with_all_azimuths(polarity=signs != (1,), with_pulse=with_pulse, impacts=impacts, contact=contact,
-                                  tail=tail != TAIL_SECONDS, neighbours=neighbours,
+                                  each_block=each_block, tail=tail != TAIL_SECONDS, neighbours=neighbours,
                                   engine=engine != "exact")  # fmt: skip
         around = all_directions(ready, motions, third, models=models, release=tilt, rtol=rtol, watch=watch)
         write_files(around, out, plot, watch)
@@ -190,14 +194,14 @@ def respond(
         models = "nonlinear"
     if engine == "blocks":
         idle = {"rtol": rtol != RTOL, "opening": opening != OPENING, "impacts": impacts, "contact": contact}
-        refuse_idle("with free blocks", **idle, restitution_deviation=restitution_deviation)
+        refuse_idle("with free blocks", **idle, each_block=each_block, restitution_deviation=restitution_deviation)
     names = models_of(models) if models is not None else usual_models(ready, watch)
     if not rocks:
         refuse_idle(f"as {ready.no_model}", neighbours=neighbours, out=out, plot=plot)
     else:
         ready.models(names)
     if "nonlinear" not in names:
-        refuse_idle("on linear blocks, which have no joints", opening=opening != OPENING)
+        refuse_idle("on linear blocks, which have no joints", opening=opening != OPENING, each_block=each_block)
     title, doubts = heading(ready.mechanism) if title is None else title, doubts_of(ready.mechanism)
 
     def one(given: Scaled | None, title: str, table: str | Path | None, picture: str | Path | None) -> ResponseAnswer:
@@ -209,7 +213,8 @@ def respond(
         _note_pulse(response, watch)
         shown = view(response, ready, question, str(polarity), title, doubts, impacts=impacts)
         figure = partial(_figure, response, ready, title, contact=contact or ready.mechanism.friction is not None)
-        columns, blocks = partial(_columns, response, ready), partial(_blocks, response, ready)
+        blocks = partial(_of_each_block if each_block else _blocks, response, ready)
+        columns = partial(_columns, blocks)
         more = {"impacts": partial(_impact_columns, response)}
         answer = ResponseAnswer("response", response, shown, columns, figure, blocks, more)
         write_files(answer, table, picture, watch)
@@ -304,9 +309,24 @@ def _blocks(response: Response, structure: Structure) -> Iterator[dict[str, NDAr
     yield from history_table.blocks(runs, response.first, watched=Watched(structure.mechanism), base_shear=shear)
 
 
-def _columns(response: Response, structure: Structure) -> Columns:
-    blocks = list(_blocks(response, structure))
-    return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
+def _of_each_block(response: Response, structure: Structure) -> Iterator[Columns]:
+    """Yield the motion of each block, a row for each sample and block, of one polarity after the other."""
+    from rocking_cli.studies.movements import Watched
+
+    for sign, runs in response.runs.items():
+        run = runs["nonlinear"]
+        names, places, turns = zip(*Watched(structure.mechanism).bodies(run), strict=True)
+        z = np.stack(places, axis=1).ravel()
+        polarity = {"polarity": np.full(z.size, sign)} if len(response.runs) > 1 else {}
+        yield {
+            **polarity, "t [s]": np.repeat(run.time, len(names)), "block": np.tile(names, run.time.size),
+            "x [m]": z.real, "z [m]": z.imag, "rotation [rad]": np.stack(turns, axis=1).ravel(),
+        }  # fmt: skip
+
+
+def _columns(blocks: Callable[[], Iterator[Columns]]) -> Columns:
+    each = list(blocks())
+    return {name: np.concatenate([block[name] for block in each]) for name in each[0]}
 
 
 def _impact_columns(response: Response) -> Columns:

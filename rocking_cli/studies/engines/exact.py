@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import replace
 from math import isfinite
 from typing import ClassVar, Unpack
 
@@ -16,6 +18,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines.contract import Engine, EngineName, RunOptions
+from rocking_cli.studies.engines.free_blocks import free_blocks
 
 
 def follow(
@@ -60,7 +63,10 @@ def follow(
     """
     check_motion(structure, motion, release, tail)
     check_rtol(rtol)
-    return history.follow(structure.model(model), motion, release=release or 0.0, tail=tail, rtol=rtol)
+    simulated = history.follow(structure.model(model), motion, release=release or 0.0, tail=tail, rtol=rtol)
+    with suppress(InputError):  # raised of what free blocks cannot have
+        return replace(simulated, witness=simulated.unknown and free_blocks(structure.mechanism) is not None)
+    return simulated
 
 
 def check_motion(structure: Structure, motion: GroundMotion | None, release: float | None, tail: float) -> None:

@@ -19,11 +19,12 @@ from rocking_cli.dynamics.history import TAIL_SECONDS, BlockPeaks, History, cont
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcome, Outcomes
 from rocking_cli.dynamics.parallel import MAX_PROCESSES, in_processes
+from rocking_cli.dynamics.sliding import Slid
 from rocking_cli.errors import SolverError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import memory
-from rocking_cli.studies.engines.blocks import BlockModel, BlockMotion
+from rocking_cli.studies.engines.blocks import SUNK, BlockModel, BlockMotion
 from rocking_cli.studies.engines.contract import Engine, EngineName, MotionOptions, RunOptions
 from rocking_cli.studies.engines.exact import EXACT, check_motion
 from rocking_cli.studies.engines.free_blocks import FreeBlocks, free_blocks
@@ -65,6 +66,7 @@ def outcome_of(moved: BlockMotion, free: FreeBlocks, phi_cr: Sequence[float]) ->
     uplifts = bool(moving.any()) or bool(fell)
     fell_to = (1 if way >= 0 else -1) if fell else 0
     ratio = max(peak / limit for peak, limit in zip(peaks, phi_cr, strict=True))
+    slip = 0.0 if uplifts or not free.leads else abs(slid_of_blocks(moved).largest)
     end = float(moved.time[-1])
     return {
         "still_rocking": not (moved.at_rest or fell or moved.failed),
@@ -83,9 +85,16 @@ def outcome_of(moved: BlockMotion, free: FreeBlocks, phi_cr: Sequence[float]) ->
         "lower_bound": ratio if moved.failed else nan,
         "opening": nan,
         "by_blocks": True,
-        "slip": 0.0,
+        "slip": slip if slip > SUNK * free.height else 0.0,
         "off_edge": bool(moved.off),
     }
+
+
+def slid_of_blocks(moved: BlockMotion) -> Slid:
+    """Return the slip of the block that slides farthest, in a motion of blocks without uplift."""
+    across = moved.moved[..., 0]
+    slip = across[:, np.abs(across).max(axis=0).argmax()]
+    return Slid(float(slip[np.abs(slip).argmax()]), float(slip[-1]), float(np.abs(np.diff(slip)).sum()), slip)
 
 
 def _place(free: FreeBlocks, block: str) -> int:
@@ -127,6 +136,7 @@ def history_of(moved: BlockMotion, free: FreeBlocks, model: Model | None, motion
         impacts=impacts_of(moved.time, phi, rate, np.abs(phi) > MOVED * phi_cr),
         contact_lost=contact_lost(motion, free.gravity), p=model.p if model is not None else nan,
         ends_at_limit=model.ends_at_limit if model is not None else (False, False), blocks=blocks_of(moved, free),
+        slid=slid_of_blocks(moved) if outcome["slip"] else None,
     )  # fmt: skip
 
 
@@ -207,7 +217,7 @@ class Blocks(Engine):
                 progress(1)
         rows = [known[key] for key in keys]
         fields = {name: np.array([row[name] for row in rows]) for name in OUTCOME_FIELDS}
-        for name in ("peak_positive", "peak_negative"):
+        for name in ("peak_positive", "peak_negative", "slip"):
             fields[name] = fields[name] * runs.slender
         return Outcome(**fields)
 

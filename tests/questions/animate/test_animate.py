@@ -71,7 +71,7 @@ class TestFilm:
         pulse = film(0.3).motion
         still = np.zeros(round(5.0 / pulse.dt))
         later = np.concatenate([still, pulse.acceleration, *[still] * 10])
-        motion = GroundMotion("late", pulse.dt, later)
+        motion = GroundMotion("late", pulse.dt, later, unit="m/s2")
         shown = Film(picture(BLOCK), respond(BLOCK, motion, models=("nonlinear",))["nonlinear"], motion)
         assert shown.start == pytest.approx(shown.history.uplift_time - 1.0)
         assert shown.end == pytest.approx(shown.history.end_time + 1.5)
@@ -164,7 +164,7 @@ class TestGround:
         dt, w = 0.01, 2 * pi
         t = np.arange(0.0, 30.0, dt)
         place = 0.05 * np.exp(-(((t - 12) / 3) ** 2)) * np.sin(w * t)
-        record = GroundMotion("r", dt, np.gradient(np.gradient(place, dt), dt) + 0.02)
+        record = GroundMotion("r", dt, np.gradient(np.gradient(place, dt), dt) + 0.02, unit="m/s2")
         assert record.displacement[-1] > 8
         shown = Film(picture(BLOCK), respond(BLOCK, record, models=("nonlinear",))["nonlinear"], record)
         scene = Scene((shown,))

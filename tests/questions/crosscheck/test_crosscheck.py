@@ -26,7 +26,7 @@ from tests.conftest import EXAMPLES
 pytest.importorskip("mujoco", reason="free blocks need mujoco")
 
 SHORT = rk.Block(width=1.0, height=2.0, name="short")  # it soon comes to rest
-BRIEF = rk.GroundMotion("brief", 0.01, 8.0 * np.sin(np.pi * np.arange(41) / 40))
+BRIEF = rk.GroundMotion("brief", 0.01, 8.0 * np.sin(np.pi * np.arange(41) / 40), unit="m/s2")
 ACCEL = EXAMPLES / "accel.csv"
 PORTAL = EXAMPLES / "masonry" / "portal.yaml"
 
@@ -274,3 +274,43 @@ def test_the_portal_agrees_and_the_arch_collapses(tmp_path):
     arch = rk.crosscheck(EXAMPLES / "masonry" / "buttressed_arch.yaml", ACCEL, scale=0.7)
     assert arch.finding == "exact_unknown" and arch.of_blocks.fell
     assert 3.2 < arch.parted < arch.exact.known_to < arch.joints[0].passed < arch.of_blocks.overturning_time
+
+
+@pytest.mark.parametrize(
+    ("fields", "refused"),
+    [
+        ({}, None),
+        ({"stops": [{"point": [0.4, 2.0], "gap": 0.05, "name": "wall", "restitution": 0.5}]}, "stops"),
+        ({"crushing": {"strength": 2e6}}, "pivots that crush"),
+    ],
+)
+@pytest.mark.parametrize("several", [False, True])
+def test_it_is_advised_where_it_is_not_refused(fields, refused, several):
+    block = rk.Block(width=0.4, height=2.2, density=1000, depth=1, friction=0.19, **fields)
+    motions = ["sine:0.3g:0.8s", "sine:0.32g:0.8s"][: 1 + several]
+    answers = rk.respond(block, motions if several else motions[0], models="nonlinear", neighbours=0)
+    ends = [each.conclusion for each in answers.values()] if several else [answers.conclusion]
+    assert all(end.concluded == "unknown" and ("crosscheck" in end.next) == (refused is None) for end in ends)
+    said = " ".join(str(part) for part in answers.view.parts)
+    assert ("`rocking crosscheck`" in said) == (refused is None) and "`rocking margin` shows up to which" in said
+    if refused is None:
+        assert rk.crosscheck(block, motions[0]).finding == "exact_unknown"
+    else:
+        with pytest.raises(rk.InputError, match=refused):
+            rk.crosscheck(block, motions[0])
+
+
+def test_a_release_is_compared_until_an_impact_whose_restitution_is_unknown(tmp_path):
+    flat = rk.Block(width=1.6, height=1.0, friction=3.0)  # kinematics give no restitution
+    answer = rk.crosscheck(flat, release=0.5)
+    alpha, radius = np.arctan2(1.6, 1.0), np.hypot(0.8, 0.5)
+    start = 0.5 * alpha
+    # The energy of a fall from rest gives the rate; s with phi = start - s^2 takes away its zero at the start.
+    s = (np.arange(200_000) + 0.5) / 200_000 * np.sqrt(start)
+    rate = np.sqrt(1.5 * 9.80665 / radius * (np.cos(alpha - start) - np.cos(alpha - start + s**2)))
+    first_impact = np.sum(2 * s / rate) * np.sqrt(start) / 200_000
+    assert answer.exact.unmeasured and answer.exact.known_to == pytest.approx(first_impact, rel=1e-6)
+    assert answer.finding == "exact_unknown" and answer.peaks == pytest.approx([0.5, 0.5], rel=1e-2)
+    assert "it has an impact, and its restitution is not known" in answer.view.data["verdict"]
+    with pytest.raises(rk.InputError, match="restitution"):
+        rk.crosscheck(flat, "sine:2g:0.5s")

@@ -84,7 +84,7 @@ def test_overturning_times_are_those_of_the_integrated_motion(file, direction, m
     found = linearisation(mechanism, direction, acceleration=accelerations)
     for a, time in zip(accelerations, found.overturning, strict=True):
         push = np.full(3000, -direction * a * block.lambda_ * mechanism.gravity)
-        motion = GroundMotion("constant", 0.005 / block.p, push)
+        motion = GroundMotion("constant", 0.005 / block.p, push, unit="m/s2")
         history = respond(mechanism, motion, models=("nonlinear",), rtol=1e-12)["nonlinear"]
         assert history.overturning_time == pytest.approx(time, rel=precision_of(mechanism))
 

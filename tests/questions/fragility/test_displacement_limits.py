@@ -1,6 +1,8 @@
 """Limit states on how far the top moves: against closed forms, dense looks at the way, and single histories."""
 
 import json
+import sqlite3
+from contextlib import closing
 
 import numpy as np
 import pytest
@@ -16,7 +18,7 @@ from rocking_cli.questions.fragility.study import load_study
 from rocking_cli.questions.fragility.tally import count, exceeds, first_reached, of_a_structure
 from rocking_cli.studies.fragility.quantities import ROTATIONS_FACT, displacement_in_mm, is_quantity, kept, metres
 from rocking_cli.studies.movements import Watched
-from tests.conftest import EXAMPLES
+from tests.conftest import EXAMPLES, rows_of
 from tests.questions.fragility.test_study_runs import carry_out
 from tests.stores import command
 
@@ -145,6 +147,46 @@ def test_each_run_exceeds_when_its_own_history_says_so(whole):
             assert flags[limit][k] == expected, (k, limit)
             seen.add((limit, bool(expected), history.overturned))
     assert {(limit, said, False) for limit in LIMITS for said in (True, False)} < seen
+
+
+def slip_of_a_sine(amplitude, period, friction):
+    """Return the largest slip of a body on the ground under one sine [m], in small steps and without the program."""
+    steps = 100_000
+    dt, slip, rate, most = 2 * period / steps, 0.0, 0.0, 0.0
+    for k in range(steps):
+        t = (k + 0.5) * dt
+        push = -amplitude * 9.80665 * np.sin(2 * np.pi * t / period) if t < period else 0.0
+        grip = friction * 9.80665 * dt
+        tried = rate + push * dt
+        rate = tried - np.clip(tried, -grip, grip)  # friction stops it, or brakes it by all it has
+        slip += rate * dt
+        most = max(most, abs(slip))
+    return most
+
+
+def test_a_body_that_only_slides_exceeds_what_its_slip_exceeds(tmp_path):
+    plinth = "mechanism: block\nname: plinth\nwidth: 0.4\nheight: 0.9\nfriction: 0.15\n"
+    (tmp_path / "plinth.yaml").write_text(plinth, encoding="utf-8")
+    levels = [0.12, 0.2, 0.24, 0.3, 0.36, 0.43]  # of one that rocks from 0.444 g
+    limits = ["uplift", "sliding", "20 mm", "80 mm", "overturning"]
+    path = write(
+        tmp_path, structures=["plinth.yaml"], records=[{"pulse": "sine:1g:0.8s"}], samples=1, limit_states=limits,
+        levels={"measure": "PGA", "values": levels}, polarities=[1],
+    )  # fmt: skip
+    carry_out(path, tmp_path / "study.db", jobs=1)
+    slips = np.array([slip_of_a_sine(level, 0.8, 0.15) for level in levels])
+    assert min(abs(slips - 0.02).min(), abs(slips - 0.08).min()) > 1e-3
+    shown = command("results", tmp_path / "study.db", "--json", "--out", tmp_path / "runs.csv")
+    curves = json.loads(shown.stdout)["curves"]
+    counts = {each["limit_state"]: each["exceedances"] for each in curves}
+    expected = {"sliding": slips > 0, "20 mm": slips > 0.02, "80 mm": slips > 0.08}
+    assert counts == {"uplift": 0, "overturning": 0} | {limit: int(seen.sum()) for limit, seen in expected.items()}
+    assert not any(each["cut"] for each in curves)  # below lambda nothing uplifts, but all may slide
+    rows = rows_of(tmp_path / "runs.csv")
+    assert [float(row["slip [m]"]) for row in rows] == pytest.approx(slips.tolist(), abs=2e-4)
+    assert [row["outcome"] for row in rows] == ["does not uplift"] + ["does not overturn; slides"] * 5
+    with closing(sqlite3.connect(tmp_path / "study.db")) as connection:
+        assert [row for (row,) in connection.execute("SELECT outcome FROM runs")] == [row["outcome"] for row in rows]
 
 
 def test_samples_of_another_geometry_have_rotations_of_their_own(whole):

@@ -57,6 +57,8 @@ def test_what_implies_what():
     rest = [each for each in (*LIMITS, "9 mm", "sliding") if each != "uplift"]
     expected = {(each, "uplift") for each in rest} | {(0.5, 0.1), ("25 mm", "9 mm")}
     assert found == expected | {("overturning", each) for each in (0.1, 0.5, "25 mm", "9 mm")}
+    loose = {(a, b) for a, b in found if not implies(a, b, slides=True)}  # what slides need not uplift
+    assert loose == {(each, "uplift") for each in ("25 mm", "9 mm", "sliding")}
 
 
 def test_no_curve_and_no_band_is_above_one_that_it_implies(answer):

@@ -2,9 +2,11 @@
 
 import json
 import os
+import sqlite3
 import subprocess
 import sys
 import time
+from contextlib import closing
 
 import numpy as np
 import pytest
@@ -14,7 +16,7 @@ from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.questions.fragility import work_units
 from rocking_cli.questions.fragility.campaign import prepare
-from rocking_cli.questions.fragility.store import COLUMNS, FAILED, UNKNOWN, Store
+from rocking_cli.questions.fragility.store import COLUMNS, FAILED, OFF_EDGE, UNKNOWN, Store
 from rocking_cli.questions.fragility.study import load_study
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import engine_of, scene
@@ -118,6 +120,7 @@ def test_another_engine_is_another_study(whole, tmp_path):
 @NEEDS_BLOCKS
 def test_free_blocks_that_fail_are_of_unknown_outcome(tmp_path, monkeypatch):
     monkeypatch.setattr("rocking_cli.studies.engines.memory.recall", lambda keys: {})
+    monkeypatch.setattr("rocking_cli.studies.engines.memory.remember", lambda outcomes: None)
     monkeypatch.setattr("rocking_cli.studies.engines.blocks.BlockModel._fault", lambda *state: "a step diverged")
     monkeypatch.setattr("rocking_cli.studies.engines.free.FINER", (1.0,))
     answer = rk.fragility(write(tmp_path), jobs=1)
@@ -125,6 +128,32 @@ def test_free_blocks_that_fail_are_of_unknown_outcome(tmp_path, monkeypatch):
     told = command("results", tmp_path / "study.db").stdout
     assert "1 of 2 runs (50 %) is of unknown outcome, because free blocks failed: a step diverged, or a body" in told
     assert answer.curves["overturning"].is_band
+
+
+@NEEDS_BLOCKS
+def test_runs_that_slide_and_runs_that_fall_off_an_edge_are_told_apart(tmp_path, monkeypatch):
+    monkeypatch.setattr("rocking_cli.studies.engines.memory.place", lambda: tmp_path / "blocks.sqlite")
+    podium = "podium: {polygon: [[-0.3, -1], [9, -1], [9, 0], [-0.3, 0]]}"
+    cube = "cube: {polygon: [[0, 0], [1, 0], [1, 1], [0, 1]]}"
+    structure = f"mechanism: assembly\nname: cube\ndensity: 2000\ndepth: 1\nfriction: 0.2\nblocks: {{{cube}}}\n"
+    text = STUDY.replace("opening: 0\n", "").replace("auto", "blocks").replace("0.8s", "1.5s")
+    text = text.replace("[0.1, 1.5]", "[0.1, 0.35, 1.0]").replace("-1", "1").replace("0.5,", "100 mm,")
+    path = write(tmp_path, text, f"{structure}ground: {{{podium}}}\n")
+    answer = rk.fragility(path, jobs=1)
+    rows = rows_in(tmp_path / "study.db")
+    assert rows.outcome.tolist() == [0, 0, -OFF_EDGE]
+    assert (rows.slip > 0.1).tolist() == [False, True, False]
+    counts = {each.limit: each.curve.exceedances for each in answer.result}
+    assert np.isinf(answer.runs()["phi_over_phi_cr"]).tolist() == [False, False, True]
+    assert counts == {"uplift": 1, "100 mm": 2, "overturning": 1}
+    shown = command("results", tmp_path / "study.db", "--json", "--out", tmp_path / "runs.csv")
+    assert json.loads(shown.stdout)["outcomes"][0]["off_edge"] == 1
+    assert "In 1 of them, a block falls off an edge that the file draws: they count as overturned." in shown.stdout
+    told = [(row["outcome"], row["fell_to"]) for row in rows_of(tmp_path / "runs.csv")]
+    assert told == [("does not uplift", "0"), ("does not overturn; slides", "0"), ("falls off an edge", "-1")]
+    with closing(sqlite3.connect(tmp_path / "study.db")) as connection:
+        seen = connection.execute("SELECT outcome, fell_to FROM runs").fetchall()
+    assert [(outcome, str(fell_to)) for outcome, fell_to in seen] == told
 
 
 def test_runs_of_blocks_that_do_not_stand_fail(tmp_path, monkeypatch):

@@ -18,7 +18,7 @@ LEVELS = {"measure": "PGA", "least": 0.2, "most": 1.6, "count": 6}
 
 
 def shaken(name="mine", size=3.0, **more):
-    return rk.GroundMotion(name, 0.01, size * np.sin(2 * np.pi * TIME / 0.8) * np.exp(-TIME), **more)
+    return rk.GroundMotion(name, 0.01, size * np.sin(2 * np.pi * TIME / 0.8) * np.exp(-TIME), unit="m/s2", **more)
 
 
 def block(name="pillar", width=0.6):

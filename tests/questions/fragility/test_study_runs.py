@@ -661,7 +661,9 @@ def test_intensities_are_those_of_their_definitions():
 
 def test_one_is_the_least_pga_over_g_lambda_that_uplifts():
     block = load_structure(EXAMPLES / "block.yaml").model_copy(update={"gravity": 3.7})
-    motion = GroundMotion("pulse", 0.01, np.concatenate([np.zeros(5), np.sin(np.linspace(0, 6.28, 100)), np.zeros(5)]))
+    motion = GroundMotion(
+        "pulse", 0.01, np.concatenate([np.zeros(5), np.sin(np.linspace(0, 6.28, 100)), np.zeros(5)]), unit="m/s2"
+    )
     lam = block.uplift(1)  # type: ignore[arg-type]
     scales = Reference(p=1.0, lambda_=lam, gravity=block.gravity)
     unit = float(parse_measure("PGA/(g lambda)").relative(motion.pga_g, scales))

@@ -145,8 +145,9 @@ def test_what_is_known_of_a_run_is_known_of_the_side_on_which_it_was_seen():
     outcome, flags = np.array([UNKNOWN, UNKNOWN, UNKNOWN, 0]), np.array([True, True, False, True])
     bound = np.array([0.5, 0.5, 0.5, np.nan])
     found = Endings(
-        np.arange(4), outcome, np.full(4, 0.75), peaks, flags, flags & (np.arange(4) != 1), bound, flags, ~flags
-    )
+        np.arange(4), outcome, np.full(4, 0.75), peaks, flags, flags & (np.arange(4) != 1), bound, np.zeros(4), flags,
+        ~flags,
+    )  # fmt: skip
     phi_cr, reach = np.tile([0.2, 0.1], (4, 1)), np.tile([0.09, 0.055], (4, 1))
     known = {limit: tally.known_to_exceed(found, limit, None, phi_cr).tolist() for limit in (*LIMITS[:2], 0.6)}
     assert known == {"uplift": flags.tolist(), 0.1: [True] * 4, 0.6: [False, False, False, True]}
@@ -162,11 +163,30 @@ def test_a_bound_that_is_the_peak_itself_is_known_of_its_side():
     """Nothing larger came after the first warning: .5 of the critical rotation .2 is the peak of .1 that way."""
     peaks, flags = np.array([[0.1, 0.04]]), np.ones(1, bool)
     found = Endings(
-        np.arange(1), np.array([UNKNOWN]), np.full(1, 0.5), peaks, flags, flags, np.array([0.5]), flags, ~flags
-    )
+        np.arange(1), np.array([UNKNOWN]), np.full(1, 0.5), peaks, flags, flags, np.array([0.5]), np.zeros(1), flags,
+        ~flags,
+    )  # fmt: skip
     phi_cr = np.array([[0.2, 0.1]])
     for reach, known in (([0.09, 0.01], True), ([0.09, 0.045], True), ([0.11, 0.01], False)):
         assert tally.known_to_exceed(found, "40 mm", np.array([reach]), phi_cr).tolist() == [known], reach
+
+
+def test_a_slip_counts_where_the_outcome_is_known_and_where_it_was_before_it_ended():
+    """Two bodies slide by 30 mm, one of them up to what it then meets; the third rocks."""
+    outcome, never, slip = np.array([0, UNKNOWN, 0]), np.zeros(3, bool), np.array([0.03, 0.03, 0.0])
+    peaks = np.array([[0.0, 0.0], [0.0, 0.0], [0.1, 0.0]])
+    found = Endings(
+        np.arange(3), outcome, peaks[:, 0] / 0.2, peaks, peaks[:, 0] > 0, slip > 0, np.array([np.nan, 0.0, np.nan]),
+        slip, ~never, never,
+    )  # fmt: skip
+    phi_cr, reach = np.full((3, 2), 0.2), np.full((3, 2), 0.05)
+    for limit, known, maybe in (
+        ("29 mm", [True, True, True], [True, True, True]),
+        ("31 mm", [False, False, True], [False, True, True]),
+    ):
+        assert tally.known_to_exceed(found, limit, reach, phi_cr).tolist() == known
+        assert tally.exceeds(found, limit, reach).tolist() == maybe
+    assert tally.known_to_exceed(found, 0.1, None, phi_cr).tolist() == [False, False, True]
 
 
 @pytest.mark.parametrize("limit", LIMITS)
@@ -212,7 +232,7 @@ def test_words_and_json_state_a_band_and_how_many_runs_are_unknown(whole):
     unknown = int((whole.rows.outcome == UNKNOWN).sum())
     assert f"{whole.plan.size} runs ({unknown} of unknown outcome)" in shown.stdout
     size = whole.plan.size
-    expected = {"structure": "portal", "runs": size, "unknown": unknown, "checked": True, "by_blocks": 0}
+    expected = {"structure": "portal", "runs": size, "unknown": unknown, "checked": True, "by_blocks": 0, "off_edge": 0}
     assert data["outcomes"] == [expected | {"share": unknown / size}]
     assert f"portal: {unknown} of {whole.plan.size} runs" in data["notes"][0]
     lines = [line.strip() for line in shown.stdout.splitlines()]

@@ -211,7 +211,7 @@ class TestWords:
 @pytest.mark.parametrize("polarities", [(1,), (-1,), (1, -1)])
 def test_uplift_is_a_quotient(polarities):
     """A ground acceleration to the left lifts a block clockwise, at tan(alpha) g."""
-    motion = GroundMotion("two pushes", 0.1, np.array([0.0, 4.0, 0.0, -2.0, 0.0]))
+    motion = GroundMotion("two pushes", 0.1, np.array([0.0, 4.0, 0.0, -2.0, 0.0]), unit="m/s2")
     found = margin(build_model(BLOCK, "nonlinear"), motion, polarities, around=Neighbourhood(1))
     assert found.uplift == pytest.approx(0.25 * BLOCK.gravity / 4.0, rel=1e-12)
     still = margin(build_model(BLOCK, "nonlinear"), motion.scaled(0), polarities, around=Neighbourhood(1))
@@ -224,13 +224,24 @@ def test_factors_must_ascend(wrong):
         margin(build_model(BLOCK, "nonlinear"), parse_pulse("sine:1g:1s").sampled(), factors=np.array(wrong))
 
 
+@pytest.mark.parametrize(("friction", "rocks"), [(0.15, False), (0.5, True)])
+def test_what_only_slides_uplifts_at_no_factor(friction, rocks):
+    """A block of 0.4 m x 0.9 m rocks only on friction above 4/9."""
+    plinth = BLOCK.model_copy(update={"width": 0.4, "height": 0.9, "friction": friction})
+    motion = parse_pulse("sine:0.5g:0.5s").sampled()
+    found = margin(build_model(plinth, "nonlinear"), motion, around=Neighbourhood(1))
+    assert (found.uplift is not None) == rocks
+
+
 def test_uplift_is_that_of_the_worse_polarity():
     """Of a stone that leans, under a push one way only."""
     leaning = parse_structure(
         "mechanism: rigid_body\npolygon: [[-0.4, 0], [0.2, 0], [0.35, 2], [-0.4, 2]]\n", "stone", "stone"
     )
     lambdas = [leaning.uplift(direction) for direction in Direction]
-    push = GroundMotion("push", 0.01, np.append(0.1 * leaning.gravity * np.sin(np.linspace(0, np.pi, 41)), np.zeros(9)))
+    push = GroundMotion(
+        "push", 0.01, np.append(0.1 * leaning.gravity * np.sin(np.linspace(0, np.pi, 41)), np.zeros(9)), unit="m/s2"
+    )
     for polarities, lam in (((1,), lambdas[1]), ((-1,), lambdas[0]), ((1, -1), min(lambdas))):
         found = margin(build_model(leaning, "nonlinear"), push, polarities=polarities, around=AROUND)
         assert found.uplift == pytest.approx(lam / 0.1, rel=1e-9)

@@ -328,7 +328,9 @@ class TestFilm:
 class TestHistory:
     def test_nothing_is_drawn_beyond_but_a_hatch(self, histories):
         until = histories["nonlinear"].known_to
-        long = GroundMotion("long", RECORD.dt, np.append(RECORD.acceleration, np.zeros(int(20 / RECORD.dt))))
+        long = GroundMotion(
+            "long", RECORD.dt, np.append(RECORD.acceleration, np.zeros(int(20 / RECORD.dt))), unit="m/s2"
+        )
         _, below = draw_history(histories, long, "").axes
         curves = [line for line in below.lines if len(line.get_xdata()) > 2]
         assert len(curves) > 3 and all(max(line.get_xdata()) <= until for line in curves)

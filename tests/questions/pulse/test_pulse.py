@@ -236,7 +236,7 @@ def test_the_history_of_a_sampled_pulse_agrees(a, omega, side):
     dt = 2 * pi / (omega * equivalence.p) / steps
     amplitude = a * equivalence.lambda_lin * block.gravity
     ground = -side * amplitude * np.sin(2 * pi / steps * np.arange(steps + 1))  # to the left lifts to the positive side
-    history = respond(block, GroundMotion("sine", dt, ground), models=("linear1",))["linear1"]
+    history = respond(block, GroundMotion("sine", dt, ground, unit="m/s2"), models=("linear1",))["linear1"]
     exact = exact_pulse(a, omega, 0.9)
     assert history.uplift_time * equivalence.p == approx(exact.uplift, abs=1e-6)
     assert history.overturned == exact.overturns

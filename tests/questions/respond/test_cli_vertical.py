@@ -66,8 +66,8 @@ def test_loss_of_contact_is_reported(tmp_path):
     [([0.0, -0.99], None), ([0.0, -1.0], 0.1), ([0.0, 0.0, -2.0, -2.0], 0.15), ([-1.0, 0.0], 0.0), ([-3.0, 0.0], 0.0)],
 )
 def test_contact_is_lost_where_the_ramp_reaches_minus_g(samples, lost):
-    up = GroundMotion("up", 0.1, G * np.array(samples))
-    motion = GroundMotion("both", 0.1, np.zeros(2), vertical=up)
+    up = GroundMotion("up", 0.1, G * np.array(samples), unit="m/s2")
+    motion = GroundMotion("both", 0.1, np.zeros(2), vertical=up, unit="m/s2")
     assert contact_lost(motion, G) == (None if lost is None else pytest.approx(lost, rel=1e-12))
     assert len(vertical_notes(motion, G)) == (1 if lost is None else 2)
     assert len(vertical_notes(motion, G, until=0.12)) == (2 if lost is not None and lost < 0.12 else 1)

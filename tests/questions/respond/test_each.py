@@ -157,7 +157,7 @@ def test_samples_files_and_patterns_are_motions(tmp_path):
     shaking = np.stack([0.5 * np.sin(np.arange(300) / 10), 0.3 * np.cos(np.arange(300) / 9)])
     many = rk.respond_each(block(), shaking, dt=0.01, units="g", models="nonlinear")
     assert many.share() == many["nonlinear"].share()
-    made = [rk.GroundMotion(f"motion {k}", 0.01, row * 9.80665) for k, row in enumerate(shaking, 1)]
+    made = [rk.GroundMotion(f"motion {k}", 0.01, row * 9.80665, unit="m/s2") for k, row in enumerate(shaking, 1)]
     same = rk.respond_each(block(), made, models="nonlinear")
     assert list(many.grid.axes["motion"]) == ["motion 1", "motion 2"]
     np.testing.assert_array_equal(many["nonlinear"].peak_ratio, same["nonlinear"].peak_ratio)
@@ -191,7 +191,7 @@ def test_samples_files_and_patterns_are_motions(tmp_path):
             "`quantity` describes a file, and",
         ),
         (
-            {"motions": rk.GroundMotion("m", 0.01, np.ones(50)), "dt": 0.02},
+            {"motions": rk.GroundMotion("m", 0.01, np.ones(50), unit="m/s2"), "dt": 0.02},
             "`dt` describes a file, and no file is given",
         ),
         ({"models": []}, "models must be of nonlinear, linear1, linear2, got none"),

@@ -16,7 +16,7 @@ from rocking_cli.questions.respond.history_table import blocks
 from tests.following import respond
 
 BLOCK = Block(width=0.7, height=2.8)
-PULSE = GroundMotion("pulse", 0.01, -0.35 * STANDARD_GRAVITY * np.sin(np.linspace(0, 2 * np.pi, 81)))
+PULSE = GroundMotion("pulse", 0.01, -0.35 * STANDARD_GRAVITY * np.sin(np.linspace(0, 2 * np.pi, 81)), unit="m/s2")
 
 
 class Sink(io.RawIOBase):

@@ -41,7 +41,7 @@ def a_record(seed=3, pga=0.6, npts=600, dt=0.01):
     t = dt * np.arange(npts)
     waves = sum(rng.normal() * np.sin(2 * pi * t / period + rng.uniform(0, 6)) for period in (0.4, 0.7, 1.1, 1.9))
     a = waves * np.sin(pi * t / t[-1])
-    return GroundMotion(f"noise {seed}", dt, a * pga * STANDARD_GRAVITY / np.abs(a).max())
+    return GroundMotion(f"noise {seed}", dt, a * pga * STANDARD_GRAVITY / np.abs(a).max(), unit="m/s2")
 
 
 def enlarged(sizes, s):
