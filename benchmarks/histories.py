@@ -166,7 +166,7 @@ def tolerance(models: dict[str, list[Model]]) -> None:
     rows = []
     for p_dt in (0.02, 0.1, 0.5):
         time_over_p = np.arange(round(12 / p_dt)) * p_dt
-        one = Prepared(model, GroundMotion("sine", p_dt / p, strength * np.sin(5 * time_over_p)))
+        one = Prepared(model, GroundMotion("sine", p_dt / p, strength * np.sin(5 * time_over_p), unit="m/s2"))
         exact = one.run(1e-14)
         for rtol in (1e-4, 1e-6, 1e-8, 1e-10, 1e-12):
             error = abs(one.run(rtol) / exact - 1)
@@ -233,7 +233,7 @@ def length() -> None:
     rows = []
     for model in build_models(structure, ("nonlinear", "linear2")):
         for n in (1_000, 10_000, 100_000, 1_000_000):
-            one = Prepared(model, GroundMotion("noise", 0.01, ground[:n]))
+            one = Prepared(model, GroundMotion("noise", 0.01, ground[:n], unit="m/s2"))
             spent = seconds(one.run, max(3, 200_000 // n))
             impacts, rocking = one.marks[0, at.IMPACTS], np.mean(one.out["phi"] != 0)
             row = [

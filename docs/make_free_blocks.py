@@ -171,7 +171,7 @@ def fall(name: str, share: float = 0.3) -> tuple[float, float]:
 
 def slide(push: float, friction: float, finer: float = 1.0) -> tuple[float, float]:
     """Return how far a stout block slides in a second under a steady acceleration [g], and how far it should [m]."""
-    motion = GroundMotion("steady", 0.01, G * np.r_[np.full(100, push), 0.0])
+    motion = GroundMotion("steady", 0.01, G * np.r_[np.full(100, push), 0.0], unit="m/s2")
     free = simulated(Block(width=2.0, height=0.5, friction=friction), motion, finer, most=0.99)
     ended = free.motion.time[-1]
     return -float(free.motion.moved[-1, 0, 0]), max(push - friction, 0.0) * G * float(ended) ** 2 / 2
@@ -204,7 +204,7 @@ def cost(name: str) -> tuple[int, float, float]:
     """Return the number of blocks, the step [s], and the seconds that a second of strong motion takes."""
     model = BlockModel(free_blocks(structure(name).mechanism))
     record = motion_of("accel.csv x 1")
-    strong = GroundMotion("strong", record.dt, record.acceleration[round(3.0 / record.dt) :])
+    strong = GroundMotion("strong", record.dt, record.acceleration[round(3.0 / record.dt) :], unit="m/s2")
     taken = []
     for most in (SHORT, 2 * SHORT):  # both settle first
         start = process_time()

@@ -56,7 +56,7 @@ def made(name: str) -> Sheet:
         records = {RECORDS: File(RECORDS, Path(RECORDS).read_bytes())} if sets else {}
         own = f"mechanism {found.mechanism.mechanism}"
         packages = {"rocking-cli": RELEASE, own: f"rocking-cli {RELEASE}", **MACHINE}
-        say = Language(asked["language"])
+        say = Language(asked["language"] or "en")
         sources = SheetSources(files["file"], files["site"], records, packages)
         return sheet(found, site_of(asked["site"]), say, TitleBlock(call, say.day(DAY)), sources)
 

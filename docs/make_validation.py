@@ -173,7 +173,7 @@ def errors() -> Iterator[Check]:
         free = respond(mechanism, release=0.5, opening=1000.0, models=("nonlinear",))["nonlinear"]
         yield Check(rf"{file}: free period from $\phi_{{cr}}/2$ [s]", "integrated motion",
                     4 * float(free.impacts[0, 0]), float(found.period[0]), test)  # fmt: skip
-        push = GroundMotion("constant", 0.01, np.full(3000, -2 * found.block.lambda_ * mechanism.gravity))
+        push = GroundMotion("constant", 0.01, np.full(3000, -2 * found.block.lambda_ * mechanism.gravity), unit="m/s2")
         fall = respond(mechanism, push, opening=1000.0, models=("nonlinear",))["nonlinear"]
         yield Check(rf"{file}: time to overturn at $2 \lambda g$ [s]", "integrated motion",
                     fall.overturning_time or inf, float(found.overturning[0]), test)  # fmt: skip
@@ -195,13 +195,15 @@ def histories() -> Iterator[Check]:
         "test_history_events.py",
     )
     t = 0.4
-    above = GroundMotion("step", t, np.array([-2 * block.lambda_ * G] * 2))
+    above = GroundMotion("step", t, np.array([-2 * block.lambda_ * G] * 2), unit="m/s2")
     held = respond(mechanism, above, models=("linear2",))["linear2"]
     yield Check(r"linear block pushed at $2 \lambda g$ for 0.4 s: $\phi/\phi_{cr}$", r"$\cosh pt - 1$",
                 cosh_minus_one(block.p * t), float(held.ratio[1]), "test_history_linear.py")  # fmt: skip
 
     heavy = respond(make("block", width=0.7, height=2.8, gravity=1.25 * G), release=0.4)["nonlinear"]
-    still = GroundMotion("still", 10.0, np.zeros(2), vertical=GroundMotion("up", 10.0, np.full(2, 0.25 * G)))
+    still = GroundMotion(
+        "still", 10.0, np.zeros(2), vertical=GroundMotion("up", 10.0, np.full(2, 0.25 * G), unit="m/s2"), unit="m/s2"
+    )
     lifted = respond(mechanism, still, release=0.4)["nonlinear"]
     yield Check(r"block under a constant $\ddot{v}_g = g/4$: first impact [s]", "gravity of $1.25 g$",
                 float(heavy.impacts[0, 0]), float(lifted.impacts[0, 0]), "test_history_vertical.py")  # fmt: skip
@@ -209,7 +211,7 @@ def histories() -> Iterator[Check]:
 
 def records() -> Iterator[Check]:
     """Measures of a ground motion: a ramp of the acceleration to 3 m/s2 in 2 s."""
-    found = measure(GroundMotion("ramp", 2.0, np.array([0.0, 3.0])))
+    found = measure(GroundMotion("ramp", 2.0, np.array([0.0, 3.0]), unit="m/s2"))
     test = "test_measures.py"
     yield Check("ramp to $a$ = 3 m/s2 in $t$ = 2 s: PGV [m/s]", "$a t/2$", 3.0, found.pgv, test)
     yield Check("its PGD [m]", "$a t^2/6$", 2.0, found.pgd, test)

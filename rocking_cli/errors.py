@@ -7,8 +7,11 @@ the exit code of its class. An overturned structure is a result, not an error.
 from __future__ import annotations
 
 import re
+import sys
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import takewhile
 from typing import ClassVar
 
 from rocking_cli.text import one_line, printable, quoted_line
@@ -123,6 +126,15 @@ def renamed(error: InputError, arguments: Mapping[str, str]) -> InputError:
 def with_arguments(text: str, arguments: Mapping[str, str]) -> str:
     """Return a text in which arguments in backticks have other names, where `arguments` gives one."""
     return re.sub(r"`(\w+)`", lambda match: f"`{arguments.get(match[1], match[1])}`", text)
+
+
+def warn(warning: Warning) -> None:
+    """Warn at the line outside this package that called it."""
+    import traceback  # slow, and needed for a warning alone
+
+    stack = traceback.walk_stack(sys._getframe(1))
+    inside = takewhile(lambda each: str(each[0].f_globals.get("__name__")).startswith("rocking_cli"), stack)
+    warnings.warn(warning, stacklevel=2 + sum(1 for _ in inside))
 
 
 class Refused(RockingError):

@@ -259,6 +259,10 @@ class Structure:
         """
         return unit_at(type(self.mechanism), self._place_of(field))
 
+    def is_whole(self, field: str) -> bool:
+        """Return whether a numeric field takes whole numbers only. Raises as `unit_of`."""
+        return float not in types_at(type(self.mechanism), self._place_of(field))
+
     def value_of(self, field: str) -> float | None:
         """Return the value of a numeric field; None if it is not given. Raises as `unit_of`."""
         here: Any = self._data
@@ -271,6 +275,7 @@ class Structure:
     def varied(self, field: str, value: float) -> Structure:
         """Return the structure with another value of a field. Raises `InputError` if it cannot be built."""
         data, cls = deepcopy(self._data), type(self.mechanism)
+        value = int(value) if self.is_whole(field) and float(value).is_integer() else value
         put(data, self._words(field), value, is_list=partial(lists_models, cls), grow=False)
         folder = Path(self.file).parent if self.file is not None else None
         try:
@@ -307,9 +312,8 @@ class Structure:
                     raise InputError(Problem(message if k else f"is not a field of {within}", field=field, hint=hint))
             known_path = (*known_path, part)
         kinds = types_at(cls, place)
-        if float not in kinds or (isinstance(place[-1], str) and is_plural(cls, place)):
-            what = "is a whole number" if int in kinds and not is_plural(cls, place) else "is not a numeric field"
-            raise InputError(Problem(f"{what}, so it cannot be varied", field=field))
+        if not kinds & {float, int} or (isinstance(place[-1], str) and is_plural(cls, place)):
+            raise InputError(Problem("is not a numeric field, so it cannot be varied", field=field))
         return place
 
     def _entries(self, place: Place) -> list[str]:

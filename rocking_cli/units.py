@@ -29,6 +29,7 @@ KINDS: Mapping[str, Mapping[str, str]] = {
         "mg": "0.00980665",
         "%g": "0.0980665",
         "ft/s2": "0.3048",
+        "in/s2": "0.0254",
     },
     "mass": {"kg": "1", "g": "0.001", "t": "1000", "Mg": "1000", "lb": "0.45359237"},
     "force": {
@@ -67,6 +68,7 @@ KINDS: Mapping[str, Mapping[str, str]] = {
     },
     "density": {"kg/m3": "1", "t/m3": "1000", "g/cm3": "1000", "kg/dm3": "1000", "lb/ft3": "0.45359237/0.028316846592"},
     "mass per length": {"kg/m": "1", "t/m": "1000"},
+    "mass per area": {"kg/m2": "1", "t/m2": "1000"},
     "weight density": {
         "N/m3": "1",
         "daN/m3": "10",
@@ -75,17 +77,18 @@ KINDS: Mapping[str, Mapping[str, str]] = {
         "lbf/ft3": "4.4482216152605/0.028316846592",
     },
     "time": {"s": "1", "ms": "0.001", "min": "60"},
-    "velocity": {"m/s": "1", "cm/s": "0.01", "mm/s": "0.001", "in/s": "0.0254"},
+    "velocity": {"m/s": "1", "cm/s": "0.01", "mm/s": "0.001", "in/s": "0.0254", "ft/s": "0.3048"},
     "angle": {"rad": "1", "deg": f"{PI}/180", "°": f"{PI}/180", "mrad": "0.001"},
 }
 STANDARD_GRAVITY = Decimal("9.80665")  # m/s2
-WEIGHT_OF = {"mass": "force", "density": "weight density", "mass per length": "stiffness"}
+WEIGHT_OF = {"mass": "force", "density": "weight density", "mass per length": "stiffness", "mass per area": "pressure"}
 """Kinds of mass, and the kind of their weight; the weight of a length has the unit of a stiffness."""
 
 _FORM = regex(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*([^\s\d.,+-].*)?", re.DOTALL)
 _COMMA = regex(r"[-+]?[0-9]+(,[0-9]+)+\s*\D*", re.ASCII)
 _RAISED = str.maketrans({"²": "2", "³": "3", "º": "°", "^": "", "·": "", "*": ""})
 _ITALIAN_POWER = regex(r"\b([cdm]?m)([qc])(?![a-z])")
+_GALS = regex(r"gals?", re.IGNORECASE)
 _PREFIX = regex(r"(da|[hdcmkMGTuµn])(?!\1)(.+)")
 _EXACT = Context(prec=60, Emax=10**6, Emin=-(10**6), traps=[])
 
@@ -125,7 +128,8 @@ def split(text: str) -> tuple[str, str] | None:
 
 def _plain(unit: str) -> str:
     """Return a unit as the table spells it: `kg / m³` and the Italian `kg/mc` are `kg/m3`."""
-    return _ITALIAN_POWER.sub(lambda power: power[1] + "23"[power[2] == "c"], "".join(unit.translate(_RAISED).split()))
+    unit = "".join(unit.translate(_RAISED).split())
+    return "gal" if _GALS.fullmatch(unit) else _ITALIAN_POWER.sub(lambda power: power[1] + "23"[power[2] == "c"], unit)
 
 
 def read(text: str, unit: str) -> float:
@@ -162,6 +166,8 @@ def read(text: str, unit: str) -> float:
     (number, stated), kind, known = parts, kind_of(unit), units_of(unit)
     if not stated:
         raise UnitError(f"{quoted!r} is a text without a unit")
+    if stated == "%" and not unit:
+        return float(_EXACT.create_decimal(number).scaleb(-2, _EXACT))
     if not known:
         raise UnitError(f"{quoted!r} has a unit", "give a number without one")
     if stated == _plain(unit):

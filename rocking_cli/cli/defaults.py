@@ -27,7 +27,7 @@ MAX_FILE_SIZE = 1_000_000  # bytes
 SHARED_OPTIONS = (
     "units", "dt", "channel", "neighbours", "amplitude-deviation", "slenderness-deviation",
     "restitution-deviation", "tail", "rtol", "points",
-    "fractiles", "fps", "speed", "jobs", "project", "place", "author", "logo",
+    "fractiles", "fps", "speed", "jobs", "project", "place", "client", "author", "logo",
 )  # fmt: skip
 """Options with one meaning in all commands; none that choose the question, the input or the output."""
 AMBIGUOUS_OPTIONS = ("polarity", "model", "eta", "kappa", "shape")

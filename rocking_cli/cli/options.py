@@ -202,6 +202,14 @@ def _choices(option: Option) -> Callable[..., list[str]] | None:
     return lambda ctx, param, typed: [each for each in option.metavar[1:-1].split("|") if each.startswith(typed)]
 
 
+def _kind(name: str, option: Option) -> dict[str, Any]:
+    """Return the arguments of click that make an option a flag, or take and complete its value."""
+    if not option.metavar:
+        return {"is_flag": True, "default": None}
+    completed = complete.files if option.metavar == "FILE" else _choices(option)
+    return {"type": Parsed(name, option.parse), "metavar": option.metavar, "shell_complete": completed}
+
+
 def _declared(options: Mapping[str, Option]) -> Decorator:
     """Declare the options for reading records, from the table of their declarations."""
     return in_order(
@@ -209,10 +217,8 @@ def _declared(options: Mapping[str, Option]) -> Decorator:
             record_option(
                 f"--{(option.key or name).replace('_', '-')}",
                 name,
-                type=Parsed(name, option.parse),
-                metavar=option.metavar,
                 help=option.help,
-                shell_complete=complete.files if option.metavar == "FILE" else _choices(option),
+                **_kind(name, option),
                 **({"multiple": True, "callback": _once} if name in CORRECTIONS else {}),
             )
             for name, option in options.items()

@@ -9,8 +9,9 @@ import os
 import re
 import sys
 import warnings
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, redirect_stdout
+from functools import partial
 from time import monotonic
 from typing import TYPE_CHECKING, Any, BinaryIO, TextIO
 
@@ -29,6 +30,8 @@ PROGRESS_DELAY = 1.0  # s of work before progress is shown
 DEFAULT_WIDTH = 80  # columns of a terminal whose width is unknown
 
 _results: TextIO | None = None
+_said: Callable[[str], str] = str
+"""Returns a note or warning in the language of the answer."""
 
 
 @contextmanager
@@ -37,13 +40,21 @@ def results_only() -> Iterator[None]:
 
     Plugins and their imports may print at any time and in any thread.
     """
-    global _results
-    before, _results = _results, _results or sys.stdout
+    global _results, _said
+    before, _results = (_results, _said), _results or sys.stdout
     try:
         with redirect_stdout(sys.stderr):
             yield
     finally:
-        _results = before
+        _results, _said = before
+
+
+def speak(language: str) -> None:
+    """Print notes and warnings of this run in a language from now on, as far as it has them."""
+    from rocking_cli.views.sheet.language import Language
+
+    global _said
+    _said = partial(Language(language, is_plain=True).recognised, "shown")
 
 
 @contextmanager
@@ -107,12 +118,12 @@ def as_typed(text: str, command: click.Command | None = None) -> str:
 
 def note(text: str) -> None:
     """Print a note that is not part of the result."""
-    _say(text)
+    _say(_said(text))
 
 
 def warning(text: str) -> None:
     """Print a warning."""
-    _say(text, "warning: ", "yellow")
+    _say(_said(text), "warning: ", "yellow")
 
 
 def error(text: str) -> None:

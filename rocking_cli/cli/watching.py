@@ -23,6 +23,10 @@ class OnTerminal(Watcher):
         self._unwritten: list[RockingError] = []
         self._as_json = as_json
 
+    def speak(self, language: str) -> None:
+        """Print notes and warnings in this language from now on, as far as it has them."""
+        terminal.speak(language)
+
     def note(self, text: str) -> None:
         """Print a note."""
         terminal.note(text)
@@ -38,7 +42,7 @@ class OnTerminal(Watcher):
         self.left_out += 1
 
     def take(self, answer: Answer[Any]) -> bool:
-        """Print one of several answers as JSON, if that is asked for: a line each, as soon as it is ready."""
+        """Print one of several answers as JSON, if requested: a line each, as soon as it is ready."""
         if self._as_json:
             terminal.show(answer.view, as_json=True)
         return True

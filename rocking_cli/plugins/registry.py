@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import sys
-import warnings
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping
 from functools import cache, lru_cache
@@ -16,7 +15,7 @@ from importlib import metadata
 from importlib.metadata import EntryPoint, EntryPoints
 from typing import ClassVar, TypeVar
 
-from rocking_cli.errors import InputError, MechanismError, PluginWarning
+from rocking_cli.errors import InputError, MechanismError, PluginWarning, warn
 from rocking_cli.plugins.errors import blame
 from rocking_cli.text import did_you_mean, in_short
 
@@ -80,7 +79,7 @@ def leave_out(error: MechanismError) -> None:
         _LEFT_OUT.add(str(error))
         warning = PluginWarning(f"{error}; it is left out")
         warning.__cause__ = error
-        warnings.warn(warning, stacklevel=2)
+        warn(warning)
 
 
 class Plugins(Mapping[str, T]):

@@ -331,7 +331,7 @@ class TestRespond:
             ("--release", "1.5", "between 0 and 1"),
             ("--tail", "-1", "is not positive"),
             ("--dt", "0", "positive"),
-            ("--units", "ft/s2", "gal"),
+            ("--units", "km/s2", "gal"),
         ],
     )
     def test_wrong_options_are_refused_and_leave_no_file(self, option, value, words, tmp_path):

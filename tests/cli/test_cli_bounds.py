@@ -104,10 +104,10 @@ class TestWritten:
 
     def test_nor_in_a_record(self):
         stream = io.BytesIO()
-        write_record_csv(stream, GroundMotion("m", 0.01, np.array([-0.0, -1.0, 0.0])))
+        write_record_csv(stream, GroundMotion("m", 0.01, np.array([-0.0, -1.0, 0.0]), unit="m/s2"))
         assert [line.split(b",")[1] for line in stream.getvalue().splitlines()[1:]] == [b"0.0", b"-1.0", b"0.0"]
 
     def test_a_pga_in_g_has_the_digits_of_the_file(self):
         for value in (0.8740596, 0.1234567, 0.3, 0.55):
-            motion = GroundMotion("m", 0.01, np.array([0.0, value * STANDARD_GRAVITY, 0.0]))
+            motion = GroundMotion("m", 0.01, np.array([0.0, value * STANDARD_GRAVITY, 0.0]), unit="m/s2")
             assert motion.pga_g == value

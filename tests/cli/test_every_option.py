@@ -43,14 +43,14 @@ FRAME = rk.load_structure(EXAMPLES / "frame.yaml").model_copy(update={"friction"
 LEANING = WEAK.model_copy(update={"friction": 0.2, "one_sided": "positive", "rebound": 0.5})
 PORTAL = rk.load_structure(EXAMPLES / "assembly.yaml")
 TIME = 0.01 * np.arange(200)
-RECORD = rk.GroundMotion("record", 0.01, 3.0 * np.sin(2 * np.pi * TIME / 0.8) * np.exp(-TIME))
+RECORD = rk.GroundMotion("record", 0.01, 3.0 * np.sin(2 * np.pi * TIME / 0.8) * np.exp(-TIME), unit="m/s2")
 SHORT = rk.Block(width=1.0, height=2.0, name="short")
-BRIEF = rk.GroundMotion("brief", 0.01, 8.0 * np.sin(np.pi * np.arange(41) / 40))
+BRIEF = rk.GroundMotion("brief", 0.01, 8.0 * np.sin(np.pi * np.arange(41) / 40), unit="m/s2")
 AROUND = {"neighbours": 3, "amplitude_deviation": 0.3, "slenderness_deviation": 0.3, "restitution_deviation": 0.3}
 SITE = EXAMPLES / "verify" / "site.yaml"
 ACCEL, ACROSS, BLOCK_FILE = EXAMPLES / "accel.csv", EXAMPLES / "accel_transverse.csv", EXAMPLES / "block.yaml"
 CODE = np.array([[0.1, 0.3], [0.5, 0.7], [1.0, 0.4], [4.0, 0.1]]).T
-CANDIDATES = [rk.GroundMotion(f"r{k}", 0.01, RECORD.acceleration * np.cos(k * TIME)) for k in range(6)]
+CANDIDATES = [rk.GroundMotion(f"r{k}", 0.01, RECORD.acceleration * np.cos(k * TIME), unit="m/s2") for k in range(6)]
 TESTS = {"structure": ["in.yaml"] * 3, "record": [PULSE, STRONG, "in.txt"], "overturned": [0, 1, 0]}
 TRACED = EXAMPLES / "calibrate" / "block.yaml"
 NTC = {**yaml.safe_load(SITE.read_text("utf-8")), "FC": 1.2}
@@ -107,8 +107,8 @@ CALLS = {
         {"structure": WEAK, "motion": STRONG, "neighbours": 2, "opening": 1.0},
         {"structure": BLOCK, "motion": PULSE, "models": "nonlinear", "polarity": "both", "vertical": RECORD,
          "vertical_dt": 0.1, "vertical_channel": "2", "with_pulse": "sine", "release": 0.2,
-         "opening": 0.0, "engine": "auto", "impacts": True, "title": "odd", "out": "o.csv",
-         "plot": "p.svg"} | AROUND,
+         "opening": 0.0, "engine": "auto", "impacts": True, "each_block": True, "title": "odd",
+         "out": "o.csv", "plot": "p.svg"} | AROUND,
     ),
     "respond_each": (
         {"structures": WEAK, "motions": STRONG},
@@ -169,7 +169,7 @@ CALLS = {
         {"structures": [FRAME, WEAK], "motions": RECORD.scaled(1.5)},
         {"structures": [OTHER], "motions": PULSE, "polarity": "-1", "site": SITE, "opening": 1.0, "top": 1,
          "page": "p.html", "map": "m.png", "sheets": "odd", "sheet_format": "docx", "language": "it", "project": "odd",
-         "place": "odd", "author": "odd", "logo": "in.svg", "origin": "odd"} | AROUND,
+         "place": "odd", "client": "odd", "author": "odd", "logo": "in.svg", "origin": "odd"} | AROUND,
     ),
     "design": (
         {"structure": LEANING, "vary": "width=0.5m:0.9m", "until": "peak_ratio < 0.2", "motions": RECORD, "points": 3,
@@ -210,7 +210,7 @@ CALLS = {
         {"structure": WEAK, "site": SITE, "motions": RECORD.scaled(2.0), "sheet": "s.html", "opening": 1.0},
         {"structure": OTHER, "site": NTC, "strengthened": BLOCK, "control": (0.3, 2.0),
          "motions": PULSE, "polarity": "both", "state": "SLC", "on_floor": True, "opening": 0.0001, "sheet": None,
-         "language": "it", "project": "odd", "place": "odd",
+         "language": "it", "project": "odd", "place": "odd", "client": "odd",
          "author": "odd", "logo": "in.svg", "every_step": True, "in_short": True, "origin": "odd"},
     ),
     "demand": ({"site": SITE}, {"site": NTC | {"soil": "D"}, "damping": 0.1}),
@@ -233,7 +233,7 @@ CALLS = {
     "report": (
         {"structure": WEAK, "motions": RECORD, "neighbours": 2},
         {"structure": OTHER, "motions": PULSE, "out": "o.html", "polarity": "1", "verify": SITE, "state": "SLC",
-         "on_floor": True, "opening": 1.0, "language": "it", "project": "odd", "place": "odd",
+         "on_floor": True, "opening": 1.0, "language": "it", "project": "odd", "place": "odd", "client": "odd",
          "author": "odd", "logo": "in.svg", "origin": "odd"} | AROUND,
     ),
 }  # fmt: skip
@@ -256,10 +256,10 @@ IDLE = [
     ("design", {"structure": BLOCK, "vary": "width=0.5m:0.9m", "until": "lambda >= 0.2", "points": 3},
      {"polarity": "-1", "opening": 0.1} | AROUND),
     ("survey", {"structures": [BLOCK, OTHER]},
-     {"polarity": "-1", "opening": 0.1, "map": "m.png", "sheets": "odd", "sheet_format": "docx", "language": "it",
-      "project": "odd", "place": "odd", "author": "odd", "logo": "in.svg", "origin": "odd"}),
+     {"polarity": "-1", "opening": 0.1, "map": "m.png", "sheets": "odd", "sheet_format": "docx",
+      "project": "odd", "place": "odd", "client": "odd", "author": "odd", "logo": "in.svg", "origin": "odd"}),
     ("verify", {"structure": BLOCK, "site": SITE},
-     {"polarity": "-1", "opening": 0.1, "language": "it", "project": "odd", "place": "odd", "author": "odd",
+     {"polarity": "-1", "opening": 0.1, "project": "odd", "place": "odd", "client": "odd", "author": "odd",
       "logo": "in.svg"}),
     ("report", {"structure": BLOCK, "out": None}, {"polarity": "-1", "opening": 0.1} | AROUND),
     ("pulse", {"a": 4.0, "omega": 6.0}, {"opening": 0.1}),
@@ -436,6 +436,7 @@ COMMAND_LINES = {
 ODD = {
     "--animate": "odd.html",
     "--a": "3", "--ag": "0.4g", "--amplitude-deviation": "30%", "--at": "0.3", "--author": "odd", "--azimuth": "30",
+    "--client": "odd",
     "--band": "0.3:1", "--baseline": "linear", "--channel": "2", "--code": "", "--control": "0.3,2",
     "--count": "1", "--curves": "c.csv", "--damping": "10%", "--dt": "0.1", "--dxf": "odd.dxf", "--eta": "0.7",
     "--factors": "0.5:2",
@@ -482,11 +483,12 @@ OTHERWISE = {
     ("results", "--plot"): "odd",
 }
 """An odd value of an option that means something else in a command."""
-HEAD = "--language", "--project", "--place", "--author", "--logo"
+HEAD = "--project", "--place", "--client", "--author", "--logo"
 BESIDE = {
     ("record", "--period"): "--spectrum s.csv",
     ("record", "--damping"): "--spectrum s.csv",
     ("respond", "--contact"): "--plot p.svg",
+    ("respond", "--each-block"): "--out o.csv",
     ("import", "--azimuth"): "",
     **dict.fromkeys(("--with", "--with-channel", "--azimuth"), f"--with {ACCEL} --azimuth 10"),
     **dict.fromkeys(("--vertical-dt", "--vertical-channel"), f"--vertical {ACROSS}"),

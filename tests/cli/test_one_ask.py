@@ -251,7 +251,7 @@ def test_the_opening_is_that_of_scored_tests_too(tmp_path):
 
 def test_an_array_in_another_unit_is_converted_once():
     sizes = {"g": 9.80665, "cm/s^2": 0.01, "gal": 0.01, "m/s2": 1.0, "ft/s2": 0.3048}
-    sizes |= {"mg": 9.80665e-3, "%g": 9.80665e-2, "mm/s2": 1e-3}
+    sizes |= {"mg": 9.80665e-3, "%g": 9.80665e-2, "mm/s2": 1e-3, "in/s2": 0.0254}
     assert set(UNITS) <= {unit.replace("^", "") for unit in sizes}  # all that `--units` accepts
     for unit, size in sizes.items():
         motion = rk.GroundMotion("mine", 0.01, [0.0, 0.3, 0.0], unit=unit)

@@ -536,7 +536,7 @@ def test_a_motion_keeps_samples_of_its_own():
     made = []
     for k in (1, 2, 3):
         samples[:] = k
-        made.append(rk.GroundMotion(f"m{k}", 0.01, samples))
+        made.append(rk.GroundMotion(f"m{k}", 0.01, samples, unit="m/s2"))
     assert [each.pga_g for each in made] == pytest.approx([k / 9.80665 for k in (1, 2, 3)])
     with pytest.raises(ValueError, match="read-only"):
         made[0].acceleration[0] = 9.0
