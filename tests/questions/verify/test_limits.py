@@ -194,7 +194,7 @@ def test_no_headline_of_an_example_is_without_what_limits_it(file, site):
     for side in found.directions.values():
         for check in side.checks:
             every = [each for each in (*side.remarks, *found.remarks) if not isinstance(each, str)]
-            effects |= {EFFECTS[each.key] for each in every if each.key in EFFECTS
+            effects |= {found.effects[each.key] for each in every if each.key in found.effects
                         and (each.states is None or check.state in each.states)}  # fmt: skip
     if end.concluded is Concluded.SATISFIED:
         assert effects <= {Effect.REPLACES}
