@@ -283,7 +283,10 @@ def _of_joint(curve: ExactCurve, states: Mapping[str, LimitState], moved: Sequen
         return []
     past = [state for state in moved if curve.rotation(states[state].d) > weakest.valid_to]
     d = curve.displacement_at(weakest.valid_to)
-    return [Remark("joint", {"joint": weakest.opens, "d": d}, past)] if past else []
+    one, _, other = weakest.opens.partition(" and ")
+    return (
+        [Remark("joint", {"joint": Remark.of("{one} and {other}", one=one, other=other), "d": d}, past)] if past else []
+    )
 
 
 def _of_break(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark]:
