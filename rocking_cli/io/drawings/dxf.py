@@ -86,7 +86,7 @@ def read(data: bytes, file: str, /) -> LineDrawing:
     )  # fmt: skip
 
 
-def library() -> Any:
+def ezdxf_module() -> Any:
     """Return the package ezdxf. Raises `InputError` if it is not installed."""
     try:
         import ezdxf
@@ -114,7 +114,7 @@ def _document(data: bytes, file: str) -> tuple[Any, list[str]]:
         raise refusal("the file is cut short: it does not end with EOF", "save it again")
     if sum(1 for _ in ENTITY.finditer(data)) > MAX_ENTITIES:
         raise refusal(f"the drawing has more than {MAX_ENTITIES} entities, such as lines", SPLIT_HINT, "too_large")
-    library()
+    ezdxf_module()
     from ezdxf import recover
     from ezdxf.document import Drawing
     from ezdxf.lldxf.tagger import binary_tags_loader

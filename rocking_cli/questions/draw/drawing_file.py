@@ -81,7 +81,7 @@ def drawn_file(drawing: Picture, ratio: float | None) -> tuple[bytes, str, str]:
         If ezdxf is not installed.
     """
     mechanism, weighed = drawing.mechanism, {body.name: body for body in drawing.mechanism.weighed()}
-    document = dxf.library().new("R2000", units=METRES)
+    document = dxf.ezdxf_module().new("R2000", units=METRES)
     drawn = _Drawn(document, abs(drawing.reach[1] - drawing.reach[0]))
     searched = any(mechanism.collapse(side) for side in drawing.directions) or bool(drawing.sketch.lines)
     given = (
