@@ -48,6 +48,8 @@ WHY = {
     "ATTDEF": "the template of an attribute",
     "VIEWPORT": "a view of the drawing",
 }  # fmt: skip
+UNFIT = (ArithmeticError, AttributeError, IndexError, RecursionError, TypeError, ValueError)
+"""What ezdxf raises, besides errors of its own, for numbers that do not fit together."""
 UNREAD = "of a kind that cannot be read: explode it"  # such as MLINE and REGION, and those of other programs
 
 
@@ -159,13 +161,14 @@ class _ModelSpace:
         self._shapes: dict[Any, list[DxfShape] | None] = {}
         self._sizes: dict[str, tuple[int, int]] = {}
         self._entities = self._corners = self._hatches = 0
+        self._unfit = (*UNFIT, ezdxf_module().DXFError)
 
     def take(self, entities: Iterable[Any], placing: Placing | None = None, inserted_on: str | None = None) -> None:
         """Take entities that `placing` places; in a block, those of layer 0 are on the layer of its insert."""
         for entity in entities:
             kind = entity.dxftype()
             layer, why = self._layer_of(entity, inserted_on)
-            if entity.dxf.get("invisible") or (kind == "ATTRIB" and entity.is_invisible):
+            if (entity.dxf.hasattr("invisible") and entity.dxf.invisible) or (kind == "ATTRIB" and entity.is_invisible):
                 why = "invisible"
             elif kind == "INSERT" and why == IS_OFF:
                 why = ""  # its entities on other layers are seen
@@ -187,9 +190,9 @@ class _ModelSpace:
                 raise self._refusal(
                     "too_large", f"{_called(entity, layer)} has too many corners", "simplify it"
                 ) from None
-            except Exception:  # ezdxf raises many kinds for numbers that do not fit together
+            except self._unfit as error:
                 what = f"{_called(entity, layer)} is damaged: its numbers do not describe it"
-                raise self._refusal("not_dxf", what, "audit the file in a CAD program and save it again") from None
+                raise self._refusal("not_dxf", what, "audit the file in a CAD program and save it again") from error
 
     def leave(self, entity: Any, why: str) -> None:
         """Leave an entity out."""
@@ -200,7 +203,7 @@ class _ModelSpace:
 
     def _layer_of(self, entity: Any, inserted_on: str | None) -> tuple[str, str]:
         """Return the layer of an entity, and why its entities are left out."""
-        given = entity.dxf.get("layer", "0")
+        given = entity.dxf.layer if entity.dxf.hasattr("layer") else "0"  # `get` fails for kinds unknown
         given = inserted_on if given == "0" and inserted_on is not None else given
         key = given.lower()
         if key not in self._layers:
@@ -219,7 +222,7 @@ class _ModelSpace:
         if shapes is None:
             self.left_out[kind, layer, WHY.get(kind, UNREAD)] += 1
             if WHY.get(kind) == ANNOTATION:
-                with suppress(Exception):  # ezdxf raises many kinds, and the structure does not need it
+                with suppress(*self._unfit):  # the structure does not need it
                     lines = [line for part in entity.virtual_entities() for line in shapes_of(part) or ()]
                     self.annotations += [line.placed(placing).points for line in lines]
             return

@@ -1,6 +1,7 @@
 """DXF drawings: every line with its arcs exactly, what is left out and why, and what is refused."""
 
 import io
+import re
 from math import pi, sqrt, tan
 
 import ezdxf
@@ -479,6 +480,20 @@ class TestRefusals:
         refused(written("0 LWPOLYLINE", "10 1", "20 0", "10 2"), "not_dxf", "is damaged: missing 'AcDbPolyline'")
         refused(written("0 SPLINE", "71 3"), "not_dxf", "is damaged: missing 'AcDbSpline'")
         refused(written("0 LINE", "x y"), "not_dxf", "Invalid group code .x. at line 7")
+
+    @pytest.mark.parametrize("kind", ["1.0", "NAN"])
+    def test_a_kind_without_anything_is_left_out(self, kind):
+        document, space = new()
+        space.add_line((0, 0), (3, 4))
+        data = re.sub(rb"\n  0\r?\nLINE\b", b"\n  0\n" + kind.encode(), content(document))
+        assert [(each.kind, each.layer) for each in dxf.read(data, "wall.dxf").left_out] == [(kind, "0")]
+
+    def test_a_fault_of_the_program_is_no_damage(self, monkeypatch):
+        document, space = new()
+        space.add_line((0, 0), (3, 4))
+        monkeypatch.setattr(dxf, "shapes_of", lambda entity: no_such_name)  # noqa: F821
+        with pytest.raises(NameError):
+            read(document)
 
     def test_a_file_that_is_not_bound_is_named(self):
         document, space = new()
