@@ -64,6 +64,7 @@ class Mended:
     widest: float = 0.0
     split: list[complex] = field(default_factory=list)
     crumbs: list[complex] = field(default_factory=list)
+    slivers: list[complex] = field(default_factory=list)
     trimmed: list[complex] = field(default_factory=list)
     longest: float = 0.0
     faces: int = 0
@@ -88,6 +89,9 @@ class Mended:
         if self.crumbs:
             words = f"{many(len(self.crumbs), 'line')} left out, shorter than `close` or drawn there and back"
             notes.append(ImportNote("crumbs", len(self.crumbs), words, places(self.crumbs)))
+        if self.slivers:
+            words = f"{many(len(self.slivers), 'sliver')} between lines left out, as thin as `close`"
+            notes.append(ImportNote("slivers", len(self.slivers), words, places(self.slivers)))
         if self.trimmed:
             words = f"{many(len(self.trimmed), 'end')} of lines beyond a corner left out, up to "
             words += length_in_words(self.longest)
@@ -180,9 +184,9 @@ def loops(lines: Sequence[Placed], close: float, frame: DrawingFrame, file: str)
         Of the class "unclosed", if a line closes nothing.
     """
     mended = Mended()
-    crumbs = [line for line in lines if _is_crumb(line, close)]
-    mended.crumbs = [complex(line.z[0]) for line in crumbs]
-    lines = [line for line in lines if line not in crumbs]
+    is_crumb = [_is_crumb(line, close) for line in lines]
+    mended.crumbs = [complex(line.z[0]) for line, left_out in zip(lines, is_crumb, strict=True) if left_out]
+    lines = [line for line, left_out in zip(lines, is_crumb, strict=True) if not left_out]
     closed = [line for line in lines if line.closed]
     open_ = [line for line in lines if not line.closed]
     turned = anticlockwise([ArcRing(line.z, line.bulges) for line in closed])
@@ -225,7 +229,7 @@ def _with_open(
         left = left.chosen(~lies_on)
         if not len(left):
             return made + more
-        touched = np.unique(np.concatenate([_near(tree, z, close)[1] for z in (left.a, left.b)]))
+        touched = np.unique(tree.query(left.curves(close), predicate="dwithin", distance=close)[1])
         if touched.size:
             sides = DrawnEdges.from_lines([closed[k] for k in touched])
             sides.of = len(open_) + touched[sides.of]
@@ -445,7 +449,9 @@ def _faces(
     cut = shapely.get_parts(shapely.node(shapely.multilinestrings(lines[crossed])))
     faces, bridges, dangles, _ = shapely.polygonize_full([*lines[~crossed], *cut])
     faces = shapely.get_parts(faces)
-    faces = faces[shapely.area(faces) > close**2]
+    thin = shapely.area(faces) <= close * shapely.length(faces) / 4
+    mended.slivers += (shapely.get_coordinates(shapely.centroid(faces[thin])) @ [1, 1j]).tolist()
+    faces = faces[~thin]
     loose = np.concatenate([_loose(shapely.get_parts(dangles), faces, mended), shapely.get_parts(bridges)])
     tree = shapely.STRtree(lines)
     _, at_loose = tree.query(loose, predicate="dwithin", distance=EXACT * close)

@@ -119,6 +119,25 @@ def test_an_end_that_is_no_overshoot_is_not_dropped():
         imported(*[line(*along(a, b, -0.2, 0)) for a, b in each_side(corners)])
 
 
+def test_an_arc_that_goes_on_beside_its_tangent_leaves_slivers_out():
+    height, radius, turn = 2.0, 0.5, np.radians(3)
+    ends = [radius + radius * np.exp(1j * way) + 1j * height for way in (-turn, np.pi + turn)]
+    top = line((ends[0].real, ends[0].imag), (ends[1].real, ends[1].imag), bulge=np.tan((np.pi + 2 * turn) / 4))
+    walls = [line((0, 0), (1, 0)), line((1, 0), (1, height + 0.05)), line((0, height + 0.05), (0, 0))]
+    found = imported(*walls, top)
+    area = height + np.pi * radius**2 / 2
+    (body,) = found.bodies
+    assert abs(body.moments.area - area) < 1e-3 * (2 * height + np.pi * radius)  # `close` times the length
+    assert "2 slivers between lines left out" in words(found)
+
+
+def test_a_line_across_a_closed_one_cuts_it():
+    found = imported(box(0, 0, 1, 2), line((-0.05, 1.2), (1.05, 1.2)), depth=1.0, densities={"": 2000.0})
+    assert [body.moments.area for body in found.bodies] == approx([1.2, 0.8], rel=1e-9)
+    with pytest.raises(DrawingError, match="close nothing"):
+        imported(box(0, 0, 1, 2), line((-0.5, 1.2), (1.5, 1.2)))
+
+
 def test_frames_and_hatches_are_not_proposed_as_bodies():
     hatch = box(0, 0, 1, 1, "GRIGIO", is_fill=True, shape="HATCH 1")
     drawn = [box(0, 0, 1, 2, "A"), box(3, 0, 1, 2, "B"), box(-1, -1, 9, 9, "SHEET"), hatch]
