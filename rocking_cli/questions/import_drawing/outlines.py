@@ -108,13 +108,20 @@ def by_role(drawing: LineDrawing, roles: Roles, file: str) -> Sorted:
         words = f"the layer {seen(layer) or '(none)'} alone has outlines: they are taken as bodies"
         notes.append(ImportNote("layers", 1, words))
     elif counts:
-        guess = proposed({layer: unknown[layer] for layer in counts} | {each.layer: [each] for each in of_bodies})
+        named_bodies: dict[str, list[DrawnLine]] = {}
+        for each in of_bodies:
+            named_bodies.setdefault(each.layer, []).append(each)
+        guess, frames = proposed({layer: unknown[layer] for layer in counts} | named_bodies)
         named = {role: ",".join(seen(layer) for layer in of if layer in counts) for role, of in guess.items()}
         give = " ".join(f"`layers` {quote(f'{role}={of}')}" for role, of in named.items() if of)
         some = f"{seen(next(iter(counts)))} has" if len(counts) == 1 else f"{len(counts)} of them have"
-        for layer in dict.fromkeys(each.layer for each in of_bodies):
-            counts[layer] = outline_count([each for each in of_bodies if each.layer == layer])
+        counts |= {layer: outline_count(lines) for layer, lines in named_bodies.items()}
         what = f"which layers are bodies? {counted(counts)}; {some} no known role: by what is drawn there, {give}"
+        if around := [seen(layer) for layer in frames if layer in counts and layer in unknown]:
+            what += f"; {around[0]} is taken for a frame, as it is around all else"
+            if inside := named.get(Role.BODIES):
+                take, leave = quote(f"{Role.BODIES}={around[0]}"), quote(f"{Role.OPENINGS}={inside}")
+                what += f": if it has openings, `layers` {take} `layers` {leave}"
         raise DrawingError("layers", f"{what} (other roles: {', '.join(Role)})", file)
     if not chains[Role.BODIES]:
         held: list[DrawnLine | DrawnText | DrawnPoint] = [*drawing.chains, *drawing.labels, *drawing.spots]

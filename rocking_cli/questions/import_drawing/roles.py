@@ -132,19 +132,21 @@ def counted(layers: Mapping[str, int]) -> str:
     return in_short([first, *named[1:]])
 
 
-def proposed(layers: Mapping[str, Sequence[DrawnLine]]) -> dict[Role, list[str]]:
+def proposed(layers: Mapping[str, Sequence[DrawnLine]]) -> tuple[dict[Role, list[str]], list[str]]:
     """Return the role that layers of no role may have by what is drawn on them: hatches and frames are no bodies.
 
-    A frame is an outline around all that is drawn on other layers.
+    A frame is an outline around all that is drawn on other layers; with it come the layers that are taken for frames.
     """
-    boxes = {name: _box([each for each in lines if each.closed]) for name, lines in layers.items()}
-    roles: dict[Role, list[str]] = {}
-    for name, lines in layers.items():
-        (left, low, right, top), others = boxes[name], [box for other, box in boxes.items() if other != name]
-        around = others and all(left < a and low < b and c < right and d < top for a, b, c, d in others)
-        none = around or all(each.is_fill for each in lines if each.closed)
+    closed = {name: [each for each in lines if each.closed] for name, lines in layers.items()}
+    boxes = {name: _box(lines) for name, lines in layers.items()}
+    roles, frames = dict[Role, list[str]](), list[str]()
+    for name in layers:
+        (left, low, right, top), others = _box(closed[name]), [box for other, box in boxes.items() if other != name]
+        if others and all(left < a and low < b and c < right and d < top for a, b, c, d in others):
+            frames.append(name)
+        none = name in frames or (closed[name] and all(each.is_fill for each in closed[name]))
         roles.setdefault(Role.NOTHING if none else Role.BODIES, []).append(name)
-    return roles
+    return roles, frames
 
 
 def _box(lines: Sequence[DrawnLine]) -> tuple[float, float, float, float]:

@@ -383,7 +383,7 @@ def _is_level(ring: ArcRing, ground: Sequence[ArcRing], close: float) -> bool:
 
 def _levelled(bodies: Sequence[DrawnBody], close: float, frame: DrawingFrame, shift: complex) -> list[ImportNote]:
     """Put corners within the closing distance of the level ground, and ends of a sloping base, onto it, and say so."""
-    at: list[complex] = []
+    at, most = list[complex](), 0.0
     for body in bodies:
         z = body.ring.z
         off = np.abs(z.imag) <= close
@@ -391,11 +391,14 @@ def _levelled(bodies: Sequence[DrawnBody], close: float, frame: DrawingFrame, sh
         for k, end in ((lowest, (lowest + 1) % len(z)), (lowest - 1, lowest - 1)) if off[lowest] else ():
             is_base = abs(side[k].imag) <= MAX_SLOPE * abs(side[k].real) and abs(side[k]) > np.ptp(z.real) / 2
             off[end] |= is_base and not body.ring.bulges[k]
-        at += [frame.to_drawing(each - shift) for each in z[off & (np.abs(z.imag) > mortar.NO_GAP)]]
+        moved = z[off & (np.abs(z.imag) > mortar.NO_GAP)]
+        at += [frame.to_drawing(each - shift) for each in moved]
+        most = max(most, float(np.abs(moved.imag).max(initial=0.0)))
         body.ring = ArcRing(np.where(off, z.real, z), body.ring.bulges)
     if not at:
         return []
-    return [ImportNote("levelled", len(at), f"{many(len(at), 'corner')} put onto the level ground", at)]
+    words = f"{many(len(at), 'corner')} put onto the level ground, by up to {length_in_words(most)}"
+    return [ImportNote("levelled", len(at), words, at)]
 
 
 def _check_foot(body: DrawnBody, close: float, frame: DrawingFrame, shift: complex, file: str) -> None:
@@ -620,6 +623,8 @@ def _checked_by_mechanism(result: Imported, file: str) -> list[ImportNote]:
 
 def _nearest_gap(result: Imported, joined: Collection[str]) -> str:
     """Return a hint on the widest of the gaps beside bodies without a joint; empty if none is narrow enough."""
+    if result.kind == "rigid_body":  # which has no joints
+        return ""
     apart = [k for k, body in enumerate(result.bodies) if body.name not in joined]
     ground = [ArcRing.of(z, np.zeros(len(z))) for z in result.ground]
     sides = mortar.Sides.from_rings([*(body.ring for body in result.bodies), *ground])

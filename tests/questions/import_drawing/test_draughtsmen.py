@@ -96,7 +96,7 @@ def spoilt(way, seed):
     try:
         found = imported(*drawn)
     except DrawingError as error:
-        given = re.findall(r"`layers` (\S+)", str(error))
+        given = re.findall(r"`layers` (\S+)", str(error).partition(" is taken for a frame")[0])
         layers = parse_layers([shlex.split(each)[0] for each in given])
         layers = {role: [name for name in names if name != "FOGLIO_2"] for role, names in layers.items()}
         options = {"layers": {**layers, "nothing": [*layers["nothing"], "FOGLIO_2"]}}
@@ -109,6 +109,8 @@ def spoilt(way, seed):
 def test_a_spoilt_section_keeps_its_lambda(way, seed):
     good, found, said = spoilt(way, seed)
     assert found == approx(good, rel=1e-6 if way not in LOOSE else 5e-3)
+    if way == "a base out of level":
+        assert re.search(r"1 corner put onto the level ground, by up to [\d.]+ mm", said)
     if way == "crossing at corners":
         assert "ends of lines beyond a corner left out, up to 30 mm" in said
 
@@ -138,6 +140,14 @@ def test_a_line_across_a_closed_one_cuts_it():
         imported(box(0, 0, 1, 2), line((-0.5, 1.2), (1.5, 1.2)))
 
 
+def test_how_far_a_base_is_levelled_is_said():
+    found = imported(outline([(0, 0), (3, 0.027), (3, 2), (0, 2)]))
+    assert "1 corner put onto the level ground, by up to 27 mm" in words(found)
+    with pytest.raises(DrawingError, match="it stands on one corner, the next is ") as caught:
+        imported(outline([(0, 0), (1, 0.05), (1, 2), (0, 2)]))
+    assert "merge_gap" not in str(caught.value)
+
+
 def test_frames_and_hatches_are_not_proposed_as_bodies():
     hatch = box(0, 0, 1, 1, "GRIGIO", is_fill=True, shape="HATCH 1")
     drawn = [box(0, 0, 1, 2, "A"), box(3, 0, 1, 2, "B"), box(-1, -1, 9, 9, "SHEET"), hatch]
@@ -146,6 +156,25 @@ def test_frames_and_hatches_are_not_proposed_as_bodies():
     assert caught.value.refused == "layers"
     found = imported(*drawn, layers=parse_layers(["bodies=A,B", "nothing=SHEET,GRIGIO"]))
     assert len(found.bodies) == 2
+
+
+def test_a_wall_around_its_windows_may_be_no_frame():
+    drawn = [box(0, 0, 4, 3, "PARETE_1"), box(1, 1, 1, 1.5, "BUCHI")]
+    said = "if it has openings, `layers` bodies=PARETE_1 `layers` openings=BUCHI"
+    with pytest.raises(DrawingError, match=f"PARETE_1 is taken for a frame, as it is around all else: {said}"):
+        imported(*drawn)
+    (body,) = imported(*drawn, layers=parse_layers(["bodies=PARETE_1", "openings=BUCHI"])).bodies
+    assert body.moments.area == approx(12 - 1.5, rel=1e-9)
+
+
+def test_what_is_around_one_of_several_bodies_is_no_frame():
+    drawn = [box(9, 0, 1, 2, "MURO"), box(0, 0, 1, 2, "MURO"), box(-1, -1, 3, 4, "K")]
+    with pytest.raises(DrawingError, match="by what is drawn there, `layers` bodies=K ") as caught:
+        imported(*drawn)
+    assert "frame" not in str(caught.value)
+    drawn = [*sides([(0, 0), (1, 0), (1, 2), (0, 2)], "A"), box(-1, -1, 3, 4, "K")]
+    with pytest.raises(DrawingError, match="`layers` bodies=A `layers` nothing=K; K is taken for a frame"):
+        imported(*drawn)
 
 
 def test_a_layer_whose_name_drops_it_is_named():
