@@ -118,10 +118,11 @@ def by_role(drawing: LineDrawing, roles: Roles, file: str) -> Sorted:
         counts |= {layer: outline_count(lines) for layer, lines in named_bodies.items()}
         what = f"which layers are bodies? {counted(counts)}; {some} no known role: by what is drawn there, {give}"
         if around := [seen(layer) for layer in frames if layer in counts and layer in unknown]:
-            what += f"; {around[0]} is taken for a frame, as it is around all else"
+            what += f" ({around[0]} is taken for a frame, as it is around all else"
             if inside := named.get(Role.BODIES):
                 take, leave = quote(f"{Role.BODIES}={around[0]}"), quote(f"{Role.OPENINGS}={inside}")
                 what += f": if it has openings, `layers` {take} `layers` {leave}"
+            what += ")"
         raise DrawingError("layers", f"{what} (other roles: {', '.join(Role)})", file)
     if not chains[Role.BODIES]:
         held: list[DrawnLine | DrawnText | DrawnPoint] = [*drawing.chains, *drawing.labels, *drawing.spots]
