@@ -477,7 +477,9 @@ def _faces(
             bulges.append(bulge)
             of.append(k)
             at += step
-        ring = ArcRing.of(np.array(z), np.array(bulges))
+        points, turns = np.array(z), np.array(bulges)
+        apart = (np.abs(following(points) - points) > EXACT * close) | (turns != 0)  # a cut may be beside a chord's end
+        ring = ArcRing.of(points[apart], turns[apart])
         made.append((Loop(ring, [sources[j] for j in dict.fromkeys(edges.of[of].tolist())]), of[0]))
         mended.faces += bool(crossed[of].any()) or any(degree[each.real, each.imag] > 2 for each in z)
     mended.arcs_cut += len({*np.flatnonzero(edges.bulge * crossed).tolist()} - whole)

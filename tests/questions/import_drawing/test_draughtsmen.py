@@ -133,6 +133,18 @@ def test_an_arc_that_goes_on_beside_its_tangent_leaves_slivers_out():
     assert "2 slivers between lines left out" in words(found)
 
 
+def test_joints_that_cross_the_arcs_of_a_ring_part_it():
+    """Of six voussoirs from 1 to 1.3 m; chords of its arcs end where joints cross them."""
+    ring = [line((radius, 0), (-radius, 0), bulge=1.0) for radius in (1.0, 1.3)]
+    for k in range(7):
+        over, way = 0.02 * (0 < k < 6), np.exp(1j * np.pi * k / 6)
+        ring.append(line(*((r * way.real, r * way.imag) for r in (1.0 - over, 1.3 + over))))
+    found = imported(*ring, depth=1.0, densities={"": 2000.0})
+    area = np.pi * (1.3**2 - 1) / 12
+    assert [body.moments.area for body in found.bodies] == approx([area] * 6, rel=1e-3)  # chords to .1 mm of 1.2 m
+    assert "10 ends of lines beyond a corner left out, up to 20" in words(found)
+
+
 def test_a_line_across_a_closed_one_cuts_it():
     found = imported(box(0, 0, 1, 2), line((-0.05, 1.2), (1.05, 1.2)), depth=1.0, densities={"": 2000.0})
     assert [body.moments.area for body in found.bodies] == approx([1.2, 0.8], rel=1e-9)
