@@ -189,12 +189,12 @@ def imported(surface: MeshSurface, file: str, options: MeshOptions, azimuths: Se
     points, triangles, notes = surface.points @ turn.T * scale, surface.triangles, _rounding(surface, file, scale)
     if len(triangles):
         if loose := len(points) - len(np.unique(triangles)):
-            words = f"{loose:,} points belong" if loose > 1 else "1 point belongs"
-            notes.append(MeshNote("loose", loose, f"{words} to no face, and left out: the file may be cut short"))
+            words = f"{loose:,} points of no face are" if loose > 1 else "1 point of no face is"
+            notes.append(MeshNote("loose", loose, f"{words} left out: the file may be cut short"))
         points, triangles, again = merged(points, triangles)
         if again:
-            words = f"{again:,} triangles repeat others" if again > 1 else "1 triangle repeats another"
-            notes.append(MeshNote("again", again, f"{words}, and left out"))
+            words = f"{again:,} triangles that repeat others are" if again > 1 else "1 triangle that repeats another is"
+            notes.append(MeshNote("again", again, f"{words} left out"))
     if options.hull:
         enclosed = _volume(points, triangles)
         points, triangles, planes = hull_of(points, file)

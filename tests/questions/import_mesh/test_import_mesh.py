@@ -226,7 +226,7 @@ def test_points_of_no_face_do_not_count():
     for options in ({}, {"hull": True}):
         found = taken(below, **options)
         assert (found.weakest.lambda_, found.whole.volume) == (pytest.approx(0.25), pytest.approx(1.152))
-        assert "1 point belongs to no face, and left out" in found.notes[0].words
+        assert "1 point of no face is left out" in found.notes[0].words
 
 
 def test_shells_may_touch_but_not_cross():
