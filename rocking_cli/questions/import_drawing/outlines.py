@@ -109,8 +109,8 @@ def by_role(drawing: LineDrawing, roles: Roles, file: str) -> Sorted:
         notes.append(ImportNote("layers", 1, words))
     elif counts:
         named_bodies: dict[str, list[DrawnLine]] = {}
-        for each in of_bodies:
-            named_bodies.setdefault(each.layer, []).append(each)
+        for chain in of_bodies:
+            named_bodies.setdefault(chain.layer, []).append(chain)
         guess, frames = proposed({layer: unknown[layer] for layer in counts} | named_bodies)
         named = {role: ",".join(seen(layer) for layer in of if layer in counts) for role, of in guess.items()}
         give = " ".join(f"`layers` {quote(f'{role}={of}')}" for role, of in named.items() if of)

@@ -185,7 +185,7 @@ def test_what_is_around_one_of_several_bodies_is_no_frame():
         imported(*drawn)
     assert "frame" not in str(caught.value)
     drawn = [*sides([(0, 0), (1, 0), (1, 2), (0, 2)], "A"), box(-1, -1, 3, 4, "K")]
-    with pytest.raises(DrawingError, match="`layers` bodies=A `layers` nothing=K .K is taken for a frame"):
+    with pytest.raises(DrawingError, match=r"`layers` bodies=A `layers` nothing=K \(K is taken for a frame"):
         imported(*drawn)
 
 
