@@ -239,7 +239,8 @@ def bodies_of(
     drawn = [chain for chain in of.chains[Role.BODIES] if not chain.is_fill]
     fills = [chain for chain in of.chains[Role.BODIES] if chain.is_fill]
     made, mended = loops(placed(drawn, frame, close, file), close, frame, file)
-    notes, rings = mended.notes(frame), [*mended.doubles, *mended.joined, *mended.split]
+    notes = mended.notes(frame)
+    rings = [*mended.doubles, *mended.joined, *mended.split, *mended.slivers, *mended.trimmed]
     cut: list[Loop] = []
     if of.chains[Role.OPENINGS]:
         cut, others = loops(placed(of.chains[Role.OPENINGS], frame, close, file), close, frame, file)
