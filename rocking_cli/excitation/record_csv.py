@@ -18,6 +18,8 @@ LINES_PER_BLOCK = 10_000  # written at a time, so that the text of a long record
 
 def is_record_csv(path: Path) -> bool:
     """Return whether a file begins as files of `write_record_csv` do."""
+    if not path.is_file():
+        return False
     with path.open("rb") as file:
         first = file.readline(MAX_DONE_BYTES)
         return first == HEADER.encode() or (

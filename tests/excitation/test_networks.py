@@ -7,14 +7,12 @@ import sys
 import numpy as np
 import pytest
 
-from rocking_cli.errors import InputError
 from rocking_cli.excitation.records import formats, read_record
-from tests.conftest import PROJECT, RECORDS
+from tests.conftest import PROJECT
 from tests.excitation import networks
 from tests.excitation.networks import COMPONENTS, MADE, afad, asa, cwa, geonet_v1a, jma
 from tests.excitation.test_record_formats import VALUES, claims, columns, problem
 
-FINDINGS = RECORDS.parent / "findings" / "records"
 NAMES = {
     "afad": ("N-S", "E-W", "U-D"),
     "asa": ("N00E;L", "V;+", "N90W;T"),
@@ -168,32 +166,6 @@ def test_reading_a_file_imports_the_reader_of_no_other_format(name, tmp_path):
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=PROJECT)
     own = [] if name == "text" else [getattr(formats, name).module]
     assert done.stdout == f"{own} False\n", done.stderr
-
-
-# --- files that were read wrongly -----------------------------------------------------------------------------------
-
-
-@pytest.mark.skipif(not FINDINGS.is_dir(), reason=f"no files of findings in {FINDINGS}")
-@pytest.mark.parametrize(
-    ("file", "options", "pga"),
-    [
-        ("jma_like.csv", {"channel": "NS"}, 0.02281),
-        ("jma_like.csv", {"channel": "UD"}, 0.01115),
-        ("cwa_like.dat", {"channel": "E", "units": "gal"}, 0.03032),
-        ("v1a_like.V1A", {}, 0.02281),
-        ("jma_like.csv", {"channel": "NS", "dt": 0.02}, None),
-        ("afad_old_cut.txt", {"channel": "N-S", "units": "gal", "dt": 0.01}, None),
-        ("cwa_like.dat", {"channel": "E:", "units": "gal"}, None),
-        ("cwa_like.dat", {"channel": "E", "units": "g"}, None),
-    ],
-)
-def test_files_that_were_read_wrongly(file, options, pga):
-    if pga is None:
-        with pytest.raises(InputError):
-            read_record(FINDINGS / file, **options)
-        return
-    motion = read_record(FINDINGS / file, **options)
-    assert (motion.npts, motion.dt) == (400, 0.01) and motion.pga_g == pytest.approx(pga, abs=6e-6)
 
 
 def test_the_made_files_are_in_the_check_of_the_installation():

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import warnings
-from importlib.metadata import entry_points
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records.layout import choose
+from rocking_cli.excitation.records.layout import CUT, choose
 from rocking_cli.excitation.records.record_units import Asked
 from rocking_cli.excitation.records.seismo import channels_of, obspy_for, traces
+from rocking_cli.plugins.registry import find
 
 # Not among them: pickles, which run code when they are read; formats whose files name other files; those without marks.
 _NAMES = {
@@ -30,7 +30,7 @@ def form_of(data: bytes) -> str | None:
         for form in _NAMES:
             if form == "WIN" and int.from_bytes(data[:4]) > len(data):  # the size of its first block
                 continue
-            for point in entry_points(group=f"obspy.plugin.waveform.{form}", name="isFormat"):
+            for point in find(f"obspy.plugin.waveform.{form}").get("isFormat", []):
                 try:
                     if point.load()(str(path)):
                         return form
@@ -45,8 +45,7 @@ def read(data: bytes, file: str, asked: Asked) -> GroundMotion:
         obspy_for(file)
         form = form_of(data)
     if form is None:
-        hint = "the file may have been cut short or edited: download it again"
-        raise InputError(Problem("obspy does not recognise this file", file, hint=hint))
+        raise InputError(Problem("obspy does not recognise this file", file, hint=CUT))
     traces_read = traces(data, file, form)
     # Where a header states no unit, obspy gives what is before it.
     stated = {trace.stats.get("ascii", {}).get("unit", "") for trace in traces_read} - {"", "FLOAT", "INTEGER"}

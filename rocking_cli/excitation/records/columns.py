@@ -11,8 +11,9 @@ import numpy as np
 
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.records.header_words import component, without_sign
+from rocking_cli.excitation.records.header_words import WORDS, component, without_sign
 from rocking_cli.excitation.records.record_units import (
+    BRACKETED,
     Wanted,
     header_units,
     is_acceleration,
@@ -29,7 +30,7 @@ MAX_LISTED_COLUMNS = 30
 LABEL_LINES = 40  # number of lines above a table that may hold its labels
 MAX_LABEL_CHARACTERS = 10_000
 
-_TIME = regex(r"[\"']?(?:t|time)(?![a-z])", re.IGNORECASE)
+_TIME = regex(rf"[\"']?(?:{WORDS['time']})(?![a-z])", re.IGNORECASE)
 _BARE_T = regex(r"t", re.IGNORECASE)  # a label that may stand for the time or the transverse component
 _WORDS = regex(r"[^\s\[(]+(?: *(?:\[[^\]]*\]|\([^)]*\)))?")  # a word, with the brackets that follow it
 _GAPS = regex(r"\s{2,}|\t")
@@ -37,7 +38,6 @@ _COLUMN = regex(r"col(?:umn)?\.? *(\d{1,4})")
 _NO_NAME = regex(r"=|:$|^[+-]?\.?\d(?!\d{0,2} ?deg)")
 _NO_AZIMUTH = regex(r"=|:$|^[+-]?\d*\.\d|^\d{4}")  # beside a time, numbers may be names
 _BREAKS = regex(r"[;,\s]+")
-_BRACKETED = regex(r"[\[(]\s*([^\])]+?)\s*[\])]")
 
 
 @dataclass(frozen=True)
@@ -190,7 +190,7 @@ def _may_be(label: str, wanted: Wanted) -> bool:
         return True
     if wanted.quantity == "acceleration":
         return not other_quantity(label)
-    stated = {quantity_of(unit) for unit in _BRACKETED.findall(label)} - {None}
+    stated = {quantity_of(unit) for unit in BRACKETED.findall(label)} - {None}
     return wanted.quantity in stated if stated else not header_units(label)
 
 
@@ -286,7 +286,7 @@ def _units(label: str, wanted: Wanted) -> set[str]:
     """Return the units that a label states for the requested quantity."""
     if wanted.raw or wanted.quantity == "acceleration":
         return header_units(label)
-    return {unit for unit in _BRACKETED.findall(label) if quantity_of(unit) == wanted.quantity}
+    return {unit for unit in BRACKETED.findall(label) if quantity_of(unit) == wanted.quantity}
 
 
 def _listed(table: Reals, names: Sequence[Label], times: Sequence[int], values: Sequence[int], wanted: Wanted) -> str:

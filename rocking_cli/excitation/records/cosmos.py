@@ -46,7 +46,6 @@ _FIELDS = {
     "station": Field(regex(r"^Statn No: *\S+ +Code: *(\S+)(?: +[A-Z]{2,5} +(\S.*))?")),
     "hypocentre": Field(regex(r"^(Hypocenter.*)")),
 }
-_MAX_FIRST_LINE = 10_000
 _TEXT_LINES, _HEADER_VALUES, _COMMENT_LINES = 1000, 10_000, 100_000  # limits that no header exceeds
 
 
@@ -89,8 +88,7 @@ def _headers(file: str, lines: Lines, start: int) -> _Headers:
     first = _FIRST_LINE.match(lines[start])
     if first is None:
         message = "a channel must begin here, with a line that says (Format v01.20 with 13 text lines)"
-        hint = "the file may have been cut or edited: download it again"
-        raise InputError(Problem(message, file, start + 1, excerpt=lines[start].strip()[:100], hint=hint))
+        raise InputError(Problem(message, file, start + 1, excerpt=lines[start].strip()[:100], hint=layout.CUT))
     count = layout.whole_number(file, start + 1, lines[start], first[3], "number of text lines", most=_TEXT_LINES)
     head, index = read_head(file, lines, _FIELDS, count, start), start + count
     reals, reals_line = np.array([]), start + 1
@@ -179,9 +177,7 @@ def _interval(file: str, headers: _Headers, count: int, length: float) -> float:
         f"the sample interval is unclear: the real header gives {intervals}, neither of which makes "
         f"{count} points of {length:g} s"
     )
-    raise InputError(
-        Problem(message, file, headers.reals_line, hint="the file may have been edited: download it again")
-    )
+    raise InputError(Problem(message, file, headers.reals_line, hint=layout.CUT))
 
 
 def _width(file: str, line_number: int, form: str) -> int:

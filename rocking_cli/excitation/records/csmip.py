@@ -70,8 +70,7 @@ def read(text: str, file: str, asked: Asked) -> GroundMotion:
             )
             peak = None
     if channels and start >= end:
-        hint = "the file may have been cut: download it again"
-        raise InputError(Problem("the channel that begins here has no values", file, start + 1, hint=hint))
+        raise InputError(Problem("the channel that begins here has no values", file, start + 1, hint=layout.CUT))
     if not channels:
         raise layout.lacking(file, asked.wanted, held)
     return layout.choose(file, formats.csmip_v2.TITLE, channels, asked)

@@ -62,8 +62,7 @@ def _channel(file: str, lines: Lines, start: int, asked: Asked) -> tuple[layout.
     """Read the channel that begins at line index `start`; return it and the index after it."""
     if not _FIRST_LINE.match(lines[start]):
         message = "a channel must begin with the line UNCORRECTED ACCELEROGRAM DATA here"
-        hint = "the file may have been cut or edited, or its number of points is wrong: download it again"
-        raise InputError(Problem(message, file, start + 1, excerpt=lines[start].strip()[:100], hint=hint))
+        raise InputError(Problem(message, file, start + 1, excerpt=lines[start].strip()[:100], hint=layout.CUT))
     head = read_head(file, lines, _FIELDS, _TEXT_LINES, start)
     name = head.text("channel") or ""
     index = start + _TEXT_LINES

@@ -13,7 +13,6 @@ from rocking_cli.text import regex
 
 _KEY = regex(r"([A-Z][A-Z0-9_/^]*):(.*)")
 _DAY, _TIME = regex(r"(\d{4})(\d{2})(\d{2})"), regex(r"(\d{2})(\d{2})(\d{2})")
-_HEADER_CHARACTERS = 20_000
 
 
 def read(text: str, file: str, asked: Asked) -> GroundMotion:

@@ -61,8 +61,7 @@ def _component(file: str, lines: Lines, start: int, asked: Asked) -> tuple[layou
     """Read one component from line index `start` on; return it and the index after it."""
     if not _FIRST_LINE.match(lines[start]):
         message = "a component must begin here, with the line Corrected accelerogram, or Uncorrected"
-        hint = "the file may have been cut or edited, or its number of points is wrong: download it again"
-        raise InputError(Problem(message, file, start + 1, excerpt=lines[start].strip()[:100], hint=hint))
+        raise InputError(Problem(message, file, start + 1, excerpt=lines[start].strip()[:100], hint=layout.CUT))
     head = read_head(file, lines, _FIELDS | {"peak": _PEAKS[asked.wanted.quantity]}, _TEXT_LINES, start)
     unit_line, _, (peak, spelling) = head["peak"]
     unit, size = layout.stated_unit(file, unit_line, spelling, asked)
@@ -79,9 +78,7 @@ def _component(file: str, lines: Lines, start: int, asked: Asked) -> tuple[layou
         sizes[0] = npts
     if len(sizes) < 3 or sizes[0] != npts:
         message = f"the numbers of the header do not give the {npts} points of its text, followed by two more counts"
-        raise InputError(
-            Problem(message, file, sizes_line + 1, hint="the file may have been edited: download it again")
-        )
+        raise InputError(Problem(message, file, sizes_line + 1, hint=layout.CUT))
     end = start + _TEXT_LINES + _NUMBER_LINES
     histories: list[tuple[Reals, tuple[Doubt, ...]]] = []
     for count in sizes:

@@ -36,6 +36,7 @@ _WORDS = {
     "seconds": (r"s|secs?|seconds?", "secondi", "segundos", "saniye|sn", "byo"),
     "milliseconds": (r"ms|msecs?|milliseconds?", "millisecondi", "milisegundos", "milisaniye", "miribyo"),
     "hertz": ("hz|sps|samples.*|points.*", "campioni.*", "muestras.*", "ornek.*", "herutsu"),
+    "time": ("t|time", "tempo", "tiempo", "zaman", "jikan"),
     "unit": (r"units?", r"unita'?(?: di misura)?", r"unidad(?:es)?", r"birim(?:i|ler|leri)?", r"tan'?i"),
     "acceleration": ("acc", r"accelerazion[ei]|acc", "aceleracion(?:es)?", "ivme(?:si)?", "kasokudo"),
     "peak": (

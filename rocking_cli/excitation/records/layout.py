@@ -27,16 +27,19 @@ from rocking_cli.excitation.records.record_units import (
     units_of,
 )
 from rocking_cli.excitation.records.text import Followed, check_interval, numbers_in, sensible
-from rocking_cli.excitation.records.widths import PrintedRows, odd_digits, split_numbers
+from rocking_cli.excitation.records.widths import PrintedRows, odd_digits, odd_row, split_numbers
 from rocking_cli.text import regex
 
 # The only letters in a row of numbers are exponents. Asterisks are overflows, which `numbers_in` refuses.
 _NO_ROW = regex(r"[^\s\d.+\-*EeDd]")
 _NOT_FINITE = regex(r"[+-]?(?:nan|inf|infinity)\b", re.IGNORECASE)
+FIRST_ROW = regex(r"\s*[+-]?\.?\d")
 TENTH_OF_G = "g/10"
 _FILM_DT = 1e-3  # s; times of digitised films are printed with three decimals
 _MAX_FILM_DURATION = 3600.0  # s; films ran for a minute or two, and each second takes a thousand samples
 _MAX_COLUMN_WIDTH = 1000  # characters
+CUT = "the file may have been cut short or edited: download it again"
+_LOST = "a character was lost or added, so that its values are wrong: download the file again"
 _TOUCHING = "the rows do not keep to columns of {} characters, so that numbers that touch cannot be told apart"
 
 
@@ -191,11 +194,9 @@ def fixed_width(file: str, lines: Lines, block: RecordBlock, *, last: bool = Tru
         excerpt = lines[index].strip()[:100] if index < len(lines) else None
         where = f", up to line {index}" if index < len(lines) else ""
         message = f"the header says {block.count} values, but {len(values)} follow{where}"
-        hint = "the file may have been cut short or edited: download it again"
+        hint = CUT
         if leaving:
-            hint += (
-                f"; its rows leave their columns of {block.width} characters, and numbers that touch are taken for one"
-            )
+            hint += f"; its rows leave columns of {block.width} characters, and numbers that touch are taken for one"
         raise InputError(Problem(message, file=file, line=block.header_line, excerpt=excerpt or None, hint=hint))
     if block.width is None or leaving:
         remarks += tuple(odd_digits(PrintedRows(lines, block.start, split_numbers, index)))
@@ -233,8 +234,7 @@ def _out_of_columns(file: str, lines: Lines, leaving: Sequence[int], rows: int, 
     """Return the problem of the first of a few rows that are not aligned to the columns."""
     more = f" (as in {len(leaving) - 1} more of {rows})" if len(leaving) > 1 else ""
     message = f"the numbers of this row do not end at their columns of {block.width} characters{more}"
-    hint = "a character was lost or added, so that its values are wrong: download the file again"
-    return Problem(message, file, leaving[0], excerpt=lines[leaving[0] - 1][:100], hint=hint)
+    return Problem(message, file, leaving[0], excerpt=lines[leaving[0] - 1][:100], hint=_LOST)
 
 
 def _no_columns(leaving: Sequence[int], rows: int, block: RecordBlock) -> Doubt:
@@ -244,6 +244,14 @@ def _no_columns(leaving: Sequence[int], rows: int, block: RecordBlock) -> Doubt:
         "characters: they were read as numbers with blanks between them. Did an editor save the file?"
     )
     return Doubt("columns", float(len(leaving)), text)
+
+
+def aligned(file: str, rows: PrintedRows) -> tuple[Doubt, ...]:
+    """Return doubts about digits; raise `InputError` if a few rows are not aligned to the columns of the others."""
+    if (odd := odd_row(rows)) is not None:
+        message = "the numbers of this row do not end at the columns of the other rows"
+        raise InputError(Problem(message, file, odd[0], excerpt=odd[1][:100], hint=_LOST))
+    return tuple(odd_digits(rows))
 
 
 def stated_unit(file: str, line_number: int, unit: str, asked: Asked) -> tuple[str, float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import MOST_SAMPLES, GroundMotion
 from rocking_cli.excitation.records import formats
-from rocking_cli.excitation.records.layout import choose
+from rocking_cli.excitation.records.layout import CUT, choose
 from rocking_cli.excitation.records.record_units import Asked
 from rocking_cli.excitation.records.seismo import channels_of, traces
 
@@ -24,6 +24,5 @@ def read(data: bytes, file: str, asked: Asked) -> GroundMotion:
     traces_read = traces(data, file, "MSEED")
     # obspy ignores an incomplete last record.
     if len(data) % min(trace.stats.mseed.record_length for trace in traces_read):
-        message = "the file ends in the middle of a record"
-        raise InputError(Problem(message, file, hint="it was cut short: download it again"))
+        raise InputError(Problem("the file ends in the middle of a record", file, hint=CUT))
     return choose(file, formats.miniseed.TITLE, channels_of(file, traces_read, unit, asked.wanted), asked)

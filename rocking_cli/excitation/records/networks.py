@@ -20,7 +20,7 @@ from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.origins import length_doubts, peak_doubts
 from rocking_cli.excitation.records.record_units import Asked
 from rocking_cli.excitation.records.text import numbers_in
-from rocking_cli.excitation.records.widths import PrintedRows, odd_digits, odd_row, split_numbers
+from rocking_cli.excitation.records.widths import PrintedRows, split_numbers
 from rocking_cli.text import regex
 
 _LIST = r" *C\d+ *- *C\d+[^:]*: *(/.*)"  # of the items of six channels, each behind a slash
@@ -63,8 +63,6 @@ _FIELDS: dict[Format, dict[str, Field]] = {
 }
 _HEADER_LINES = 150
 _PEAK_OF_CWA = regex(r"^#AmplitudeMAX\. *(\w+): *(\S+?) *~ *(\S+)", re.MULTILINE)
-_FIRST_ROW = regex(r"\s*[+-]?\.?\d")
-_HINT = "the file may have been cut short or edited: download it again"
 
 
 def read(text: str, file: str, asked: Asked) -> GroundMotion:
@@ -75,12 +73,14 @@ def read(text: str, file: str, asked: Asked) -> GroundMotion:
     names, peaks = _components(text, head, form)
     of_times = 1 if form is formats.cwa else 0  # number of columns before the components
     start = max(item.line_number for item in head.items.values())
-    start = next((k for k in range(start, len(lines)) if _FIRST_ROW.match(lines[k])), len(lines))
+    start = next((k for k in range(start, len(lines)) if layout.FIRST_ROW.match(lines[k])), len(lines))
     table, remarks = _table(file, lines, start, of_times + len(names))
     interval = 1 / head.number("rate") if "rate" in head.items else _one(file, head, "dt")
     _check_length(file, head, len(table), interval)
     if of_times and np.abs(table[:, 0] - table[0, 0] - interval * np.arange(len(table))).max() > interval / 2:
-        raise InputError(Problem(f"the times of the rows are not {interval:g} s apart", file, start + 1, hint=_HINT))
+        raise InputError(
+            Problem(f"the times of the rows are not {interval:g} s apart", file, start + 1, hint=layout.CUT)
+        )
     columns = table.T[of_times:]
     unit_line, _, (spelling, *_) = head["unit"]
     doubts = [
@@ -140,15 +140,15 @@ def _table(file: str, lines: Lines, start: int, columns: int) -> tuple[Reals, tu
             continue
         if len(cells) != columns:
             message = f"this row has {len(cells)} numbers, but the header names {columns} columns"
-            raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=_HINT))
+            raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=layout.CUT))
         values.extend(numbers_in(file, number, line, cells))
     rows = PrintedRows(lines, start, _cells)
-    if (odd := odd_row(rows)) is not None:
-        message = "the numbers of this row do not end at the columns of the other rows"
-        raise InputError(Problem(message, file, odd[0], excerpt=odd[1][:100], hint=_HINT))
+    doubts = layout.aligned(file, rows)
     if len(values) < 2 * columns:
-        raise InputError(Problem("a record needs at least two samples", file, min(start + 1, len(lines)), hint=_HINT))
-    return np.array(values).reshape(-1, columns), tuple(odd_digits(rows))
+        raise InputError(
+            Problem("a record needs at least two samples", file, min(start + 1, len(lines)), hint=layout.CUT)
+        )
+    return np.array(values).reshape(-1, columns), doubts
 
 
 def _cells(row: str) -> list[str]:
@@ -159,8 +159,8 @@ def _check_length(file: str, head: RecordHead, rows: int, interval: float) -> No
     """Raise `InputError` if the rows are not as many as the header states, or do not last as long."""
     if "count" in head.items and (stated := _one(file, head, "count")) != rows:
         message = f"the header says {stated:g} values, but {rows} follow"
-        raise InputError(Problem(message, file, head["count"].line_number, hint=_HINT))
+        raise InputError(Problem(message, file, head["count"].line_number, hint=layout.CUT))
     if "duration" in head.items:
         line_number, _, (length,) = head["duration"]
         for doubt in length_doubts(rows * interval, line_number, length, interval):
-            raise InputError(Problem(doubt.text, file, line_number, hint=_HINT))
+            raise InputError(Problem(doubt.text, file, line_number, hint=layout.CUT))

@@ -14,11 +14,11 @@ from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import NOT_SAID, GroundMotion
 from rocking_cli.excitation.records import formats
-from rocking_cli.excitation.records.layout import lines_of, whole_number
+from rocking_cli.excitation.records.layout import CUT, FIRST_ROW, aligned, lines_of, whole_number
 from rocking_cli.excitation.records.origins import of_peer
 from rocking_cli.excitation.records.record_units import Asked
 from rocking_cli.excitation.records.text import check_interval, numbers_in, only_channel, usable
-from rocking_cli.excitation.records.widths import PrintedRows, odd_digits, odd_row, split_numbers
+from rocking_cli.excitation.records.widths import PrintedRows, split_numbers
 from rocking_cli.text import regex
 
 _FLOAT = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?"
@@ -26,7 +26,6 @@ _NPTS = regex(r"\bNPTS\s*=\s*(\d+)", re.IGNORECASE)
 _DT = regex(rf"\bDT\s*=\s*({_FLOAT})", re.IGNORECASE)
 _OLD_STYLE = regex(rf"^\s*(\d+)[\s,]+({_FLOAT})[\s,]+NPTS\s*,\s*DT\b", re.IGNORECASE)
 _SIGNATURE = regex(r"^\s*PEER\b.*\bDATABASE\b", re.IGNORECASE)
-_BEGINS_WITH_NUMBER = regex(r"\s*[+-]?\.?\d")
 _HEADER_LINES = 30  # longest header; four lines are usual
 
 
@@ -50,18 +49,13 @@ def read(text: str, file: str, asked: Asked) -> GroundMotion:
     check_interval(file, header.dt_line, header.dt, asked.dt)
     values = np.concatenate([_page_values(file, first, page) for first, page in lines.pages(header.data)])
     rows = PrintedRows(lines, header.data, lambda line: split_numbers(line) if _plain(line) else [])
-    if (odd := odd_row(rows)) is not None:
-        message = "the numbers of this row do not end at the columns of the other rows"
-        hint = "a character was lost or added, so that its values are wrong: download the file again"
-        raise InputError(Problem(message, file, odd[0], excerpt=odd[1][:100], hint=hint))
+    remarks = aligned(file, rows)
     if len(values) != header.npts:
         message = f"the header says NPTS = {header.npts}, but the file has {len(values)} values"
-        hint = "the file may have been cut short or edited: download it again, or correct NPTS"
-        raise InputError(Problem(message, file=file, line=header.npts_line, hint=hint))
+        raise InputError(Problem(message, file=file, line=header.npts_line, hint=f"{CUT}, or correct NPTS"))
     if header.npts < 2:
         message = f"a record needs at least two samples, this has {header.npts}"
         raise InputError(Problem(message, file=file, line=header.npts_line))
-    remarks = tuple(odd_digits(rows))
     # Only in files with the title of the database is the second line known to be the origin.
     origin = of_peer(lines[1]) if len(lines) > 1 and _SIGNATURE.match(lines[0]) else NOT_SAID
     name = Path(file).name
@@ -96,7 +90,7 @@ def _header(file: str, lines: Sequence[str]) -> _PeerHeader:
     if not (math.isfinite(interval) and interval > 0):
         raise InputError(Problem(f"the sample interval must be positive, DT = {dt[0]}", file=file, line=dt[1]))
     data = max(npts[1], dt[1])
-    while data < len(lines) and not _BEGINS_WITH_NUMBER.match(lines[data]):
+    while data < len(lines) and not FIRST_ROW.match(lines[data]):
         data += 1
     return _PeerHeader(count, interval, npts[1], dt[1], data)
 

@@ -46,7 +46,7 @@ _MOTION = regex(r"\b(?:vel|velocity|velocities|disp|displ|displacements?)\b")
 _GAP = r"[ ,:;=-]*(?:in |of )?"
 _UNITS_OF = rf"\b(?:{WORDS['unit']})[ :=]*(?:(?:of|are|is|in|di|de) |{_ACCELERATION})*[ :=]*"
 
-_BRACKETED = regex(rf"[\[(]\s*({_UNIT})\s*[\])](?! ?/)")
+_BRACKETED = regex(rf"[\[(]\s*({_UNIT})\s*[\])](?! ?(?:[/^*]|x ?\d))")
 _NAMED = [
     regex(pattern)
     for pattern in (
@@ -240,7 +240,7 @@ MAX_STEP_OVER_PEAK = 0.05  # acceleration of one step of the last digit over the
 
 _IN_HEADER = regex(rf"[\[(]\s*([^\])]+?)\s*[\])]|\bin\s+(?!units?\b)([^\s,;]+)|{_UNITS_OF}([^\s,;]+)", re.IGNORECASE)
 _OF_UNITS = regex(rf"{_UNITS_OF}([^\s,;]+)", re.IGNORECASE)
-_STATED = regex(r"[\[(]\s*([^\])\s]+)\s*[\])]")
+BRACKETED = regex(r"[\[(]\s*([^\])]+?)\s*[\])]")
 _PER_SECOND = regex(r"/sec(?:onds?)?$|[.*]?s\^?-1$")
 _FORM = regex(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.ASCII)
 _PER = regex(r"(.+?)\s*(?:/|\bper\b)\s*([^\W\d_%]{1,20}|%)")
@@ -300,7 +300,7 @@ class Wanted(NamedTuple):
     def _refuse_another(self, file: str, header: Sequence[tuple[int, str]]) -> None:
         """Raise `InputError` if all units of the labels, or of a line on units, are of other quantities."""
         for number, line in header:
-            units = _STATED.findall(line) if number == header[-1][0] else []
+            units = BRACKETED.findall(line) if number == header[-1][0] else []
             units += _OF_UNITS.findall(line)
             stated = {each: unit for unit in units if (each := quantity_of(unit)) is not None}
             if stated and self.quantity not in stated:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
 from rocking_cli.excitation.records import formats
-from rocking_cli.excitation.records.layout import choose
+from rocking_cli.excitation.records.layout import CUT, choose
 from rocking_cli.excitation.records.record_units import Asked
 from rocking_cli.excitation.records.seismo import channel_of, origin_of, traces, velocity_code
 
@@ -42,8 +42,6 @@ class _SacHeader:
 def read(data: bytes, file: str, asked: Asked) -> GroundMotion:
     """Read a SAC file; see `registry.Reader.read`."""
     header = _header(data)
-    if header is None:
-        raise InputError(Problem("this is not the header of a SAC file", file))
     if not header.even:
         hint = "interpolate it at a constant interval first"
         raise InputError(Problem("the header says the samples are unevenly spaced (LEVEN)", file, hint=hint))
@@ -60,7 +58,7 @@ def read(data: bytes, file: str, asked: Asked) -> GroundMotion:
     size = _HEADER + 4 * header.npts
     if len(data) != size + (_FOOTER if header.version == 7 else 0):
         message = f"the header says {header.npts} points, which do not make the {len(data)} bytes of the file"
-        raise InputError(Problem(message, file, hint="the file may have been cut short: download it again"))
+        raise InputError(Problem(message, file, hint=CUT))
     unit = asked.unit(file, [])
     (trace,) = traces(data[:size], file, "SAC")
     name = trace.stats.channel
@@ -87,11 +85,7 @@ def _extremes(header: _SacHeader, samples: NDArray[np.float32]) -> tuple[Doubt, 
     return (Doubt("header_peak", max(abs(least), abs(most)), text),)
 
 
-def _header(data: bytes) -> _SacHeader | None:
-    """Read the header in the byte order that gives a valid version; None if neither does."""
-    if len(data) >= _HEADER:
-        for order in "<>":
-            words = struct.unpack_from(f"{order}fff292xi8xi20xii72xi", data)
-            if words[3] in _VERSIONS:
-                return _SacHeader(*words)
-    return None
+def _header(data: bytes) -> _SacHeader:
+    """Read the header in the byte order that gives a valid version, as one does for a file of the format."""
+    both = (_SacHeader(*struct.unpack_from(f"{order}fff292xi8xi20xii72xi", data)) for order in "<>")
+    return next(header for header in both if header.version in _VERSIONS)

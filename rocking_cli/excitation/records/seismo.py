@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Origin
-from rocking_cli.excitation.records.layout import Channel
+from rocking_cli.excitation.records.layout import CUT, Channel
 from rocking_cli.excitation.records.origins import origin
 from rocking_cli.excitation.records.record_units import UNITS, Wanted
 from rocking_cli.excitation.records.text import sensible, usable
@@ -41,8 +41,7 @@ def traces(data: bytes, file: str, form: str) -> list[Any]:
             read = list(obspy.read(io.BytesIO(data), format=form))
         except Exception as error:  # obspy raises many kinds of errors, without a common base
             message = f"obspy cannot read this file: {_in_a_line(error)}"
-            hint = "the file may have been cut short or damaged: download it again"
-            raise InputError(Problem(message, file, hint=hint)) from None
+            raise InputError(Problem(message, file, hint=CUT)) from None
     if warned:
         message = f"obspy has doubts about this file: {_in_a_line(warned[0].message)}"
         hint = "it may be damaged: download it again; if you know it is whole, write it again with obspy"

@@ -14,6 +14,7 @@ import numpy as np
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
 from rocking_cli.excitation.records import formats
+from rocking_cli.excitation.records.layout import CUT
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.origins import of_info
 from rocking_cli.excitation.records.record_units import Asked
@@ -69,8 +70,8 @@ def read(text: str, file: str, asked: Asked) -> GroundMotion:
     one_too_many = _is_number(stated) and stated == len(values) + 1
     if not _is_number(stated) or not (stated == len(values) or one_too_many):
         message = f"the file says numPoints = {_shown(stated)}, but has {len(values)} values"
-        hint = "the file may have been cut short or edited: download it again, or correct numPoints"
-        raise InputError(Problem(message, file, _line_of(text, "numPoints"), field="numPoints", hint=hint))
+        line, hint = _line_of(text, "numPoints"), f"{CUT}, or correct numPoints"
+        raise InputError(Problem(message, file, line, field="numPoints", hint=hint))
     if len(values) < 2:
         message = f"a record needs at least two samples, this has {len(values)}"
         raise InputError(Problem(message, file, line, field="accel_data"))

@@ -70,7 +70,7 @@ def read(text: str, file: str, asked: Asked) -> GroundMotion:
         "|"
     ):
         message = f"the header says {comments} comment lines, but another number begins with |"
-        raise InputError(Problem(message, file, comment_line, hint="the file may have been edited: download it again"))
+        raise InputError(Problem(message, file, comment_line, hint=layout.CUT))
     block = layout.RecordBlock(start + comments, count, _DATA_WIDTH, count_line)
     values, end, remarks = layout.fixed_width(file, lines, block)
     layout.check_end(file, lines, end)

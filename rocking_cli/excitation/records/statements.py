@@ -9,7 +9,7 @@ from typing import NamedTuple
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import Doubt
 from rocking_cli.excitation.records.header_words import WORDS, component, plain
-from rocking_cli.excitation.records.record_units import UNITS, canonical, is_unit
+from rocking_cli.excitation.records.record_units import TIME_UNITS, UNITS, canonical, is_unit
 from rocking_cli.text import cut, regex
 
 _INTERVAL_TOLERANCE = 1e-3  # relative difference; more, up to the second number, where few digits are printed
@@ -156,7 +156,8 @@ def _interval(
     value, rounding = _number(printed)
     words = [word.strip() for word in (before, after) if word]
     unit = next((item for word in words for item, each in _UNITS_OF_TIME.items() if each.fullmatch(word)), "")
-    if not unit and not after.endswith("hz"):  # a rate below 1 is in s, and an interval of 1 may be in ms
+    unclear = any(word.endswith("hz") or word in TIME_UNITS for word in words)
+    if not unit and not unclear:  # a rate below 1 is in s, and an interval of 1 may be in ms
         unit = "hertz" if is_rate and value >= 1 else "seconds" if value < 1 else ""
     if unit and 0 < value < math.inf:
         interval = 1 / value if unit == "hertz" else value * (1.0 if unit == "seconds" else 1e-3)

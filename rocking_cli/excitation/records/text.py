@@ -19,9 +19,9 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
 from rocking_cli.excitation.record_csv import DONE_PREFIX
 from rocking_cli.excitation.records.columns import MAX_COLUMNS, Choice, Label, choose, labels
-from rocking_cli.excitation.records.header_words import component
+from rocking_cli.excitation.records.header_words import WORDS, component
 from rocking_cli.excitation.records.lines import Lines
-from rocking_cli.excitation.records.record_units import UNITS, Wanted, other_quantity, plural
+from rocking_cli.excitation.records.record_units import ACCELERATIONS, UNITS, Wanted, other_quantity, plural
 from rocking_cli.excitation.records.shapes import FEWEST_ROWS, counts_rows, runs_on
 from rocking_cli.excitation.records.statements import Statements, statements
 from rocking_cli.excitation.records.widths import PrintedRows, unlike_the_others
@@ -33,7 +33,10 @@ TAKES_WANTED = True
 
 _NUMBER = regex(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[EeDd][+-]?[0-9]+)?")
 _NOT_FINITE = regex(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
-_OTHER_TIME = regex(r"(?<![a-z])(?:t|time)[ _]*[\[(]?\s*(ms|msec|milliseconds?|min|minutes?)\b", re.IGNORECASE)
+_OTHER_TIME = regex(
+    rf"(?<![a-z])(?:{WORDS['time']})[ _,/]*[\[(]?\s*({WORDS['milliseconds']}|min|minutes?)\b", re.IGNORECASE
+)
+_OF_SPECTRUM = regex(r"(?:natural )?(?:peri[oy]|fre[qck])", re.IGNORECASE)
 _FIRST_CELL = regex(r'"([^"]*)"|[^\s,;]*')
 _QUOTED = regex(r'"([^"]*)"')
 # A date, a time of day or both, before other numbers of a row.
@@ -77,13 +80,16 @@ def read(
     dt: float | None = None,
     units: str | None = None,
     channel: str | None = None,
-    wanted: Wanted = Wanted(),  # noqa: B008 - it does not change
+    wanted: Wanted = ACCELERATIONS,
 ) -> GroundMotion:
     """Read delimited text; arguments, result and errors are those of `registry.Reader.read`."""
     rows = _rows(text, file)
     header = _header(file, rows)
     names, label_lines = labels(file, header, rows.delimiter, rows.columns)
     _refuse_other_times(file, names, label_lines)
+    if _OF_SPECTRUM.match(names[0].name):
+        message = f"the first column is '{names[0]}', as in a spectrum, and no time"
+        raise InputError(Problem(message, file, label_lines[0], hint="give the accelerations in time"))
     stated = statements(file, [*header, *rows.stated])
     interval = stated.interval(dt) or dt
 

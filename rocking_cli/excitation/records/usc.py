@@ -11,7 +11,6 @@ from rocking_cli.excitation.records.origins import length_doubts
 from rocking_cli.excitation.records.record_units import Asked
 from rocking_cli.text import regex
 
-_FIRST_LINE = regex(r"FILE\s+\d+ OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I\b")
 _FIELDS = {
     "count": Field(regex(r"NO\. OF POINTS *= *(\d+)"), "number of points", " (NO. OF POINTS)"),
     "unit": Field(regex(r"UNITS ARE SEC AND (.*?)(?:\s+\d+|\s{2,}.*)?$"), "unit", " (UNITS ARE SEC AND ...)"),

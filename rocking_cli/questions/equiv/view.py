@@ -39,11 +39,6 @@ class Parameter(Column[EquivalentBlock]):
     meaning: str = ""
 
     @property
-    def printed_unit(self) -> str:
-        """The unit in print; 1 for a dimensionless parameter."""
-        return self.unit.replace("m2", "m²") or "1"
-
-    @property
     def of_mass(self) -> bool:
         """Whether the parameter is proportional to mass, and so per unit mass for a structure without masses."""
         return self.unit.startswith("kg ")
