@@ -1,18 +1,21 @@
-"""What an import of a drawing or a mesh costs, against half as many lines, outlines or triangles.
+"""What an import of a drawing or a mesh costs, against half as much, and against `ezdxf.readfile` of the same file.
 
     python benchmarks/importing.py
 
 Processor time of the verb, files included, with the search for garbage as rare as in the command `rocking`; the growth
-is the time over that of half the size.
+is the time over that of half the size. Memory is what the largest size adds to the process above a hundredth of it, the
+import before `ezdxf.readfile`, each in a process of its own.
 """
 
 from __future__ import annotations
 
 import gc
+import multiprocessing
 import struct
 import tempfile
 import time
 from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +25,7 @@ from rocking_cli.__main__ import GARBAGE_THRESHOLD
 
 SIDE, GAP = 1000.0, 2.0  # of a stone and between stones [mm]
 COLUMNS = 70
+LEAST_MEMORY = 10.0  # that a ratio compares [MB]
 
 
 def corners(count: int) -> list[list[tuple[float, float]]]:
@@ -113,27 +117,55 @@ CASES: dict[str, tuple[str, int, Callable[[Path, int], None]]] = {
 }
 
 
-def spent(path: Path) -> float:
-    """Return the processor time of an import [s]."""
-    gc.set_threshold(GARBAGE_THRESHOLD)
-    start = time.process_time()
+def imported(path: Path) -> None:
+    """Import a file."""
     if path.suffix == ".dxf":
         rk.import_drawing(path, close="0.5 mm")
     else:
         rk.import_mesh(path, units="m")
-    return time.process_time() - start
+
+
+def only_read(path: Path) -> None:
+    """Read a drawing by ezdxf."""
+    from ezdxf.filemanagement import readfile
+
+    readfile(path)
+
+
+def spent(use: Callable[[Path], None], small: Path, *files: Path) -> tuple[list[float], float]:
+    """Return the processor time of each file [s], and the memory that they add [MB]; the small one loads libraries."""
+    import resource
+
+    gc.set_threshold(GARBAGE_THRESHOLD)
+    use(small)
+    before, times = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, []
+    for path in files:
+        start = time.process_time()
+        use(path)
+        times.append(time.process_time() - start)
+    return times, (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
 
 
 def main() -> None:
     """Print the table."""
-    print("| what | number | s | over half as many |\n| --- | --- | --- | --- |")
+    print("| what | number | s | over half as many | MB | time over `readfile` | memory over `readfile` |")
+    print("| --- | --- | --- | --- | --- | --- | --- |")
     with tempfile.TemporaryDirectory() as folder:
         for name, (file, count, write) in CASES.items():
-            times = []
-            for size in (count // 100, count // 2, count):  # the first one loads the libraries
-                write(Path(folder) / file, size)
-                times.append(spent(Path(folder) / file))
-            print(f"| {name} | {count:,} | {times[2]:.2f} | {times[2] / times[1]:.1f} |")
+            paths = [Path(folder) / f"{size}_{file}" for size in (count // 100, count // 2, count)]
+            for path, size in zip(paths, (count // 100, count // 2, count), strict=True):
+                write(path, size)
+            uses = (imported, only_read) if file.endswith(".dxf") else (imported,)
+            new, own = multiprocessing.get_context("spawn"), []
+            for use in uses:
+                with ProcessPoolExecutor(1, new) as pool:
+                    own.append(pool.submit(spent, use, *paths).result())
+            (half, whole), memory = own[0]
+            over = [
+                f"{whole / times[1]:.1f} | {f'{memory / more:.1f}' if more > LEAST_MEMORY else ''}"
+                for times, more in own[1:]
+            ] or ["|"]
+            print(f"| {name} | {count:,} | {whole:.2f} | {whole / half:.1f} | {memory:.0f} | {over[0]} |", flush=True)
 
 
 if __name__ == "__main__":

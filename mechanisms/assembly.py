@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cached_property, wraps
-from math import isclose, isfinite, nan
+from math import ceil, isclose, isfinite, nan
 from typing import Annotated, Any, ClassVar, Self, TypeVar
 
 import numpy as np
@@ -200,8 +200,8 @@ class Assembly(LinkedBodies):
         examples=[{"positive": "left", "negative": "right"}],
     )
     gap: float | None = quantity(
-        "how far apart faces may be that touch; if omitted, 2 per mille of the smaller block", unit="m", example=0.005,
-        default=None, gt=0, le=10,
+        "how far apart faces may be that touch, and are fitted; if omitted, 2 per mille of the smaller block", unit="m",
+        example=0.005, default=None, gt=0, le=10,
     )  # fmt: skip
 
     @model_validator(mode="after")
@@ -273,6 +273,8 @@ class Assembly(LinkedBodies):
             )
             if self.rocks_both_ways:
                 why += f"; if it leans there, give one_sided: {direction.opposite.label}"
+            if misfit := self._misfit():
+                why = f"in the {direction.label} direction {error}, as {misfit}"
             raise self._refused(("blocks",), why) from None
         except analysis.AssemblyFault as error:
             raise StructureError(str(error)) from None
@@ -792,7 +794,8 @@ class Assembly(LinkedBodies):
             try:
                 return here.admissible(forces[None])[0]
             except analysis.NoAnswer:
-                raise StructureError(self._misfit()) from None
+                why = self._misfit() or "its joints jam as it moves, and no forces in them were found"
+                raise StructureError(why) from None
 
         def margin(phi: float) -> float:
             nonlocal known
@@ -814,20 +817,21 @@ class Assembly(LinkedBodies):
         return first, state.contact if state.contact is not None else 0, at(first)[2]
 
     def _misfit(self) -> str:
-        """Return which joints do not fit, so that the bodies jam: their ends are next to each other, not one point."""
+        """Return which joints do not fit, so that bodies jam: their ends are next to each other; empty if all fit."""
         ends = [(end, contact) for contact in self._contacts for end in contact.ends]
         z = np.array([end for end, _ in ends])
         apart = np.abs(z[:, None] - z)
         least = np.array([min(size_of(np.array(shape.corners)) for shape in self.blocks.values())])
         misfit = (apart > SAME_PLACE * size_of(z)) & (apart <= MISFIT_SHARE * least)
         if not misfit.any():
-            return "its joints jam as it moves, and no forces in them were found"
+            return ""
         i, j = np.unravel_index(np.where(misfit, apart, 0.0).argmax(), apart.shape)
         (at, one), (_, other) = ends[int(i)], ends[int(j)]
         return (
             f"joints do not fit, so that it jams: the ends of `{_name(one)}` and `{_name(other)}` at ({at.real:.6g}, "
             f"{at.imag:.6g}) are {1000 * apart[i, j]:.3g} mm apart, and {np.count_nonzero(misfit) // 2 - 1} more such "
-            "pairs are. Draw corners that meet at one point; `rocking import` with a larger `close` joins them"
+            f"pairs are. Draw corners that meet at one point, or give `gap` {ceil(1000 * apart[i, j])} mm: within it, "
+            "joints are fitted"
         )
 
     @per_direction

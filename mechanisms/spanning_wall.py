@@ -91,7 +91,8 @@ class SpanningWall(Mechanism):
         if self.overburden > 0 and not self.has_mass:
             raise geometry_error("density", "is missing: with an overburden the wall needs density and depth, or mass")
         if self.hinge == "weakest" and self.crushing is not None:
-            raise geometry_error("hinge", "weakest is that of pivots on the faces: with crushing give its height")
+            xi = self._hinges[self.directions[0]]
+            raise geometry_error("hinge", f"weakest is that of pivots on the faces: with crushing give it, as {xi:.4g}")
         if self.hinge == "weakest" and self.is_laden:
             raise geometry_error("hinge", "weakest knows of the overburden only: with loads or ties give its height")
         for direction in self.directions:
@@ -238,7 +239,11 @@ class SpanningWall(Mechanism):
         return (PointMass("overburden", spot, mass, horizontal=0.0, vertical=self.overburden_inertia),)
 
     def extras(self, direction: Direction) -> Sequence[Extra]:
-        return (Extra("hinge", self._hinges[direction], "", "height of the hinge over that of the wall"),)
+        hinge = Extra("hinge", self._hinges[direction], "", "height of the hinge over that of the wall")
+        if not self.has_mass:
+            return (hinge,)
+        force = abs(float(at_uplift(self, direction).force[-1, 0].real))
+        return hinge, Extra("top_force", force, "N", "horizontal force at which its top is held as rocking starts")
 
     def joints(self, direction: Direction) -> Sequence[Joint]:
         a, b, c = self.hinges(direction)

@@ -11,8 +11,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact, ContactFault, listed
+from mechanisms._assembly.programme import components
 from rocking_cli.core import Reals
 from rocking_cli.core.kinematics import Points, distance, inside
 from rocking_cli.core.polygons import nearby, overlap, size_of, thickness_of
@@ -20,6 +22,10 @@ from rocking_cli.core.polygons import nearby, overlap, size_of, thickness_of
 MAX_GAP = 2e-3  # largest gap of a joint over width plus height of the smaller block: 2 mm for 0.5 m x 0.5 m
 MAX_SINE = 0.05  # sine of the largest angle between two edges in contact
 ZERO_UPWARD = 1e-6  # upward components of normals below this count as zero
+SAME_DIRECTION = 1e-5  # angle between joints up to which they are parallel
+SAME_PLACE = 1e-6  # distance of lines, and of points, that are the same, over the size of the assembly
+ROUNDING = 1e-12  # distance that is no misfit, over the size of the assembly
+PARALLEL = 1e-2  # share of the squares of two directions below which they are one
 
 Gap = Callable[[str, str], float]
 Piece = tuple[complex, complex]  # start and end; seen from the start, the second body is on the left
@@ -91,6 +97,7 @@ def contacts(
             bears = j >= len(blocks) or normal.imag < -ZERO_UPWARD  # whether j supports i: it is ground, or below i
             joints.append(joint.turned() if bears else joint)
     _all_touch(blocks, joints)
+    joints = _fitted(joints, within)
     size = dict(zip(names, sizes, strict=True))
     _none_bridged(
         joints,
@@ -99,6 +106,51 @@ def contacts(
         lambda one, other: gap * min(size[one], size[other]) if within is None else within,
     )
     return _with_friction(joints, per_pair or {})
+
+
+def _fitted(joints: list[AssemblyContact], within: float | None) -> list[AssemblyContact]:
+    """Put joints that lie on one line exactly on it, and their ends that meet on one point, up to rounding or `within`.
+
+    Joints that never slide would jam otherwise: those of one line open together only if they lie on it exactly.
+    """
+    drawn = np.array([joint.ends for joint in joints])
+    lengths = np.abs(drawn[:, 1] - drawn[:, 0])
+    along, size, ends = (drawn[:, 1] - drawn[:, 0]) / lengths, size_of(drawn.ravel()), drawn.copy()
+    normal = 1j * along
+    close, turn = (SAME_PLACE * size, SAME_DIRECTION) if within is None else (within, within / np.median(lengths))
+    for parallel in _runs(np.angle(along**2 * np.exp(-0.5j)) / 2, turn):
+        way = np.sqrt((along[parallel] ** 2).sum())
+        way /= abs(way)
+        for line in _runs((drawn[parallel].mean(axis=1) / way).imag, close):
+            of = parallel[line]
+            places = drawn[of] / way
+            places = (places.real + 1j * places.imag.mean()) * way
+            if np.abs(places - drawn[of]).max() <= close:
+                ends[of], normal[of] = places, 1j * way * np.sign((along[of] / way).real)
+    z, across, reach = ends.ravel(), np.repeat(normal, 2), close * (1 + 1j) / 2
+    one, other = np.concatenate([np.zeros((2, 0), np.intp), *map(np.array, nearby(z - reach, z + reach))], axis=1)
+    if max(np.abs(ends - drawn).max(), np.abs(z[one] - z[other]).max(initial=0.0)) <= ROUNDING * size:
+        return joints
+    at = components(one, other, len(z))
+    middle = (np.bincount(at, z.real) + 1j * np.bincount(at, z.imag)) / np.bincount(at)
+    # The point nearest to the middle that is on the lines of all ends which meet there.
+    rows = np.stack([across.real, across.imag], axis=1)
+    squares, away = np.zeros((len(middle), 2, 2)), np.zeros((len(middle), 2))
+    np.add.at(squares, at, rows[:, :, None] * rows[:, None, :])
+    np.add.at(away, at, rows * ((z - middle[at]).conj() * across).real[:, None])
+    shift = np.einsum("kij,kj->ki", np.linalg.pinv(squares, PARALLEL, hermitian=True), away)
+    ends = (middle + shift @ [1, 1j])[at].reshape(-1, 2)
+    moved = np.abs(ends - drawn).max(axis=1) > ROUNDING * size
+    return [
+        replace(joint, start=complex(start), end=complex(end), normal=complex(to)) if moves else joint
+        for joint, (start, end), to, moves in zip(joints, ends, normal, moved, strict=True)
+    ]
+
+
+def _runs(values: Reals, most: float) -> list[NDArray[np.intp]]:
+    """Return the indices of values that differ from the next smaller one by `most` at the most, run by run."""
+    order = np.argsort(values)
+    return np.split(order, np.flatnonzero(np.diff(values[order]) > most) + 1)
 
 
 def _none_bridged(

@@ -21,7 +21,7 @@ from rocking_cli.core import Reals
 from rocking_cli.core.contacts import MASONRY_FRICTION
 
 MAX_FRICTION = 10.0
-EQUAL_MULTIPLIERS = 1e-9  # relative difference of multipliers that count as equal
+EQUAL_MULTIPLIERS = 1e-8  # relative difference of multipliers that count as equal
 FRICTION_ACCURACY = 1e-6  # relative error of the required coefficient of friction
 
 

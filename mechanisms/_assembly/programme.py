@@ -73,10 +73,11 @@ def least(cost: Reals, equal: Sparse, right: Reals, low: Reals, high: Reals, *, 
     attempts: list[Callable[[], Optimum | None]] = [
         partial(programme.solve, "highs-ds", **TIGHT_OPTIONS),
         partial(programme.solve, "highs-ds", presolve=False, **TIGHT_OPTIONS),
+        programme.refined,
     ]
     if len(right) >= MIN_INTERIOR_EQUATIONS:
         close = partial(programme.solve, "highs-ipm", maxiter=CROSSOVER_ITERATIONS * len(right), **TIGHT_OPTIONS)
-        attempts = [programme.refined, *attempts] if exact else [close, programme.refined, *attempts]
+        attempts = [programme.refined, *attempts[:2]] if exact else [close, programme.refined, *attempts[:2]]
     for way in attempts:
         try:
             return way()

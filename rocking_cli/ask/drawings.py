@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import AbstractContextManager
 from importlib.metadata import EntryPoint
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.io.drawings.contract import DrawingError, DrawingReader, LineDrawing, MeshSurface
@@ -60,13 +60,15 @@ def _blamed(reader: DrawingReader, file: str) -> AbstractContextManager[None]:
     return blame(f"the reader of {reader.TITLE} failed on {file}", getattr(reader, "__name__", type(reader).__module__))
 
 
-def read_drawing(path: str | Path) -> tuple[LineDrawing | MeshSurface, bytes]:
+def read_drawing(path: str | Path, plane: str | None = None) -> tuple[LineDrawing | MeshSurface, bytes]:
     """Read a drawing or a mesh by the reader that knows its content.
 
     Parameters
     ----------
     path : str or Path
         The file.
+    plane : str, optional
+        The plane in which a model in space is seen.
 
     Returns
     -------
@@ -78,13 +80,18 @@ def read_drawing(path: str | Path) -> tuple[LineDrawing | MeshSurface, bytes]:
     Raises
     ------
     InputError
-        If the file cannot be read; a `DrawingError` if it is not of a known format.
+        If the file cannot be read, or has no such plane; a `DrawingError` if it is not of a known format.
     PluginError
         If a reader fails.
     """
     reader, data = reader_of(path)
+    planes = getattr(reader, "PLANES", ())
+    if plane is not None and plane not in planes:
+        what = f"must be one of {', '.join(planes)}, got {plane!r}" if planes else f"{reader.TITLE} has no planes"
+        raise InputError(Problem(what, field="`plane`"))
+    more: dict[str, Any] = {} if plane is None else {"plane": plane}
     with _blamed(reader, str(path)):
-        return reader.read(data, str(path)), data
+        return reader.read(data, str(path), **more), data
 
 
 def is_mesh(path: str | Path) -> bool:

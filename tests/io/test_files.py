@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from rocking_cli.errors import InputError, Refused
-from rocking_cli.io.files import check_writable, keep_apart, read_bytes, write_whole
+from rocking_cli.io import files
+from rocking_cli.io.files import check_writable, discard, keep_apart, read_bytes, write_files, write_folder, write_whole
 
 
 def test_a_file_is_written_with_the_usual_rights(tmp_path):
@@ -150,7 +151,11 @@ def test_what_the_system_refused_is_said_whatever_the_library_makes_of_it(tmp_pa
     full, really = os.open("/dev/full", os.O_WRONLY), os.open
 
     def on_a_full_disk(path, *how, **where):
-        return full if Path(path).name.startswith(".a.csv.") else really(path, *how, **where)
+        handle = really(path, *how, **where)
+        if not Path(path).name.startswith(".a.csv."):
+            return handle
+        os.close(handle)
+        return full
 
     monkeypatch.setattr(os, "open", on_a_full_disk)
 
@@ -169,3 +174,92 @@ def test_a_name_as_long_as_a_name_may_be(tmp_path):
     path = tmp_path / ("x" * 251 + ".csv")
     write_whole(path, lambda file: file.write(b"1"))
     assert path.read_bytes() == b"1"
+
+
+LEFT = f".a.csv.0123456789abcdef{files.PART}"
+
+
+def test_what_a_killed_run_left_goes_at_the_next_write_beside_it_and_nothing_else(tmp_path):
+    others = [".a.csv.0123456789abcdef", f".a{files.PART}", f"a.csv.0123456789abcdef{files.PART}"]
+    for each in (LEFT, *others):
+        (tmp_path / each).touch()
+    write_whole(tmp_path / "b.csv", lambda file: file.write(b"1"))
+    assert sorted(each.name for each in tmp_path.iterdir()) == sorted([*others, "b.csv"])
+
+
+def test_what_another_run_is_writing_stays(tmp_path):
+    def write(file):
+        (beside,) = tmp_path.iterdir()
+        write_whole(tmp_path / "b.csv", lambda other: other.write(b"2"))
+        assert beside.exists()
+        file.write(b"1")
+
+    write_whole(tmp_path / "a.csv", write)
+    assert {each.name: each.read_bytes() for each in tmp_path.iterdir()} == {"a.csv": b"1", "b.csv": b"2"}
+
+
+def test_content_is_on_the_disk_before_it_has_its_name_and_the_name_then(tmp_path, monkeypatch):
+    done = []
+    monkeypatch.setattr(
+        os, "fsync", lambda handle: done.append("folder" if stat.S_ISDIR(os.fstat(handle).st_mode) else "file")
+    )
+    monkeypatch.setattr(os, "replace", lambda *names, replace=os.replace: (done.append("name"), replace(*names)))
+    write_whole(tmp_path / "a.csv", lambda file: file.write(b"1"))
+    assert done == ["file", "name", "folder"] or (sys.platform == "win32" and done == ["file", "name"])
+
+
+class Killed(BaseException):
+    """The end of a process, after which nothing is done any more."""
+
+
+def killed(folder, number, monkeypatch):
+    """Write two files into a folder, in a process that ends as it writes the one of a number."""
+
+    def contents():
+        yield "a.csv", b"new"
+        if number:
+            yield "in/b.csv", b"new"
+        raise Killed
+
+    with monkeypatch.context() as patch, pytest.raises(Killed):
+        patch.setattr(files, "discard", lambda place: None)
+        write_files(folder, contents())
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_after_a_kill_the_files_of_a_folder_are_known_as_ours(tmp_path, number, monkeypatch):
+    place = tmp_path / "new"
+    killed(place, number, monkeypatch)
+    assert (place / "a.csv").exists() and (place / "in" / "b.csv").exists() == bool(number)
+    write_folder(place, {"a.csv": b"whole", "in/c.csv": b""})
+    assert {each.relative_to(place).as_posix() for each in place.rglob("*")} == {"a.csv", "in", "in/c.csv"}
+
+
+def test_what_was_changed_after_a_kill_stays(tmp_path, monkeypatch):
+    killed(tmp_path, 1, monkeypatch)
+    (tmp_path / "a.csv").write_bytes(b"mine")
+    discard(tmp_path)
+    assert {each.name: each.read_bytes() for each in tmp_path.iterdir()} == {"a.csv": b"mine"}
+
+
+def test_while_a_folder_is_being_written_nobody_takes_its_files_away(tmp_path):
+    def contents():
+        yield "a.csv", b"1"
+        discard(tmp_path)
+        assert (tmp_path / "a.csv").exists()
+        yield "b.csv", b"2"
+
+    write_files(tmp_path, contents())
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["a.csv", "b.csv"]
+
+
+def test_a_folder_that_may_not_be_entered_is_named(tmp_path, monkeypatch):
+    def closed(path, *how, really=os.lstat, **where):
+        if str(path).endswith("shut.csv"):
+            raise PermissionError(13, "Permission denied", str(path))
+        return really(path, *how, **where)
+
+    monkeypatch.setattr(os, "lstat", closed)
+    monkeypatch.setattr(Path, "lstat", lambda path: closed(path))
+    with pytest.raises(InputError, match=r"shut\.csv: cannot be written: Permission denied"):
+        check_writable(tmp_path / "shut.csv")

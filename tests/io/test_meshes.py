@@ -85,8 +85,8 @@ def test_points_without_faces_are_a_cloud(name):
         ("a.obj", b"v 0 0\n" * 3 + b"f 1 2 3\n", "damaged", "is damaged"),
         ("a.obj", b"v 0 0 x\n" * 3 + b"f 1 2 3\n", "damaged", "is damaged"),
         ("a.obj", b"v 0 0 0\n" * 3 + b"f -4 2 3\n", "damaged", "a point that does not exist"),
-        ("a.obj", b"v 0 0 0\n" * 3 + b"f 1 2 x\n", "damaged", "invalid literal"),
-        ("a.obj", b"v 0 0 0\n" * 3 + b"f 1 2-3 1\n", "damaged", "invalid literal"),
+        ("a.obj", b"v 0 0 0\n" * 3 + b"f 1 2 x\n", "damaged", "not whole numbers"),
+        ("a.obj", b"v 0 0 0\n" * 3 + b"f 1 2-3 1\n", "damaged", "not whole numbers"),
         ("a.obj", b"v 0 0 0\n".ljust(mesh.MAX_TEXT_BYTES + 1), "too_large", "has 64 MB"),
     ],
 )

@@ -491,7 +491,8 @@ def test_a_crack_of_one_direction_leaves_the_body_whole_in_the_other(tmp_path):
     found = rk.Linkage(**CRACKED, negative=other, **WEIGHT)
     assert found.uplift(NEGATIVE) == approx(0.1, rel=1e-10)  # t/h of the whole wall
     file = tmp_path / "wall.yaml"
-    file.write_text(yaml.safe_dump({"mechanism": "linkage", **CRACKED, "negative": other, **WEIGHT}))
+    rough = {"friction": 5.0}  # else `equiv` looks for the least that it needs
+    file.write_text(yaml.safe_dump({"mechanism": "linkage", **CRACKED, "negative": other, **WEIGHT, **rough}))
     row = next(line for line in run("equiv", file).stdout.splitlines() if line.strip().startswith("crack_K"))
     assert "-" in row.split()
 
@@ -721,8 +722,33 @@ def test_joints_that_do_not_fit_are_named():
             off[:2, 1] *= name[0] == "u"
             blocks[name] = {"polygon": (np.array(corners) + off).tolist()}
     fan = assembly(blocks)
-    with pytest.raises(StructureError, match=r"joints do not fit, .* the ends of `[lu]\d and [lu]\d` .* mm apart"):
-        fan.collapse(POSITIVE)
+    with pytest.raises(StructureError, match=r"joints do not fit, .* mm apart, .* give `gap` 6 mm: within it"):
+        rk.collapse(fan)
+    fitted = assembly(blocks, gap=0.006)
+    assert rk.collapse(fitted) and all(fitted.uplift(d) == approx(fan.uplift(d), rel=1e-3) for d in Direction)
+
+
+@pytest.mark.parametrize(("turn", "digits", "gap"), [(0, 16, None), (1, 7, None), (30, 7, None), (5, 3, 0.002)])
+def test_a_running_bond_that_is_turned_moves(turn, digits, gap):
+    """All of it turns about a corner of its foot: the force there passes its centroid, and needs this much friction."""
+    width, height, count, courses, way = 0.6, 0.3, 3, 4, np.exp(1j * np.radians(turn))
+
+    def turned(x0, y0, x1, y1):
+        z = np.array([x0 + 1j * y0, x1 + 1j * y0, x1 + 1j * y1, x0 + 1j * y1]) * way
+        return {"polygon": np.round(np.column_stack([z.real, z.imag]), digits).tolist()}
+
+    blocks = {}
+    for course in range(courses):
+        ends = np.arange(count + 1.0) if course % 2 == 0 else np.array([0.0, *(np.arange(count) + 0.5), count])
+        for k, (left, right) in enumerate(zip(ends[:-1] * width, ends[1:] * width, strict=True)):
+            blocks[f"{course}.{k}"] = turned(left, course * height, right, (course + 1) * height)
+    wall = assembly(blocks, {"floor": turned(-1.0, -1.0, 4.0, 0.0)}, gap=gap)
+    corner = atan(count * width / (courses * height))
+    rel = 10.0**-digits * 3 + 1e-9
+    for direction in Direction:
+        assert wall.uplift(direction) == approx(np.tan(corner + int(direction) * np.radians(turn)), rel=rel)
+        assert not wall.collapse(direction).hinges[1:]
+        assert wall.extras(direction)[0].value == approx(np.tan(corner), rel=rel + 1e-5)
 
 
 def test_a_friction_that_there_is_not_is_no_number(tmp_path):

@@ -203,6 +203,7 @@ def test_coefficients_are_the_corrected_equation_32(case, direction):
         assert deviation(getattr(got, name) / scale, values / scale, 1.0) < 1e-10, name
 
 
+@pytest.mark.every(8)
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("direction", BOTH)
 def test_equivalent_block_is_equations_33_34_and_38(case, direction):

@@ -53,6 +53,16 @@ def test_lambda_at_the_weakest_hinge_and_at_mid_height(k, rho, weakest, at, midd
         assert wall(rho, k, found.extras(POSITIVE)[0].value + shift).uplift(POSITIVE) > found.uplift(POSITIVE)
 
 
+@pytest.mark.parametrize("direction", Direction)
+@pytest.mark.parametrize(("rho", "k", "hinge"), [(1.0, 0.5, 0.5), (0.5, 0.7, 0.6), (0.0, 0.5, 0.7)])
+def test_its_top_is_held_by_the_force_about_its_foot(rho, k, hinge, direction):
+    """Moments of the whole wall about its foot: lambda W h/2 = W t/2 + P (its arm) + R h."""
+    found, W = wall(rho, k, hinge), 1000 * T * H * G
+    arm = T / 2 - direction * (k - 0.5) * T
+    R = found.uplift(direction) * W / 2 - (W * T / 2 + rho * W * arm) / H
+    assert {each.key: each.value for each in found.extras(direction)}["top_force"] == pytest.approx(R, rel=1e-9)
+
+
 @pytest.mark.parametrize(
     ("fields", "lambda_", "phi_cr"),
     [

@@ -1,7 +1,8 @@
 """What a reader of drawings yields: lines with arcs, points, texts and layers, or the surface of a body.
 
 A reader is a module, or any object, with a `TITLE` (the name of its format), the `ENDINGS` of its files, and the
-functions `sniff` and `read` of `DrawingReader`; a reader of meshes has `MESH = True`. Points of a drawing are complex
+functions `sniff` and `read` of `DrawingReader`; a reader of meshes has `MESH = True`, one of models in space the names
+of their `PLANES`, of which its `read` takes one as `plane`. Points of a drawing are complex
 numbers x + iy, x to the right and y up, in the unit of the drawing. A bulge is tan(turn/4) of an arc that turns
 anticlockwise by `turn`; 0 is a straight side.
 """
@@ -116,6 +117,8 @@ class LineDrawing:
         What was mended, or is at fault, in a damaged file.
     annotations : sequence of ndarray of complex
         Lines of dimensions and leaders, which mean nothing, for the picture.
+    depth : float or None
+        Depth of its bodies [units], if it is known.
     """
 
     format: str
@@ -128,6 +131,7 @@ class LineDrawing:
     doubt: str = ""
     faults: Sequence[str] = ()
     annotations: Sequence[Points] = ()
+    depth: float | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,6 +26,9 @@ START = re.compile(rb"(?:\xef\xbb\xbf)?\s*(?:999[ \t]*\r?\n[^\n]*\n\s*)*0[ \t]*\
 ENTITY = re.compile(rb"\n[ \t]*0[ \t]*\r?\n[ \t]*[A-Z]")
 UNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 14: "dm"}
 IMPERIAL = {"in": "inches", "ft": "feet"}
+DOS_PAGE = re.compile(rb"\$DWGCODEPAGE\s+3\s+dos(\d+)", re.IGNORECASE)
+ESCAPED = b"\\U+"  # begins a letter that ezdxf only decodes where it mends
+HEAD_BYTES = 100_000  # within which a file says its page
 MAX_BYTES = 64_000_000
 MAX_ENTITIES = 100_000  # lines, polylines and so on, also those that blocks make
 MAX_CORNERS = 300_000
@@ -117,20 +120,32 @@ def _document(data: bytes, file: str) -> tuple[Any, list[str]]:
     if sum(1 for _ in ENTITY.finditer(data)) > MAX_ENTITIES:
         raise refusal(f"the drawing has more than {MAX_ENTITIES} entities, such as lines", SPLIT_HINT, "too_large")
     ezdxf_module()
-    from ezdxf import recover
-    from ezdxf.document import Drawing
-    from ezdxf.lldxf.tagger import binary_tags_loader
-
     try:
-        if data.startswith(BINARY):
-            document = Drawing.load(binary_tags_loader(data, errors="surrogateescape"))
-            auditor = document.audit()
-        else:
-            document, auditor = recover.read(io.BytesIO(data))
+        document, auditor = _loaded(data)
     except Exception as error:  # ezdxf raises many kinds
         hint = "open it in a CAD program, and save it again"
         raise refusal(f"the file is damaged: {error or type(error).__name__}", hint) from None
     return document, [each.message for each in (*auditor.fixes, *auditor.errors)]
+
+
+def _loaded(data: bytes) -> tuple[Any, Any]:
+    """Return the document and the auditor of ezdxf, which mends what it cannot load as it is."""
+    from ezdxf import recover
+    from ezdxf.document import Drawing
+    from ezdxf.filemanagement import dxf_stream_info
+    from ezdxf.lldxf.tagger import binary_tags_loader
+
+    if data.startswith(BINARY):
+        document = Drawing.load(binary_tags_loader(data, errors="surrogateescape"))
+        return document, document.audit()
+    with suppress(Exception):
+        info = dxf_stream_info(io.TextIOWrapper(io.BytesIO(data), "latin-1"))
+        if info.encoding != "utf-8" and (page := DOS_PAGE.search(data[:HEAD_BYTES])):  # ezdxf takes it for cp1252
+            data = data.decode(f"cp{int(page[1])}", "replace").encode(info.encoding, "dxfreplace")
+        if ESCAPED not in data:
+            document = Drawing.read(io.TextIOWrapper(io.BytesIO(data), info.encoding, "surrogateescape"))
+            return document, document.audit()
+    return recover.read(io.BytesIO(data))
 
 
 def _unit(header: Any) -> tuple[str | None, str]:

@@ -27,6 +27,7 @@ FEWER = f"reduce the mesh to a million triangles, and save it as binary PLY or S
 STL_HEAD, STL_TRIANGLE = 84, 50  # bytes
 _OBJ_ROW = re.compile(rb"^[ \t]*([vf])[ \t]+(.*)", re.MULTILINE)
 _OBJ_ASIDE = re.compile(rb"\\\r?\n|/\S*|#.*")  # ends of lines that go on, seams of texture and normals, comments
+_INTEGERS = re.compile(rb"[-+]?\d{1,18}([ \t]+[-+]?\d{1,18})*[ \t\r]*")
 _PLY_COUNT = re.compile(rb"^element[ \t]+(\w+)[ \t]+(\d+)[ \t\r]*$", re.MULTILINE)
 _SNIFFED = 4096  # bytes
 
@@ -79,12 +80,7 @@ def read(data: bytes, file: str, /) -> MeshSurface:
         rows = len(body.strip().splitlines())
         has = f"{min(rows, count):,} and {max(rows - count, 0):,}"
         _check_size(rows - sum(counts.values()), f"{count:,} points and {faces:,} faces", has, file)
-    try:
-        points, triangles = _surface(known, data)
-    except Exception as error:  # trimesh raises what numpy does
-        advice = "if its faces differ in their number of corners, save it with triangles alone"
-        what = f"cannot be read as {known}: it is damaged or cut short ({error})"
-        raise DrawingError("damaged", what, file, hint=advice if known == "PLY" else None) from None
+    points, triangles = _surface(known, data, file)
     for of, count in (("triangles", len(triangles)), ("points", len(points) if known != "STL" else 0)):
         if count > MAX_COUNT:
             raise DrawingError("too_large", f"has {count:,} {of}", file, hint=FEWER)
@@ -106,25 +102,37 @@ def _check_size(more: int, announced: str, held: str, file: str) -> None:
         raise DrawingError("damaged", what, file, hint="save it again")
 
 
-def _surface(known: str, data: bytes) -> tuple[NDArray[Any], Integers]:
-    """Return the points of a mesh, and its faces cut into triangles."""
+def _damaged(known: str, why: object, file: str) -> DrawingError:
+    advice = "if its faces differ in their number of corners, save it with triangles alone"
+    what = f"cannot be read as {known}: it is damaged or cut short ({why})"
+    return DrawingError("damaged", what, file, hint=advice if known == "PLY" else None)
+
+
+def _surface(known: str, data: bytes, file: str) -> tuple[NDArray[Any], Integers]:
+    """Return the points of a mesh, and its faces cut into triangles. Raises `DrawingError` "damaged"."""
     from trimesh.exchange import obj, ply, stl
 
     load: Any = {"OBJ": partial(obj.load_obj, maintain_order=True), "PLY": ply.load_ply, "STL": stl.load_stl}[known]
+    stream = io.BytesIO(_plain(data, file) if known == "OBJ" else data)
     with warnings.catch_warnings():
         warnings.simplefilter("error", DeprecationWarning)  # older versions of numpy warn of what is no number
-        loaded = load(io.BytesIO(_plain(data) if known == "OBJ" else data))
+        try:
+            loaded = load(stream)
+        except Exception as error:  # trimesh raises what numpy does
+            raise _damaged(known, error, file) from None
     points, triangles = np.zeros((0, 3), np.float32), np.zeros((0, 3), np.int64)
     for each in loaded.get("geometry", {"": loaded}).values():  # the solids of a file
         faces = np.asarray(triangles[:0] if each.get("faces") is None else each["faces"], np.int64) + len(points)
+        if each["vertices"].shape[1:] != (3,):
+            raise _damaged(known, "a point has no three coordinates", file)
         fans = [faces[:, [0, k, k + 1]] for k in range(1, faces.shape[1] - 1)]
         points, triangles = np.concatenate([points, each["vertices"]]), np.concatenate([triangles, *fans])
     if triangles.size and not 0 <= triangles.min() <= triangles.max() < len(points):
-        raise ValueError(f"a face names a point that does not exist, of {len(points):,}")
+        raise _damaged(known, f"a face names a point that does not exist, of {len(points):,}", file)
     return points, triangles
 
 
-def _plain(data: bytes) -> bytes:
+def _plain(data: bytes, file: str) -> bytes:
     """Return an OBJ file with points and faces alone, whose corners all count from its first point.
 
     trimesh counts those that are negative back from the last point, not from the face, and takes no notice of others
@@ -134,9 +142,11 @@ def _plain(data: bytes) -> bytes:
     for kind, row in _OBJ_ROW.findall(_OBJ_ASIDE.sub(b" ", data)):
         points += kind == b"v"
         if kind == b"f":
+            if not _INTEGERS.fullmatch(row):
+                raise _damaged("OBJ", "a face has corners that are not whole numbers", file)
             corners = [k + (points + 1) * (k < 0) for k in map(int, row.split())]
             if len(corners) < 3 or min(corners) < 1:
-                raise ValueError("a face has fewer than three corners, or a point that does not exist")
+                raise _damaged("OBJ", "a face has fewer than three corners, or a point that does not exist", file)
             row = b" ".join(b"%d" % k for k in corners)
         rows.append(kind + b" " + row)
     return b"\n".join(rows)

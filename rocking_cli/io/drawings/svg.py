@@ -387,7 +387,7 @@ def _tracks(node: SvgElement, place: SvgPlace) -> list[lines.Track]:
     if node.tag == "rect":
         rx, ry = min(rx, size.real / 2), min(ry, size.imag / 2)
         return lines.rectangle(place.pair(node, "x", "y"), size.real, size.imag, rx, ry)
-    return lines.ellipse(place.pair(node, "cx", "cy"), rx, ry)
+    return lines.rectangle(place.pair(node, "cx", "cy") - complex(rx, ry), 2 * rx, 2 * ry, rx, ry)
 
 
 def _radii(node: SvgElement, place: SvgPlace) -> tuple[float, float]:

@@ -172,30 +172,18 @@ def polygon(points: Sequence[complex], closed: bool) -> list[Track]:
     return [Track(points[0], list(points[1:]), closed)] if points else []
 
 
-def ellipse(centre: complex, rx: float, ry: float) -> list[Track]:
-    """Return the track of an ellipse along the axes, as two halves."""
-    forward, backward = complex((rx + ry) / 2), complex((rx - ry) / 2)
-    halves: list[Piece] = [Arc(centre, forward, backward, s, pi, centre - rx * cos(s)) for s in (0.0, pi)]
-    return [Track(centre + rx, halves, closed=True)]
-
-
 def rectangle(corner: complex, width: float, height: float, rx: float, ry: float) -> list[Track]:
-    """Return the track of a rectangle, from its corner with the least coordinates; rx and ry round its corners."""
-    low, high = corner, corner + complex(width, height)
+    """Return the track of a rectangle, from its corner with the least coordinates; rx and ry round its corners.
+
+    An ellipse is a rectangle with radii of half its size.
+    """
+    across, up, x, y = width - 2 * rx, height - 2 * ry, complex(rx), complex(0, ry)
     if not (rx and ry):
-        return polygon([low, complex(high.real, low.imag), high, complex(low.real, high.imag)], closed=True)
-    pieces: list[Piece] = []
-    forward, backward = complex((rx + ry) / 2), complex((rx - ry) / 2)
-    for quarter, centre in enumerate([
-        complex(high.real - rx, low.imag + ry),
-        high - complex(rx, ry),
-        complex(low.real + rx, high.imag - ry),
-        low + complex(rx, ry),
-    ]):  # fmt: skip
-        ends = centre + complex(0, -ry), centre + rx, centre + complex(0, ry), centre - rx
-        arc = Arc(centre, forward, backward, (quarter - 1) * pi / 2, pi / 2, ends[(quarter + 1) % 4])
-        pieces += [ends[quarter], arc]
-    return [Track(low + rx, pieces, closed=True)]
+        return polygon([corner, corner + width, corner + complex(width, height), corner + 1j * height], closed=True)
+    text = f"M{corner.real + rx!r} {corner.imag!r}"
+    for side, turn in ((f"h{across!r}", x + y), (f"v{up!r}", y - x), (f"h{-across!r}", -x - y), (f"v{-up!r}", x - y)):
+        text += f"{side}a{rx!r} {ry!r} 0 0 1 {turn.real!r} {turn.imag!r}"
+    return path(text + "z")
 
 
 def path(text: str) -> list[Track]:

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 from rocking_cli.arrays import Reals
 from rocking_cli.core.hung.ties import Tie
-from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnText, LineDrawing
+from rocking_cli.io.drawings.contract import DrawnLine, DrawnText, LineDrawing
 from rocking_cli.io.field_problems import of_arguments
 from rocking_cli.io.yaml_file import in_a_line
 from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, many
@@ -39,9 +39,9 @@ STEEL = re.compile(r"(?<!steel )(?<!steel)\b(S\d{3}|Fe\s?\d{3})\b")
 DECIMALS = 7  # of coordinates in a file [m]
 
 
-def rounded(z: complex) -> list[float]:
+def rounded(z: complex, decimals: int = DECIMALS) -> list[float]:
     """Return a point as it stands in a file, to a tenth of a micrometre."""
-    return [round(z.real, DECIMALS) + 0.0, round(z.imag, DECIMALS) + 0.0]
+    return [round(z.real, decimals) + 0.0, round(z.imag, decimals) + 0.0]
 
 
 @dataclass
@@ -59,26 +59,18 @@ class DrawnAttachments:
 class BodyFinder:
     """Which bodies, or the ground, are at a point of the drawing."""
 
-    def __init__(
-        self,
-        bodies: Sequence[DrawnBody],
-        ground: Sequence[ArcRing],
-        frame: DrawingFrame,
-        shift: complex,
-        close: float,
-        file: str,
-    ) -> None:
+    def __init__(self, bodies: Sequence[DrawnBody], ground: Sequence[ArcRing], frame: DrawingFrame) -> None:
         import shapely
 
         self.names = [body.name for body in bodies]
-        self.solid = polygons_of([body.ring for body in bodies], close)
+        self.solid = polygons_of([body.ring for body in bodies], frame.close)
         self.edges = shapely.get_exterior_ring(self.solid)
-        self.ground = polygons_of(ground, close)
-        self.frame, self.shift, self.close, self.file = frame, shift, close, file
+        self.ground = polygons_of(ground, frame.close)
+        self.frame, self.close = frame, frame.close
 
     def at(self, z: complex) -> complex:
         """Return a point of the drawing in metres, from the origin of the file."""
-        return complex(self.frame.to_metres(np.array([z]))[0] + self.shift)
+        return complex(self.frame.to_metres(np.array([z]))[0])
 
     def away(self, shapes: Any, z: complex) -> Reals:
         """Return the distance of each of `shapes` from a point [m]."""
@@ -103,7 +95,7 @@ class BodyFinder:
     def require(self, holds: object, kind: str, what: str, z: complex) -> None:
         """Raise `DrawingError` on something at a point of the drawing if a condition does not hold."""
         if not holds:
-            raise DrawingError(kind, f"{what} at ({z.real:.7g}, {z.imag:.7g})", self.file, at=[[z.real, z.imag]])
+            raise self.frame.refusal(kind, f"{what} at <here>", [self.at(z)])
 
     def straight(self, chain: DrawnLine, kind: str, name: str) -> tuple[complex, complex]:
         """Return both ends of a line of two points. Raises `DrawingError` for other lines."""
@@ -132,13 +124,8 @@ def attached(drawing: LineDrawing, of: Sorted, places: BodyFinder) -> DrawnAttac
 def direction_of(layer: str) -> str:
     """Return the direction that the end of the name of a layer says, + or -; empty for both."""
     name = plain(layer).rstrip()
-    for sign, words in (
-        ("+", ("+", "positive", "positiva", "positivo")),
-        ("-", ("-", "negative", "negativa", "negativo")),
-    ):
-        if name.endswith(words):
-            return sign
-    return ""
+    match = re.search(r"([+-])$|(positiv[eao])$|negativ[eao]$", name)
+    return "" if match is None else match[1] or ("+" if match[2] else "-")
 
 
 def _spots(drawing: LineDrawing, of: Sorted, role: Role) -> list[tuple[complex, str]]:
@@ -232,10 +219,8 @@ def _distance(z: complex, start: complex, end: complex) -> float:
 def _loads(drawing: LineDrawing, of: Sorted, places: BodyFinder, made: DrawnAttachments) -> None:
     points = [at for at, _ in _spots(drawing, of, Role.LOADS)]
     arrows = [chain for chain in of.chains[Role.LOADS] if not chain.closed]
-    symbols = [
-        *((at, at) for at in points),
-        *(places.straight(chain, "load", "an arrow of a load") for chain in arrows),
-    ]
+    symbols = [(at, at) for at in points]
+    symbols += [places.straight(chain, "load", "an arrow of a load") for chain in arrows]
     texts = _nearest_texts([label for label in of.labels if of.roles(label.layer) is Role.LOADS], symbols, made)
     for k, (start, end) in enumerate(symbols):
         places.require(k in texts, "load", "a load has no text, such as 3 t or 12 kN, beside it", end)

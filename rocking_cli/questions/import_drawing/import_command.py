@@ -23,7 +23,7 @@ OF_MESHES = {
 }  # fmt: skip
 OF_DRAWINGS = {
     "scale": None, "layers": (), "depth": None, "merge_gap": None, "close": "1mm", "nested": None, "kind": None,
-    "tolerance": "0.1mm",
+    "tolerance": "0.1mm", "plane": None,
 }  # fmt: skip
 """Options that only meshes, or drawings, have, with their defaults."""
 
@@ -71,6 +71,7 @@ OF_DRAWINGS = {
     metavar="LENGTH",
     help="Largest distance of the straight sides of curved blocks from their arcs.",
 )
+@click.option("--plane", type=click.Choice(["xz", "yz"]), help="Of a model of blocks: its plane.  [default: xz]")
 @click.option("--azimuth", metavar="DEG", help="Of a mesh: direction of the motion, from its x axis: 30, or 0:350:10.")
 @click.option("--level", metavar="LENGTH", help="Of a mesh: height up to which points bear.  [default: 1mm]")
 @click.option("--settle", is_flag=True, help="Of a mesh: lay it on the facet of its hull below its centre of mass.")
@@ -94,6 +95,8 @@ def command(file: str, output: Output, **asked: Any) -> None:
     loads and ties, in English or Italian; other layers with outlines need --layers. Closed lines are bodies; arcs stay
     exact. The output lists the bodies, and everything that was mended, assumed or left out; the same sentences are
     comments in the structure file. Without -o the file is printed.
+
+    A block model of compas_dem (JSON) is an assembly of prisms seen in --plane; its supports are ground.
 
     A mesh (OBJ, PLY, STL) of a closed surface becomes a rigid body: the output lists the edges of its foot, and lambda
     in each direction. --level is decisive for a scan, so a table shows what it does.
@@ -122,6 +125,7 @@ def command(file: str, output: Output, **asked: Any) -> None:
         terminal.print_json({"refused": error.refused, **told})
         raise click.exceptions.Exit(error.exit_code) from None
     replace(output, out=None).show(answer)
+    output.watch.end()
 
 
 def _of_drawing(file: str, output: Output, asked: dict[str, Any]) -> Answer[Any]:

@@ -3,30 +3,19 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.arrays import Points, Reals
-from rocking_cli.io.drawings.arcs import inner_points
+from rocking_cli.io.drawings.arcs import arc_circle, inner_points
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine
 from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, length_in_words, many
-from rocking_cli.questions.import_drawing.rings import (
-    CHORD,
-    ArcRing,
-    anticlockwise,
-    chord_count,
-    following,
-    polygons_of,
-    tidied,
-)
-
-if TYPE_CHECKING:
-    from scipy.spatial import cKDTree
+from rocking_cli.questions.import_drawing.rings import CHORD, ArcRing, chord_count, following, polygons_of
 
 Integers = NDArray[np.intp]
 EXACT = 1e-3  # share of the closing distance below which points are one without a search
@@ -35,6 +24,17 @@ TANGLE_SAMPLE, MOST_ACROSS = 200, 200_000  # lines of a sample, and pairs of lin
 MOST_COMPARED = 4000  # ends that are compared with one another for a message
 MOST_PLACES = 100  # places of a message
 OVERSHOOT, OVERSHOOT_SHARE = 0.1, 0.1  # length of an end beyond a corner [m], and over the length of the outline
+EDGE = np.dtype([("a", complex), ("b", complex), ("bulge", float), ("of", int), ("start", int), ("end", int)])
+"""A side of a line: its ends and bulge, the number of its line, and the nodes at its ends."""
+MENDED = {
+    "drawn twice": ("line", "drawn twice: each counts once"),
+    "joined": ("corner", "joined over gaps up to {}"),
+    "split": ("line", "split where another line ends on them"),
+    "crumbs": ("line", "left out, shorter than `close` or drawn there and back"),
+    "slivers": ("sliver", "between lines left out, as thin as `close`"),
+    "trimmed": ("end", "of lines beyond a corner left out, up to {}"),
+}
+"""What is mended while loops are made: the noun of the things, and words in which {} is the largest length."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,47 +55,26 @@ class Loop:
     sources: Sequence[DrawnLine]
 
 
-@dataclass
 class Mended:
-    """Counts and places of what was mended while loops were made [m]."""
+    """Places [m] of what was mended while loops were made, by kind, and the largest length of each kind [m]."""
 
-    doubles: list[complex] = field(default_factory=list)
-    joined: list[complex] = field(default_factory=list)
-    widest: float = 0.0
-    split: list[complex] = field(default_factory=list)
-    crumbs: list[complex] = field(default_factory=list)
-    slivers: list[complex] = field(default_factory=list)
-    trimmed: list[complex] = field(default_factory=list)
-    longest: float = 0.0
-    faces: int = 0
-    arcs_cut: int = 0
+    def __init__(self) -> None:
+        self.at: dict[str, list[complex]] = {kind: [] for kind in MENDED}
+        self.longest = dict.fromkeys(MENDED, 0.0)
+        self.faces = self.arcs_cut = 0
+
+    def add(self, kind: str, at: Iterable[complex], length: float = 0.0) -> None:
+        """Add places of a kind."""
+        self.at[kind] += map(complex, at)
+        self.longest[kind] = max(self.longest[kind], length)
 
     def notes(self, frame: DrawingFrame) -> list[ImportNote]:
         """Return a note for each kind."""
-
-        def places(points: Sequence[complex]) -> list[complex]:
-            return [frame.to_drawing(each) for each in points]
-
         notes = []
-        if self.doubles:
-            words = f"{many(len(self.doubles), 'line')} drawn twice: each counts once"
-            notes.append(ImportNote("drawn twice", len(self.doubles), words, places(self.doubles)))
-        if self.joined:
-            words = f"{many(len(self.joined), 'corner')} joined over gaps up to {length_in_words(self.widest)}"
-            notes.append(ImportNote("joined", len(self.joined), words, places(self.joined)))
-        if self.split:
-            words = f"{many(len(self.split), 'line')} split where another line ends on them"
-            notes.append(ImportNote("split", len(self.split), words, places(self.split)))
-        if self.crumbs:
-            words = f"{many(len(self.crumbs), 'line')} left out, shorter than `close` or drawn there and back"
-            notes.append(ImportNote("crumbs", len(self.crumbs), words, places(self.crumbs)))
-        if self.slivers:
-            words = f"{many(len(self.slivers), 'sliver')} between lines left out, as thin as `close`"
-            notes.append(ImportNote("slivers", len(self.slivers), words, places(self.slivers)))
-        if self.trimmed:
-            words = f"{many(len(self.trimmed), 'end')} of lines beyond a corner left out, up to "
-            words += length_in_words(self.longest)
-            notes.append(ImportNote("trimmed", len(self.trimmed), words, places(self.trimmed)))
+        for kind, at in self.at.items():
+            noun, words = MENDED[kind]
+            sentence = f"{many(len(at), noun)} {words.format(length_in_words(self.longest[kind]))}"
+            notes += [ImportNote(kind, len(at), sentence, [*map(frame.to_drawing, at)])] if at else []
         if self.faces:
             words = f"{many(self.faces, 'outline')} found as faces between lines that cross or branch"
             words += f"; their {many(self.arcs_cut, 'arc')} became chords" if self.arcs_cut else ""
@@ -103,141 +82,100 @@ class Mended:
         return notes
 
 
-@dataclass(eq=False)
-class DrawnEdges:
-    """Sides of open lines: their ends, bulges and the lines that they are of."""
-
-    a: Points
-    b: Points
-    bulge: Reals
-    of: Integers
-
-    @classmethod
-    def from_lines(cls, lines: Sequence[Placed]) -> DrawnEdges:
-        """Take the sides of lines, closed ones too."""
-        a, b, bulge, of = [], [], [], []
-        for k, line in enumerate(lines):
-            z = line.z
-            a.append(z if line.closed else z[:-1])
-            b.append(following(z) if line.closed else z[1:])
-            bulge.append(line.bulges if line.closed else line.bulges[:-1])
-            of.append(np.full(len(a[-1]), k, np.intp))
-        if not a:
-            return cls(np.zeros(0, complex), np.zeros(0, complex), np.zeros(0), np.zeros(0, np.intp))
-        return cls(np.concatenate(a), np.concatenate(b), np.concatenate(bulge), np.concatenate(of))
-
-    def chosen(self, which: Any) -> DrawnEdges:
-        """Return some of the sides."""
-        return DrawnEdges(self.a[which], self.b[which], self.bulge[which], self.of[which])
-
-    def joined(self, other: DrawnEdges) -> DrawnEdges:
-        """Return these sides and others."""
-        return DrawnEdges(
-            np.append(self.a, other.a), np.append(self.b, other.b), np.append(self.bulge, other.bulge),
-            np.append(self.of, other.of),
-        )  # fmt: skip
-
-    def curves(self, close: float) -> Any:
-        """Return the sides as lines of shapely, arcs by chords; an array of objects, shape (n,)."""
-        import shapely
-
-        count = np.full(len(self), 2)
-        inner: dict[int, Points] = {}
-        for k in np.flatnonzero(self.bulge).tolist():
-            ends = complex(self.a[k]), complex(self.b[k])
-            inner[k] = inner_points(*ends, float(self.bulge[k]), lambda r, turn: chord_count(r, turn, CHORD * close))
-            count[k] += len(inner[k])
-        last = np.cumsum(count)
-        z = np.empty(int(last[-1]) if len(last) else 0, np.complex128)
-        z[last - count], z[last - 1] = self.a, self.b
-        for k, points in inner.items():
-            z[last[k] - count[k] + 1 : last[k] - 1] = points
-        of = np.repeat(np.arange(len(self)), count)
-        return shapely.linestrings(np.stack([z.real, z.imag], axis=1), indices=of)
-
-    @property
-    def middle(self) -> Points:
-        """Middle of each side, on its arc."""
-        return (self.a + self.b) / 2 - 0.5j * (self.b - self.a) * self.bulge
-
-    def __len__(self) -> int:
-        return len(self.a)
+def edges_of(lines: Sequence[Placed | ArcRing]) -> Any:
+    """Return the sides of lines as an array of `EDGE`; their `start` is the place of the corner in its line."""
+    count = np.array([len(line.z) for line in lines], int)
+    ends = np.cumsum(count)
+    of = np.repeat(np.arange(len(lines)), count)
+    edges, after, keep = np.zeros(len(of), EDGE), np.arange(1, len(of) + 1), np.ones(len(of), bool)
+    after[ends - 1] = ends - count
+    is_open = np.array([isinstance(line, Placed) and not line.closed for line in lines], bool)
+    keep[ends[is_open] - 1] = False
+    edges["a"] = z = np.concatenate([np.zeros(0, complex), *(line.z for line in lines)])
+    edges["b"], edges["of"], edges["start"] = z[after], of, np.arange(len(of)) - (ends - count)[of]
+    edges["bulge"] = np.concatenate([np.zeros(0), *(line.bulges for line in lines)])
+    return edges[keep]
 
 
-def loops(lines: Sequence[Placed], close: float, frame: DrawingFrame, file: str) -> tuple[list[Loop], Mended]:
+def curves_of(edges: Any, close: float) -> Any:
+    """Return sides as lines of shapely, arcs by chords; an array of objects, shape (n,)."""
+    import shapely
+
+    z: list[Any] = list(np.stack([edges["a"], edges["b"]], axis=1))
+    for k in np.flatnonzero(edges["bulge"]).tolist():
+        a, b, bulge = edges[["a", "b", "bulge"]][k].item()
+        inner = inner_points(a, b, bulge, lambda r, turn: chord_count(r, turn, CHORD * close))
+        z[k] = np.concatenate(([a], inner, [b]))
+    of = np.repeat(np.arange(len(z)), [len(each) for each in z])
+    points = np.concatenate(z) if z else np.zeros(0, complex)
+    return shapely.linestrings(np.stack([points.real, points.imag], axis=1), indices=of)
+
+
+def _middles(edges: Any) -> Points:
+    """Return the middle of each side, on its arc."""
+    middles: Points = (edges["a"] + edges["b"]) / 2 - 0.5j * (edges["b"] - edges["a"]) * edges["bulge"]
+    return middles
+
+
+def loops(lines: Sequence[Placed], frame: DrawingFrame) -> tuple[list[Loop], Mended]:
     """Return the closed lines that lines make, and what was mended.
 
     Parameters
     ----------
     lines : sequence of Placed
         Open and closed lines of layers with one role.
-    close : float
-        Distance up to which ends are one point [m].
     frame : DrawingFrame
-        The unit of the drawing, for messages.
-    file : str
-        Name of the file in messages.
+        The drawing, with the distance up to which ends are one point.
 
     Raises
     ------
     DrawingError
         Of the class "unclosed", if a line closes nothing.
     """
-    mended = Mended()
+    mended, close = Mended(), frame.close
     is_crumb = [_is_crumb(line, close) for line in lines]
-    mended.crumbs = [complex(line.z[0]) for line, left_out in zip(lines, is_crumb, strict=True) if left_out]
+    mended.add("crumbs", [line.z[0] for line, left_out in zip(lines, is_crumb, strict=True) if left_out])
     lines = [line for line, left_out in zip(lines, is_crumb, strict=True) if not left_out]
     closed = [line for line in lines if line.closed]
     open_ = [line for line in lines if not line.closed]
-    turned = anticlockwise([ArcRing(line.z, line.bulges) for line in closed])
-    made = [Loop(ring, [line.source]) for ring, line in zip(turned, closed, strict=True)]
+    made = [Loop(ArcRing.of(line.z, line.bulges), [line.source]) for line in closed]
     if open_:
-        made = _with_open(made, closed, open_, close, mended, frame, file)
-    rings = tidied([loop.ring for loop in made], close)
-    made = [Loop(ring, loop.sources) for ring, loop in zip(rings, made, strict=True)]
-    return _once(made, close, mended), mended
+        made = _with_open(made, closed, open_, mended, frame)
+    return _once([Loop(loop.ring.tidied(close), loop.sources) for loop in made], close, mended), mended
 
 
 def _is_crumb(line: Placed, close: float) -> bool:
     """Return whether a line is no longer than the closing distance, or goes straight there and back."""
-    there_and_back = line.closed and len(line.z) < 3 and not line.bulges.any()
-    return there_and_back or (float(np.ptp(line.z.real) + np.ptp(line.z.imag)) <= close and not line.bulges.any())
+    z = line.z
+    is_small = abs(z[1] - z[0]) <= close and np.ptp(z.real) + np.ptp(z.imag) <= close
+    nothing = (line.closed and len(z) < 3) or is_small
+    return bool(nothing and not line.bulges.any())
 
 
 def _with_open(
-    made: list[Loop],
-    closed: list[Placed],
-    open_: list[Placed],
-    close: float,
-    mended: Mended,
-    frame: DrawingFrame,
-    file: str,
+    made: list[Loop], closed: list[Placed], open_: list[Placed], mended: Mended, frame: DrawingFrame
 ) -> list[Loop]:
     """Return the loops of closed lines and of open ones, which may end on closed lines."""
     import shapely
 
-    sources = [line.source for line in (*open_, *closed)]
-    more, left = _followed(DrawnEdges.from_lines(open_), sources, close, mended)
-    if not len(left):
-        return made + more
-    rings = [_curve(loop.ring, close) for loop in made]
-    if rings:
-        tree = shapely.STRtree(rings)
-        on_ring = [np.isin(np.arange(len(left)), _near(tree, z, close)[0]) for z in (left.a, left.middle, left.b)]
+    close, sources = frame.close, [line.source for line in (*open_, *closed)]
+    more, left = _followed(edges_of(open_), sources, close, mended)
+    if len(left) and made:
+        tree = shapely.STRtree([_curve(loop.ring, close) for loop in made])
+        on_ring = [
+            np.isin(np.arange(len(left)), _near(tree, z, close)[0]) for z in (left["a"], _middles(left), left["b"])
+        ]
         lies_on = np.logical_and.reduce(on_ring)
-        mended.doubles += left.middle[lies_on].tolist()  # drawn on a closed line
-        left = left.chosen(~lies_on)
-        if not len(left):
-            return made + more
-        touched = np.unique(tree.query(left.curves(close), predicate="dwithin", distance=close)[1])
-        if touched.size:
-            sides = DrawnEdges.from_lines([closed[k] for k in touched])
-            sides.of = len(open_) + touched[sides.of]
-            left = left.joined(sides)
-            made = [loop for k, loop in enumerate(made) if k not in set(touched.tolist())]
+        mended.add("drawn twice", _middles(left[lies_on]))  # drawn on a closed line
+        left = left[~lies_on]
+        touched = np.unique(tree.query(curves_of(left, close), predicate="dwithin", distance=close)[1]).tolist()
+        sides = edges_of([closed[k] for k in touched])
+        sides["of"] = len(open_) + np.array(touched, int)[sides["of"]]
+        left = np.append(left, sides)
+        made = [loop for k, loop in enumerate(made) if k not in {*touched}]
     last, left = _followed(left, sources, close, mended)
     if len(left):
-        raise _unclosed(left, close, frame, file)
+        raise _unclosed(left, frame)
     return made + more + last
 
 
@@ -251,41 +189,25 @@ def _near(tree: Any, z: Points, close: float) -> NDArray[np.intp]:
 
 def _curve(ring: ArcRing, close: float) -> Any:
     """Return the boundary of a ring as a line of shapely."""
-    import shapely
-
-    z = ring.chords(CHORD * close)
-    return shapely.linearrings(np.stack([z.real, z.imag], axis=1))
+    return polygons_of([ring], close)[0].exterior
 
 
-def _doubles(edges: DrawnEdges, start: Integers, end: Integers, close: float) -> NDArray[np.bool_]:
+def _is_double(edges: Any, close: float) -> NDArray[np.bool_]:
     """Return which edges are drawn already, in either sense: they have the same nodes and the same middle."""
-    low, high, middle = np.minimum(start, end), np.maximum(start, end), edges.middle
-    order = np.lexsort((high, low))
+    start, end, middle = edges["start"], edges["end"], _middles(edges)
+    low, high = np.minimum(start, end), np.maximum(start, end)
+    order = np.lexsort((np.where(start < end, 1, -1) * edges["bulge"], high, low))
+    one, other = order[:-1], order[1:]
     again = np.zeros(len(edges), bool)
-    same = (low[order][1:] == low[order][:-1]) & (high[order][1:] == high[order][:-1])
-    kept: list[int] = []
-    for k, goes_on in zip(order.tolist(), [False, *same.tolist()], strict=True):
-        kept = kept if goes_on else []
-        again[k] = any(abs(middle[k] - middle[other]) <= close for other in kept)
-        if not again[k]:
-            kept.append(k)
+    again[other] = (low[one] == low[other]) & (high[one] == high[other]) & (abs(middle[one] - middle[other]) <= close)
     return again
 
 
-def _check_crowd(tree: cKDTree, close: float) -> None:
-    """Raise `DrawingError` if so many points are within the closing distance that it cannot be meant."""
-    if tree.count_neighbors(tree, close) > MOST_NEIGHBOURS * tree.n:
-        what = (
-            f"most lines end within {length_in_words(close)} of many others: give a smaller `close`, or other `units`"
-        )
-        raise DrawingError("unclosed", what)
-
-
-def _check_tangle(edges: DrawnEdges, close: float) -> None:
+def _check_tangle(edges: Any, close: float) -> None:
     """Raise `DrawingError` if so many lines lie across one another that they are no outlines, by a sample of them."""
     import shapely
 
-    lines = edges.curves(close)
+    lines = curves_of(edges, close)
     sample = lines[:: max(len(lines) // TANGLE_SAMPLE, 1)]
     each = len(shapely.STRtree(lines).query(sample)[0]) / len(sample)
     if each > MOST_NEIGHBOURS and each * len(lines) > MOST_ACROSS:
@@ -293,9 +215,7 @@ def _check_tangle(edges: DrawnEdges, close: float) -> None:
         raise DrawingError("too_large", what)
 
 
-def _followed(
-    edges: DrawnEdges, sources: Sequence[DrawnLine], close: float, mended: Mended
-) -> tuple[list[Loop], DrawnEdges]:
+def _followed(edges: Any, sources: Sequence[DrawnLine], close: float, mended: Mended) -> tuple[list[Loop], Any]:
     """Join the ends of edges, split edges where others end on them, and follow the loops.
 
     Returns the loops, and the edges of parts of the drawing in which an edge closes nothing.
@@ -306,138 +226,113 @@ def _followed(
     if not len(edges):
         return [], edges
     _check_tangle(edges, close)
-    start, end, nodes = _nodes(edges, close, mended)
-    edges, start, end = _split(edges, start, end, nodes, close, mended)
-    edges.a, edges.b = nodes[start], nodes[end]
-    again = _doubles(edges, start, end, close)
-    mended.doubles += edges.middle[again].tolist()
-    edges, start, end = edges.chosen(~again), start[~again], end[~again]
-    graph = coo_array((np.ones(len(edges)), (start, end)), shape=(len(nodes), len(nodes)))
+    nodes = _nodes(edges, close, mended)
+    edges = _split(edges, nodes, close, mended)
+    again = _is_double(edges, close)
+    mended.add("drawn twice", _middles(edges[again]))
+    edges = edges[~again]
+    graph = coo_array((np.ones(len(edges)), (edges["start"], edges["end"])), shape=(len(nodes), len(nodes)))
     parts, part_of = connected_components(graph, directed=False)
-    part = part_of[start]
+    part = part_of[edges["start"]]
     crossed = np.zeros(parts, bool)
-    crossed[part[_crossing(edges, start, end, close)]] = True
+    crossed[part[_crossing(edges, close)]] = True
     made, loose = _faces(edges, crossed[part], sources, close, mended)
     is_open = np.zeros(parts, bool)
     is_open[part[loose]] = True
-    return [loop for loop, k in made if not is_open[part[k]]], edges.chosen(is_open[part])
+    return [loop for loop, k in made if not is_open[part[k]]], edges[is_open[part]]
 
 
 def joined_lines(lines: Sequence[Placed], close: float) -> list[Points]:
     """Return the corners of open lines, as one where one ends and another begins; arcs as chords."""
     import shapely
 
-    if not lines:
+    edges = edges_of(lines)
+    if not len(edges):
         return []
-    edges = DrawnEdges.from_lines(lines)
-    start, end, nodes = _nodes(edges, close, Mended())
-    edges.a, edges.b = nodes[start], nodes[end]
-    merged = shapely.line_merge(shapely.multilinestrings(edges.chosen(start != end).curves(close)))
+    _nodes(edges, close, Mended())
+    merged = shapely.line_merge(shapely.multilinestrings(curves_of(edges[edges["start"] != edges["end"]], close)))
     return [shapely.get_coordinates(each) @ [1, 1j] for each in shapely.get_parts(merged)]
 
 
-def _nodes(edges: DrawnEdges, close: float, mended: Mended) -> tuple[Integers, Integers, Points]:
-    """Return the nodes at both ends of each edge, and the nodes: ends within the closing distance are one point."""
+def _nodes(edges: Any, close: float, mended: Mended) -> Points:
+    """Put the ends of edges on nodes, and return these: ends within the closing distance are one point."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree
 
-    ends = np.append(edges.a, edges.b)
+    ends = np.append(edges["a"], edges["b"])
     grid = np.round(np.stack([ends.real, ends.imag], axis=1) / (EXACT * close))
     _, first, same = np.unique(grid, axis=0, return_index=True, return_inverse=True)
-    points, same = ends[first], same.ravel()
+    points = ends[first]
     tree = cKDTree(np.stack([points.real, points.imag], axis=1))
-    _check_crowd(tree, close)
-    pairs = tree.query_pairs(close, output_type="ndarray")
-    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(points), len(points)))
+    if tree.count_neighbors(tree, close) > MOST_NEIGHBOURS * tree.n:
+        what = f"most lines end within {length_in_words(close)} of many others"
+        raise DrawingError("unclosed", f"{what}: give a smaller `close`, or other `units`")
+    one, other = tree.query_pairs(close, output_type="ndarray").T
+    graph = coo_array((np.ones(len(one)), (one, other)), shape=(len(points), len(points)))
     count, node_of = connected_components(graph, directed=False)
-    size = np.bincount(node_of, minlength=count)
-    sums = np.bincount(node_of, points.real, count), np.bincount(node_of, points.imag, count)
-    nodes = np.asarray((sums[0] + 1j * sums[1]) / size, np.complex128)
-    if len(pairs):
-        gaps = np.abs(points[pairs[:, 0]] - points[pairs[:, 1]])
-        wide = gaps > 2 * EXACT * close
-        if wide.any():
-            mended.widest = max(mended.widest, float(gaps.max()))
-            mended.joined += nodes[np.unique(node_of[pairs[wide, 0]])].tolist()
-    node: Integers = node_of[same].astype(np.intp)
-    return node[: len(edges)], node[len(edges) :], nodes
+    x, y, size = (np.bincount(node_of, weights, count) for weights in (points.real, points.imag, None))
+    nodes = np.asarray((x + 1j * y) / size, np.complex128)
+    gaps = np.abs(points[one] - points[other])
+    wide = gaps > 2 * EXACT * close
+    mended.add("joined", nodes[np.unique(node_of[one[wide]])], float(gaps.max(where=wide, initial=0.0)))
+    edges["start"], edges["end"] = node_of[same.ravel()].reshape(2, -1)
+    edges["a"], edges["b"] = nodes[edges["start"]], nodes[edges["end"]]
+    return nodes
 
 
-def _split(
-    edges: DrawnEdges, start: Integers, end: Integers, nodes: Points, close: float, mended: Mended
-) -> tuple[DrawnEdges, Integers, Integers]:
+def _split(edges: Any, nodes: Points, close: float, mended: Mended) -> Any:
     """Split edges at nodes of others that lie on them."""
     import shapely
 
-    pairs = _near(shapely.STRtree(edges.curves(close)), nodes, close)
-    node, edge = pairs
-    inner = (node != start[edge]) & (node != end[edge])
-    z = nodes[node]
-    inner &= (np.abs(z - edges.a[edge]) > close) & (np.abs(z - edges.b[edge]) > close)
+    node, edge = _near(shapely.STRtree(curves_of(edges, close)), nodes, close)
+    z, by = nodes[node], edges[edge]
+    inner = (node != by["start"]) & (node != by["end"]) & (abs(z - by["a"]) > close) & (abs(z - by["b"]) > close)
+    mended.add("split", z[inner])
     node, edge = node[inner], edge[inner]
-    if not node.size:
-        keep = start != end
-        return edges.chosen(keep), start[keep], end[keep]
-    mended.split += nodes[node].tolist()
-    a, b, bulge, of, s, e = [], [], [], [], [], []
-    cuts: dict[int, list[int]] = {}
-    for n, k in zip(node.tolist(), edge.tolist(), strict=True):
-        cuts.setdefault(k, []).append(n)
-    for k, between in cuts.items():
-        share = {n: _share(edges, k, complex(nodes[n])) for n in between}
-        order = sorted(between, key=share.__getitem__)
-        marks = [0.0, *(share[n] for n in order), 1.0]
-        chain = [int(start[k]), *order, int(end[k])]
-        turn = 4 * np.arctan(edges.bulge[k])
-        for (p, q), (u, v) in zip(pairwise(chain), pairwise(marks), strict=True):
-            a.append(nodes[p])
-            b.append(nodes[q])
-            bulge.append(np.tan(turn * (v - u) / 4))
-            of.append(edges.of[k])
-            s.append(p)
-            e.append(q)
-    keep = np.ones(len(edges), bool)
-    keep[list(cuts)] = False
-    keep &= start != end
-    kept = edges.chosen(keep)
-    return (
-        DrawnEdges(
-            np.append(kept.a, a), np.append(kept.b, b), np.append(kept.bulge, bulge),
-            np.append(kept.of, np.array(of, np.intp)),
-        ),
-        np.append(start[keep], np.array(s, np.intp)),
-        np.append(end[keep], np.array(e, np.intp)),
-    )  # fmt: skip
+    order = np.argsort(edge, kind="stable")
+    cut, first = np.unique(edge[order], return_index=True)
+    keep, pieces = edges["start"] != edges["end"], []
+    keep[cut] = False
+    for k, on in zip(cut.tolist(), np.split(node[order], first[1:]), strict=bool(len(cut))):
+        share = _shares(edges[k], nodes[on])
+        along = np.argsort(share)
+        chain = np.array([edges["start"][k], *on[along], edges["end"][k]])
+        piece = np.repeat(edges[k : k + 1], len(on) + 1)
+        piece["start"], piece["end"] = chain[:-1], chain[1:]
+        piece["a"], piece["b"] = nodes[chain[:-1]], nodes[chain[1:]]
+        piece["bulge"] = np.tan(np.arctan(edges["bulge"][k]) * np.diff([0.0, *share[along], 1.0]))
+        pieces.append(piece)
+    return np.concatenate([edges[keep], *pieces])
 
 
-def _share(edges: DrawnEdges, k: int, z: complex) -> float:
-    """Return where a point is along an edge, from 0 to 1; along the turn of an arc."""
-    a, b, bulge = complex(edges.a[k]), complex(edges.b[k]), float(edges.bulge[k])
+def _shares(edge: Any, z: Points) -> Reals:
+    """Return where points are along an edge, from 0 to 1; along the turn of an arc."""
+    a, b, bulge = edge["a"], edge["b"], edge["bulge"]
     if not bulge:
-        return float(((z - a) * (b - a).conjugate()).real / abs(b - a) ** 2)
-    centre = (a + b) / 2 + 1j * (b - a) * (1 - bulge**2) / (4 * bulge)
+        return np.asarray(((z - a) * (b - a).conj()).real / abs(b - a) ** 2)
+    centre, _ = arc_circle(a, b, bulge)
     turn = 4 * np.arctan(bulge)
-    way = np.angle((z - centre) / (a - centre)) / turn
-    return float(way % (2 * np.pi / abs(turn)))
+    return np.asarray(np.angle((z - centre) / (a - centre)) / turn % (2 * np.pi / abs(turn)))
 
 
-def _crossing(edges: DrawnEdges, start: Integers, end: Integers, close: float) -> Integers:
+def _crossing(edges: Any, close: float) -> Integers:
     """Return pairs of edges that cross between their ends, shape (2, n)."""
     import shapely
 
-    lines = edges.curves(close)
+    lines = curves_of(edges, close)
     one, other = shapely.STRtree(lines).query(lines)
-    ends = np.stack([start, end])
+    one, other = one[one < other], other[one < other]
+    ends = np.stack([edges["start"], edges["end"]])
     meet = (ends[:, None, one] == ends[None, :, other]).any(axis=(0, 1))
-    both = (one < other) & ~(meet & (edges.bulge[one] == 0) & (edges.bulge[other] == 0))  # straight ones meet once
-    one, other = one[both], other[both]
+    may = ~meet | (edges["bulge"][one] != 0) | (edges["bulge"][other] != 0)  # straight ones meet once
+    one, other = one[may], other[may]
     cross = shapely.crosses(lines[one], lines[other])
     return np.stack([one[cross], other[cross]])
 
 
 def _faces(
-    edges: DrawnEdges, crossed: NDArray[np.bool_], sources: Sequence[DrawnLine], close: float, mended: Mended
+    edges: Any, crossed: NDArray[np.bool_], sources: Sequence[DrawnLine], close: float, mended: Mended
 ) -> tuple[list[tuple[Loop, int]], Integers]:
     """Return the faces between edges, each with the number of an edge, and the edges that close nothing.
 
@@ -445,45 +340,59 @@ def _faces(
     """
     import shapely
 
-    lines = edges.curves(close)
+    lines = curves_of(edges, close)
     cut = shapely.get_parts(shapely.node(shapely.multilinestrings(lines[crossed])))
     faces, bridges, dangles, _ = shapely.polygonize_full([*lines[~crossed], *cut])
     faces = shapely.get_parts(faces)
     thin = shapely.area(faces) <= close * shapely.length(faces) / 4
-    mended.slivers += (shapely.get_coordinates(shapely.centroid(faces[thin])) @ [1, 1j]).tolist()
+    mended.add("slivers", _middles_of(faces[thin]))
     faces = faces[~thin]
     loose = np.concatenate([_loose(shapely.get_parts(dangles), faces, mended), shapely.get_parts(bridges)])
     tree = shapely.STRtree(lines)
     _, at_loose = tree.query(loose, predicate="dwithin", distance=EXACT * close)
-    ways, degree = dict[tuple[Any, Any], tuple[int, int, float, Any]](), Counter[Any]()
-    for k, line in enumerate(lines):
-        corners = [*map(tuple, shapely.get_coordinates(line).tolist())]
-        for way, bulge in ((corners, edges.bulge[k]), (corners[::-1], -edges.bulge[k])):
-            ways[way[0], way[1]] = k, len(way) - 1, float(bulge), way[-1]
-            degree[way[0]] += 1
+    ways, degree = dict[tuple[complex, complex], tuple[int, int, float, complex]](), Counter[complex]()
+    for k, (corners, bulge) in enumerate(zip(_corners(lines), edges["bulge"].tolist(), strict=True)):
+        a, b = corners[0], corners[-1]
+        ways[a, corners[1]], ways[b, corners[-2]] = (k, len(corners) - 1, bulge, b), (k, len(corners) - 1, -bulge, a)
+        degree.update((a, b))
     made, whole = [], set[int]()
-    for face in faces:
-        corners = [*map(tuple, shapely.get_coordinates(face.exterior)[:-1].tolist())]
+    for corners in _corners(shapely.get_exterior_ring(faces)):
         first = next((k for k, each in enumerate(corners) if degree[each]), 0)
-        corners = [*corners[first:], *corners[:first], corners[first]]
-        z, bulges, of, at = list[complex](), list[float](), list[int](), 0
+        corners = [*corners[first:-1], *corners[: first + 1]]
+        sides, at = list[tuple[complex, float, int]](), 0
         while at < len(corners) - 1:
             k, step, bulge, end = ways.get((corners[at], corners[at + 1]), (-1, 1, 0.0, None))
             if at + step >= len(corners) or corners[at + step] != end:  # a piece of an edge that is cut
-                k, step, bulge = int(tree.nearest(shapely.LineString(corners[at : at + 2]).centroid)), 1, 0.0
+                middle = (corners[at] + corners[at + 1]) / 2
+                k, step, bulge = int(tree.nearest(shapely.Point(middle.real, middle.imag))), 1, 0.0
             else:
                 whole.add(k)
-            z.append(complex(*corners[at]))
-            bulges.append(bulge)
-            of.append(k)
+            sides.append((corners[at], bulge, k))
             at += step
-        points, turns = np.array(z), np.array(bulges)
-        apart = (np.abs(following(points) - points) > EXACT * close) | (turns != 0)  # a cut may be beside a chord's end
-        ring = ArcRing.of(points[apart], turns[apart])
-        made.append((Loop(ring, [sources[j] for j in dict.fromkeys(edges.of[of].tolist())]), of[0]))
-        mended.faces += bool(crossed[of].any()) or any(degree[each.real, each.imag] > 2 for each in z)
-    mended.arcs_cut += len({*np.flatnonzero(edges.bulge * crossed).tolist()} - whole)
+        z, bulges, of = (np.array(each) for each in zip(*sides, strict=True))
+        apart = (np.abs(following(z) - z) > EXACT * close) | (bulges != 0)  # a cut may be beside a chord's end
+        ring = ArcRing.of(z[apart], bulges[apart])
+        made.append((Loop(ring, [sources[j] for j in dict.fromkeys(edges["of"][of].tolist())]), int(of[0])))
+        mended.faces += bool(crossed[of].any()) or any(degree[each] > 2 for each in z.tolist())
+    mended.arcs_cut += len({*np.flatnonzero(edges["bulge"] * crossed).tolist()} - whole)
     return made, at_loose
+
+
+def _corners(lines: Any) -> list[list[complex]]:
+    """Return the corners of lines of shapely."""
+    import shapely
+
+    points, of = shapely.get_coordinates(lines, return_index=True)
+    z = (points @ [1, 1j]).tolist()
+    return [z[first:last] for first, last in pairwise(np.searchsorted(of, np.arange(len(lines) + 1)).tolist())]
+
+
+def _middles_of(shapes: Any) -> list[complex]:
+    """Return the centroids of shapes of shapely."""
+    import shapely
+
+    middles: list[complex] = (shapely.get_coordinates(shapely.centroid(shapes)) @ [1, 1j]).tolist()
+    return middles
 
 
 def _loose(dangles: Any, faces: Any, mended: Mended) -> Any:
@@ -494,31 +403,25 @@ def _loose(dangles: Any, faces: Any, mended: Mended) -> Any:
     line, face = shapely.STRtree(faces).query(dangles, predicate="intersects")
     short = length[line] <= np.minimum(OVERSHOOT, OVERSHOOT_SHARE * shapely.length(faces[face]))
     beyond = np.unique(line[short])
-    if len(beyond):
-        mended.longest = max(mended.longest, float(length[beyond].max()))
-        mended.trimmed += (shapely.get_coordinates(shapely.centroid(dangles[beyond])) @ [1, 1j]).tolist()
+    mended.add("trimmed", _middles_of(dangles[beyond]), float(length[beyond].max(initial=0.0)))
     return np.delete(dangles, beyond)
 
 
-def _unclosed(edges: DrawnEdges, close: float, frame: DrawingFrame, file: str) -> DrawingError:
+def _unclosed(edges: Any, frame: DrawingFrame) -> DrawingError:
     """Return the error of lines that close nothing: the first of them, and the gap to the nearest loose end."""
     import shapely
 
-    ends = np.append(edges.a, edges.b)[:MOST_COMPARED]
-    apart = np.abs(ends[:, None] - ends[None, :])
-    alone = (apart <= close).sum(axis=1) == 1
+    ends = np.append(edges["a"], edges["b"])[:MOST_COMPARED]
+    alone = (np.abs(ends[:, None] - ends[None, :]) <= frame.close).sum(axis=1) == 1
     loose = ends[alone] if alone.any() else ends[:2]
     apart = np.abs(loose[:, None] - loose[None, :])
-    apart[apart <= close] = np.inf
-    merged = shapely.get_parts(shapely.line_merge(shapely.multilinestrings(edges.curves(close))))
-    z = shapely.get_coordinates(merged[0])
-    one, other = complex(*z[0]), complex(*z[-1])
-    gap = float(apart.min())
+    gap = float(apart.min(where=apart > frame.close, initial=np.inf))
     gap_in_words = f"; the nearest loose ends are {length_in_words(gap)} apart" if np.isfinite(gap) else ""
-    lines = many(len(edges), "line")
-    what = f"{lines} close{'s' if len(edges) == 1 else ''} nothing: from {frame.place(one)} to {frame.place(other)}"
-    at = frame.pairs(loose[:MOST_PLACES].tolist())
-    return DrawingError("unclosed", f"{what}{gap_in_words}: close the outline, or give a larger `close`", file, at=at)
+    merged = shapely.get_parts(shapely.line_merge(shapely.multilinestrings(curves_of(edges, frame.close))))
+    one, *_, other = map(frame.place, _corners(merged[:1])[0])
+    what = f"{many(len(edges), 'line')} close{'s' if len(edges) == 1 else ''} nothing: from {one} to {other}"
+    what += f"{gap_in_words}: close the outline, or give a larger `close`"
+    return frame.refusal("unclosed", what, loose[:MOST_PLACES].tolist())
 
 
 def _once(made: list[Loop], close: float, mended: Mended) -> list[Loop]:
@@ -528,18 +431,15 @@ def _once(made: list[Loop], close: float, mended: Mended) -> list[Loop]:
 
     if len(made) < 2:
         return made
-    rings = [loop.ring for loop in made]
-    boxes = shapely.bounds(polygons_of(rings, close))
+    polygons = polygons_of([loop.ring for loop in made], close)
+    boxes, lines = shapely.bounds(polygons), shapely.get_exterior_ring(polygons)
     tree, reach = cKDTree(boxes), (2 + 2 * CHORD) * close
     second: set[int] = set()
     if tree.count_neighbors(tree, reach, p=np.inf) > MOST_NEIGHBOURS * tree.n:
         _, first = np.unique(np.round(boxes / close), axis=0, return_index=True)
         second = {*range(len(made))} - {*first.tolist()}
     for i, j in [] if second else sorted(tree.query_pairs(reach, p=np.inf)):
-        room = close * shapely.length(_curve(rings[i], close))
-        if i in second or abs(rings[i].moments.area - rings[j].moments.area) > 2 * room:
-            continue
-        if shapely.hausdorff_distance(_curve(rings[i], close), _curve(rings[j], close)) <= 2 * close:
+        if i not in second and shapely.hausdorff_distance(lines[i], lines[j]) <= 2 * close:
             second.add(j)
-    mended.doubles += [rings[k].moments.centroid for k in sorted(second)]
+    mended.add("drawn twice", [made[k].ring.moments.centroid for k in sorted(second)])
     return [loop for k, loop in enumerate(made) if k not in second]

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.arrays import Points, Reals
+from rocking_cli.arrays import Points
 from rocking_cli.core.polygons import nearby
 from rocking_cli.io.drawings.arcs import arc_circle
+from rocking_cli.questions.import_drawing.loops import edges_of
 from rocking_cli.questions.import_drawing.rings import ArcRing, following, polygons_of
 
 PARALLEL = cos(radians(3.0))
@@ -22,70 +23,43 @@ SAME_GAP = 1e-6  # difference of gaps up to which they count as equal [m]
 JOINT_GAP = 2e-3  # gap across which faces are a joint, over width plus height of the smaller body
 IN_GAP = 0.01  # share of a gap from its sides within which nothing is looked for between them
 LEAST_SINE = 0.02  # sine between sides below which they count as one line
-Integers = NDArray[np.intp]
+PAIR = np.dtype([("one", int), ("other", int), ("gap", float), ("start", complex), ("end", complex)])
+"""Two sides that face each other, the gap [m], and both ends of the common part on the first."""
 
 
-@dataclass(frozen=True, eq=False)
-class Sides:
-    """Straight sides of rings: start, vector, outward normal, and the ring and the place in it of each."""
-
-    start: Points
-    along: Points
-    normal: Points
-    ring: Integers
-    place: Integers
-
-    @classmethod
-    def from_rings(cls, rings: Sequence[ArcRing]) -> Sides:
-        """Take the straight sides of rings, in their order."""
-        start = np.concatenate([ring.z for ring in rings])
-        along = np.concatenate([following(ring.z) - ring.z for ring in rings])
-        of = np.concatenate([np.full(len(ring.z), k, np.intp) for k, ring in enumerate(rings)])
-        place = np.concatenate([np.arange(len(ring.z), dtype=np.intp) for ring in rings])
-        straight = (np.concatenate([ring.bulges for ring in rings]) == 0) & (np.abs(along) > NO_GAP)
-        start, along, of, place = start[straight], along[straight], of[straight], place[straight]
-        return cls(start, along, -1j * along / np.abs(along), of, place)
+def sides_of(rings: Sequence[ArcRing]) -> Any:
+    """Return the straight sides of rings, in their order, as an array of `EDGE`."""
+    edges = edges_of(rings)
+    return edges[(edges["bulge"] == 0) & (np.abs(edges["b"] - edges["a"]) > NO_GAP)]
 
 
-@dataclass(frozen=True, eq=False)
-class Facing:
-    """Pairs of sides that face each other: the sides, the gap [m], and both ends of the common part on the first."""
-
-    one: Integers
-    other: Integers
-    gap: Reals
-    ends: NDArray[np.complex128]
+def normals_of(sides: Any) -> Points:
+    """Return the outward normals of sides."""
+    along = sides["b"] - sides["a"]
+    normals: Points = -1j * along / np.abs(along)
+    return normals
 
 
-def facing(sides: Sides, least: float, most: float) -> Facing:
-    """Return the sides that face a parallel side of another ring across a gap between two bounds [m]."""
-    low = np.minimum(sides.start.real, (sides.start + sides.along).real) + 1j * np.minimum(
-        sides.start.imag, (sides.start + sides.along).imag
-    )
-    high = np.maximum(sides.start.real, (sides.start + sides.along).real) + 1j * np.maximum(
-        sides.start.imag, (sides.start + sides.along).imag
-    )
-    room = max(-least, most) * (1 + 1j) / 2
-    ones, others, gaps, ends = [], [], [], []
+def facing(sides: Any, least: float, most: float) -> Any:
+    """Return the sides that face a parallel side of another ring across a gap between two bounds [m], as `PAIR`."""
+    ends, normal = np.stack([sides["a"], sides["b"]]), normals_of(sides)
+    room, opposite = max(-least, most) * (1 + 1j) / 2, [np.zeros(0, PAIR)]
+    low, high = (bound(ends.real, axis=0) + 1j * bound(ends.imag, axis=0) for bound in (np.min, np.max))
     for first, second in nearby(low - room, high + room):
         for i, j in ((first, second), (second, first)):
-            keep = (sides.ring[i] != sides.ring[j]) & ((sides.normal[i].conj() * sides.normal[j]).real < -PARALLEL)
-            i, j = i[keep], j[keep]
-            length = np.abs(sides.along[i])
-            unit = sides.along[i] / length
-            at = [((z - sides.start[i]) * unit.conj()).real for z in (sides.start[j], sides.start[j] + sides.along[j])]
-            start, end = np.maximum(np.minimum(*at), 0.0), np.minimum(np.maximum(*at), length)
-            middle = sides.start[i] + unit * (start + end) / 2
-            across = (sides.normal[i].conj() * sides.normal[j]).real
-            gap = ((sides.start[j] - middle).conj() * sides.normal[j]).real / across
-            keep = (end - start > LEAST_SHARE * length) & (gap >= least) & (gap <= most)
-            ones.append(i[keep])
-            others.append(j[keep])
-            gaps.append(gap[keep])
-            ends.append(np.stack([sides.start[i] + unit * start, sides.start[i] + unit * end], axis=1)[keep])
-    if not ones:
-        return Facing(np.zeros(0, np.intp), np.zeros(0, np.intp), np.zeros(0), np.zeros((0, 2), np.complex128))
-    return Facing(np.concatenate(ones), np.concatenate(others), np.concatenate(gaps), np.concatenate(ends))
+            across = (normal[i].conj() * normal[j]).real
+            keep = (sides["of"][i] != sides["of"][j]) & (across < -PARALLEL)
+            i, j, across = i[keep], j[keep], across[keep]
+            one, length, unit = sides["a"][i], np.abs(ends[1, i] - ends[0, i]), 1j * normal[i]
+            at = ((ends[:, j] - one) * unit.conj()).real
+            start, end = np.maximum(at.min(axis=0), 0.0), np.minimum(at.max(axis=0), length)
+            middle = one + unit * (start + end) / 2
+            gap = ((sides["a"][j] - middle).conj() * normal[j]).real / across
+            pairs = np.zeros(len(i), PAIR)
+            pairs["one"], pairs["other"], pairs["gap"] = i, j, gap
+            pairs["start"], pairs["end"] = one + unit * start, one + unit * end
+            opposite.append(pairs[(end - start > LEAST_SHARE * length) & (gap >= least) & (gap <= most)])
+    return np.concatenate(opposite)
 
 
 @dataclass(frozen=True)
@@ -112,46 +86,34 @@ def close_gaps(rings: Sequence[ArcRing], ground: Sequence[ArcRing], most: float,
     overlap : float
         Largest depth of an overlap that is mended [m].
     """
-    sides = Sides.from_rings([*rings, *ground])
+    sides = sides_of([*rings, *ground])
     pairs = facing(sides, -overlap, most + SAME_GAP if most else 0.0)
-    across = _across_others(sides, pairs, polygons_of([*rings, *ground], overlap))
-    moved = (sides.ring[pairs.one] < len(rings)) & ~across
-    one, gap = pairs.one[moved], pairs.gap[moved]
-    with_ground = sides.ring[pairs.other[moved]] >= len(rings)
-    wide = np.abs(gap) > NO_GAP
-    one, gap, with_ground = one[wide], gap[wide], with_ground[wide]
-    if not one.size:
-        return Closed(rings, [], [], [])
-    by = np.where(with_ground, gap, gap / 2)
-    order = np.lexsort((np.abs(by), one))
-    last = np.append(one[order][1:] != one[order][:-1], True)
-    chosen, step = one[order][last], by[order][last]
-    least = np.full(len(sides.start), np.inf)
-    most_of = np.full(len(sides.start), -np.inf)
-    np.minimum.at(least, one, by)
-    np.maximum.at(most_of, one, by)
-    uneven = chosen[most_of[chosen] - least[chosen] > SAME_GAP]
-    shifts: dict[int, dict[int, float]] = {}
-    for side, distance in zip(chosen.tolist(), step.tolist(), strict=True):
-        shifts.setdefault(int(sides.ring[side]), {})[int(sides.place[side])] = distance
-    closed = [_shifted(ring, shifts[k]) if k in shifts else ring for k, ring in enumerate(rings)]
-    middles = sides.start + sides.along / 2
-    return Closed(closed, np.abs(gap).tolist(), middles[chosen].tolist(), middles[uneven].tolist())
+    pairs = pairs[~_across_others(sides, pairs, polygons_of([*rings, *ground], overlap))]
+    pairs = pairs[(sides["of"][pairs["one"]] < len(rings)) & (np.abs(pairs["gap"]) > NO_GAP)]
+    share = np.where(sides["of"][pairs["other"]] >= len(rings), 1.0, 0.5)
+    steps: dict[int, list[float]] = {}
+    for side, step in zip(pairs["one"].tolist(), (share * pairs["gap"]).tolist(), strict=True):
+        steps.setdefault(side, []).append(step)
+    by: dict[int, dict[int, float]] = {}
+    for side, each in sorted(steps.items()):
+        by.setdefault(int(sides["of"][side]), {})[int(sides["start"][side])] = max(each, key=abs)
+    closed = [_shifted(ring, by[k]) if k in by else ring for k, ring in enumerate(rings)]
+    middles = (sides["a"] + sides["b"]) / 2
+    uneven = [side for side, each in sorted(steps.items()) if max(each) - min(each) > SAME_GAP]
+    return Closed(closed, np.abs(pairs["gap"]).tolist(), middles[sorted(steps)].tolist(), middles[uneven].tolist())
 
 
-def _across_others(sides: Sides, pairs: Facing, polygons: Any) -> NDArray[np.bool_]:
+def _across_others(sides: Any, pairs: Any, polygons: Any) -> NDArray[np.bool_]:
     """Return which pairs of sides have another ring between them."""
     import shapely
 
-    middle = pairs.ends.mean(axis=1)
-    way = sides.normal[pairs.one] * pairs.gap
+    middle, way = (pairs["start"] + pairs["end"]) / 2, normals_of(sides)[pairs["one"]] * pairs["gap"]
     z = np.stack([middle + IN_GAP * way, middle + (1 - IN_GAP) * way], axis=1)
     lines = shapely.linestrings(np.stack([z.real, z.imag], axis=2))
     pair, ring = shapely.STRtree(polygons).query(lines, predicate="intersects")
-    other = (ring != sides.ring[pairs.one[pair]]) & (ring != sides.ring[pairs.other[pair]]) & (pairs.gap[pair] > NO_GAP)
-    between = np.zeros(len(middle), bool)
-    between[pair[other]] = True
-    return between
+    of = pairs[pair]
+    other = (ring != sides["of"][of["one"]]) & (ring != sides["of"][of["other"]]) & (of["gap"] > NO_GAP)
+    return np.isin(np.arange(len(pairs)), pair[other])
 
 
 def _shifted(ring: ArcRing, by: dict[int, float]) -> ArcRing:
@@ -160,21 +122,15 @@ def _shifted(ring: ArcRing, by: dict[int, float]) -> ArcRing:
     along = following(z) - z
     corners = np.empty(n, complex)
     for k in range(n):
-        before, after = (k - 1) % n, k
-        shifts = {side: by.get(side, 0.0) for side in (before, after)}
-        if not any(shifts.values()):
+        beside = [side for side in ((k - 1) % n, k) if not ring.bulges[side]]
+        units = [along[side] / abs(along[side]) for side in beside]
+        lines = [(z[k] - 1j * u * by.get(side, 0.0), u) for side, u in zip(beside, units, strict=True)]
+        if not any(by.get(side) for side in beside):
             corners[k] = z[k]
-            continue
-        lines = []
-        for side in (before, after):
-            if not ring.bulges[side]:
-                unit = along[side] / abs(along[side])
-                lines.append((z[side] - 1j * unit * shifts[side], unit))
-        if len(lines) == 2:
+        elif len(lines) == 2:
             corners[k] = _crossing(*lines[0], *lines[1], z[k])
         else:  # one is an arc, which stays
-            arc = after if ring.bulges[after] else before
-            corners[k] = _on_circle(*lines[0], *_circle(ring, arc), z[k])
+            corners[k] = _on_circle(*lines[0], *_circle(ring, k if ring.bulges[k] else (k - 1) % n), z[k])
     bulges = ring.bulges.copy()
     for k in np.flatnonzero(ring.bulges).tolist():
         centre, _ = _circle(ring, k)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from rocking_cli.arrays import Points
+from rocking_cli.io.drawings.contract import DrawingError
 
 
 @dataclass(frozen=True)
@@ -34,10 +35,15 @@ class ImportNote:
 
 
 class DrawingFrame(NamedTuple):
-    """The unit and the origin of a drawing: metres are (units - origin) times `per`."""
+    """The unit and the origin of a drawing, its closing distance [m] and its file.
+
+    Metres are (units - origin) times `per`.
+    """
 
     per: float
     origin: complex
+    close: float
+    file: str
 
     def to_metres(self, z: Points) -> Points:
         """Return points in metres."""
@@ -52,9 +58,12 @@ class DrawingFrame(NamedTuple):
         at = self.to_drawing(z)
         return f"({at.real:.7g}, {at.imag:.7g})"
 
-    def pairs(self, points: Sequence[complex]) -> list[list[float]]:
-        """Return points as plain data, in units of the drawing."""
-        return [[at.real, at.imag] for at in map(self.to_drawing, points)]
+    def refusal(self, refused: str, message: str, at: Iterable[complex] = (), hint: str | None = None) -> DrawingError:
+        """Return the error of a class, with its places [m]; `<here>` in the message is the first one, in words."""
+        points = list(at)
+        if points:
+            message = message.replace("<here>", self.place(points[0]))
+        return DrawingError(refused, message, self.file, [[z.real, z.imag] for z in map(self.to_drawing, points)], hint)
 
 
 def length_in_words(metres: float) -> str:

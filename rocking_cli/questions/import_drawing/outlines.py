@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from shlex import quote
 from typing import Any
@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnPoint, DrawnText, LineDrawing
-from rocking_cli.questions.import_drawing.loops import DrawnEdges, Loop, Placed, loops
+from rocking_cli.questions.import_drawing.loops import Loop, Placed, curves_of, edges_of, loops
 from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, length_in_words, many
 from rocking_cli.questions.import_drawing.rings import ArcRing, PlaneMoments, polygons_of
 from rocking_cli.questions.import_drawing.roles import Role, Roles, counted, proposed
@@ -112,6 +112,8 @@ def by_role(drawing: LineDrawing, roles: Roles, file: str) -> Sorted:
         for chain in of_bodies:
             named_bodies.setdefault(chain.layer, []).append(chain)
         guess, frames = proposed({layer: unknown[layer] for layer in counts} | named_bodies)
+        if named_bodies.keys() & {*frames}:  # what is drawn in a wall
+            guess[Role.OPENINGS] = guess.pop(Role.BODIES, [])
         named = {role: ",".join(seen(layer) for layer in of if layer in counts) for role, of in guess.items()}
         give = " ".join(f"`layers` {quote(f'{role}={of}')}" for role, of in named.items() if of)
         some = f"{seen(next(iter(counts)))} has" if len(counts) == 1 else f"{len(counts)} of them have"
@@ -139,19 +141,13 @@ def by_role(drawing: LineDrawing, roles: Roles, file: str) -> Sorted:
         raise DrawingError("empty", f"there is no outline in it, only {what}", file)
     left = Counter((chain.kind, layer) for layer, of in unknown.items() for chain in of)
     left |= Counter((chain.kind, chain.layer) for chain in chains[Role.NOTHING])
-    notes += [
-        ImportNote("left out", count, f"left out: {count:,} {kind} on {seen(layer) or 'no layer'}")
-        for (kind, layer), count in left.items()
-    ]
-    notes += [
-        ImportNote(
-            "left out",
-            each.count,
-            f"left out: {each.count:,} {each.kind} on {seen(each.layer) or 'no layer'}, {each.why}",
-        )
-        for each in drawing.left_out
-    ]
+    notes += [_left_out(kind, layer, count) for (kind, layer), count in left.items()]
+    notes += [_left_out(each.kind, each.layer, each.count, f", {each.why}") for each in drawing.left_out]
     return Sorted(chains, drawing.labels, roles, notes)
+
+
+def _left_out(kind: str, layer: str, count: int, why: str = "") -> ImportNote:
+    return ImportNote("left out", count, f"left out: {count:,} {kind} on {seen(layer) or 'no layer'}{why}")
 
 
 def _is_shape(chain: DrawnLine) -> bool:
@@ -193,18 +189,18 @@ def _mostly_meet(open_: Sequence[DrawnLine], around: Sequence[DrawnLine]) -> boo
     reach = MEETING * max(float(np.ptp(z.real)), float(np.ptp(z.imag)))
     if not reach > 0:
         return False
-    edges = DrawnEdges.from_lines(lines)
+    edges = edges_of(lines)
     ends = np.array([[chain.points[0], chain.points[-1]] for chain in open_])
-    point, edge = shapely.STRtree(edges.curves(reach)).query(
+    point, edge = shapely.STRtree(curves_of(edges, reach)).query(
         shapely.points(ends.real.ravel(), ends.imag.ravel()), predicate="dwithin", distance=reach
     )
-    of = np.array([id(line.source) for line in lines])[edges.of[edge]]
+    of = np.array([id(line.source) for line in lines])[edges["of"][edge]]
     others = of != np.array([id(chain) for chain in open_])[point // 2]
     met = len(np.unique(point[others]))
     return met >= LEAST_ENDS and met >= MEETING_SHARE * ends.size
 
 
-def placed(chains: Sequence[DrawnLine], frame: DrawingFrame, close: float, file: str) -> list[Placed]:
+def placed(chains: Sequence[DrawnLine], frame: DrawingFrame) -> list[Placed]:
     """Return chains in metres. Raises `DrawingError` "not_plane" for one that is not level in z."""
     chains = [chain for chain in chains if len(chain.points) > 1]
     if not chains:
@@ -213,10 +209,9 @@ def placed(chains: Sequence[DrawnLine], frame: DrawingFrame, close: float, file:
     lines, end = [], 0
     for chain in chains:
         begin, end = end, end + len(chain.points)
-        if (chain.heights[1] - chain.heights[0]) * frame.per > close:
-            depth = length_in_words((chain.heights[1] - chain.heights[0]) * frame.per)
-            what = f"{described(chain)} is not plane: its corners differ by {depth} in z. Draw the section in one plane"
-            raise DrawingError("not_plane", what, file, at=frame.pairs(z[begin : begin + 1].tolist()))
+        if (depth := (chain.heights[1] - chain.heights[0]) * frame.per) > frame.close:
+            what = f"{described(chain)} is not plane: its corners differ by {length_in_words(depth)} in z"
+            raise frame.refusal("not_plane", f"{what}. Draw the section in one plane", z[begin : begin + 1].tolist())
         lines.append(Placed(z[begin:end], chain.bulges, chain.closed, chain))
     return lines
 
@@ -227,7 +222,7 @@ def described(chain: DrawnLine) -> str:
 
 
 def bodies_of(
-    of: Sorted, frame: DrawingFrame, close: float, nested: str | None, file: str
+    of: Sorted, frame: DrawingFrame, nested: str | None
 ) -> tuple[list[DrawnBody], list[ImportNote], list[complex]]:
     """Return the bodies of a drawing with their openings, in reading order, and what was mended and where [m].
 
@@ -236,43 +231,41 @@ def bodies_of(
     DrawingError
         "unclosed", "thin", "crosses", "nested", "opening" or "not_plane".
     """
+    close = frame.close
     drawn = [chain for chain in of.chains[Role.BODIES] if not chain.is_fill]
     fills = [chain for chain in of.chains[Role.BODIES] if chain.is_fill]
-    made, mended = loops(placed(drawn, frame, close, file), close, frame, file)
+    made, mended = loops(placed(drawn, frame), frame)
     notes = mended.notes(frame)
-    rings = [*mended.doubles, *mended.joined, *mended.split, *mended.slivers, *mended.trimmed]
-    cut: list[Loop] = []
-    if of.chains[Role.OPENINGS]:
-        cut, others = loops(placed(of.chains[Role.OPENINGS], frame, close, file), close, frame, file)
-        _check_each(cut, frame, close, file)
-        notes += others.notes(frame)
+    places = [z for kind, at in mended.at.items() if kind != "crumbs" for z in at]
+    cut, others = loops(placed(of.chains[Role.OPENINGS], frame), frame)
+    _check_each(cut, frame)
+    notes += others.notes(frame)
     if fills:
-        hatched, holes = _by_shape(loops(placed(fills, frame, close, file), close, frame, file)[0], close)
+        hatched, holes = _by_shape(loops(placed(fills, frame), frame)[0], close)
         hatched, spare = _apart(hatched, made, close)
         islands, drawn_too = _apart(holes, [*made, *cut], close, same=True)
         made, cut = made + hatched, cut + islands
         if left := len(spare) + len(drawn_too):
             notes.append(ImportNote("left out", left, f"{many(left, 'edge')} of hatches left out, as lines are drawn"))
     heights = [each * frame.per for loop in made for chain in loop.sources for each in chain.heights]
-    if heights and max(heights) - min(heights) > close:
-        spread = length_in_words(max(heights) - min(heights))
-        notes.append(ImportNote("flattened", 1, f"outlines that lie up to {spread} apart in z are taken as one plane"))
-    _check_size(made, file)
-    _check_each(made, frame, close, file)
+    if (spread := max(heights, default=0.0) - min(heights, default=0.0)) > close:
+        words = f"outlines that lie up to {length_in_words(spread)} apart in z are taken as one plane"
+        notes.append(ImportNote("flattened", 1, words))
+    _check_size(made, frame)
+    _check_each(made, frame)
     outer, inner = _by_shape(made, close)
-    straightened = sum(chain.is_straightened for loop in made for chain in loop.sources)
-    if straightened:
+    if straightened := sum(chain.is_straightened for loop in made for chain in loop.sources):
         words = f"{many(straightened, 'curve')} replaced by straight sides"
         notes.append(ImportNote("straightened", straightened, words))
     if arcs := sum(chain.arcs_found for loop in made for chain in loop.sources):
         notes.append(ImportNote("arcs", arcs, f"{many(arcs, 'arc')} recognised in the curves of the file"))
-    bodies, count = _nested(outer, frame, close, nested, file)
+    bodies, count = _nested(outer, frame, nested)
     openings = [loop.ring for loop in (*inner, *cut)]
-    _cut(bodies, openings, frame, close, file)
-    _check_openings(bodies, frame, close, file)
+    _cut(bodies, openings, frame)
+    _check_openings(bodies, frame)
     if total := len(openings) + count:
         notes.append(ImportNote("openings", total, many(total, "opening") + " cut out"))
-    return in_rows(bodies), notes, rings
+    return in_rows(bodies), notes, places
 
 
 def _apart(
@@ -281,45 +274,47 @@ def _apart(
     """Return edges of hatches that lie within nothing drawn, or are the same as nothing drawn, and the others."""
     import shapely
 
-    if not hatched or not made:
-        return list(hatched), []
     drawn, edges = (polygons_of([loop.ring for loop in each], close) for each in (made, hatched))
     edge, other = shapely.STRtree(drawn).query(shapely.point_on_surface(edges), predicate="within")
     if same:
         apart = np.abs(shapely.area(drawn[other]) - shapely.area(edges[edge]))
         edge = edge[apart <= 2 * close * shapely.length(edges[edge])]
-    spare = set(edge.tolist())
-    return [loop for k, loop in enumerate(hatched) if k not in spare], [hatched[k] for k in sorted(spare)]
+    return _parted(hatched, {*edge.tolist()})
 
 
-def _check_each(made: Sequence[Loop], frame: DrawingFrame, close: float, file: str) -> None:
+def _parted(made: Sequence[Loop], chosen: Collection[int]) -> tuple[list[Loop], list[Loop]]:
+    """Return the loops that are not chosen, and those that are, by their numbers."""
+    return [each for k, each in enumerate(made) if k not in chosen], [made[k] for k in sorted(chosen)]
+
+
+def _check_each(made: Sequence[Loop], frame: DrawingFrame) -> None:
     """Raise `DrawingError` for an outline that crosses itself or encloses nothing."""
     import shapely
 
-    polygons = polygons_of([loop.ring for loop in made], close)
+    polygons = polygons_of([loop.ring for loop in made], frame.close)
     valid = shapely.is_valid(polygons)
     slivers = shapely.area(polygons) < SLIVER * shapely.length(polygons) ** 2
     for k in np.flatnonzero(~valid | slivers).tolist():
         ring, name = made[k].ring, f"outline {k + 1} ({described(made[k].sources[0])})"
         at = complex(ring.z[0])
         if not ring.arcs and _is_flat(ring):
-            raise DrawingError("thin", f"{name} encloses nothing, at {frame.place(at)}", file, at=frame.pairs([at]))
+            raise frame.refusal("thin", f"{name} encloses nothing, at <here>", [at])
         if not valid[k]:
             reason = shapely.is_valid_reason(polygons[k])
             numbers = re.findall(r"[-+0-9.eE]+", reason.partition("[")[2])
             at = complex(float(numbers[0]), float(numbers[1])) if len(numbers) >= 2 else at
-            raise DrawingError("crosses", f"{name} crosses itself at {frame.place(at)}", file, at=frame.pairs([at]))
+            raise frame.refusal("crosses", f"{name} crosses itself at <here>", [at])
 
 
-def _check_size(made: Sequence[Loop], file: str) -> None:
+def _check_size(made: Sequence[Loop], frame: DrawingFrame) -> None:
     """Raise `DrawingError` "too_large" for more bodies or corners than a structure file holds."""
     if len(made) > MAX_BODIES:
         what = f"it has {len(made):,} outlines, and a structure has {MAX_BODIES:,} bodies at most: import a part of it"
-        raise DrawingError("too_large", what, file)
+        raise frame.refusal("too_large", what)
     largest = max(made, key=lambda loop: len(loop.ring.z))
     if (corners := len(largest.ring.z)) > MAX_CORNERS:
         what = f"{described(largest.sources[0])} has {corners:,} corners: simplify it to {MAX_CORNERS:,} at most"
-        raise DrawingError("too_large", what, file)
+        raise frame.refusal("too_large", what)
 
 
 def _is_flat(ring: ArcRing) -> bool:
@@ -331,32 +326,15 @@ def _is_flat(ring: ArcRing) -> bool:
 
 def _by_shape(made: Sequence[Loop], close: float) -> tuple[list[Loop], list[Loop]]:
     """Return the outer rings, and the inner ones: those inside an odd number of rings of the same shape."""
-    import shapely
-
     shapes: dict[str, list[int]] = {}
     for k, loop in enumerate(made):
-        if loop.sources[0].shape:
-            shapes.setdefault(loop.sources[0].shape, []).append(k)
-    inner: set[int] = set()
-    for members in shapes.values():
-        if len(members) < 2:
-            continue
-        polygons = polygons_of([made[k].ring for k in members], close)
-        tree = shapely.STRtree(polygons)
-        points = shapely.point_on_surface(polygons)
-        point, within = tree.query(points, predicate="within")
-        for j, k in enumerate(members):
-            around = [other for other in within[point == j] if other != j and _larger(polygons[other], polygons[j])]
-            if len(around) % 2:
-                inner.add(k)
-    return (
-        [loop for k, loop in enumerate(made) if k not in inner],
-        [loop for k, loop in enumerate(made) if k in inner],
-    )
-
-
-def _larger(one: Any, other: Any) -> bool:
-    return bool(one.area > other.area)
+        shapes.setdefault(loop.sources[0].shape, []).append(k)
+    around = Counter[int]()
+    for shape, members in shapes.items():
+        if shape and len(members) > 1:
+            polygons = polygons_of([made[k].ring for k in members], close)
+            around.update(members[i] for i, j in pairs_within(polygons) if polygons[i].area < polygons[j].area)
+    return _parted(made, {k for k, count in around.items() if count % 2})
 
 
 def pairs_within(polygons: Any) -> Iterator[tuple[int, int]]:
@@ -369,32 +347,26 @@ def pairs_within(polygons: Any) -> Iterator[tuple[int, int]]:
         yield from sorted(zip((first + inside).tolist(), around.tolist(), strict=True))
 
 
-def _nested(
-    outer: Sequence[Loop], frame: DrawingFrame, close: float, nested: str | None, file: str
-) -> tuple[list[DrawnBody], int]:
+def _nested(outer: Sequence[Loop], frame: DrawingFrame, nested: str | None) -> tuple[list[DrawnBody], int]:
     """Return the bodies; outlines inside others are refused, or are openings if the user says so."""
     import shapely
 
-    polygons = polygons_of([loop.ring for loop in outer], close)
+    polygons = polygons_of([loop.ring for loop in outer], frame.close)
     holes: dict[int, int] = {}
     for i, j in pairs_within(polygons):
-        if i == j or polygons[i].area >= polygons[j].area:
+        if polygons[i].area >= polygons[j].area:
             continue
-        if shapely.area(shapely.difference(polygons[i], polygons[j], grid_size=GRID * close)) > close * shapely.length(
-            polygons[i]
-        ):
+        apart = shapely.difference(polygons[i], polygons[j], grid_size=GRID * frame.close)
+        if apart.area > frame.close * polygons[i].length:
             continue  # they overlap, which is said later
+        at = outer[i].ring.moments.centroid
         if nested is None:
             one, other = (f"outline {k + 1} ({described(outer[k].sources[0])})" for k in (i, j))
-            what = (
-                f"{one} lies within {other}: is it an opening (`nested` openings), or is the outer one a frame? Put a "
-                "frame on a layer of its own"
-            )
-            raise DrawingError("nested", what, file, at=frame.pairs([outer[i].ring.moments.centroid]))
+            what = f"{one} lies within {other}: is it an opening (`nested` openings), or is the outer one a frame? Put "
+            raise frame.refusal("nested", f"{what}a frame on a layer of its own", [at])
         if i in holes or j in holes:
-            at = outer[i].ring.moments.centroid
-            what = f"outline {i + 1} lies within an outline that is itself an opening, at {frame.place(at)}"
-            raise DrawingError("nested", what, file, at=frame.pairs([at]))
+            what = f"outline {i + 1} lies within an outline that is itself an opening, at <here>"
+            raise frame.refusal("nested", what, [at])
         holes[i] = j
     bodies = {k: DrawnBody(loop.ring, loop.sources) for k, loop in enumerate(outer) if k not in holes}
     for i, j in holes.items():
@@ -402,62 +374,56 @@ def _nested(
     return list(bodies.values()), len(holes)
 
 
-def _cut(
-    bodies: Sequence[DrawnBody], openings: Sequence[ArcRing], frame: DrawingFrame, close: float, file: str
-) -> None:
+def _cut(bodies: Sequence[DrawnBody], openings: Sequence[ArcRing], frame: DrawingFrame) -> None:
     """Give each opening to the body that it lies in. Raises `DrawingError` "opening" if there is not just one."""
     import shapely
 
-    if not openings:
-        return
-    polygons = polygons_of([body.ring for body in bodies], close)
+    polygons = polygons_of([body.ring for body in bodies], frame.close)
     tree = shapely.STRtree(polygons)
-    for ring, hole in zip(openings, polygons_of(openings, close), strict=True):
+    for ring, hole in zip(openings, polygons_of(openings, frame.close), strict=True):
         hits = tree.query(hole, predicate="intersects")
-        shares = {int(k): shapely.area(shapely.intersection(hole, polygons[k], grid_size=GRID * close)) for k in hits}
-        home = max(shares, key=shares.__getitem__, default=None)
-        if home is None or hole.area - shares[home] > close * hole.length:
-            at = ring.moments.centroid
-            what = f"the opening at {frame.place(at)} lies in no body, or across several"
-            raise DrawingError("opening", what, file, at=frame.pairs([at]))
-        bodies[home].openings.append(ring)
+        shares = shapely.area(shapely.intersection(hole, polygons[hits], grid_size=GRID * frame.close))
+        if hole.area - shares.max(initial=-np.inf) > frame.close * hole.length:
+            what = "the opening at <here> lies in no body, or across several"
+            raise frame.refusal("opening", what, [ring.moments.centroid])
+        bodies[hits[shares.argmax()]].openings.append(ring)
 
 
-def _check_openings(bodies: Sequence[DrawnBody], frame: DrawingFrame, close: float, file: str) -> None:
+def _check_openings(bodies: Sequence[DrawnBody], frame: DrawingFrame) -> None:
     """Raise `DrawingError` "opening" if two openings overlap, or leave nothing of a body, or several pieces."""
     import shapely
 
-    for body in bodies:
-        if not body.openings:
-            continue
-        (solid,), holes = polygons_of([body.ring], close), polygons_of(body.openings, close)
+    grid = GRID * frame.close
+    for body in filter(lambda body: body.openings, bodies):
+        (solid,), holes = polygons_of([body.ring], frame.close), polygons_of(body.openings, frame.close)
         one, other = shapely.STRtree(holes).query(holes, predicate="intersects")
-        shared = shapely.intersection(holes[one[one < other]], holes[other[one < other]], grid_size=GRID * close)
-        for common in shared[_wider(shared, close)]:
-            what = f"openings overlap by {common.area:.3g} m2"
-            raise _refused(what, common.centroid, "draw one outline around both", frame, file)
-        left = shapely.get_parts(shapely.difference(solid, shapely.union_all(holes), grid_size=GRID * close))
-        left = left[_wider(left, close)]
+        shared = shapely.intersection(holes[one[one < other]], holes[other[one < other]], grid_size=grid)
+        for common in shared[_wider(shared, frame.close)]:
+            what = f"openings overlap by {common.area:.3g} m2 at <here>: draw one outline around both"
+            raise frame.refusal("opening", what, [at_point(common.centroid)])
+        left = shapely.get_parts(shapely.difference(solid, shapely.union_all(holes), grid_size=grid))
+        left = left[_wider(left, frame.close)]
         if not len(left):
-            raise _refused("openings leave nothing of the body", solid.centroid, "draw them smaller", frame, file)
+            what = "openings leave nothing of the body at <here>: draw them smaller"
+            raise frame.refusal("opening", what, [at_point(solid.centroid)])
         if len(left) > 1:
-            what = f"openings cut a body into {len(left)} pieces"
-            remedy = "draw each piece as a body, without the opening"
-            raise _refused(what, shapely.shortest_line(left[0], left[1]).centroid, remedy, frame, file)
+            what = f"openings cut a body into {len(left)} pieces at <here>"
+            what += ": draw each piece as a body, without the opening"
+            raise frame.refusal("opening", what, [at_point(shapely.shortest_line(left[0], left[1]).centroid)])
 
 
-def check_notches(bodies: Sequence[DrawnBody], frame: DrawingFrame, close: float, file: str) -> None:
+def check_notches(bodies: Sequence[DrawnBody], frame: DrawingFrame) -> None:
     """Raise `DrawingError` "opening" if an opening reaches the outline of its body, as a polygon cannot show it."""
     import shapely
 
-    for body in bodies:
-        if body.openings:
-            (solid,), holes = polygons_of([body.ring], close), polygons_of(body.openings, close)
-            for met in shapely.intersection(shapely.boundary(solid), shapely.buffer(holes, close)):
-                if met.length > TOUCHES * close:
-                    what = f"an opening reaches the outline of {body.name}"
-                    remedy = "draw the outline with this notch, without the opening"
-                    raise _refused(what, shapely.point_on_surface(met), remedy, frame, file)
+    close = frame.close
+    for body in filter(lambda body: body.openings, bodies):
+        (solid,), holes = polygons_of([body.ring], close), polygons_of(body.openings, close)
+        for met in shapely.intersection(shapely.boundary(solid), shapely.buffer(holes, close)):
+            if met.length > TOUCHES * close:
+                what = f"an opening reaches the outline of {body.name} at <here>"
+                what += ": draw the outline with this notch, without the opening"
+                raise frame.refusal("opening", what, [at_point(shapely.point_on_surface(met))])
 
 
 def _wider(shapes: Any, close: float) -> Any:
@@ -467,10 +433,9 @@ def _wider(shapes: Any, close: float) -> Any:
     return shapely.area(shapes) > close * shapely.length(shapes) / 2
 
 
-def _refused(what: str, point: Any, remedy: str, frame: DrawingFrame, file: str) -> DrawingError:
-    """Return the refusal of an opening at a point of shapely."""
-    at = complex(point.x, point.y)
-    return DrawingError("opening", f"{what} at {frame.place(at)}: {remedy}", file, at=frame.pairs([at]))
+def at_point(point: Any) -> complex:
+    """Return the place of a point of shapely."""
+    return complex(point.x, point.y)
 
 
 def in_rows(bodies: Sequence[DrawnBody]) -> list[DrawnBody]:
@@ -489,12 +454,7 @@ def in_rows(bodies: Sequence[DrawnBody]) -> list[DrawnBody]:
 
 
 def name_and_weigh(
-    bodies: Sequence[DrawnBody],
-    of: Sorted,
-    densities: Mapping[str, float],
-    frame: DrawingFrame,
-    close: float,
-    file: str,
+    bodies: Sequence[DrawnBody], of: Sorted, densities: Mapping[str, float], frame: DrawingFrame
 ) -> list[ImportNote]:
     """Give each body its name and density: by the texts inside it, its layer, or its number.
 
@@ -507,11 +467,7 @@ def name_and_weigh(
     densities : mapping of str to float
         Density of each layer [kg/m3]; "" is that of all others.
     frame : DrawingFrame
-        Unit of the drawing.
-    close : float
-        Closing distance [m].
-    file : str
-        Name of the file in messages.
+        The drawing.
     """
     import shapely
 
@@ -519,34 +475,32 @@ def name_and_weigh(
     if unknown := [layer for layer in densities if layer and layer not in layers]:
         where = in_short(sorted(layers))
         what = f"`density` names the layer {seen(unknown[0])!r}, which has no bodies: they are on {where}"
-        raise DrawingError("density", what, file)
+        raise frame.refusal("density", what)
     for body in bodies:
         body.density = densities.get(body.layer, densities.get(""))
-    texts = [
-        label for label in of.labels if of.roles(label.layer) not in (Role.LOADS, Role.TIES) and label.text.strip()
-    ]
+    others = (Role.LOADS, Role.TIES)
+    texts = [label for label in of.labels if of.roles(label.layer) not in others and label.text.strip()]
     names: dict[int, list[str]] = {}
-    used: set[int] = set()
-    if texts:
-        at = frame.to_metres(np.array([label.at for label in texts]))
-        tree = shapely.STRtree(polygons_of([body.ring for body in bodies], close))
-        for k, home in tree.query(shapely.points(at.real, at.imag), predicate="within").T.tolist():
-            used.add(k)
-            for text in filter(None, map(seen, texts[k].text.splitlines())):
-                try:
-                    density = density_in(text)
-                except UnitError as error:
-                    at_text = complex(texts[k].at)
-                    raise DrawingError("density", f"{error}", file, [[at_text.real, at_text.imag]]) from None
-                if density is not None:
-                    bodies[home].density = density
-                elif any(each.isalpha() for each in text):
-                    names.setdefault(home, []).append(text)
+    at = frame.to_metres(np.array([label.at for label in texts]))
+    tree = shapely.STRtree(polygons_of([body.ring for body in bodies], frame.close))
+    inside = tree.query(shapely.points(at.real, at.imag), predicate="within").T.tolist()
+    for k, home in inside:
+        for text in filter(None, map(seen, texts[k].text.splitlines())):
+            try:
+                density = density_in(text)
+            except UnitError as error:
+                raise frame.refusal("density", str(error), [complex(at[k])]) from None
+            if density is not None:
+                bodies[home].density = density
+            elif any(each.isalpha() for each in text):
+                names.setdefault(home, []).append(text)
+    used = {k for k, _ in inside}
     outside = Counter((label.kind, label.layer) for k, label in enumerate(texts) if k not in used)
-    notes = [
-        ImportNote("left out", count, f"left out: {count:,} {kind} on {seen(layer) or 'no layer'}")
-        for (kind, layer), count in outside.items()
-    ]
+    notes = [_left_out(kind, layer, count) for (kind, layer), count in outside.items()]
+    outside_texts = [line for k, label in enumerate(texts) if k not in used for line in label.text.splitlines()]
+    if stray := [repr(cut(each)) for each in outside_texts if _weighs(each)]:
+        words = f"a density in no body gives none its own: put {in_short(stray)} inside it"
+        notes.append(ImportNote("density", len(stray), f"{words}, or give `density`"))
     taken = {"ground", "floor", *(f"ground {k + 1}" for k in range(len(of.chains[Role.GROUND])))}
     count = Counter[str]()
     for k, body in enumerate(bodies):
@@ -557,10 +511,15 @@ def name_and_weigh(
             body.name = f"{wished}-{count[wished] + 1}"
         taken.add(body.name.casefold())
     if spare := sum(len(each) - 1 for each in names.values()):
-        notes.append(
-            ImportNote("texts", spare, f"{many(spare, 'more text')} inside bodies than names: the first counts")
-        )
+        words = f"{many(spare, 'more text')} inside bodies than names: the first counts"
+        notes.append(ImportNote("texts", spare, words))
     return notes
+
+
+def _weighs(text: str) -> str:
+    """Return a text with its unit of density written plainly; an empty one if it has none."""
+    plain = re.sub(r"/\s*mc\b", "/m3", text.replace("\u00b3", "3").replace("^3", "3"))
+    return plain if PER_VOLUME.search(plain) else ""
 
 
 def density_in(text: str) -> float | None:
@@ -571,8 +530,8 @@ def density_in(text: str) -> float | None:
     UnitError
         If it has a unit of density, and its number or its unit cannot be read.
     """
-    plain = re.sub(r"/\s*mc\b", "/m3", text.replace("\u00b3", "3").replace("^3", "3"))
-    if not PER_VOLUME.search(plain):
+    plain = _weighs(text)
+    if not plain:
         return None
     match = DENSITY.search(plain)
     if match is None:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import acos, ceil, pi
-from typing import Any, NamedTuple, Self, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,21 +16,25 @@ from rocking_cli.io.drawings.arcs import STRAIGHT_BULGE, Sides, arc_circle, inne
 
 Number = TypeVar("Number", bound=np.generic)
 CHORD = 0.1  # share of the closing distance to which arcs are compared
-SMALL_TURN = 0.3  # turn below which differences of sines are taken from their series
+ROOT = 3**-0.5
+GAUSS = tuple((x + k) / 2 for k, x in zip((1, 0), np.polynomial.legendre.leggauss(20), strict=True))
+"""Places along a side from 0 to 1 and their weights; exact for arcs of less than a full turn."""
+TWO_POINTS = np.array([(1 - ROOT) / 2, (1 + ROOT) / 2]), np.array([0.5, 0.5])
+"""Those that are exact for straight sides."""
 MAX_ARC_SIDES = 2000
 SAME_DIRECTION = 1e-6  # sine between two sides of one line
 SAME_CIRCLE = 1e-6  # distance of the centres of arcs of one circle, over its radius
 MAX_TURN = 2 * pi - 0.1  # of one arc [rad]
 
 
+def _sides(z: Points) -> Points:
+    """Return the vector from each corner to the next."""
+    return following(z) - z
+
+
 def following(values: NDArray[Number]) -> NDArray[Number]:
     """Return the value at the next corner of each corner; `np.roll` takes five times as long."""
     return np.concatenate((values[1:], values[:1]))
-
-
-def preceding(values: NDArray[Number]) -> NDArray[Number]:
-    """Return the value at the corner before each corner."""
-    return np.concatenate((values[-1:], values[:-1]))
 
 
 class PlaneMoments(NamedTuple):
@@ -71,11 +75,8 @@ class ArcRing:
     @classmethod
     def of(cls, z: Points, bulges: Reals) -> ArcRing:
         """Return the ring of a closed line in either sense."""
-        return anticlockwise([cls(z, bulges)])[0]
-
-    def turned(self) -> ArcRing:
-        """Return the ring in the other sense."""
-        return ArcRing(self.z[::-1], -np.roll(self.bulges[::-1], -1))
+        ring = cls(z, np.where(np.abs(bulges) > STRAIGHT_BULGE, bulges, 0.0))
+        return ring if ring.moments.area >= 0 else ring._around(z[::-1], -following(ring.bulges[::-1]), -1)
 
     @cached_property
     def arcs(self) -> int:
@@ -84,18 +85,52 @@ class ArcRing:
 
     @cached_property
     def moments(self) -> PlaneMoments:
-        """Exact moments: those of the polygon of the corners, and of the segment between each arc and its chord."""
-        return _moments(RingsInRow(self.z, self.bulges, np.array([0])))[0]
+        """Exact moments, by integrals along the sides."""
+        middle = complex(self.z.mean())  # as drawings may be far from their origin
+        share, weight = GAUSS if self.arcs else TWO_POINTS
+        start, chord, turn = (self.z - middle)[:, None], _sides(self.z)[:, None], 4 * np.arctan(self.bulges)[:, None]
+        over = chord / np.sinc(turn / (2 * pi))
+        z = start + over * share * np.exp(0.5j * turn * (share - 1)) * np.sinc(turn * share / (2 * pi))
+        swept = (z.conj() * over * np.exp(1j * turn * (share - 0.5))).imag * weight
+        area, first, polar = swept.sum() / 2, (z * swept).sum() / 3, (np.abs(z) ** 2 * swept).sum() / 4
+        if not area:
+            return PlaneMoments(0.0, middle, 0.0)
+        centroid = complex(first / area)
+        return PlaneMoments(float(area), middle + centroid, float(polar - area * abs(centroid) ** 2))
 
-    def placed(self, factor: float, shift: complex) -> ArcRing:
-        """Return the ring shifted and then scaled."""
-        return ArcRing((self.z + shift) * factor, self.bulges)
+    def moved(self, shift: complex) -> ArcRing:
+        """Return the ring shifted."""
+        return self._around(self.z + shift, self.bulges, shift=shift)
 
-    def merged(self, spare: NDArray[np.bool_]) -> ArcRing:
+    def _around(self, z: Points, bulges: Reals, sign: int = 1, shift: complex = 0j) -> ArcRing:
+        """Return a ring around the same shape, shifted or in the other sense, whose moments are known."""
+        made, (area, centroid, polar) = ArcRing(z, bulges), self.moments
+        made.__dict__["moments"] = PlaneMoments(sign * area, centroid + shift, sign * polar)
+        return made
+
+    def tidied(self, close: float) -> ArcRing:
+        """Return the ring without corners between two parts of one side, from its lower left corner on.
+
+        So a file does not depend on where its lines were cut, and in which order they were drawn.
+        """
+        side, is_straight = _sides(self.z), self.bulges == 0
+        before, was_straight = (np.concatenate((each[-1:], each[:-1])) for each in (side, is_straight))
+        across = before.conj() * side
+        ahead = (across.real > 0) & (np.abs(across.imag) < SAME_DIRECTION * np.abs(across))
+        ring = self._merged(is_straight & was_straight & ahead)
+        x, y = ring.z.real, ring.z.imag
+        low = y <= y.min() + close
+        first = int(np.where(low & (x <= x[low].min() + close), y, np.inf).argmin())
+        order = [*range(first, len(x)), *range(first)]
+        return self._around(ring.z[order], ring.bulges[order])
+
+    def _merged(self, spare: NDArray[np.bool_]) -> ArcRing:
         """Return the ring without spare corners, and with consecutive arcs of one circle as one."""
         z, b, spare = self.z, self.bulges, spare.copy()
+        if not (spare.any() or self.arcs):
+            return self
         turn = 4 * np.arctan(b)
-        for k in np.flatnonzero((b != 0) & (preceding(b) != 0)).tolist():  # each arc takes the turn of the next one
+        for k in np.flatnonzero((b != 0) & (np.roll(b, 1) != 0)).tolist():  # each arc takes the turn of the next one
             if self._goes_on(k):
                 previous = next(j % len(z) for j in range(k - 1, k - 1 - len(z), -1) if not spare[j % len(z)])
                 if abs(turn[previous] + turn[k]) < MAX_TURN:
@@ -133,59 +168,6 @@ class ArcRing:
         return np.concatenate(parts)
 
 
-@dataclass(frozen=True, eq=False)
-class RingsInRow:
-    """The corners of many rings one after another, as numpy takes as long for one ring as for hundreds.
-
-    Parameters
-    ----------
-    z, bulges : ndarray, shape (n,)
-        Their corners and bulges, see `ArcRing`.
-    begins : ndarray of int, shape (m,)
-        First corner of each ring.
-    """
-
-    z: Points
-    bulges: Reals
-    begins: NDArray[np.intp]
-
-    @classmethod
-    def of(cls, rings: Sequence[ArcRing]) -> Self:
-        """Return rings as a row."""
-        begins = np.cumsum([0, *(len(ring.z) for ring in rings[:-1])])
-        return cls(np.concatenate([ring.z for ring in rings]), np.concatenate([ring.bulges for ring in rings]), begins)
-
-    @cached_property
-    def ring(self) -> NDArray[np.intp]:
-        """Number of the ring of each corner."""
-        return np.repeat(np.arange(len(self.begins)), np.diff(self.begins, append=len(self.z)))
-
-    @cached_property
-    def after(self) -> NDArray[np.intp]:
-        """Number of the next corner of each corner."""
-        after = np.arange(1, len(self.z) + 1)
-        after[np.append(self.begins[1:], len(self.z)) - 1] = self.begins
-        return after
-
-    def rings(self) -> list[ArcRing]:
-        """Return the rings, whose moments are known."""
-        made = []
-        for first, last, moments in zip(self.begins, [*self.begins[1:], len(self.z)], _moments(self), strict=True):
-            ring = ArcRing(self.z[first:last], self.bulges[first:last])
-            ring.__dict__["moments"] = moments
-            made.append(ring)
-        return made
-
-
-def anticlockwise(rings: Sequence[ArcRing]) -> list[ArcRing]:
-    """Return rings that run in either sense as such that run anticlockwise."""
-    if not rings:
-        return []
-    row = RingsInRow.of(rings)
-    row = RingsInRow(row.z, np.where(np.abs(row.bulges) > STRAIGHT_BULGE, row.bulges, 0.0), row.begins)
-    return [ring if ring.moments.area >= 0 else ring.turned() for ring in row.rings()]
-
-
 def polygons_of(rings: Sequence[ArcRing], close: float) -> Any:
     """Return rings as polygons of shapely, their arcs as chords; an array of objects, shape (n,)."""
     import shapely
@@ -198,83 +180,7 @@ def polygons_of(rings: Sequence[ArcRing], close: float) -> Any:
     return shapely.polygons(shapely.linearrings(np.stack([z.real, z.imag], axis=1), indices=of))
 
 
-def tidied(rings: Sequence[ArcRing], close: float) -> list[ArcRing]:
-    """Return rings without corners between two parts of one side, from their lower left corners on.
-
-    So a file does not depend on where its lines were cut, and in which order they were drawn.
-    """
-    if not rings:
-        return []
-    row = RingsInRow.of(rings)
-    side = row.z[row.after] - row.z
-    before, was_straight = np.empty_like(side), np.empty(len(side), bool)
-    before[row.after], was_straight[row.after] = side, row.bulges == 0
-    with np.errstate(divide="ignore", invalid="ignore"):
-        sine = np.abs((before.conj() * side).imag) / (np.abs(before) * np.abs(side))
-    ahead = (before.conj() * side).real > 0
-    spare = (row.bulges == 0) & was_straight & ahead & (sine < SAME_DIRECTION)
-    merges = set(row.ring[spare | ((row.bulges != 0) & ~was_straight)].tolist())
-    ends = row.begins + [len(ring.z) for ring in rings]
-    row = RingsInRow.of([
-        ring.merged(spare[row.begins[k] : ends[k]]) if k in merges else ring for k, ring in enumerate(rings)
-    ])  # fmt: skip
-    first = row.begins.copy()
-    low = row.z.imag <= (np.minimum.reduceat(row.z.imag, row.begins) + close)[row.ring]
-    x = np.where(low, row.z.real, np.inf)
-    left = x <= (np.minimum.reduceat(x, row.begins) + close)[row.ring]
-    y = np.where(left, row.z.imag, np.inf)
-    lowest = np.flatnonzero(y == np.minimum.reduceat(y, row.begins)[row.ring])
-    first[row.ring[lowest[::-1]]] = lowest[::-1]  # of equal ones the first
-    count = np.diff(row.begins, append=len(row.z))
-    order = (
-        row.begins[row.ring] + (np.arange(len(row.z)) - 2 * row.begins[row.ring] + first[row.ring]) % count[row.ring]
-    )
-    return RingsInRow(row.z[order], row.bulges[order], row.begins).rings()
-
-
-def _moments(row: RingsInRow) -> list[PlaneMoments]:
-    """Return the exact moments of each ring."""
-    count = np.diff(row.begins, append=len(row.z))
-    middle = np.add.reduceat(row.z, row.begins) / count  # first, as drawings may be far from their origin
-    z = row.z - middle[row.ring]
-    w = z[row.after]
-    area = (z.conj() * w).imag / 2
-    first = area * (z + w) / 3
-    polar = area * (np.abs(z) ** 2 + np.abs(w) ** 2 + (z.conj() * w).real) / 6
-    curved = row.bulges != 0
-    if curved.any():
-        start, chord, b = z[curved], (w - z)[curved], row.bulges[curved]
-        turn, radius = 4 * np.arctan(b), np.abs(chord) * (1 + b**2) / (4 * np.abs(b))
-        centre = start + chord / 2 + 1j * chord * (1 - b**2) / (4 * b)
-        to_middle = (start + chord / 2 - 1j * chord * b / 2 - centre) / radius
-        segment = radius**2 * _less_sine(turn) / 2
-        # 4 r sin^3(t/2)/[3 (t - sin t)] times the area: the first moment has no difference of sines.
-        along = 2 / 3 * radius**3 * np.sin(np.abs(turn) / 2) ** 3 * np.sign(turn)
-        area[curved] += segment
-        first[curved] += segment * centre + along * to_middle
-        polar[curved] += (
-            radius**4 * _polar(turn) + 2 * along * (centre.conj() * to_middle).real + segment * np.abs(centre) ** 2
-        )
-    total, sums, squares = (np.add.reduceat(each, row.begins) for each in (area, first, polar))
-    centroid = np.divide(sums, total, out=np.zeros_like(sums), where=total != 0)
-    about = np.where(total != 0, squares - total * np.abs(centroid) ** 2, 0.0)
-    return list(map(PlaneMoments, total.tolist(), (middle + centroid).tolist(), about.tolist()))
-
-
 def chord_count(radius: float, turn: float, tolerance: float) -> int:
     """Return the number of chords of an arc that keep within a tolerance of it."""
     step = 2 * acos(1 - tolerance / radius) if tolerance < radius else pi / 2
     return min(max(ceil(abs(turn) / step - 1e-9), 2), MAX_ARC_SIDES)
-
-
-def _less_sine(turn: Reals) -> Reals:
-    """Return t - sin t."""
-    series = turn**3 / 6 * (1 - turn**2 / 20 * (1 - turn**2 / 42 * (1 - turn**2 / 72)))
-    return np.where(np.abs(turn) < SMALL_TURN, series, turn - np.sin(turn))
-
-
-def _polar(turn: Reals) -> Reals:
-    """Return t/4 - sin t (2 + cos t)/12."""
-    t = turn
-    series = t**3 / 12 - t**5 / 80 + t**7 * 11 / 10080 - t**9 * 43 / 725760
-    return np.where(np.abs(t) < SMALL_TURN, series, t / 4 - np.sin(t) * (2 + np.cos(t)) / 12)

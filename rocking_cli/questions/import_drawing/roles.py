@@ -40,18 +40,19 @@ WORDS: Mapping[Role, str] = {
     Role.HINGES: "hinge* cernier* gelenk* rotul* articulac*",
     Role.LOADS: "load loads caric* forza forze last lasten kraft krafte carga* fuerza* charge charges force forces",
     Role.TIES: "tie ties caten? tirant* zuganker* zugstab* zugstang* tensor*",
-    Role.OPENINGS: "opening* hole holes window* door doors foro fori apertur* finestr* porta porte offnung* fenster* "
-    "tur turen hueco* vano vanos abertur* ventan* puert* ouvertur* fenetr* baie baies",
+    Role.OPENINGS: "opening* hole holes window* door doors foro fori buco buchi apertur* finestr* porta porte offnung* "
+    "fenster* tur turen hueco* vano vanos abertur* ventan* puert* ouvertur* fenetr* baie baies",
     Role.SUPPORTS: "support supports floor floors solai* carrell* decke decken auflager* forjad* apoyo* plancher* "
     "appui*",
     Role.GROUND: "ground soil* rock rocks terren* suolo suoli pavimento boden baugrund erdreich gelande fels suelo* "
     "roca* sol sols terrain* rocher*",
     Role.BODIES: "body bodies *block* *stone* voussoir* masonry *brick* wall walls arch arches column* pier piers "
-    "buttress* vault* plinth* capital* corpo corpi *blocc* conci* *pietr* *murat* *matton* parament* muro muri arco "
-    "archi colonn* pilastr* contraffort* volta volte basament* capitell* facciat* *mauer* bogen *gewolb* saule* "
-    "pfeiler* strebepfeiler* widerlager* *stein *steine *ziegel* muros arcos *piedra* *ladrill* pilar* "
-    "contrafuert* boved* estribo* sillar* dovela* mur murs arc arcs pilier* colonne* contrefort* voute* culee* "
-    "*pierre* *brique*",
+    "buttress* vault* plinth* capital* pedestal* statue* gable* facade* corpo corpi *blocc* conci* *pietr* *murat* "
+    "*matton* parament* muro muri parete pareti arco archi colonn* pilastr* piedritt* contraffort* volta volte "
+    "basament* piedistall* capitell* facciat* statu* *mauer* wand bogen *gewolb* saule* pfeiler* strebepfeiler* "
+    "widerlager* giebel* sockel* fassade* *stein *steine *ziegel* muros arcos *piedra* *ladrill* pilar* contrafuert* "
+    "boved* estribo* sillar* dovela* estatu* fachad* mur murs arc arcs pilier* piedroit* colonne* contrefort* voute* "
+    "culee* socle* piedestal* pignon* *pierre* *brique*",
 }
 """Patterns of words in the names of layers, in the order in which they count: TESTO_PIETRE has texts, no stones."""
 

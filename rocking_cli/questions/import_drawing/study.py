@@ -24,6 +24,7 @@ from rocking_cli.questions.import_drawing.outlines import (
     AT_A_TIME,
     GRID,
     DrawnBody,
+    at_point,
     bodies_of,
     by_role,
     check_notches,
@@ -38,7 +39,7 @@ from rocking_cli.text import in_short
 GROUND_ROOM = 0.1  # depth of the ground below its lowest point, and its room at the sides, over the size drawn
 KINDS = ("rigid_body", "assembly", "linkage")
 SAME_NORMAL = 1e-6
-MASS_DIGITS = 12
+MASS_DIGITS, CENTROID_DECIMALS = 12, 10
 EXTENT = 1e-5  # to which width and height are known [m]
 CIRCLE_SHARE = 0.05  # of the closing distance, to which depths of overlaps are known
 MAX_MORTAR = 0.05  # width of gaps that may be joints [m]
@@ -180,65 +181,72 @@ def structure_from(drawing: LineDrawing, options: ImportOptions, name: str, file
         raise DrawingError("empty", "it has coordinates that are not finite", file)
     per, units = metres_per_unit(drawing, size, options.units, options.scale, file)
     middle = complex((drawn.real.min() + drawn.real.max()) / 2, (drawn.imag.min() + drawn.imag.max()) / 2)
-    frame = DrawingFrame(per, middle)
-    close = options.close
-    bodies, notes, mended = bodies_of(of, frame, close, options.nested, file)
-    notes = [*of.notes, *notes, *name_and_weigh(bodies, of, options.densities, frame, close, file)]
+    if options.depth is None and drawing.depth is not None:
+        options = replace(options, depth=round(per * drawing.depth, DECIMALS))
+    frame, close = DrawingFrame(per, middle, options.close, file), options.close
+    bodies, notes, mended = bodies_of(of, frame, options.nested)
+    notes = [*of.notes, *notes, *name_and_weigh(bodies, of, options.densities, frame)]
     if drawing.faults:
-        words = (
-            f"{many(len(drawing.faults), 'fault')} of the file mended as it was read: {in_short(drawing.faults, '; ')}"
-        )
-        notes.insert(0, ImportNote("faults", len(drawing.faults), words))
+        words = f"{many(len(drawing.faults), 'fault')} of the file mended as it was read: "
+        notes.insert(0, ImportNote("faults", len(drawing.faults), words + in_short(drawing.faults, "; ")))
+    ground, is_drawn = _ground(of.chains[Role.GROUND], bodies, frame)
     left, low = (float(part.min()) for part in _extent(bodies))
-    shift = -complex(left, low)
-    ground, is_drawn = _ground(of.chains[Role.GROUND], bodies, frame, close, file)
     closed = mortar.close_gaps([body.ring for body in bodies], ground, options.merge_gap, close)
     notes += _closing_notes(closed, frame)
-    mended = [z + shift for z in (*mended, *closed.at)]
     for body, ring in zip(bodies, closed.rings, strict=True):
         body.ring = ring
     if closed.gaps:
-        _check_closed(bodies, frame, close, file)
-    check_overlaps(bodies, ground if is_drawn else [], frame, close, file)
+        _check_closed(bodies, frame)
+    check_overlaps(bodies, ground if is_drawn else [], frame)
+    shift = -complex(left, low)
+    frame = frame._replace(origin=frame.to_drawing(-shift))
+    mended = [z + shift for z in (*mended, *closed.at)]
     for body in bodies:
-        body.ring = body.ring.placed(1.0, shift)
-        body.openings = [each.placed(1.0, shift) for each in body.openings]
-    ground = [each.placed(1.0, shift) for each in ground]
+        body.ring = body.ring.moved(shift)
+        body.openings = [each.moved(shift) for each in body.openings]
+    ground = [each.moved(shift) for each in ground]
     if not is_drawn:
         notes.append(ImportNote("ground", 1, "no ground is drawn: a level floor at the lowest point is assumed"))
-    origin = frame.to_drawing(-shift)
-    x, y = (round(each * frame.per, DECIMALS) / frame.per + 0.0 for each in (origin.real, origin.imag))
+    x, y = (round(each * per, DECIMALS) / per + 0.0 for each in (frame.origin.real, frame.origin.imag))
     upwards = ", with y upwards from the upper edge of its page" if drawing.format == "SVG" else ""
     words = f"the origin of the structure file is at ({x:.9g}, {y:.9g}) of the drawing{upwards}"
     notes.append(ImportNote("origin", 1, words))
     width, height = (float(np.ptp(part)) for part in _extent(bodies))
     notes.append(ImportNote("units", 1, f"{units}: the structure is {width:.4g} m wide and {height:.4g} m high"))
-    places = BodyFinder(bodies, ground, frame, shift, close, file)
-    extra = attached(drawing, of, places)
+    extra = attached(drawing, of, BodyFinder(bodies, ground, frame))
     kind = options.kind or _kind(bodies, ground, is_drawn, extra, close)
     if kind == "rigid_body":
         lowest = min(bodies, key=lambda body: float(body.ring.z.imag.min()))
         if is_drawn and not _is_level(lowest.ring, ground, close):
             what = f"the ground below {lowest.name} is not level or does not meet it, as a rigid_body needs"
-            raise DrawingError("below", f"{what}: leave out `kind`, or the ground", file)
-        _check_foot(lowest, close, frame, shift, file)
-        notes += _levelled(bodies, close, frame, shift)
-    _check_weights(kind, bodies, options, DrawingFrame(per, origin), file)
+            raise frame.refusal("below", f"{what}: leave out `kind`, or the ground")
+        _check_foot(lowest, frame)
+        notes += _levelled(bodies, frame)
+    _check_weights(kind, bodies, options, frame, notes)
     if kind != "rigid_body":  # which cuts notches out of its parts
-        check_notches(bodies, DrawingFrame(per, origin), close, file)
+        check_notches(bodies, frame)
     if kind == "assembly" and extra.hinges:
-        at = [frame.to_drawing(each[0] - shift) for each in extra.hinges]
+        at = [frame.to_drawing(each[0]) for each in extra.hinges]
         words = f"left out: {many(len(at), 'hinge')}, as an assembly hinges at the joints that open first"
         extra.notes.append(ImportNote("left out", len(at), words, at))
-    fields = FIELDS[kind](name, bodies, ground, is_drawn, extra, options, file)
+    draft = _Draft(name, bodies, ground, is_drawn, extra, options, frame)
     nothing = [chain for chain in drawing.chains if of.roles(chain.layer) in (None, Role.NOTHING)]
     lines = [chain.points[[*range(len(chain.points)), *([0] * chain.closed)]] for chain in nothing]
-    grey = [frame.to_metres(points) + shift for points in (*lines, *drawing.annotations) if len(points) > 1]
+    grey = [frame.to_metres(points) for points in (*lines, *drawing.annotations) if len(points) > 1]
     result = Imported(
-        kind, fields, bodies, [ring.chords(options.tolerance) for ring in ground], _joints(bodies, ground), units, per,
-        origin, [*notes, *extra.notes], extra.comments, mended, grey, [at for _, at, _, _ in extra.supports],
+        kind, draft.fields(kind), bodies, [ring.chords(options.tolerance) for ring in ground],
+        _joints(bodies, ground), units, per, frame.origin, [*notes, *extra.notes], extra.comments, mended, grey,
+        [at for _, at, _, _ in extra.supports],
     )  # fmt: skip
-    return replace(result, notes=[*result.notes, *_checked_by_mechanism(result, file)])
+    try:
+        checked = _checked_by_mechanism(result, frame)
+    except DrawingError:
+        if kind != "assembly" or not options.merge_gap:
+            raise
+        result = replace(result, fields={**result.fields, "gap": options.merge_gap})
+        words = f"joints fitted within {length_in_words(options.merge_gap)}, which the file gives as `gap`"
+        checked = [*_checked_by_mechanism(result, frame), ImportNote("gap", 1, words)]
+    return replace(result, notes=[*result.notes, *checked])
 
 
 def _extent(bodies: Sequence[DrawnBody]) -> tuple[Any, Any]:
@@ -247,7 +255,7 @@ def _extent(bodies: Sequence[DrawnBody]) -> tuple[Any, Any]:
 
 
 def _ground(
-    chains: Sequence[DrawnLine], bodies: Sequence[DrawnBody], frame: DrawingFrame, close: float, file: str
+    chains: Sequence[DrawnLine], bodies: Sequence[DrawnBody], frame: DrawingFrame
 ) -> tuple[list[ArcRing], bool]:
     """Return the outlines of the ground, and whether it is drawn; if not, it is a level floor at the lowest point."""
     x, y = _extent(bodies)
@@ -257,9 +265,9 @@ def _ground(
         low, left, right = float(y.min()), float(x.min()) - room, float(x.max()) + room
         corners = [complex(left, low - depth), complex(right, low - depth), complex(right, low), complex(left, low)]
         return [ArcRing(np.array(corners), np.zeros(4))], False
-    lines = placed(chains, frame, close, file)
+    lines = placed(chains, frame)
     rings = [ArcRing.of(line.z, line.bulges) for line in lines if line.closed]
-    for z in joined_lines([line for line in lines if not line.closed], close):
+    for z in joined_lines([line for line in lines if not line.closed], frame.close):
         rings.append(_below(z, float(y.min()), GROUND_ROOM * height))
     return rings, True
 
@@ -274,32 +282,30 @@ def _below(z: Points, lowest: float, depth: float) -> ArcRing:
 def _closing_notes(closed: mortar.Closed, frame: DrawingFrame) -> list[ImportNote]:
     if not closed.gaps:
         return []
-    at = [frame.to_drawing(z) for z in closed.at]
+    at = [*map(frame.to_drawing, closed.at)]
     least, most = (length_in_words(edge) for edge in (min(closed.gaps), max(closed.gaps)))
     span = least if least == most else f"{least} to {most}"
     notes = [ImportNote("closed", len(at), f"{many(len(at), 'side')} moved to close gaps or overlaps of {span}", at)]
     if closed.uneven:
         words = f"{many(len(closed.uneven), 'side')} faced two different gaps: the larger was closed"
-        notes.append(ImportNote("two gaps", len(closed.uneven), words, [frame.to_drawing(z) for z in closed.uneven]))
+        notes.append(ImportNote("two gaps", len(closed.uneven), words, [*map(frame.to_drawing, closed.uneven)]))
     return notes
 
 
-def _check_closed(bodies: Sequence[DrawnBody], frame: DrawingFrame, close: float, file: str) -> None:
+def _check_closed(bodies: Sequence[DrawnBody], frame: DrawingFrame) -> None:
     """Raise `DrawingError` "crosses" if closing gaps has made a body cross itself."""
     import shapely
 
-    for k in np.flatnonzero(~shapely.is_valid(polygons_of([body.ring for body in bodies], close))).tolist():
-        at = bodies[k].ring.moments.centroid
-        what = f"{bodies[k].name} at {frame.place(at)} crosses itself once its gaps are closed"
-        raise DrawingError("crosses", f"{what}: give a smaller `merge_gap`", file, at=frame.pairs([at]))
+    for k in np.flatnonzero(~shapely.is_valid(polygons_of([body.ring for body in bodies], frame.close))).tolist():
+        what = f"{bodies[k].name} at <here> crosses itself once its gaps are closed: give a smaller `merge_gap`"
+        raise frame.refusal("crosses", what, [bodies[k].ring.moments.centroid])
 
 
-def check_overlaps(
-    bodies: Sequence[DrawnBody], ground: Sequence[ArcRing], frame: DrawingFrame, close: float, file: str
-) -> None:
+def check_overlaps(bodies: Sequence[DrawnBody], ground: Sequence[ArcRing], frame: DrawingFrame) -> None:
     """Raise `DrawingError` "overlap" or "below" for bodies that overlap, or reach into the ground, too deeply."""
     import shapely
 
+    close = frame.close
     solid = polygons_of([body.ring for body in bodies], close)
     tree = shapely.STRtree(solid)
     for first in range(0, len(solid), AT_A_TIME):
@@ -307,23 +313,17 @@ def check_overlaps(
         ones, others = ones[first + ones < others] + first, others[first + ones < others]
         shared = shapely.intersection(solid[ones], solid[others], grid_size=GRID * close)
         for k in np.flatnonzero(shapely.area(shared) > 0).tolist():
-            i, j, common = ones[k], others[k], shared[k]
-            if depth := depth_of(common, close):
-                at = complex(common.centroid.x, common.centroid.y)
-                one, other = bodies[i].name, bodies[j].name
-                what = (
-                    f"{one} and {other} overlap by {common.area:.3g} m2 at {frame.place(at)}, {length_in_words(depth)}"
-                )
-                what += f" deep: draw them side by side, or give a larger `close` than {length_in_words(close)}"
-                raise DrawingError("overlap", what, file, at=frame.pairs([at]))
+            if depth := depth_of(shared[k], close):
+                one, other = bodies[ones[k]].name, bodies[others[k]].name
+                what = f"{one} and {other} overlap by {shared[k].area:.3g} m2 at <here>, {length_in_words(depth)} deep"
+                what += f": draw them side by side, or give a larger `close` than {length_in_words(close)}"
+                raise frame.refusal("overlap", what, [at_point(shared[k].centroid)])
     for floor in polygons_of(ground, close):
         for k in tree.query(floor, predicate="intersects").tolist():
             common = shapely.intersection(floor, solid[k], grid_size=GRID * close)
             if depth := depth_of(common, close):
-                deep = length_in_words(depth)
-                what = f"{bodies[k].name} reaches {deep} into the ground: the ground line must be below it"
-                at = complex(common.centroid.x, common.centroid.y)
-                raise DrawingError("below", what, file, at=frame.pairs([at]))
+                what = f"{bodies[k].name} reaches {length_in_words(depth)} into the ground: the ground line must be "
+                raise frame.refusal("below", f"{what}below it", [at_point(common.centroid)])
 
 
 def depth_of(common: Any, close: float) -> float:
@@ -345,14 +345,14 @@ def _joints(bodies: Sequence[DrawnBody], ground: Sequence[ArcRing]) -> list[Draw
     names = [*(body.name for body in bodies), *("ground" for _ in ground)]
     size = np.array([np.ptp(ring.z.real) + np.ptp(ring.z.imag) for ring in rings])
     size[len(bodies) :] = np.inf
-    sides = mortar.Sides.from_rings(rings)
+    sides = mortar.sides_of(rings)
     most = mortar.JOINT_GAP * size[: len(bodies)].max()
     pairs = mortar.facing(sides, -most, most)
-    one, other = sides.ring[pairs.one], sides.ring[pairs.other]
-    is_joint = (one <= other) & (np.abs(pairs.gap) <= mortar.JOINT_GAP * np.minimum(size[one], size[other]))
+    one, other = sides["of"][pairs["one"]], sides["of"][pairs["other"]]
+    is_joint = (one <= other) & (np.abs(pairs["gap"]) <= mortar.JOINT_GAP * np.minimum(size[one], size[other]))
     is_joint &= one < len(bodies)
-    ends = zip(one[is_joint].tolist(), other[is_joint].tolist(), pairs.ends[is_joint].tolist(), strict=True)
-    return [DrawnJoint((names[i], names[j]), (start, end)) for i, j, (start, end) in ends]
+    faces = zip(one[is_joint], other[is_joint], pairs[["start", "end"]][is_joint].tolist(), strict=True)
+    return [DrawnJoint((names[i], names[j]), ends) for i, j, ends in faces]
 
 
 def _kind(
@@ -372,139 +372,49 @@ def _is_level(ring: ArcRing, ground: Sequence[ArcRing], close: float) -> bool:
     left, right = float(feet.real.min()), float(feet.real.max())
     tops = np.concatenate([each.z for each in ground])
     under = tops[(tops.real > left - close) & (tops.real < right + close) & (tops.imag > low - 10 * close)]
-    sides = mortar.Sides.from_rings(ground)
-    flat = (np.abs(sides.normal - 1j) < SAME_NORMAL) & (np.abs(sides.start.imag - low) <= close)
-    ends = sides.start[flat], sides.start[flat] + sides.along[flat]
-    lies = (np.minimum(ends[0].real, ends[1].real) <= left + close) & (
-        np.maximum(ends[0].real, ends[1].real) >= right - close
-    )
+    sides = mortar.sides_of(ground)
+    flat = sides[(np.abs(mortar.normals_of(sides) - 1j) < SAME_NORMAL) & (np.abs(sides["a"].imag - low) <= close)]
+    x = np.stack([flat["a"], flat["b"]]).real
+    lies = (x.min(axis=0) <= left + close) & (x.max(axis=0) >= right - close)
     return bool(lies.any() and (under.imag <= low + close).all())
 
 
-def _levelled(bodies: Sequence[DrawnBody], close: float, frame: DrawingFrame, shift: complex) -> list[ImportNote]:
+def _levelled(bodies: Sequence[DrawnBody], frame: DrawingFrame) -> list[ImportNote]:
     """Put corners within the closing distance of the level ground, and ends of a sloping base, onto it, and say so."""
     at, most = list[complex](), 0.0
     for body in bodies:
         z = body.ring.z
-        off = np.abs(z.imag) <= close
+        off = np.abs(z.imag) <= frame.close
         side, lowest = following(z) - z, int(z.imag.argmin())
         for k, end in ((lowest, (lowest + 1) % len(z)), (lowest - 1, lowest - 1)) if off[lowest] else ():
             is_base = abs(side[k].imag) <= MAX_SLOPE * abs(side[k].real) and abs(side[k]) > np.ptp(z.real) / 2
             off[end] |= is_base and not body.ring.bulges[k]
         moved = z[off & (np.abs(z.imag) > mortar.NO_GAP)]
-        at += [frame.to_drawing(each - shift) for each in moved]
+        at += map(frame.to_drawing, moved)
         most = max(most, float(np.abs(moved.imag).max(initial=0.0)))
         body.ring = ArcRing(np.where(off, z.real, z), body.ring.bulges)
-    if not at:
-        return []
     words = f"{many(len(at), 'corner')} put onto the level ground, by up to {length_in_words(most)}"
-    return [ImportNote("levelled", len(at), words, at)]
+    return [ImportNote("levelled", len(at), words, at)] if at else []
 
 
-def _check_foot(body: DrawnBody, close: float, frame: DrawingFrame, shift: complex, file: str) -> None:
+def _check_foot(body: DrawnBody, frame: DrawingFrame) -> None:
     """Raise `DrawingError` "point" if a body stands on an arc, or on another curve."""
     ring, z = body.ring, body.ring.level()
     lowest, least = int(ring.z.imag.argmin()), float(z.imag.min())
-    below = least < float(ring.z.imag.min()) - CIRCLE_SHARE * close
+    below = least < float(ring.z.imag.min()) - CIRCLE_SHARE * frame.close
     on_arc = below or bool(ring.bulges[lowest] and ring.bulges[lowest - 1])
-    foot, flat = (z.real[z.imag <= least + reach] for reach in (close, CIRCLE_SHARE * close))
+    foot, flat = (z.real[z.imag <= least + reach] for reach in (frame.close, CIRCLE_SHARE * frame.close))
     on_curve = any(each.is_straightened for each in body.sources) and len(foot) >= CURVED_CORNERS
     if on_arc or (on_curve and np.ptp(flat) < FLAT_SHARE * np.ptp(foot)):
-        at = complex(float(flat.mean()), 0.0) - shift
-        what = f"{body.name} stands on one point of a curve at {frame.place(at)}: a round foot rolls, without a model"
-        raise DrawingError("point", what, file, frame.pairs([at]), "draw the foot on which it stands")
+        what = f"{body.name} stands on one point of a curve at <here>: a round foot rolls, without a model"
+        raise frame.refusal("point", what, [complex(flat.mean(), 0.0)], "draw the foot on which it stands")
 
 
 # The fields of each kind of structure
 
 
-def _common(name: str, extra: DrawnAttachments, options: ImportOptions, *, of_one: bool) -> dict[str, Any]:
-    fields: dict[str, Any] = {"name": name}
-    if "" in options.densities:
-        fields["density"] = options.densities[""]
-    if options.depth is not None:
-        fields["depth"] = options.depth
-    if extra.loads:
-        fields["loads"] = [{k: v for k, v in load.items() if not (of_one and k == "body")} for load in extra.loads]
-    if extra.ties:
-        fields["ties"] = [_of_one(tie) if of_one else tie for tie in extra.ties]
-    return fields
-
-
-def _of_one(tie: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a tie of a structure with one body, whose ends name no body."""
-
-    def end(place: Any) -> Any:
-        return {key: value for key, value in place.items() if key != "body"} if isinstance(place, dict) else place
-
-    return {key: [end(each) for each in value] if key == "path" else end(value) for key, value in tie.items()}
-
-
 def _corners(z: Points) -> list[list[float]]:
     return [rounded(complex(each)) for each in z]
-
-
-def _rigid_body(
-    name: str, bodies: Sequence[DrawnBody], ground: Sequence[ArcRing], is_drawn: bool, extra: DrawnAttachments,
-    options: ImportOptions, file: str,
-) -> dict[str, Any]:  # fmt: skip
-    fields = _common(name, extra, options, of_one=True)
-    if extra.supports or extra.hinges:
-        raise DrawingError("hinge", "a rigid_body has no hinges and supports: leave out `kind`", file)
-    if len(bodies) == 1 and not bodies[0].openings:
-        if bodies[0].density is not None:
-            fields["density"] = bodies[0].density
-        return fields | {"polygon": _corners(bodies[0].ring.level())}
-    alike = len({body.density for body in bodies}) == 1
-    if alike and bodies[0].density is not None:
-        fields["density"] = bodies[0].density
-    parts: list[dict[str, Any]] = []
-    for body in bodies:
-        own_density = {} if alike or body.density is None else {"density": body.density}
-        parts.append({"polygon": _corners(body.ring.level()), **own_density})
-    parts += [{"polygon": _corners(hole.level()), "opening": True} for body in bodies for hole in body.openings]
-    return fields | {"parts": parts}
-
-
-def _shapes(bodies: Sequence[DrawnBody], options: ImportOptions, file: str) -> dict[str, dict[str, Any]]:
-    """Return the blocks: polygons, beside exact mass, centroid and inertia where there are arcs or openings."""
-    shapes: dict[str, dict[str, Any]] = {}
-    default = options.densities.get("")
-    for body in bodies:
-        shape: dict[str, Any] = {"polygon": _corners(body.ring.chords(options.tolerance))}
-        if not body.is_plain:
-            moments = body.moments
-            assert body.density is not None and options.depth is not None  # see _check_weights
-            per_area = body.density * options.depth
-            shape |= {
-                "mass": float(f"{per_area * moments.area:.{MASS_DIGITS}g}"),
-                "centroid": rounded_fully(moments.centroid),
-                "inertia": float(f"{per_area * moments.polar:.{MASS_DIGITS}g}"),
-            }
-        elif body.density is not None and body.density != default:
-            shape["density"] = body.density
-        shapes[body.name] = shape
-    return shapes
-
-
-def rounded_fully(z: complex) -> list[float]:
-    """Return a centroid as it stands in a file."""
-    return [round(z.real, 10) + 0.0, round(z.imag, 10) + 0.0]
-
-
-def _assembly(
-    name: str, bodies: Sequence[DrawnBody], ground: Sequence[ArcRing], is_drawn: bool, extra: DrawnAttachments,
-    options: ImportOptions, file: str,
-) -> dict[str, Any]:  # fmt: skip
-    fields = _common(name, extra, options, of_one=False)
-    fields["blocks"] = _shapes(bodies, options, file)
-    names = ["floor"] if not is_drawn else [f"ground {k + 1}" for k in range(len(ground))]
-    fields["ground"] = {
-        key: {"polygon": _corners(ring.chords(options.tolerance))} for key, ring in zip(names, ground, strict=True)
-    }
-    if extra.supports:
-        fields["joints"] = {_key(k): _slide(*each[:3]) for k, each in enumerate(extra.supports)}
-    return fields
 
 
 def _key(k: int) -> str:
@@ -516,51 +426,112 @@ def _slide(body: str, at: complex, along: complex) -> dict[str, Any]:
     return {"slide": body, "at": rounded(at), "along": rounded(along)}
 
 
-def _linkage(
-    name: str, bodies: Sequence[DrawnBody], ground: Sequence[ArcRing], is_drawn: bool, extra: DrawnAttachments,
-    options: ImportOptions, file: str,
-) -> dict[str, Any]:  # fmt: skip
-    if not extra.hinges:
-        what = "a linkage needs hinges: draw points on a layer such as HINGES, or leave out `kind`"
-        raise DrawingError("hinge", what, file)
-    fields = _common(name, extra, options, of_one=False)
-    fields["bodies"] = _shapes(bodies, options, file)
-    touching = dict.fromkeys(joint.between for joint in _joints(bodies, ground))
-    sides: dict[str, dict[str, Any]] = {}
-    for direction, sign in (("positive", "+"), ("negative", "-")):
-        hinges = [each for each in extra.hinges if each[2] in ("", sign)]
-        if not hinges:
-            continue
-        joints: dict[str, Any] = {}
-        lead = ""
-        for at, on, _ in sorted(hinges, key=lambda each: (len(each[1]), each[0].imag, each[0].real)):
-            joints[_key(len(joints))] = (
-                {"pivot": on[0], "at": rounded(at)} if len(on) == 1 else {"hinge": list(on), "at": rounded(at)}
-            )
-            lead = lead or (on[0] if len(on) == 1 else "")
-        standing = {pair[0] for pair in touching if "ground" in pair}
-        lead = lead or next((body for _, on, _ in hinges for body in on if body not in standing), "")
-        if not lead:
-            what = f"no hinge of the {direction} direction is on the ground: one must be on a single body"
-            raise DrawingError("hinge", what, file)
-        for body, at, along, sense in extra.supports:
-            if sense in ("", sign):
-                joints[_key(len(joints))] = _slide(body, at, along)
-        hinged = {frozenset(on) if len(on) == 2 else frozenset([on[0], "ground"]) for _, on, _ in hinges}
-        for pair in touching:  # what touches and has no hinge stays together
-            if frozenset(pair) not in hinged:
-                joints[f"{pair[0]} on {pair[1]}"] = {"fixed": list(pair)}
-        sides[direction] = {"lead": lead, "joints": joints}
-    for direction in ("positive", "negative"):
-        fields[direction] = sides.get(direction, "mirror")
-    return fields
+def _without_body(given: Any) -> Any:
+    """Return loads or ties of a structure with one body, which they do not name."""
+    if isinstance(given, list):
+        return [*map(_without_body, given)]
+    if isinstance(given, dict):
+        return {key: _without_body(value) for key, value in given.items() if key != "body"}
+    return given
 
 
-FIELDS = {"rigid_body": _rigid_body, "assembly": _assembly, "linkage": _linkage}
+@dataclass(frozen=True)
+class _Draft:
+    """What is drawn, from which the fields of a structure file are made."""
+
+    name: str
+    bodies: Sequence[DrawnBody]
+    ground: Sequence[ArcRing]
+    is_drawn: bool
+    extra: DrawnAttachments
+    options: ImportOptions
+    frame: DrawingFrame
+
+    def fields(self, kind: str) -> dict[str, Any]:
+        """Return the fields of a kind of structure."""
+        fields: dict[str, Any] = {"name": self.name}
+        loads, ties, options = self.extra.loads, self.extra.ties, self.options
+        if kind == "rigid_body":
+            loads, ties = _without_body(loads), _without_body(ties)
+        fields |= {"density": options.densities[""]} if "" in options.densities else {}
+        fields |= {"depth": options.depth} if options.depth is not None else {}
+        fields |= ({"loads": loads} if loads else {}) | ({"ties": ties} if ties else {})
+        return fields | {"rigid_body": self._rigid_body, "assembly": self._assembly, "linkage": self._linkage}[kind]()
+
+    def _rigid_body(self) -> dict[str, Any]:
+        if self.extra.supports or self.extra.hinges:
+            raise self.frame.refusal("hinge", "a rigid_body has no hinges and supports: leave out `kind`")
+        bodies = self.bodies
+        alike = len({body.density for body in bodies}) == 1
+        fields = {} if not alike or bodies[0].density is None else {"density": bodies[0].density}
+        if len(bodies) == 1 and not bodies[0].openings:
+            return fields | {"polygon": _corners(bodies[0].ring.level())}
+        parts: list[dict[str, Any]] = []
+        for body in bodies:
+            own_density = {} if alike or body.density is None else {"density": body.density}
+            parts.append({"polygon": _corners(body.ring.level()), **own_density})
+        parts += [{"polygon": _corners(hole.level()), "opening": True} for body in bodies for hole in body.openings]
+        return fields | {"parts": parts}
+
+    def _shapes(self) -> dict[str, dict[str, Any]]:
+        """Return the blocks: polygons, beside exact mass, centroid and inertia where there are arcs or openings."""
+        shapes: dict[str, dict[str, Any]] = {}
+        for body in self.bodies:
+            shape: dict[str, Any] = {"polygon": _corners(body.ring.chords(self.options.tolerance))}
+            if not body.is_plain:
+                moments = body.moments
+                assert body.density is not None and self.options.depth is not None  # see _check_weights
+                per_area = body.density * self.options.depth
+                shape |= {
+                    "mass": float(f"{per_area * moments.area:.{MASS_DIGITS}g}"),
+                    "centroid": rounded(moments.centroid, CENTROID_DECIMALS),
+                    "inertia": float(f"{per_area * moments.polar:.{MASS_DIGITS}g}"),
+                }
+            elif body.density is not None and body.density != self.options.densities.get(""):
+                shape["density"] = body.density
+            shapes[body.name] = shape
+        return shapes
+
+    def _assembly(self) -> dict[str, Any]:
+        chords = [_corners(ring.chords(self.options.tolerance)) for ring in self.ground]
+        names = [f"ground {k + 1}" if self.is_drawn else "floor" for k in range(len(chords))]
+        ground = {name: {"polygon": corners} for name, corners in zip(names, chords, strict=True)}
+        joints = {_key(k): _slide(*each[:3]) for k, each in enumerate(self.extra.supports)}
+        return {"blocks": self._shapes(), "ground": ground} | ({"joints": joints} if joints else {})
+
+    def _linkage(self) -> dict[str, Any]:
+        if not self.extra.hinges:
+            what = "a linkage needs hinges: draw points on a layer such as HINGES, or leave out `kind`"
+            raise self.frame.refusal("hinge", what)
+        touching = dict.fromkeys(joint.between for joint in _joints(self.bodies, self.ground))
+        sides: dict[str, Any] = {"positive": "mirror", "negative": "mirror"}
+        for direction, sign in (("positive", "+"), ("negative", "-")):
+            hinges = [each for each in self.extra.hinges if each[2] in ("", sign)]
+            if not hinges:
+                continue
+            joints: dict[str, Any] = {}
+            for at, on, _ in sorted(hinges, key=lambda each: (len(each[1]), each[0].imag, each[0].real)):
+                held: dict[str, Any] = {"pivot": on[0]} if len(on) == 1 else {"hinge": list(on)}
+                joints[_key(len(joints))] = held | {"at": rounded(at)}
+            standing = {pair[0] for pair in touching if "ground" in pair}
+            pivots = [joint["pivot"] for joint in joints.values() if "pivot" in joint]
+            moving = [body for _, on, _ in hinges for body in on if body not in standing]
+            if not (leads := pivots + moving):
+                what = f"no hinge of the {direction} direction is on the ground: one must be on a single body"
+                raise self.frame.refusal("hinge", what)
+            for body, at, along, sense in self.extra.supports:
+                if sense in ("", sign):
+                    joints[_key(len(joints))] = _slide(body, at, along)
+            hinged = {frozenset(on) if len(on) == 2 else frozenset([on[0], "ground"]) for _, on, _ in hinges}
+            for pair in touching:  # what touches and has no hinge stays together
+                if frozenset(pair) not in hinged:
+                    joints[f"{pair[0]} on {pair[1]}"] = {"fixed": list(pair)}
+            sides[direction] = {"lead": leads[0], "joints": joints}
+        return {"bodies": self._shapes()} | sides
 
 
 def _check_weights(
-    kind: str, bodies: Sequence[DrawnBody], options: ImportOptions, frame: DrawingFrame, file: str
+    kind: str, bodies: Sequence[DrawnBody], options: ImportOptions, frame: DrawingFrame, notes: Sequence[ImportNote]
 ) -> None:
     """Raise `DrawingError` "density" if some bodies have none, or if blocks with arcs or openings have no mass."""
     what, blamed = "", [body for body in bodies if body.density is None]
@@ -569,15 +540,15 @@ def _check_weights(
     elif kind != "rigid_body" and (blamed or options.depth is None):
         blamed = [body for body in bodies if not body.is_plain][:1]
         for body in blamed:
-            missing = {"`density`": body.density is None, "`depth`": options.depth is None}
-            what = f"{body.name} at {frame.place(body.ring.moments.centroid)} has "
-            what += f"{'arcs' if body.ring.arcs else 'openings'}, so that its mass and inertia are computed: give "
-            what += " and ".join(name for name, is_missing in missing.items() if is_missing)
+            missing = ["`density`"] * (body.density is None) + ["`depth`"] * (options.depth is None)
+            what = f"{body.name} at <here> has {'arcs' if body.ring.arcs else 'openings'}, so that its mass and "
+            what += f"inertia are computed: give {' and '.join(missing)}"
     if what:
-        raise DrawingError("density", what, file, frame.pairs([body.ring.moments.centroid for body in blamed]))
+        what = "; ".join([what, *(note.words for note in notes if note.kind == "density")])
+        raise frame.refusal("density", what, [body.ring.moments.centroid for body in blamed])
 
 
-def _checked_by_mechanism(result: Imported, file: str) -> list[ImportNote]:
+def _checked_by_mechanism(result: Imported, frame: DrawingFrame) -> list[ImportNote]:
     """Return a note if the structure has no rocking model, as one in which several mechanisms start together.
 
     Of many bodies the joints are checked, but not whether they stand, as the limit analysis takes long.
@@ -605,14 +576,13 @@ def _checked_by_mechanism(result: Imported, file: str) -> list[ImportNote]:
             body.ring.moments.centroid for body in result.bodies
             if len(result.bodies) == 1 or any(body.name in f["loc"] or repr(body.name) in f["msg"] for f in faults)
         ]  # fmt: skip
-        at = DrawingFrame(result.per_unit, result.shift).pairs(blamed)
         if any(fault.get("ctx", {}).get("field") == ("depth",) for fault in faults):
             what = "a density needs the depth of the structure: give `depth`"
-            raise DrawingError("density", what, file, at) from None
+            raise frame.refusal("density", what, blamed) from None
         what = f"{result.kind} cannot take it: {'; '.join(words)}{_nearest_gap(result, joined)}"
-        raise DrawingError("mechanism", what, file, at) from None
+        raise frame.refusal("mechanism", what, blamed) from None
     except StructureError as error:  # the analysis of the assembly found no answer
-        raise DrawingError("mechanism", f"{result.kind} cannot take it: {error}", file) from None
+        raise frame.refusal("mechanism", f"{result.kind} cannot take it: {error}") from None
     try:
         for direction in structure.directions:
             structure.uplift(direction)
@@ -627,9 +597,9 @@ def _nearest_gap(result: Imported, joined: Collection[str]) -> str:
         return ""
     apart = [k for k, body in enumerate(result.bodies) if body.name not in joined]
     ground = [ArcRing.of(z, np.zeros(len(z))) for z in result.ground]
-    sides = mortar.Sides.from_rings([*(body.ring for body in result.bodies), *ground])
+    sides = mortar.sides_of([*(body.ring for body in result.bodies), *ground])
     pairs = mortar.facing(sides, 0.0, MAX_MORTAR)
-    gaps = pairs.gap[np.isin(sides.ring[pairs.one], apart)]
+    gaps = pairs["gap"][np.isin(sides["of"][pairs["one"]], apart)]
     if not len(gaps):
         return ""
     widest = ceil(1e4 * float(gaps.max()) - 1e-6) / 10  # tenths of a millimetre

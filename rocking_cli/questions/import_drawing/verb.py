@@ -37,11 +37,12 @@ def import_drawing(
     nested: Literal["openings"] | None = None,
     kind: Literal["rigid_body", "assembly", "linkage"] | None = None,
     tolerance: float | str = "0.1 mm",
+    plane: str | None = None,
     out: str | Path | None = None,
     command: str = "rk.import_drawing",
     watch: Watcher = SILENT,
 ) -> Answer[Imported]:
-    """Make a structure of a drawing: DXF, SVG, GeoJSON, or a table of vertices.
+    """Make a structure of a drawing: DXF, SVG, GeoJSON, a table of vertices, a model of blocks.
 
     Parameters
     ----------
@@ -67,6 +68,8 @@ def import_drawing(
         Mechanism of the structure; by default the one that fits what is drawn.
     tolerance : float or str
         Largest distance of the sides of curved blocks from their arcs [m].
+    plane : {"xz", "yz"}, optional
+        Plane of a model of blocks; "xz" by default.
     out : str or Path, optional
         Structure file to write.
     command : str
@@ -119,7 +122,7 @@ def import_drawing(
         raise InputError(Problem("a drawing needs the package shapely", hint="pip install 'rocking-cli[drawing]'"))
     if out is not None:
         keep_apart([("`out`", Path(out))], [str(file)])
-    drawing, data = read_drawing(file)
+    drawing, data = read_drawing(file, plane)
     if isinstance(drawing, MeshSurface):
         raise InputError(Problem("this is a mesh", str(file), hint="use rk.import_mesh"))
     name = default_name(file)

@@ -123,8 +123,7 @@ def import_mesh(
     places = [] if out is None else places_of(Path(out), azimuths)
     outputs = [("`out`", place) for place in places]
     if page is not None:
-        if Path(page).suffix.lower() != ".html":
-            raise InputError(Problem("give a file name that ends in .html", str(page), field="`page`"))
+        check_writable(Path(page), ".html")
         outputs.append(("`page`", Path(page)))
     keep_apart(outputs, [str(path)])
     for _, place in outputs:

@@ -61,6 +61,7 @@ def test_a_squat_block_slides_and_does_not_overturn():
     assert glued(rk.Block(width=0.8, height=1.0)) == []
 
 
+@pytest.mark.rest
 def test_verdict_and_report_say_it(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     blocks = {"wall": {"polygon": WALL}, "buttress": {"polygon": BUTTRESS}}

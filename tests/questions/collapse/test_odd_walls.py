@@ -4,6 +4,7 @@ import hashlib
 import signal
 import threading
 import time
+from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
@@ -22,6 +23,7 @@ from rocking_cli.cli.watching import OnTerminal
 from rocking_cli.core import Direction
 from rocking_cli.errors import InputError
 from rocking_cli.io import yaml_file
+from tests.conftest import EXAMPLES
 from tests.mechanisms.test_assembly import assembly
 from tests.mechanisms.test_assembly_limit import FLOOR, cut, multiplier, rectangle, weights
 
@@ -182,13 +184,15 @@ def test_deep_nesting_in_a_long_file_is_refused():
         assert str(caught.value) == "f: nested too deep to be a structure"
 
 
-def test_what_many_blocks_take_is_said_once_before_they_are_read(tmp_path, capsys):
+@pytest.mark.parametrize("wrong", ["", "frction: 0.6\n"])
+def test_what_many_blocks_take_is_said_once_unless_they_are_refused(wrong, tmp_path, capsys):
     file = tmp_path / "wall.yaml"
-    file.write_text("polygon:\n" * 10_000)
-    with pytest.raises(InputError):
+    text = (EXAMPLES / "assembly.yaml").read_text("utf-8")
+    file.write_text(f"{text}{wrong}#{'polygon ' * (10_000 - text.count('polygon'))}\n")
+    with pytest.raises(InputError) if wrong else nullcontext():
         structure_of(file, OnTerminal())
     said = " ".join(capsys.readouterr().err.split())
-    assert said.count("10000 polygons: 100 minutes and 2000 MB at least") == 1 and "Ctrl-C" in said
+    assert said.count("10000 polygons: 100 minutes and 2000 MB at least") == said.count("Ctrl-C") == (0 if wrong else 1)
 
 
 def test_too_many_entries_are_counted():

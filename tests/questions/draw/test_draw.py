@@ -85,6 +85,7 @@ class TestPicture:
         shown = picture(Block(width=1.0, height=4.0))
         np.testing.assert_array_equal(shown.at(np.array([10.0]))[0], shown.at(np.array([0.999 * pi / 2]))[0])
 
+    @pytest.mark.every(4)
     @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
     def test_the_table_of_a_page_has_every_position_between_its_nodes(self, path):
         """Straight between nodes, as a page does it, against the mechanism itself."""

@@ -99,5 +99,5 @@ def test_the_page_knows_all_roles_and_refusals():
         PROJECT / "rocking_cli" / each for each in ("io/drawings", "questions/import_drawing", "questions/import_mesh")
     ]
     code = "".join(file.read_text(encoding="utf-8") for folder in folders for file in folder.glob("*.py"))
-    classes = set(re.findall(r'(?:DrawingError|refused|_refusal)\(\s*"(\w+)"', code))
+    classes = set(re.findall(r'(?:DrawingError|refused|refusal)\(\s*"(\w+)"', code))
     assert len(classes) > 25 and classes == {each for each in classes if f"`{each}`" in page}

@@ -171,12 +171,16 @@ def test_frames_and_hatches_are_not_proposed_as_bodies():
 
 
 def test_a_wall_around_its_windows_may_be_no_frame():
-    drawn = [box(0, 0, 4, 3, "PARETE_1"), box(1, 1, 1, 1.5, "BUCHI")]
-    said = "if it has openings, `layers` bodies=PARETE_1 `layers` openings=BUCHI"
-    with pytest.raises(DrawingError, match=f"PARETE_1 is taken for a frame, as it is around all else: {said}"):
+    drawn = [box(0, 0, 4, 3, "PEZZO_1"), box(1, 1, 1, 1.5, "COSE")]
+    said = "if it has openings, `layers` bodies=PEZZO_1 `layers` openings=COSE"
+    with pytest.raises(DrawingError, match=f"PEZZO_1 is taken for a frame, as it is around all else: {said}"):
         imported(*drawn)
-    (body,) = imported(*drawn, layers=parse_layers(["bodies=PARETE_1", "openings=BUCHI"])).bodies
-    assert body.moments.area == approx(12 - 1.5, rel=1e-9)
+    named = [box(0, 0, 4, 3, "PARETE_1"), box(1, 1, 1, 1.5, "COSE")]
+    with pytest.raises(DrawingError, match=r"by what is drawn there, `layers` openings=COSE \("):
+        imported(*named)
+    for pieces, layers in ((drawn, ["bodies=PEZZO_1", "openings=COSE"]), (named, ["openings=COSE"])):
+        (body,) = imported(*pieces, layers=parse_layers(layers)).bodies
+        assert body.moments.area == approx(12 - 1.5, rel=1e-9)
 
 
 def test_what_is_around_one_of_several_bodies_is_no_frame():

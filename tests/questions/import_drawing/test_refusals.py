@@ -151,5 +151,5 @@ def test_every_class_that_the_code_raises_is_tried():
     folders = [package / each for each in ("io/drawings", "questions/import_drawing", "questions/import_mesh")]
     files = [package / "ask" / "drawings.py", *(file for folder in folders for file in folder.glob("*.py"))]
     code = "".join(file.read_text(encoding="utf-8") for file in files)
-    raised = set(re.findall(r'(?:DrawingError\(|places\.require\([^"]*, |_refusal\()\s*"(\w+)"', code))
+    raised = set(re.findall(r'(?:DrawingError\(|places\.require\([^"]*, |refusal\()\s*"(\w+)"', code))
     assert raised == {refused for refused, *_ in REFUSED}
