@@ -4,18 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.browser import as_pdf
-from rocking_cli.io.files import check_writable, write_whole
-
-
-def check(file: Path, *suffixes: str) -> None:
-    """Raise `InputError`, before any work, if a document of one of these suffixes cannot be written to a file."""
-    suffix = file.suffix.lower()
-    if suffix not in suffixes:
-        *others, last = suffixes
-        raise InputError(Problem(f"give a file name that ends in {', '.join(others)} or {last}", str(file)))
-    check_writable(file)
+from rocking_cli.io.files import write_whole
 
 
 def laid_out(page: str, suffix: str) -> bytes:

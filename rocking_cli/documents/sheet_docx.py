@@ -8,6 +8,7 @@ from io import BytesIO
 from itertools import count
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any
+from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 from rocking_cli.documents.mathematics import Node, Unreadable, formulas_of, pieces
 from rocking_cli.documents.sheet_page import ORIGIN_MARKS, TEXT_WIDTH, figure_of, printed_width, runs
@@ -62,8 +63,11 @@ def render(sheet: Sheet) -> bytes:
 
     writer = _Writer(Document(), sheet)
     writer.write()
+    writer.document.save(saved := BytesIO())
     stream = BytesIO()
-    writer.document.save(stream)
+    with ZipFile(saved) as parts, ZipFile(stream, "w", ZIP_DEFLATED) as dateless:  # the same file each time
+        for name in parts.namelist():
+            dateless.writestr(ZipInfo(name), parts.read(name), ZIP_DEFLATED)
     return stream.getvalue()
 
 

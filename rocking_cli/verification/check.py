@@ -13,7 +13,7 @@ from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.core.plausible import OddNumber, questions
 from rocking_cli.dynamics.resting import early_failures, glued
 from rocking_cli.errors import InputError, PluginError, Problem
-from rocking_cli.io.yaml_file import Document, parse, read_text
+from rocking_cli.io.yaml_file import Document, parse, placed, read_text
 from rocking_cli.plugins.errors import blame
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Effect, LeftOut
@@ -22,6 +22,10 @@ from rocking_cli.text import did_you_mean
 from rocking_cli.verification.code import DEFAULT_CODE, SITE_HINT, Code, SiteFile, codes
 from rocking_cli.verification.demand import SiteDemand
 from rocking_cli.verification.results import Control, Histories, Remark, Verification, Verified
+
+EFFECTS = {"glued": Effect.CONDITION, "bonded": Effect.UNDECIDED, "unusual": Effect.CONDITION,
+           "no_floor": Effect.CONDITION}  # fmt: skip
+"""What the remarks made here, whatever the code, do to the conclusion; those of a code are in its own table."""
 
 
 def read_site(path: Path) -> SiteFile:
@@ -124,8 +128,8 @@ def questioned(structure: Structure, site: SiteFile) -> list[OddNumber]:
     fields, odd = type(structure.mechanism).model_fields, questions(structure.mechanism, site.site)
     if impossible := [each for each in odd if each.impossible]:
         raise site.placed(InputError(*(
-            Problem(each.words, structure.file if each.name.partition(".")[0] in fields else None, field=each.name,
-                    hint=f"if it is meant, add `unusual: [{each.name}]`")
+            placed(Problem(each.words, structure.file if each.name.partition(".")[0] in fields else None,
+                           field=each.name, hint=f"if it is meant, add `unusual: [{each.name}]`"))
             for each in impossible
         )))  # fmt: skip
     return odd
@@ -167,18 +171,17 @@ def verify(
         starts_first = [LeftOut("mechanism", joint, "starts_first") for joint in before]
         left_out = [*verification.left_out, *starts_first]
         remarks = [*_of_glue(mechanism), *verification.remarks]
-        remarks += [Remark.of("unusual", what=each.name) for each in unusual]
-        effects = {**verification.effects, "glued": Effect.CONDITION, "bonded": Effect.UNDECIDED}
-        return replace(verification, left_out=left_out, remarks=remarks, effects=effects)
+        remarks += [Remark.of("no_floor" if each.name == "floor" else "unusual", what=each.name) for each in unusual]
+        return replace(verification, left_out=left_out, remarks=remarks, effects={**verification.effects, **EFFECTS})
     except InputError as error:
         mechanism_fields = type(structure.mechanism).model_fields
-        placed = site.placed(error).problems
+        of_site = site.placed(error).problems
         raise InputError(
             *(
-                replace(each, file=structure.file)
+                placed(replace(each, file=structure.file))
                 if each.file is None and each.field in {*mechanism_fields, "mechanism"}
                 else each
-                for each in placed
+                for each in of_site
             )
         ) from None
 

@@ -14,7 +14,7 @@ from pydantic import Field, PrivateAttr
 
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.fields import Name
-from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.io.yaml_file import Document
 from rocking_cli.plugins.errors import blame, failed, guard
 from rocking_cli.plugins.registry import Plugins, origin
@@ -200,13 +200,7 @@ class SiteFile:
 
     def placed(self, error: InputError) -> InputError:
         """Return an error with its problems; those of fields of the site get their place in the file."""
-        return InputError(*(self._placed(each) for each in error.problems))
-
-    def _placed(self, problem: Problem) -> Problem:
-        place = tuple((problem.field or "").split("."))
-        if problem.file is not None or place not in self.document.values:
-            return problem
-        return self.document.at(place, problem.message, problem.hint)
+        return InputError(*(self.document.located(each) if each.file is None else each for each in error.problems))
 
 
 class Codes(Plugins[Code]):

@@ -39,7 +39,7 @@ DIGITS = 6
 """Significant digits of numbers in formulas and of results, where a formula does not ask for more."""
 PLAIN_CHARACTERS = {
     "λ": "lambda", "Σ": "sum", "√": "sqrt", "·": "*", "×": "*", "≥": ">=", "≤": "<=", "′": "'", "²": "2", "³": "3",
-    "–": "-", MINUS: "-",
+    "–": "-", MINUS: "-", "⟦": "", "⟧": "",
 }  # fmt: skip
 """Replacements of the signs of a formula in plain characters; Greek letters are spelled."""
 
@@ -258,7 +258,8 @@ def in_plain(text: str) -> str:
         below, what = match[1] == "_", match[2]
         return what if what == "*" or (below and what.isdigit()) else f"{match[1]}{what}"
 
-    return "".join(PLAIN_CHARACTERS.get(sign) or _spelled(sign) for sign in MARK.sub(mark, text))
+    signs = MARK.sub(mark, text)
+    return "".join(PLAIN_CHARACTERS[sign] if sign in PLAIN_CHARACTERS else _spelled(sign) for sign in signs)
 
 
 def _spelled(sign: str) -> str:
@@ -462,6 +463,15 @@ def _are_close(one: float | None, other: float | None) -> bool:
     return one == other if one is None or other is None else isclose(one, other, rel_tol=SAME_RATIO)
 
 
+def _say_the_same(one: object, other: object) -> bool:
+    """Return whether two values of remarks, or remarks, differ by rounding alone, as those of alike directions do."""
+    if isinstance(one, Mapping) and isinstance(other, Mapping):
+        return one.keys() == other.keys() and all(_say_the_same(one[key], other[key]) for key in one)
+    if isinstance(one, tuple) and isinstance(other, tuple):
+        return len(one) == len(other) and all(map(_say_the_same, one, other))
+    return _are_close(one, other) if isinstance(one, float) and isinstance(other, float) else one == other
+
+
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Verification:
@@ -546,7 +556,7 @@ class Verification:
             limit for verified in self.directions.values() for check in verified.checks
             for limit in self._limits(verified, check.state)
         ]  # fmt: skip
-        return [each for k, each in enumerate(every) if each not in every[:k]]
+        return [each for k, each in enumerate(every) if not any(_say_the_same(each, one) for one in every[:k])]
 
     def _limits(self, verified: Verified, state: str) -> list[Limit]:
         """Return what limits the conclusion on a direction at a limit state."""

@@ -101,7 +101,7 @@ class Showing(Generic[F, V]):
         if key == ENGLISH.key:
             return self
         spoken, texts, english = copy(self), texts_of(self.package, key), texts_of(self.package, ENGLISH.key)
-        meanings = {f"shown {in_plain(text)}": texts[name] for name, text in english.items() if name in texts}
+        meanings = {f"shown {in_plain(text)}": in_plain(texts[name]) for name, text in english.items() if name in texts}
         spoken.say = Language(key, {**meanings, **texts}, is_plain=True)
         spoken.say_in_short = replace(spoken.say, own={**spoken.say.own, **texts_of(self.package, f"{key}_in_short")})
         return spoken

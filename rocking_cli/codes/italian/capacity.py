@@ -207,7 +207,7 @@ class ExactCurve:
         """Return a* at a rotation [m/s2], of what is `standing` there; at the rotation of a break the value before."""
         mechanism = self.standing(phi) if standing is None else standing
         here = mechanism.coefficients(np.array([phi]), self.chain.direction)
-        alpha = float(here.restoring(mechanism.gravity)[0] / here.B[0])
+        alpha = float(here.restoring(mechanism.gravity)[0] / (here.B[0] + self.chain.added(phi)))
         return alpha * mechanism.gravity / (self.chain.e_star * self.confidence)
 
     def displacement_at(self, phi: float) -> float:
@@ -222,8 +222,8 @@ class ExactCurve:
 
     @cached_property
     def _rotations(self) -> dict[float, float]:
-        """Rotations computed so far, by displacement, as all views need the same few; that of a break to begin with."""
-        return {self.displacement_at(each.phi): each.phi for each in self._reached_breaks}
+        """Rotations computed so far, by displacement, as all views need the same few; at first rest and each break."""
+        return {0.0: 0.0, **{self.displacement_at(each.phi): each.phi for each in self._reached_breaks}}
 
     @property
     def _reached_breaks(self) -> Sequence[Break]:

@@ -96,10 +96,13 @@ class Chain:
         The structure, with what is attached to it.
     direction : Direction
         The direction of rocking.
+    whole : bool
+        Whether P + Q includes every weight carried, by the letter of the code, even one without horizontal inertia.
     """
 
     mechanism: Mechanism
     direction: Direction
+    whole: bool = False
 
     def __post_init__(self) -> None:
         if self.mechanism.driven < 1:
@@ -118,10 +121,21 @@ class Chain:
             if body.name in moving
         ]
         return of_bodies + [
-            Weight(attached.name, attached.spot, attached.mass, attached.weight, attached.horizontal, g)
-            for attached in self.mechanism.attached
-            if isinstance(attached, PointMass) and attached.spot.body in moving
+            Weight(each.name, each.spot, each.mass, each.weight, each.horizontal + self._more(each), g)
+            for each in self.mechanism.hung.masses
+            if each.spot.body in moving
         ]
+
+    def _more(self, each: PointMass) -> float:
+        """Return the share of a mass that moves sideways by the letter of the code alone."""
+        return max(each.weight - each.horizontal, 0.0) if self.whole else 0.0
+
+    def added(self, phi: float) -> float:
+        """Return the part of the sum of (P + Q) x' over g that the letter of the code adds at a rotation [kg m]."""
+        more = [(each.mass * share, each.spot) for each in self.mechanism.hung.masses if (share := self._more(each))]
+        follow = self.mechanism.followed(np.array([phi]), self.direction)
+        way = sum(mass * float(follow(spot).dz[0].real) for mass, spot in more)
+        return self.direction * way
 
     @cached_property
     def blocks(self) -> Sequence[ChainBlock]:
@@ -193,33 +207,6 @@ class Chain:
     def alpha0(self) -> float:
         """Multiplier alpha0 that activates the mechanism."""
         return (self.lifted + self.held_by(ties=False) + self.held_by(ties=True)) / self.first
-
-    @cached_property
-    def _letter(self) -> tuple[float, float]:
-        """alpha0 and e* by the literal wording of the code, in which P + Q includes every weight carried.
-
-        Otherwise, weights without horizontal inertia are left out of P + Q.
-        """
-        sums = np.zeros(3)
-        for block, weights in zip(self.blocks, self._weights_of_blocks, strict=True):
-            more = [max(each.carried - each.inertial, 0.0) for each in weights]
-            ways = [self._sideways(each.spot) for each in weights]
-            PQ = block.PQ + sum(more)
-            first = block.PQ * block.dx + sum(m * x for m, x in zip(more, ways, strict=True))
-            sums += np.array([PQ, first, first**2 / PQ if PQ else 0.0])
-        inertial, first, second = sums
-        return self.alpha0 * self.first / float(first), float(first**2 / (inertial * second))
-
-    @property
-    def by_the_letter(self) -> float:
-        """alpha0 if P + Q includes every weight carried, as the code is worded."""
-        return self._letter[0]
-
-    @property
-    def start_by_the_letter(self) -> float:
-        """Ratio of a0* by the wording of the code to the a0* that is used."""
-        alpha0, e_star = self._letter
-        return (alpha0 / e_star) / (self.alpha0 / self.e_star)
 
     @property
     def is_by_the_letter(self) -> bool:

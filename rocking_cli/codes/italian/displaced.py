@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import sqrt
 
 import numpy as np
 
@@ -222,6 +223,14 @@ def beyond(pulled: Iterable[Pull]) -> list[str]:
 def strengths(mechanism: Mechanism) -> dict[str, TieStrength]:
     """Return the strength of each tie of steel, by name."""
     return {tie.name: tie.strength(tie.number_of_bars(mechanism.depth)) for tie in mechanism.ties or [] if tie.is_steel}
+
+
+def thickness_of_plate(tie: Tie, depth: float | None) -> float:
+    """Return the thickness at which the plates of a tie bend at its strength without their bending [m]."""
+    assert tie.plate is not None
+    count, one_metre = tie.number_of_bars(depth), tie.plate.model_copy(update={"thickness": 1.0})
+    limits = tie.model_copy(update={"plate": one_metre}).strength(count).limits
+    return sqrt(tie.strength(count).force / limits["bending"])
 
 
 def furthest(curve: ExactCurve, d: float) -> tuple[float, float]:

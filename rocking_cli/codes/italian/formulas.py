@@ -156,6 +156,11 @@ TIE_BENDING = Formula(
     "N_[s]", "n 2 s^[2] f_[y]/γ min(b/h; h/b)", "{n} · 2 · {s}^[2] · {f}/{gamma} · min({b}/{h}; {h}/{b})", "kN",
     clauses.ANCHORED, meaning="tie_bending",
 )  # fmt: skip
+TIE_THICKNESS = Formula(
+    "s", "√(N γ/(2 n f_[y] min(b/h; h/b)))", "√({N} · {gamma}/(2 · {n} · {f} · min({b}/{h}; {h}/{b})))", "m",
+    clauses.ANCHORED, meaning="tie_thickness",
+)  # fmt: skip
+TIE_KNOWN = Formula("ΔL_[t]", "ε L", "{strain} · {L}", "m", meaning="tie_known", standing="plain")
 TIE = Formula("N", "min(N_[y]; N_[p]; N_[b]{bends})", "min({N}; …)", "kN", meaning="tie_strength", standing="plain")
 
 # Kinematic chain
@@ -280,7 +285,7 @@ D = Formula(
 )  # fmt: skip
 
 # Limit states
-BROKEN = Formula("d_[t]", meaning="d_t", unit="m", standing="plain")
+BROKEN = Formula("d_[t]", "ΔL = {length} m", "", "m", meaning="d_t", standing="plain")
 SEAT = Formula("d_[a]", "Δx_[{name}] = {length} m", "", "m", clauses.LIMITS, meaning="d_a")
 SEAT_MOVED = Formula(
     "Δx_[{name}]", "|x(φ_[{state}]) − x(0)|", "{one:9} − {other:9}", "m", meaning="seat_moved", standing="plain"

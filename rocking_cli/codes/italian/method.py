@@ -125,16 +125,14 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
     notes: list[str | Remark] = []
     if taken is not mechanism and otherwise:
         notes.append(Remark.of("at_rest", names=[tie.name for tie in otherwise]))
-    variants = dict[str, Mechanism]()
-    if letter.ties:
-        with suppress(ValidationError):  # it may not stand without them
-            variants["without_ties"] = letter.model_copy(update={"ties": None})
+    others = dict[str, ItalianVerified]()
     if letter is not taken:
-        notes.append(remarks.of_letter(verification, _by(taken, site, control)))
-        variants["our_reading"] = taken
+        ours = _by(taken, site, control)
+        notes.append(remarks.of_letter(verification, ours))
+        others["our_reading"] = ours.deciding
     return replace(
         verification,
-        variants=partial(_variants, variants, site, control),
+        variants=partial(_variants, letter, site, control, others),
         remarks=[*notes, *verification.remarks],
         left_out=[
             LeftOut("tie", tie.name, "elastic", f"ties.{tie.name}.steel" if tie.bed is None else "")
@@ -146,8 +144,16 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
 def judged(found: ItalianVerification, site: ItalianSite, before: Mapping[str, float | None]) -> ItalianVerification:
     """Return a verification by what is required at a site, with the zeta_E before its intervention as far as known."""
     required = {state: THRESHOLDS[site.rule].at(state, before) for state in site.asked}
-    directions = {direction: replace(each, required=required) for direction, each in found.directions.items()}
-    return replace(found, directions=directions, rules=remarks.of_rules(site, before))
+    sides = {direction: replace(each, required=required) for direction, each in found.directions.items()}
+    of_reading = {"line_fails", "line_passes", "carried"}  # by what was required before
+    directions = {
+        direction: replace(each, remarks=[
+            *remarks.of_reading(each),
+            *(one for one in each.remarks if not (isinstance(one, Remark) and one.key in of_reading)),
+        ])
+        for direction, each in sides.items()
+    }  # fmt: skip
+    return replace(found, directions=directions, rules=remarks.of_rules(site, found.mechanism, before))
 
 
 def strengthened(found: ItalianVerification, other: ItalianVerification, site: ItalianSite) -> ItalianVerification:
@@ -187,14 +193,14 @@ def by_letter(mechanism: Mechanism) -> Mechanism:
 
 
 def _variants(
-    mechanisms: Mapping[str, Mechanism], site: ItalianSite, control: Control | None
+    mechanism: Mechanism, site: ItalianSite, control: Control | None, others: Mapping[str, ItalianVerified]
 ) -> dict[str, ItalianVerified]:
-    """Return the direction that decides of each structure that stands and has a capacity."""
-    variants = {}
-    for key, mechanism in mechanisms.items():
-        with suppress(InputError, MechanismError):
-            variants[key] = _by(mechanism, site, control).deciding
-    return variants
+    """Return the direction that decides without the ties, if it stands and has a capacity, before others."""
+    with suppress(InputError, MechanismError, ValidationError):
+        if mechanism.ties:
+            bare = _by(mechanism.model_copy(update={"ties": None}), site, control)
+            return {"without_ties": bare.deciding, **others}
+    return {**others}
 
 
 def _stronger(
@@ -212,9 +218,9 @@ def _stronger(
 
 
 def _verified(
-    mechanism: Mechanism, direction: Direction, ground: SiteGround, control: Control | None
+    mechanism: Mechanism, direction: Direction, ground: SiteGround, control: Control | None, *, whole: bool = False
 ) -> ItalianVerified:
-    chain = Chain(mechanism, direction)
+    chain = Chain(mechanism, direction, whole)
     exact = ExactCurve(chain, control or chain.barycentre, ground.site.FC)
     straight = StraightCurve(exact.a0, exact.d0, exact.broken, exact.seat)
     case, line = _Case(ground, exact), _Case(ground, straight)
@@ -236,7 +242,9 @@ def _verified(
         others = by_it.methods({rule.state: by_it.state(rule) for rule in RULES})
         _, nonlinear = OF_STATE[ground.site.asked[0]]
         notes.append(remarks.of_control(methods[nonlinear], others[nonlinear], exact.d0, usual.d0))
-    first = ground.site.asked[0]
+    first, letter = ground.site.asked[0], None
+    if not (chain.whole or chain.is_by_the_letter):
+        letter = _verified(mechanism, direction, ground, control, whole=True)
     verified = ItalianVerified(
         direction=direction,
         first=first,
@@ -254,6 +262,7 @@ def _verified(
         governs=governing[first],
         T0=ground.site.own_period,
         remarks=notes,
+        letter=letter,
     )
     return replace(verified, workings=Later(partial(workings_of_direction, ground, verified)))
 

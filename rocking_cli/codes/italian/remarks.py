@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from math import isclose
+from dataclasses import replace
+from math import ceil, isclose
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from rocking_cli.codes.italian.displaced import (
     furthest,
     pulls,
     strengths,
+    thickness_of_plate,
 )
 from rocking_cli.codes.italian.grid import EARTH_RADIUS
 from rocking_cli.codes.italian.ground import SiteGround, bounded, return_period
@@ -33,20 +35,21 @@ from rocking_cli.codes.italian.rules import (
     STATES,
     THRESHOLDS,
 )
-from rocking_cli.codes.italian.site import ItalianSite
+from rocking_cli.codes.italian.site import LARGEST_FC, ItalianSite
 from rocking_cli.core import Mechanism
 from rocking_cli.core.hung.element import INTERLOCK_NAME
 from rocking_cli.core.hung.steel import MAX_STRAIN
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import digits_apart
 from rocking_cli.studies.conclusion import Effect
-from rocking_cli.verification.results import Remark
+from rocking_cli.verification.results import CAPACITY_TOLERANCE, Remark
 
 EFFECTS: Mapping[str, Effect] = {
     **dict.fromkeys(("confidence", "letter", "onset_alone"), Effect.REPLACES),
     **dict.fromkeys(
-        ("seats", "factors", "sources", "strength_alone", "carries", "wide", "one_mode", "low_floor", "same_mode",
-         "own_formula", "carried", "structure", "mid_height", "joint", "unchecked", "unusual"),
+        ("seats", "factors", "sources", "strength_alone", "plate_alone", "anchored", "carries", "wide", "one_mode",
+         "low_floor", "same_mode", "own_formula", "carried", "line_fails", "structure", "mid_height", "joint",
+         "unchecked"),
         Effect.CONDITION,
     ),
     **dict.fromkeys(("long", "unsupported"), Effect.UNDECIDED),
@@ -78,7 +81,8 @@ def of_site(ground: SiteGround, directions: Collection[ItalianVerified], given_F
     if missing := [state for state in asked if ground.spectrum(state) is None]:
         remarks.append(Remark.of("missing", states=missing))
     if given_FC != ground.site.FC:
-        remarks.append(Remark.of("confidence", FC=given_FC, least=ground.site.FC))
+        give = _mending_confidence(next(iter(directions)).chain)
+        remarks.append(Remark.of("confidence", FC=given_FC, least=ground.site.FC, give=give))
     if seats := _without_seat(directions):
         by_displacement = {state for each in directions for state in each.by_displacement}
         limited = _capacities(rule.state for rule in RULES)
@@ -86,8 +90,17 @@ def of_site(ground: SiteGround, directions: Collection[ItalianVerified], given_F
     return remarks + _of_mechanism(next(iter(directions)).chain.mechanism)
 
 
-def of_rules(site: ItalianSite, before: Mapping[str, float | None]) -> list[Remark]:
-    """Return by which rules limit states and zeta_E were chosen, with the zeta_E before an intervention if known."""
+def _mending_confidence(chain: Chain) -> Remark:
+    """Return what to give so that FC counts as it is: `crushing` only where pivots can, at a height of the hinge."""
+    mechanism, s = chain.mechanism, chain.direction
+    if not mechanism.bearing(s):
+        return Remark.of("give_known")
+    hinges = [each.value for each in mechanism.extras(s) if each.key == "hinge"]
+    return Remark.of("give_hinge", hinge=f"{hinges[0]:.4g}") if hinges else Remark.of("give_crushing")
+
+
+def of_rules(site: ItalianSite, mechanism: Mechanism, before: Mapping[str, float | None]) -> list[Remark]:
+    """Return by which rules limit states, zeta_E and FC were chosen, with zeta_E before an intervention if known."""
     first, is_IV, threshold = site.asked[0], site.class_of_use == "IV", THRESHOLDS[site.rule]
     use = site.class_of_use or Remark.of("no_class")
     key = "IV" if is_IV and not site.states else "IV_without_SLD" if is_IV and "SLD" not in site.asked else "states"
@@ -99,6 +112,8 @@ def of_rules(site: ItalianSite, before: Mapping[str, float | None]) -> list[Rema
         rules.append(Remark(f"rule_{site.rule.removesuffix(f'_{site.case}')}", values))
     if threshold.more != 0 and site.rule and "SLD" in site.asked:
         rules.append(Remark.of("rule_SLD"))
+    if site.FC_without_strength and mechanism.crushing is None and site.FC < LARGEST_FC:
+        rules.append(Remark.of("rule_FC", FC=site.FC, least=LARGEST_FC))
     return rules
 
 
@@ -236,7 +251,22 @@ def _of_ties(curve: ExactCurve, states: Mapping[str, LimitState], moved: Sequenc
     for pull in pulls(curve, max((states[state].d for state in moved), default=0.0)):
         if pull.name in known and pull.force > 0:
             remarks.append(Remark.of("carries", name=pull.name, force=pull.force / 1e3))
-    return remarks
+    return [*remarks, *_of_anchorages(curve, {state: states[state].d for state in moved})]
+
+
+def _of_anchorages(curve: ExactCurve, moved: Mapping[str, float]) -> Iterator[Remark]:
+    """Yield each tie whose anchorages give way before its bars yield, where it counts longer than elastic bars are."""
+    mechanism = curve.chain.mechanism
+    for tie in [tie for tie in mechanism.ties or [] if tie.is_steel and tie.elongation is None]:
+        count, strength = tie.number_of_bars(mechanism.depth), strengths(mechanism)[tie.name]
+        stretch = strength.force / (count * tie.k)
+        held = {state: next(pull for pull in pulls(curve, d) if pull.name == tie.name) for state, d in moved.items()}
+        far = {state: pull.elongation for state, pull in held.items() if pull.force > 0 and pull.elongation > stretch}
+        if far and strength.governs != "yield":
+            state = max(far, key=far.__getitem__)
+            values = {"name": tie.name, "N": strength.force / 1e3, "governs": Remark.of(strength.governs)}
+            values |= {"state": state, "e": far[state], "pulled": far[state] - stretch, "stretch": stretch}
+            yield Remark("anchored", values, [*far])
 
 
 def _of_strength(mechanism: Mechanism) -> Iterator[Remark]:
@@ -248,6 +278,10 @@ def _of_strength(mechanism: Mechanism) -> Iterator[Remark]:
         values = {"name": name, "N": strength.force / 1e3, "governs": Remark.of(strength.governs), **force}
         yield Remark(key, {**values, "bends": bends})
     ties = [tie for tie in mechanism.ties or [] if tie.is_steel]
+    for tie in ties:
+        if tie.plate is not None and tie.plate.thickness is None:
+            least = ceil(1e3 * thickness_of_plate(tie, mechanism.depth)) / 1e3
+            yield Remark.of("plate_alone", name=tie.name, N=strengths(mechanism)[tie.name].force / 1e3, least=least)
     bending = {tie.name: tie.plate for tie in ties if tie.plate is not None and tie.plate.thickness is not None}
     factored = {tie.name: (tie, tie.wall, bending.get(tie.name)) for tie in ties}
     sourced = {tie.name: (None if tie.steel else tie, tie.wall) for tie in ties}
@@ -313,12 +347,6 @@ def _of_letter(chain: Chain, curve: ExactCurve) -> list[Remark]:
     if abs(alpha0 / lambda_ - 1) > ROUNDING_RATIO:
         limits = None if lambda_ < alpha0 else ()
         remarks.append(Remark("own_formula", {"alpha0": alpha0, "lambda_": lambda_}, limits))
-    if not chain.is_by_the_letter:
-        a_letter = curve.a0 * chain.start_by_the_letter
-        same = isclose(chain.by_the_letter, alpha0, rel_tol=ROUNDING_RATIO)
-        alpha = Remark("alpha0_same" if same else "alpha0_by_letter", _apart(chain.by_the_letter, alpha0))
-        limits = None if a_letter < curve.a0 * (1 - ROUNDING_RATIO) else ()
-        remarks.append(Remark("carried", {"alpha0": alpha, **_apart(a_letter, curve.a0)}, limits))
     return remarks
 
 
@@ -343,6 +371,45 @@ def of_control(chosen: ItalianMethod, usual: ItalianMethod, d0: float, usual_d0:
     if chosen.a_g is None or usual.a_g is None:
         return Remark("control", values)
     return Remark("control_a_g", {**values, "a_g": chosen.a_g, "usual": usual.a_g})
+
+
+def of_reading(verified: ItalianVerified) -> list[Remark]:
+    """Return the limit states at which the straight line, which the code allows too, changes the outcome, with zeta_E.
+
+    So may the letter of the code for weights of the mechanism itself. A condition is only that which passes otherwise.
+    """
+    remarks = [*_carried(verified)]
+    for state in verified.by_displacement:
+        passes, required = verified.passes(state), verified.required[state]
+        zetas = [zeta for key in OF_STATE[state] if (zeta := verified.straight_methods[key].zeta) is not None]
+        if passes is not None and required is not None and zetas:
+            on_line = max(zetas) >= required * (1 - CAPACITY_TOLERANCE)
+            if on_line != passes:
+                values = {"state": state, "zeta": max(zetas)}
+                remarks.append(Remark("line_fails" if passes else "line_passes", values, [state]))
+    return remarks
+
+
+def _carried(verified: ItalianVerified) -> Iterator[Remark]:
+    """Yield what the letter of the code gives for weights of the mechanism itself that do not move sideways."""
+    chain, letter = verified.chain, verified.letter
+    if letter is None:
+        return
+    same = isclose(letter.chain.alpha0, chain.alpha0, rel_tol=ROUNDING_RATIO)
+    alpha = Remark("alpha0_same" if same else "alpha0_by_letter", _apart(letter.chain.alpha0, chain.alpha0))
+    zetas = {
+        state: (one, other) for state in verified.required
+        if (one := letter.zeta_at(state)) is not None and (other := verified.zeta_at(state)) is not None
+    }  # fmt: skip
+    fails = [
+        state
+        for state in zetas
+        if verified.passes(state) and not replace(letter, required=verified.required).passes(state)
+    ]
+    state = next(iter([*fails, *zetas]), "")
+    each = Remark.of("zeta_by_letter", state=state, **_apart(*zetas[state])) if zetas else ""
+    values = {"alpha0": alpha, **_apart(letter.a0, verified.a0), "zeta": each}
+    yield Remark("carried", values, fails)
 
 
 def differences(verified: ItalianVerified, first: str) -> Iterator[Remark]:

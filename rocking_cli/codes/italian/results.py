@@ -244,6 +244,8 @@ class ItalianVerified(frame.Verified):
         Period of an element that vibrates before it rocks [s].
     dynamic : mapping of str to Dynamic
         Results of time histories, by the limit state to which each set of records belongs; empty without records.
+    letter : ItalianVerified, optional
+        What the letter of the code gives, if weights of the mechanism itself do not move sideways.
     """
 
     methods: Mapping[str, ItalianMethod]
@@ -260,6 +262,7 @@ class ItalianVerified(frame.Verified):
     governing: Mapping[str, str]
     T0: float | None = None
     dynamic: Mapping[str, Dynamic] = field(default_factory=dict)
+    letter: ItalianVerified | None = None
 
     @property
     def zeta_E(self) -> float | None:

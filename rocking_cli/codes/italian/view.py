@@ -78,6 +78,9 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
         yield from _states_in_short(each, where)
         verified = {state: at for state, at in each.states.items() if state in each.required}
         yield from ties(say, each.exact, verified)
+        for extra in found.mechanism.extras(each.direction):
+            if extra.key == "hinge":
+                yield f"{where}: hinge at {number(extra.value, 4)} of its height."
         texts = list(map(say, differences(each, found.first)))
         for of_state in each.dynamic.values():
             items = dynamic.items(say, of_state, each.exact.confidence)

@@ -117,7 +117,7 @@ def report(
     >>> answer.has_block
     True
     """
-    from rocking_cli.documents import files
+    from rocking_cli.io.files import check_writable
     from rocking_cli.questions.report.document import document
     from rocking_cli.questions.report.study import count_steps, gather
     from rocking_cli.questions.report.view import view
@@ -128,7 +128,7 @@ def report(
     from rocking_cli.views.sheet.build import sheet_of
 
     if out is not None:
-        files.check(Path(out), ".html", ".pdf", ".docx")
+        check_writable(Path(out), ".html", ".pdf", ".docx")
     signs, requested = signs_of(polarity), Motions.of(motions, options)
     if (state is not None or on_floor) and (verify is None or not requested):
         raise InputError("`state` and `on_floor` describe records of a verification: give `verify` and `motions`")

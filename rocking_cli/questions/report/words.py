@@ -227,6 +227,9 @@ def context(content: Assessment, say: Language, verified: Verification | None = 
     governs = worst(ends) if ends else None
     hung = mechanism.hung if mechanism.attached else None
 
+    steel = verified is not None and any(each.is_steel for each in mechanism.ties or [])
+    strong = mechanism.at_strength() if steel else None
+
     def number(value: float | None, digits: int) -> Markup:
         return guarded(say.number(value, digits))
 
@@ -235,6 +238,7 @@ def context(content: Assessment, say: Language, verified: Verification | None = 
         "sides": sides[:1] if is_symmetric(structure) else sides,
         "reference": "limit" if all(free) else "mixed" if any(free) else "critical",
         "least_uplift": min(lambdas) * mechanism.gravity / STANDARD_GRAVITY,
+        "strong": None if strong is None else min(map(strong.uplift, strong.directions)),
         "directions_differ": not isclose(*lambdas, rel_tol=EQUAL_DIRECTIONS),
         "unknown": [each.result for each in motions if each.result.unknown],
         "close": all(each.close for each in falls) if falls else any(each.close for each in content.results),
@@ -242,7 +246,7 @@ def context(content: Assessment, say: Language, verified: Verification | None = 
         "sliding": any(contact.assumed_friction is not None for contact in contacts),
         "governs": governs,
         "alike": [each for each in content.results if governs is not None and are_alike(each.conclusion, governs)],
-        "restitution": restitution_source(mechanism),
+        "restitution_by": restitution_source(mechanism),
         "joint": lambda label: guarded(say.joint(mechanism.mechanism, label)),
         "force": dict(zip(("per", "unit"), force_unit(mechanism), strict=True)),
         "step": partial(next_step, say),
@@ -253,7 +257,6 @@ def context(content: Assessment, say: Language, verified: Verification | None = 
             for each in before_rocking(mechanism)
         ],
         "translated_cautions": lambda: _translated(mechanism, say),
-        "restitution_given": restitution_source(mechanism) == "given",
         "elastic": any(tie.is_elastic for tie in mechanism.ties or []),
         "printed": printed, "infinite": inf, "disagree": disagree,
         "all_agree": lambda result: all(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from datetime import UTC, datetime
 from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
@@ -14,6 +13,7 @@ from rocking_cli.core import Mechanism
 from rocking_cli.documents import files
 from rocking_cli.excitation.records.opening import STANDARD_INPUT, name_of, original
 from rocking_cli.io.browser import browser, has_browser
+from rocking_cli.io.files import check_writable
 from rocking_cli.io.json_text import json_text
 from rocking_cli.processing.listed import Scaled
 from rocking_cli.structure import Structure
@@ -61,13 +61,13 @@ class Head(NamedTuple):
             from rocking_cli.documents.logo import embedded
 
             picture = embedded(Path(self.logo))
-        today = Language(language).day(datetime.now(UTC).date())
+        today = Language(language).today()
         return TitleBlock(origin.command, today, self.project, self.place, self.client, self.author, picture)
 
 
 def check(file: Path, site: SiteFile, language: str) -> None:
     """Raise `InputError`, before any work, if a sheet cannot be written."""
-    files.check(file, ".html", ".docx", ".pdf")
+    check_writable(file, ".html", ".docx", ".pdf")
     sheet_of(site).language(language)
 
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from datetime import date
+from datetime import UTC, date, datetime
 from functools import cache, cached_property
 from importlib.resources import files
 from math import isnan
 from string import Formatter
+from time import time
 from typing import Any, NamedTuple
 
 from rocking_cli.verification.results import MINUS, Evaluated, Remark, Working, in_plain
@@ -23,6 +25,8 @@ GROUND_NAME = "the ground"
 OUTSIDE_SIGNS = str.maketrans("'[]|", "′()/")
 DECIMAL = re.compile(r"(?<![\w§.])(\d+)\.(\d+)(?![\d.]*\.\d)")  # as in 0.5, and not as in §8.3 or 8.7.1
 THOUSANDS = re.compile(r"\d{1,3}(,\d{3})+")
+ADVICE = re.compile("⟦[^⟧]*⟧")
+"""What the operator of the program may do: in texts for the terminal, and not on pages that are filed."""
 SENTENCE_END = re.compile(r"(?<=\.) (?=[A-Z])")
 
 
@@ -89,7 +93,7 @@ class Language:
         """
         key, values = (text.key, dict(text.values)) if isinstance(text, Remark) else (text, values)
         translated = self.texts.get(key, key)
-        translated = in_plain(translated) if self.is_plain else translated
+        translated = in_plain(translated) if self.is_plain else ADVICE.sub("", translated)
         if not values:
             return translated
         return _Printed(self).format(translated, **{name: self._value(value) for name, value in values.items()})
@@ -144,8 +148,13 @@ class Language:
         return DECIMAL.sub(r"\1,\2", formula) if self.key in WITH_COMMA else formula
 
     def items(self, text: str) -> str:
-        """Return items parted by commas, such as T1=0.4,n=3, with decimal marks as the language writes them."""
+        """Return items parted by commas, such as T1=0.4,n=3, rounded, with the decimal marks of the language."""
+        text = re.sub(r"\d+\.\d{7,}", lambda each: f"{float(each[0]):.{SIGNIFICANT_DIGITS}g}", text)
         return self.formula(text.replace(",", "; ")) if self.key in WITH_COMMA else text
+
+    def today(self) -> str:
+        """Return the date in words: of today, or of SOURCE_DATE_EPOCH, for a document with the same bytes each day."""
+        return self.day(datetime.fromtimestamp(float(os.environ.get("SOURCE_DATE_EPOCH") or time()), UTC))
 
     def day(self, when: date) -> str:
         """Return a date in words."""

@@ -401,3 +401,28 @@ def test_the_head_names_project_place_and_author(tmp_path):
     assert all(f"<dd>{each}</dd>" in page for each in ("Survey &lt;2026&gt;", "L&#39;Aquila", "A. &amp; B."))
     run("report", BLOCK, "-o", out)
     assert "<dt>Project</dt>" not in out.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(("language", "said", "unsaid"), [
+    ("en", ["at their strength from rest on, with λ = {:.4g},", "counts them, it is {:.4g}.",
+            "Only this mechanism is verified. A wall that a tie holds may bend", "Its rebound is not given"],
+     ["Pulses", "Error of the equivalent block", "sequence of impacts", "call for no action"]),
+    ("it", ["con la loro resistenza fin dall'inizio, con λ = {:.4g},", "come le considera la verifica, è {:.4g}.",
+            "È verificato soltanto questo meccanismo. Una parete trattenuta", "Il rimbalzo non è assegnato"],
+     ["Impulsi", "Errore del blocco equivalente", "sequenza di urti", "richiedono interventi", "si assegn"]),
+])  # fmt: skip
+def test_a_report_explains_the_two_multipliers_of_a_tied_facade(language, said, unsaid, tmp_path):
+    """Hand: the tie yields, N = A f_y, and turns the facade about its foot with its arm; at rest it does nothing."""
+    (tmp_path / "f.yaml").write_text(
+        "mechanism: block\nname: f\nwidth: 0.6\nheight: 9\ndepth: 5\ndensity: 1800\none_sided: positive\n"
+        "loads: [{name: roof, mass: 100, at: [0, 9], seat: 0.3, floor: borne}]\n"
+        "ties: [{name: bar, from: {ground: [-5, 7.5]}, to: {at: [-0.3, 7.5]}, bars: 1, diameter: 0.02, steel: S235}]\n"
+    )
+    (tmp_path / "s.yaml").write_text("FC: 1.35\nag: 0.05\nF0: 2.5\nTC: 0.4\nS: 1.2\n")
+    run("report", tmp_path / "f.yaml", "--verify", tmp_path / "s.yaml", "-o", out := tmp_path / "r.html",
+        "--language", language)  # fmt: skip
+    words, W, G = read(out).words, 0.6 * 9 * 5 * 1800 * STANDARD_GRAVITY, 100 * STANDARD_GRAVITY
+    strong = (0.3 * (W + G) + 7.5 * np.pi * 0.01**2 * 235e6) / (4.5 * W + 9 * G)
+    number = f"{strong:.4g}".replace(".", "," if language == "it" else ".")
+    assert not [each for each in said if each.replace("{:.4g}", number) not in words]
+    assert not [each for each in unsaid if each in words]

@@ -1,5 +1,7 @@
 """Where the displacement capacity ends with the ties: by hand, on a block that turns about its foot."""
 
+import re
+from html import unescape
 from math import pi, sqrt
 
 import numpy as np
@@ -10,6 +12,7 @@ from scipy.optimize import brentq
 import rocking_cli as rk
 from rocking_cli.core import Direction
 from rocking_cli.core.structure_file import parse_structure
+from rocking_cli.documents import sheet_page
 from tests.conftest import RECORDS
 from tests.questions.verify.test_verification import SITE, remarks
 
@@ -170,6 +173,57 @@ def test_a_wall_that_falls_without_its_tie_ends_with_it():
     assert found.states["SLV"].d == pytest.approx(0.4 * moved(ends), rel=1e-9)
 
 
+WEAK = {"plate": {"width": 0.3, "height": 0.3, "thickness": 0.05}, "wall": {"thickness": 0.6, "compression": 5e6}}
+
+
+@pytest.mark.parametrize(("shear", "length", "more", "is_one"), [
+    (2e4, 12.0, {}, True),
+    (2e5, 12.0, {}, False),  # the bar yields first
+    (2e4, 4000.0, {}, False),  # elastic bars stretch further
+    (2e4, 12.0, {"elongation": 0.02}, False),  # it says how far the anchorages hold
+])  # fmt: skip
+def test_how_far_anchorages_hold_that_give_way_first_is_a_condition(shear, length, more, is_one):
+    """Punching of a cone at 45 degrees, by hand; the bar stretches N L/(E A), and its anchorages by the rest."""
+    force = 2 * 0.6 * (0.3 + 0.3 + 2 * 0.6) * shear
+    tied = wall(bar(length, **{**WEAK, "wall": {**WEAK["wall"], "shear": shear}}, **more))
+    answer = rk.verify(tied, {**SITE, "ag": 0.1})
+    found, limits = answer.directions[PLUS], {each.key: each for each in answer.conclusion.limits}
+    assert found.governing["SLV"] == "nonlinear"
+    assert ("anchored" in limits) == is_one
+    if is_one:
+        stretch = force * length / (210e9 * pi * 0.024**2 / 4)
+        e = longer(found.exact.rotation(found.states["SLV"].d), length)
+        told = limits["anchored"].values
+        assert [told["N"], told["stretch"], told["pulled"]] == pytest.approx([force / 1e3, stretch, e - stretch])
+        assert f"hold {force / 1e3:.4g} kN while they are pulled by {e - stretch:.3g} m at d_SLV" in answer.sentences[0]
+
+
+@pytest.mark.parametrize("language", ["en", "it"])
+@pytest.mark.parametrize("given", [None, 0.03])
+def test_the_sheet_works_out_what_limits_a_tie_and_has_no_raw_marks(language, given, tmp_path, monkeypatch):
+    """By hand: its elongation, the thickness of its plates, and what holds the top of a wall between floors."""
+    monkeypatch.setattr(sheet_page, "inline_svg", lambda figure, _: "")
+    (tmp_path / "site.yaml").write_text(yaml.safe_dump(SITE))
+    spanning = rk.SpanningWall(
+        name="w", thickness=0.3, height=3.0, hinge=0.5, overburden=2e4, density=1800.0, depth=1.0
+    )
+    masonry = {"plate": {"width": 0.3, "height": 0.25}, "wall": {"thickness": 0.6, "compression": 5e6, "shear": 2e4}}
+    found, pages = verified(wall(bar(bars=6, elongation=given, **masonry))), []
+    assert found.states["SLV"].by == "break"
+    for structure in (found.chain.mechanism, spanning):
+        rk.verify(structure, tmp_path / "site.yaml", sheet=tmp_path / "o.html", language=language)
+        text = unescape(re.sub(r"<[^>]*>", " ", page := (tmp_path / "o.html").read_text(encoding="utf-8")))
+        assert not re.search("[_^]\u2060?\\[", page)
+        pages.append(re.sub(r"\s+", " ", text.replace(",", ".")))
+    N = 6 * 2 * 0.6 * (0.3 + 0.25 + 1.2) * 2e4
+    s, share = sqrt(N / (6 * 2 * 235e6 * 0.25 / 0.3)), given or 0.02
+    assert f"= {s:.6g} m" in pages[0] and f"= {share} · 4.7 = {share * 4.7:.6g} m" in pages[0]
+    said = {"en": ("assumed by the program", "structure file"), "it": ("assunto dal programma", "file della struttura")}
+    assert f"{share * 4.7:.6g} {share}. {said[language][given is not None]}" in pages[0]
+    top = {each.key: each.value for each in spanning.extras(PLUS)}["top_force"] / 1e3
+    assert f" {top:.6g} kN" in pages[1]
+
+
 @pytest.mark.skipif(not FOLDER.is_dir(), reason=f"no files of verdicts in {FOLDER} (beside ROCKING_RECORDS)")
 @pytest.mark.parametrize(("name", "ratio", "governs"), [("tie", 1.0718, "damage"), ("n6", 5.637, "damage"),
                                                         ("c11", 0.7625, "nonlinear")])  # fmt: skip
@@ -239,6 +293,7 @@ class TestStrengths:
         assert all(said[key] == {"names": ["c"]} for key in missing)
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize(("points", "tried"), [(41, 100), (3, 3)])
 def test_a_design_varies_the_number_of_bars(points, tried):
     """The least number n whose onset, (W b + n N h)/(W H) g/FC, is that asked."""

@@ -62,10 +62,14 @@ class Springy(Block):
 LARGE = "mechanism: block\nname: large\nwidth: 20\nheight: 160\n"
 STEEL = """  - {name: bars, from: {ground: [-6, 7]}, to: {at: [-0.3, 7]}, spacing: 3, diameter: 0.012, steel: S235,
      plate: {width: 0.2, height: 0.15, thickness: 0.02}, wall: {thickness: 0.6, compression: 1e6, shear: 5e4}}
+  - {name: thin, from: {ground: [-6, 5]}, to: {at: [-0.3, 5]}, spacing: 3, diameter: 0.012, steel: S235,
+     plate: {width: 0.2, height: 0.15}, wall: {thickness: 0.6, compression: 1e6, shear: 5e4}}
   - {name: rod, from: {ground: [-6, 6]}, to: {at: [-0.3, 6]}, area: 1e-4, yield: 2e8}
 """
+ENDS = "  - {name: rod, from: {ground: [-6, 7]}, to: {at: [-0.3, 7]}, area: 1e-3, yield: 2e8, elongation: 0.01}\n"
 MORE = {
     "ties of steel": (HEAVY + "ties:\n" + STEEL, SITE, None),
+    "a tie that ends": (HEAVY + "ties:\n" + ENDS, SITE, None),
     "soil A, a long life": (FACADE, HAZARD.replace("soil: B", "soil: A").replace("VN: 50", "VN: 300"), None),
     "beyond 10 s": (LARGE, SITE + "soil: A\n", None),
     "a point of a body": (FACADE, SITE, (0.1, 8.0, None)),
@@ -159,6 +163,7 @@ def test_a_formula_that_is_changed_is_changed_in_every_printout(used):
     assert not missing, "\n".join(missing)
 
 
+@pytest.mark.rest
 def test_every_line_is_plain_in_the_terminal_and_gives_its_result_by_the_numbers_that_are_put_in(used):
     """In plain characters a line is arithmetic of Python but for powers and separators."""
     known, count = {"max": max, "min": min, "ln": log, "sqrt": sqrt, "pi": pi}, 0

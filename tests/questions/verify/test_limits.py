@@ -9,21 +9,23 @@ import yaml
 
 import rocking_cli as rk
 from rocking_cli.codes.italian import remarks
-from rocking_cli.codes.italian.remarks import EFFECTS
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.errors import InputError
 from rocking_cli.studies.conclusion import Concluded, Effect
+from rocking_cli.verification.check import EFFECTS as OF_EVERY_CODE
 from rocking_cli.views.conclusion import limit_in_words, of_verification
-from rocking_cli.views.sheet.language import Language
+from rocking_cli.views.sheet.language import Language, texts_of
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
+from tests.questions.verify.test_mended import NO_FIELD, PLAIN, mended
 
-G = 9.80665
+G, PACKAGE = 9.80665, "rocking_cli.codes.italian"
+EFFECTS = {**remarks.EFFECTS, **OF_EVERY_CODE}
 NOTHING = {
     # what was taken from the files, and how
     "by_grid", "on_node", "between_nodes", "short_life", "rows", "row", "without_state", "bound", "at_rest", "missing",
-    "states_left_out", "same_mode_further",
+    "same_mode_further",
     # conservative, or our choice where the code is silent, of no effect on what decides
     "no_soil", "floor", "linear_SLV", "line", "elastic", "ties", "control", "control_a_g", "control_same",
     # the capacity ends there already
@@ -35,10 +37,13 @@ NOTHING = {
     "IV", "IV_without_SLD",
     # the verdict is on this mechanism alone
     "bends",
+    # another reading that is on the other side; the one that counts fails
+    "line_passes",
     # why methods differ
     "linear_same", "linear_less", "linear_more", "straight",
     # parts of sentences
-    "above", "below", "more", "less", "seat_of", "alpha0_same", "alpha0_by_letter",
+    "above", "below", "more", "less", "seat_of", "alpha0_same", "alpha0_by_letter", "give_known", "give_crushing",
+    "give_hinge", "rule_FC", "zeta_by_letter",
 }  # fmt: skip
 SITE = {"FC": 1.35, "soil": "C", "ag": 0.21, "F0": 2.42, "TC_star": 0.31}
 WALL = {"mechanism": "block", "name": "wall", "width": 0.6, "height": 8.0, "depth": 5.0, "density": 1800.0}
@@ -73,6 +78,33 @@ def test_every_remark_has_a_decision():
     assert {f"end_{key}" for key in EFFECTS} <= known.keys() and known.keys() - rk_texts("it").keys() == set()
 
 
+@pytest.mark.parametrize("language", ["en", "it"])
+def test_filed_pages_state_facts_and_the_terminal_what_to_give(language):
+    plain, page = (Language(language, texts_of(PACKAGE, language), is_plain) for is_plain in (True, False))
+    own = {key for key in page.texts if key.removeprefix("end_") in EFFECTS.keys() | NOTHING}
+    advice = re.compile(r"[:(] ?give |Give `|\bassegn(i|ino)\b|`rocking")
+    assert sum(bool(advice.search(plain(key))) for key in own) >= 12
+    assert not [key for key in own if advice.search(page(key))]
+    assert not [key for key in page.texts if re.search("[⟦⟧]", page(key) + plain(key))]
+
+
+@pytest.mark.parametrize(("structure", "given"), [
+    (SHORT, {"crushing": {"strength": 2e6}}),
+    ({"mechanism": "spanning_wall", "thickness": 0.5, "height": 4.0, "depth": 1.0, "density": 1800.0,
+      "hinge": "weakest", "overburden": 3e4, "friction": 0.8}, {"crushing": {"strength": 2e6}, "hinge": None}),
+    ({"mechanism": "arch", "radius": 4.0, "thickness": 0.8, "inclusion_angle_deg": 157.5, "voussoirs": 7}, {}),
+])  # fmt: skip
+def test_what_is_advised_for_FC_is_accepted(structure, given):
+    found = verified({"name": "s", **structure}, FC=1.2, unusual=["floor"])
+    (advice,) = re.findall(r"give (.*) in the site file", found.sentences[0])
+    fields = dict.fromkeys(re.findall(r"`(\w+)", advice))
+    assert fields.keys() == {*given, "FC_without_strength"}
+    for hinge in re.findall(r"`hinge: ([\d.]+)`", advice):
+        given["hinge"] = float(hinge)
+    mended = verified({**structure, **given, "name": "s"}, FC=1.2, unusual=["floor"])
+    assert ("confidence" in keys(mended)) == (not given)
+
+
 def rk_texts(language):
     return Language(language).texts
 
@@ -88,9 +120,18 @@ class TestKinds:
         of_structure = {key: each for key, each in mend.items() if key == "crushing"}
         of_site = {key: each for key, each in mend.items() if key != "crushing"}
         mended = verified({**SHORT, **of_structure}, FC=1.0, ag=0.19, **of_site)
-        assert keys(mended) == [] and "FC" not in mended.sentences[0]
+        assert keys(mended) == [] and ("FC" in mended.sentences[0]) == bool(of_site)
         assert found.ratio < 1 < mended.ratio or of_structure
         assert mended.conclusion.concluded is (Concluded.SATISFIED if of_site else mended.conclusion.concluded)
+
+    def test_FC_below_that_of_LC1_by_its_field_is_said_at_the_start(self):
+        said = "FC = 1.2, below the 1.35 of LC1, by the field `FC_without_strength`"
+        found = verified(SHORT, FC=1.2, FC_without_strength=True)
+        assert said in found.sentences[0] and "rule_FC" in found.conclusion.rules and "confidence" not in keys(found)
+        for other in (verified(SHORT, FC=1.35, FC_without_strength=True), verified(SHORT, FC=1.2)):
+            assert "rule_FC" not in other.conclusion.rules
+        crushed = verified({**SHORT, "crushing": {"strength": 2e6}}, FC=1.2, FC_without_strength=True)
+        assert "rule_FC" not in crushed.conclusion.rules
 
     def test_the_letter_of_the_code_decides_on_weights_left_out(self):
         """Hand: half of a sliding floor is carried; by the letter it moves sideways too."""
@@ -153,27 +194,74 @@ class TestKinds:
         shorter = verified({**wall, "loads": [{**ROOF, "seat": 0.9 * moved}]}, ag=0.1)
         assert shorter.ratio < found.ratio
 
-    def test_a_narrow_depth_and_a_hinge_at_mid_height_are_conditions(self):
+    def test_a_narrow_depth_is_a_condition(self):
         block = {"mechanism": "block", "name": "b", "width": 0.5, "height": 1.5, "depth": 0.4, "density": 1800.0}
-        block["unusual"] = ["width"]
-        found = verified(block, ag=0.1)
+        found = verified({**block, "unusual": ["width"]}, ag=0.1)
         assert found.conclusion.concluded is Concluded.SATISFIED_IF and keys(found) == ["structure"]
         assert "(Its depth, 0.4 m, is less than its width" in found.sentences[0]
-        assert verified({**block, "plane": "width"}, ag=0.1).conclusion.concluded is Concluded.SATISFIED
-        wall = {"mechanism": "wall", "name": "w", "thickness": 0.3, "height": 3.0, "density": 1800.0, "depth": 1.0}
-        wall["unusual"] = ["floor"]
-        assert keys(verified(wall, ag=0.05)) == ["mid_height"]
-        better = {**wall, "mechanism": "spanning_wall", "hinge": "weakest", "overburden": 3e4, "friction": 0.8}
-        assert verified(better, ag=0.05).conclusion.concluded is Concluded.SATISFIED
 
-    def test_a_floor_with_one_mode(self):
+    def test_plates_of_unknown_thickness_are_a_condition_that_the_thickness_mends(self):
+        """Hand: each plate bends on either side of its bar at 2 s^2 f_y, as it is square."""
+        plate, wall = {"width": 0.3, "height": 0.3}, {"thickness": 0.6, "compression": 5e6, "shear": 5e4}
+        bar = {
+            **BAR,
+            "gamma": 1.05,
+            "elongation": 0.02,
+            "plate": plate,
+            "wall": {**wall, "gamma": 2.0, "source": "tests"},
+        }
+        found = verified({**WALL, "ties": [bar]}, ag=0.1)
+        N = min(np.pi * 0.012**2 * 235e6 / 1.05, 2 * 0.6 * 1.8 * 5e4 / 2, 0.09 * 5e6 / 2)
+        least = float(np.ceil(1e3 * np.sqrt(N / (2 * 235e6))))
+        assert keys(found) == ["plate_alone"] and found.conclusion.concluded is Concluded.SATISFIED_IF
+        assert f"only if the plates of the tie bar are at least {least / 1e3:g} m thick" in found.sentences[0]
+        for s, governs in ((least, "punching"), (least - 1, "bending")):
+            known = {**bar, "plate": {**plate, "thickness": s / 1e3, "gamma": 1.0}}
+            mended = verified({**WALL, "ties": [known]}, ag=0.1)
+            assert keys(mended) == [] and mended.conclusion.concluded is Concluded.SATISFIED
+            ties = mended.to_dict()["directions"]["positive"]["ties"]
+            assert ties["bar"]["strength_governs"] == governs
+
+    def test_a_wall_between_floors_that_are_not_given_is_one_on_the_ground(self, tmp_path):
+        wall = {"mechanism": "spanning_wall", "name": "w", "thickness": 0.5, "height": 3.0, "density": 1800.0}
+        wall |= {"depth": 1.0, "hinge": "weakest", "overburden": 3e4, "friction": 0.8}
+        found = verified(wall, ag=0.05)
+        assert found.conclusion.concluded is Concluded.SATISFIED_IF and keys(found) == ["no_floor"]
+        assert "only if the wall stands on the ground" in found.sentences[0]
+        (tmp_path / "w.yaml").write_text(yaml.safe_dump(wall))
+        (tmp_path / "s.yaml").write_text(yaml.safe_dump(SITE))
+        for language, said in (("en", "stand on the ground"), ("it", "sul terreno")):
+            shown = run("verify", str(tmp_path / "w.yaml"), "--site", str(tmp_path / "s.yaml"), "--language", language)
+            assert said in shown.stdout and "--floor" not in shown.output
+            assert ("is missing" in shown.output) == (language == "en")
+            hinge = f"{of(wall).extras(rk.Direction.POSITIVE)[0].value:.4g}".replace(
+                ".", "." if language == "en" else ","
+            )
+            assert f"{hinge} of its height.\n" in shown.stdout or f"{hinge} dell'altezza.\n" in shown.stdout
         floor = {"z": 3.0, "H": 9.0, "T1": 0.4, "xi1": 0.1, "n": 3}
-        found = verified(
-            SHORT, ag=0.03, SLD={"ag": 0.02, "F0": 2.4, "TC_star": 0.3}, floor=floor, states=["SLV", "SLD"]
-        )
-        assert {"one_mode", "same_mode"} <= set(keys(found))
-        own = {**floor, "SLD": {"T1": 0.3, "xi1": 0.05}}
-        assert "same_mode" not in keys(verified(SHORT, ag=0.03, floor=own))
+        assert "no_floor" not in keys(verified(wall, ag=0.05, floor=floor))
+        assert keys(verified({**wall, "unusual": ["floor"]}, ag=0.05)) == []
+
+    def test_the_straight_line_is_a_condition_where_it_changes_the_outcome(self):
+        """Hand: S_De = a_g S g eta F0 TC T/(4 pi^2) between TC and TD, at 8 % of damping."""
+        wall = {**WALL, "height": 9.0, "loads": [{**ROOF, "at": [-0.2, 8.5], "seat": 0.15}]}
+        known = {"width": 0.3, "height": 0.3, "thickness": 0.02, "gamma": 1.0}
+        masonry = {"thickness": 0.6, "compression": 5e6, "shear": 6e4, "gamma": 2.0, "source": "tests"}
+        bar = {**BAR, "from": {"ground": [-12.3, 7.5]}, "gamma": 1.05, "plate": known, "wall": masonry}
+        bar["elongation"] = 0.02
+        wall, site = {**wall, "ties": [bar]}, {"FC": 1.35, "F0": 2.5, "TC": 0.4, "S": 1.2}
+        side = rk.verify(of(wall), {**site, "ag": 0.2}).directions[rk.Direction.POSITIVE]
+        d, a = side.states["SLV"].d, side.a0 * (1 - side.states["SLV"].d / side.d0)
+        of_T = 1.2 * G * np.sqrt(10 / 13) * 2.5 * 0.4 / (4 * np.pi**2)
+        ag = d / (of_T * 1.68 * np.pi * np.sqrt(d / a))  # zeta_E on the line is 1 here
+        said = "on the straight line, which the code also allows, zeta_E is {:.3g} at SLV, which fails"
+        for share, expected in ((0.99, []), (1.02, ["line_fails"])):
+            found = rk.verify(of(wall), {**site, "ag": float(share * ag)})
+            assert keys(found) == expected and found.ratio > 1.05
+        assert said.format(1 / 1.02) in found.sentences[0]
+        for share, expected in ((1.02, []), (1.27, ["line_fails"])):  # zeta_E of 0.8 is enough
+            upgraded = {"intervention": "upgrading", "case": "c", "ag": float(share * ag)}
+            assert keys(rk.verify(of(wall), {**site, **upgraded})) == expected
 
 
 def structures():
@@ -183,7 +271,7 @@ def structures():
                 yield pytest.param(file, id=f"{folder}-{file.stem}")
 
 
-@pytest.mark.every(4)
+@pytest.mark.every(12)
 @pytest.mark.parametrize("file", [*structures()])
 @pytest.mark.parametrize("site", ["site", "ground"])
 def test_no_headline_of_an_example_is_without_what_limits_it(file, site):
@@ -206,6 +294,10 @@ def test_no_headline_of_an_example_is_without_what_limits_it(file, site):
     data = answer.to_dict()["conclusion"]["limits"]
     assert [(each["key"], each["effect"]) for each in data] == [(each.key, each.effect.value) for each in end.limits]
     assert all(each["text"] in answer.sentences[0] or each["text"] in " ".join(answer.sentences[:2]) for each in data)
+    if end.limits:
+        files = (yaml.safe_load(each.read_text("utf-8")) for each in (file, EXAMPLES / "verify" / f"{site}.yaml"))
+        _, plain = mended(*files)
+        assert {each.key for each in plain.limits} <= NO_FIELD.keys() and (plain.limits or plain.concluded in PLAIN)
 
 
 def test_it_stands_on_every_surface(tmp_path, monkeypatch):

@@ -204,6 +204,7 @@ def test_what_does_not_go_together_is_said(more, what):
     assert what in str(caught.value)
 
 
+@pytest.mark.every(5)
 @pytest.mark.parametrize(
     ("site", "least"),
     [

@@ -425,7 +425,7 @@ class TestWorkings:
     def test_a_refused_structure_is_named_with_its_field(self, demo):
         site_of(Worked)
         Path("tall.yaml").write_text("mechanism: block\nwidth: 1\nheight: 6\n", encoding="utf-8")
-        assert "tall.yaml: height must be at most 5 m" in run("verify", "tall.yaml", *demo, code=2).stderr
+        assert "tall.yaml:3:9: height must be at most 5 m" in run("verify", "tall.yaml", *demo, code=2).stderr
 
     def test_and_in_a_table_with_its_line_once(self, demo):
         site_of(Worked)

@@ -29,6 +29,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.io.yaml_file import parse
 from rocking_cli.studies.conclusion import Concluded
 from rocking_cli.studies.provenance import File, TitleBlock, versions
+from rocking_cli.verification.check import EFFECTS as OF_EVERY_CODE
 from rocking_cli.verification.check import site_in
 from rocking_cli.verification.results import control_at
 from rocking_cli.views.conclusion import NEXT_STEPS
@@ -142,8 +143,7 @@ ENDS = {
     *OF_CODES,
     *REASONS,
     *EFFECTS,
-    "glued",
-    "bonded",
+    *OF_EVERY_CODE,
     "satisfied_at",
     "not_asked",
     "not_covered",
@@ -607,7 +607,7 @@ def test_what_does_not_begin_to_rock_is_satisfied_at_collapse_too():
     items = items_of(found, given)
     states = next(each for each in items if isinstance(each, list) and "limit states" in each[0])
     row = next(each for each in states[2:] if each[0] == "SLC")
-    assert number(row[4]) < 1 and row[5] == "satisfied only if, rocking does not start"
+    assert number(row[4]) < 1 and row[5] == "satisfied on conditions, rocking does not start"
     words = repr(parts_of(found, given))
     assert (
         "SLC: the verification is satisfied only if its conditions hold. ζ_[E] = 1.029; the onset of rocking governs"
@@ -712,7 +712,7 @@ class TestAskingForIt:
     @pytest.mark.usefixtures("no_typst")
     def test_a_browser_that_does_not_print_is_said(self, tmp_path, monkeypatch):
         monkeypatch.setenv("ROCKING_BROWSER", "false")
-        result = self.asked(tmp_path, "--sheet", tmp_path / "o.pdf", code=5)
+        result = self.asked(tmp_path, "--sheet", tmp_path / "o.pdf", code=1)
         assert "did not print the page" in result.stderr
         assert not (tmp_path / "o.pdf").exists()
 

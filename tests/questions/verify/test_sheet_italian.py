@@ -6,6 +6,7 @@ from html import unescape
 from importlib.resources import files
 from itertools import chain, cycle
 from pathlib import Path
+from string import Formatter
 
 import pytest
 import yaml
@@ -18,7 +19,8 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.documents import sheet_page
 from rocking_cli.errors import InputError
-from rocking_cli.views.sheet.language import texts_of
+from rocking_cli.processing.floor import Floor
+from rocking_cli.views.sheet.language import Language, texts_of
 from rocking_cli.views.verification import view
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
@@ -331,6 +333,7 @@ def test_notes_are_italian(tmp_path):
     assert not english_in(said.splitlines(), "floor: borne", "p.svg", str(tmp_path))
 
 
+@pytest.mark.rest
 def test_a_survey_and_its_page_are_italian(tmp_path):
     rows = {
         "mechanism": ["block", "block", "block", "wall"], "name": ["A 1.5", "B", "C", "D"],
@@ -343,6 +346,7 @@ def test_a_survey_and_its_page_are_italian(tmp_path):
         answer = rk.survey(rows, language="it", page=tmp_path / "p.html", **options)
         english = rk.survey(rows, language="en", **options)
         names = (
+            "unusual",
             "A 1.5",
             "block",
             "wall",
@@ -364,3 +368,35 @@ def test_a_survey_and_its_page_are_italian(tmp_path):
         assert any("A 1.5" in text for text in shown_in(answer.view))
         page = (tmp_path / "p.html").read_text(encoding="utf-8")
         assert not english_in([rest_of(page)], *names)
+
+
+def slots(text):
+    return {name.partition(".")[0] for _, name, spec, _ in Formatter().parse(text) if name is not None for name in
+            (name, *(each for _, each, _, _ in Formatter().parse(spec or "") if each))}  # fmt: skip
+
+
+@pytest.mark.parametrize("package", [*PACKAGES, "rocking_cli.questions.report"])
+def test_no_text_needs_a_value_that_its_english_form_has_not(package):
+    """Short forms in either language have those of the English short or long text, from which remarks were written."""
+    long, short = (texts_of(package, key) for key in ("en", "en_in_short"))
+    for key in ("it", "it_in_short"):
+        for name, text in texts_of(package, key).items():
+            english = [each[name] for each in (long, short) if name in each] or [name]
+            assert slots(text) <= set.union(*map(slots, english)), (key, name)
+    assert texts_of(package, "it_in_short").keys() <= short.keys() | long.keys()
+
+
+def test_a_sliding_floor_and_weights_of_the_mechanism_are_said_in_short_in_italian():
+    """The letter of the code on both, of which no example has the first."""
+    roof = {"name": "r", "mass": 6000.0, "at": [0.0, 8.0], "floor": "sliding", "seat": 0.3}
+    wall = rk.Block(name="w", width=0.6, height=8.0, depth=5.0, density=1800.0, one_sided="positive", loads=[roof])
+    said = " ".join(rk.verify(wall, yaml.safe_load(SITE), language="it", in_short=True).sentences)
+    alpha = 0.3 * (43200 + 3000) / (4 * 43200 + 8 * 3000)  # rad: by the letter half of the roof moves sideways too
+    assert f"alpha0 sarebbe {0.3 * 46200 / (4 * 43200):.4g} invece di {alpha:.4g}".replace(".", ",") in said
+
+
+def test_the_floor_of_the_histories_is_rounded():
+    floor = str(Floor.parse("T1=0.4,z=6m,H=9m,n=3"))
+    assert "z/H=0.6666666666666666" in floor
+    for language, wanted in (("en", "T1=0.4,xi=0.05,z/H=0.666667,n=3"), ("it", "T1=0,4; xi=0,05; z/H=0,666667; n=3")):
+        assert Language(language, is_plain=True).items(floor) == wanted

@@ -22,6 +22,7 @@ from rocking_cli.questions.selfcheck.study import CHECKS
 from rocking_cli.studies.picture import picture
 from rocking_cli.views.sheet.document import Steps
 from rocking_cli.views.view import Table
+from tests.browser import launch
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES, PROJECT
 from tests.questions.verify.test_sheet import (
@@ -51,9 +52,10 @@ HEADINGS = {
         "Calculation by a program (NTC 2018, §10.2.1)",
         "Kind of analysis", "Origin and features of the program", "Reliability and validation of the program",
         "Presentation of the results", "General information on the calculation",
-        "Reasoned judgement of the acceptability of the results", "Input", "Loads and ties", "Site data",
-        "Appendix A: workings", "How to read it", "Site", "Ground at SLV", "Positive direction (clockwise)",
-        "Kinematic chain, at rest", "Appendix B: files and versions", "Structure file", "Site file",
+        "Reasoned judgement of the acceptability of the results",
+        "Appendix A: workings", "How to read it", "Loads and ties", "Site data", "Site", "Ground at SLV",
+        "Positive direction (clockwise)", "Kinematic chain, at rest", "Appendix B: files and versions",
+        "Structure file", "Site file",
     ],
     "it": [
         "Sintesi", "Metodi e osservazioni", "Ipotesi di calcolo", "Struttura, capacità e domanda",
@@ -61,8 +63,7 @@ HEADINGS = {
         "Tipo di analisi svolta", "Origine e caratteristiche dei codici di calcolo",
         "Affidabilità e validazione dei codici utilizzati", "Modalità di presentazione dei risultati",
         "Informazioni generali sull'elaborazione", "Giudizio motivato di accettabilità dei risultati",
-        "Dati", "Carichi e catene", "Dati del sito",
-        "Appendice A: sviluppo dei calcoli", "Come leggere la relazione", "Sito",
+        "Appendice A: sviluppo dei calcoli", "Come leggere la relazione", "Carichi e catene", "Dati del sito", "Sito",
         "Azione sismica allo SLV", "Verso positivo (orario)", "Catena cinematica, a riposo",
         "Appendice B: file e versioni", "File della struttura", "File del sito",
     ],
@@ -114,11 +115,11 @@ def test_the_first_page_has_what_decides_and_a_place_to_sign(page):
         "Client",
         "NTC 2018, §8.3",
         "Nonlinear method at SLV",
-        "satisfied only if the strengths given for bar",
+        "satisfied only if the plates of the tie bar are at least",
     ]
     if language == "it":
         wanted = ["facade", "SLV", "Firma", "Timbro", "Committente", "NTC 2018, §8.3", "Metodo non lineare allo SLV",
-                  "soltanto se le resistenze assegnate per bar"]  # fmt: skip
+                  "soltanto se i capochiave della catena «bar» sono spessi"]  # fmt: skip
     assert all(each in words for each in wanted)
     assert "ul class=" not in first and first.count("<figure>") == 1  # the mechanism, and no workings
     assert first.count("<dd></dd>") == 4 + 4  # project, place, client and author are blanks, as is the signature
@@ -429,6 +430,7 @@ def test_strips_of_their_own_lengths_are_drawn_from_the_front():
     assert not Composition(parse_structure(TIED_FACADE, "t.yaml", "t")).strips
 
 
+@pytest.mark.rest
 def test_pages_have_a_running_header(tmp_path):
     (tmp_path / "s.yaml").write_text(TIED_FACADE, encoding="utf-8")
     (tmp_path / "site.yaml").write_text(SITE, encoding="utf-8")
@@ -443,3 +445,21 @@ def test_pages_have_a_running_header(tmp_path):
     assert '"' not in written and "<" not in written
     docx = pytest.importorskip("docx")
     assert docx.Document(str(tmp_path / "o.docx")).sections[0].header.paragraphs[0].text == wanted
+
+
+@pytest.mark.rest
+def test_at_most_six_pages_stand_before_the_workings(tmp_path):
+    """Of two directions and in Italian, the longest of the examples, as a browser prints it."""
+    browser, driver = launch()
+    files = (EXAMPLES / "verify" / "parapet.yaml", "--site", EXAMPLES / "verify" / "site.yaml")
+    run("verify", *files, "--sheet", tmp_path / "o.html", "--language", "it")
+    try:
+        page = browser.new_page()
+        page.goto((tmp_path / "o.html").as_uri())
+        printed = page.pdf(prefer_css_page_size=True, outline=True, tagged=True)
+    finally:
+        browser.close()
+        driver.stop()
+    (workings,) = re.findall(rb"Appendice A[^>]*/Dest \[(\d+) 0 R", printed)
+    pages = re.findall(rb"(\d+) 0 obj\s*<</Type /Page\b", printed)
+    assert 4 <= pages.index(workings) <= 6

@@ -54,7 +54,7 @@ def test_the_terminal_has_both_conclusions_and_a_table(files):
             assert float(cells[f"{state}: capacity d [m]"][k]) == pytest.approx(of["d"], rel=5e-4)
             assert float(cells[f"{state}: demand d [m]"][k]) == pytest.approx(of["demand"], rel=5e-4)
             assert float(cells[f"{state}: zeta_E"][k]) == pytest.approx(side["zeta"][of["governs"]], rel=5e-4)
-            wanted = (of["concluded"] or "not_required").replace("_", " ")
+            wanted = (of["concluded"] or "not_required").replace("only_if", "on_conditions").replace("_", " ")
             assert cells[f"{state}: verification"][k] == wanted
         assert float(cells["SLD: zeta_E, onset of rocking"][k]) == pytest.approx(side["zeta"]["SLD"], rel=5e-4)
     full = run(*files, "--all").stdout

@@ -326,8 +326,28 @@ class TestCurves:
         sums = np.array([[w, x], [w + P, shared]])
         first, second, total = (sums[:, 0] @ sums[:, 1] ** k for k in (1, 2, 0))
         e_star = first**2 / (total * second)
-        assert chain.start_by_the_letter == pytest.approx(chain.e_star / e_star, rel=1e-9)
+        whole = Chain(wall, Direction.POSITIVE, whole=True)
+        assert whole.e_star == pytest.approx(e_star, rel=1e-9) and whole.alpha0 == pytest.approx(chain.alpha0, rel=1e-9)
         assert "carried" in remarks(verified(wall)) and "carried" not in remarks(verified(FACADE))
+
+    def test_the_letter_is_carried_to_zeta_and_a_condition_where_it_fails(self):
+        """Against the same wall whose top is a load with all of its inertia, in place of the overburden."""
+        like = {"thickness": 0.6, "height": 7.5, "hinge": 0.76, "density": 2200.0, "depth": 8.0, "overburden": 0.0}
+        wall, site = rk.SpanningWall(**{**like, "overburden": 2e5}), {"FC": 1.35, "F0": 2.4, "TC": 0.4, "S": 1.2}
+        top = next(mass for mass in wall.hung.masses if mass.weight > mass.horizontal)
+        load = {"name": "slab", "mass": top.mass, "at": [top.spot.at.real, 7.5], "body": top.spot.body}
+        found, other = (
+            rk.verify(each, {**site, "ag": 0.1}).directions[Direction.POSITIVE]
+            for each in (wall, rk.SpanningWall(**like, loads=[load]))
+        )
+        one, zeta = found.letter.zeta_at("SLV"), found.zeta_at("SLV")
+        assert one == pytest.approx(other.zeta_at("SLV"), rel=1e-9) and one < 0.99 * zeta
+        assert found.letter.states["SLV"].d == pytest.approx(other.states["SLV"].d, rel=1e-9)
+        for share, keys in ((0.99 * one, []), ((zeta + one) / 2, ["carried"]), (1.01 * zeta, [])):
+            answer = rk.verify(wall, {**site, "ag": 0.1 * share})  # both are in proportion to 1/a_g
+            assert [each.key for each in answer.conclusion.limits if each.key == "carried"] == keys
+            said = f"zeta_E is {one / share:.4g} at SLV instead of {zeta / share:.4g}"
+            assert any(said in sentence for sentence in answer.sentences) or not keys
 
 
 SHARES = st.floats(0.0, 1.0)
@@ -772,4 +792,9 @@ def test_more_inertia_than_weight_is_by_the_letter(floor, letter):
     assert chain.alpha0 == pytest.approx(lifted / moved, rel=1e-12)
     assert chain.is_by_the_letter is letter
     by_letter = moved if letter else moved + h * m * G / 2
-    assert chain.by_the_letter == pytest.approx(lifted / by_letter, rel=1e-12)
+    whole = Chain(chain.mechanism, Direction.POSITIVE, whole=True)
+    assert whole.alpha0 == pytest.approx(lifted / by_letter, rel=1e-12)
+    moves = {"weight": 0.5, "vertical": 1 / 3, "horizontal": 0.5 if floor == "sliding" else 1.0, "floor": None}
+    other = Chain(rk.Block(width=1.0, height=5.0, mass=1e4, loads=[{**load, **moves}]), Direction.POSITIVE)
+    one, two = (ExactCurve(each, each.barycentre, 1.0) for each in (whole, other))
+    assert one.acceleration_at(0.05) == pytest.approx(two.acceleration_at(0.05), rel=1e-12)

@@ -55,6 +55,7 @@ def context(
         "title": partial(title, say), "named": partial(named, say), "figures": SheetFigures(say, ground),
         "is_same": partial(isclose, rel_tol=SAME_MULTIPLIER),
         "dynamic": dynamic, "outcome": partial(summary.outcome, say),
+        "given_FC": site_values.FC,
         "counts": [state for state in STATES if any(state in each["counts"] for each in subjects)], "in_full": in_full,
         "licence": metadata("rocking-cli")["License-Expression"],
     }  # fmt: skip

@@ -8,7 +8,7 @@ from typing import Any
 
 from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.chain import Chain
-from rocking_cli.codes.italian.displaced import DisplacedChain, ForceWork, Moved
+from rocking_cli.codes.italian.displaced import DisplacedChain, ForceWork, Moved, thickness_of_plate
 from rocking_cli.core.hung.element import INTERLOCK_NAME
 from rocking_cli.core.hung.ties import Tie
 from rocking_cli.verification.results import Evaluated
@@ -129,6 +129,9 @@ def of_steel(tie: Tie, depth: float | None) -> Iterator[Evaluated]:
         yield F.TIE_BENDING.line(limits["bending"], names, s=tie.plate.thickness, **steel)
     bends = "; N_[s]" if "bending" in limits else ""
     yield F.TIE.line(strength.force / KILO, {**names, "bends": bends}, N=[*limits.values()])
+    if tie.plate.thickness is None:
+        steel = {**plate, "f": tie.plate.yield_stress / KILO, "gamma": tie.plate.gamma or 1.0}
+        yield F.TIE_THICKNESS.line(thickness_of_plate(tie, depth), names, N=strength.force / KILO, **steel)
 
 
 def named(say: Language, name: str) -> str:

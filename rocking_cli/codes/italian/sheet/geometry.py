@@ -67,13 +67,18 @@ class PartRow:
 
 @dataclass(frozen=True)
 class MaterialRow:
-    """A property of a material: its key, the body or tie it is of (empty: of the structure), symbol, value and unit."""
+    """A property of a material: its key, the body or tie it is of (empty: of the structure), symbol, value and unit.
+
+    The strengths of a tie have a partial factor and a source, as far as they are given.
+    """
 
     key: str
     of: str
     symbol: str
     value: float
     unit: str
+    gamma: float | None = None
+    source: str = ""
 
 
 @dataclass(frozen=True)
@@ -122,7 +127,8 @@ class LoadRow:
 class TieRow:
     """A tie: the points that it runs over, force at rest [kN], area of all its bars [m2], stiffness [kN/m], length [m].
 
-    A bed of springs has the ends of its face as points, and the stiffness of all of its springs.
+    A bed of springs has the ends of its face as points, and the stiffness of all of its springs. Another tie is `known`
+    to hold up to an elongation [m], which follows from the file if `is_given`.
     """
 
     name: str
@@ -132,6 +138,8 @@ class TieRow:
     stiffness: float
     length: float | None
     is_bed: bool
+    known: float | None = None
+    is_given: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -262,12 +270,16 @@ class Composition:
     def _of_ties(self) -> Iterator[MaterialRow]:
         for tie in self.mechanism.ties or []:
             if tie.is_steel:
-                yield MaterialRow("yield", tie.name, "f_[y]", tie.yield_of_steel / MEGA, "MPa")
+                source = tie.steel or tie.source or ""
+                yield MaterialRow("yield", tie.name, "f_[y]", tie.yield_of_steel / MEGA, "MPa", tie.gamma, source)
+            if (plate := tie.plate) is not None and plate.thickness is not None:
+                yield MaterialRow("bending", tie.name, "f_[y]", plate.yield_stress / MEGA, "MPa", plate.gamma)
             if tie.modulus is not None:
                 yield MaterialRow("bed" if tie.bed is not None else "modulus", tie.name, "E", tie.modulus / MEGA, "MPa")
-            if tie.wall is not None:
-                yield MaterialRow("bearing", tie.name, "f_[c]", tie.wall.compression / MEGA, "MPa")
-                yield MaterialRow("punching", tie.name, "f_[v]", tie.wall.shear / MEGA, "MPa")
+            if (wall := tie.wall) is not None:
+                by = ("MPa", wall.gamma, wall.source or "")
+                yield MaterialRow("bearing", tie.name, "f_[c]", wall.compression / MEGA, *by)
+                yield MaterialRow("punching", tie.name, "f_[v]", wall.shear / MEGA, *by)
 
     @property
     def loads(self) -> Sequence[LoadRow]:
@@ -319,7 +331,8 @@ class Composition:
         force, stiffness = (stretched.count * each / KILO for each in stretched.at_rest)
         bars = tie.number_of_bars(self.mechanism.depth) if tie.is_steel else 1.0
         area = bars * circle(tie.diameter) if tie.diameter is not None else tie.area
-        return TieRow(tie.name, stretched.spots, force, area, stiffness, tie.length or tie.span, False)
+        known = (tie.known_elongation, tie.elongation is not None)
+        return TieRow(tie.name, stretched.spots, force, area, stiffness, tie.length or tie.span, False, *known)
 
 
 def _in_marks(symbol: str) -> str:

@@ -76,11 +76,15 @@ def given(ground: SiteGround) -> Iterator[Evaluated]:
             yield F.XI1.line(mode.xi1, {"state": state})
 
 
-def data(say: Language, ground: SiteGround) -> Rows:
-    """Return a row for each value of the site file, without its tables: symbol, meaning, value and unit."""
+def data(say: Language, ground: SiteGround, given_FC: float) -> Rows:
+    """Return a row for each value of the site file, without its tables: symbol, meaning, value and unit.
+
+    FC has a second row if another one than in the file counts.
+    """
     site = ground.site
     FC, q, *modes = (_given(say.written(each)) for each in given(ground))
-    rows = [FC, q]
+    replaced = [[FC[0], say("replaced_FC"), given_FC, ""]] if given_FC != site.FC else []
+    rows = [*replaced, FC, q]
     for state in (FIRST_STATE, *FURTHER_STATES):
         at = site.shaking(state)
         if at is not None and at.spectrum is not None:

@@ -31,7 +31,9 @@ from rocking_cli.codes.italian.sheet.centres import ChainCentres
 from rocking_cli.codes.italian.sheet.chain import Rows, Scale
 from rocking_cli.codes.italian.sheet.site import hazard_at, is_close
 from rocking_cli.core.hung.attached import Spot
-from rocking_cli.verification.results import Evaluated, Formula, Working
+from rocking_cli.core.hung.element import INTERLOCK_NAME
+from rocking_cli.core.hung.steel import MAX_STRAIN
+from rocking_cli.verification.results import Evaluated, Formula, Remark, Working
 from rocking_cli.views.sheet import template
 from rocking_cli.views.sheet.document import workings
 from rocking_cli.views.sheet.language import Language, as_subscript, texts_of
@@ -327,7 +329,14 @@ class DirectionSteps:
         """Yield the lines to what may end the displacement capacity besides a share of d0*: a break, or a lost seat."""
         others, seat = ends(self.curve, rule), self.curve.seat
         if BREAK in others:
-            yield F.BROKEN.line(others[BREAK])
+            mechanism = self.curve.chain.mechanism
+            lost = next(each for each in self.curve.breaks if self.curve.displacement_at(each.phi) == others[BREAK])
+            for tie in [tie for tie in mechanism.ties or [] if tie.name == lost.name]:
+                known = F.TIE_KNOWN if tie.elongation else replace(F.TIE_KNOWN, meaning="tie_assumed")
+                strain, L = tie.elongation or MAX_STRAIN, tie.length or tie.span
+                yield known.line(lost.length, {"tie": tie.name}, strain=strain, L=L)
+            name = Remark.of(lost.name) if lost.name == INTERLOCK_NAME else lost.name
+            yield F.BROKEN.line(others[BREAK], {"name": name, "length": f"{lost.length:.6g}"})
         if seat is not None:
             yield F.SEAT.line(seat.d, {"name": as_subscript(seat.load), "load": seat.load, "length": seat.length})
 

@@ -27,42 +27,34 @@ METHOD_NAMES = {
     HISTORIES: "time histories",
 }  # fmt: skip
 """Names of the methods within a sentence, by their kind."""
-CAUTIONS = ("wide", "same_mode", "letter", "onset_alone", "unsupported", "confidence", "long")
+CAUTIONS = ("wide", "same_mode", "letter", "onset_alone", "unsupported", "long")
 """Keys of the remarks that stand on the first page."""
 
 
 def context(say: Language, verification: ItalianVerification, sides: Sequence[DirectionSteps]) -> dict[str, Any]:
-    """Return the values of the summary: the answer, the direction that governs, cautions, verdicts and remarks."""
+    """Return the values of the summary: the answer, cautions, verdicts and remarks."""
     end, mechanism = verification.conclusion, verification.mechanism
     notes = [
         f"{side.where}: {say(text)}" if len(sides) > 1 else say(text)
         for side in sides for text in differences(side.found, verification.first)
     ]  # fmt: skip
     remarks = [*(each for side in sides for each in side.found.remarks), *verification.remarks]
+    only = next((each for each in remarks if isinstance(each, Remark) and each.key == "bends"), Remark.of("only_this"))
     cautions = [each for each in remarks if isinstance(each, Remark) and each.key in CAUTIONS]
     general = say.caution(mechanism.mechanism, mechanism.caution) if mechanism.caution else ""
     particular = say.recognised("caution", mechanism.own_caution())
     of_mechanism = [say("Caution: {text}", text=each) for each in (general, particular) if each]
-    notes += [say(each) for each in remarks if each not in cautions]
+    notes += [say(each) for each in remarks if each not in (*cautions, only)]
     sentences = [Markup(each) for side in sides for each in verdicts(say, side.where, verification, side.found)]
     return {
         "answer": Markup(" ".join(of_verification(verification, say, say(METHOD_NAMES[end.method.split("_")[0]])))),
+        "only": Markup(say(only)),
         "fails": end.concluded is not Concluded.SATISFIED,
         "holds": end.concluded in (Concluded.SATISFIED, Concluded.SATISFIED_IF),
-        "compared": _compared(verification) if len(sides) > 1 else None,
         "cautions": [Markup(each) for each in dict.fromkeys([*map(say, cautions), *of_mechanism])],
         "verdicts": sentences,
         "notes": [Markup(each) for each in dict.fromkeys(notes)],
     }
-
-
-def _compared(verification: ItalianVerification) -> dict[str, Any] | None:
-    """Return the direction that governs, its ratio and that of the other; None if they are alike or not known."""
-    least = verification.governs
-    ratio, rest = (verification.compared(direction) for direction in (least, least.opposite))
-    if ratio is None or rest is None or verification.alike:
-        return None
-    return {"least": least.label, "ratio": ratio, "rest": rest}
 
 
 def both(existing: ItalianVerification, strengthened: ItalianVerification) -> dict[str, ItalianVerified]:
@@ -79,17 +71,17 @@ def comparison(say: Language, existing: ItalianVerification, strengthened: Itali
 
 def outcome(say: Language, found: ItalianVerification, each: ItalianVerified, state: str) -> str:
     """Return what is concluded on a direction at a limit state, in words."""
-    return say((found.concluded(each, state) if state in each.required else "not required").replace("_", " "))
+    concluded = found.concluded(each, state) if state in each.required else "not required"
+    return say("satisfied on conditions" if concluded == Concluded.SATISFIED_IF else concluded.replace("_", " "))
 
 
 def verdicts(say: Language, where: str, found: ItalianVerification, each: ItalianVerified) -> Iterator[str]:
-    """Yield what is concluded at each limit state that is required or given, by what margin, and what governs."""
-    for state in (*OF_STATE, "SLD"):
+    """Yield what is concluded at each limit state that is required, by what margin, and what governs."""
+    for state in each.required:
         by = each.governing[state]
         counts, at = each.methods[by], each.states.get(state)
         if counts.zeta is None:
-            if state in each.required:
-                yield say("{where}: the site does not give {state}.", where=where, state=state)
+            yield say("{where}: the site does not give {state}.", where=where, state=state)
             continue
         values: dict[str, Any] = {"a_g": counts.a_g, "asked": counts.demand}
         if at is not None:
@@ -98,8 +90,7 @@ def verdicts(say: Language, where: str, found: ItalianVerification, each: Italia
         why = Remark(f"why_{by.split('_')[0]}", values)
         beside = state in each.dynamic and any(one.state == state and one.method == by for one in each.checks)
         ends = say("{where}, static methods", where=where) if beside else where
-        key = f"verdict_{found.concluded(each, state) if state in each.required else 'not_required'}"
-        yield say(key, where=ends, state=state, zeta=counts.zeta, why=why)
+        yield say(f"verdict_{found.concluded(each, state)}", where=ends, state=state, zeta=counts.zeta, why=why)
 
 
 def methods(say: Language, where: str, each: ItalianVerified) -> list[Table]:
