@@ -15,7 +15,7 @@ PYTEST := -m pytest -n auto --dist worksteal
 # The tiers that `make test` leaves out; CONTRIBUTING.md says what is in each.
 LATER := rest or docs or types or kernels
 
-.PHONY: setup constraints demo selfcheck test test-all test-newest test-oldest test-kernels test-versions test-elsewhere damage soak bounds fuzz fields \
+.PHONY: setup constraints demo selfcheck test test-all test-newest test-oldest test-kernels test-versions test-elsewhere damage soak crash bounds fuzz fields \
 	properties lint type contracts check bench kernels same-kernels validation free-blocks scoreboard trust trust-check pages pictures \
 	docs release clean
 
@@ -52,10 +52,10 @@ test: setup  ## What to run before a commit, and the twenty slowest
 test-all: test  ## All tests: those of `test`, then the rest
 	$(BIN)/python $(PYTEST) -m "$(LATER)"
 
-test-newest test-oldest: test-%: setup  ## `test` with the newest versions of what it needs that there are, and with the oldest that pyproject.toml allows
+test-newest test-oldest: test-%: setup  ## One case of each test of `test` with the newest versions of what it needs, and with the oldest that pyproject.toml allows
 	$(BIN)/python -m uv venv --quiet --clear --python $(BIN)/python out/$*
 	$(BIN)/python -m uv pip install --quiet --python out/$* --resolution $(RESOLUTION-$*) --editable ".[dev]"
-	out/$*/$(notdir $(BIN))/python $(PYTEST) -m "not ($(LATER))"
+	out/$*/$(notdir $(BIN))/python $(PYTEST) -m "not ($(LATER) or again)"
 
 RESOLUTION-newest := highest
 RESOLUTION-oldest := lowest-direct
@@ -109,8 +109,11 @@ properties: setup  ## New examples for every property test, random ones; EXAMPLE
 bounds: setup  ## Random structures with every bound of the code as it is and doubled, ten minutes; CASES, FREE: how many, by free blocks
 	$(BIN)/python -m tests.bounds
 
-soak: setup  ## What takes too long for the tests, an hour: damaged stores, races, kills, spoilt records; READERS=20 is how often
+soak: setup  ## What takes too long for the tests, an hour: damaged stores, races, spoilt records; READERS=20 is how often
 	$(BIN)/python -m tests.soak
+
+crash: setup  ## A quarter of an hour: every command that writes, ended and made to fail at each call on its folder; NAMES: which of them
+	$(BIN)/python -m tests.crash $(NAMES)
 
 validation: setup  ## Write docs/validation.md anew
 	$(BIN)/python docs/make_validation.py

@@ -1,6 +1,6 @@
-"""What takes too long for the tests: damaged stores, races, kills, and record readers. `make soak` runs all.
+"""What takes too long for the tests: damaged stores, races, and record readers. `make soak` runs all.
 
-STORES, RACES, KILLS and READERS in the environment are how often: `READERS=20 make soak`.
+STORES, RACES and READERS in the environment are how often: `READERS=20 make soak`.
 """
 
 import os
@@ -14,10 +14,9 @@ from functools import partial
 from pathlib import Path
 
 from tests import readers
-from tests.kills import Whole, kill
 from tests.stores import RUNS, Sound, attack, race
 
-TIMES = {"STORES": 500, "RACES": 50, "KILLS": 80, "READERS": 3000}
+TIMES = {"STORES": 500, "RACES": 50, "READERS": 3000}
 AT_ONCE = 2  # processes that read records
 
 
@@ -29,7 +28,7 @@ def soak() -> int:
         folder = Path(name)
         os.chdir(folder)
         failures = _stores(folder, times["STORES"]) + _races(folder, times["RACES"])
-        return failures + _kills(folder, times["KILLS"]) + _readers(folder, times["READERS"])
+        return failures + _readers(folder, times["READERS"])
 
 
 def _stores(folder: Path, times: int) -> int:
@@ -48,11 +47,6 @@ def _races(folder: Path, times: int) -> int:
         "races of three processes, by exit codes",
         (partial(race, sound, folder / f"raced{k}", *each) for k, each in enumerate(more)),
     )
-
-
-def _kills(folder: Path, times: int) -> int:
-    whole = Whole(folder) if times else None
-    return _count("kills", (partial(kill, whole, folder / f"killed{k}", k) for k in range(times)))
 
 
 def _readers(folder: Path, times: int) -> int:
