@@ -27,6 +27,8 @@ PREDICATES = frozenset({
 EXIT_INCOMPLETE = 5
 """Exit code of a command that did its work except for the parts that it reports, such as one bad record."""
 
+MAX_SHOWN_PROBLEMS = 20  # in the text of an error, which counts the others
+
 
 @dataclass(frozen=True)
 class Problem:
@@ -88,7 +90,9 @@ class InputError(RockingError):
 
     def __init__(self, *problems: Problem | str) -> None:
         self.problems = tuple(p if isinstance(p, Problem) else Problem(p) for p in problems)
-        super().__init__("\n".join(str(p) for p in self.problems))
+        more = len(self.problems) - MAX_SHOWN_PROBLEMS
+        rest = [f"and {more:,} more problems"] if more > 0 else []
+        super().__init__("\n".join([*map(str, self.problems[:MAX_SHOWN_PROBLEMS]), *rest]))
 
 
 class FieldError(InputError, ValueError):
@@ -186,6 +190,10 @@ class DoubtWarning(UserWarning):
 
 class KernelWarning(UserWarning):
     """Warning of kernels that run far slower than possible."""
+
+
+class KeptWarning(UserWarning):
+    """Warning of what the program kept for itself, which is damaged and is computed anew."""
 
 
 class SolverError(RockingError):

@@ -31,7 +31,7 @@ from rocking_cli.io.field_problems import (
     types_at,
     unit_at,
 )
-from rocking_cli.io.yaml_file import Place
+from rocking_cli.io.yaml_file import Place, placed
 from rocking_cli.names import OPENING
 from rocking_cli.short_repr import short_repr
 from rocking_cli.text import cut, did_you_mean
@@ -333,4 +333,4 @@ class Structure:
         except InputError as error:
             if self.file is None:
                 raise
-            raise InputError(*(replace(each, file=each.file or self.file) for each in error.problems)) from None
+            raise InputError(*(placed(replace(each, file=each.file or self.file)) for each in error.problems)) from None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Sequence
+from contextvars import ContextVar
 from itertools import count
 from typing import Any, AnyStr, cast
 
@@ -12,6 +13,8 @@ from typing import Any, AnyStr, cast
 _UNSEEN = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff\ufffe\uffff\ud800-\udfff]"
 )
+keeps_formulas = ContextVar("keeps_formulas", default=False)
+"""Whether texts that a spreadsheet would compute go unchanged into a CSV table."""
 MAX_LISTED = 8  # names in a row before the rest is counted
 MAX_QUOTED_CHARACTERS = 60
 QUOTED_BEFORE, QUOTED_AFTER = 30, 40  # quoted characters of a line on either side of an error

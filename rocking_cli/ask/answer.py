@@ -16,6 +16,7 @@ from threading import RLock
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.io.files import check_writable
 from rocking_cli.io.json_text import json_text
 from rocking_cli.text import numbered
 from rocking_cli.views.column import table_of, text_columns
@@ -160,11 +161,14 @@ class Answer(Generic[R]):
             raise InputError(
                 Problem(f"must be a path, got {type(file).__name__}", field="`file`", hint="axes are `ax=`")
             )
-        path = None if file is None else _picture_file(Path(file))
+        if file is not None:
+            check_writable(Path(file), ".png", ".svg", ".pdf")
         with _DRAWING:
             drawn = self.figure(**asked) if ax is None and figure is None else _draw_in(ax, figure, self.figure, asked)
-            if path is not None:
-                _write(drawn, path)
+            if file is not None:
+                from rocking_cli.plotting.style import write
+
+                write(Path(file), drawn)
         return drawn
 
     def __repr__(self) -> str:
@@ -265,23 +269,6 @@ def _draw_in(
     if drawn.get_figure(root=True) is not whole:
         raise InputError(Problem("this plot makes a figure of its own", hint="plot it without `ax` and `figure`"))
     return whole
-
-
-def _picture_file(path: Path) -> Path:
-    """Return the path of a picture; raise `InputError` if it has another ending or cannot be written."""
-    from rocking_cli.io.files import check_writable
-
-    if path.suffix.lower() not in (".png", ".svg", ".pdf"):
-        raise InputError(Problem("give a file name that ends in .png, .svg or .pdf", str(path)))
-    check_writable(path)
-    return path
-
-
-def _write(figure: Figure, path: Path) -> None:
-    from rocking_cli.io.files import write_whole
-    from rocking_cli.plotting.style import save
-
-    write_whole(path, lambda stream: save(figure, stream, format=path.suffix[1:].lower()))
 
 
 def drawn(function: str, *args: Any, **named: Any) -> Callable[[], Figure]:

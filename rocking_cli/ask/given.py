@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import replace
+from functools import partial
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -93,11 +94,11 @@ def _read(given: str | Path, watch: Watcher) -> Structure:
     file, is_input = name_of(given), str(given) == STANDARD_INPUT
     text = decoded(original(given), file, "structure") if is_input else read_text(Path(given), "structure")
     count = text.count("polygon")
-    if count >= MIN_VERY_SLOW_POLYGONS:
-        watch.note(_what_blocks_take(count))
+    announce = partial(watch.note, _what_blocks_take(count)) if count >= MIN_VERY_SLOW_POLYGONS else None
+    name = "structure" if is_input else default_name(given)
     try:
         with watch.working(f"analysing {count} polygons") if count >= MIN_SLOW_POLYGONS else nullcontext():
-            mechanism = parse_structure(text, file, "structure" if is_input else default_name(given))
+            mechanism = parse_structure(text, file, name, checked=announce)
     except MechanismError as error:
         raise of_structure(error, file) from error
     place = file if is_input else Path(given).resolve()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -312,7 +313,8 @@ def motion_of(given: Motion) -> GroundMotion:
 def files_of(place: str) -> list[Listed]:
     """Return the records of a file, a pattern, a list or its folder. Raises `InputError` if there are none."""
     listed, of_folder = [], Path(place) / LIST_FILE
-    for path in [of_folder] if of_folder.is_file() else matching_files(place):
+    # pathlib raises where a folder may not be entered.
+    for path in [of_folder] if os.path.isfile(of_folder) else matching_files(place):  # noqa: PTH113
         if is_list(path):
             from rocking_cli.processing.record_list import read_list
 

@@ -70,7 +70,8 @@ def user_file() -> Path:
 
 def files() -> list[Path]:
     """Return the existing files, that of this folder first."""
-    return [each for each in (Path(SETTINGS_FILE), user_file()) if each.is_file()]
+    # pathlib raises where a folder may not be entered.
+    return [each for each in (Path(SETTINGS_FILE), user_file()) if os.path.isfile(each)]  # noqa: PTH113
 
 
 def in_force() -> list[Default]:

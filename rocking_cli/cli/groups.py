@@ -146,17 +146,11 @@ class Output:
         self.watch.end()
 
 
-def save(path: Path, figure: Figure) -> None:
-    """Write a figure completely or not at all, in the format of the suffix of the path."""
-    from rocking_cli.io.files import write_whole
-    from rocking_cli.plotting import style
-
-    write_whole(path, lambda stream: style.save(figure, stream, format=path.suffix[1:].lower()))
-
-
 def write_picture(path: Path, figure: Figure) -> None:
     """Write a figure, and report it."""
-    save(path, figure)
+    from rocking_cli.plotting.style import write
+
+    write(path, figure)
     terminal.note(f"wrote {path}")
 
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import errno
-import io
+import logging
 import os
 import sys
+from functools import partial
 from importlib import import_module
 from time import monotonic
 from typing import Any
@@ -17,7 +18,7 @@ from rocking_cli.cli import defaults, endings, terminal
 from rocking_cli.cli.help import HelpFormatter
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.plugins.rooms import commands
-from rocking_cli.text import cut, one_line, printable
+from rocking_cli.text import cut, keeps_formulas, one_line, printable
 
 DIAGNOSTIC_COMMANDS = ("info", "selfcheck")
 """Commands that run even if the user's defaults are invalid."""
@@ -94,22 +95,24 @@ class LazyGroup(click.Group):
 
     def main(self, *args: Any, **extra: Any) -> Any:
         """Run the program; a system error ends it with a message, in help too."""
-        try:
-            return super().main(*args, **extra)  # handles a closed pipe quietly
-        except OSError as error:
-            if error.errno == errno.ENAMETOOLONG:  # a file name that the user typed
-                terminal.error(f"{one_line(cut(str(error.filename)))}: the file name is too long: shorten it")
-                sys.exit(InputError.exit_code)
-            terminal.error(f"the operating system reported an error: {error.strerror or error}")
-            sys.exit(1)
+        with terminal.streams():
+            try:
+                return super().main(*args, **extra)  # handles a closed pipe quietly
+            except OSError as error:
+                if isinstance(error, PermissionError) or error.errno == errno.ENAMETOOLONG:  # typed by the user
+                    terminal.error(f"{one_line(cut(str(error.filename)))}: {error.strerror}")
+                    sys.exit(InputError.exit_code)
+                terminal.error(f"the operating system reported an error: {error.strerror or error}")
+                sys.exit(1)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; a known error ends it with a message on standard error."""
         os.environ["MPLBACKEND"] = "agg"  # figures are written, never shown: no display is needed
         # No plugin of pydantic is used, and a search for plugins takes as long as reading many structure files.
         os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
+        logging.getLogger("matplotlib").setLevel(logging.ERROR)  # it tells of its caches
         for stream in (sys.stdout, sys.stderr):
-            if isinstance(stream, io.TextIOWrapper):
+            if hasattr(stream, "reconfigure"):
                 stream.reconfigure(errors="replace")  # old code pages lack some characters of names
         began = monotonic()
         try:
@@ -157,7 +160,10 @@ class LazyGroup(click.Group):
     default=lambda: os.environ.get("ROCKING_DEBUG") == "1",
     help="Show the Python traceback of any error.",
 )
-def main(verbose: bool, debug: bool) -> None:
+@click.option(
+    "--formulas", is_flag=True, help="Leave texts of CSV tables as they are, even if a spreadsheet would compute them."
+)
+def main(verbose: bool, debug: bool, formulas: bool) -> None:
     """Rocking response of structures in earthquakes.
 
     Describe a structure in a YAML file and compute its equivalent rocking block, its response to ground motions and
@@ -183,6 +189,7 @@ def main(verbose: bool, debug: bool) -> None:
     disk), 2 invalid input, 3 mechanism or plugin error, 4 solver error, or a check of selfcheck failed, 5 completed,
     but the records or runs named in the output were skipped; 128 + n terminated by signal n.
 
-    Put -v and --debug before the command: rocking --debug equiv block.yaml. ROCKING_DEBUG=1 in the environment has the
-    same effect as --debug.
+    Put -v, --debug and --formulas before the command: rocking --debug equiv block.yaml. ROCKING_DEBUG=1 in the
+    environment has the same effect as --debug.
     """
+    click.get_current_context().call_on_close(partial(keeps_formulas.reset, keeps_formulas.set(formulas)))

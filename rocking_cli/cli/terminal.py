@@ -10,15 +10,16 @@ import re
 import sys
 import warnings
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from contextlib import contextmanager, redirect_stdout
+from contextlib import contextmanager, nullcontext, redirect_stdout
 from functools import partial
+from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any, BinaryIO, TextIO
 
 import click
 
 from rocking_cli.cli.layout import grid, stacked, wrapped
-from rocking_cli.errors import KernelWarning, PluginWarning
+from rocking_cli.errors import KeptWarning, KernelWarning, PluginWarning
 from rocking_cli.io.json_text import json_text
 from rocking_cli.text import printable
 
@@ -27,11 +28,61 @@ if TYPE_CHECKING:
     from rocking_cli.views.view import View
 
 PROGRESS_DELAY = 1.0  # s of work before progress is shown
+NOWHERE = Path(os.devnull)
 DEFAULT_WIDTH = 80  # columns of a terminal whose width is unknown
 
 _results: TextIO | None = None
 _said: Callable[[str], str] = str
 """Returns a note or warning in the language of the answer."""
+
+
+class _Messages:
+    """Standard error; what it cannot write is lost, as messages are not the work."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+    def write(self, text: str) -> int:
+        """Write a text."""
+        with _lossy(self._stream):
+            self._stream.write(text)
+        return len(text)
+
+    def flush(self) -> None:
+        """Write what is kept back."""
+        with _lossy(self._stream):
+            self._stream.flush()
+
+
+@contextmanager
+def _lossy(stream: TextIO) -> Iterator[None]:
+    """Lead a stream nowhere, with what it keeps back, if it cannot be written."""
+    try:
+        yield
+    except OSError:
+        with NOWHERE.open("wb") as nowhere:
+            os.dup2(nowhere.fileno(), stream.fileno())
+
+
+@contextmanager
+def streams() -> Iterator[None]:
+    """Give the program its two streams, if they are closed, broken or full as well.
+
+    Python would end with its own exit code, and its own message, if it could not write what a stream keeps back.
+    """
+    sys.stdout, sys.stderr = (stream or NOWHERE.open("w") for stream in (sys.stdout, sys.stderr))
+    out, messages = sys.stdout, sys.stderr
+    sys.stderr = _Messages(messages)
+    try:
+        yield
+    finally:
+        sys.stdout, sys.stderr = out, messages
+        for stream in (out, messages):
+            with _lossy(stream):
+                stream.flush()
 
 
 @contextmanager
@@ -41,12 +92,29 @@ def results_only() -> Iterator[None]:
     Plugins and their imports may print at any time and in any thread.
     """
     global _results, _said
-    before, _results = (_results, _said), _results or sys.stdout
+    before = _results, _said
     try:
-        with redirect_stdout(sys.stderr):
+        with nullcontext(_results) if _results else _apart(sys.stdout) as _results, redirect_stdout(sys.stderr):
             yield
     finally:
         _results, _said = before
+
+
+@contextmanager
+def _apart(stream: TextIO) -> Iterator[TextIO]:
+    """Yield a stream that leads where another does; what others write to its number, as C may, is on standard error."""
+    try:
+        number, messages = stream.fileno(), sys.stderr.fileno()
+    except (OSError, ValueError):  # it is none of the system
+        yield stream
+        return
+    stream.flush()
+    with os.fdopen(os.dup(number), "w", encoding=stream.encoding, errors=stream.errors) as results:
+        os.dup2(messages, number)
+        try:
+            yield results
+        finally:
+            os.dup2(results.fileno(), number)
 
 
 def speak(language: str) -> None:
@@ -65,11 +133,13 @@ def plugins_apart() -> Iterator[None]:
         otherwise = warnings.showwarning
 
         def show(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
-            if not issubclass(category, (PluginWarning, KernelWarning)):
+            if issubclass(category, KeptWarning):
+                detail(str(message))
+            elif issubclass(category, (PluginWarning, KernelWarning)):
+                warning(str(message))
+                debug_traceback(message.__cause__ if isinstance(message, Warning) else None)
+            else:
                 otherwise(message, category, *where, **more)
-                return
-            warning(str(message))
-            debug_traceback(message.__cause__ if isinstance(message, Warning) else None)
 
         warnings.showwarning = show
         yield

@@ -9,7 +9,7 @@ import click
 
 from rocking_cli.ask.watcher import Advance, Watcher
 from rocking_cli.cli import terminal
-from rocking_cli.errors import EXIT_INCOMPLETE, RockingError
+from rocking_cli.errors import EXIT_INCOMPLETE, Refused, RockingError
 
 if TYPE_CHECKING:
     from rocking_cli.ask.answer import Answer
@@ -36,7 +36,9 @@ class OnTerminal(Watcher):
         terminal.warning(text)
 
     def leave_out(self, error: RockingError) -> None:
-        """Print an error, and count it."""
+        """Print an error, and count it; raise one of the system, as that of a full disk is not of this motion."""
+        if isinstance(error, Refused):
+            raise error
         terminal.error(str(error))
         terminal.debug_traceback(error)
         self.left_out += 1

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Never, Self, final
@@ -288,7 +288,9 @@ class Given(Described):
 
     @final
     @classmethod
-    def from_fields(cls, fields: Mapping[str, Any], folder: Path | None = None) -> Self:
+    def from_fields(
+        cls, fields: Mapping[str, Any], folder: Path | None = None, checked: Callable[[], object] | None = None
+    ) -> Self:
         """Make a structure of this mechanism from its fields.
 
         Parameters
@@ -297,6 +299,8 @@ class Given(Described):
             Names and values of the fields.
         folder : Path, optional
             Folder of the files that fields name, by default the current one; `folder` in the context of the validation.
+        checked : callable, optional
+            Called when the fields are valid, before the structure is analysed, which may take long.
 
         Raises
         ------
@@ -310,6 +314,8 @@ class Given(Described):
             structure = cls.model_validate(dict(fields), context=context)
             # Kept like cached properties: they are no fields, and do not count where structures are compared.
             vars(structure).update(_weights=list(dict.fromkeys(context["weights"])), _folder=folder)
+            if checked is not None:
+                checked()
             structure._hold_together()
             return structure
 

@@ -49,10 +49,12 @@ def default_name(path: str | Path) -> str:
     return one_line(Path(path).stem).strip() or "structure"
 
 
-def parse_structure(text: str, file: str, default_name: str, registry: Registry | None = None) -> Mechanism:
-    """Read a structure from YAML text; `file` is its name in messages. Raises as `load_structure`."""
+def parse_structure(
+    text: str, file: str, default_name: str, registry: Registry | None = None, **more: Any
+) -> Mechanism:
+    """Read a structure from YAML text; `file` is its name in messages. More arguments and errors: see `of_document`."""
     document = parse(text, file, "structure", TEMPLATE_HINT)
-    return of_document(document, default_name, Path(file).parent, registry)
+    return of_document(document, default_name, Path(file).parent, registry, **more)
 
 
 def structure_text(mechanism: Given, *comments: str) -> str:
@@ -68,13 +70,19 @@ def fields_text(mechanism: str, fields: Mapping[str, Any], above: Sequence[str],
     return "\n".join([*above, *lines, *below, ""])
 
 
-def of_document(document: Document, default_name: str, folder: Path, registry: Registry | None = None) -> Mechanism:
-    """Make a structure from a parsed document whose file names are relative to `folder`. Raises as `load_structure`."""
+def of_document(
+    document: Document, default_name: str, folder: Path, registry: Registry | None = None, **more: Any
+) -> Mechanism:
+    """Make a structure from a parsed document whose file names are relative to `folder`. Raises as `load_structure`.
+
+    Further arguments are those of `Given.from_fields`.
+    """
     cls = _mechanism(document, registry if registry is not None else Registry())
     fields = {key: value for key, value in document.data.items() if key != "mechanism"}
     if cls is not None:
         try:
-            mechanism = cls.from_fields({**fields, "name": fields.get("name", default_name) or default_name}, folder)
+            name = fields.get("name", default_name) or default_name
+            mechanism = cls.from_fields({**fields, "name": name}, folder, **more)
         except ValidationError as error:
             lister = f"`rocking mechanisms {cls.mechanism}` lists the fields"
             errors = error.errors(include_url=False)

@@ -17,6 +17,7 @@ from rocking_cli.text import cut, did_you_mean
 
 DECIMAL_POINT = "write a decimal point"
 MIN_YIELD_STRESS = 1e7  # Pa; no other field has this bound
+MAX_WORDED = 200  # errors that are put into words: more than are shown, the others are counted
 OF_KIND: Any = {
     "float_type": (), "int_type": (), "string_type": (), "literal_error": (), "list_type": (), "model_type": (),
     "dict_type": (), list: ("list_type",), dict: ("model_type", "dict_type"),
@@ -44,6 +45,9 @@ def problems(
     """
     by_place: dict[Place, Problem] = {}
     errors = _of_words(errors)
+    if len(errors) > MAX_WORDED:
+        errors.sort(key=lambda error: document.at(place_of(document.data, error), "").line or 0)
+    errors, others = errors[:MAX_WORDED], errors[MAX_WORDED:]
     for error in errors:
         if not _concerns(document.data, error, errors):
             continue
@@ -55,7 +59,8 @@ def problems(
             hint = DECIMAL_POINT
         key = error["type"] == "extra_forbidden"
         by_place.setdefault(place, document.at(place, message, hint, key=key))
-    return list(by_place.values())
+    unworded = [document.at(place_of(document.data, error), error["msg"]) for error in others[-1:]]
+    return [*by_place.values(), *unworded * len(others)]
 
 
 def _has_commas(document: Document, place: Place, value: Any) -> bool:
@@ -69,18 +74,19 @@ def of_arguments(model: type[BaseModel], errors: Iterable[ErrorDetails], owner: 
     """Return the errors of a validation of arguments in Python as problems, each with the name of its argument."""
     by_place: dict[Place, Problem] = {}
     errors = _of_words(errors)
+    errors, others = errors[:MAX_WORDED], errors[MAX_WORDED:]
     places = [_place_in(model, error) for error in errors]
     for error, place in zip(errors, places, strict=True):
         if error["type"] in OF_KIND and isinstance(error["input"], dict | list) and place[-1:] != error["loc"][-1:]:
-            others = zip(errors, places, strict=True)
-            if any(at[: len(place)] == place and (other["type"] not in OF_KIND or at != place) for other, at in others):
+            each = zip(errors, places, strict=True)
+            if any(at[: len(place)] == place and (other["type"] not in OF_KIND or at != place) for other, at in each):
                 continue  # the error is of another branch of the union
         place = place or tuple(error["loc"][:1])
         if error["type"] == "geometry":
             place = (*place, *error["ctx"]["field"])
         message, hint = say(model, place or (owner,), error, owner, f"`rocking mechanisms {owner}` lists the fields")
         by_place.setdefault(place, Problem(message, field=spell(place) if place else None, hint=hint))
-    return list(by_place.values())
+    return [*by_place.values(), *[Problem("is wrong too")] * len(others)]
 
 
 def _place_in(model: type[BaseModel], error: ErrorDetails) -> Place:

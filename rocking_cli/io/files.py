@@ -7,14 +7,19 @@ import io
 import os
 import shutil
 import stat
+import sys
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager, suppress
+from hashlib import sha256
 from pathlib import Path
 from typing import IO, Any, BinaryIO
 
-from rocking_cli.errors import InputError, Problem, Refused, RockingError
+from rocking_cli.errors import InputError, Problem, Refused
 
 CREATE_ONLY = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0) | getattr(os, "O_NOFOLLOW", 0)
+PART, LISTING = ".rocking", ".rocking-files"
+"""Endings of our hidden files: one that is being written, and the list of those that are being written to a folder."""
 
 
 def read_bytes(
@@ -82,14 +87,17 @@ def folder(name: str) -> Path:
     path = Path(name)
     try:
         path.mkdir(parents=True, exist_ok=True)
+        _sync_folder(path.parent)
     except (OSError, ValueError) as error:  # ValueError: a path with a null character
         reason = getattr(error, "strerror", None) or error
-        raise InputError(Problem(f"cannot be a folder to write into: {reason}", name)) from None
+        problem = Problem(f"cannot be a folder to write into: {reason}", name)
+        refused = getattr(error, "errno", None) in WRITE_REFUSALS
+        raise Refused(str(problem)) if refused else InputError(problem) from None
     return path
 
 
 def write_folder(path: Path, files: Mapping[str, bytes]) -> None:
-    """Write a new folder; an existing one must be empty.
+    """Write a new folder; an existing one must be empty, but for what a run that was killed has left.
 
     Parameters
     ----------
@@ -105,6 +113,7 @@ def write_folder(path: Path, files: Mapping[str, bytes]) -> None:
     Refused
         If the system refuses, as with a full disk; nothing is then left behind.
     """
+    discard(path)
     shown_path, there = str(path), path.is_dir()
     hint = "move it away, or name another folder"
     if there and any(path.iterdir()):
@@ -114,22 +123,128 @@ def write_folder(path: Path, files: Mapping[str, bytes]) -> None:
     if not path.parent.is_dir():
         raise InputError(Problem(f"the folder {path.parent} does not exist", shown_path, hint="create it first"))
     try:
-        for name, content in files.items():
-            (path / name).parent.mkdir(parents=True, exist_ok=True)
-            (path / name).write_bytes(content)
-    except BaseException as error:
-        for each in path.iterdir() if path.is_dir() else ():
-            shutil.rmtree(each) if each.is_dir() else each.unlink()
-        if path.is_dir() and not there:
-            path.rmdir()
-        if isinstance(error, OSError):
-            raise _cannot(path, error) from error
+        write_files(path, files.items())
+    except BaseException:
+        discard(path)
+        with suppress(OSError):
+            if not there:
+                path.rmdir()
         raise
 
 
-def check_writable(path: Path) -> None:
-    """Raise `InputError`, before any work, if no file can be written at a path."""
+def write_files(place: Path, files: Iterable[tuple[str, bytes]]) -> None:
+    """Write files into a folder, each listed before it is there: what a run that is killed leaves, `discard` removes.
+
+    Parameters
+    ----------
+    place : Path
+        The folder, made if it does not exist.
+    files : iterable of (str, bytes)
+        Path of each file in the folder, and its content.
+
+    Raises
+    ------
+    InputError, Refused
+        As `write_whole`; the files before are then there, until `discard` removes them.
+    """
+    listing = _hidden(place / "files", LISTING)
+    with _naming(place), ExitStack() as after:
+        place.mkdir(exist_ok=True)
+        _sync_folder(place.parent)
+        with os.fdopen(_made(listing, after), "wb") as stream:
+            _sync_folder(place)
+            for name, content in files:
+                stream.write(f"{sha256(content).hexdigest()}  {name}\n".encode("utf-8", "surrogateescape"))
+                stream.flush()
+                _sync(stream.fileno())
+                (place / name).parent.mkdir(parents=True, exist_ok=True)
+                _sync_folder((place / name).parent.parent)
+                _put(place / name, lambda file, content=content: file.write(content))  # type: ignore[misc]
+    listing.unlink()
+
+
+def discard(place: Path) -> None:
+    """Remove what `write_files` of a run that was killed wrote to a folder, as far as nobody has changed it since."""
+    for listing in _left(place, LISTING):
+        for line in listing.read_text(encoding="utf-8", errors="surrogateescape").split("\n"):
+            checksum, _, name = line.partition("  ")
+            file = place / name
+            with suppress(OSError, ValueError):  # ValueError: a null character
+                if file.resolve().is_relative_to(place.resolve()):
+                    for left in _left(file.parent, PART):
+                        left.unlink()
+                    if file.is_file() and sha256(file.read_bytes()).hexdigest() == checksum:
+                        file.unlink()
+                    for each in file.parents[: len(Path(name).parts) - 1]:
+                        each.rmdir()
+        listing.unlink(missing_ok=True)
+
+
+def _hidden(path: Path, ending: str) -> Path:
+    """Return a new name beside a path, short enough for any system."""
+    return path.with_name(f".{path.name[:40]}.{os.urandom(8).hex()}{ending}")
+
+
+def _left(folder: Path, ending: str) -> Iterator[Path]:
+    """Yield hidden files that runs which were killed left in a folder; no other process has them meanwhile."""
+    for path in filter(Path.is_file, sorted(folder.glob(f".*.{'[0-9a-f]' * 16}{ending}"))):
+        with suppress(OSError), ExitStack() as after:
+            if sys.platform == "win32":
+                path.rename(path)  # refused as long as it is open
+            else:
+                import fcntl
+
+                handle = os.open(path, os.O_RDONLY | os.O_NOFOLLOW)
+                after.callback(os.close, handle)
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            yield path
+
+
+def _made(path: Path, after: ExitStack) -> int:
+    """Return the handle of a new hidden file, which `_left` does not yield to anybody until `after` is closed."""
+    while True:
+        handle = os.open(path, CREATE_ONLY, 0o600)
+        if sys.platform == "win32":
+            return handle
+        import fcntl
+
+        after.callback(os.close, os.dup(handle))
+        with suppress(OSError):  # a file system without locks
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        if path.exists():
+            return handle
+        os.close(handle)  # before it was locked, another process took it for one that was left
+
+
+def _sync(handle: int) -> None:
+    """Have the system write a file to its disk, where it can."""
+    try:
+        os.fsync(handle)
+    except OSError as error:
+        if error.errno in WRITE_REFUSALS:
+            raise
+
+
+def _sync_folder(path: Path) -> None:
+    """Have the system write the names in a folder to its disk; Windows does not open folders."""
+    try:
+        handle = os.open(path, os.O_RDONLY)
+    except OSError:
+        return
+    try:
+        _sync(handle)
+    finally:
+        os.close(handle)
+
+
+def check_writable(path: Path, *suffixes: str) -> None:
+    """Raise `InputError`, before any work, if no file, with one of the suffixes, can be written at a path."""
+    if suffixes and path.suffix.lower() not in suffixes:
+        known = " or ".join(", ".join(suffixes).rsplit(", ", 1))
+        raise InputError(Problem(f"give a file name that ends in {known}", str(path)))
     shown_path, path = str(path), Path(os.path.realpath(path))  # links are followed to their file
+    with _naming(Path(shown_path)), suppress(FileNotFoundError, NotADirectoryError):
+        path.lstat()  # where a folder may not be entered, pathlib raises below, or says that nothing is there
     if path.is_symlink():
         raise InputError(Problem("this link leads back to itself", shown_path))
     if path.is_dir():
@@ -215,71 +330,77 @@ def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
     """
     check_writable(path)
     shown_path, path = path, Path(os.path.realpath(path))
-    if _is_special(path):
-        _write_into(path, shown_path, write)
-        return
-    # The name is short enough for any system. It is chosen before the file is made, so that the file is removed even if
-    # a signal comes in between.
-    name = path.with_name(f".{path.name[:40]}.{os.urandom(8).hex()}")
-    try:
-        try:
-            handle = os.open(name, CREATE_ONLY, 0o600)
-        except OSError as error:
-            raise _cannot(shown_path, error) from error
-        _fill(handle, shown_path, write)
-        try:
-            if path.exists():
-                shutil.copymode(path, name)
-            else:  # the temporary file is private; a new file gets the usual rights
-                umask = os.umask(0)
-                os.umask(umask)
-                os.chmod(name, 0o666 & ~umask)  # noqa: PTH101
-            os.replace(name, path)  # noqa: PTH105
-        except OSError as error:
-            raise _cannot(shown_path, error) from error
-    except BaseException:
-        name.unlink(missing_ok=True)
-        raise
+    with _naming(shown_path):
+        if _is_special(path):
+            _write_into(path, write)
+            return
+        for left in _left(path.parent, PART):
+            left.unlink(missing_ok=True)
+        _put(path, write)
 
 
-def _fill(handle: int, shown_path: Path, write: Callable[[BinaryIO], object]) -> None:
+def _put(path: Path, write: Callable[[BinaryIO], object]) -> None:
+    """Write a file through a hidden one, which is named before it is made: a signal in between leaves nothing."""
+    name = _hidden(path, PART)
+    with ExitStack() as after:
+        after.callback(name.unlink, missing_ok=True)
+        _fill(_made(name, after), write)
+        if path.exists():
+            shutil.copymode(path, name)
+        else:  # the hidden file is private; a new file gets the usual rights
+            umask = os.umask(0)
+            os.umask(umask)
+            os.chmod(name, 0o666 & ~umask)  # noqa: PTH101
+        os.replace(name, path)  # noqa: PTH105
+    _sync_folder(path.parent)
+
+
+def _fill(handle: int, write: Callable[[BinaryIO], object]) -> None:
     """Write to an open file and close it; an error of the system takes precedence over others."""
     output = _Output(handle, "wb")
     try:
         with io.BufferedWriter(output) as file:
             write(file)
+            file.flush()
+            _sync(handle)
     except Exception as error:
-        refused = error if isinstance(error, OSError) else output.refused
-        if refused is None:
+        if isinstance(error, OSError) or output.refused is None:
             raise
-        raise _cannot(shown_path, refused) from error
+        raise output.refused from error
     finally:
         output.close()
 
 
-def _write_into(path: Path, shown_path: Path, write: Callable[[BinaryIO], object]) -> None:
+def _write_into(path: Path, write: Callable[[BinaryIO], object]) -> None:
     """Write the complete content to a device or a pipe."""
     try:
         # Opening a pipe that nobody reads would wait for ever.
         handle = os.open(path, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     except OSError as error:
         if error.errno == errno.ENXIO:
-            problem = Problem("no program is reading from this pipe", str(shown_path), hint="start its reader first")
+            problem = Problem("no program is reading from this pipe", str(path), hint="start its reader first")
             raise InputError(problem) from None
-        raise _cannot(shown_path, error) from error
+        raise
     with tempfile.TemporaryFile() as whole:
         try:
-            _fill(os.dup(whole.fileno()), Path(tempfile.gettempdir()), write)
+            with _naming(Path(tempfile.gettempdir())):
+                _fill(os.dup(whole.fileno()), write)
         except BaseException:
             os.close(handle)
             raise
         whole.seek(0)
         if hasattr(os, "set_blocking"):
             os.set_blocking(handle, True)
-        _fill(handle, shown_path, lambda file: shutil.copyfileobj(whole, file))
+        _fill(handle, lambda file: shutil.copyfileobj(whole, file))
 
 
-def _cannot(shown_path: Path, error: OSError) -> RockingError:
-    """Return the error of a file that cannot be written."""
-    problem = Problem(f"cannot be written: {error.strerror or error}", str(shown_path))
-    return Refused(str(problem)) if error.errno in WRITE_REFUSALS else InputError(problem)
+@contextmanager
+def _naming(shown_path: Path) -> Iterator[None]:
+    """Turn errors of the system into that of a file that cannot be written."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno == errno.ENAMETOOLONG:  # the terminal shortens it
+            raise
+        problem = Problem(f"cannot be written: {error.strerror or error}", str(shown_path))
+        raise (Refused(str(problem)) if error.errno in WRITE_REFUSALS else InputError(problem)) from error

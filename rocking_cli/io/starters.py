@@ -11,13 +11,14 @@ STARTERS = ("facade", "parapet", "gable", "pinnacle", "corner", "bell_cell", "co
 """Common structures, each a file in the data of the package. A mechanism of the same name has priority."""
 ENDINGS = (r" \([^()]*\)", r" \[[^\[\]]*\]", r", [^,]+")
 """Bounds, unit and symbol, which in a comment follow the description of a field, from the last on."""
+NAME = re.compile(r"(?<=\bname: )[a-z ]+\b")
 NO_PROSE = r"\[.*\]|- .*|[\w ]+:( .*)?|.*\(\d{4}\).*"
 """Comments that need no translation: a unit, a field that is commented out, and a source with its year."""
 
 
 @cache
 def italian() -> Mapping[str, Mapping[str, str]]:
-    """Return the names of `templates` and of `fields` by Italian ones, and Italian `comments` by English ones."""
+    """Return `templates` and `fields` by Italian names, and Italian `names` and `comments` by English ones."""
     import tomllib
 
     return tomllib.loads((files("rocking_cli") / "data" / "italian.toml").read_text(encoding="utf-8"))
@@ -48,7 +49,7 @@ def instead_of_mechanism(word: str) -> str | None:
 
 
 def in_italian(text: str) -> tuple[str, list[str]]:
-    """Return a template with its comments in Italian, and the comments that have no Italian text."""
+    """Return a template with its names and comments in Italian, and the comments that have no Italian text."""
     lines, missing = [], []
     for line in text.splitlines():
         before, sign, comment = line.rpartition("# ")
@@ -56,7 +57,8 @@ def in_italian(text: str) -> tuple[str, list[str]]:
         if sign and translated is None and not re.fullmatch(NO_PROSE, comment.strip()):
             missing.append(comment)
         lines.append(line if translated is None else f"{before}# {translated}")
-    return "\n".join(lines) + "\n", missing
+    named = NAME.sub(lambda match: italian()["names"].get(match[0], match[0]), "\n".join(lines))
+    return named + "\n", missing
 
 
 def _translated(comment: str) -> str | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from importlib.util import find_spec
@@ -14,11 +15,14 @@ import numpy as np
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.files import write_whole
-from rocking_cli.text import printable
+from rocking_cli.text import keeps_formulas, printable
 
 Columns = Mapping[str, "Sequence[object] | np.ndarray"]
 PARQUET = ".parquet"
 ROWS_PER_BLOCK = 4_000  # written at a time, so that the text of a large table is never in memory
+_NUMBER = r"[-+]?[\d.,]+(?:[eE][-+]?\d+)?"
+_FORMULA = re.compile(rf"\s*(?!{_NUMBER}(?:\s*;\s*{_NUMBER})*\Z)[=+\-@].", re.ASCII)
+"""Beginning of a text that a spreadsheet would compute; numbers, and lists of them, stay numbers."""
 
 
 def check_table(path: Path | None) -> None:
@@ -37,7 +41,8 @@ def write_table(
     ----------
     path : Path
         Path of the file. If it ends in .parquet, a Parquet file at full precision is written, with a row group for each
-        block and null for NaN; otherwise text with nine digits and an empty field for NaN.
+        block and null for NaN; otherwise text with nine digits, an empty field for NaN, and an apostrophe before names,
+        texts and headings that a spreadsheet would compute.
     blocks : iterable of mapping of str to sequence
         Blocks of rows, all with the same columns; a column has words, integers or reals.
     separator, decimal : str
@@ -64,7 +69,7 @@ def write_csv(
     writer = csv.writer(text, delimiter=separator, lineterminator="\n")
     for k, columns in enumerate(blocks):
         if k == 0:
-            writer.writerow([printable(name) for name in columns])
+            writer.writerow([_field(name, digits, decimal) for name in columns])
         values = list(columns.values())
         numbers = all(isinstance(each, np.ndarray) and each.dtype == np.float64 for each in values)
         if numbers and (digits, separator, decimal) == (9, ",", "."):
@@ -86,7 +91,8 @@ def _lines(table: np.ndarray) -> str:
 
 def _field(value: object, digits: int | None, decimal: str) -> object:
     if isinstance(value, str):
-        return printable(value)  # a name may have characters that cannot be encoded
+        text = printable(value)  # a name may have characters that cannot be encoded
+        return f"'{text}" if _FORMULA.match(text) and not keeps_formulas.get() else text
     if not isinstance(value, float):
         return value
     if value != value:

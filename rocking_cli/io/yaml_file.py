@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from math import inf, isfinite
 from pathlib import Path
@@ -25,6 +25,7 @@ NUMBERED_WORD = regex("[A-Za-z]+[0-9]+")
 MAX_VALUES = 500_000  # repeats by aliases count, as a few lines of them stand for billions
 
 
+FIELD_PART = regex(r"([^.\[\]`]+)|\[(\d+)\]")  # `loads[1].at`, and `loads.roof.at` or `loads.0.at`
 _LINE_END = regex("\r\n|[\r\n\x85\u2028\u2029]")  # line ends of YAML
 
 
@@ -218,6 +219,20 @@ class Document:
         mark = (self.keys if key else self.values).get(place) or self.values.get(place[:-1])
         return self.problem(message, mark, spell(place), hint)
 
+    def located(self, problem: Problem) -> Problem:
+        """Return a problem at its field, or at the nearest item around it; unchanged if the file has neither."""
+        here: Any = self.data
+        place: Place = ()
+        for word, number in FIELD_PART.findall(problem.field or ""):
+            key: Any = word
+            if isinstance(here, list):
+                names = {each.get("name"): k for k, each in enumerate(here) if isinstance(each, dict)}
+                key = int(number) - 1 if number else names.get(word, int(word) if word.isdecimal() else len(here))
+            if not (key < len(here) if isinstance(here, list) else isinstance(here, dict) and key in here):
+                break
+            here, place = here[key], (*place, key)
+        return replace(self.at(place, problem.message, problem.hint), field=problem.field) if place else problem
+
     def check(self) -> None:
         """Raise `InputError` with every problem found so far, in the order of the lines."""
         if self.problems:
@@ -228,6 +243,15 @@ def spell(place: Place) -> str | None:
     """Return a place as the user would write it: `polygon[2]`, `restitution.positive_to_negative`."""
     text = "".join(f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in place)
     return text.lstrip(".") or None
+
+
+def placed(problem: Problem) -> Problem:
+    """Return a problem of a field of a file with its line, if the file is YAML that has the field."""
+    if problem.file is None or problem.line is not None or problem.field is None:
+        return problem
+    with suppress(InputError):
+        return parse(read_text(Path(problem.file), "structure"), problem.file, "structure", "").located(problem)
+    return problem
 
 
 def read_text(path: Path, what: str) -> str:

@@ -7,11 +7,13 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache, lru_cache
+from pathlib import Path
 from textwrap import shorten
 from typing import IO, Any, NamedTuple, cast
 from warnings import catch_warnings, filterwarnings
 
 import numpy as np
+from matplotlib import rc_context, rcParams
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import RendererAgg
@@ -27,10 +29,12 @@ from numpy.typing import NDArray
 
 from rocking_cli import names
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.io.files import write_whole
 from rocking_cli.text import printable
 
 PAGE_WIDTH, PHONE_WIDTH = 7.2, 3.3  # inches of text on paper, and on a phone, where it is enlarged to the screen
 DPI = 150
+DATES = {"svg": ["Date"], "pdf": ["CreationDate"]}  # in files of a format
 POINTS_PER_INCH = 72
 MAX_SIDE_MARGIN = 0.9  # inches at the sides of a panel
 MAX_HEADING_LENGTH, MAX_HEADING_LINES = 240, 3  # characters and lines
@@ -384,9 +388,16 @@ def save(figure: Figure, stream: IO[Any], **options: Any) -> None:
         Options of `Figure.savefig`.
     """
     _spell_out(figure)
-    with catch_warnings():
+    # Without a date, and with names from a fixed salt, the same figure is the same file.
+    options = {"metadata": dict.fromkeys(DATES.get(options["format"], ()))} | options
+    with catch_warnings(), rc_context({"svg.hashsalt": rcParams["svg.hashsalt"] or "rocking"}):
         filterwarnings("ignore", "Glyph .* missing from", UserWarning)  # a missing glyph is drawn as an empty box
         figure.savefig(stream, **options)
+
+
+def write(path: Path, figure: Figure) -> None:
+    """Write a figure completely or not at all, in the format of the suffix of the path."""
+    write_whole(path, lambda stream: save(figure, stream, format=path.suffix[1:].lower()))
 
 
 def lay_out(figure: Figure) -> None:

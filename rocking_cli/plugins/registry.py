@@ -10,16 +10,21 @@ import os
 import sys
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, redirect_stdout
 from functools import cache, lru_cache
 from importlib import metadata
 from importlib.metadata import EntryPoint, EntryPoints
+from io import StringIO
+from threading import RLock, Timer
 from typing import ClassVar, TypeVar
 
 from rocking_cli.errors import InputError, MechanismError, PluginWarning, warn
 from rocking_cli.plugins.errors import blame
-from rocking_cli.text import did_you_mean, in_short
+from rocking_cli.text import cut, did_you_mean, in_short, one_line
 
 T = TypeVar("T")
+OWN_MODULES = "rocking_cli", "mechanisms"
+SLOW_LOADING = 2.0  # s after which a plugin that is still loading is named
 
 
 def entry_points(group: str) -> EntryPoints:
@@ -38,7 +43,25 @@ def _state(path: str) -> tuple[int, ...]:
 
 @lru_cache(maxsize=32)  # reading the entry points of all packages takes as long as most commands
 def _installed(group: str, state: tuple[object, ...]) -> EntryPoints:
-    return metadata.entry_points(group=group)
+    try:
+        return metadata.entry_points(group=group)
+    except Exception:  # the file of any package may be broken
+        return EntryPoints(point for point in _readable() if point.group == group)
+
+
+def _readable() -> Iterator[EntryPoint]:
+    """Yield the entry points of all packages except those whose file of them is broken, which are named."""
+    seen = set()
+    for package in metadata.distributions():
+        name = package.metadata["Name"]
+        if name in seen:  # shadowed by the same package in a folder before
+            continue
+        seen.add(name)
+        try:
+            yield from package.entry_points
+        except Exception as error:
+            where = f"entry_points.txt of the package {name} in {package.locate_file('')}"
+            leave_out(MechanismError(f"{where} cannot be read: {error}"))
 
 
 def find(group: str) -> dict[str, list[EntryPoint]]:
@@ -65,11 +88,31 @@ def origin(point: EntryPoint) -> str:
 
 def load(point: EntryPoint) -> object:
     """Load the object of an entry point."""
-    with blame(f"{origin(point)} cannot be loaded", point.value.partition(":")[0]):
+    with blame(f"{origin(point)} cannot be loaded", point.value.partition(":")[0]), _watched(point):
         loaded: object = point.load()
     return loaded
 
 
+@contextmanager
+def _watched(point: EntryPoint) -> Iterator[None]:
+    """Warn of a plugin of another package whose import takes long, or prints."""
+    if point.module in sys.modules or point.module.partition(".")[0] in OWN_MODULES:
+        yield
+        return
+    slow = Timer(SLOW_LOADING, lambda: warn(PluginWarning(f"{origin(point)} is still loading")))
+    slow.daemon = True
+    with _IMPORTING, redirect_stdout(StringIO()) as printed:
+        slow.start()
+        try:
+            yield
+        finally:
+            slow.cancel()
+    if text := one_line(printed.getvalue().strip()):
+        warn(PluginWarning(f"{origin(point)} prints: {cut(text)}"))
+
+
+_IMPORTING = RLock()
+"""Lock around imports whose output is kept, as there is one standard output for all threads."""
 _LEFT_OUT: set[str] = set()
 
 

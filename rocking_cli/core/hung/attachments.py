@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from pydantic import ValidationError
@@ -224,15 +225,14 @@ def _spots(carrier: Carrier, tie: Tie, loc: Loc) -> Iterator[Spot]:
 
 def followed(bodies: Sequence[Body], motions: Sequence[RigidMotion], shape: tuple[int, ...]) -> Follow:
     """Return a function that gives the path of a point of the bodies or the ground over the rotations of `motions`."""
-    by_name = {body.name: motion for body, motion in zip(bodies, motions, strict=True)}
+    return partial(_follow, {body.name: motion for body, motion in zip(bodies, motions, strict=True)}, shape)
 
-    def follow(spot: Spot) -> Path:
-        if spot.body is None:
-            still = np.zeros(shape, np.complex128)
-            return Path(still + spot.at, still, still)
-        return Path(*by_name[spot.body].carry(spot.at))
 
-    return follow
+def _follow(by_name: Mapping[str, RigidMotion], shape: tuple[int, ...], spot: Spot) -> Path:
+    if spot.body is None:
+        still = np.zeros(shape, np.complex128)
+        return Path(still + spot.at, still, still)
+    return Path(*by_name[spot.body].carry(spot.at))
 
 
 def _holds(corners: Points, at: Points) -> bool:

@@ -257,11 +257,7 @@ def check_film(file: Path, signs: tuple[int, ...], speed: float | None, fps: flo
     """Raise `InputError` if an animation cannot be written, or be shown like this."""
     from rocking_cli.io.files import check_writable
 
-    if file.suffix.lower() not in ENDINGS:
-        raise InputError(
-            Problem(f"give a file name that ends in {', '.join(ENDINGS[:-1])} or {ENDINGS[-1]}", str(file))
-        )
-    check_writable(file)
+    check_writable(file, *ENDINGS)
     if file.suffix.lower() == ".mp4":
         from rocking_cli.questions.animate.video import ffmpeg
 

@@ -90,6 +90,9 @@ class Metric:
     sited: bool = False
     codes: Sequence[str] = ()
 
+    def __reduce__(self) -> tuple[Callable[[str], Metric], tuple[str]]:
+        return metric, (self.name,)
+
     @property
     def shaken(self) -> bool:
         """Whether the metric needs ground motions."""

@@ -18,12 +18,13 @@ from rocking_cli.questions.design.metrics import Excitation, Metric
 from rocking_cli.questions.design.study import SCAN_POINTS, Aim, Design, Span
 from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Neighbourhood
+from rocking_cli.text import cut
 
 
 @takes_numbers
 def design(
     structure: StructureLike,
-    vary: Span | str | tuple[str, float, float],
+    vary: Span | str | tuple[str, float | str, float | str],
     until: Aim | str,
     motions: Motion | Motions | Sequence[Motion] = (),
     *,
@@ -44,8 +45,8 @@ def design(
     ----------
     structure : Mechanism, str or Path
         The structure, or its YAML file.
-    vary : str, or (str, float, float)
-        Field and its range, such as `"width=0.2m:0.8m"`, or `("ties.bar.prestress", 0.0, 5e4)` in the unit of the
+    vary : str, or (str, float or str, float or str)
+        Field and its range, such as `"width=0.2m:0.8m"` or `("width", "0.2m", 0.8)`, numbers in the unit of the
         field. An entry of a list is given by its number, from 0, or its name.
     until : str
         The requirement, such as `"lambda >= 0.2"`: a metric, `<`, `<=`, `>` or `>=`, and a number, or `required` for
@@ -125,10 +126,16 @@ def design(
     return Answer("design", result, view(result, excitation), partial(columns, result), figure)
 
 
-def _span(given: Span | str | tuple[str, float, float]) -> Span:
-    if isinstance(given, Span):
-        return given
-    return Span.parse(given) if isinstance(given, str) else Span(given[0], *(repr(float(end)) for end in given[1:]))
+def _span(given: object) -> Span:
+    match given:
+        case Span():
+            return given
+        case str():
+            return Span.parse(given)
+        case (str() as field, low, high):
+            return Span(field, str(low), str(high))
+    what = f"must be FIELD=LOW:HIGH or (field, low, high), got {cut(repr(given))}"
+    raise InputError(Problem(what, field="`vary`", hint="such as width=0.2m:0.8m"))
 
 
 def _check(metric: Metric, *, motions: bool, neighbours: int, site: bool) -> None:

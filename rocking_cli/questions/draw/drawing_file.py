@@ -81,7 +81,9 @@ def drawn_file(drawing: Picture, ratio: float | None) -> tuple[bytes, str, str]:
         If ezdxf is not installed.
     """
     mechanism, weighed = drawing.mechanism, {body.name: body for body in drawing.mechanism.weighed()}
-    document = dxf.ezdxf_module().new("R2000", units=METRES)
+    ezdxf = dxf.ezdxf_module()
+    document = ezdxf.new("R2000", units=METRES)
+    document.ezdxf_metadata().discard("CREATED_BY_EZDXF")  # with the moment
     drawn = _Drawn(document, abs(drawing.reach[1] - drawing.reach[0]))
     searched = any(mechanism.collapse(side) for side in drawing.directions) or bool(drawing.sketch.lines)
     given = (
@@ -110,7 +112,12 @@ def drawn_file(drawing: Picture, ratio: float | None) -> tuple[bytes, str, str]:
     for thrust in (np.asarray(each.points) for each in drawing.sketch.lines):
         if np.abs(thrust - thrust[0]).max() > 0:  # in a single block it may be a point
             drawn.line("THRUST", thrust)
-    document.write(stream := io.StringIO())
+    dated = ezdxf.options.write_fixed_meta_data_for_testing
+    ezdxf.options.write_fixed_meta_data_for_testing = True  # the same file each time
+    try:
+        document.write(stream := io.StringIO())
+    finally:
+        ezdxf.options.write_fixed_meta_data_for_testing = dated
     content: bytes = document.encode(stream.getvalue())
     kind = "rigid_body" if len(weighed) == 1 and len(plates[0][0]) > 1 else None
     options = ImportOptions(depth=depth if counts else None, kind=kind)

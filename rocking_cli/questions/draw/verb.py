@@ -80,11 +80,10 @@ def draw(
 
 def _write(file: Path, drawing: Picture, at: float | None, watch: Watcher) -> None:
     """Write a drawing as a DXF file, and tell before what it cannot hold."""
-    from rocking_cli.io.files import write_whole
+    from rocking_cli.io.files import check_writable, write_whole
     from rocking_cli.questions.draw.drawing_file import drawn_file
 
-    if file.suffix.lower() != ".dxf":
-        raise InputError(Problem("give a file name that ends in .dxf", str(file)))
+    check_writable(file, ".dxf")
     content, options, doubt = drawn_file(drawing, at)
     if doubt:
         watch.warn(f"{file} {doubt}")

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rocking_cli.cli import terminal
-from rocking_cli.cli.groups import save, write_table
+from rocking_cli.cli.groups import write_table
 from rocking_cli.cli.watching import OnTerminal
 from rocking_cli.text import numbered
 
@@ -49,7 +49,7 @@ def show_study(answer: StudyAnswer, shown: StudyOutput, watch: OnTerminal) -> No
 
 def _draw_all(folder: Path, answer: StudyAnswer) -> None:
     """Draw the curves of each structure, the comparison of structures, the data behind them, surfaces and rankings."""
-    from rocking_cli.plotting.style import plain
+    from rocking_cli.plotting.style import plain, write
     from rocking_cli.questions.fragility.picture import LabelledCurve, draw_curves, draw_surface, limit_in_picture
     from rocking_cli.questions.fragility.quantiles_picture import draw_quantiles
     from rocking_cli.questions.fragility.ranking_picture import draw_ranking
@@ -88,7 +88,7 @@ def _draw_all(folder: Path, answer: StudyAnswer) -> None:
             add(f"{ranking.structure} which measure serves", draw_ranking(ranking))
     with terminal.progress(len(drawn), "pictures") as advance:
         for file, figure in drawn.items():
-            save(folder / file, figure)
+            write(folder / file, figure)
             advance(1)
     terminal.note(f"wrote {len(drawn)} plots to {folder}")
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -38,21 +39,22 @@ def write_set(folder_: Path, results: ShownSet, readings: Sequence[Reading | Non
     The existing files have passed `check_folder`.
     """
     from rocking_cli.excitation.record_csv import write_record_csv
-    from rocking_cli.io.files import folder, write_whole
+    from rocking_cli.io.files import folder, write_files
 
     selection = results.found
     place = folder(str(folder_))
-    motions = selection.motions
     paths = _paths(place, [selection.candidates.motions[k] for k in selection.chosen.tolist()])
-    stale = [
-        each for name in sorted(_earlier(place / LIST_FILE)) if (each := place / name).is_file() and each not in paths
-    ]
-    for path in stale:
-        path.unlink()
-    for path, motion in zip(paths, motions, strict=True):
-        write_whole(path, lambda stream, motion=motion: write_record_csv(stream, motion))  # type: ignore[misc]
-    text = _list(place, results, readings, paths)
-    write_whole(place / LIST_FILE, lambda stream: stream.write(text.encode("utf-8", "surrogateescape")))
+    stale = [each for each in place.glob("*.csv") if each.name in _earlier(place / LIST_FILE) and each not in paths]
+
+    def files() -> Iterator[tuple[str, bytes]]:
+        for path, motion in zip(paths, selection.motions, strict=True):
+            write_record_csv(stream := BytesIO(), motion)
+            yield path.name, stream.getvalue()
+        for each in stale:
+            each.unlink()
+        yield LIST_FILE, _list(place, results, readings, paths).encode("utf-8", "surrogateescape")
+
+    write_files(place, files())
     gone = f"; {len(stale)} of an earlier set removed" if stale else ""
     terminal.note(f"wrote {len(paths)} record{'s' * (len(paths) > 1)} and {LIST_FILE} to {place.resolve()}{gone}")
 
@@ -77,9 +79,10 @@ def check_folder(folder_: Path, inputs: Sequence[Path]) -> None:
         If the folder holds input files, or records not written by this command.
     """
     from rocking_cli.excitation.record_csv import is_record_csv
-    from rocking_cli.io.files import check_writable, folder
+    from rocking_cli.io.files import check_writable, discard, folder
 
     place = folder(str(folder_))
+    discard(place)
     for each in inputs:
         if each.exists() and each.resolve().parent == place.resolve():
             hint = "name a separate folder for the set"

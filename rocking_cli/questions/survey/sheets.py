@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
@@ -11,8 +11,8 @@ from unicodedata import normalize
 
 from rocking_cli.ask.given import SiteLike, yaml_of
 from rocking_cli.ask.watcher import Watcher
-from rocking_cli.errors import InputError, Problem, RockingError
-from rocking_cli.io.files import check_writable, folder, write_whole
+from rocking_cli.errors import InputError, Problem, Refused, RockingError
+from rocking_cli.io.files import check_writable, discard, folder, write_files
 from rocking_cli.questions.survey.study import Bad, Survey, Surveyed, SurveyEntry
 from rocking_cli.questions.verify import sheets
 from rocking_cli.structure import Structure
@@ -79,11 +79,10 @@ class SheetFolder:
         place = folder(str(self.path))
         sheets.check(place / f"structure{self.suffix}", self.site, self.language)
         check_writable(place / LIST_FILE)
+        discard(place)
         known = self._listed()
         for each in sorted(place.iterdir()):
-            if each.name.startswith(".") or (each.name == LIST_FILE and _is_list(each)):
-                continue
-            if not (each.is_file() and known.get(each.name) == sha256(each.read_bytes()).hexdigest()):
+            if each.name not in known and not each.name.startswith("."):
                 what = "this file is in the folder of the sheets, and rocking did not write it, or not as it is now"
                 raise InputError(Problem(what, str(each), hint="move it, or name another folder"))
 
@@ -95,33 +94,34 @@ class SheetFolder:
         Raises
         ------
         InputError, Refused
-            If what makes the sheets is not there, or a file cannot be written; the list then has those that were.
+            If what makes the sheets is not there, or a file cannot be written; the next survey then replaces them.
         """
         sheets.check_program(self.suffix)
         every: list[Surveyed | Bad] = sorted([*found.rows, *found.bad], key=lambda each: each.row)
         names = {
             each.row: name for each, name in zip(every, file_names([e.name for e in every], self.suffix), strict=True)
         }
-        known, new = self._listed(), dict[str, str]()
-        try:
+        stale, new = self._listed(), dict[str, str]()
+
+        def files() -> Iterator[tuple[str, bytes]]:
             with watch.progress(len(found.rows), "calculation sheets") as advance:
                 for each in sorted(found.rows, key=lambda each: each.row):
                     try:
                         data = self._sheet(found, entries[each.row - 1])
+                    except Refused:
+                        raise
                     except RockingError as error:
                         watch.incomplete(f"{each.name}: no calculation sheet: {error}")
                     else:
-                        name = names[each.row]
-                        write_whole(self.path / name, lambda stream, data=data: stream.write(data))  # type: ignore[misc]
-                        new[name] = sha256(data).hexdigest()
+                        new[names[each.row]] = sha256(data).hexdigest()
+                        yield names[each.row], data
                     advance(1)
-            for name in known.keys() - new.keys():
-                (self.path / name).unlink(missing_ok=True)
-            known = {}
-        finally:
-            lines = [LIST_HEADER, *(f"{checksum}  {name}" for name, checksum in sorted((known | new).items()))]
-            text = "".join(f"{line}\n" for line in lines).encode()
-            write_whole(self.path / LIST_FILE, lambda stream: stream.write(text))
+            for name in stale - new.keys() - {LIST_FILE}:
+                (self.path / name).unlink()
+            lines = [LIST_HEADER, *(f"{checksum}  {name}" for name, checksum in sorted(new.items()))]
+            yield LIST_FILE, "".join(f"{line}\n" for line in lines).encode()
+
+        write_files(self.path, files())
         watch.note(
             f"wrote {len(new):,} calculation sheet{'s' * (len(new) != 1)} and {LIST_FILE} to {self.path.resolve()}"
         )
@@ -136,15 +136,11 @@ class SheetFolder:
         content = sheets.sheet_for(verification, site, self.given, [], self.language, title, origin)
         return sheets.rendered(content, self.suffix)
 
-    def _listed(self) -> dict[str, str]:
-        """Return the checksums of the sheets of an earlier survey, by their names."""
+    def _listed(self) -> set[str]:
+        """Return the names of the files that an earlier survey wrote, and that are as it wrote them; with the list."""
         path = self.path / LIST_FILE
-        lines = path.read_text(encoding="utf-8", errors="replace").splitlines() if _is_list(path) else []
-        return {name: checksum for checksum, _, name in (line.partition("  ") for line in lines[1:])}
-
-
-def _is_list(path: Path) -> bool:
-    if not path.is_file():
-        return False
-    with path.open(encoding="utf-8", errors="replace") as stream:
-        return stream.readline().rstrip("\n") == LIST_HEADER
+        lines = path.read_text(encoding="utf-8", errors="replace").splitlines() if path.is_file() else []
+        if lines[:1] != [LIST_HEADER]:
+            return set()
+        sums = {each.name: sha256(each.read_bytes()).hexdigest() for each in self.path.iterdir() if each.is_file()}
+        return {LIST_FILE, *(name for name, checksum in sums.items() if f"{checksum}  {name}" in lines)}

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
-from datetime import UTC, datetime
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Any, Unpack
 
 from rocking_cli.ask.answer import Answer, drawn
 from rocking_cli.ask.given import SiteLike, StructureLike, around_of, language_of, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
-from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.ask.watcher import SILENT, Advance, Watcher
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.names import OPENING
 from rocking_cli.questions.survey.view import DEFAULT_ROWS
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 TableLike = str | Path | Mapping[str, Sequence[Any]]
 """CSV file, or columns by their headings."""
 MIN_ROWS_FOR_PROCESSES, MIN_ROWS_FOR_PROCESSES_WITH_MOTION = 10_000, 1_000  # rows from which processes pay
+SAMPLE_TIME = 3.0  # s of work from which the time of all is known
 MAX_LISTED_DOUBTS = 3  # doubts about sizes that are printed
 
 
@@ -164,7 +165,7 @@ def survey(
     with watch.progress(len(entries), "structures") as advance:
         result = study(
             entries, shaken, signs, site=where, around=around, bounded=neighbours is None, opening=opening,
-            threads=threads, processes=processes_used, progress=advance,
+            threads=threads, processes=processes_used, progress=_timed(advance, len(entries), watch),
         )  # fmt: skip
     _warn_of_sizes(result, watch)
     if hasattr(entries, "sheet"):  # a table: weights of other structures were noted when they were opened
@@ -215,6 +216,27 @@ def _processes(rows: int, shaken: bool) -> int | None:
     return count
 
 
+def _timed(advance: Advance, count: int, watch: Watcher) -> Callable[[int], None]:
+    """Return a function that counts structures, and says once how long all take if that is more than a minute."""
+    began, done, known = 0.0, 0, False
+
+    def progress(new: int) -> None:
+        nonlocal began, done, known
+        advance(new)
+        if not began:  # what starts the work is not of each structure
+            began = monotonic()
+            return
+        done += new
+        took = monotonic() - began
+        if known or took < SAMPLE_TIME:
+            return
+        known = True
+        if (minutes := took / done * count / 60) > 1:
+            watch.note(f"{count:,} structures: about {minutes:.0f} minutes; Ctrl-C stops it")
+
+    return progress
+
+
 def _warn_of_sizes(found: Survey, watch: Watcher) -> None:
     doubtful = [each for each in found.rows if each.doubt is not None]
     for each in doubtful[:MAX_LISTED_DOUBTS]:
@@ -232,8 +254,7 @@ def _note_remarks(found: Survey, watch: Watcher) -> None:
 
 
 def _write_map(place: Path, found: Survey, title: str, say: Language, watch: Watcher) -> None:
-    from rocking_cli.io.files import write_whole
-    from rocking_cli.plotting.style import save
+    from rocking_cli.plotting.style import write
     from rocking_cli.questions.survey.coordinates import coordinates
     from rocking_cli.questions.survey.map_picture import draw_map
 
@@ -244,8 +265,7 @@ def _write_map(place: Path, found: Survey, title: str, say: Language, watch: Wat
         watch.warn(f"not on the map: {len(where.wrong) - MAX_LISTED_DOUBTS:,} more structures, for the same reason")
     from rocking_cli.plotting.language import in_language
 
-    figure = in_language(say, partial(draw_map, found, where, title))()
-    write_whole(place, lambda stream: save(figure, stream, format=place.suffix[1:].lower()))
+    write(place, in_language(say, partial(draw_map, found, where, title))())
     watch.note(f"wrote {place}")
 
 
@@ -254,7 +274,7 @@ def _write_page(place: Path, found: Survey, table: str, say: Language, watch: Wa
     from rocking_cli.io.files import write_whole
     from rocking_cli.questions.survey.page import render
 
-    written = say("Written on {day} with rocking-cli {version}.", day=say.day(datetime.now(UTC)), version=__version__)
+    written = say("Written on {day} with rocking-cli {version}.", day=say.today(), version=__version__)
     page = render(found, table, [written], say).encode()
     write_whole(place, lambda stream: stream.write(page))
     watch.note(f"wrote {place} ({len(page) / 1e6:.2g} MB)")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import asdict, replace
@@ -26,9 +25,6 @@ DEFAULT_ROWS = 20
 MAX_NAME_LENGTH = 30  # characters, in the table
 MAX_CAUTIONED = 3  # structures whose cautions are printed
 ROWS_PER_BLOCK = 10_000  # rows of a file that are written at once
-NUMBERS = re.compile(r"[-+]?[\d.,]+(\s*;\s*[-+]?[\d.,]+)*", re.ASCII)
-FORMULA_SIGNS = ("=", "+", "-", "@")
-"""First characters of a text that a spreadsheet would read as a formula."""
 RANKED = {
     "lambda": "by ground acceleration at uplift",
     "ratio": "by the ratio of capacity to demand under the code of the site; structures with ratios below 1 fail",
@@ -200,8 +196,7 @@ def blocks(found: Survey, decimal: str | None) -> Iterator[Columns]:
 def columns(found: Survey, start: int = 0, stop: int | None = None, decimal: str | None = None) -> Columns:
     """Return some of the rows as columns of a table, followed by the unchanged columns of the given table.
 
-    With the decimal sign of a spreadsheet, numbers in cells that came in have this sign, and texts that a spreadsheet
-    would compute an apostrophe in front.
+    With the decimal sign of a spreadsheet, numbers in cells that came in have this sign.
     """
     rows = _ranked(found, start, stop)
     if not rows:
@@ -211,8 +206,7 @@ def columns(found: Survey, start: int = 0, stop: int | None = None, decimal: str
     kept = frame_of(_kept(found.sheet, frame), rows)
     for column in applying:
         if column.text:
-            texts = map(one_line, frame[column.heading])
-            frame[column.heading] = [_safe(each) if decimal is not None else each for each in texts]
+            frame[column.heading] = list(map(one_line, frame[column.heading]))
     if found.sheet is not None and decimal is not None:
         for cells in kept.values():
             cells[:] = [_with_decimal(found.sheet, cell, decimal) for cell in cells]
@@ -220,17 +214,10 @@ def columns(found: Survey, start: int = 0, stop: int | None = None, decimal: str
 
 
 def _with_decimal(sheet: Spreadsheet, cell: str, decimal: str) -> str:
-    """Return a cell that came in, its number or list of numbers with a decimal sign, any other text made safe."""
+    """Return a cell that came in, its number or list of numbers with a decimal sign."""
     numbers = [sheet.number(part.strip()) for part in cell.split(";")]
     known = [number.replace(".", decimal) for number in numbers if number is not None]
-    if len(known) == len(numbers):
-        return ";".join(known)
-    return cell if NUMBERS.fullmatch(cell) else _safe(cell)
-
-
-def _safe(text: str) -> str:
-    """Return a text that no spreadsheet computes."""
-    return f"'{text}" if text.startswith(FORMULA_SIGNS) else text
+    return ";".join(known) if len(known) == len(numbers) else cell
 
 
 def has_unknown(found: Survey) -> bool:

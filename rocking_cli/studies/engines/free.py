@@ -309,13 +309,13 @@ class _Work:
     def keys(self) -> list[str]:
         """Return a key of each run, of all on which its outcome depends."""
         used = sorted(set(self.runs.model.tolist()))
-        structures = {k: self._of(k)[1][1.0].digest + repr(self.phi_cr[k]) for k in used}
+        structures = {k: f"{self._of(k)[1][1.0].digest}{self.phi_cr[k]!r}{OUTCOME_FIELDS}" for k in used}
         motions = {k: _digest(self.motions[k]) for k in sorted(set(self.runs.record.tolist()))}
         return [
             sha256(
-                repr((structures[int(runs_model)], motions[int(record)], scale, int(sign), slender, tilt)).encode()
+                repr((structures[int(of)], motions[int(record)], scale, int(sign), slender, tilt)).encode()
             ).hexdigest()
-            for runs_model, record, scale, sign, slender, tilt in zip(
+            for of, record, scale, sign, slender, tilt in zip(
                 self.runs.model, self.runs.record, self.runs.scale.tolist(), self.runs.polarity,
                 self.runs.slender.tolist(), self.tilts.tolist(), strict=True,
             )
