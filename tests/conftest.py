@@ -160,15 +160,21 @@ def record(name: str) -> Path:
 
 @pytest.hookimpl(tryfirst=True)  # before those of other tiers are left out
 def pytest_collection_modifyitems(items):
-    """Leave a few cases to `make test` where a test has many: which, a checksum says, so that none is like the next."""
+    """Leave a few cases to `make test` where a test has many: which, a checksum says, so that none is like the next.
+
+    All cases of a test but one of `make test` are `again`: other versions of libraries need no more than that one.
+    """
     cases = defaultdict(list)
     for item in items:
-        if item.get_closest_marker("every") is not None:
-            cases[item.location[0], item.originalname].append(item)
+        cases[item.nodeid.partition("[")[0]].append(item)
     for same in cases.values():
         same.sort(key=lambda item: crc32(item.name.encode()))
-        for item in same[ceil(len(same) / same[0].get_closest_marker("every").args[0]) :]:
-            item.add_marker("rest")
+        if (every := same[0].get_closest_marker("every")) is not None:
+            for item in same[ceil(len(same) / every.args[0]) :]:
+                item.add_marker("rest")
+        now = [item for item in same if item.get_closest_marker("rest") is None]
+        for item in now[1:]:
+            item.add_marker("again")
 
 
 def pytest_make_parametrize_id(val):

@@ -12,27 +12,8 @@ from rocking_cli.__main__ import run
 from rocking_cli.cli import endings
 from rocking_cli.cli.main import main
 from tests.conftest import EXAMPLES
-from tests.questions.fragility.test_study_runs import program
 
 SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
-
-
-@pytest.mark.rest
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no signals to send to one process")
-@pytest.mark.parametrize("number", SIGNALS)
-def test_a_picture_on_its_way_is_taken_away(tmp_path, number):
-    arguments = ["animate", EXAMPLES / "block.yaml", "--record", EXAMPLES / "accel.csv", "--out", tmp_path / "a.gif"]
-    process = program(*arguments, "--speed", 0.3)
-    deadline = time.monotonic() + 120
-    while not list(tmp_path.iterdir()):
-        assert process.poll() is None, process.communicate()
-        assert time.monotonic() < deadline
-        time.sleep(0.02)
-    process.send_signal(number)
-    out, said = process.communicate()
-    assert process.returncode == 128 + number and not out
-    assert said.endswith("error: interrupted\n") and "Traceback" not in said
-    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="Windows has none")

@@ -9,9 +9,11 @@ from __future__ import annotations
 
 import inspect
 import json
+import pickle
 import re
 import shlex
 import shutil
+from copy import deepcopy
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -95,7 +97,7 @@ CALLS = {
          "out": "o.yaml"},
         {"file": "pillar.csv", "units": "km", "scale": "1:99999", "layers": {"nothing": ["FORI"]}, "density": 2500.0,
          "depth": 2.0, "merge_gap": 0.0, "close": "0.2 mm", "nested": None, "kind": "rigid_body", "tolerance": "9 mm",
-         "out": "odd.yaml", "command": "odd"},
+         "plane": "yz", "out": "odd.yaml", "command": "odd"},
     ),
     "error": ({"structure": BLOCK}, {"structure": WEAK, "at": [0.3], "a": [3.0]}),
     "import_mesh": (
@@ -292,7 +294,11 @@ class Listening(Watcher):
     warn = note
 
 
-def answered(verb, arguments):
+def sent(answer):
+    return pickle.loads(pickle.dumps(deepcopy(answer)))
+
+
+def answered(verb, arguments, copied=lambda answer: answer):
     """Everything that a verb tells, or the error that it raises."""
     watch = Listening()
     for file in Path().iterdir():
@@ -300,7 +306,7 @@ def answered(verb, arguments):
             file.unlink()
     more = {"watch": watch} if "watch" in inspect.signature(verb).parameters else {}
     try:
-        answer = verb(**arguments, **more)
+        answer = copied(verb(**arguments, **more))
     except rk.RockingError as error:
         return error
     columns = {name: list(map(str, values)) for name, values in answer.columns().items()}
@@ -340,7 +346,7 @@ def test_every_argument_has_an_effect_or_is_refused(name):
 
 
 def without_effect(verb, call, odd):
-    first, before = answered(verb, call), answered(verb, call)
+    first, before = answered(verb, call), answered(verb, call, sent)  # so every answer can be sent to another process
     assert not isinstance(before, Exception), before
     assert first == before or "store" in call  # the second finds that of the first
     for argument, value in odd.items():

@@ -73,7 +73,7 @@ def test_a_wall_crushes_at_its_foot_and_at_its_hinge(xi, direction):
     # Virtual work: the lower block turns by 1 about A, the upper one back by xi/(1 - xi).
     moment = weight * (xi * a + (1 - xi) * (a + b + xi / (1 - xi) * b)) + load * (a + b + xi / (1 - xi) * (b + s * x))
     assert found.uplift(direction) == pytest.approx(moment / (weight * xi * h / 2), rel=1e-12)
-    assert [each.key for each in found.found(direction)] == ["hinge", "inwards_foot", "inwards_hinge"]
+    assert [each.key for each in found.found(direction)] == ["hinge", "top_force", "inwards_foot", "inwards_hinge"]
 
 
 def test_the_wall_of_two_blocks_too():

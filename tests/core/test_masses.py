@@ -29,7 +29,7 @@ def flat(text):
     return " ".join(text.split())
 
 
-@pytest.mark.every(2)
+@pytest.mark.every(4)
 @pytest.mark.usefixtures("small_maps")
 @pytest.mark.parametrize("name", WITHOUT)
 def test_without_masses_it_is_per_unit_mass(name, tmp_path):

@@ -5,6 +5,7 @@ import os
 import re
 import subprocess
 import sys
+import warnings
 from importlib.metadata import EntryPoint
 from math import atan
 
@@ -13,7 +14,7 @@ import pytest
 from mechanisms.block import Block
 from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry, conformance
-from rocking_cli.errors import InputError, MechanismError
+from rocking_cli.errors import InputError, MechanismError, PluginWarning
 from rocking_cli.plugins.registry import load
 from rocking_cli.testing import CHECKS
 from tests.cli.test_cli import run, run_json
@@ -289,7 +290,10 @@ class TestPluginsThatGoWrong:
         }.items():
             told = re.findall(rf"warning: plugin {name} of odd 1\.0 \(.*\) {why}; it is left out", run.stderr)
             assert len(told) == 1, run.stderr
-        assert "Traceback" not in run.stderr and "odd_format" not in run.stderr
+        assert "Traceback" not in run.stderr and not re.search("odd_format.*left out", run.stderr)
+        assert (
+            "warning: plugin odd_format of odd 1.0 (odd_reader) prints: printed on import of a reader\n" in run.stderr
+        )
 
     def test_a_file_that_nobody_claims_mentions_them_again(self, odd_plugin, tmp_path):
         (tmp_path / "none.txt").write_text("nothing of the kind\n", encoding="utf-8")
@@ -516,13 +520,41 @@ def test_packages_are_searched_again_only_when_one_may_have_come_or_gone(tmp_pat
         unread.setattr("rocking_cli.plugins.registry.metadata.entry_points", lambda group: pytest.fail("searched"))
         assert "block" in Registry()
     os.utime(tmp_path, ns=(1, 1))  # whatever the clock of the file system
-    info = tmp_path / "late-1.0.dist-info"
-    info.mkdir()
-    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: late\nVersion: 1.0\n", encoding="utf-8")
-    (info / "entry_points.txt").write_text("[rocking.mechanisms]\nlate = elsewhere:Late\n", encoding="utf-8")
+    _package(tmp_path, "late", b"[rocking.mechanisms]\nlate = elsewhere:Late\n")
     assert Registry().package_of("late") == "late 1.0"
     sys.path.remove(str(tmp_path))
     assert "late" not in Registry()
+
+
+def _package(folder, name, entries):
+    (info := folder / f"{name}-1.0.dist-info").mkdir()
+    (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n", encoding="utf-8")
+    (info / "entry_points.txt").write_bytes(entries)
+
+
+@pytest.mark.parametrize("broken", [b"[console_scripts]\nno pair\n", b"[x]\n\xe9 = a:b\n"])
+def test_a_package_whose_entry_points_are_broken_is_named_and_costs_no_other(broken, tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    _package(tmp_path, f"broken{len(broken)}", broken)
+    _package(tmp_path, "whole", b"[rocking.mechanisms]\nnew = elsewhere:New\n")
+    said = run("mechanisms").stderr
+    assert f"entry_points.txt of the package broken{len(broken)} in {tmp_path} cannot be read: " in "".join(
+        said.split("\n")
+    )
+    assert {"block", "new"} <= set(Registry()) and Registry().package_of("new") == "whole 1.0"
+
+
+def test_a_plugin_that_loads_slowly_or_prints_is_named_at_the_first_time(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr("rocking_cli.plugins.registry.SLOW_LOADING", 0.01)
+    (tmp_path / "slow_odd.py").write_text("import time\nprint('so\\nslow')\ntime.sleep(0.5)\nA = 1\n", encoding="utf-8")
+    with pytest.warns(PluginWarning) as told:
+        assert load(entry("slow_odd:A")) == 1
+    said = "plugin odd of unknown package (slow_odd:A) "
+    assert [str(each.message) for each in told] == [f"{said}is still loading", f"{said}prints: so\\nslow"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert load(entry("slow_odd:A")) == 1
 
 
 def test_an_unknown_name_is_no_key():

@@ -150,6 +150,7 @@ def test_symmetric_frame_is_table_i_and_that_of_impulses(width, height, gamma):
     assert frame.restitution_from_kinematics(NEGATIVE) == approx(impulses, rel=1e-11)
 
 
+@pytest.mark.every(5)
 @pytest.mark.parametrize("case", range(20))
 @pytest.mark.parametrize("direction", BOTH)
 def test_asymmetric_frame_is_that_of_impulses(case, direction):

@@ -41,6 +41,7 @@ PUNCHING = 2 * 2 * 0.6 * (0.3 + 0.25 + 2 * 0.6) * 0.05e6
 BEARING = 2 * 0.3 * 0.25 * 1.5e6
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(
     ("changed", "force", "governs"),
     [
@@ -207,6 +208,7 @@ def test_a_bed_and_a_tie_with_neither():
         parse_structure(tie(BAR), "s.yaml", "s")
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(("name", "force"), [
     ("facade", 2 * pi * 0.012**2 / 4 * 235e6), ("gable", 0.12**2 * 1e6), ("corner", 0.2**2 * 1e6),
 ])  # fmt: skip

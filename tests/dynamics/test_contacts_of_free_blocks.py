@@ -173,6 +173,7 @@ def test_a_stack_does_as_by_springs_in_its_contacts(pulse):
     assert free.motion.moved[:, :, 2] == pytest.approx(turned, abs=0.02 * peak.max())
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("file", ["block", "arch", "frame", "masonry/buttressed_arch", "walls/floor_wall"])
 @pytest.mark.parametrize("phi", [1e-4, -1e-4, 0.05, -0.05])
 def test_blocks_that_move_as_the_mechanism_have_its_rotation(file, phi):

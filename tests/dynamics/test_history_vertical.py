@@ -217,6 +217,7 @@ def test_a_vertical_component_that_begins_at_once_lifts_at_once(model):
 # --- limits
 
 
+@pytest.mark.every(6)
 @every_model
 @pytest.mark.parametrize("name", STRUCTURES)
 @pytest.mark.parametrize("c", [3.0, -6.0, 0.0])
@@ -375,6 +376,7 @@ def test_a_structure_without_weight_lifts_the_way_that_opens_first(model, side):
         assert history.fell_to == Direction(side)
 
 
+@pytest.mark.every(6)
 @every_model
 @pytest.mark.parametrize("release", [None, 0.5, -0.99])
 @pytest.mark.parametrize("depth", [-1.0, -1.0000001, -1.5, -40.0])

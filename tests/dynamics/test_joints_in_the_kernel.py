@@ -159,6 +159,7 @@ class TestAnImpact:
 class TestAtRest:
     """A block on a foot of little friction slides under ramps of u_g'' and v_g'': s.. = |u_g''| - mu (g + v_g'')."""
 
+    @pytest.mark.every(6)
     @pytest.mark.parametrize("steps", [1, 3, 40])
     @pytest.mark.parametrize("way", [1, -1])
     @pytest.mark.parametrize(

@@ -79,6 +79,7 @@ def test_slip_of_a_flat_block_is_that_of_the_closed_form() -> None:
     assert found.slid.displacement == pytest.approx(-expected, abs=1e-12)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("vertical", [None, 0.02, 0.013])
 def test_slip_is_that_of_small_steps(seed: int, vertical: float | None) -> None:

@@ -307,6 +307,7 @@ def name_of(head):
     return "_".join(words.split())
 
 
+@pytest.mark.rest
 @pytest.mark.filterwarnings("ignore::rocking_cli.DoubtWarning")
 def test_every_frame_has_its_columns_and_the_numbers_of_its_answer(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

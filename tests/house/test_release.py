@@ -141,6 +141,7 @@ class TestMakefile:
         tiers = {each.partition(":")[0] for each in SETTINGS["tool"]["pytest"]["ini_options"]["markers"]} - {
             "every(n)",
             "drawn",
+            "again",
         }
         later = " or ".join(sorted(tiers))
         named = {target: re.findall(r'-m "(.*?)"', self.planned(target, tmp_path)) for target in ("test", "test-all")}

@@ -63,6 +63,7 @@ def slip(motion, mu, until):
     return np.array(path)[:: fine * motion.every]
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize(("width", "height", "mu", "amplitude", "period"), [
     (1.0, 1.0, 0.2, 1.0, 1.0), (0.12, 0.3, 0.3, 0.8, 0.6), (0.024, 0.06, 0.2, 0.6, 0.3), (2.0, 6.0, 0.2, 0.9, 1.0),
 ])  # fmt: skip
@@ -121,8 +122,14 @@ def test_the_cube_slides_as_far_as_the_pulse_carries_it(amplitude, period):
     assert history.blocks.left[0] == pytest.approx(abs(exact[-1]), abs=0.01 * np.abs(exact).max())
 
 
-@pytest.mark.parametrize("sign", [1, -1])
-@pytest.mark.parametrize(("edge", "off"), [(0.5, True), (3.0, False)])
+@pytest.mark.parametrize(
+    ("sign", "edge", "off"),
+    [
+        (1, 0.5, True),
+        (-1, 3.0, False),
+        *(pytest.param(*each, marks=pytest.mark.rest) for each in ((-1, 0.5, True), (1, 3.0, False))),
+    ],
+)
 def test_a_block_falls_off_an_edge_only_where_one_is_drawn_within_its_reach(sign, edge, off):
     motion = sine(1.0, 1.5, sign)
     reach = np.abs(slip(motion, 0.2, 6.0)).max()
@@ -140,6 +147,7 @@ def test_a_block_falls_off_an_edge_only_where_one_is_drawn_within_its_reach(sign
         assert history.blocks.moved[0] == pytest.approx(reach, rel=0.005)
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("sign", [1, -1])
 def test_what_slides_is_said_to_slide_with_its_slip(sign, monkeypatch, tmp_path):
     monkeypatch.setattr(memory, "place", lambda: tmp_path / "blocks.sqlite")
@@ -189,6 +197,7 @@ def test_edges_are_those_of_all_ground_in_line_and_of_blocks():
     assert free.edge_passed("top", both) == ""  # it still is on the block, which has left the ground
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("file", ["block", "cone", "arch", "rigid_body", "linkages/portico", "walls/facade"])
 def test_ground_that_nobody_drew_has_no_edge(file):
     free = free_blocks(rk.load_structure(EXAMPLES / f"{file}.yaml"))
@@ -222,6 +231,7 @@ ARCHITRAVES = assembly(
 )
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("engine", ["blocks", "auto"])
 def test_a_bridge_on_seats_has_an_outcome_and_no_rotation(engine):
     motion = sine(0.8, 0.8)
@@ -254,6 +264,7 @@ def test_a_deck_falls_off_its_seat():
     assert "where deck falls off the edge of left" in answer.view.data["verdict"]
 
 
+@pytest.mark.rest
 def test_columns_that_start_together_move_as_each_alone():
     ground, motion = {"floor": box(-5, 12, -0.5, 0)}, sine(0.3, 0.8)
     pair = assembly({"a": box(0, 1, 0, 4), "b": box(5, 6, 0, 4)}, ground, 0.6)
@@ -265,6 +276,7 @@ def test_columns_that_start_together_move_as_each_alone():
     assert turned == pytest.approx(max(alone.peak_positive, alone.peak_negative), rel=0.02)
 
 
+@pytest.mark.rest
 def test_architraves_over_one_column_and_several_motions():
     answers = rk.respond(ARCHITRAVES, [sine(0.3, 0.3), sine(1.0, 1.5)], engine="auto")
     first, second = (each["blocks"] for each in answers.values())
@@ -298,6 +310,7 @@ def test_a_mirrored_edge_is_the_mirrored_edge():
     assert free.edge_passed("a", moved_by(free, "a", 0.29)) == other.edge_passed("a", moved_by(free, "a", -0.29)) == ""
 
 
+@pytest.mark.rest
 def test_deep_ground_is_as_shallow_ground():
     motion, found = sine(0.5, 0.7), []
     for wide, deep in ((9.0, 1.0), (900.0, 30.0)):

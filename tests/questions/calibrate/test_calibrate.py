@@ -146,6 +146,7 @@ class TestFit:
             found = fit_trace(Structure(BLOCK), given)
             assert found.impacts[:3] == pytest.approx(begin + np.array(times[:3]), abs=0.01)
 
+    @pytest.mark.rest
     def test_a_wrong_p_leaves_a_pattern_and_is_within_the_deviation(self, clean):
         size = 1.03**2
         near = rk.Block(width=0.1 * size, height=0.5 * size)
@@ -173,7 +174,7 @@ class TestFit:
         )
         assert "The two sides differ" in trace_view(found, Structure(BLOCK)).parts[3]
 
-    @pytest.mark.every(2)
+    @pytest.mark.every(3)
     @pytest.mark.parametrize("way", ["reversed", "uneven", "gaps", "late", "in parts"])
     def test_any_sense_sampling_and_gaps(self, clean, way):
         given = trace(clean[0], noise=0.002)

@@ -162,6 +162,7 @@ class TestJoints:
 class TestFilm:
     """The picture of free blocks is that of the mechanism, if they move as the mechanism does."""
 
+    @pytest.mark.every(4)
     @pytest.mark.parametrize(
         "file", ["block", "arch", "symmetric_frame", "walls/facade", "walls/floor_wall", "masonry/portal"]
     )
@@ -276,6 +277,7 @@ def test_the_portal_agrees_and_the_arch_collapses(tmp_path):
     assert 3.2 < arch.parted < arch.exact.known_to < arch.joints[0].passed < arch.of_blocks.overturning_time
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(
     ("fields", "refused"),
     [

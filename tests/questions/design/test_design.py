@@ -60,6 +60,7 @@ class TestClosedForms:
         diagonal = 2 * 3 * G / (4 * 3.0**2)  # p2 = 3 g/(4 R), with 2 R the diagonal
         assert isclose(found.value, (diagonal**2 - 0.5**2) ** 0.5, rel_tol=1e-9)
 
+    @pytest.mark.every(3)
     @pytest.mark.parametrize(
         ("until", "share"),
         [("lambda >= 0.24", 0.2), ("phi_cr >= 0.23635507", 0.2), ("phi_cr >= 0.19739556", 0.0)],
@@ -296,6 +297,7 @@ class TestCommand:
         assert "From -2 m to -1 m lambda could not be computed: width must be more than 0 m, got -2.0." in said
 
 
+@pytest.mark.rest
 def test_a_wall_is_designed_for_a_code():
     """The facade of 8 m passes by the nonlinear method from where d_SLV, 0.4 of d0*, is what the ground asks for."""
     import rocking_cli as rk

@@ -104,6 +104,7 @@ def test_what_is_no_number_is_not_varied():
         rk.design(facade(bars=2, diameter=0.01, steel="S235"), "ties.bar.steel=1:4", "lambda > 0.1")
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("state", ["SLD", "SLV", "SLC"])
 def test_zeta_of_each_limit_state_is_that_of_verify(state):
     site = {**SITE, **FURTHER}

@@ -261,7 +261,7 @@ def test_the_verdict_is_that_of_its_own_numbers(structure, asked, tmp_path):
     assert last in said and said.count("Prefer") == (expected in ("kappa1", "kappa2"))
 
 
-@pytest.mark.every(2)
+@pytest.mark.rest
 def test_equiv_error_and_respond_disregard_the_same_kappa1(tmp_path):
     for structure in (VALLEY, TALL, wall_of(0.3), arch_of(1.5, 157.5)):
         file = tmp_path / "s.yaml"

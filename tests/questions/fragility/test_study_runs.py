@@ -221,23 +221,6 @@ def long_study(tmp_path_factory):
 
 
 @pytest.mark.rest
-def test_killed_and_run_again_it_is_as_if_nothing_had_happened(long_study, tmp_path):
-    path, prepared, whole = long_study
-    place = tmp_path / "killed.db"
-    process = program("fragility", path, "--store", place, "--jobs", 1)
-    wait_until_some_are_finished(place, process)
-    process.kill()  # SIGKILL: no chance to tidy up
-    process.communicate()
-    had = finished(place)
-    assert 0 < had < prepared.plan.total
-    again = program("fragility", path, "--store", place)
-    said = again.communicate()[1]
-    assert again.returncode == 0
-    assert f"{had} of {prepared.plan.total} runs are in the store already" in said
-    assert dump(place) == dump(whole)
-
-
-@pytest.mark.rest
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no interrupt to send to one process")
 def test_interrupted_it_says_so_and_keeps_what_is_finished(long_study, tmp_path):
     place = tmp_path / "interrupted.db"

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+from rocking_cli.io import files
 from rocking_cli.io.starters import STARTERS
 from rocking_cli.questions.new.command import SITE, STUDY
 from rocking_cli.questions.new.new_plugin import CODE, MAX_NAME_LENGTH, MECHANISM
@@ -153,13 +154,13 @@ class TestFolder:
             Path("pier").mkdir()
         written = []
 
-        def third_time(path, content, write=Path.write_bytes):
+        def third_time(path, write, put=files._put):
             written.append(path)
             if len(written) == 3:
                 raise raised
-            write(path, content)
+            put(path, write)
 
-        monkeypatch.setattr(Path, "write_bytes", third_time)
+        monkeypatch.setattr(files, "_put", third_time)
         run("new", "--plugin", NAME, "-o", "pier", code=code)
         assert in_this_folder() == (["pier"] if empty else []) and there(".") == []
 

@@ -312,6 +312,7 @@ class TestCommand:
         assert [each["passed"] for each in found["checks"]] == [True, None, False]
         assert [each["why"] for each in found["checks"]] == [None, "there is none", "MemoryError"]
 
+    @pytest.mark.rest
     def test_quick_runs_all_checks(self):
         done = asked("--quick", "--json")
         found = json.loads(done.stdout)

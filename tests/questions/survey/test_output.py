@@ -1,6 +1,7 @@
 """What a survey writes: tables for spreadsheets of any locale with the columns that came in, maps, and sheets."""
 
 import csv
+import errno
 import hashlib
 import json
 import re
@@ -16,6 +17,7 @@ from matplotlib.transforms import Bbox
 
 import rocking_cli as rk
 from rocking_cli.errors import InputError, Refused
+from rocking_cli.io import files
 from rocking_cli.plotting import style
 from rocking_cli.questions.survey import sheets as survey_sheets
 from rocking_cli.questions.survey.coordinates import coordinates
@@ -478,22 +480,25 @@ class TestSheets:
         assert {each.name for each in Path("sh").iterdir()} == {"a.html", "c.html", LIST_FILE}
 
     @pytest.mark.rest
-    def test_a_full_disk_leaves_whole_sheets_and_a_list_of_them(self, monkeypatch):
-        self.table("a", "b", "c")
-        whole = survey_sheets.write_whole
+    def test_after_a_full_disk_the_next_survey_goes_on(self, monkeypatch):
+        self.table("a", "b")
+        rk.survey("s.csv", site="site.yaml", sheets="sh")
+        self.table("a", "b", "c", width="0.6")
+        whole = files._put
 
         def write(path, fill):
             if path.name == "b.html":
-                raise Refused("b.html: no room")
+                raise OSError(errno.ENOSPC, "no room")
             whole(path, fill)
 
-        monkeypatch.setattr(survey_sheets, "write_whole", write)
-        with pytest.raises(Refused):
+        monkeypatch.setattr(files, "_put", write)
+        with pytest.raises(Refused, match="no room"):
             rk.survey("s.csv", site="site.yaml", sheets="sh")
-        assert {each.name for each in Path("sh").iterdir()} == {"a.html", LIST_FILE}
-        monkeypatch.setattr(survey_sheets, "write_whole", whole)
+        shown = {each.name for each in Path("sh").iterdir() if each.name[0] != "."}
+        assert shown == {"a.html", "b.html", LIST_FILE}
+        monkeypatch.setattr(files, "_put", whole)
         rk.survey("s.csv", site="site.yaml", sheets="sh")
-        assert len(list(Path("sh").iterdir())) == 4
+        assert {each.name for each in Path("sh").iterdir()} == {"a.html", "b.html", "c.html", LIST_FILE}
 
     def test_without_what_makes_sheets_the_survey_is_printed_and_it_is_said_once(self, monkeypatch):
         self.table("a", "b")

