@@ -19,6 +19,7 @@ from rocking_cli.cli.main import main
 from rocking_cli.dynamics import kernels, shipped, ways
 from rocking_cli.dynamics.calling import SETS
 from rocking_cli.dynamics.exact import closed_form
+from rocking_cli.errors import KernelWarning
 from rocking_cli.excitation.records import record_units
 from rocking_cli.excitation.records.registry import Readers
 from rocking_cli.questions.selfcheck import checks
@@ -340,10 +341,14 @@ class TestHostilePlaces:
         assert "checks" in module or checked("units").passed
 
     def test_without_ctypes(self, monkeypatch):
+        ways.forget()
         monkeypatch.delattr("rocking_cli.dynamics.shipped")
         monkeypatch.setitem(sys.modules, "rocking_cli.dynamics.shipped", None)
         assert checked("kernels").passed is None
-        assert checked("openings").passed
+        with pytest.warns(KernelWarning):
+            assert checked("openings").passed
+        monkeypatch.undo()
+        ways.forget()
 
     @pytest.mark.rest
     def test_with_a_kernel_that_is_none(self, monkeypatch):
