@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import errno
-import logging
 import os
 import sys
 from functools import partial
@@ -20,6 +19,7 @@ from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.plugins.rooms import commands
 from rocking_cli.text import cut, keeps_formulas, one_line, printable
 
+NO_MEMORY = "Could not allocate memory", "can't start new thread"  # of MuJoCo, and of Python
 DIAGNOSTIC_COMMANDS = ("info", "selfcheck")
 """Commands that run even if the user's defaults are invalid."""
 MAX_EPOCH_DIGITS = 11  # number of digits of SOURCE_DATE_EPOCH, up to the year 5138
@@ -110,6 +110,8 @@ class LazyGroup(click.Group):
         os.environ["MPLBACKEND"] = "agg"  # figures are written, never shown: no display is needed
         # No plugin of pydantic is used, and a search for plugins takes as long as reading many structure files.
         os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
+        import logging  # which takes longer than the help
+
         logging.getLogger("matplotlib").setLevel(logging.ERROR)  # it tells of its caches
         for stream in (sys.stdout, sys.stderr):
             if hasattr(stream, "reconfigure"):
@@ -138,13 +140,15 @@ class LazyGroup(click.Group):
             terminal.error("".join([terminal.as_typed(str(error), command), *getattr(error, "__notes__", ())]))
             terminal.debug_traceback(error)
             ctx.exit(error.exit_code)
-        except MemoryError as error:
-            terminal.error("not enough memory on this machine")
-            terminal.debug_traceback(error)
-            ctx.exit(1)
         except OSError as error:  # reported by `main`
             terminal.debug_traceback(error)
             raise
+        except Exception as error:
+            if not (isinstance(error, MemoryError) or any(words in str(error) for words in NO_MEMORY)):
+                raise
+            terminal.error("not enough memory on this machine")
+            terminal.debug_traceback(error)
+            ctx.exit(1)
         finally:
             terminal.detail(f"took {monotonic() - began:.2f} s")
 

@@ -160,7 +160,7 @@ def write_files(place: Path, files: Iterable[tuple[str, bytes]]) -> None:
                 (place / name).parent.mkdir(parents=True, exist_ok=True)
                 _sync_folder((place / name).parent.parent)
                 _put(place / name, lambda file, content=content: file.write(content))  # type: ignore[misc]
-    listing.unlink()
+        listing.unlink()  # while it is locked: another run would take the files for those of one that was killed
 
 
 def discard(place: Path) -> None:

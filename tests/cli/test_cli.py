@@ -526,3 +526,18 @@ def test_where_a_mechanism_is_not_on_the_safe_side_the_verdict_says_so_too(comma
     assert f"Caution: {load_structure(wall).caution}" in said
     block = EXAMPLES / "block.yaml"
     assert "Caution" not in run(command, block, "--pulse", "sine:0.4g:0.8s", "--neighbours", 2).stdout
+
+
+@pytest.mark.parametrize(
+    "error", [MemoryError(), ValueError("Error: engine error: Could not allocate memory"), ValueError("odd")]
+)
+def test_without_memory_a_command_ends_in_order_whatever_the_library_calls_it(error, monkeypatch):
+    def fails(*_, **__):
+        raise error
+
+    monkeypatch.setattr("rocking_cli.questions.equiv.verb.equiv", fails)
+    ended = CliRunner().invoke(main, ["equiv", str(EXAMPLES / "block.yaml")])
+    if str(error) == "odd":
+        assert ended.exception is error
+    else:
+        assert ended.exit_code == 1 and "error: not enough memory on this machine" in ended.stderr

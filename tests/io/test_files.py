@@ -9,7 +9,16 @@ import pytest
 
 from rocking_cli.errors import InputError, Refused
 from rocking_cli.io import files
-from rocking_cli.io.files import check_writable, discard, keep_apart, read_bytes, write_files, write_folder, write_whole
+from rocking_cli.io.files import (
+    LISTING,
+    check_writable,
+    discard,
+    keep_apart,
+    read_bytes,
+    write_files,
+    write_folder,
+    write_whole,
+)
 
 
 def test_a_file_is_written_with_the_usual_rights(tmp_path):
@@ -242,12 +251,22 @@ def test_what_was_changed_after_a_kill_stays(tmp_path, monkeypatch):
     assert {each.name: each.read_bytes() for each in tmp_path.iterdir()} == {"a.csv": b"mine"}
 
 
-def test_while_a_folder_is_being_written_nobody_takes_its_files_away(tmp_path):
+def test_while_a_folder_is_being_written_nobody_takes_its_files_away(tmp_path, monkeypatch):
+    unlink = Path.unlink
+
+    def at_the_end(path, **how):
+        monkeypatch.undo()
+        discard(tmp_path)
+        unlink(path, **how)
+
     def contents():
         yield "a.csv", b"1"
         discard(tmp_path)
         assert (tmp_path / "a.csv").exists()
         yield "b.csv", b"2"
+        monkeypatch.setattr(
+            Path, "unlink", lambda path, **how: (at_the_end if path.name.endswith(LISTING) else unlink)(path, **how)
+        )
 
     write_files(tmp_path, contents())
     assert sorted(each.name for each in tmp_path.iterdir()) == ["a.csv", "b.csv"]

@@ -251,13 +251,18 @@ class ExactCurve:
         return max(self.a0, *(self.acceleration_at(float(phi)) for phi in places))
 
     @cached_property
-    def broken(self) -> float | None:
-        """Displacement at which breaks so far take more than half of the largest a* [m]; None if they do not."""
+    def last_break(self) -> Break | None:
+        """The break with which those so far take more than half of the largest a*; None if they do not."""
         for each in self._reached_breaks:
             whole, left = self.chain.mechanism, self.standing(each.phi, after=True)
             if self.acceleration_at(each.phi, whole) - self.acceleration_at(each.phi, left) > self.largest / 2:
-                return self.displacement_at(each.phi)
+                return each
         return None
+
+    @property
+    def broken(self) -> float | None:
+        """Displacement at the last break [m]."""
+        return None if self.last_break is None else self.displacement_at(self.last_break.phi)
 
     @cached_property
     def seat(self) -> Seat | None:

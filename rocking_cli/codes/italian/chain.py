@@ -132,6 +132,8 @@ class Chain:
 
     def added(self, phi: float) -> float:
         """Return the part of the sum of (P + Q) x' over g that the letter of the code adds at a rotation [kg m]."""
+        if not self.whole:
+            return 0.0
         more = [(each.mass * share, each.spot) for each in self.mechanism.hung.masses if (share := self._more(each))]
         follow = self.mechanism.followed(np.array([phi]), self.direction)
         way = sum(mass * float(follow(spot).dz[0].real) for mass, spot in more)

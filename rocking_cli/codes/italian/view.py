@@ -80,7 +80,7 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
         yield from ties(say, each.exact, verified)
         for extra in found.mechanism.extras(each.direction):
             if extra.key == "hinge":
-                yield f"{where}: hinge at {number(extra.value, 4)} of its height."
+                yield f"{where}: hinge at {number(extra.value, 4)} of the wall's height."
         texts = list(map(say, differences(each, found.first)))
         for of_state in each.dynamic.values():
             items = dynamic.items(say, of_state, each.exact.confidence)

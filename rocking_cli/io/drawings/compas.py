@@ -33,6 +33,8 @@ def read(data: bytes, file: str, plane: str = "xz") -> LineDrawing:
     chains, labels, ends = list[DrawnLine](), list[DrawnText](), list[Reals]()
     try:
         model = json.loads(data)["data"]
+        if isinstance(model["elements"], list):
+            raise DrawingError("damaged", "it is of an older compas_model: save it by compas_dem 0.6 or later", file)
         names = Counter(element.get("name") for element in model["elements"].values())
         for guid, moved in _placed(model):
             block = model["elements"][guid]

@@ -90,3 +90,6 @@ def test_what_is_no_prism_is_named():
         assert compas.sniff(cut, ".json")
         with pytest.raises(DrawingError, match="cannot be read as JSON of compas_dem"):
             compas.read(cut, "m.json")
+    old = b'{"dtype": "compas_model.models/Model", "data": {"elements": []}}'
+    with pytest.raises(DrawingError, match=r"older compas_model: save it by compas_dem 0\.6"):
+        compas.read(old, "m.json")

@@ -328,10 +328,8 @@ class DirectionSteps:
     def _ends(self, rule: Rule) -> Iterator[Evaluated]:
         """Yield the lines to what may end the displacement capacity besides a share of d0*: a break, or a lost seat."""
         others, seat = ends(self.curve, rule), self.curve.seat
-        if BREAK in others:
-            mechanism = self.curve.chain.mechanism
-            lost = next(each for each in self.curve.breaks if self.curve.displacement_at(each.phi) == others[BREAK])
-            for tie in [tie for tie in mechanism.ties or [] if tie.name == lost.name]:
+        if (lost := self.curve.last_break) is not None and BREAK in others:
+            for tie in [tie for tie in self.curve.chain.mechanism.ties or [] if tie.name == lost.name]:
                 known = F.TIE_KNOWN if tie.elongation else replace(F.TIE_KNOWN, meaning="tie_assumed")
                 strain, L = tie.elongation or MAX_STRAIN, tie.length or tie.span
                 yield known.line(lost.length, {"tie": tie.name}, strain=strain, L=L)
