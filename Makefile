@@ -16,7 +16,7 @@ PYTEST := -m pytest -n auto --dist worksteal
 LATER := rest or docs or types or kernels
 
 .PHONY: setup constraints demo selfcheck test test-all test-newest test-oldest test-kernels test-versions test-elsewhere damage soak crash bounds fuzz fields \
-	properties lint type contracts check bench kernels same-kernels validation free-blocks scoreboard trust trust-check pages pictures \
+	properties budget lint type contracts check bench kernels same-kernels validation free-blocks scoreboard trust trust-check pages pictures \
 	docs release clean
 
 setup: $(STAMP)  ## Create the environment and install the package with its development tools
@@ -71,6 +71,9 @@ test-elsewhere: setup  ## Both, side by side
 
 damage: setup  ## What is said of real records that lost a character; DAMAGE=2000 is how often, ROCKING_RECORDS where they are
 	$(BIN)/python -m tests.damage
+
+budget: setup  ## Lines of code of each folder; lowers the numbers in tests/house/budget.toml
+	$(BIN)/python -m tests.house.budget
 
 lint: setup
 	$(BIN)/ruff check .
