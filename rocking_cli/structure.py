@@ -17,7 +17,7 @@ from rocking_cli.core.advice import uplift_error
 from rocking_cli.core.equivalence import MAX_CURVATURE
 from rocking_cli.core.hung.element import Question
 from rocking_cli.dynamics.model import MODELS, Model, ModelName, build, no_restitution
-from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
+from rocking_cli.errors import InputError, MechanismError, Problem, named, of_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.dotted import put, words
 from rocking_cli.io.field_problems import (
@@ -50,8 +50,8 @@ def with_restitution(mechanism: Mechanism, eta: float) -> Mechanism:
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         reason = first["ctx"]["reason"] if first["type"] == "geometry" else f"{first['msg']}, got {eta:g}"
-        name = mechanism.name or mechanism.mechanism
-        raise InputError(Problem(f"{name}: {reason[0].lower()}{reason[1:]}", field=field)) from None
+        name = f"{mechanism.name or mechanism.mechanism}: {'rebound: ' if field == 'rebound' else ''}"
+        raise InputError(Problem(f"{name}{reason[0].lower()}{reason[1:]}", field=named("restitution"))) from None
 
 
 def build_models(
@@ -92,18 +92,18 @@ def build_models(
 def check_opening(opening: float) -> None:
     """Raise `InputError` if a largest opening of joints, over D_cr, is out of range."""
     if not 0 <= opening <= MAX_OPENING:
-        raise InputError(Problem(f"must be from 0 to {MAX_OPENING:g}, got {opening:g}", field="`opening`"))
+        raise InputError(Problem(f"must be from 0 to {MAX_OPENING:g}, got {opening:g}", field=named("opening")))
 
 
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Structure:
-    """A structure, with all that is derived from its mechanism, computed when first requested.
+    """A structure as a run has it, with all that is derived from its mechanism, computed when first requested.
 
     Parameters
     ----------
     mechanism : Mechanism
-        Mechanism, with its loads and ties.
+        Mechanism, with its loads and ties, and with the restitution of the run if one is given.
     file : str, optional
         File of the structure, for messages on fields whose errors show only when they are used.
     opening : float
@@ -112,21 +112,35 @@ class Structure:
     to_first_impact : bool
         Whether time histories of a structure without a known restitution are simulated up to their first impact, and
         not refused.
+    restitution : float, optional
+        Restitution of all impacts that is given for the run, in place of that of the mechanism; for one-sided rocking,
+        the rebound.
 
     Raises
     ------
     InputError
-        If the opening is out of range.
+        If the opening is out of range, or the mechanism does not accept the restitution.
     """
 
     mechanism: Mechanism
     file: str | None = None
     opening: float = OPENING
     to_first_impact: bool = False
+    restitution: float | None = None
     _models: dict[ModelName, Model] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         check_opening(self.opening)
+        if self.restitution is not None:
+            object.__setattr__(self, "mechanism", with_restitution(self.mechanism, self.restitution))
+
+    def under(self, *, opening: float | None = None, restitution: float | None = None) -> Structure:
+        """Return the structure as a run has it; what is None stays. Raises `InputError` if a value is not valid."""
+        opening = self.opening if opening is None else opening
+        restitution = self.restitution if restitution is None else restitution
+        if (opening, restitution) == (self.opening, self.restitution):
+            return self
+        return replace(self, opening=opening, restitution=restitution, _models={})
 
     def of(self, mechanism: Mechanism) -> Structure:
         """Return the structure with another mechanism, such as its own with another field."""
@@ -217,6 +231,17 @@ class Structure:
             return self.mechanism.eta(self.mechanism.sides[0]), self.mechanism.eta(self.mechanism.sides[1])
 
     @property
+    def restitution_source(self) -> str:
+        """Where the restitution comes from: "run", "given" (by the file), "kinematics", "impacts", or "missing"."""
+        if self.restitution is not None:
+            return "run"
+        if not self.mechanism.restitution_is_kinematic:
+            return "given"
+        if self.mechanism.rocks_both_ways:
+            return "kinematics"
+        return "missing" if self.mechanism.rebound_from_impacts() is None else "impacts"
+
+    @property
     def p(self) -> float:
         """Frequency parameter [rad/s]: the larger of both directions; without a block, of the nonlinear model."""
         if self.why_no_block is None:
@@ -247,10 +272,6 @@ class Structure:
     def models(self, names: Sequence[ModelName] = MODELS) -> list[Model]:
         """Return several models of the structure, in the order of `names`."""
         return [self.model(name) for name in names]
-
-    def with_eta(self, eta: float) -> Structure:
-        """Return the structure with another restitution of all impacts. Raises `InputError` if it is not valid."""
-        return self.of(with_restitution(self.mechanism, eta))
 
     def unit_of(self, field: str) -> str:
         """Return the unit of a numeric field, empty if dimensionless. Raises `InputError` if the field does not exist.

@@ -12,13 +12,14 @@ from numpy.typing import ArrayLike
 from rocking_cli.arrays import Integers, Reals
 from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.deck import MAX_IMPACTS, lay_out, read_marks, run_deck
-from rocking_cli.dynamics.history import RTOL, check_rtol, out_of_step
+from rocking_cli.dynamics.history import out_of_step
 from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.dynamics.sliding import settle
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.names import RTOL
 from rocking_cli.short_repr import short_repr
 
 # Impacts after the record: one ends the current motion, two end an excursion to either side; later motion decays.
@@ -201,7 +202,6 @@ def respond_many(
     >>> [float(x) for x in respond_many(models, [wave], Runs.every(1, 1, scales=(0.3, 0.5))).peak_ratio.round(4)]
     [0.0, 0.2522]
     """
-    check_rtol(rtol)
     if threads is not None and threads < 1:
         raise InputError(f"threads must be 1 or more, got {threads}")
     for name, places, there in (("model", runs.model, len(models)), ("record", runs.record, len(motions))):

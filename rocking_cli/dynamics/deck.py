@@ -15,7 +15,9 @@ from rocking_cli.dynamics.calling import HISTORIES, TIED
 from rocking_cli.dynamics.joints import laid_out
 from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import Outcome
+from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.names import FINEST_RTOL
 
 if TYPE_CHECKING:
     from rocking_cli.dynamics.outcome import Outcomes
@@ -40,8 +42,10 @@ def run_deck(
 ) -> None:
     """Run the kernel; it fills `marks` and, if given, the samples of the last history.
 
-    Without samples, a history ends as soon as its outcome is unknown.
+    Without samples, a history ends as soon as its outcome is unknown. Raises `InputError` if `rtol` is out of range.
     """
+    if not FINEST_RTOL <= rtol < 1:
+        raise InputError(f"rtol must be at least {FINEST_RTOL:g} and below 1, got {rtol:g}: rounding allows no less")
     run = ways.kernel(TIED if deck.forces.ndim == 4 else HISTORIES)
     brief = samples is None
     if samples is None:

@@ -24,9 +24,6 @@ from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.short_repr import short_repr
 
-FINEST_RTOL = 1e-14  # a smaller tolerance is below rounding, so that no step is accepted
-RTOL = 1e-9  # local error of a step by the lower order of the pair; peaks are then accurate to 1e-11
-TAIL_SECONDS = 10.0  # s after the record for which samples are kept
 MOST_SAMPLES = 20_000_000
 COLUMNS_PER_TASK = 256  # number of histories that a thread computes at a time
 MIN_COLUMN_ETA = 1e-3  # lower bound on the restitution of a single column, which shifts with that of the structure
@@ -162,19 +159,13 @@ class History(Outcome[bool, int, float]):
         return float(self.impacts[0, 0]) if len(self.impacts) else float("nan")
 
 
-def check_rtol(rtol: float) -> None:
-    """Raise `InputError` if a number is not a valid relative local error."""
-    if not FINEST_RTOL <= rtol < 1:
-        raise InputError(f"rtol must be at least {FINEST_RTOL:g} and below 1, got {rtol:g}: rounding allows no less")
-
-
 def follow(
     model: Model,
     motion: GroundMotion | None,
     *,
     release: float = 0.0,
-    tail: float = TAIL_SECONDS,
-    rtol: float = RTOL,
+    tail: float = names.TAIL_SECONDS,
+    rtol: float = names.RTOL,
     most_kept: int = MAX_IMPACTS,
     eta: float = float("nan"),
 ) -> History:

@@ -118,7 +118,7 @@ class Outcome(Generic[Flags, Counts, Numbers]):
         Examples
         --------
         >>> import rocking_cli as rk
-        >>> rk.respond_each("examples/block.yaml", "examples/accel.csv", scales=[1, 2, 3, 4])["nonlinear"].share()
+        >>> rk.respond_each("examples/block.yaml", "examples/accel.csv", scale=[1, 2, 3, 4])["nonlinear"].share()
         (0.25, 0.25)
         """
         ran = ~self.failed

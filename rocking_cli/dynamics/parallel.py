@@ -9,6 +9,7 @@ import threading
 import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextvars import copy_context  # messages of threads name arguments as they were given
 from typing import Any
 
 from rocking_cli.errors import Refused
@@ -38,7 +39,7 @@ def in_parts(
     """
     with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
         parts = {
-            pool.submit(work, first, min(first + size, count)): min(size, count - first)
+            pool.submit(copy_context().run, work, first, min(first + size, count)): min(size, count - first)
             for first in range(0, count, size)
         }
         try:

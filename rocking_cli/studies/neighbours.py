@@ -9,26 +9,27 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from statistics import NormalDist
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.batch import Runs
-from rocking_cli.dynamics.history import RTOL
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError, Problem, SolverError
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.names import peaks_over
+from rocking_cli.names import MAX_NEIGHBOURS, peaks_over
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.engines import EXACT, Engine
+
+if TYPE_CHECKING:
+    from rocking_cli.studies.conditions import Conditions
 
 FRACTILES = (0.16, 0.50, 0.84)
 MIN_AGREEMENT = 0.9  # share of neighbours with the outcome of the history; below it the outcome is sensitive
 LEAST_ETA = 1e-3  # lower restitutions are raised to it, as an impact leaves some motion
-MAX_NEIGHBOURS = 1_000_000  # a million takes minutes
 SEED = 1963
 STANDARD_NORMAL = NormalDist()
 MIN_PROBABILITY = 1e-300  # replaces 0, which has no normal quantile
@@ -205,14 +206,9 @@ class Neighbours:
 
 
 def neighbours(
-    model: Model,
+    conditions: Conditions,
     motion: GroundMotion | None,
-    around: Neighbourhood | None = None,
     *,
-    release: float | None = None,
-    release_is_angle: bool = False,
-    rtol: float = RTOL,
-    engine: Engine = EXACT,
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Neighbours:
@@ -220,20 +216,12 @@ def neighbours(
 
     Parameters
     ----------
-    model : Model
-        A model of the structure; the nonlinear one is the structure itself.
+    conditions : Conditions
+        The structure, the conditions of the motion itself, and how to draw the neighbours.
     motion : GroundMotion or None
         The motion as in the history, scaled and reversed; None for a release alone.
-    around : Neighbourhood, optional
-        How to draw the neighbours.
-    release : float, optional
-        Start at rest, tilted by this fraction of the critical rotation.
-    release_is_angle : bool
-        Whether the tilt is given as an angle, which stays the same if the slenderness varies.
-    rtol, threads, progress
+    threads, progress
         See `respond_many`.
-    engine : Engine
-        Who simulates them.
 
     Raises
     ------
@@ -242,7 +230,8 @@ def neighbours(
     SolverError
         If one of them cannot be followed.
     """
-    around = (around or Neighbourhood()).of(model)
+    model, engine, release = conditions.model, conditions.by, conditions.release
+    around = conditions.around.of(model)
     if not around.count:
         raise InputError(Problem("must be at least 1", field="neighbours"))
     draws = around.drawn(model)
@@ -262,9 +251,10 @@ def neighbours(
     all_draws = Draws(*(np.concatenate(pair) for pair in zip(itself, draws, strict=True)))
     tilts = None
     if release is not None:
-        tilts = release / np.where(all_draws.slender > 0, all_draws.slender, 1.0) if release_is_angle else release
+        slender = np.where(all_draws.slender > 0, all_draws.slender, 1.0)
+        tilts = release / slender if conditions.release_is_angle else release
     outcomes = simulate_neighbours(
-        model, motion, all_draws, release=tilts, rtol=rtol, engine=engine, threads=threads, progress=progress
+        model, motion, all_draws, release=tilts, rtol=conditions.rtol, engine=engine, threads=threads, progress=progress
     )
     outcome = np.where(outcomes.unknown, 2, outcomes.fell)
     peaks = np.where(outcome[1:] > 0, np.inf, outcomes.peak_ratio[1:])

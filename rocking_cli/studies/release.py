@@ -32,6 +32,9 @@ class Release:
     size: float
     is_angle: bool
 
+    def __str__(self) -> str:
+        return self.text
+
     @classmethod
     def of(cls, tilt: float | str) -> Self:
         """Read a fraction between -1 and 1, or a text such as `0.5`, `0.05rad` or `3 deg`. Raises `InputError`."""

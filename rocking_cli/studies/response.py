@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from math import isnan
 
@@ -14,11 +14,10 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulse_fit import FITTED, PulseFit, fit_pulses
 from rocking_cli.processing.listed import Scaled
 from rocking_cli.short_repr import short_repr
-from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare, NextStep, are_alike, worst
+from rocking_cli.studies.conditions import Conditions
 from rocking_cli.studies.contact import ContactDemand, Contacts
-from rocking_cli.studies.engines import EngineName, engine_of
-from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
+from rocking_cli.studies.neighbours import Neighbours, neighbours
 
 Histories = Mapping[ModelName, History]
 ByPolarity = Mapping[int, Histories]
@@ -86,40 +85,6 @@ def _of_run(run: History, neighbours: Neighbours | None, motion: str, sign: int)
     )
 
 
-@dataclass(frozen=True)
-class Question:
-    """Options of the response to ground motions.
-
-    Parameters
-    ----------
-    signs : tuple of int
-        The polarities: 1, -1 or both.
-    release : float or None
-        Fraction of phi_cr at which the structure starts at rest; None: phi = 0.
-    tail : float
-        Duration of the history after the end of the record [s].
-    rtol : float
-        Relative local error of a step.
-    with_pulse : str or None
-        Shape of the pulse under which the response is computed as well, or "best"; None for no pulse.
-    around : Neighbourhood
-        The neighbours of every motion; a count of 0 for none.
-    release_is_angle : bool
-        Whether the release was given as an angle.
-    engine : {"exact", "blocks", "auto"}
-        Who simulates the motions.
-    """
-
-    signs: tuple[int, ...]
-    release: float | None
-    tail: float
-    rtol: float
-    with_pulse: str | None = None
-    around: Neighbourhood = field(default_factory=Neighbourhood)
-    release_is_angle: bool = False
-    engine: EngineName = "exact"
-
-
 @short_repr
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Response(Mapping[ModelName, History]):
@@ -178,40 +143,19 @@ class Response(Mapping[ModelName, History]):
         return len(next(iter(self.runs.values())))
 
 
-def response_of(
-    structure: Structure, names: Sequence[ModelName], scaled: Scaled | None, question: Question
-) -> Response:
+def response_of(conditions: Conditions, scaled: Scaled | None) -> Response:
     """Simulate models of a structure under a motion, or freely from a release, and return all results."""
-    contacts = Contacts(structure.mechanism)
-    engine = engine_of(question.engine, [structure.mechanism])
-    follow = partial(
-        engine.respond, structure, models=names, release=question.release, tail=question.tail, rtol=question.rtol
-    )
+    contacts, follow = Contacts(conditions.structure.mechanism), partial(conditions.by.respond, conditions)
     under = {
-        sign: scaled.motion.scaled(sign * scaled.factor) if scaled is not None else None for sign in question.signs
+        sign: scaled.motion.scaled(sign * scaled.factor) if scaled is not None else None for sign in conditions.signs
     }
-    first = under[question.signs[0]]
+    first = under[conditions.signs[0]]
     fit: PulseFit | None = None
-    if first is not None and question.with_pulse is not None:
-        fits = fit_pulses(
-            first, tuple(FITTED) if question.with_pulse == BEST_PULSE else (question.with_pulse,), ("velocity",)
-        )
-        fit = max(fits, key=lambda one: one.captured)
+    if first is not None and conditions.with_pulse is not None:
+        shapes = tuple(FITTED) if conditions.with_pulse == BEST_PULSE else (conditions.with_pulse,)
+        fit = max(fit_pulses(first, shapes, ("velocity",)), key=lambda one: one.captured)
     runs = {sign: follow(motion) for sign, motion in under.items()}
-    best: ModelName = "nonlinear" if "nonlinear" in names else names[0]
-    neighbours_of = {
-        sign: neighbours(
-            structure.model(best),
-            motion,
-            question.around,
-            release=question.release,
-            release_is_angle=question.release_is_angle,
-            rtol=question.rtol,
-            engine=engine,
-        )
-        for sign, motion in under.items()
-        if question.around.count
-    }
+    neighbours_of = {sign: neighbours(conditions, motion) for sign, motion in under.items() if conditions.around.count}
 
     def checked(runs: ByPolarity, under: Mapping[int, GroundMotion | None]) -> dict[int, ContactDemand]:
         return {sign: contacts.check(run["nonlinear"], under[sign]) for sign, run in runs.items() if "nonlinear" in run}

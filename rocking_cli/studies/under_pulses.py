@@ -40,8 +40,8 @@ class PulsedModel:
         Its equivalent blocks.
     direction : Direction
         The direction in which the weakest pulse uplifts; its p, lambda and eta make pulses dimensionless.
-    eta_given : bool
-        Whether the restitution was given; otherwise it is that of the kinematics.
+    restitution_source : str
+        Where the restitution comes from, see `Structure.restitution_source`.
     engine : Engine
         Who simulates its nonlinear motions.
     """
@@ -50,7 +50,7 @@ class PulsedModel:
     model: Model
     equivalence: Equivalence
     direction: Direction
-    eta_given: bool = True
+    restitution_source: str = "given"
     engine: Engine = EXACT
 
     @property
@@ -126,15 +126,13 @@ def linear_block(eta: float) -> PulsedModel:
     return PulsedModel(model.structure, model, Equivalence(block, block), Direction.NEGATIVE)
 
 
-def check_eta(eta: float) -> None:
+def check_eta(eta: float, argument: str = "restitution") -> None:
     """Raise `InputError` if a number is not a coefficient of restitution."""
     if not 0 < eta <= 1:
-        raise InputError(f"`eta` must be in (0, 1], got {eta:g}")
+        raise InputError(f"`{argument}` must be in (0, 1], got {eta:g}")
 
 
-def pulsed_model(
-    structure: Structure, model: ModelName, shape: Pulse, polarities: Sequence[int] = (1,), eta: float | None = None
-) -> PulsedModel:
+def pulsed_model(structure: Structure, model: ModelName, shape: Pulse, polarities: Sequence[int] = (1,)) -> PulsedModel:
     """Prepare a structure for pulses.
 
     Parameters
@@ -147,24 +145,19 @@ def pulsed_model(
         Any pulse of the shape.
     polarities : sequence of int
         The polarities, 1, -1 (reversed pulses) or both.
-    eta : float, optional
-        Coefficient of restitution of every impact; by default that of the structure.
 
     Raises
     ------
     InputError, MechanismError
         If the structure does not stand, or its restitution is not known.
     """
-    if eta is not None:
-        check_eta(eta)
-        structure = structure.with_eta(eta)
     structure.ask("sizes")
     direction = weakest_direction(structure.equivalence, shape, polarities)
     if not structure.mechanism.rocks_both_ways:
         direction = structure.mechanism.directions[0]
-    one_way = not structure.mechanism.rocks_both_ways
-    eta_is_known = (structure.mechanism.rebound if one_way else structure.mechanism.restitution) is not None
-    return PulsedModel(structure.name, structure.model(model), structure.equivalence, direction, eta_is_known)
+    return PulsedModel(
+        structure.name, structure.model(model), structure.equivalence, direction, structure.restitution_source
+    )
 
 
 def uplift(block: EquivalentBlock, model: ModelName) -> float:

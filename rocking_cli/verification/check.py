@@ -12,7 +12,7 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.core.plausible import OddNumber, questions
 from rocking_cli.dynamics.resting import early_failures, glued
-from rocking_cli.errors import InputError, PluginError, Problem
+from rocking_cli.errors import InputError, PluginError, Problem, named
 from rocking_cli.io.yaml_file import Document, parse, placed, read_text
 from rocking_cli.plugins.errors import blame
 from rocking_cli.structure import Structure
@@ -112,7 +112,7 @@ def refuse(site: SiteFile, *, control: bool = False, motions: bool = False) -> N
     """Raise `InputError` if the code of a site takes no control point, or no ground motions, but there are some."""
     code = code_of(site)
     if control and not code.takes_control:
-        raise InputError(Problem(f"{code.key} takes no control point", field="`control`", hint="leave it out"))
+        raise InputError(Problem(f"{code.key} takes no control point", field=named("control"), hint="leave it out"))
     if motions and not code.takes_motions:
         hint = "leave out the ground motions"
         raise InputError(Problem(f"{code.key} has no method with time histories", hint=hint))

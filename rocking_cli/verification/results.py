@@ -15,7 +15,7 @@ from unicodedata import name
 
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.hung.attachments import RefusedFields
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.listed import Scaled
@@ -689,11 +689,11 @@ def where_it_stands(histories: Histories, floor: Floor | None) -> tuple[MotionPl
     """
     motions, carried = histories.motions, [motion.ground is not None for motion in histories.motions]
     if histories.on_floor and floor is None:
-        hint = "give `floor` in the site file, or leave the option out"
-        raise InputError(Problem("requires a site with a floor", field="`on_floor`", hint=hint))
+        hint = f"give {named('floor')} in the site file, or leave the option out"
+        raise InputError(Problem("requires a site with a floor", field=named("on_floor"), hint=hint))
     if any(carried) and histories.on_floor:
-        hint = "leave out one of the two: `floor` carries ground motions to a floor"
-        raise InputError(Problem("cannot be combined with `floor`", field="`on_floor`", hint=hint))
+        hint = f"leave out one of the two: {named('floor')} carries ground motions to a floor"
+        raise InputError(Problem(f"cannot be combined with {named('floor')}", field=named("on_floor"), hint=hint))
     if any(carried) and not all(carried):
         raise InputError(Problem("some of the motions are of a floor, others of the ground: give motions of one kind"))
     if histories.on_floor:
@@ -702,6 +702,9 @@ def where_it_stands(histories: Histories, floor: Floor | None) -> tuple[MotionPl
         return MotionPlace("carried_by_option", motions[0].processing[-1].removeprefix("floor ")), motions
     if floor is None:
         return MotionPlace(), motions
+    if any(step.startswith("floor ") for motion in motions for step in motion.processing):
+        hint = f"give {named('on_floor')}, or prepare them without a floor"
+        raise InputError(Problem("the records are prepared as the motions of a floor already", hint=hint))
     return MotionPlace("carried_to_floor", str(floor)), [floor.of(motion) for motion in motions]
 
 
@@ -718,5 +721,5 @@ def control_at(mechanism: Mechanism, x: float, y: float, body: str | None = None
     try:
         spot = mechanism.carrier.spot(body, complex(x, y), (), "control")
     except RefusedFields as error:
-        raise InputError(Problem(f"`control`: {error.reason}")) from None
+        raise InputError(Problem(f"{named('control')}: {error.reason}")) from None
     return Control(spot.at, spot.body)

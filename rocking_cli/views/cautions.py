@@ -12,6 +12,7 @@ from rocking_cli.core.equivalence import EQUAL_DIRECTIONS
 from rocking_cli.core.mechanism import why_none
 from rocking_cli.dynamics.resting import MAX_FRICTION, early_failures, glued
 from rocking_cli.dynamics.sliding import sliding_of
+from rocking_cli.errors import named
 from rocking_cli.names import digits_apart, percent
 from rocking_cli.views.sheet.language import ENGLISH, Language
 from rocking_cli.views.verdict import SENSE
@@ -68,7 +69,7 @@ def of_restitution(mechanism: Mechanism) -> list[str]:
     for direction, eta in list(etas.items())[: 1 if one else 2]:
         at = "at impacts" if one else f"at impacts that end motion in the {direction.label} direction"
         if eta <= 0:
-            why = f"{why_none(eta)}. Time histories require a measured `restitution`"
+            why = f"{why_none(eta)}. Time histories require a measured {named('restitution')}"
             cautions.append(f"The kinematics give eta = {eta:.4g} {at}: {why}.")
         elif eta > 1 + EQUAL_DIRECTIONS:
             kept = 100 * (eta / mechanism.greatest_restitution(direction)) ** 2

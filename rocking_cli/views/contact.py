@@ -10,7 +10,6 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.studies.contact import NEAR_PEAK, ContactDemand, SupportDemand
 from rocking_cli.views.column import Column, data_of, of, rounded
-from rocking_cli.views.restitution import restitution_source
 from rocking_cli.views.view import ABSENT, force_unit, number
 
 NOT_VALID_BEYOND = ": the result is not valid beyond that time"
@@ -120,7 +119,7 @@ def _at_impacts(found: ContactDemand, mechanism: Mechanism) -> str:
     if found.friction is None and found.impact_friction <= MASONRY_FRICTION:
         return ""
     # The check uses impulses of the kinematic restitution; impulses of another restitution are not known by joint.
-    if not found.followed or restitution_source(mechanism) == "given":
+    if not found.followed or not mechanism.restitution_is_kinematic:
         return ": joints with less slide at impacts, which is not simulated; prevent this, for instance by dowels"
     if found.friction is None:
         return ": give `friction` in the file, and the check of the joints counts how far they slide at impacts"

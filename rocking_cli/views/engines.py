@@ -45,7 +45,7 @@ def blocks_in_words(engine: EngineName, histories: str, friction: str, off_edge:
     others = "; one degree of freedom for all others" if engine == "auto" else ""
     return (
         f"Engine: free blocks (MuJoCo) for {histories}{others}. Overturning is collapse: {COLLAPSE}. Impacts lose the "
-        f"energy that contact takes, whatever restitution the file gives. Friction is {friction}.{off * (off_edge > 0)}"
+        f"energy that contact takes, whatever restitution is given. Friction is {friction}.{off * (off_edge > 0)}"
     )
 
 

@@ -9,19 +9,25 @@ if TYPE_CHECKING:
 
 
 def in_words(motion: GroundMotion) -> str:
-    """Return the processing steps of a motion in a few words; empty if there are none."""
+    """Return the processing steps of a motion, and the file that was prepared by them, in a few words, if any."""
     from rocking_cli.excitation.records import record_units
 
     steps = list(motion.processing)
     for quantity in record_units.QUANTITIES:
         if (step := record_units.differentiation_step(quantity)) in steps:
             steps[steps.index(step)] += f" ({record_units.in_words(quantity, motion.of_ground.dt)})"
-    return f"processed: {', '.join(steps)}" if steps else ""
+    parts = [f"processed: {', '.join(steps)}"] if steps else []
+    return "; ".join(parts + ([f"prepared from {motion.prepared_from}"] if motion.prepared_from else []))
 
 
 def data(motion: GroundMotion) -> dict[str, Any]:
-    """Return the processing steps of a motion in order, as options spell them; for a floor also its peak [g]."""
+    """Return the processing steps of a motion in order, as options spell them; for a floor also its peak [g].
+
+    For a prepared record also its file.
+    """
     entry: dict[str, Any] = {"processing": list(motion.processing)}
+    if motion.prepared_from:
+        entry["prepared_from"] = motion.prepared_from
     if motion.ground is not None:
         entry["floor_pga"] = motion.pga_g
     return entry

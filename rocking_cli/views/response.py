@@ -20,9 +20,9 @@ from rocking_cli.dynamics.verdict import Agreement
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.excitation.pulses import Pulse
-from rocking_cli.structure import Structure
+from rocking_cli.studies.conditions import Conditions
 from rocking_cli.studies.movements import Movements, PointPeak, TiePeak, Watched
-from rocking_cli.studies.response import ByPolarity, Histories, Question, Response
+from rocking_cli.studies.response import ByPolarity, Histories, Response
 from rocking_cli.views import processing
 from rocking_cli.views.cautions import bound_data, cautions_of
 from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
@@ -79,7 +79,7 @@ def _motion_data(motion: GroundMotion) -> dict[str, Any]:
         "npts": motion.npts,
         "dt": motion.dt,
         "unit": motion.source_unit,
-        "pga": motion.of_ground.pga_g,
+        "pga_g": motion.of_ground.pga_g,
         "format": motion.format,
         **processing.data(motion),
     }
@@ -289,9 +289,7 @@ def _impacts(impacts: Reals, etas: tuple[float, float]) -> Iterator[Impact]:
 
 def view(
     found: Response,
-    structure: Structure,
-    asked: Question,
-    polarity: str,
+    conditions: Conditions,
     title: str,
     doubts: Sequence[str] = (),
     *,
@@ -303,12 +301,8 @@ def view(
     ----------
     found : Response
         The response of the structure.
-    structure : Structure
-        The structure.
-    asked : Question
-        The options of the response.
-    polarity : str
-        `1`, `-1` or `both`.
+    conditions : Conditions
+        The structure and the conditions of the run.
     title : str
         Title of the tables.
     doubts : sequence of str
@@ -316,15 +310,16 @@ def view(
     impacts : bool
         Whether to list the impacts: the first in a table, without chatter, all in the data.
     """
-    mechanism, given = structure.mechanism, found.given
+    structure, given = conditions.structure, found.given
+    mechanism = structure.mechanism
     watched, etas = Watched(mechanism), structure.etas if impacts else None
     runs = [run for histories in found.runs.values() for run in histories.values()]
     until = max(run.overturning_time if run.fell else inf for run in runs)
     notes = vertical_notes(found.first, mechanism.gravity, until)
     data: dict[str, Any] = {
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
-        "record": record_data(given.motion, given.factor, polarity, given.pulse) if given else None,
-        "release": asked.release,
+        "record": record_data(given.motion, given.factor, conditions.polarity, given.pulse) if given else None,
+        "release": conditions.release,
         "restitution": restitution_data(structure) if structure.no_model is None else None,
         **runs_data(found, watched, etas),
     }
@@ -349,7 +344,7 @@ def view(
     caution += not_checked(mechanism, first.values())
     joints = ["Joints are named as in `rocking draw`."] if any(each.joint for each in found.contacts.values()) else []
     restitution = [restitution_used(structure)] if "nonlinear" in first else []
-    restitution += engines_in_words(asked.engine, sum("blocks" in runs for runs in found.runs.values()), mechanism)
+    restitution += engines_in_words(conditions.engine, sum("blocks" in runs for runs in found.runs.values()), mechanism)
     sentences = [*parts, *joints, *models_used(first), *restitution, *notes, *caution]
     return View({**data, "notes": [*doubts, *notes, *caution]}, sentences)
 

@@ -54,6 +54,10 @@ class View:
     data: Mapping[str, Any] | Callable[[], Mapping[str, Any]]
     parts: Sequence[Table | str]
 
+    def with_given(self, given: Mapping[str, Any]) -> View:
+        """Return the view with what was given in its data, under `given`."""
+        return View(lambda: {**(self.data() if callable(self.data) else self.data), "given": given}, self.parts)
+
 
 def heading(mechanism: Mechanism) -> str:
     """Return name and type of a structure, for a heading."""

@@ -13,7 +13,7 @@ from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.hung.attached import Attached, Follow, PointMass, Spot
 from rocking_cli.core.kinematics import Reals
 from rocking_cli.core.reactions import parts
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.short_repr import short_repr
 from rocking_cli.verification.results import Control
 
@@ -233,7 +233,8 @@ class Chain:
         dx = self.first / self.inertial if control.body is None else self._sideways(Spot(control.body, control.at))
         if not dx > MIN_SIDEWAYS_SHARE * max(abs(block.dx) for block in self.blocks):
             raise InputError(
-                f"`control` does not move in the {self.direction.label} direction: its virtual displacement at "
+                f"{named('control')} does not move in the {self.direction.label} direction: its virtual "
+                "displacement at "
                 f"[{control.at.real:g}, {control.at.imag:g}] is {dx:.4g} m/rad; choose a point that moves that way"
             )
         return dx

@@ -19,7 +19,7 @@ from rocking_cli.codes.italian.results import Dynamic, ItalianVerification, Reco
 from rocking_cli.codes.italian.site import ItalianSite, floor_at
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import History
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import follow
@@ -118,10 +118,10 @@ def _state_of_records(verification: ItalianVerification, state: str | None) -> s
     states = next(iter(verification.directions.values())).states
     if state not in states:
         hint = f"time histories verify {' or '.join(states)}"
-        raise InputError(Problem(f"{state!r} is not a limit state of displacement", field="`state`", hint=hint))
+        raise InputError(Problem(f"{state!r} is not a limit state of displacement", field=named("state"), hint=hint))
     if states[state].demand is None:
         hint = f"give {state} in the site file: the records must match its spectrum"
-        raise InputError(Problem(f"{state} is not given by the site", field="`state`", hint=hint))
+        raise InputError(Problem(f"{state} is not given by the site", field=named("state"), hint=hint))
     return state
 
 

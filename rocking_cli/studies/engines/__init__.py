@@ -10,7 +10,6 @@ from rocking_cli.studies.engines.contract import Engine as Engine
 from rocking_cli.studies.engines.contract import EngineName as EngineName
 from rocking_cli.studies.engines.exact import EXACT as EXACT
 from rocking_cli.studies.engines.exact import follow as follow
-from rocking_cli.studies.engines.exact import respond as respond
 
 FREE_NEIGHBOURS = 20  # number of neighbours by default if free blocks are simulated
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from typing import ClassVar, Literal, TypedDict, Unpack
+from typing import TYPE_CHECKING, ClassVar, Literal, TypedDict, Unpack
 
 from rocking_cli.arrays import Reals
 from rocking_cli.dynamics.batch import Runs
@@ -12,18 +12,11 @@ from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.structure import Structure
+
+if TYPE_CHECKING:
+    from rocking_cli.studies.conditions import Conditions
 
 EngineName = Literal["exact", "blocks", "auto"]
-
-
-class MotionOptions(TypedDict, total=False):
-    """Options of one motion, see `exact.respond`."""
-
-    models: Sequence[ModelName]
-    release: float | None
-    tail: float
-    rtol: float
 
 
 class RunOptions(TypedDict, total=False):
@@ -42,12 +35,20 @@ class Engine(ABC):
     name: ClassVar[EngineName]
 
     @abstractmethod
-    def respond(
-        self, structure: Structure, motion: GroundMotion | None = None, **options: Unpack[MotionOptions]
-    ) -> Mapping[ModelName, History]:
-        """Simulate one motion of a structure; parameters and errors are those of `exact.respond`.
+    def respond(self, conditions: Conditions, motion: GroundMotion | None = None) -> Mapping[ModelName, History]:
+        """Simulate models of a structure under a motion; errors are those of `exact.follow`.
 
-        The history of free blocks has the model "blocks".
+        Parameters
+        ----------
+        conditions : Conditions
+            The structure and the conditions of the run.
+        motion : GroundMotion, optional
+            The motion, scaled and reversed; None for a release alone.
+
+        Returns
+        -------
+        mapping of str to History
+            History of each model, in their order; that of free blocks has the model "blocks".
         """
 
     @abstractmethod

@@ -6,19 +6,23 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from math import isfinite
-from typing import ClassVar, Unpack
+from typing import TYPE_CHECKING, ClassVar, Unpack
 
 from rocking_cli.core import Direction
 from rocking_cli.dynamics import history
 from rocking_cli.dynamics.batch import Runs, respond_many
-from rocking_cli.dynamics.history import RTOL, TAIL_SECONDS, History, check_rtol
+from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import MODELS, Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.names import RTOL, TAIL_SECONDS
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines.contract import Engine, EngineName, RunOptions
 from rocking_cli.studies.engines.free_blocks import free_blocks
+
+if TYPE_CHECKING:
+    from rocking_cli.studies.conditions import Conditions
 
 
 def follow(
@@ -62,7 +66,6 @@ def follow(
         If the motion cannot be simulated to its end.
     """
     check_motion(structure, motion, release, tail)
-    check_rtol(rtol)
     simulated = history.follow(structure.model(model), motion, release=release or 0.0, tail=tail, rtol=rtol)
     with suppress(InputError):  # raised of what free blocks cannot have
         return replace(simulated, witness=simulated.unknown and free_blocks(structure.mechanism) is not None)
@@ -94,32 +97,16 @@ class Exact(Engine):
 
     name: ClassVar[EngineName] = "exact"
 
-    def respond(
-        self,
-        structure: Structure,
-        motion: GroundMotion | None = None,
-        *,
-        models: Sequence[ModelName] = MODELS,
-        release: float | None = None,
-        tail: float = TAIL_SECONDS,
-        rtol: float = RTOL,
-    ) -> dict[ModelName, History]:
-        """Simulate models of a structure; other parameters and errors are those of `follow`.
-
-        Parameters
-        ----------
-        models : sequence of {"nonlinear", "linear1", "linear2"}
-            At least one model.
-
-        Returns
-        -------
-        dict of str to History
-            History of each model, in the order of `models`.
-        """
+    def respond(self, conditions: Conditions, motion: GroundMotion | None = None) -> dict[ModelName, History]:
+        """Simulate models of a structure, each by `follow`."""
+        models, of = conditions.models, conditions
         unknown = [name for name in models if name not in MODELS]
         if unknown or not models:
             raise InputError(f"models must be of {', '.join(MODELS)}, got {', '.join(unknown) or 'none'}")
-        return {name: follow(structure, motion, model=name, release=release, tail=tail, rtol=rtol) for name in models}
+        return {
+            name: follow(of.structure, motion, model=name, release=of.release, tail=of.tail, rtol=of.rtol)
+            for name in models
+        }
 
     def outcomes(
         self,
@@ -133,4 +120,3 @@ class Exact(Engine):
 
 
 EXACT = Exact()
-respond = EXACT.respond

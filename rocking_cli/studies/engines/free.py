@@ -8,27 +8,31 @@ from dataclasses import replace
 from hashlib import sha256
 from math import nan
 from time import perf_counter
-from typing import Any, ClassVar, Unpack
+from typing import TYPE_CHECKING, Any, ClassVar, Unpack
 
 import numpy as np
 
 from rocking_cli.arrays import Bools, Reals
 from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.batch import Runs
-from rocking_cli.dynamics.history import TAIL_SECONDS, BlockPeaks, History, contact_lost
+from rocking_cli.dynamics.history import BlockPeaks, History, contact_lost
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcome, Outcomes
 from rocking_cli.dynamics.parallel import MAX_PROCESSES, in_processes
 from rocking_cli.dynamics.sliding import Slid
 from rocking_cli.errors import SolverError
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.names import TAIL_SECONDS
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import memory
 from rocking_cli.studies.engines.blocks import SUNK, BlockModel, BlockMotion
-from rocking_cli.studies.engines.contract import Engine, EngineName, MotionOptions, RunOptions
+from rocking_cli.studies.engines.contract import Engine, EngineName, RunOptions
 from rocking_cli.studies.engines.exact import EXACT, check_motion
 from rocking_cli.studies.engines.free_blocks import FreeBlocks, free_blocks
 from rocking_cli.studies.engines.scene import engine_version
+
+if TYPE_CHECKING:
+    from rocking_cli.studies.conditions import Conditions
 
 FINER = (1.0, 2.0, 4.0)  # by how much contacts are stiffer than by the rule: the next if a body sank too deep
 MEASURED = 1.0  # s of a motion that are simulated to measure how long the others will take
@@ -149,11 +153,12 @@ class Blocks(Engine):
         engine_version()
         self.mechanisms = tuple(mechanisms)
 
-    def respond(
-        self, structure: Structure, motion: GroundMotion | None = None, **options: Unpack[MotionOptions]
-    ) -> dict[ModelName, History]:
-        """Simulate one motion of a structure as free blocks, which are one model and need no tolerance."""
-        release, tail = options.get("release"), options.get("tail", TAIL_SECONDS)
+    def respond(self, conditions: Conditions, motion: GroundMotion | None = None) -> dict[ModelName, History]:
+        """Simulate one motion of a structure as free blocks, which are one model and need no tolerance.
+
+        Restitution is what contact gives: that of the structure has no effect.
+        """
+        structure, release, tail = conditions.structure, conditions.release, conditions.tail
         check_motion(structure, motion, release, tail)
         history, _, _ = self.follow(structure, motion, release=release, tail=tail)
         return {"blocks": history}
@@ -230,14 +235,12 @@ class Auto(Engine):
     def __init__(self, mechanisms: Sequence[Mechanism] = ()) -> None:
         self.free = Blocks(mechanisms)
 
-    def respond(
-        self, structure: Structure, motion: GroundMotion | None = None, **options: Unpack[MotionOptions]
-    ) -> Mapping[ModelName, History]:
+    def respond(self, conditions: Conditions, motion: GroundMotion | None = None) -> Mapping[ModelName, History]:
         """Simulate models of a structure, and free blocks if the outcome of the nonlinear one is unknown."""
-        histories = EXACT.respond(structure, motion, **options)
+        histories = EXACT.respond(conditions, motion)
         if "nonlinear" not in histories or not histories["nonlinear"].unknown:
             return histories
-        return {**histories, **self.free.respond(structure, motion, **options)}
+        return {**histories, **self.free.respond(conditions, motion)}
 
     def outcomes(
         self,

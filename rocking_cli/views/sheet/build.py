@@ -9,7 +9,7 @@ from importlib.resources import files
 from typing import Any
 
 from rocking_cli.core import Mechanism
-from rocking_cli.errors import InputError, PluginError, Problem
+from rocking_cli.errors import InputError, PluginError, Problem, named
 from rocking_cli.names import LANGUAGES
 from rocking_cli.plugins.errors import blame
 from rocking_cli.studies.provenance import File, TitleBlock
@@ -101,7 +101,7 @@ class SheetOfCode:
         known = [each for each in LANGUAGES if (folder / each / "sheet.md").is_file()]
         if key not in known:
             hint = f"known: {', '.join(known)}"
-            raise InputError(Problem(f"there is no calculation sheet in {key!r}", field="`language`", hint=hint))
+            raise InputError(Problem(f"there is no calculation sheet in {key!r}", field=named("language"), hint=hint))
         return Language(key, texts_of(self.package, key))
 
 
