@@ -101,7 +101,9 @@ class GroundMotion:
     remarks : tuple of Doubt, optional
         Doubts of the reader about the file.
     processing : tuple of str, optional
-        Processing steps applied since reading, in order, written as in a request: `"highpass 0.1"`.
+        Processing steps applied to the record, in order, written as in a request: `"highpass 0.1"`.
+    prepared_from : str, optional
+        For a prepared record, the file, with its channel, to which the steps were applied.
     ground : GroundMotion, optional
         For the motion of a floor, the motion of the ground, whose peaks are used for scaling.
     origin : Origin, optional
@@ -132,6 +134,7 @@ class GroundMotion:
     every: int = 1
     remarks: tuple[Doubt, ...] = ()
     processing: tuple[str, ...] = ()
+    prepared_from: str = ""
     ground: GroundMotion | None = None
     origin: Origin = NOT_SAID
 

@@ -90,10 +90,10 @@ def _sampling(motion: GroundMotion, measured: Measures) -> list[Doubt]:
 
 
 def _size(motion: GroundMotion, measured: Measures) -> list[Doubt]:
-    if PLAUSIBLE_PGA[0] <= measured.pga <= PLAUSIBLE_PGA[1]:
+    if PLAUSIBLE_PGA[0] <= measured.pga_g <= PLAUSIBLE_PGA[1]:
         return []
-    text = f"a PGA of {measured.pga:.3g} g is unusual for a ground motion: is the unit really {motion.source_unit}?"
-    return [Doubt("pga", measured.pga, text)]
+    text = f"a PGA of {measured.pga_g:.3g} g is unusual for a ground motion: is the unit really {motion.source_unit}?"
+    return [Doubt("pga", measured.pga_g, text)]
 
 
 def _baseline(motion: GroundMotion, measured: Measures) -> list[Doubt]:
@@ -102,7 +102,7 @@ def _baseline(motion: GroundMotion, measured: Measures) -> list[Doubt]:
     checks = (  # keyword, value, reference, share of the reference above which the value is doubtful, text
         ("offset", measured.mean, measured.rms, MAX_MEAN_OVER_RMS,
          "the mean acceleration is {:.2g} g, {:.0f} % of its rms: an offset of the baseline?"),
-        ("start", start, measured.pga, MAX_START_OVER_PEAK,
+        ("start", start, measured.pga_g, MAX_START_OVER_PEAK,
          "it starts at {:.2g} g, {:.0f} % of its peak, and not at rest: an offset, or cut off?"),
         ("final_velocity", end, measured.pgv, FINAL_VELOCITY,
          "its velocity drifts: it ends at {:.2g} m/s, {:.0f} % of its peak: an uncorrected baseline, or cut off?"),

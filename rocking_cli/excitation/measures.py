@@ -41,7 +41,7 @@ class Measures:
         `processing.intensity`, a mean of periods over the Fourier spectrum.
     """
 
-    pga: float
+    pga_g: float
     pgv: float
     pgd: float
     arias: float
@@ -96,7 +96,7 @@ def measure(motion: GroundMotion) -> Measures:
         squared = total * (2 * STANDARD_GRAVITY) / pi
         times = [_time_of(motion, built, share * total) if total > 0 else None for share in SIGNIFICANT_SHARES]
         measures = Measures(
-            pga=motion.pga_g,
+            pga_g=motion.pga_g,
             pgv=_peak_velocity(motion, v),
             pgd=_peak_displacement(motion, v, u),
             arias=total,

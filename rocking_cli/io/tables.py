@@ -25,6 +25,33 @@ _FORMULA = re.compile(rf"\s*(?!{_NUMBER}(?:\s*;\s*{_NUMBER})*\Z)[=+\-@].", re.AS
 """Beginning of a text that a spreadsheet would compute; numbers, and lists of them, stay numbers."""
 
 
+def stacked(tables: Iterable[Mapping[str, object]]) -> dict[str, np.ndarray]:
+    """Return tables one below the other: a value that is no sequence stands for a whole column.
+
+    Examples
+    --------
+    >>> table = stacked([{"model": "one", "t": [0.0, 0.1], "slip": 0.0}, {"model": "two", "t": [0.0]}])
+    >>> {name: values.tolist() for name, values in table.items()}
+    {'model': ['one', 'one', 'two'], 't': [0.0, 0.1, 0.0], 'slip': [0.0, 0.0, nan]}
+    """
+    parts = [{name: column_of(values) for name, values in table.items()} for table in tables]
+    sizes = [max((values.size for values in part.values() if values.ndim), default=1) for part in parts]
+    heads = dict.fromkeys(name for part in parts for name in part)
+    gap = np.array(np.nan)
+    return {
+        name: np.concatenate(
+            [np.broadcast_to(part.get(name, gap), size) for part, size in zip(parts, sizes, strict=True)]
+        )
+        for name in heads
+    }
+
+
+def column_of(values: object) -> np.ndarray:
+    """Return values as an array, of objects if they are words."""
+    array = np.asarray(values)
+    return array.astype(object) if array.dtype.kind in "US" else array
+
+
 def check_table(path: Path | None) -> None:
     """Raise `InputError`, before any work, if a Parquet file is requested without pyarrow installed."""
     if path is not None and path.suffix.lower() == PARQUET and find_spec("pyarrow") is None:
@@ -59,26 +86,25 @@ def write_csv(
     stream: BinaryIO,
     blocks: Iterable[Columns],
     *,
-    digits: int | None = 9,
     separator: str = ",",
     decimal: str = ".",
     mark: bool = False,
 ) -> None:
-    """Write a table as text; see `write_table`. With `digits` None, numbers have all their digits."""
+    """Write a table as text; see `write_table`."""
     text = io.TextIOWrapper(stream, encoding="utf-8-sig" if mark else "utf-8", newline="", write_through=True)
     writer = csv.writer(text, delimiter=separator, lineterminator="\n")
     for k, columns in enumerate(blocks):
         if k == 0:
-            writer.writerow([_field(name, digits, decimal) for name in columns])
+            writer.writerow([_field(name, decimal) for name in columns])
         values = list(columns.values())
         numbers = all(isinstance(each, np.ndarray) and each.dtype == np.float64 for each in values)
-        if numbers and (digits, separator, decimal) == (9, ",", "."):
+        if numbers and (separator, decimal) == (",", "."):
             for start in range(0, len(values[0]), ROWS_PER_BLOCK):
                 text.write(
                     _lines(np.column_stack([np.asarray(each[start : start + ROWS_PER_BLOCK]) for each in values]))
                 )
         else:
-            cells = ([_field(value, digits, decimal) for value in column] for column in values)
+            cells = ([_field(value, decimal) for value in column] for column in values)
             writer.writerows(zip(*cells, strict=True))
     text.detach()
 
@@ -89,7 +115,7 @@ def _lines(table: np.ndarray) -> str:
     return (line * len(table) % tuple((table + 0.0).ravel().tolist())).replace("nan", "")  # + 0.0 turns -0 into 0
 
 
-def _field(value: object, digits: int | None, decimal: str) -> object:
+def _field(value: object, decimal: str) -> object:
     if isinstance(value, str):
         text = printable(value)  # a name may have characters that cannot be encoded
         return f"'{text}" if _FORMULA.match(text) and not keeps_formulas.get() else text
@@ -97,7 +123,7 @@ def _field(value: object, digits: int | None, decimal: str) -> object:
         return value
     if value != value:
         return ""
-    return (repr(value + 0.0) if digits is None else f"{value + 0.0:.{digits}g}").replace(".", decimal)  # avoids -0
+    return f"{value + 0.0:.9g}".replace(".", decimal)  # avoids -0
 
 
 def _write_parquet(stream: BinaryIO, blocks: Iterable[Columns]) -> None:

@@ -11,7 +11,7 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 
 from rocking_cli.errors import InputError
 from rocking_cli.processing.reading import Reading, reading_of
-from rocking_cli.processing.reading_options import CORRECTIONS, READING
+from rocking_cli.processing.reading_options import READING
 from rocking_cli.processing.steps import Factor, parse_steps
 
 Positive = Annotated[float, Field(gt=0)]
@@ -71,16 +71,13 @@ class _Entry(BaseModel):
         InputError
             If an azimuth has no second component, or a second component no azimuth.
         """
-        items = {name: getattr(self, name) for name in READING_ITEMS}
+        items = {name: getattr(self, name) for name in READING}
         if items["other"] is not None:
             items["other"] = folder / items["other"]
         factor = () if self.factor is None else (Factor(self.factor),)
         own_reading = reading_of(items)
         return Reading(own_reading.options, (*parse_steps(self.processing or []), *factor)).over(common).check()
 
-
-READING_ITEMS = tuple(name for name in READING if name not in CORRECTIONS)
-"""Options that are items of an entry; corrections are not, as they belong in its `processing`."""
 
 if TYPE_CHECKING:
 
@@ -89,7 +86,7 @@ if TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> Any: ...
 else:
-    Entry = create_model("Entry", __base__=_Entry, __module__=__name__, **{name: _item(name) for name in READING_ITEMS})
+    Entry = create_model("Entry", __base__=_Entry, __module__=__name__, **{name: _item(name) for name in READING})
 
 
 def as_written(entry: Entry) -> Mapping[str, Any]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from math import isclose, pi
 from typing import Self
 
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.oscillator import DAMPING, check_oscillator, finer, relative_response
 from rocking_cli.text import did_you_mean, exact
@@ -72,7 +72,7 @@ class Floor:
         InputError
             If an item is missing, unknown, not a number or out of range.
         """
-        pairs = dict(spec) if isinstance(spec, Mapping) else _pairs(spec)
+        pairs = dict(spec) if isinstance(spec, Mapping) else _pairs(str(spec))
         for key in pairs:
             if key not in UNITS:
                 raise _refused(f"{key!r} is not one of {', '.join(UNITS)}", did_you_mean(str(key), list(UNITS)))
@@ -153,4 +153,4 @@ def _value(key: str, value: object) -> float:
 
 
 def _refused(message: str, hint: str | None = None) -> InputError:
-    return InputError(Problem(message, field="`floor`", hint=hint or f"such as {FLOOR_EXAMPLE}"))
+    return InputError(Problem(message, field=named("floor"), hint=hint or f"such as {FLOOR_EXAMPLE}"))

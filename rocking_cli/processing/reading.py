@@ -9,12 +9,12 @@ from math import cos, isclose, radians, sin
 from pathlib import Path
 from typing import Any
 
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import read_measured
 from rocking_cli.excitation.records.opening import allow_again
 from rocking_cli.excitation.records.record_units import Quantity, as_acceleration, size_of, smallest_step
-from rocking_cli.processing.reading_options import ALL_AZIMUTHS, READING, ReadingArguments
+from rocking_cli.processing.reading_options import ALL_AZIMUTHS, PREPARING, READING
 from rocking_cli.processing.steps import Factor, Lowpass, Resample, Step, of_vertical, process
 from rocking_cli.text import exact
 
@@ -58,11 +58,11 @@ class Reading:
         """Return this reading. Raises `InputError` if an azimuth has no second component, or the reverse."""
         for name in ("azimuth", "other_channel") if self.other is None else ():
             if self.options.get(name) is not None:
-                message, hint = "requires a second component", "give the file of the second with `with`"
-                raise InputError(Problem(message, field=f"`{READING[name].key or name}`", hint=hint))
+                message, hint = "requires a second component", f"give the file of the second with {named('other')}"
+                raise InputError(Problem(message, field=named(name), hint=hint))
         if self.other is not None and self.azimuth is None:
             hint = "0 is the direction of the record, 90 that of the second component"
-            raise InputError(Problem("is missing for two components", field="`azimuth`", hint=hint))
+            raise InputError(Problem("is missing for two components", field=named("azimuth"), hint=hint))
         return self
 
     def read(self, file: str | Path) -> GroundMotion:
@@ -98,7 +98,7 @@ class Reading:
 
     def _read(self, file: str | Path) -> GroundMotion:
         if self.azimuth == ALL_AZIMUTHS:
-            raise InputError(Problem("can be all for `respond` only", field="`azimuth`", hint="give one angle"))
+            raise InputError(Problem("can be all for `respond` only", field=named("azimuth"), hint="give one angle"))
         measured, quantity = self._measured(file, self.channel)
         step = smallest_step(measured)
         if self.other is not None:
@@ -128,8 +128,8 @@ class Reading:
 
     def _channel_of_other(self, file: str | Path) -> str | None:
         if self.other_channel is None and _same(self.other, file):
-            hint = "give the channel of the second with `with_channel`"
-            raise InputError(Problem("is the first component too", str(file), field="`with`", hint=hint))
+            hint = f"give the channel of the second with {named('other_channel')}"
+            raise InputError(Problem("is the first component too", str(file), field=named("other"), hint=hint))
         channel: str | None = self.channel if self.other_channel is None else self.other_channel
         return channel
 
@@ -157,7 +157,7 @@ class Reading:
         return read_measured(file, uneven=uneven, **of_file)
 
 
-def reading_of(options: ReadingArguments | Mapping[str, Any], usual: Mapping[str, Any] | None = None) -> Reading:
+def reading_of(options: Mapping[str, Any], usual: Mapping[str, Any] | None = None) -> Reading:
     """Return how to read a record, from the keyword arguments of a verb, or what the fields of a file say.
 
     Parameters
@@ -172,7 +172,8 @@ def reading_of(options: ReadingArguments | Mapping[str, Any], usual: Mapping[str
     InputError
         If a value is not valid.
     """
-    parsed = {name: READING[name].parse(each) for name, each in options.items() if name in READING and each is not None}
+    given = {name: each for name, each in options.items() if name in PREPARING and each is not None}
+    parsed = {name: PREPARING[name].parse(each) for name, each in given.items()}
     steps = tuple(each for each in parsed.values() if isinstance(each, Step))
     plain_options = {name: each for name, each in parsed.items() if not isinstance(each, Step)}
     return Reading(plain_options, steps, {name: READING[name].parse(each) for name, each in (usual or {}).items()})
@@ -215,6 +216,7 @@ def turned(one: GroundMotion, other: GroundMotion, azimuth: float) -> GroundMoti
     if one.npts != other.npts:
         message = f"it has {other.npts} samples, {one.name} has {one.npts}"
         raise _unlike(other, message, "trim both to the same times; they must begin at the same moment")
+    apart = f" ({', '.join(other.processing)})" if other.processing not in ((), one.processing) else ""
     ground = None
     if one.ground is not None and other.ground is not None:
         ground = turned(one.ground, other.ground, azimuth)
@@ -226,9 +228,11 @@ def turned(one: GroundMotion, other: GroundMotion, azimuth: float) -> GroundMoti
         points=None,
         ground=ground,
         remarks=(*one.remarks, *other.remarks),
-        processing=(*one.processing, f"with {other.name}", f"azimuth {exact(azimuth)}"),
+        processing=(*one.processing, f"with {other.name}{apart}", f"azimuth {exact(azimuth)}"),
     )
 
 
 def _unlike(other: GroundMotion, message: str, hint: str) -> InputError:
-    return InputError(Problem(f"{message}: two components go sample by sample", other.name, field="`with`", hint=hint))
+    return InputError(
+        Problem(f"{message}: two components go sample by sample", other.name, field=named("other"), hint=hint)
+    )

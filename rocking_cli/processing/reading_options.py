@@ -4,19 +4,11 @@ Options of the command line, fields of study files and of lists of records, and 
 these declarations. The module imports nothing heavy, so that the help of a command stays fast.
 """
 
-import re
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, TypedDict
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, how_to_correct, named
 from rocking_cli.units import UnitError, number_of
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from rocking_cli.excitation.records.record_units import Gain
-    from rocking_cli.processing.floor import Floor
-    from rocking_cli.processing.steps import Step
 
 ALL_AZIMUTHS = "all"
 """The azimuth that stands for every direction."""
@@ -30,6 +22,8 @@ class Option(NamedTuple):
 
     Parameters
     ----------
+    type : str
+        Type of the value in Python.
     help : str
         Description of the option, for all pages.
     parse : callable
@@ -40,6 +34,7 @@ class Option(NamedTuple):
         Its name in files, and with dashes on the command line; empty if it is that of the argument.
     """
 
+    type: str
     help: str
     parse: Callable[[Any], Any]
     metavar: str
@@ -47,7 +42,7 @@ class Option(NamedTuple):
 
 
 def _refused(name: str, message: str, hint: str) -> InputError:
-    return InputError(Problem(message, field=f"`{name}`", hint=hint))
+    return InputError(Problem(message, field=named(name), hint=hint))
 
 
 def _in(unit: str, name: str, example: str, *, positive: bool = True) -> Callable[[Any], float]:
@@ -84,7 +79,7 @@ def _unit(value: Any) -> str:
 
 def _quantity(value: Any) -> str:
     if value not in QUANTITIES:
-        raise _refused("from", f"must be one of {', '.join(QUANTITIES)}, got {value!r}", "by default acceleration")
+        raise _refused("quantity", f"must be one of {', '.join(QUANTITIES)}, got {value!r}", "by default acceleration")
     return str(value)
 
 
@@ -112,7 +107,7 @@ def _channel(value: Any) -> str:
 def _file(value: Any) -> Any:
     if isinstance(value, str) or hasattr(value, "__fspath__"):
         return value
-    raise _refused("with", f"must be the file of the second component, got {value!r}", "give its path")
+    raise _refused("other", f"must be the file of the second component, got {value!r}", "give its path")
 
 
 def _azimuth(value: Any) -> float | str:
@@ -134,84 +129,67 @@ def _step(name: str) -> Callable[[Any], Any]:
     return parse
 
 
-CORRECTIONS = ("baseline", "highpass", "lowpass", "taper", "trim", "resample")
-
-
-class ReadingArguments(TypedDict, total=False):
-    """Keyword arguments of verbs that read records; the corrections are made in the order in which they are given."""
-
-    # Columns: name, types, help, parser, metavar, and the name in files if it differs.
-    # fmt: off
-    units: Annotated[str | None, Option(
-        "Unit of the record, if the file does not state it.", _unit, f"[{'|'.join(UNITS)}]")]
-    dt: Annotated[float | str | None, Option(
-        "Sampling interval in s, if the file has no times.", _in("s", "dt", "0.01s"), "TIME")]
-    channel: Annotated[str | int | None, Option(
-        "Channel or column to read: its number, from 1, or its name.", _channel, "CHANNEL")]
-    quantity: Annotated[Literal["acceleration", "velocity", "displacement"] | None, Option(
+# Columns: type in Python, help, parser, metavar, and the name in files if it differs.
+# fmt: off
+READING: dict[str, Option] = {
+    "units": Option("str | None", "Unit of the record, if the file does not state it.", _unit, f"[{'|'.join(UNITS)}]"),
+    "dt": Option("float | str | None",
+        "Sampling interval in s, if the file has no times.", _in("s", "dt", "0.01s"), "TIME"),
+    "channel": Option("str | int | None",
+        "Channel or column to read: its number, from 1, or its name.", _channel, "CHANNEL"),
+    "quantity": Option('Literal["acceleration", "velocity", "displacement"] | None',
         "Quantity in the record; velocities and displacements are differentiated.",
-        _quantity, f"[{'|'.join(QUANTITIES)}]", "from")]
-    gain: Annotated["Gain | str | None", Option(
+        _quantity, f"[{'|'.join(QUANTITIES)}]", "from"),
+    "gain": Option("Gain | str | None",
         "Instrument sensitivity: the value of one unit of the record, such as 0.05m/V or 4.7e-6m/s2/count.",
-        _gain, "GAIN")]
-    run_on: Annotated[bool | None, Option(
-        "Read a text without times as one series that runs on over its rows.", _flag("run_on"), "")]
-    despite_header: Annotated[bool | None, Option(
+        _gain, "GAIN"),
+    "run_on": Option("bool | None",
+        "Read a text without times as one series that runs on over its rows.", _flag("run_on"), ""),
+    "despite_header": Option("bool | None",
         "Accept a text with other numbers of points or peaks than its header states, as it was cut on purpose.",
-        _flag("despite_header"), "")]
-    other: Annotated["str | Path | None", Option(
+        _flag("despite_header"), ""),
+    "other": Option("str | Path | None",
         "Second horizontal component, perpendicular to the record; the two are rotated into the plane of the "
-        "structure.", _file, "FILE", "with")]
-    other_channel: Annotated[str | int | None, Option(
-        "Channel of the second component in its file.", _channel, "CHANNEL", "with_channel")]
-    azimuth: Annotated[float | str | None, Option(
+        "structure.", _file, "FILE", "with"),
+    "other_channel": Option("str | int | None",
+        "Channel of the second component in its file.", _channel, "CHANNEL", "with_channel"),
+    "azimuth": Option("float | str | None",
         "Azimuth of the structure's plane, in degrees: 0 is the record, 90 the second. `respond` also accepts all.",
-        _azimuth, "DEGREES")]
-    baseline: Annotated["Step | str | None", Option(
-        "Baseline correction: the best-fitting constant, line or parabola is subtracted.",
-        _step("baseline"), "linear|quadratic")]
-    highpass: Annotated["Step | str | float | None", Option(
-        "High-pass corner frequency in Hz (Butterworth, zero phase).", _step("highpass"), "HZ")]
-    lowpass: Annotated["Step | str | float | None", Option(
-        "Low-pass corner frequency in Hz (Butterworth, zero phase).", _step("lowpass"), "HZ")]
-    taper: Annotated["Step | str | float | None", Option(
-        "Fraction of the duration over which each end is tapered to zero.", _step("taper"), "SHARE")]
-    trim: Annotated["Step | str | None", Option(
-        "Start and end of the part to keep, in s.", _step("trim"), "FROM:TO")]
-    resample: Annotated["Step | str | float | None", Option(
-        "Resample to this interval, in s; uneven times are put on a regular grid.", _step("resample"), "TIME")]
-    floor: Annotated["Floor | str | Mapping[str, Any] | None", Option(
+        _azimuth, "DEGREES"),
+    "floor": Option("Floor | str | Mapping[str, Any] | None",
         "Floor of a building on which the structure stands: T1=0.4,xi=0.05,z=6m,H=9m,n=3 (or z/H=0.67, gamma=1.29).",
-        _floor, "T1=...")]
-    # fmt: on
-
-
-class MotionArguments(ReadingArguments, total=False):
-    """Keyword arguments of verbs that read and scale ground motions: those of `ReadingArguments`, and one scale."""
-
-    # fmt: off
-    scale: Annotated[float | str | None, Option(
-        "Scale factor on the motion.  [default: 1]", _in("", "scale", "1.5", positive=False), "FACTOR")]
-    target_pga: Annotated[float | str | None, Option(
-        "Peak ground acceleration to scale the motion to, in g.", _in("g", "target_pga", "0.35g"), "ACCELERATION")]
-    target_pgv: Annotated[float | str | None, Option(
-        "Peak ground velocity to scale the motion to, in m/s.", _in("m/s", "target_pgv", "0.4m/s"), "VELOCITY")]
-    # fmt: on
-
-
-def _declared(arguments: type) -> dict[str, Option]:
-    """Return the options of a class by the names of its arguments, and list them in its docstring."""
-    declared = {name: annotation.__metadata__[0] for name, annotation in arguments.__annotations__.items()}
-    lines = "".join(
-        f"    {name} : optional\n        {re.sub('  .*', '', each.help)}\n" for name, each in declared.items()
-    )
-    arguments.__doc__ = f"{arguments.__doc__}\n\n    Parameters\n    ----------\n{lines}"
-    return declared
-
-
-READING: dict[str, Option] = _declared(ReadingArguments)
+        _floor, "T1=..."),
+}
 """The options of reading a record, in the order of the help."""
 SCALING: dict[str, Option] = {
-    name: each for name, each in _declared(MotionArguments).items() if name not in READING
-}  # fmt: skip
+    "scale": Option("float | str | None",
+        "Scale factor on the motion.", _in("", "scale", "1.5", positive=False), "FACTOR"),
+    "target_pga": Option("float | str | None",
+        "Peak ground acceleration to scale the motion to, in g.", _in("g", "target_pga", "0.35g"), "ACCELERATION"),
+    "target_pgv": Option("float | str | None",
+        "Peak ground velocity to scale the motion to, in m/s.", _in("m/s", "target_pgv", "0.4m/s"), "VELOCITY"),
+}
 """The options of scaling a motion, of which one may be given."""
+CORRECTIONS: dict[str, Option] = {
+    "baseline": Option("Step | str | None",
+        "Baseline correction: the best-fitting constant, line or parabola is subtracted.",
+        _step("baseline"), "linear|quadratic"),
+    "highpass": Option("Step | str | float | None",
+        "High-pass corner frequency in Hz (Butterworth, zero phase).", _step("highpass"), "HZ"),
+    "lowpass": Option("Step | str | float | None",
+        "Low-pass corner frequency in Hz (Butterworth, zero phase).", _step("lowpass"), "HZ"),
+    "taper": Option("Step | str | float | None",
+        "Fraction of the duration over which each end is tapered to zero.", _step("taper"), "SHARE"),
+    "trim": Option("Step | str | None", "Start and end of the part to keep, in s.", _step("trim"), "FROM:TO"),
+    "resample": Option("Step | str | float | None",
+        "Resample to this interval, in s; uneven times are put on a regular grid.", _step("resample"), "TIME"),
+}
+"""The options of correcting a record, in the order given."""
+# fmt: on
+PREPARING = READING | CORRECTIONS
+"""The options of reading and correcting a record."""
+
+
+def corrected_once(name: str) -> str:
+    """Return the advice to correct a record where it is read, and not where its motion is used."""
+    return f"records are corrected once, by {how_to_correct(name)}"

@@ -14,7 +14,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from rocking_cli.arrays import Reals
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.text import did_you_mean, exact
 from rocking_cli.units import UnitError, number_of
@@ -50,7 +50,7 @@ class Step:
 
     def refused(self, motion: GroundMotion, message: str, hint: str | None = None) -> InputError:
         """Return the error to raise if the correction is not possible."""
-        return InputError(Problem(message, motion.name, field=f"`{self.name}`", hint=hint))
+        return InputError(Problem(message, motion.name, field=named(self.name), hint=hint))
 
 
 @dataclass(frozen=True)
@@ -371,6 +371,11 @@ def process(motion: GroundMotion, steps: Sequence[Step], *, accelerations: bool 
     return replace(motion, vertical=vertical, ground=ground, remarks=remarks, processing=done)
 
 
+def multiplied(motion: GroundMotion, by: float) -> GroundMotion:
+    """Return a motion multiplied by a factor, which is one of its processing steps unless it is 1."""
+    return process(motion, [Factor(by)] if by != 1 else [])
+
+
 def of_vertical(steps: Sequence[Step]) -> tuple[Step, ...]:
     """Return the steps for the vertical component, in which a negative factor becomes positive."""
     return tuple(replace(step, by=abs(step.by)) if isinstance(step, Factor) else step for step in steps)
@@ -397,4 +402,4 @@ def _positive(step: type[Step], text: str, unit: str, what: str) -> float:
 
 
 def _wrong(step: type[Step], message: str, hint: str | None = None) -> InputError:
-    return InputError(Problem(message, field=f"`{step.name}`", hint=hint or f"such as {step.example}"))
+    return InputError(Problem(message, field=named(step.name), hint=hint or f"such as {step.example}"))

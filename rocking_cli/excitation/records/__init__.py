@@ -2,39 +2,36 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.opening import decoded, open_record
-from rocking_cli.excitation.records.record_units import QUANTITIES, Gain, Quantity, Wanted, as_acceleration
+from rocking_cli.excitation.records.record_units import Gain, Quantity, Wanted
 from rocking_cli.excitation.records.registry import Reader, load_readers, reader_for, takes_bytes, takes_wanted
 from rocking_cli.excitation.records.text import TITLE, Followed
-
-__all__ = ["read_measured", "read_record"]
 
 _MESSAGE, _EXCERPT = 500, 100  # largest numbers of characters that are shown
 
 
-def read_record(
+def read_measured(
     path: str | Path,
     *,
     dt: float | None = None,
     units: str | None = None,
     channel: str | None = None,
     quantity: Quantity | None = None,
-    gain: str | Gain | None = None,
+    gain: Gain | None = None,
     uneven: bool = False,
     run_on: bool = False,
     despite_header: bool = False,
-) -> GroundMotion:
-    """Read a recorded ground motion; the format is found from the content, not from the file's name.
+) -> tuple[GroundMotion, Quantity]:
+    """Read measured values and their quantity; the format is found from the content, not from the file's name.
 
     Parameters
     ----------
@@ -53,8 +50,8 @@ def read_record(
     quantity : {"acceleration", "velocity", "displacement"}, optional
         Quantity in the file: by default accelerations, or the quantity of the gain. Velocities and displacements, whose
         unit `units` then is, are differentiated by central differences.
-    gain : str, optional
-        Value of one unit of the file, if its numbers are the output of an instrument: `0.05 m/V`.
+    gain : Gain, optional
+        Value of one unit of the file, if its numbers are the output of an instrument.
     uneven : bool, optional
         Whether to accept uneven times: the values are interpolated to an even grid, and a remark states how uneven the
         times are.
@@ -66,49 +63,18 @@ def read_record(
     Returns
     -------
     GroundMotion
-        Accelerations [m/s2] at a constant interval [s], named after the file. Its `processing` has the steps applied.
+        The values, in SI units in place of accelerations, at a constant interval [s]; it is named after the file.
+    str
+        Their quantity.
 
     Raises
     ------
     InputError
         If the file cannot be read, or anything in it is missing, contradictory or not a number.
     """
-    measured, of = read_measured(
-        path,
-        dt=dt,
-        units=units,
-        channel=channel,
-        quantity=quantity,
-        gain=gain,
-        uneven=uneven,
-        run_on=run_on,
-        despite_header=despite_header,
-    )
-    return as_acceleration(measured, of)
-
-
-def read_measured(
-    path: str | Path,
-    *,
-    dt: float | None = None,
-    units: str | None = None,
-    channel: str | None = None,
-    quantity: Quantity | None = None,
-    gain: str | Gain | None = None,
-    uneven: bool = False,
-    run_on: bool = False,
-    despite_header: bool = False,
-) -> tuple[GroundMotion, Quantity]:
-    """Read measured values, in SI units in place of accelerations, and their quantity.
-
-    The arguments are those of `read_record`.
-    """
-    if dt is not None and (isinstance(dt, str) or not (math.isfinite(dt) and dt > 0)):
-        raise InputError(Problem(f"the sample interval must be a positive number of seconds, got {dt}", field="`dt`"))
     if not isinstance(path, str | Path):
         hint = 'samples are a ground motion by GroundMotion("mine", 0.01, samples, unit="g")'
         raise InputError(Problem(f"must be a file, got {type(path).__name__}", field="`path`", hint=hint))
-    gain = Gain.parse(gain) if isinstance(gain, str) else gain
     wanted = _wanted(quantity, gain, units)._replace(uneven=uneven, run_on=run_on, despite_header=despite_header)
     data, file, name, member, channel = open_record(path, channel)
     text = decoded(data, file)
@@ -161,7 +127,7 @@ def _of_several(
     if not (number.isdecimal() and 1 <= int(number) <= len(starts)):
         wrong = f", none of which is called '{channel}'" if channel else ", and only one can shake a structure"
         listed = "".join(f"\n    {k}: line {start + 1}, {lines[start].strip()}" for k, start in enumerate(starts, 1))
-        hint = f"choose one with `channel`, and a channel in it behind a colon:{listed}"
+        hint = f"choose one with {named('channel')}, and a channel in it behind a colon:{listed}"
         raise InputError(Problem(f"the file holds {len(starts)} records{wrong}", file, hint=hint))
     start, end = [*starts, len(lines)][int(number) - 1 : int(number) + 1]
     try:
@@ -174,16 +140,14 @@ def _of_several(
 
 def _wanted(quantity: Quantity | None, gain: Gain | None, units: str | None) -> Wanted:
     """Return the request to the reader, after checking that the arguments agree."""
-    if quantity is not None and quantity not in QUANTITIES:
-        raise InputError(Problem(f"must be one of {', '.join(QUANTITIES)}, got '{quantity}'", field="`from`"))
     if gain is None:
         return Wanted(quantity or "acceleration")
     if quantity is not None and quantity != gain.quantity:
-        message = f"{gain} is of a {gain.quantity}, but `from` says {quantity}"
-        raise InputError(Problem(message, field="`gain`", hint="leave `from` out: the gain says it"))
+        message = f"{gain} is of a {gain.quantity}, but {named('quantity')} says {quantity}"
+        raise InputError(Problem(message, field=named("gain"), hint=f"leave {named('quantity')} out: the gain says it"))
     if units is not None:
         message = "the gain says what unit the values become"
-        raise InputError(Problem(message, field="`units`", hint="leave `units` or `gain` out"))
+        raise InputError(Problem(message, field=named("units"), hint=f"leave {named('units')} or {named('gain')} out"))
     return Wanted(gain.quantity, raw=True)
 
 
@@ -195,12 +159,12 @@ def _must_be_asked(reader: Reader, wanted: Wanted, file: str) -> bool:
     for name in ("run_on", "despite_header"):
         if getattr(wanted, name) and reader.TITLE != TITLE:
             message = f"has no effect on a file of this format ({reader.TITLE})"
-            raise InputError(Problem(message, file, field=f"`{name}`", hint="leave it out"))
+            raise InputError(Problem(message, file, field=named(name), hint="leave it out"))
     if takes_wanted(reader):
         return True
     if wanted.raw or wanted.quantity != "acceleration":
         message = f"a file of this format ({reader.TITLE}) gives accelerations, and says their unit"
-        raise InputError(Problem(message, file, hint="leave `gain` and `from` out"))
+        raise InputError(Problem(message, file, hint=f"leave {named('gain')} and {named('quantity')} out"))
     return False
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking_cli.arrays import Reals
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.records.header_words import WORDS, component, without_sign
 from rocking_cli.excitation.records.record_units import (
     BRACKETED,
@@ -249,8 +249,10 @@ def _place(
             f"the table has {len(values)} columns that may be {_values(wanted)}, and only one can shake a structure"
         )
         if not any(label.name for label in names) and not times and runs_on(table) is None:
-            listed += "\n  if the values run on from line to line, and the columns are no components, give `run_on`"
-        raise InputError(Problem(message, file, hint=f"choose one with `channel`, by place or name:{listed}"))
+            listed += (
+                f"\n  if the values run on from line to line, and the columns are no components, give {named('run_on')}"
+            )
+        raise InputError(Problem(message, file, hint=f"choose one with {named('channel')}, by place or name:{listed}"))
     word = _plain(requested)
     if (number := _COLUMN.fullmatch(word)) and int(number[1]) - 1 in values:
         return values.index(int(number[1]) - 1)
@@ -262,10 +264,10 @@ def _place(
             return places[0]
         if places:
             message = f"{len(places)} columns are called '{requested}'"
-            raise InputError(Problem(message, file, field="`channel`", hint=f"give the place of one:{listed}"))
+            raise InputError(Problem(message, file, field=named("channel"), hint=f"give the place of one:{listed}"))
     message = f"there is no channel '{requested}'"
     hint = f"the file has:{listed}"
-    raise InputError(Problem(message, file, field="`channel`", hint=hint))
+    raise InputError(Problem(message, file, field=named("channel"), hint=hint))
 
 
 def _plain(name: str) -> str:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.arrays import Reals
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import MOST_SAMPLES, NOT_SAID, STANDARD_GRAVITY, Doubt, GroundMotion, Origin
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.record_units import (
@@ -265,8 +265,8 @@ def old_unit(file: str, line_number: int, spelling: str, asked: Asked) -> tuple[
         return stated_unit(file, line_number, spelling, asked)
     if asked.units is not None:
         unit, _ = asked.unit(file, [])  # refuses an unknown one
-        message = f"the header says the unit is {TENTH_OF_G}, but `units` says {unit}"
-        raise InputError(Problem(message, file, line_number, hint="leave `units` out"))
+        message = f"the header says the unit is {TENTH_OF_G}, but {named('units')} says {unit}"
+        raise InputError(Problem(message, file, line_number, hint=f"leave {named('units')} out"))
     return TENTH_OF_G, UNITS["g"] / 10
 
 
@@ -280,9 +280,9 @@ def lacking(file: str, wanted: Wanted, held: Sequence[str], line_number: int | N
     message = f"the file holds no {wanted.quantity}, but {', '.join(dict.fromkeys(held))}"
     hint = f"give the file with the {wanted.quantity}"
     if other := next(filter(None, map(quantity_called, held)), None):
-        hint += f", or say `from` {other}"
+        hint += f", or say {named('quantity')} {other}"
     elif not wanted.raw:
-        hint += f", or the `gain` of the instrument, such as {GAIN_EXAMPLE}"
+        hint += f", or the {named('gain')} of the instrument, such as {GAIN_EXAMPLE}"
     return InputError(Problem(message, file, line_number, hint=hint))
 
 
@@ -383,7 +383,7 @@ def choose(file: str, form: str, channels: Sequence[Channel], asked: Asked) -> G
     """
     if asked.channel is None and len(channels) > 1:
         message = f"the file has {len(channels)} channels, and only one can shake a structure"
-        hint = f"choose one with `channel`:{_listed(channels, asked.wanted)}"
+        hint = f"choose one with {named('channel')}:{_listed(channels, asked.wanted)}"
         raise InputError(Problem(message, file=file, hint=hint))
     chosen = channels[0] if asked.channel is None else _find(file, channels, asked.channel, asked.wanted)
     if chosen.flaw is not None:
@@ -413,12 +413,12 @@ def _find(file: str, channels: Sequence[Channel], requested: str, wanted: Wanted
     word = _plain(requested)
     if word.isdecimal() and 1 <= int(word) <= len(channels):
         return channels[int(word) - 1]
-    named = [channel for channel in channels if channel.name and _plain(channel.name) == word]
-    if len(named) == 1:
-        return named[0]
-    message = f"{len(named)} channels are called '{requested}'" if named else f"there is no channel '{requested}'"
+    of_name = [channel for channel in channels if channel.name and _plain(channel.name) == word]
+    if len(of_name) == 1:
+        return of_name[0]
+    message = f"{len(of_name)} channels are called '{requested}'" if of_name else f"there is no channel '{requested}'"
     hint = f"there {'is' if len(channels) == 1 else 'are'}:{_listed(channels, wanted)}"
-    raise InputError(Problem(message, file=file, field="`channel`", hint=hint))
+    raise InputError(Problem(message, file=file, field=named("channel"), hint=hint))
 
 
 def _plain(name: str) -> str:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary, WeakSet
 
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.io.files import read_at_most, read_bytes
 from rocking_cli.io.spreadsheets import OLE, sheets_of
 from rocking_cli.text import regex
@@ -234,8 +234,8 @@ def _chosen(
     message = f"the {of[0]} holds {len(names)} {of[1]}s, and only one can be the record"
     if channel is not None:
         message = f"there is no {of[1]} '{channel}' in the {of[0]}"
-    hint = f"choose one with `channel`, and a channel in it behind a colon:{''.join(listed)}"
-    raise InputError(Problem(message, file, field=None if channel is None else "`channel`", hint=hint))
+    hint = f"choose one with {named('channel')}, and a channel in it behind a colon:{''.join(listed)}"
+    raise InputError(Problem(message, file, field=None if channel is None else named("channel"), hint=hint))
 
 
 def _place(names: Sequence[str], requested: str, *, alone: bool) -> int | None:

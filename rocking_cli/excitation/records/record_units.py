@@ -15,7 +15,7 @@ from typing import Literal, NamedTuple, get_args
 import numpy as np
 
 from rocking_cli.arrays import Reals
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
 from rocking_cli.excitation.doubts import of_samples
 from rocking_cli.excitation.records.header_words import WORDS, plain
@@ -139,27 +139,29 @@ def resolve_unit(file: str, header: Sequence[tuple[int, str]], units: str | None
     """
     requested = None if units is None else canonical(units)
     if units is not None and requested is None:
-        raise InputError(Problem(f"unknown unit '{units}'", field="`units`", hint=f"choose one of: {CHOICES}"))
+        raise InputError(Problem(f"unknown unit '{units}'", field=named("units"), hint=f"choose one of: {CHOICES}"))
     stated = {unit: number for number, line in reversed(header) for unit in sorted(header_units(line))}
     _refuse_other_quantities(file, header)
     if requested and stated and not any(_same(requested, unit) for unit in stated):
         unit, number = next(iter(stated.items()))
-        message = f"the header says the unit is {unit}, but `units` says {requested}"
-        raise InputError(Problem(message, file=file, line=number, hint="leave `units` out, or correct the header"))
+        message = f"the header says the unit is {unit}, but {named('units')} says {requested}"
+        raise InputError(
+            Problem(message, file=file, line=number, hint=f"leave {named('units')} out, or correct the header")
+        )
     if requested:
         return next((unit for unit in stated if _same(requested, unit)), requested)
     if not stated:
         raise InputError(_not_said(file, header))
     if not all(_same(unit, other) for unit in stated for other in stated):
         message = f"the header names more than one unit: {', '.join(stated)}"
-        hint = f"say which one holds for the accelerations with `units`: {CHOICES}"
+        hint = f"say which one holds for the accelerations with {named('units')}: {CHOICES}"
         raise InputError(Problem(message, file=file, line=max(stated.values()), hint=hint))
     return next(iter(stated))
 
 
 def _not_said(file: str, header: Sequence[tuple[int, str]]) -> Problem:
     """Return the problem of a header without a unit, or with one that is not in `UNITS`."""
-    hint = f"say which it is with `units`: {CHOICES}"
+    hint = f"say which it is with {named('units')}: {CHOICES}"
     for index, (number, line) in enumerate(header):
         if _ABOUT_A_VALUE.search(_normal(line)):
             continue
@@ -178,7 +180,10 @@ def _refuse_other_quantities(file: str, header: Sequence[tuple[int, str]]) -> No
         what = other_quantity(line, label=label)
         # Only labels surely describe the columns; elsewhere "peak velocity" may be mere information.
         if what and (label or not about_acceleration):
-            hint = f"give the ground acceleration, in one of: {CHOICES}; or say what it is by `from`, or by the `gain`"
+            hint = (
+                f"give the ground acceleration, in one of: {CHOICES}; or say what it is by {named('quantity')}, "
+                f"or by the {named('gain')}"
+            )
             raise InputError(Problem(what, file=file, line=number, excerpt=line.strip()[:100], hint=hint))
 
 
@@ -289,7 +294,7 @@ class Wanted(NamedTuple):
             for number, line in header:
                 if stated := header_units(line):
                     message = f"the header says that the values are in {', '.join(sorted(stated))} already"
-                    hint = "leave `gain` out"
+                    hint = f"leave {named('gain')} out"
                     raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=hint))
             return "raw", 1.0
         if self.quantity == "acceleration":
@@ -306,7 +311,7 @@ class Wanted(NamedTuple):
             if stated and self.quantity not in stated:
                 other, unit = next(iter(stated.items()))
                 message = f"the header says that the values are in {unit}, a unit of {plural(other)}"
-                hint = f"is it `from` {other}?"
+                hint = f"is it {named('quantity')} {other}?"
                 raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=hint))
 
     def _stated(self, header: Sequence[tuple[int, str]]) -> _Stated | None:
@@ -322,18 +327,20 @@ class Wanted(NamedTuple):
         size = None if units is None else size_of(units, self.quantity)
         if units is not None and size is None:
             message = f"'{units}' is not a unit of {self.quantity}"
-            raise InputError(Problem(message, field="`units`", hint=f"choose one of: {known}"))
+            raise InputError(Problem(message, field=named("units"), hint=f"choose one of: {known}"))
         self._refuse_another(file, header)
         stated = self._stated(header)
         if size is not None and stated is not None and not isclose(size, stated.size):
-            message = f"the header says the unit is {stated.unit}, but `units` says {units}"
-            raise InputError(Problem(message, file, stated.line, hint="leave `units` out, or correct the header"))
+            message = f"the header says the unit is {stated.unit}, but {named('units')} says {units}"
+            raise InputError(
+                Problem(message, file, stated.line, hint=f"leave {named('units')} out, or correct the header")
+            )
         if units is not None and size is not None:
             return units, size
         if stated is not None:
             return stated.unit, stated.size
         message = f"the file does not say what unit its {plural(self.quantity)} are in"
-        hint = f"say which it is with `units`: {known}; or with `gain`, such as {GAIN_EXAMPLE}"
+        hint = f"say which it is with {named('units')}: {known}; or with {named('gain')}, such as {GAIN_EXAMPLE}"
         raise InputError(Problem(message, file, hint=hint))
 
 
@@ -430,7 +437,7 @@ class Gain:
 def _refused(message: str, guess: str | None = None) -> InputError:
     hint = f"{guess}; " if guess else ""
     hint += f"say what one unit stands for, such as {GAIN_EXAMPLE}"
-    return InputError(Problem(message, field="`gain`", hint=hint))
+    return InputError(Problem(message, field=named("gain"), hint=hint))
 
 
 def smallest_step(measured: GroundMotion) -> float:
@@ -499,6 +506,6 @@ def _resolution(smallest: float, acceleration: Reals, dt: float, quantity: Quant
         return ()
     text = (
         f"its smallest step, {smallest:.3g} {unit}, is {noise / STANDARD_GRAVITY:.2g} g once differentiated, of a peak "
-        f"of {peak / STANDARD_GRAVITY:.2g} g: noise, unless a `lowpass` takes it out"
+        f"of {peak / STANDARD_GRAVITY:.2g} g: noise, unless a low-pass filter takes it out"
     )
     return (Doubt("resolution", noise / STANDARD_GRAVITY, text),)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
 from rocking_cli.excitation.records import formats
 from rocking_cli.excitation.records.layout import CUT, choose
@@ -51,7 +51,9 @@ def read(data: bytes, file: str, asked: Asked) -> GroundMotion:
     quantity = _OTHER_QUANTITIES.get(header.quantity, asked.wanted.quantity)
     if quantity != asked.wanted.quantity and not asked.wanted.raw:
         message = f"the header says the values are a {quantity}, not {_WITH_ARTICLE[asked.wanted.quantity]} (IDEP)"
-        raise InputError(Problem(message, file, hint="give the file with the acceleration, or say `from` what it is"))
+        raise InputError(
+            Problem(message, file, hint=f"give the file with the acceleration, or say {named('quantity')} what it is")
+        )
     if header.npts > MOST_SAMPLES:
         message = f"the header says {header.npts} points: a record has at most {MOST_SAMPLES}"
         raise InputError(Problem(message, file))

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.arrays import Reals
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Origin
 from rocking_cli.excitation.records.layout import CUT, Channel
 from rocking_cli.excitation.records.origins import origin
@@ -104,7 +104,8 @@ def velocity_code(file: str, code: str, wanted: Wanted) -> Problem | None:
         return None
     message = f"channel {code} is of a seismometer, which records velocity, not of an accelerometer"
     hint = (
-        "give the accelerometer's channel, such as HNE; name one so that was converted to acceleration; or say `from` "
+        "give the accelerometer's channel, such as HNE; name one so that was converted to "
+        f"acceleration; or say {named('quantity')} "
         "velocity"
     )
     return Problem(message, file, hint=hint)
@@ -122,9 +123,8 @@ def _flaw(file: str, name: str, values: Reals, unit: tuple[str, float], *, whole
     peak = float(np.abs(values * unit[1]).max())
     if whole and peak > _MAX_ACCELERATION and unit[0] in UNITS:
         message = f"{who} has whole numbers with a peak of {peak / STANDARD_GRAVITY:.4g} g, if in {unit[0]}: raw counts"
-        hint = (
-            "give `gain`, such as 4.7e-6 m/s2/count, or convert them: remove_response(output='ACC') in obspy gives m/s2"
-        )
+        hint = f"give {named('gain')}, such as 4.7e-6 m/s2/count, or convert them: "
+        hint += "remove_response(output='ACC') in obspy gives m/s2"
         return Problem(message, file, hint=hint)
     return None
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import Doubt
 from rocking_cli.excitation.records.header_words import WORDS, component, plain
 from rocking_cli.excitation.records.record_units import TIME_UNITS, UNITS, canonical, is_unit
@@ -74,7 +74,10 @@ class Statements(NamedTuple):
         for each in self.intervals:
             statement = f"the header says {each.value:g} s ('{each.text}'), but"
             if requested is not None and not _agree(each, requested):
-                message, hint = f"{statement} `dt` says {requested:g} s", "leave `dt` out: the file states its own"
+                message, hint = (
+                    f"{statement} {named('dt')} says {requested:g} s",
+                    f"leave {named('dt')} out: the file states its own",
+                )
                 raise InputError(Problem(message, self.file, each.line, hint=hint))
             first = self.intervals[0]
             if not _agree(each, first.value, first.rounding):
@@ -122,7 +125,7 @@ class Statements(NamedTuple):
         for each in wrong[:1]:
             if not despite:
                 message = f"the header says '{each.text}', but {has}"
-                hint = f"{_CORRECT}; `despite_header` takes a file that was cut on purpose"
+                hint = f"{_CORRECT}; {named('despite_header')} takes a file that was cut on purpose"
                 raise InputError(Problem(message, self.file, each.line, hint=hint))
             return (Doubt(kind, value, f"line {each.line} of its header says '{each.text}', but {has}"),)
         return ()

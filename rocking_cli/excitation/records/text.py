@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from datetime import date
@@ -15,12 +15,12 @@ from typing import NamedTuple
 import numpy as np
 
 from rocking_cli.arrays import Bools, Reals
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, how_to_correct, named
 from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
-from rocking_cli.excitation.record_csv import DONE_PREFIX
 from rocking_cli.excitation.records.columns import MAX_COLUMNS, Choice, Label, choose, labels
 from rocking_cli.excitation.records.header_words import WORDS, component
 from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.excitation.records.prepared import read_header
 from rocking_cli.excitation.records.record_units import ACCELERATIONS, UNITS, Wanted, other_quantity, plural
 from rocking_cli.excitation.records.shapes import FEWEST_ROWS, counts_rows, runs_on
 from rocking_cli.excitation.records.statements import Statements, statements
@@ -84,7 +84,8 @@ def read(
 ) -> GroundMotion:
     """Read delimited text; arguments, result and errors are those of `registry.Reader.read`."""
     rows = _rows(text, file)
-    header = _header(file, rows)
+    prepared = read_header(file, rows.lines[: rows.start])
+    header = _header(file, rows, prepared.lines)
     names, label_lines = labels(file, header, rows.delimiter, rows.columns)
     _refuse_other_times(file, names, label_lines)
     if _OF_SPECTRUM.match(names[0].name):
@@ -134,8 +135,9 @@ def read(
     name = Path(file).name + (f" channel {choice.channel}" if choice.channel else "")
     despite = ("despite header",) * any(each.kind in DESPITE for each in remarks)
     return GroundMotion(
-        name, interval, values * size, source_unit=unit, format="text", remarks=remarks, processing=despite
-    )
+        name, interval, values * size, source_unit=unit, format="text", remarks=(*prepared.remarks, *remarks),
+        processing=(*prepared.processing, *despite), prepared_from=prepared.prepared_from, origin=prepared.origin,
+    )  # fmt: skip
 
 
 class _Rows(NamedTuple):
@@ -233,7 +235,7 @@ def _shaped(
     may_run_on &= columns > 2 or _are_components(table, names)
     if wanted.run_on and not may_run_on:
         message = "its first column is a time or its columns are labelled, so that its values do not run on"
-        raise InputError(Problem(message, file, field="`run_on`", hint="leave it out"))
+        raise InputError(Problem(message, file, field=named("run_on"), hint="leave it out"))
     stated_counts = {each.value for each in stated.counts}
     seen = False if stated_counts == {count} or not may_run_on else runs_on(table)
     if wanted.run_on or seen or (may_run_on and tail and stated_counts == {table.size + len(tail)}):
@@ -241,7 +243,7 @@ def _shaped(
         doubts = () if wanted.run_on else (Doubt("run_on", float(columns), text),)
         return np.append(table.T.ravel(), tail)[np.newaxis], [Label("")], doubts
     if rows.tail:
-        hint = "if the values run on from line to line, give `run_on`" if may_run_on else None
+        hint = f"if the values run on from line to line, give {named('run_on')}" if may_run_on else None
         message = f"this row has {len(rows.tail)} column{'s' * (len(rows.tail) > 1)}, the rows before it have "
         excerpt = rows.lines[rows.end].strip()[:100]
         raise InputError(Problem(f"{message}{rows.columns}", file, rows.end + 1, excerpt=excerpt, hint=hint))
@@ -275,7 +277,7 @@ def _against_header(
 def _no_interval(file: str, wanted: Wanted, columns: int) -> Problem:
     kind = "values" if wanted.raw else plural(wanted.quantity)
     what = f"one column of {kind}" if columns == 1 else "no column is called time or is one"
-    hint = f"give it with `dt`, in seconds, or add a time column before the {kind}"
+    hint = f"give it with {named('dt')}, in seconds, or add a time column before the {kind}"
     return Problem(f"{what}, and no sample interval", file=file, hint=hint)
 
 
@@ -332,7 +334,7 @@ def only_channel(file: str, requested: str | None) -> None:
     """Raise `InputError` if a channel other than the first is requested of a file with one channel."""
     if requested is not None and requested.strip() != "1":
         message = f"there is no channel '{requested}': the file holds one component"
-        raise InputError(Problem(message, file=file, field="`channel`", hint="leave `channel` out"))
+        raise InputError(Problem(message, file=file, field=named("channel"), hint=f"leave {named('channel')} out"))
 
 
 def check_interval(file: str, line_number: int | None, interval: float, requested: float | None) -> None:
@@ -342,8 +344,10 @@ def check_interval(file: str, line_number: int | None, interval: float, requeste
             Problem(f"the sampling interval is {interval:g} s, which is not plausible", file=file, line=line_number)
         )
     if requested is not None and not math.isclose(interval, requested, rel_tol=_DT_TOLERANCE):
-        message = f"the file's sample interval is {interval:g} s, but `dt` says {requested:g} s"
-        raise InputError(Problem(message, file=file, line=line_number, hint="leave `dt` out: the file states its own"))
+        message = f"the file's sample interval is {interval:g} s, but {named('dt')} says {requested:g} s"
+        raise InputError(
+            Problem(message, file=file, line=line_number, hint=f"leave {named('dt')} out: the file states its own")
+        )
 
 
 def _value(token: str) -> float | None:
@@ -396,13 +400,16 @@ def _with_points(file: str, first: int, page: Sequence[str]) -> list[str]:
     return [row.replace(",", ".") for row in rows]
 
 
-def _header(file: str, rows: _Rows) -> list[tuple[int, str]]:
-    """Return line number and text of comments and header lines, with the column labels last."""
+def _header(file: str, rows: _Rows, skipped: Container[int]) -> list[tuple[int, str]]:
+    """Return line number and text of comments and header lines, with the column labels last.
+
+    The header of a prepared record is skipped: its file names and gains belong to the original file.
+    """
     comments, header = [], []
     above = rows.stated[0][0] - 1 if rows.stated else rows.start
     for number, line in enumerate(rows.lines[:above], start=1):
         line = line.strip()
-        if line.startswith(DONE_PREFIX):  # skipped: its file names and gains belong to the original file
+        if number in skipped:
             continue
         if line.startswith(("#", "%")):
             comments.append((number, line.lstrip("#% \t")))
@@ -610,8 +617,8 @@ def even_interval(time: Reals) -> float:
         row = int(np.argmax(out_of_step))
         message = f"time is uneven: {time[row]:.9g} s here, a constant interval would give {time[0] + dt * row:.9g} s"
     hint = (
-        f"`resample` puts it on an even grid, such as {usual:.3g}; if only the printed times are rough, keep the "
-        "accelerations and give `dt`"
+        f"{how_to_correct('resample', f'{usual:.3g}')} puts it on an even grid; if only the printed times are rough, "
+        f"keep the accelerations and give {named('dt')}"
     )
     raise UnevenTimeError(message, hint, row)
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from rocking_cli.arrays import Points, Reals
+from rocking_cli.errors import named
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnText, LineDrawing
 from rocking_cli.io.drawings.limits import MAX_NUMBER, check_content, inside
 
@@ -48,7 +49,9 @@ def read(data: bytes, file: str, plane: str = "xz") -> LineDrawing:
                 fault = f"reaches {here}, and not {there},"
             if fault:
                 what = f"the block {name} {fault} along the axis across {plane}"
-                raise DrawingError("not_plane", what, file, hint="`plane` is the plane of the assembly: xz or yz")
+                raise DrawingError(
+                    "not_plane", what, file, hint=f"{named('plane')} is the plane of the assembly: xz or yz"
+                )
             layer, shape = "ground" if is_support else "blocks", guid if rings[1:] else ""
             chains += [DrawnLine(z, np.zeros(len(z)), True, layer, "block", guid, shape) for z in rings]
             stone = (model.get("materials") or {}).get(of.get("material"))

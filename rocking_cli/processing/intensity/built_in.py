@@ -63,7 +63,7 @@ class VelocityOverAcceleration(MotionMeasure):
     def of(self, motion: GroundMotion) -> float | None:
         """Return the ratio [s]; None for a motion that is zero throughout."""
         measures = measure(motion)
-        return measures.pgv / (measures.pga * STANDARD_GRAVITY) if measures.pga else None
+        return measures.pgv / (measures.pga_g * STANDARD_GRAVITY) if measures.pga_g else None
 
 
 class Arias(MotionMeasure):
