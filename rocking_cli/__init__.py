@@ -23,6 +23,7 @@ __version__ = "0.2.0"
 # `__init__.pyi`, is written from both by `make pages`.
 _HOME = {
     "ask.answer": ["Answer", "MappingAnswer"],
+    "ask.read": ["read_record"],
     "ask.several": ["Answers"],
     "core": ["Body", "Direction", "Equivalence", "EquivalentBlock", "Mechanism", "RigidMotion"],
     "core.registry": ["Registry"],
@@ -35,7 +36,6 @@ _HOME = {
     "excitation.measures": ["Measures", "measure"],
     "excitation.pulse_fit": ["PulseFit", "fit_pulse"],
     "excitation.pulses": ["Pulse", "parse_pulse"],
-    "excitation.records": ["read_record"],
     "processing.reading": ["turned"],
     "processing.floor": ["Floor"],
     "processing.intensity": ["Measure", "MotionMeasure", "RelativeMeasure", "RunMeasure", "parse_measure"],

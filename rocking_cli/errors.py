@@ -6,11 +6,12 @@ the exit code of its class. An overturned structure is a result, not an error.
 
 from __future__ import annotations
 
-import re
 import sys
 import warnings
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
 from itertools import takewhile
 from typing import ClassVar
 
@@ -28,6 +29,31 @@ EXIT_INCOMPLETE = 5
 """Exit code of a command that did its work except for the parts that it reports, such as one bad record."""
 
 MAX_SHOWN_PROBLEMS = 20  # in the text of an error, which counts the others
+
+
+_spelling: ContextVar[Callable[[str], str]] = ContextVar("spelling", default="`{}`".format)
+
+
+def named(argument: str) -> str:
+    """Return an argument as it was given: in backticks in Python, with two dashes on the command line."""
+    return _spelling.get()(argument)
+
+
+@contextmanager
+def spelled(spell: Callable[[str], str]) -> Iterator[None]:
+    """Name arguments by a function of their names within this context."""
+    token = _spelling.set(spell)
+    try:
+        yield
+    finally:
+        _spelling.reset(token)
+
+
+def how_to_correct(name: str, value: str = "...") -> str:
+    """Return how a record is corrected, as it is typed."""
+    if (typed := named(name)).startswith("`"):
+        return f"`rk.read_record(FILE, {name}={value})`"
+    return f"`rocking record FILE {typed} {value} {named('out')} PREPARED.csv`"
 
 
 @dataclass(frozen=True)
@@ -99,37 +125,12 @@ class FieldError(InputError, ValueError):
     """Unknown fields or invalid values given to a mechanism in Python; also a `ValueError`."""
 
 
-def renamed(error: InputError, arguments: Mapping[str, str]) -> InputError:
-    """Return an error with other names for the arguments that its messages quote in backticks, such as `dt`.
-
-    Parameters
-    ----------
-    error : InputError
-        The error, whose messages name arguments of a function.
-    arguments : mapping of str to str
-        The name of each argument in the messages, and its new name.
-
-    Returns
-    -------
-    InputError
-        A new error with the renamed arguments.
-    """
-    return InputError(
-        *(
-            replace(
-                each,
-                message=with_arguments(each.message, arguments),
-                field=each.field and with_arguments(each.field, arguments),
-                hint=each.hint and with_arguments(each.hint, arguments),
-            )
-            for each in error.problems
-        )
-    )
-
-
-def with_arguments(text: str, arguments: Mapping[str, str]) -> str:
-    """Return a text in which arguments in backticks have other names, where `arguments` gives one."""
-    return re.sub(r"`(\w+)`", lambda match: f"`{arguments.get(match[1], match[1])}`", text)
+@contextmanager
+def renamed(arguments: Mapping[str, str]) -> Iterator[None]:
+    """Name arguments by other names within this context, `vertical_dt` for `dt`."""
+    spell = _spelling.get()
+    with spelled(lambda name: spell(arguments.get(name, name))):
+        yield
 
 
 def warn(warning: Warning) -> None:

@@ -1,4 +1,4 @@
-"""Words shared by all commands, in a module that imports nothing.
+"""Words shared by all commands, in a module that imports nothing heavy.
 
 A motion has one of six outcomes: the structure does not uplift; it slides and never rocks; it rocks, that is, it
 uplifts and comes to rest; it overturns; it is still rocking long after the end of the ground motion, without going to
@@ -9,6 +9,8 @@ a structure whose mechanism has no rotation.
 
 from __future__ import annotations
 
+from typing import Literal, get_args
+
 NO_UPLIFT = "does not uplift"
 SLIDES = "does not overturn; slides"
 ROCKS = "rocks"
@@ -18,11 +20,16 @@ UNKNOWN = "unknown"
 FALLS_OFF = "falls off the edge of"
 COMES_TO_REST = "comes to rest"
 
-LANGUAGES = ("en", "it")
+Language = Literal["en", "it"]
+LANGUAGES = get_args(Language)
 """Languages of calculation sheets and of templates."""
 
+MAX_NEIGHBOURS = 1_000_000  # which take minutes
 OPENING = 0.005
 """Largest opening of a joint up to which an outcome is known, over D_cr, unless another one is given."""
+RTOL = 1e-9  # local error of a step by the lower order of the pair; peaks are then accurate to 1e-11
+FINEST_RTOL = 1e-14  # a smaller tolerance is below rounding, so that no step is accepted
+TAIL_SECONDS = 10.0  # s after the record for which samples are kept
 
 
 def outcome(

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from decimal import Context, Decimal
-from math import isfinite
+from math import inf, isfinite
 
 from rocking_cli.text import cut, printable, regex
 
@@ -215,9 +215,12 @@ def number_of(value: object, unit: str) -> float:
         raise UnitError(f"{quoted} is not a number{', with or without a unit' if unit else ''}")
     if parts[1].lower() not in ("", unit.lower()):
         return read(str(value), unit)
-    number = float(parts[0]) / (100 if parts[1] == "%" else 1)
+    try:
+        number = float(parts[0]) / (100 if parts[1] == "%" else 1)
+    except OverflowError:  # an int may be larger than any float
+        number = inf
     if not isfinite(number):
-        raise UnitError(f"{quoted} is not a finite number")
+        raise UnitError(f"{cut(str(quoted))} is not a finite number")
     return number
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 from html import escape
 from importlib.util import find_spec
@@ -24,6 +24,7 @@ from rocking_cli.views.view import Table, View, number
 
 if TYPE_CHECKING:
     import pandas
+    import xarray
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
 
@@ -35,6 +36,25 @@ V = TypeVar("V")
 _NO_NAME = re.compile(r"[^\w.]+")  # what is not in the name of a column
 MAX_REPR_LENGTH = 100  # characters of the text that `repr` shows
 SHOWN_ROWS = 5  # at either end of a result that has no table of its own
+
+
+@dataclass(frozen=True)
+class Dimensions:
+    """Columns of a long table that vary along the same dimensions, for labelled arrays.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Names of the columns whose values label the dimensions; each row has another combination of them.
+    of : tuple of str
+        Names of the columns; by default all that no other entry of an answer names.
+    table : callable, optional
+        Returns the long table; by default that of the frame.
+    """
+
+    names: tuple[str, ...]
+    of: tuple[str, ...] = ()
+    table: Callable[[], Columns] | None = field(default=None, repr=False)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -57,6 +77,8 @@ class Answer(Generic[R]):
         Returns the columns in blocks of rows, one after the other, if there may be very many.
     tables : mapping of str to callable
         Return further tables of the result as columns, by name.
+    dims : sequence of Dimensions
+        What varies along which dimensions, if the answer is a grid.
     """
 
     question: str
@@ -66,6 +88,7 @@ class Answer(Generic[R]):
     figure: Callable[..., Figure]
     blocks: Callable[[], Iterable[Columns]] | None = None
     tables: Mapping[str, Callable[[], Columns]] = field(default_factory=dict)
+    dims: Sequence[Dimensions] = ()
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a pickle keeps: everything, with data and columns computed."""
@@ -73,7 +96,9 @@ class Answer(Generic[R]):
         columns = partial(_kept, self.columns())
         tables = {name: partial(_kept, each()) for name, each in self.tables.items()}
         view = View(data, self.view.parts)
-        return {**vars(self), "view": view, "columns": columns, "blocks": None, "tables": tables}
+        tables_of_dims = {table: partial(_kept, table()) for each in self.dims if (table := each.table)}
+        dims = [replace(each, table=each.table and tables_of_dims[each.table]) for each in self.dims]
+        return {**vars(self), "view": view, "columns": columns, "blocks": None, "tables": tables, "dims": dims}
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name == "result":
@@ -96,19 +121,42 @@ class Answer(Generic[R]):
     def to_frame(self) -> pandas.DataFrame:
         """Return the result as a frame of pandas, which must be installed; `attrs["units"]` has the units of columns.
 
-        Columns are those of the tables that are written, their names without units and blanks.
+        Columns are those of the tables that are written, their names without units and blanks; only the histories of
+        `respond` stand beside each other in a file, and one below the other here.
 
         Raises
         ------
         InputError
             If pandas is not installed.
         """
-        return _frame(self.columns)
+        return framed(self.columns)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Return the numbers of the frame as labelled arrays of xarray, which must be installed.
+
+        Structures, motions, models and the like are dimensions, with their names as coordinates. Variables and
+        coordinates have `attrs["units"]`, if they have units, and `attrs["long_name"]`. What does not exist is NaN, or
+        an empty text: a size that only another structure has, or times after a shorter history.
+
+        Raises
+        ------
+        InputError
+            If xarray is not installed, or the answer is not a grid.
+        """
+        if not self.dims:
+            raise InputError(Problem(f"an answer of {self.question} is not a grid", hint="`to_frame` has its rows"))
+        if find_spec("xarray") is None:
+            hint = "pip install 'rocking-cli[xarray]'"
+            raise InputError(Problem("labelled arrays require the package xarray", hint=hint))
+        from rocking_cli.ask.labelled import labelled
+
+        made = {table: parted(table()) for table in {each.table or self.columns for each in self.dims}}
+        return labelled([(each, made[each.table or self.columns]) for each in self.dims])
 
     @property
     def frames(self) -> dict[str, pandas.DataFrame]:
         """Further tables of the result as frames, by name. Raises as `to_frame`."""
-        return {name: _frame(each) for name, each in self.tables.items()}
+        return {name: framed(each) for name, each in self.tables.items()}
 
     def plot(
         self,
@@ -196,6 +244,14 @@ class MappingAnswer(Answer[Mapping[K, V]], Mapping[K, V]):
         return len(self.result)
 
 
+class Answers(MappingAnswer[str, V]):
+    """Answers to one question about several motions or structures, by their names.
+
+    The frame has the rows of all answers, one answer after the other; `frames` has the frame of each answer, by its
+    name. Each answer has its own plot.
+    """
+
+
 _DRAWING = RLock()
 """Lock around drawing and writing of plots, as matplotlib is not safe for threads."""
 
@@ -219,7 +275,8 @@ def parted(columns: Columns) -> tuple[dict[str, Any], dict[str, str]]:
     return named, units
 
 
-def _frame(columns: Callable[[], Columns]) -> pandas.DataFrame:
+def framed(columns: Callable[[], Columns]) -> pandas.DataFrame:
+    """Return columns as a frame of pandas. Raises `InputError` if pandas is not installed."""
     if find_spec("pandas") is None:
         raise InputError(Problem("a frame requires the package pandas", hint="pip install pandas"))
     from pandas import DataFrame

@@ -7,12 +7,11 @@ from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import Any, cast
 
-from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.errors import InputError, MechanismError, Problem, named
 from rocking_cli.io.drawings.contract import DrawingError, DrawingReader, LineDrawing, MeshSurface
 from rocking_cli.io.files import read_bytes
 from rocking_cli.plugins.errors import blame
 from rocking_cli.plugins.registry import Plugins, leave_out, origin
-from rocking_cli.units import UnitError, mass_of_weight, number_of
 
 MAX_BYTES = 500_000_000
 DWG = b"AC10"
@@ -88,7 +87,7 @@ def read_drawing(path: str | Path, plane: str | None = None) -> tuple[LineDrawin
     planes = getattr(reader, "PLANES", ())
     if plane is not None and plane not in planes:
         what = f"must be one of {', '.join(planes)}, got {plane!r}" if planes else f"{reader.TITLE} has no planes"
-        raise InputError(Problem(what, field="`plane`"))
+        raise InputError(Problem(what, field=named("plane")))
     more: dict[str, Any] = {} if plane is None else {"plane": plane}
     with _blamed(reader, str(path)):
         return reader.read(data, str(path), **more), data
@@ -97,28 +96,3 @@ def read_drawing(path: str | Path, plane: str | None = None) -> tuple[LineDrawin
 def is_mesh(path: str | Path) -> bool:
     """Return whether a file is read as a mesh. Raises as `read_drawing`."""
     return bool(getattr(reader_of(path)[0], "MESH", False))
-
-
-def length_of(value: float | str, name: str, most: float = 1000.0, *, zero: bool = True) -> float:
-    """Return a length [m], at most `most`, from a number or a text with a unit. Raises `InputError` for any other."""
-    try:
-        length = number_of(value, "m")
-    except UnitError as error:
-        raise InputError(Problem(error.message, field=f"`{name}`", hint=error.hint)) from None
-    if not 0 <= length <= most or not (zero or length):
-        what = f"must be a length up to {most:g} m, got {value}"
-        hint = "a number without a unit is in metres" if length > most else None
-        raise InputError(Problem(what, field=f"`{name}`", hint=hint))
-    return length
-
-
-def density_of(value: float | str) -> float:
-    """Return a density [kg/m3] from a number or a text with a unit. Raises `InputError` if it is not a valid one."""
-    try:
-        weight = mass_of_weight(value, "kg/m3") if isinstance(value, str) else None
-        density = weight if weight is not None else number_of(value, "kg/m3")
-    except UnitError as error:
-        raise InputError(Problem(error.message, field="`density`", hint=error.hint)) from None
-    if not 0 < density <= 1e6:
-        raise InputError(Problem(f"must be above 0 and at most 1e6 kg/m3, got {value}", field="`density`"))
-    return density

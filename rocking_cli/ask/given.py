@@ -6,19 +6,17 @@ from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
-from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.ground_motions import type_in_words
-from rocking_cli.ask.numbers import refuse_idle
+from rocking_cli.ask.kinds import LOCAL_FILE
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.core import CollapseMechanism, Direction, Mechanism
 from rocking_cli.core.plausible import doubts
 from rocking_cli.core.structure_file import default_name, parse_structure
-from rocking_cli.dynamics.model import MODELS, ModelName
-from rocking_cli.errors import InputError, MechanismError, Problem, RockingError, of_structure
+from rocking_cli.errors import InputError, MechanismError, Problem, RockingError, named, of_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.excitation.records.opening import STANDARD_INPUT, name_of, original
@@ -26,27 +24,27 @@ from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import decoded, read_text
 from rocking_cli.names import LANGUAGES, OPENING
 from rocking_cli.structure import Structure
-from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.text import numbered, one_line
 from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from rocking_cli.io.spreadsheet import Spreadsheet
     from rocking_cli.verification.code import SiteFile
 
 StructureLike = Mechanism | Structure | Answer[Any] | str | Path
 """Mechanism, or its YAML file, "-" for standard input; a structure that was opened before, or an import of one."""
 SiteLike = Mapping[str, Any] | str | Path
 """Fields of a site file, or the file."""
-LOCAL_FILE = Path("rocking.yaml")
-"""Stands for the structure that a command was not given: the file of this name in the current folder, or the block."""
 DEFAULT_STRUCTURE = "mechanism: block\nname: default block, 0.7 m x 2.8 m\nwidth: 0.7\nheight: 2.8\n"
 # Numbers of polygons from which a structure is slow (about a second) and very slow, and the largest one timed.
 MIN_SLOW_POLYGONS, MIN_VERY_SLOW_POLYGONS, MAX_TIMED_POLYGONS = 100, 500, 1000
 
 
-def structure_of(given: StructureLike, watch: Watcher = SILENT, opening: float = OPENING) -> Structure:
+def structure_of(
+    given: StructureLike, watch: Watcher = SILENT, opening: float = OPENING, restitution: float | None = None
+) -> Structure:
     """Open a mechanism (named by its kind if it has no name), or a file, as a structure; warn of doubts about it.
 
     Parameters
@@ -57,23 +55,25 @@ def structure_of(given: StructureLike, watch: Watcher = SILENT, opening: float =
         Told which file was read, and what is doubtful about the structure.
     opening : float
         Largest opening of a joint up to which a history is valid, over D_cr.
+    restitution : float, optional
+        Restitution of all impacts that is given for the run; by default that of the structure.
 
     Raises
     ------
     InputError
-        If the file, or the opening, is not valid.
+        If the file, the opening or the restitution is not valid.
     MechanismError
         If the plugin of the mechanism cannot be used.
     """
     if isinstance(given, Answer):
         given = getattr(given.result, "structure", given)
     if isinstance(given, Structure):
-        return given if given.opening == opening else replace(given, opening=opening, _models={})
+        return given.under(opening=opening, restitution=restitution)
     if isinstance(given, Mechanism):
         named = given if given.name else given.model_copy(update={"name": given.mechanism})
-        ready = Structure(named, opening=opening)
+        ready = Structure(named, opening=opening, restitution=restitution)
     elif isinstance(given, str | Path):
-        ready = replace(_read(given, watch), opening=opening)
+        ready = _read(given, watch).under(opening=opening, restitution=restitution)
     else:
         hint = "make one, such as rk.Block(width=0.7, height=2.8)"
         raise InputError(
@@ -119,8 +119,9 @@ def _what_blocks_take(count: int) -> str:
 
 
 def structures_of(
-    given: Sequence[StructureLike], watch: Watcher = SILENT, opening: float = OPENING, *, least: int = 1
-) -> list[Structure]:
+    given: Sequence[StructureLike], watch: Watcher = SILENT, opening: float = OPENING,
+    restitution: float | None = None, *, least: int = 1,
+) -> list[Structure]:  # fmt: skip
     """Open several structures; those that cannot be used are left out. Files or numbers tell equal names apart.
 
     Raises
@@ -132,7 +133,7 @@ def structures_of(
     errors: list[InputError | MechanismError] = []
     for one in given:
         try:
-            ready.append(structure_of(one, watch, opening))
+            ready.append(structure_of(one, watch, opening, restitution))
         except (InputError, MechanismError) as error:
             errors.append(error)
     if errors and len(ready) < least:
@@ -151,6 +152,13 @@ def structures_of(
     return ready
 
 
+def sheet_of(given: str | Path) -> Spreadsheet:
+    """Read a table from its file, "-" for standard input. Raises `InputError`."""
+    from rocking_cli.io.spreadsheet import parse_sheet, read_sheet
+
+    return parse_sheet(original(given), name_of(given)) if str(given) == STANDARD_INPUT else read_sheet(Path(given))
+
+
 def site_of(given: SiteLike) -> SiteFile:
     """Read the site for a code of practice from its file, or take its fields. Raises `InputError`."""
     from rocking_cli.io.yaml_file import parse
@@ -165,8 +173,6 @@ def site_of(given: SiteLike) -> SiteFile:
 def language_of(asked: str | None, site: SiteFile | None, watch: Watcher = SILENT) -> str:
     """Return the language of an answer: as asked, or that of the site; the watcher is told in it from then on."""
     language = asked or (site.site.language if site is not None else None) or LANGUAGES[0]
-    if language not in LANGUAGES:
-        raise InputError(Problem(f"must be one of {', '.join(LANGUAGES)}, got {language!r}", field="`language`"))
     watch.speak(language)
     return language
 
@@ -190,18 +196,6 @@ def warn_of(mechanism: Mechanism, watch: Watcher) -> None:
         watch.warn(doubt)
 
 
-def around_of(count: int, amplitude: float, restitution: float | None, slenderness: float | None) -> Neighbourhood:
-    """Return how neighbours are drawn, if any. Raises `InputError` if deviations are given without any."""
-    if not count:
-        refuse_idle(
-            "without neighbours",
-            amplitude_deviation=amplitude != Neighbourhood.amplitude,
-            slenderness_deviation=slenderness,
-            restitution_deviation=restitution,
-        )
-    return Neighbourhood(count, amplitude, restitution, slenderness)
-
-
 def warn_misleading(structures: Sequence[Structure], watch: Watcher) -> None:
     """Warn of structures for which the linear models mislead."""
     for structure in structures:
@@ -213,11 +207,10 @@ def sized_pulse(shape: str, ag: float | None, period: float | None) -> Pulse:
     """Return a pulse of an amplitude [standard gravity] and a period [s]. Raises `InputError`."""
     from rocking_cli.studies.under_pulses import parse_shape
 
-    for field, value, example in (("`ag`", ag, "0.6 g"), ("`period`", period, "0.8 s")):
+    for name, value, example in (("ag", ag, "0.6g"), ("period", period, "0.8s")):
         if value is None:
-            raise InputError(Problem("is missing for a pulse on a structure", field=field, hint=f"such as {example}"))
-        if not 0 < value < inf:
-            raise InputError(Problem(f"must be above 0, got {value:g}", field=field))
+            hint = f"such as {example}"
+            raise InputError(Problem("is missing for a pulse on a structure", field=named(name), hint=hint))
     assert ag is not None and period is not None
     return replace(parse_shape(shape), amplitude=ag * STANDARD_GRAVITY, period=period)
 
@@ -225,14 +218,6 @@ def sized_pulse(shape: str, ag: float | None, period: float | None) -> Pulse:
 def doubts_of(mechanism: Mechanism) -> list[str]:
     """Return the doubts about the sizes and places of a structure."""
     return [f"{mechanism.name}: {doubt}" for doubt in doubts(mechanism)]
-
-
-def models_of(given: str | Sequence[str] | None) -> tuple[ModelName, ...]:
-    """Return the models of these names, or all models for None. Raises `InputError` for an unknown name."""
-    chosen = MODELS if given is None else (given,) if isinstance(given, str) else tuple(given)
-    if not chosen or (unknown := [name for name in chosen if name not in MODELS]):
-        raise InputError(f"models must be of {', '.join(MODELS)}, got {', '.join(unknown) if chosen else 'none'}")
-    return chosen  # type: ignore[return-value]
 
 
 def structure_figure(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism] | None = None) -> Figure:

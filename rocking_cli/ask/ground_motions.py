@@ -14,18 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.errors import InputError, Problem, renamed
+from rocking_cli.errors import InputError, Problem, named, renamed
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.doubts import coarse_for, doubts
 from rocking_cli.excitation.measures import Measures, measure
 from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
-from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.records.opening import allow_again, matching_files
 from rocking_cli.processing.listed import LIST_FILE, Listed, Scaled, is_list
 from rocking_cli.processing.reading import Reading, reading_of
 from rocking_cli.processing.reading_options import READING, SCALING
-from rocking_cli.processing.reading_options import MotionArguments as MotionArguments
-from rocking_cli.processing.reading_options import ReadingArguments as ReadingArguments
 from rocking_cli.processing.steps import Resample, process
 from rocking_cli.views.processing import in_words
 from rocking_cli.views.view import MAX_DETAILED_MOTIONS
@@ -48,7 +45,7 @@ class Motions:
     reading : Reading
         How the files are read and corrected, and the floor.
     scale, target_pga, target_pgv : float, optional
-        Scale factor, or what to scale to: as for `MotionArguments`.
+        Scale factor, or what to scale to, as in `SCALING`.
     repeated : int
         Number of motions that were given before, and are not among the sources again.
     """
@@ -64,7 +61,7 @@ class Motions:
     def of(
         cls,
         given: Motions | Motion | Sequence[Motion],
-        options: MotionArguments | ReadingArguments | Mapping[str, Any],
+        options: Mapping[str, Any],
         *,
         usual: Mapping[str, Any] | None = None,
     ) -> Motions:
@@ -77,12 +74,15 @@ class Motions:
         for name, value in options.items():
             if value is not None and not each_of(given):
                 what = "has no effect, as no ground motion is given"
-                raise InputError(Problem(what, field=f"`{name}`", hint="give `motion`"))
+                raise InputError(Problem(what, field=named(name), hint=f"give {named('motions')}"))
         scaling = {
             name: SCALING[name].parse(each) for name, each in options.items() if name in SCALING and each is not None
         }
         if len(scaling) > 1:
-            raise InputError("`scale`, `target_pga` and `target_pgv` cannot be combined: give one of them")
+            raise InputError(
+                f"{named('scale')}, {named('target_pga')} and {named('target_pgv')} cannot be combined: "
+                "give one of them"
+            )
         every: list[tuple[object, Source]] = []
         for one in each_of(given):
             if isinstance(one, np.ndarray):
@@ -150,6 +150,7 @@ class Motions:
             If none can be used, a pulse is malformed, or an argument describes records and none is given.
         """
         self.check(with_vertical=with_vertical)
+        self.remark(watch)
         if self.sources and all(isinstance(each, Scaled) for each in self.sources):
             return [each for each in self.sources if isinstance(each, Scaled)]  # these motions were read before
         chosen: list[Scaled] = []
@@ -173,6 +174,15 @@ class Motions:
         warn_about([one.motion for one in chosen if one.pulse is None], watch, p, whom)
         return chosen
 
+    def remark(self, watch: Watcher) -> None:
+        """Tell that a motion is given twice, and that a negative scale reverses it."""
+        if self.repeated:
+            watch.warn(f"a motion that is given twice is used once: {self.repeated} left out")
+        if self.scale is not None and self.scale < 0:
+            watch.note(
+                f"{named('scale')} {self.scale:g} is negative: it reverses the motion, as {named('polarity')} -1 does"
+            )
+
     def refused(self, chosen: Sequence[Scaled]) -> list[str]:
         """Return the names of the files that are not among the motions that can be used, in their order."""
         used = [id(each.record) for each in chosen]
@@ -193,14 +203,13 @@ class Motions:
         if dt is not None or (reading.dt is None and "dt" not in reading.usual):
             arguments["dt"] = "vertical_dt"
         try:
-            component = reading.vertical(file, dt, channel)
-        except InputError as error:
-            problems: list[Problem] = []
-            for problem in renamed(error, arguments).problems:
-                if problem.hint and "`dt`" in problem.hint:  # the user gave `dt`, but for the other component
-                    problem = replace(problem, hint="give the interval of the vertical component with `vertical_dt`")
-                problems.append(problem)
-            raise InputError(*problems) from None
+            with renamed(arguments):
+                component = reading.vertical(file, dt, channel)
+        except InputError as error:  # a hint on `dt` is of the interval that was given for the other component
+            hint = f"give the interval of the vertical component with {named('vertical_dt')}"
+            of_other = [each.hint is not None and named("dt") in each.hint for each in error.problems]
+            problems = zip(error.problems, of_other, strict=True)
+            raise InputError(*(replace(each, hint=hint) if other else each for each, other in problems)) from None
         introduce("vertical", Scaled(component, 1.0), watch)
         warn_about([component], watch)
         return component
@@ -229,13 +238,13 @@ class Motions:
             If the motion is zero, or the scaled motion is beyond any ground motion.
         """
         by = 1.0 if self.scale is None else self.scale
-        for target_peak, unscaled_peak in ((self.target_pga, measured.pga), (self.target_pgv, measured.pgv)):
+        for target_peak, unscaled_peak in ((self.target_pga, measured.pga_g), (self.target_pgv, measured.pgv)):
             if target_peak is not None:
                 if unscaled_peak == 0:
                     what = "the record is zero throughout and cannot be scaled to a peak"
                     raise InputError(Problem(what, motion.name))
                 by = target_peak / unscaled_peak
-        pga, pgv = abs(by) * measured.pga, abs(by) * measured.pgv
+        pga, pgv = abs(by) * measured.pga_g, abs(by) * measured.pgv
         if not (pga <= MAX_PGA and pgv <= MAX_PGV):
             scaled = f" scaled by {by:.4g}" if by != 1 else ""
             problem = f"PGA = {pga:.4g} g and PGV = {pgv:.4g} m/s{scaled} are not plausible for a ground motion"
@@ -252,7 +261,7 @@ class Motions:
             extra += [step.name for step in self.reading.steps]
         if extra and what:
             verb = "describes" if len(extra) == 1 else "describe"
-            raise InputError(f"{' and '.join(f'`{name}`' for name in extra)} {verb} a {what}, and no {what} is given")
+            raise InputError(f"{' and '.join(map(named, extra))} {verb} a {what}, and no {what} is given")
 
 
 def _have_files(sources: Iterable[Source]) -> bool:
@@ -289,7 +298,7 @@ def _of_array(samples: NDArray[Any], options: Mapping[str, Any]) -> list[GroundM
         if options.get(name) is None:
             hint = "give both, such as dt=0.01, units='g' or units='m/s2'"
             raise InputError(
-                Problem(f"is missing: samples in an array need their {what}", field=f"`{name}`", hint=hint)
+                Problem(f"is missing: samples in an array need their {what}", field=named(name), hint=hint)
             )
     if samples.ndim > 1 and len(samples) > samples.shape[1]:
         what = f"would be {len(samples):,} motions of {samples.shape[1]} samples"
@@ -307,7 +316,7 @@ def motion_of(given: Motion) -> GroundMotion:
     if isinstance(given, Scaled):
         return given.motion.scaled(given.factor)
     pulse = pulse_in(given)
-    return pulse.sampled() if pulse is not None else read_record(str(given))
+    return pulse.sampled() if pulse is not None else Reading().read(str(given))
 
 
 def files_of(place: str) -> list[Listed]:
@@ -335,13 +344,6 @@ def each_of(given: Any) -> list[Any]:
     return list(given) if isinstance(given, list | tuple) and not isinstance(given, Scaled) else [given]
 
 
-def signs_of(polarity: str | int) -> tuple[int, ...]:
-    """Return the polarities of an argument: 1 as given, -1 reversed, or "both". Raises `InputError`."""
-    if str(polarity) not in ("1", "-1", "both"):
-        raise InputError(Problem(f"must be 1, -1 or 'both', got {polarity!r}", field="`polarity`"))
-    return (1, -1) if polarity == "both" else (int(polarity),)
-
-
 def done(motion: GroundMotion) -> str:
     """Return what was done to a motion, as the continuation of a sentence."""
     return f"; {steps}" if (steps := in_words(motion)) else ""
@@ -354,7 +356,7 @@ def introduce(what: str, one: Scaled, watch: Watcher) -> None:
     scaled = ""
     if by != 1:
         measured = measure(ground)
-        scaled = f", scaled by {by:.6g}: PGA = {abs(by) * measured.pga:.4g} g, PGV = {abs(by) * measured.pgv:.4g} m/s"
+        scaled = f", scaled by {by:.6g}: PGA = {abs(by) * measured.pga_g:.4g} g, PGV = {abs(by) * measured.pgv:.4g} m/s"
     if pulse is not None:
         read = f"{pulse.title}, {pulse.amplitude / STANDARD_GRAVITY:.4g} g, period {pulse.period:.4g} s, lasts"
         watch.note(f"pulse: {read} {pulse.duration:.4g} s{scaled}{done(motion)}")

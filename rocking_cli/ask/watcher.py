@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Mapping
 from contextlib import AbstractContextManager, nullcontext
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, BinaryIO, Protocol
 
 from rocking_cli.errors import DoubtWarning, RockingError, warn
 
@@ -30,6 +32,14 @@ class Watcher:
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}()"  # as it stands in the signature of a verb
+
+    in_detail = False
+    """Whether the answer is to show every detail."""
+    as_json = False
+    """Whether the answer is for a program."""
+
+    def begin(self, given: Mapping[str, Any]) -> None:
+        """Begin the answer to a question, of which these options are given."""
 
     def speak(self, language: str) -> None:
         """Take the language of the answer."""
@@ -61,6 +71,13 @@ class Watcher:
         A watcher that returns has to tell of the error beside the answer.
         """
         raise error
+
+    def fail(self, error: Exception | None) -> None:
+        """Take a check of the installation that failed, with the error that ended it."""
+
+    def standard_output(self) -> AbstractContextManager[BinaryIO]:
+        """Give standard output to a table."""
+        return nullcontext(sys.stdout.buffer)
 
     def working(self, what: str) -> AbstractContextManager[None]:
         """Begin one piece of work that may take long, which `what` names."""

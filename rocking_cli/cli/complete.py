@@ -29,6 +29,21 @@ def plugins(group: str, *more: str, ending: str = "") -> Completer:
     return complete
 
 
+def words(known: str) -> Completer:
+    """Return a completer of a kind: "file", the entry-point group of plugins, or words; several of words and commas."""
+    if known in ("file", "output"):
+        return files
+    if known.startswith("rocking."):
+        return plugins(known)
+    if "," in known:
+        return listed(known.split(","))
+
+    def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        return [CompletionItem(each) for each in known.split() if each.startswith(incomplete)]
+
+    return complete
+
+
 codes = plugins(CODES)
 """Complete names of installed codes of practice."""
 

@@ -30,7 +30,7 @@ SHARED_OPTIONS = (
     "fractiles", "fps", "speed", "jobs", "project", "place", "client", "author", "logo",
 )  # fmt: skip
 """Options with one meaning in all commands; none that choose the question, the input or the output."""
-AMBIGUOUS_OPTIONS = ("polarity", "model", "eta", "kappa", "shape")
+AMBIGUOUS_OPTIONS = ("polarity", "model", "restitution", "kappa", "shape")
 """Options whose meaning differs between commands: only the table of a command may set them."""
 AMBIGUOUS_HINT = "its meaning differs between commands: put it in the table of a command, such as [respond]"
 OTHER_VARIABLES = ("DEBUG", "BROWSER", "KERNELS")
@@ -147,13 +147,6 @@ def of_run(context: click.Context) -> dict[str, Default]:
     return {name: each for name, each in defaults.items() if from_default(name, context)}
 
 
-def as_declared(given: dict[str, Any], *names: str) -> None:
-    """Undo a user's defaults of some options where these have no effect, as only typed options are then errors."""
-    for param in click.get_current_context().command.params:
-        if param.name in names and param.name in given and from_default(str(param.name)):
-            given[param.name] = param.to_info_dict()["default"]  # `param.default` is a sentinel instead of None
-
-
 def from_default(name: str, context: click.Context | None = None) -> bool:
     """Return whether the value of a parameter of the running command is a user's default, and was not typed."""
     context = context or click.get_current_context(silent=True)
@@ -162,7 +155,7 @@ def from_default(name: str, context: click.Context | None = None) -> bool:
 
 def say(context: click.Context) -> None:
     """Print a note on the defaults that change this run."""
-    usual = {each.name: each.default for each in context.command.params}
+    usual = {each.name: getattr(each, "usual", each.default) for each in context.command.params}
     changed = [each for name, each in of_run(context).items() if each.value != str(usual[name])]
     if changed:
         terminal.note("defaults: " + ", ".join(f"--{each.option} {each.value} ({each.place})" for each in changed))

@@ -8,7 +8,17 @@ from typing import Any
 
 import click
 
-OPTIONS_HEADING, RECORDS_HEADING = "Options", "Reading and processing of records"
+from rocking_cli.errors import spelled
+from rocking_cli.processing.reading_options import CORRECTIONS, corrected_once
+
+MOTIONS_HEADING, OPTIONS_HEADING, OUTPUT_HEADING = "Ground motions", "Options", "Output"
+RECORDS_HEADING, DOCUMENTS_HEADING = "Reading of records", "Documents"
+CORRECTIONS_HEADING = "Correction of records"
+HEADINGS = (
+    MOTIONS_HEADING, OPTIONS_HEADING, "Meshes", "Neighbouring motions", OUTPUT_HEADING, DOCUMENTS_HEADING,
+    CORRECTIONS_HEADING, RECORDS_HEADING,
+)  # fmt: skip
+"""Headings of options, in the order of the help."""
 FREE_COLUMNS = 2  # number of columns left free at the right, as in click
 # Least width of help texts, and least width that click can lay out, in columns of the terminal.
 MIN_WIDTH, MIN_WIDTH_OF_CLICK = 20, 52
@@ -30,19 +40,42 @@ class HelpFormatter(click.HelpFormatter):
         super().write_dl(rows, *layout, **more)
 
 
-class RecordOption(click.Option):
-    """Option that reads or processes records; the help lists it under a heading of its own."""
+class HeadedOption(click.Option):
+    """Option that the help lists under a heading; `usual` is its default as it would be typed."""
+
+    def __init__(self, *names: Any, heading: str = OPTIONS_HEADING, usual: str = "", **more: Any) -> None:
+        super().__init__(*names, **more)
+        self.heading, self.usual = heading, usual
+
+
+def heading_of(option: click.Parameter) -> str:
+    """Return the heading of an option in the help."""
+    return getattr(option, "heading", OPTIONS_HEADING)
 
 
 class Command(click.Command):
-    """Command whose help lists the options of records under a heading of their own."""
+    """Command whose help lists the options heading by heading."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse options; for a correction of a command that uses motions, say where records are corrected."""
+        try:
+            return super().parse_args(ctx, args)
+        except click.NoSuchOption as error:
+            name, reads = (
+                error.option_name.lstrip("-"),
+                any(heading_of(each) == RECORDS_HEADING for each in self.params),
+            )
+            if name not in CORRECTIONS or not reads:
+                raise
+            with spelled("--{}".format):
+                raise click.UsageError(f"No such option --{name}: {corrected_once(name)}.", ctx) from None
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options, heading by heading."""
-        listed: dict[str, list[tuple[str, str]]] = {OPTIONS_HEADING: [], RECORDS_HEADING: []}
+        listed: dict[str, list[tuple[str, str]]] = {heading: [] for heading in HEADINGS}
         for param in self.get_params(ctx):
             if isinstance(param, click.Option) and (record := param.get_help_record(ctx)) is not None:
-                listed[RECORDS_HEADING if isinstance(param, RecordOption) else OPTIONS_HEADING].append(record)
+                listed[heading_of(param)].append(record)
         for heading, records in listed.items():
             if records:
                 with formatter.section(heading):

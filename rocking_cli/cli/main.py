@@ -16,7 +16,7 @@ from rocking_cli import __version__
 from rocking_cli.cli import defaults, endings, terminal
 from rocking_cli.cli.help import HelpFormatter
 from rocking_cli.errors import InputError, Problem, RockingError
-from rocking_cli.plugins.rooms import commands
+from rocking_cli.plugins.rooms import commands, short_help
 from rocking_cli.text import cut, keeps_formulas, one_line, printable
 
 NO_MEMORY = "Could not allocate memory", "can't start new thread"  # of MuJoCo, and of Python
@@ -52,7 +52,8 @@ class _Context(_Helped):
             with terminal.plugins_apart():
                 return super().invoke(callback, *args, **named)
         except InputError as error:
-            error.add_note(defaults.whose(terminal.as_typed(str(error), self.command), self))
+            if whose := defaults.whose(str(error), self):
+                error.add_note(whose.strip())
             raise
 
 
@@ -78,9 +79,21 @@ class LazyGroup(click.Group):
         """Import the module of a command."""
         if cmd_name not in commands():
             return None
-        command: click.Command = import_module(commands()[cmd_name]).command
+        module = import_module(commands()[cmd_name])
+        if hasattr(module, "command"):
+            command: click.Command = module.command
+        else:
+            from rocking_cli.cli.made import Made
+
+            name = "".join(map(str.capitalize, cmd_name.split("_")))
+            command = Made(cmd_name, getattr(module, f"{name}Asked"), short_help(cmd_name))
         command.context_class = _Context
         return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the commands and what they do, without importing them."""
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, short_help(name)) for name in commands()])
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
@@ -133,11 +146,10 @@ class LazyGroup(click.Group):
             terminal.debug_traceback(error)
             raise
         except KeyboardInterrupt as stopped:
-            terminal.error("interrupted")
+            terminal.error(": ".join(["interrupted", *getattr(stopped, "__notes__", ())]))
             ctx.exit(endings.exit_code(stopped))
         except RockingError as error:
-            command = self.get_command(ctx, ctx.invoked_subcommand or "")
-            terminal.error("".join([terminal.as_typed(str(error), command), *getattr(error, "__notes__", ())]))
+            terminal.error("\n  ".join([str(error), *getattr(error, "__notes__", ())]))
             terminal.debug_traceback(error)
             ctx.exit(error.exit_code)
         except OSError as error:  # reported by `main`

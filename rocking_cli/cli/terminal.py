@@ -6,7 +6,6 @@ Texts may quote files and their names, so control characters for the terminal ar
 from __future__ import annotations
 
 import os
-import re
 import sys
 import warnings
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
@@ -171,21 +170,6 @@ def print_json(data: Mapping[str, Any]) -> None:
     click.echo(json_text(data), file=_results)
 
 
-def as_typed(text: str, command: click.Command | None = None) -> str:
-    """Return a text with the arguments in backticks that are options of a command replaced by their typed form.
-
-    Without a command, the running command is used.
-    """
-    context = click.get_current_context(silent=True)
-    command = command or (context.command if context is not None else None)
-    options = [each for each in command.params if isinstance(each, click.Option)] if command is not None else []
-    spelled = [(each.name, max(each.opts, key=len)) for each in options]
-    typed = {name: option for _, option in spelled if (name := option[2:].replace("-", "_"))} | dict(spelled)
-    if {"records", "pulses"} <= typed.keys():
-        typed["motions"] = typed["motion"] = "--record or --pulse"
-    return re.sub(r"`(\w+)`", lambda match: typed.get(match[1], match[0]), text)
-
-
 def note(text: str) -> None:
     """Print a note that is not part of the result."""
     _say(_said(text))
@@ -203,7 +187,7 @@ def error(text: str) -> None:
 
 def _say(text: str, prefix: str = "", colour: str | None = None) -> None:
     """Print sentences on standard error, in lines of its terminal's width."""
-    lines = beside(printable(as_typed(text)), prefix)
+    lines = beside(printable(text), prefix)
     click.echo((click.style(prefix, fg=colour, bold=True) if prefix else "") + lines, err=True)
 
 
@@ -364,11 +348,10 @@ def show(view: View, *, as_json: bool) -> None:
     """Print a result: as one line of JSON, or as its tables and sentences, with options as they are typed."""
     if as_json:
         data = view.data() if callable(view.data) else view.data
-        verdict = data.get("verdict")
-        print_json({**data, "verdict": as_typed(verdict)} if isinstance(verdict, str) else data)
+        print_json(data)
         return
     for part in view.parts:
         if isinstance(part, str):
-            sentence(as_typed(part))
+            sentence(part)
         else:
             table(part.title, part.columns, part.rows, numbers=part.numbers)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from contextlib import AbstractContextManager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import click
 
 from rocking_cli.ask.watcher import Advance, Watcher
 from rocking_cli.cli import terminal
-from rocking_cli.errors import EXIT_INCOMPLETE, Refused, RockingError
+from rocking_cli.errors import EXIT_INCOMPLETE, Refused, RockingError, SolverError
 
 if TYPE_CHECKING:
     from rocking_cli.ask.answer import Answer
@@ -20,8 +21,14 @@ class OnTerminal(Watcher):
 
     def __init__(self, *, as_json: bool = False) -> None:
         self.left_out = 0
+        self.taken = False  # whether answers were printed as soon as they were ready
         self._unwritten: list[RockingError] = []
-        self._as_json = as_json
+        self.as_json, self._failed, self._given = as_json, False, dict[str, Any]()
+        self.in_detail = terminal.asked("verbose")
+
+    def begin(self, given: Mapping[str, Any]) -> None:
+        """Keep the options for the answers that are taken."""
+        self._given = self._given or dict(given)
 
     def speak(self, language: str) -> None:
         """Print notes and warnings in this language from now on, as far as it has them."""
@@ -45,8 +52,9 @@ class OnTerminal(Watcher):
 
     def take(self, answer: Answer[Any]) -> bool:
         """Print one of several answers as JSON, if requested: a line each, as soon as it is ready."""
-        if self._as_json:
-            terminal.show(answer.view, as_json=True)
+        if self.as_json:
+            terminal.show(answer.view.with_given(self._given), as_json=True)
+            self.taken = True
         return True
 
     def incomplete(self, text: str) -> None:
@@ -58,9 +66,18 @@ class OnTerminal(Watcher):
         """Keep an error until the answer is shown."""
         self._unwritten.append(error)
 
+    def fail(self, error: Exception | None) -> None:
+        """Count a check that failed."""
+        terminal.debug_traceback(error)
+        self._failed = True
+
     def detail(self, text: str) -> None:
         """Print a detail, with --verbose."""
         terminal.detail(text)
+
+    def standard_output(self) -> AbstractContextManager[BinaryIO]:
+        """Keep all but a table off standard output."""
+        return terminal.results_as_bytes()
 
     def working(self, what: str) -> AbstractContextManager[None]:
         """Show a spinner."""
@@ -73,8 +90,10 @@ class OnTerminal(Watcher):
         return terminal.progress(total, what, done=done, failed=failed)
 
     def end(self) -> None:
-        """End the command; with the exit code of an incomplete answer if anything was left out or is unwritten."""
+        """End the command; with the exit code of a failed check, or of an answer that lacks something."""
         for error in self._unwritten:
             self.leave_out(error)
+        if self._failed:
+            click.get_current_context().exit(SolverError.exit_code)
         if self.left_out:
             click.get_current_context().exit(EXIT_INCOMPLETE)

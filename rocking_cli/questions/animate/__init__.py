@@ -1,3 +1,3 @@
-"""`animate`: a structure that moves under a ground motion."""
+"""Animate structures under a ground motion (GIF, MP4 or HTML)."""
 
 PLACE = 140

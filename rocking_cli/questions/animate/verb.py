@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Concatenate, NamedTuple, ParamSpec, Protocol, TypeVar, Unpack, cast, overload
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from rocking_cli.ask.answer import Answer, drawn
-from rocking_cli.ask.given import StructureLike, around_of, models_of, structure_of, structures_of
-from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
-from rocking_cli.ask.numbers import refuse_idle, takes_numbers
+from rocking_cli.ask.given import StructureLike, structure_of, structures_of
 from rocking_cli.ask.several import Answers, answers, are_several, ask_each, places_of
-from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.errors import InputError, MechanismError, Problem, RockingError, of_structure
-from rocking_cli.names import OPENING
+from rocking_cli.ask.verbs import verb
+from rocking_cli.ask.watcher import Watcher
+from rocking_cli.errors import InputError, MechanismError, Problem, RockingError, named, of_structure
 from rocking_cli.processing.listed import Scaled
+from rocking_cli.questions.animate.asked import AnimateAsked
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.film import Film, Scene
-from rocking_cli.studies.neighbours import Neighbourhood, Neighbours
+from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.text import in_short
 from rocking_cli.views.view import heading
 
@@ -33,9 +32,6 @@ MAX_DEFAULT_DURATION = 20.0  # s of a GIF whose speed is not given
 MAX_FRAMES = 3000
 FRAMES_PER_SECOND = 20.0
 MAX_STRUCTURES = 6  # as many as there are colours of curves
-ENDINGS = (".gif", ".mp4", ".html")
-T = TypeVar("T", bound=Answer[Any])
-P = ParamSpec("P")
 
 
 @short_repr
@@ -55,81 +51,9 @@ class Animation:
     neighbours: Neighbours | None
 
 
-class Animates(Protocol[P, T]):
-    """Type of a verb like `UnderMotions`, which takes several structures under one motion as well."""
-
-    @overload
-    def __call__(  # type: ignore[overload-overlap]
-        self, structure: StructureLike, motion: Motion, *args: P.args, **options: P.kwargs
-    ) -> T: ...
-    @overload
-    def __call__(
-        self, structure: StructureLike, motion: list[Any] | tuple[Any, ...], *args: P.args, **options: P.kwargs
-    ) -> Answers[T]: ...
-    @overload
-    def __call__(
-        self, structure: list[Any] | tuple[Any, ...], motion: Motion | Motions, *args: P.args, **options: P.kwargs
-    ) -> Answers[T]: ...
-    @overload
-    def __call__(
-        self, structure: StructureLike, motion: Motions, *args: P.args, **options: P.kwargs
-    ) -> T | Answers[T]: ...
-
-
-def _animates(verb: Callable[Concatenate[Any, Any, P], T | Answers[T]]) -> Animates[P, T]:
-    """Return a verb unchanged; type checkers then see the type `Animates`."""
-    return cast("Animates[P, T]", verb)
-
-
-@_animates
-@takes_numbers
-def animate(
-    structure: StructureLike | Sequence[StructureLike],
-    motion: Motion | Motions | Sequence[Motion],
-    file: str | Path,
-    *,
-    model: str = "nonlinear",
-    polarity: str | int = "1",
-    speed: float | None = None,
-    fps: float = FRAMES_PER_SECOND,
-    neighbours: int = Neighbourhood.count,
-    amplitude_deviation: float = Neighbourhood.amplitude,
-    slenderness_deviation: float | None = None,
-    restitution_deviation: float | None = None,
-    opening: float = OPENING,
-    watch: Watcher = SILENT,
-    **options: Unpack[MotionArguments],
-) -> Answer[Animation] | Answers[Answer[Animation]]:
+@verb(AnimateAsked)
+def animate(asked: AnimateAsked, watch: Watcher) -> Answer[Animation] | Answers[Answer[Animation]]:
     """Animate structures under ground motions, as a GIF, as a video or as a page with a slider.
-
-    Parameters
-    ----------
-    structure : Mechanism, str or Path, or a sequence of these
-        The structure, or its YAML file; or several, which are shown side by side under one motion.
-    motion : GroundMotion, Pulse, str or Path, or a sequence of these
-        The motion, its file, or a pulse as text; a pattern such as `records/*.AT2`, or a sequence, gives several.
-    file : str or Path
-        File to write: .gif, .mp4 for a video (which requires ffmpeg), or .html for a page. Of several motions each has
-        its own, with its name in the file name.
-    model : str
-        Model "nonlinear", "linear1" or "linear2".
-    polarity : {"1", "-1"}
-        Polarity of the motion: as given, or reversed.
-    speed : float, optional
-        Seconds of motion per second; by default 1, and for a GIF so many that it lasts at most 20 s.
-    fps : float
-        Frames per second of a GIF or a video.
-    neighbours : int
-        Number of neighbouring motions to simulate as well; 0 for none.
-    amplitude_deviation, slenderness_deviation, restitution_deviation : float, optional
-        Standard deviations of the neighbours: of ln amplitude, of ln slenderness and of restitution; by default those
-        of the structure.
-    opening : float
-        Largest opening of a joint up to which a history is valid, over D_cr.
-    watch : Watcher
-        Told what was read and written, how far the work is, and which of several motions cannot be used.
-    **options
-        How the motion is read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionArguments`.
 
     Returns
     -------
@@ -157,30 +81,28 @@ def animate(
     >>> import rocking_cli as rk
     >>> from tempfile import TemporaryDirectory
     >>> with TemporaryDirectory() as folder:
-    ...     answer = rk.animate(rk.Block(width=0.7, height=2.8), "sine:0.3g:0.9s", f"{folder}/block.html")
+    ...     answer = rk.animate(rk.Block(width=0.7, height=2.8), "sine:0.3g:0.9s", out=f"{folder}/block.html")
     >>> f"{answer.film.history.peak_ratio:.4g}"
     '0.1315'
     """
+    from rocking_cli.studies.conditions import Conditions
     from rocking_cli.studies.contact import Contacts
     from rocking_cli.studies.engines import follow
     from rocking_cli.studies.neighbours import neighbours as outcomes
     from rocking_cli.studies.picture import picture
     from rocking_cli.views import animation as views
 
-    path, (name,), signs = Path(file), models_of(model), signs_of(polarity)
-    check_film(path, signs, speed, fps)
-    around = around_of(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
-    if name != "nonlinear":
-        refuse_idle("on a linear block, which has no joints", opening=opening != OPENING)
-    if path.suffix.lower() == ".html":
-        refuse_idle("on a page, which is drawn as fast as it is shown", fps=fps != FRAMES_PER_SECOND)
-    motions = Motions.of(motion, options)
+    path, motions, (sign,) = asked.out, asked.ground_motions, asked.signs
+    check_program(path)
+    around = asked.neighbourhood(asked.neighbours)
 
     def shot(ready: Structure, given: Scaled) -> Animation:
-        scaled = given.motion.scaled(signs[0] * given.factor)
-        history = follow(ready, scaled, model=name)
-        assumed = Contacts(ready.mechanism).check(history, scaled).assumed_friction if name == "nonlinear" else None
-        neighbourhood = outcomes(ready.model(name), scaled, around) if neighbours else None
+        scaled = given.motion.scaled(sign * given.factor)
+        history = follow(ready, scaled, model=asked.model)
+        assumed = (
+            Contacts(ready.mechanism).check(history, scaled).assumed_friction if asked.model == "nonlinear" else None
+        )
+        neighbourhood = outcomes(Conditions(ready, [asked.model], around=around), scaled) if around.count else None
         return Animation(Film(picture(ready.mechanism), history, scaled, assumed), neighbourhood)
 
     def of(ready: Structure, made: Animation, scene: Scene, file: _Written) -> Answer[Animation]:
@@ -198,13 +120,15 @@ def animate(
     def beside(many: Sequence[StructureLike]) -> Answers[Answer[Animation]]:
         """Animate several structures in one file."""
         if not 0 < len(many) <= MAX_STRUCTURES:
-            raise InputError(Problem(f"takes 1 to {MAX_STRUCTURES} structures, got {len(many)}", field="`structure`"))
-        usable = structures_of(many, watch, opening)
+            raise InputError(
+                Problem(f"takes 1 to {MAX_STRUCTURES} structures, got {len(many)}", field=named("structures"))
+            )
+        usable = structures_of(many, watch, asked.opening)
         fastest = max(usable, key=lambda each: each.growth)
         given, *others = motions.gather(fastest.growth, watch, fastest.name)
         if others:
             what = f"several structures are animated under one motion, and {1 + len(others)} are given"
-            raise InputError(Problem(what, field="`motion`", hint="give one, or call this once for each motion"))
+            raise InputError(Problem(what, field=named("motions"), hint="give one, or ask once for each motion"))
         made, refused = dict[str, Animation](), list[RockingError]()
         for ready in usable:
             try:
@@ -217,30 +141,35 @@ def animate(
             watch.leave_out(each)
         scene = Scene(tuple(each.film for each in made.values()))
         under = scene.films[0].motion.name
-        written = write_film(path, scene, in_short(list(made), most=MAX_STRUCTURES), under, speed, fps, watch)
+        written = write_film(
+            path, scene, in_short(list(made), most=MAX_STRUCTURES), under, asked.speed, asked.fps, watch
+        )
         shown = [ready for ready in usable if ready.name in made]
         by_name = {ready.name: of(ready, made[ready.name], scene, written) for ready in shown}
         for answer in by_name.values():
             watch.take(answer)
         rows = [views.row(key, each.film, each.neighbours) for key, each in made.items()]
         notes = [f"{ready.name}: {note}" for ready in shown for note in views.notes(ready, made[ready.name].film)]
-        table = views.several(f"under {under}", "structure", name, rows, [views.scale_in_words(scene), *notes])
+        table = views.several(f"under {under}", "structure", asked.model, rows, [views.scale_in_words(scene), *notes])
         return answers("animations", "structure", by_name, table.parts)
 
-    if isinstance(structure, list | tuple):
-        return beside(structure)
-    ready = structure_of(cast("StructureLike", structure), watch, opening)
+    structures: Any = asked.structures
+    if isinstance(structures, list | tuple):
+        return beside(structures)
+    ready = structure_of(structures, watch, asked.opening)
     chosen = motions.gather(ready.growth, watch)
 
     def one(given: Scaled, place: Path) -> Answer[Animation]:
         made = shot(ready, given)
         scene, title = Scene((made.film,)), heading(ready.mechanism)
-        return of(ready, made, scene, write_film(place, scene, title, made.film.motion.name, speed, fps, watch))
+        return of(
+            ready, made, scene, write_film(place, scene, title, made.film.motion.name, asked.speed, asked.fps, watch)
+        )
 
-    if not are_several(motion, motions):
+    if not are_several(asked.motions, motions):
         return one(chosen[0], path)
     rows, last = list[views.FilmRow](), list[Film]()
-    places = places_of("file", path, chosen, [ready.file, *(each.path for each in motions.records)])
+    places = places_of("out", path, chosen, [ready.file, *(each.path for each in motions.records)])
 
     def row(given: Scaled, k: int) -> Answer[Animation]:
         answer = one(given, places[k] or path)
@@ -249,26 +178,16 @@ def animate(
         return answer
 
     responses, _ = ask_each(chosen, row, watch)
-    table = views.several(heading(ready.mechanism), "under", name, rows, views.notes(ready, last[0]))
+    table = views.several(heading(ready.mechanism), "under", asked.model, rows, views.notes(ready, last[0]))
     return answers("animations", "motion", responses, table.parts)
 
 
-def check_film(file: Path, signs: tuple[int, ...], speed: float | None, fps: float) -> None:
-    """Raise `InputError` if an animation cannot be written, or be shown like this."""
-    from rocking_cli.io.files import check_writable
-
-    check_writable(file, *ENDINGS)
-    if file.suffix.lower() == ".mp4":
+def check_program(file: Path | None) -> None:
+    """Raise `InputError` if a video is requested and the program that makes it is missing."""
+    if file is not None and file.suffix.lower() == ".mp4":
         from rocking_cli.questions.animate.video import ffmpeg
 
         ffmpeg(file)
-    if len(signs) > 1:
-        raise InputError(Problem("must be 1 or -1: one motion is shown", field="`polarity`"))
-    if speed is not None and not 1e-3 <= speed <= 1e3:
-        what = f"{speed:g} is not between 0.001 and 1000 s of motion per second"
-        raise InputError(Problem(what, field="`speed`"))
-    if not 1 <= fps <= 50:
-        raise InputError(Problem(f"{fps:g} is not between 1 and 50, the range of a GIF", field="`fps`"))
 
 
 class _Written(NamedTuple):
@@ -298,7 +217,9 @@ def write_film(
     count = int((scene.end - scene.start) / step) + 1
     if count > MAX_FRAMES:
         problem = f"an animation of {count:,} frames is too long (at most {MAX_FRAMES:,})"
-        raise InputError(Problem(problem, field="`speed`", hint="raise `speed`, lower `fps`, or write .html"))
+        raise InputError(
+            Problem(problem, field=named("speed"), hint=f"raise {named('speed')}, lower {named('fps')}, or write .html")
+        )
     times = np.append(scene.start + step * np.arange(count), scene.end)
     if pace != 1:
         watch.note(f"shown at {pace:.3g} times its speed, from {scene.start:.4g} to {scene.end:.4g} s")
@@ -316,4 +237,4 @@ def write_film(
 
 
 def _columns(film: Film) -> Columns:
-    return {"time": film.history.time, "phi": film.history.phi}
+    return {"t [s]": film.history.time, "phi [rad]": film.history.phi}

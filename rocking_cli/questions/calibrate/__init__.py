@@ -1,3 +1,3 @@
-"""`calibrate`: the restitution from a trace of free rocking."""
+"""Find the restitution from a trace of free rocking."""
 
 PLACE = 130

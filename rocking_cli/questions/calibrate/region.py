@@ -108,7 +108,7 @@ def joint_region(
     if not kept or not around.count:
         raise InputError("a joint region needs tests with an observed outcome, and at least one neighbour of each")
     around = around.of(structure.model("nonlinear"))
-    models = [structure.with_eta(float(eta)).model("nonlinear") for eta in restitution]
+    models = [structure.under(restitution=float(eta)).model("nonlinear") for eta in restitution]
     shape = (len(kept), slenderness.size, restitution.size)
     overturned, unknown = np.empty(shape), np.empty(shape)
 

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from rocking_cli.arrays import Reals
+from rocking_cli.ask.given import sheet_of
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Spreadsheet, read_sheet, unit_in
+from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Spreadsheet, unit_in
 from rocking_cli.short_repr import short_repr
 from rocking_cli.text import cut, one_line
 from rocking_cli.units import UnitError, read, units_of
@@ -47,7 +48,7 @@ def read_trace(path: Path) -> Trace:
     InputError
         With every problem of the file, by line and column.
     """
-    return parse_trace(read_sheet(path))
+    return parse_trace(sheet_of(path))
 
 
 def parse_trace(sheet: Spreadsheet) -> Trace:

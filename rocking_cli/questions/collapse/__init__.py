@@ -1,3 +1,3 @@
-"""`collapse`: the weakest mechanism of an assembly of blocks."""
+"""Find the weakest mechanism of an assembly of blocks."""
 
 PLACE = 30

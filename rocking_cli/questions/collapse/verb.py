@@ -6,27 +6,17 @@ from functools import partial
 from pathlib import Path
 
 from rocking_cli.ask.answer import MappingAnswer
-from rocking_cli.ask.given import StructureLike, structure_figure, structure_of
-from rocking_cli.ask.numbers import takes_numbers
-from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.ask.given import structure_figure, structure_of
+from rocking_cli.ask.verbs import verb
+from rocking_cli.ask.watcher import Watcher
 from rocking_cli.core import CollapseMechanism, Direction, Mechanism
 from rocking_cli.errors import InputError, Problem, RockingError
+from rocking_cli.questions.collapse.asked import CollapseAsked
 
 
-@takes_numbers
-def collapse(
-    structure: StructureLike, *, out: str | Path | None = None, watch: Watcher = SILENT
-) -> MappingAnswer[Direction, CollapseMechanism]:
+@verb(CollapseAsked)
+def collapse(asked: CollapseAsked, watch: Watcher) -> MappingAnswer[Direction, CollapseMechanism]:
     """Find the weakest mechanism of an assembly of rigid blocks in each direction, by limit analysis.
-
-    Parameters
-    ----------
-    structure : Mechanism, str or Path
-        Assembly, or its YAML file.
-    out : str or Path, optional
-        Write the mechanism to this YAML file, as a `linkage` whose bodies are the blocks: `Assembly.as_linkage`.
-    watch : Watcher
-        Told what is doubtful about the structure.
 
     Returns
     -------
@@ -53,18 +43,15 @@ def collapse(
     >>> round(answer[rk.Direction.POSITIVE].lambda_, 12)
     0.25
     """
-    from rocking_cli.io.files import keep_apart
     from rocking_cli.questions.collapse.study import collapses
     from rocking_cli.questions.collapse.view import table, view
 
-    ready = structure_of(structure, watch)
-    mechanism = ready.mechanism
+    mechanism = structure_of(asked.structure, watch).mechanism
     mechanisms = collapses(mechanism)
-    if out is not None:
-        keep_apart([("`out`", Path(out))], [ready.file])
+    if asked.out is not None:
         try:
-            _write(mechanism, Path(out))
-            watch.note(f"wrote {out}")
+            _write(mechanism, asked.out)
+            watch.note(f"wrote {asked.out}")
         except RockingError as error:
             watch.unwritten(error)
 

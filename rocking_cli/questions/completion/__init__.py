@@ -1,3 +1,3 @@
-"""`completion`: the script with which a shell completes commands and options."""
+"""Print the shell completion script."""
 
 PLACE = 270

@@ -5,12 +5,13 @@ from __future__ import annotations
 import click
 
 from rocking_cli.cli import options, terminal
+from rocking_cli.cli.help import Command
 
 COMPLETION_VARIABLE = "_ROCKING_COMPLETE"
 """Variable of the environment by which the shell requests completions, named as click expects it."""
 
 
-@click.command(short_help="Print the shell completion script.")
+@click.command(cls=Command, short_help="Print the shell completion script.")
 @click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
 @options.as_json
 def command(shell: str, as_json: bool) -> None:

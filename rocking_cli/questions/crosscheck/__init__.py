@@ -1,3 +1,3 @@
-"""`crosscheck`: the exact engine and free blocks side by side."""
+"""Compare the exact engine with free blocks."""
 
 PLACE = 75

@@ -5,21 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from math import ceil
-from pathlib import Path
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rocking_cli.ask.answer import Answer, drawn
-from rocking_cli.ask.given import StructureLike, structure_of
-from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
-from rocking_cli.ask.numbers import takes_numbers
-from rocking_cli.ask.watcher import SILENT, Advance, Watcher
-from rocking_cli.dynamics.history import TAIL_SECONDS
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.ask.answer import Answer, Dimensions, drawn
+from rocking_cli.ask.given import structure_of
+from rocking_cli.ask.verbs import verb
+from rocking_cli.ask.watcher import Advance, Watcher
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.names import OPENING
-from rocking_cli.studies.release import Release
+from rocking_cli.names import TAIL_SECONDS
+from rocking_cli.questions.crosscheck.asked import CrosscheckAsked
 from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
@@ -28,39 +24,9 @@ if TYPE_CHECKING:
     from rocking_cli.questions.crosscheck.study import Crosscheck
 
 
-@takes_numbers
-def crosscheck(
-    structure: StructureLike,
-    motion: Motion | Motions | None = None,
-    *,
-    polarity: str | int = "1",
-    release: Release | float | str | None = None,
-    opening: float = OPENING,
-    animate: str | Path | None = None,
-    watch: Watcher = SILENT,
-    **options: Unpack[MotionArguments],
-) -> Answer[Crosscheck]:
+@verb(CrosscheckAsked)
+def crosscheck(asked: CrosscheckAsked, watch: Watcher) -> Answer[Crosscheck]:
     """Simulate the motion of a structure by the exact engine and by free blocks, and compare them.
-
-    Parameters
-    ----------
-    structure : Mechanism, str or Path
-        The structure, or its YAML file.
-    motion : GroundMotion, Pulse, str or Path, optional
-        The ground motion, its file, or a pulse as text.
-    polarity : {"1", "-1"}
-        Polarity of the motion: as given, or reversed.
-    release : float or str, optional
-        Initial tilt of a release from rest: a fraction of phi_cr, between -1 and 1, or an angle such as "0.05rad";
-        negative is anticlockwise.
-    opening : float
-        Largest opening of a joint up to which the exact history is valid, over D_cr.
-    animate : str or Path, optional
-        Animation of both, side by side, to write: .gif, .mp4 for a video (which requires ffmpeg), or .html for a page.
-    watch : Watcher
-        Told what was read, how far the work is, and what was written.
-    **options
-        How the motion is read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionArguments`.
 
     Returns
     -------
@@ -91,44 +57,28 @@ def crosscheck(
     >>> answer.finding
     'agree'
     """
-    from rocking_cli.questions.animate.verb import FRAMES_PER_SECOND, check_film, write_film
+    from rocking_cli.questions.animate.verb import FRAMES_PER_SECOND, check_program, write_film
     from rocking_cli.questions.crosscheck import study
     from rocking_cli.questions.crosscheck.film import scene_of
     from rocking_cli.questions.crosscheck.view import view
 
-    motions, signs = Motions.of(() if motion is None else motion, options), signs_of(polarity)
-    _check(motions, signs, release, animate)
-    if animate is not None:
-        check_film(Path(animate), signs, None, FRAMES_PER_SECOND)
-    ready = structure_of(structure, watch, opening)
+    motions, (sign,) = asked.ground_motions, asked.signs
+    check_program(asked.animate)
+    ready = structure_of(asked.structure, watch, asked.opening)
     ready = ready if motions else ready.released()
     given = motions.gather(ready.growth, watch)[0] if motions else None
-    scaled = given.motion.scaled(signs[0] * given.factor) if given is not None else None
-    tilt = None if release is None else release if isinstance(release, Release) else Release.of(release)
-    ratio = tilt.ratio(ready) if tilt is not None else None
+    scaled = given.motion.scaled(sign * given.factor) if given is not None else None
+    ratio = asked.ratio(ready)
     lasts = ceil(scaled.duration if scaled is not None else TAIL_SECONDS)
     with watch.progress(lasts, "seconds of motion by free blocks") as advance:
         both = study.crosscheck(ready, scaled, release=ratio, progress=_in_seconds(advance))
-    shown = view(ready, given, signs[0], ratio, both)
+    shown = view(ready, given, sign, ratio, both)
     title = heading(ready.mechanism)
-    if animate is not None and scaled is not None:
-        write_film(Path(animate), scene_of(ready, both), title, scaled.name, None, FRAMES_PER_SECOND, watch)
+    if asked.animate is not None and scaled is not None:
+        write_film(asked.animate, scene_of(ready, both), title, scaled.name, None, FRAMES_PER_SECOND, watch)
     figure = drawn("questions.crosscheck.picture.draw_crosscheck", both, title)
-    return Answer("crosscheck", both, shown, partial(_columns, both), figure)
-
-
-def _check(motions: Motions, signs: tuple[int, ...], release: object, animate: object) -> None:
-    """Raise `InputError` if there is nothing to simulate, or more than one motion."""
-    if motions.count > 1:
-        raise InputError(f"{motions.count} motions are given where one is expected: ask for one after the other")
-    if len(signs) > 1:
-        raise InputError(Problem("must be 1 or -1: one motion is simulated", field="`polarity`"))
-    if not motions and release is None:
-        raise InputError("no excitation is given: give a motion or a `release`")
-    if not motions and signs != (1,):
-        raise InputError("`polarity` reverses a ground motion: give `motion`")
-    if not motions and animate is not None:
-        raise InputError("`animate` shows a ground motion: give `motion`")
+    dims = [Dimensions(("t",), ("a_g",)), Dimensions(("engine", "t"))]
+    return Answer("crosscheck", both, shown, partial(_columns, both), figure, dims=dims)
 
 
 def _in_seconds(advance: Advance) -> Callable[[float], None]:
@@ -145,20 +95,20 @@ def _in_seconds(advance: Advance) -> Callable[[float], None]:
 
 
 def _columns(found: Crosscheck) -> Columns:
-    from rocking_cli.questions.crosscheck.view import divisor
+    from rocking_cli.io.tables import stacked
 
     exact, blocks = found.exact, found.of_blocks
     time = max(exact.time, blocks.time, key=len)
-    over = f"phi/{divisor(exact)}"
     ground = {}
     if found.motion is not None:
         kept = found.motion.kept
         ground = {"a_g [g]": np.interp(time, kept.time, kept.acceleration, right=0.0) / STANDARD_GRAVITY}
-    series = {
-        "exact phi [rad]": found.extended(exact.phi), f"exact {over}": found.extended(exact.ratio),
-        "blocks phi [rad]": blocks.phi, f"blocks {over}": blocks.ratio,
-    }  # fmt: skip
-    return {"t [s]": time, **ground, **{name: _padded(each, time.size) for name, each in series.items()}}
+    each = {"exact": (found.extended(exact.phi), found.extended(exact.ratio)), "blocks": (blocks.phi, blocks.ratio)}
+    return stacked(
+        {"engine": engine, "t [s]": time, **ground}
+        | {"phi [rad]": _padded(phi, time.size), "phi_ratio": _padded(ratio, time.size)}
+        for engine, (phi, ratio) in each.items()
+    )
 
 
 def _padded(values: Reals, size: int) -> Reals:

@@ -1,3 +1,3 @@
-"""`demand`: the response spectra of a site by a code of practice."""
+"""Show the response spectra of a site by a code."""
 
 PLACE = 85

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rocking_cli.arrays import Reals
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.short_repr import short_repr
 from rocking_cli.verification.check import code_of
 from rocking_cli.verification.check import demand as demand_of
@@ -63,7 +63,7 @@ def spectra_of(site: SiteFile, damping: float) -> SpectraOfSite:
     """
     if not 0 <= damping < 1:
         message = f"a damping ratio is from 0 to below 1, got {damping:g}"
-        raise InputError(Problem(message, field="`damping`", hint="5 % is 0.05"))
+        raise InputError(Problem(message, field=named("damping"), hint="5 % is 0.05"))
     code, site_demand = code_of(site), demand_of(site)
     periods, states = spectra_at_states(site_demand, damping)
     return SpectraOfSite(code.key, code.name, code.edition, site.site.name, damping, periods, states, site_demand)

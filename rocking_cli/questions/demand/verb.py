@@ -4,22 +4,17 @@ from __future__ import annotations
 
 from functools import partial
 
-from rocking_cli.ask.answer import Answer, drawn
-from rocking_cli.ask.given import SiteLike, site_of
-from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.answer import Answer, Dimensions, drawn
+from rocking_cli.ask.given import site_of
+from rocking_cli.ask.verbs import verb
+from rocking_cli.ask.watcher import Watcher
+from rocking_cli.questions.demand.asked import DemandAsked
 from rocking_cli.questions.demand.study import SpectraOfSite
 
 
-@takes_numbers
-def demand(site: SiteLike, *, damping: float = 0.05) -> Answer[SpectraOfSite]:
+@verb(DemandAsked)
+def demand(asked: DemandAsked, watch: Watcher) -> Answer[SpectraOfSite]:
     """Compute the elastic response spectra of a site by its code, at each limit state that the site gives.
-
-    Parameters
-    ----------
-    site : mapping, str or Path
-        Fields of a site file, or the file.
-    damping : float
-        Damping ratio of the spectra.
 
     Returns
     -------
@@ -43,7 +38,9 @@ def demand(site: SiteLike, *, damping: float = 0.05) -> Answer[SpectraOfSite]:
     from rocking_cli.questions.demand.study import spectra_of
     from rocking_cli.questions.demand.view import table, title, view
 
-    spectra = spectra_of(site_of(site), damping)
+    spectra = spectra_of(site_of(asked.site), asked.damping)
     shown = (spectra.periods, spectra.states, spectra.demand.first, title(spectra))
     figure = drawn("plotting.spectra.draw_spectra_of_site", *shown)
-    return Answer("demand", spectra, view(spectra), partial(table, spectra), figure)
+    return Answer(
+        "demand", spectra, view(spectra), partial(table, spectra), figure, dims=[Dimensions(("state", "period"))]
+    )

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from rocking_cli.arrays import Reals
+from rocking_cli.io.tables import Columns, stacked
 from rocking_cli.questions.demand.study import SpectraOfSite
 from rocking_cli.views.column import Column, only_shown, rounded, table_across, table_of
 from rocking_cli.views.verification import showing_by
@@ -66,17 +67,13 @@ def data(found: SpectraOfSite) -> dict[str, Any]:
     }
 
 
-def table(found: SpectraOfSite) -> dict[str, Sequence[object]]:
-    """Return the columns of the spectra, with a row for each period."""
-    return {
-        "period [s]": found.periods.tolist(),
-        **{
-            f"{state} {name} [{unit}]": values.tolist()
-            for state, spectra in found.states.items()
-            for key, name, unit in CURVES
-            if (values := getattr(spectra, key)) is not None
-        },
-    }
+def table(found: SpectraOfSite) -> Columns:
+    """Return the columns of the spectra, with a row for each limit state and period."""
+    return stacked(
+        {"state": state, "period [s]": found.periods}
+        | {f"{name} [{unit}]": curve for key, name, unit in CURVES if (curve := getattr(each, key)) is not None}
+        for state, each in found.states.items()
+    )
 
 
 def _known(curve: Reals | None) -> list[float | None] | None:

@@ -1,3 +1,3 @@
-"""`design`: the values of a field that meet a requirement."""
+"""Find the values of a field that meet a requirement."""
 
 PLACE = 110

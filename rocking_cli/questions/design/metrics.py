@@ -19,6 +19,7 @@ from rocking_cli.plugins.registry import leave_out
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import LeftOut
+from rocking_cli.studies.conditions import Conditions
 from rocking_cli.studies.movements import centroid_moved, drifts, largest_on_the_way, largest_tie_force
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
 from rocking_cli.text import cut, did_you_mean
@@ -49,9 +50,9 @@ class Excitation:
 
     def each(self, structure: Structure) -> list[Neighbours]:
         """Return the neighbours of every motion, in both polarities if requested and if their effects differ."""
-        model = structure.model("nonlinear")
-        signs = self.polarities[:1] if model.symmetric else self.polarities
-        return [neighbours(model, motion.scaled(sign), self.around) for motion in self.motions for sign in signs]
+        conditions = Conditions(structure, ["nonlinear"], around=self.around)
+        signs = self.polarities[:1] if conditions.model.symmetric else self.polarities
+        return [neighbours(conditions, motion.scaled(sign)) for motion in self.motions for sign in signs]
 
 
 @short_repr

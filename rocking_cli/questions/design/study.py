@@ -11,7 +11,7 @@ from math import inf, isfinite, isnan, nan
 import numpy as np
 
 from rocking_cli.arrays import Bools, Reals
-from rocking_cli.errors import InputError, MechanismError, Problem, SolverError
+from rocking_cli.errors import InputError, MechanismError, Problem, SolverError, named
 from rocking_cli.names import percent
 from rocking_cli.questions.design.bars import SteelAnswer, steel_answer
 from rocking_cli.questions.design.metrics import Excitation, Metric, metric, required, taken_otherwise
@@ -121,6 +121,9 @@ class Span:
             hint = "write FIELD=LOW:HIGH, such as width=0.2m:0.8m"
             raise InputError(Problem(f"{cut(repr(text))} is not a valid FIELD=LOW:HIGH", hint=hint))
         return cls(name.strip(), ends[0].strip(), ends[1].strip())
+
+    def __str__(self) -> str:
+        return f"{self.field}={self.low}:{self.high}"
 
     def in_unit(self, unit: str) -> tuple[float, float]:
         """Return both ends as numbers. Raises `InputError` if they are not numbers, or are not increasing."""
@@ -295,7 +298,7 @@ def design(
             aim = replace(aim, level=required(structure, excitation.site))
     if aim.metric.shaken and (excitation is None or not excitation.motions or not excitation.around.count):
         message = f"{aim.metric.name} needs a ground motion with neighbouring motions"
-        raise InputError(Problem(message, hint="give `motions`"))
+        raise InputError(Problem(message, hint=f"give {named('motions')}"))
     _check_has_metric(structure, field, span, aim.metric)
     if points < 2:
         raise InputError(Problem(f"must be at least 2, got {points}", field="points"))
@@ -360,7 +363,7 @@ def _check_site(metric: Metric, excitation: Excitation | None) -> None:
     """Raise `InputError` if a metric that requires a site has none, or if the site is for another code."""
     if excitation is None or excitation.site is None:
         hint = "give the file of a site: `rocking new site` prints one"
-        raise InputError(Problem(f"{metric.name} requires a site", field="`site`", hint=hint))
+        raise InputError(Problem(f"{metric.name} requires a site", field=named("site"), hint=hint))
     code = excitation.site.site.code
     if metric.codes and code not in metric.codes:
         message = f"{metric.name} is a number of {' and '.join(metric.codes)}, but the site is for {code}"

@@ -41,7 +41,7 @@ def data(found: Design) -> dict[str, Any]:
         "structure": found.structure,
         "field": found.field,
         "unit": found.unit,
-        "given": found.given,
+        "in_file": found.given,
         "value": found.value,
         "metric": found.aim.metric.name,
         "until": str(found.aim),

@@ -1,3 +1,3 @@
-"""`draw`: a structure at rest and displaced, with dimensions."""
+"""Draw a structure at rest and displaced, with dimensions."""
 
 PLACE = 10

@@ -15,12 +15,13 @@ from rocking_cli.core import Body, Direction, Mechanism
 from rocking_cli.core.hung.element import Load, Stretched
 from rocking_cli.core.hung.ties import Tie
 from rocking_cli.core.kinematics import distance
-from rocking_cli.errors import RockingError
+from rocking_cli.errors import RockingError, named
 from rocking_cli.io.drawings import dxf
 from rocking_cli.io.field_problems import unit_at
 from rocking_cli.questions.import_drawing.attached import LOAD_FIELDS, TIE_FIELDS
+from rocking_cli.questions.import_drawing.options import ImportOptions
 from rocking_cli.questions.import_drawing.rings import ArcRing, PlaneMoments
-from rocking_cli.questions.import_drawing.study import ImportOptions, structure_from
+from rocking_cli.questions.import_drawing.study import structure_from
 from rocking_cli.studies.hung import Carried, Strand
 from rocking_cli.studies.picture import DrawnPart, Picture, picture
 from rocking_cli.text import in_short
@@ -126,7 +127,7 @@ def drawn_file(drawing: Picture, ratio: float | None) -> tuple[bytes, str, str]:
     untold = "; ".join([*_unsaid(drawing, odd, still), *lost])
     doubt = f"does not tell {untold}" if untold else "does not hold the same structure" if difference else ""
     doubt += f": {difference or 'add it to the structure that you import'}" if doubt else ""
-    needed = ["`kind` rigid_body"] * (kind is not None) + [f"`depth` {depth!r} m"] * counts
+    needed = [f"{named('kind')} rigid_body"] * (kind is not None) + [f"{named('depth')} {depth!r} m"] * counts
     return content, " and ".join(needed), doubt
 
 

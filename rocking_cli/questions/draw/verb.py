@@ -3,39 +3,26 @@
 from __future__ import annotations
 
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rocking_cli.ask.answer import Answer, drawn
-from rocking_cli.ask.given import StructureLike, structure_of
-from rocking_cli.ask.numbers import takes_numbers
-from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.ask.given import structure_of
+from rocking_cli.ask.verbs import verb
+from rocking_cli.ask.watcher import Watcher
+from rocking_cli.errors import InputError, Problem, named
+from rocking_cli.questions.draw.asked import DrawAsked
 from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from rocking_cli.io.tables import Columns
     from rocking_cli.studies.picture import Picture
 
 
-@takes_numbers
-def draw(
-    structure: StructureLike, *, at: float | None = None, dxf: str | Path | None = None, watch: Watcher = SILENT
-) -> Answer[Picture]:
+@verb(DrawAsked)
+def draw(asked: DrawAsked, watch: Watcher) -> Answer[Picture]:
     """Draw a structure at rest with its dimensions, and displaced in both directions.
-
-    Parameters
-    ----------
-    structure : Mechanism, str or Path
-        The structure, or its YAML file.
-    at : float, optional
-        Rotation to draw, as a multiple of phi_cr, or of the kinematic limit if there is no phi_cr; at most the
-        kinematic limit. By default 1, or a rotation that is easy to see.
-    dxf : str or Path, optional
-        File .dxf to write the drawing to as well, in metres, from which `rocking import` makes the structure again.
-        Needs ezdxf.
-    watch : Watcher
-        Told what is doubtful about the structure, what the file cannot hold, and that it was written.
 
     Returns
     -------
@@ -63,27 +50,24 @@ def draw(
     from rocking_cli.questions.draw.view import view
     from rocking_cli.studies.picture import picture
 
-    if at is not None and not at > 0:
-        raise InputError(Problem(f"must be a multiple of phi_cr above 0, got {at:g}", field="`at`"))
-    ready = structure_of(structure, watch)
+    at, ready = asked.at, structure_of(asked.structure, watch)
     with ready.named():
         drawing = picture(ready.mechanism)
     if at is not None and at > drawing.furthest:
         of = "the limit" if None in drawing.phi_cr.values() else "phi_cr"
         what = f"{at:g} times {of} is beyond the kinematic limit of the mechanism"
-        raise InputError(Problem(what, field="`at`", hint=f"at most {drawing.furthest:.4g} times {of}"))
-    if dxf is not None:
-        _write(Path(dxf), drawing, at, watch)
+        raise InputError(Problem(what, field=named("at"), hint=f"at most {drawing.furthest:.4g} times {of}"))
+    if asked.dxf is not None:
+        _write(asked.dxf, drawing, at, watch)
     figure = drawn("plotting.structure.draw_structure", drawing, heading(ready.mechanism), at)
     return Answer("drawing", drawing, view(drawing), partial(_columns, drawing), figure)
 
 
 def _write(file: Path, drawing: Picture, at: float | None, watch: Watcher) -> None:
     """Write a drawing as a DXF file, and tell before what it cannot hold."""
-    from rocking_cli.io.files import check_writable, write_whole
+    from rocking_cli.io.files import write_whole
     from rocking_cli.questions.draw.drawing_file import drawn_file
 
-    check_writable(file, ".dxf")
     content, options, doubt = drawn_file(drawing, at)
     if doubt:
         watch.warn(f"{file} {doubt}")

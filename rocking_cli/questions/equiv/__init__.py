@@ -1,3 +1,3 @@
-"""`equiv`: the equivalent rocking block of a structure."""
+"""Compute the equivalent rocking block of each structure."""
 
 PLACE = 20

@@ -2,37 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import partial
-from typing import Any, overload
+from typing import Any
 
-from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import StructureLike, structure_figure, structure_of, structures_of
-from rocking_cli.ask.ground_motions import each_of
-from rocking_cli.ask.numbers import takes_numbers
-from rocking_cli.ask.several import Answers, answers
-from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.ask.answer import Answer, Answers
+from rocking_cli.ask.given import structure_figure, structure_of, structures_of
+from rocking_cli.ask.several import answers
+from rocking_cli.ask.verbs import verb
+from rocking_cli.ask.watcher import Watcher
 from rocking_cli.core import Equivalence
 from rocking_cli.errors import MechanismError
+from rocking_cli.questions.equiv.asked import EquivAsked
 from rocking_cli.structure import Structure
 
 
-@overload
-def equiv(structures: StructureLike, *, watch: Watcher = ...) -> Answer[Equivalence | None]: ...
-@overload
-def equiv(structures: list[Any] | tuple[Any, ...], *, watch: Watcher = ...) -> Answers[Answer[Equivalence | None]]: ...
-@takes_numbers
-def equiv(
-    structures: StructureLike | Sequence[StructureLike], *, watch: Watcher = SILENT
-) -> Answer[Equivalence | None] | Answers[Answer[Equivalence | None]]:
+@verb(EquivAsked)
+def equiv(asked: EquivAsked, watch: Watcher) -> Answer[Equivalence | None] | Answers[Answer[Equivalence | None]]:
     """Compute the equivalent single rocking block of structures, in both directions.
-
-    Parameters
-    ----------
-    structures : Mechanism, str or Path, or a sequence of these
-        The structure, or its YAML file; or several.
-    watch : Watcher
-        Told what is doubtful about the structures, how to read the parameters, and which structures cannot be used.
 
     Returns
     -------
@@ -60,10 +46,10 @@ def equiv(
     >>> round(answer.positive.lambda_, 6)
     0.25
     """
-    entries = each_of(structures)
-    if not isinstance(structures, list | tuple):
-        return _of_one(structure_of(entries[0], watch), watch)
-    ready = structures_of(entries, watch)
+    given: Any = asked.structures
+    if not isinstance(given, list | tuple):
+        return _of_one(structure_of(given, watch), watch)
+    ready = structures_of(given, watch)
     by_name, refused = dict[str, Answer[Equivalence | None]](), list[MechanismError]()
     for structure in ready:
         try:

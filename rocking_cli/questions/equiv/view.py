@@ -17,7 +17,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.structure import Structure
 from rocking_cli.views.cautions import before_rocking, bound_data, cautions_of, of_bounds, of_restitution
 from rocking_cli.views.column import UNIT, Column, data_of, of, only_shown, table_across
-from rocking_cli.views.restitution import restitution_source, restitution_used
+from rocking_cli.views.restitution import restitution_used
 from rocking_cli.views.verdict import uplift_in_words
 from rocking_cli.views.view import View, heading, number
 
@@ -102,7 +102,7 @@ def view(structure: Structure) -> View:
         "one_sided": mechanism.one_sided,
         "hung": hung_data(mechanism),
         "per_unit_mass": not mechanism.has_mass,
-        "restitution": restitution_source(mechanism),
+        "restitution": structure.restitution_source,
         "caution": " ".join(cautions_of(mechanism)) or None,
         "misleading": structure.misleading,
         "directions": {
@@ -245,7 +245,7 @@ def table(found: Sequence[Structure]) -> dict[str, list[Any]]:
     """Return a table of several structures, with a row for each direction."""
     rows = [(structure.mechanism, side, side.parameters) for structure in found for side in sides_of(structure)]
     return {
-        "name": [mechanism.name for mechanism, _, _ in rows],
+        "structure": [mechanism.name for mechanism, _, _ in rows],
         "mechanism": [mechanism.mechanism for mechanism, _, _ in rows],
         "direction": [side.direction.label for _, side, _ in rows],
         **{each.heading: [parameters[each.key] for _, _, parameters in rows] for each in PARAMETERS},

@@ -1,3 +1,3 @@
-"""`equivalent_pulses`: the equivalent pulses of several structures."""
+"""Find the equivalent pulses of several structures."""
 
 PLACE = 180

@@ -15,7 +15,7 @@ from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.dynamics.history import History, follow
 from rocking_cli.dynamics.model import ModelName, linear_model
 from rocking_cli.dynamics.outcome import OneOutcome
-from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
+from rocking_cli.errors import InputError, MechanismError, Problem, named, of_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.short_repr import short_repr
@@ -206,13 +206,13 @@ def _shared_eta(eta: float | Literal["first", "own"], block: EquivalentBlock, fi
     if eta == "own":
         return None
     if eta != "first":
-        check_eta(float(eta))
+        check_eta(float(eta), "eta")
         return float(eta)
     if not 0 < block.eta <= 1:
         raise InputError(
             Problem(
                 f"{_name(first)}: the kinematics give a restitution of {block.eta:.4g}, which cannot be that of all",
-                hint="give one in (0, 1] for all with `eta`, or a measured one in its file",
+                hint=f"give one in (0, 1] for all with {named('restitution')}, or a measured one in its file",
             )
         )
     return block.eta
@@ -231,7 +231,7 @@ def _member(
     mechanism = structure.mechanism
     block = _equivalence(mechanism)[direction]
     scaled = replace(pulse, amplitude=a * mechanism.gravity * uplift(block, scaling), period=2 * pi / (omega * block.p))
-    shaken = structure if eta is None else structure.with_eta(eta)
+    shaken = structure if eta is None else structure.under(restitution=eta)
     history = engines.follow(shaken, scaled.sampled().scaled(polarity), tail=_tail(scaled, block.p))
     return PulsedStructure(
         _name(mechanism), mechanism.mechanism, block, scaled, block.eta if eta is None else eta, block.eta, history,

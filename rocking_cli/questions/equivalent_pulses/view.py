@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
-from math import isnan
+from math import isnan, nan
 
 from rocking_cli import names
+from rocking_cli.arrays import Reals
+from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.verdict import NEAR_OVERTURNING
+from rocking_cli.io.tables import Columns, stacked
 from rocking_cli.questions.equivalent_pulses.study import EquivalentResponses, PulsedStructure
 from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
 from rocking_cli.views.response import known_data
@@ -70,18 +72,15 @@ def title(found: EquivalentResponses) -> str:
     return f"{found.members[0].pulse.title}, a = {found.a:.4g}, omega = {found.omega:.4g}"
 
 
-def table(found: EquivalentResponses) -> dict[str, Sequence[object]]:
-    """Return the columns of a table: p t, and time and rotation of each structure; empty after their end."""
+def table(found: EquivalentResponses) -> Columns:
+    """Return the columns of a table, with a row for each structure, the linear block last, and each sample."""
+    histories = {each.name: each.history for each in found.members}
 
-    def padded(values: list[float]) -> list[float]:
-        return values + [float("nan")] * (found.tau.size - len(values))
+    def row(name: str, run: History, time: Reals | float) -> dict[str, object]:
+        return {"structure": name, "p_t": found.tau[: run.ratio.size], "t [s]": time, "phi_ratio": run.ratio}
 
-    columns: dict[str, Sequence[object]] = {"p t": found.tau.tolist()}
-    for each in found.members:
-        columns[f"{each.name} t [s]"] = padded(each.history.time.tolist())
-        columns[f"{each.name} phi/phi_cr"] = padded(each.history.ratio.tolist())
-    columns["linear block phi/phi_cr"] = padded(found.linear.ratio.tolist())
-    return columns
+    members = (row(name, run, run.time) for name, run in histories.items())
+    return stacked([*members, row("linear block", found.linear, nan)])
 
 
 def judge(found: EquivalentResponses) -> list[str]:

@@ -1,3 +1,3 @@
-"""`error`: the errors of the equivalent block."""
+"""Compute the errors of the equivalent block."""
 
 PLACE = 40

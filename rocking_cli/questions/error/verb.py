@@ -2,49 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from rocking_cli.ask.answer import Answer, drawn
-from rocking_cli.ask.given import StructureLike, structure_of
-from rocking_cli.ask.numbers import takes_numbers
-from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.ask.answer import Answer, Dimensions, drawn
+from rocking_cli.ask.given import structure_of
+from rocking_cli.ask.verbs import verb
+from rocking_cli.ask.watcher import Watcher
+from rocking_cli.errors import InputError, Problem, named
+from rocking_cli.questions.error.asked import ErrorAsked
 from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
-    from rocking_cli.io.tables import Columns
     from rocking_cli.questions.error.study import Linearisation
 
 
-@takes_numbers
-def error(
-    structure: StructureLike,
-    *,
-    at: Sequence[float] = (0.5,),
-    a: Sequence[float] = (2.0,),
-    watch: Watcher = SILENT,
-) -> Answer[list[Linearisation]]:
+@verb(ErrorAsked)
+def error(asked: ErrorAsked, watch: Watcher) -> Answer[list[Linearisation]]:
     """Compute the errors of the equivalent block of a structure, in each direction.
-
-    Parameters
-    ----------
-    structure : Mechanism, str or Path
-        The structure, or its YAML file.
-    at : sequence of float
-        Amplitudes phi/phi_cr for the free period.
-    a : sequence of float
-        Constant accelerations for the overturning time, as multiples of the uplift acceleration.
-    watch : Watcher
-        Told what is doubtful about the structure.
 
     Returns
     -------
     Answer of list of Linearisation
-        One for each distinct direction.
+        One for each distinct direction. `to_frame()` has a row for each direction, kappa and `quantity`: its `value` of
+        the structure, and the `ratio` of the equivalent block's value to it, against `amplitude` (phi/phi_cr) or
+        `acceleration` (a/lambda). The free period is the same with either kappa.
 
     Raises
     ------
@@ -67,24 +49,21 @@ def error(
     [0.963]
     """
     from rocking_cli.questions.error.study import compare, why_no_acceleration, why_no_amplitude
-    from rocking_cli.questions.error.view import view
+    from rocking_cli.questions.error.view import QUANTITIES, of_quantity, ratios, view
 
-    for field, values, why_not in (("`at`", at, why_no_amplitude), ("`a`", a, why_no_acceleration)):
-        for value in values:
+    for name, why_not in (("at", why_no_amplitude), ("a", why_no_acceleration)):
+        for value in getattr(asked, name):
             if why := why_not(value):
-                raise InputError(Problem(why, field=field))
-    ready = structure_of(structure, watch)
+                raise InputError(Problem(why, field=named(name)))
+    ready = structure_of(asked.structure, watch)
     with ready.named():
-        curves, marks = compare(ready, at, a)
+        curves, marks = compare(ready, asked.at, asked.a)
     shown = view(ready.mechanism, ready.equivalence, curves, marks)
     figure = drawn("questions.error.picture.draw_linearisation", curves, marks, heading(ready.mechanism))
-    return Answer("linearisation", marks, shown, partial(_columns, marks), figure)
-
-
-def _columns(found: Sequence[Linearisation]) -> Columns:
-    return {
-        "direction": [each.direction.label for each in found for _ in each.amplitude],
-        "phi/phi_cr": [value for each in found for value in each.amplitude.tolist()],
-        "period [s]": np.concatenate([each.period for each in found]),
-        "period_ratio": np.concatenate([each.period_ratio for each in found]),
-    }
+    columns = partial(ratios, ready.name, marks, ready.mechanism.gravity)
+    dims = [
+        Dimensions(("direction", *kappa, *along), (name,), partial(of_quantity, columns, quantity))
+        for quantity, (along, _) in QUANTITIES.items()
+        for kappa, name in (((), quantity), (("kappa",), f"{quantity}_ratio"))
+    ]
+    return Answer("linearisation", marks, shown, columns, figure, dims=dims)

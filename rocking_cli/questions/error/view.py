@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from math import inf, isfinite, isnan
+from collections.abc import Callable, Iterator, Sequence
+from math import inf, isfinite, isnan, nan
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from rocking_cli.core import Equivalence, Mechanism
 from rocking_cli.core.advice import SMALL_ERROR, Grade
+from rocking_cli.io.tables import Columns, stacked
 from rocking_cli.names import percent
 from rocking_cli.questions.error.study import Errors, Linearisation, errors, preferred, velocity_ratios
 from rocking_cli.views.column import Column, of, only_shown, table_of
@@ -28,6 +29,44 @@ class ErrorRow(NamedTuple):
     at: str
     ratio1: float
     ratio2: float
+
+
+QUANTITIES: dict[str, tuple[tuple[str, ...], str]] = {
+    "uplift": ((), "g"), "v_imp": ((), "m/s"), "period": (("amplitude",), "s"), "overturning": (("acceleration",), "s"),
+}  # fmt: skip
+"""What the ratios are of, by name: what each varies along, and its unit."""
+
+
+def ratios(structure: str, found: Sequence[Linearisation], gravity: float) -> Columns:
+    """Return all ratios as columns, with a row for each direction, kappa, quantity, and amplitude or acceleration."""
+
+    def of_one(each: Linearisation, kappa: int) -> Iterator[dict[str, Any]]:
+        block, velocity = each.block, velocity_ratios(each.block, gravity)[kappa - 1]
+        uplift, overturning = (getattr(each, f"{name}_ratio{kappa}") for name in ("uplift", "overturning"))
+        yield {"quantity": "uplift", "value": block.lambda_, "ratio": uplift}
+        yield {"quantity": "v_imp", "value": block.v_imp, "ratio": velocity}
+        yield {"quantity": "period", "amplitude": each.amplitude, "value": each.period, "ratio": each.period_ratio}
+        yield {
+            "quantity": "overturning", "acceleration": each.acceleration, "value": each.overturning,
+            "ratio": overturning,
+        }  # fmt: skip
+
+    return stacked(
+        {"structure": structure, "direction": each.direction.label, "kappa": kappa}
+        | {"quantity": row["quantity"], "amplitude": nan, "acceleration": nan, "unit": QUANTITIES[row["quantity"]][1]}
+        | row
+        for each in found
+        for kappa in (1, 2)
+        for row in of_one(each, kappa)
+    )
+
+
+def of_quantity(columns: Callable[[], Columns], quantity: str) -> Columns:
+    """Return the rows of one quantity, with columns of its own for value and ratio."""
+    table = {name: np.asarray(values) for name, values in columns().items()}
+    mine = {name: values[table["quantity"] == quantity] for name, values in table.items()}
+    unit = QUANTITIES[quantity][1]
+    return mine | {f"{quantity} [{unit}]": mine["value"], f"{quantity}_ratio": mine["ratio"]}
 
 
 def _percent(ratio: float) -> str:

@@ -1,4 +1,5 @@
-"""`fragility` and `results`: many histories, kept in a store, and the curves fitted to them."""
+"""Run a fragility study and fit its curves."""
 
 PLACE = 190
 MORE = {"own_data": ["fit_fragility"], "results": ["results"]}
+SHORT_HELP = {"results": "Summarise and export the store of a study."}

@@ -14,7 +14,7 @@ from rocking_cli.core import Mechanism, NoEquivalentBlock, both_statics, equival
 from rocking_cli.core.mechanism import why_none
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.model import NO_REBOUND, check_elements
-from rocking_cli.errors import InputError, Problem, RockingError
+from rocking_cli.errors import InputError, Problem, RockingError, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.intensity import all_measures, parse_measure
 from rocking_cli.questions.fragility.definition import SLIDING, Definition
@@ -168,7 +168,7 @@ def examine_study(
         trials.append(_trial(study, sample))
         tell(1)
     definition = study.definition
-    etas = definition.eta if definition.eta is not None else [nan]
+    etas = definition.restitution if definition.restitution is not None else [nan]
     levels = definition.levels.levels()
     plan = Plan(trials, records, etas, definition.levels.measure, levels, definition.polarities, sets=study.sets)
     if known is not None and _of_one_kind(known, plan):
@@ -282,9 +282,9 @@ def _trial(study: Study, sample: Sample) -> Trial:
             check_elements(mechanism)
         p, lambda_, rotations = _mechanics(mechanism, study.definition)
         least = min(mechanism.eta(side) for side in mechanism.directions)
-        if study.definition.eta is None and isnan(least):
+        if study.definition.restitution is None and isnan(least):
             raise InputError(NO_REBOUND)
-        if study.definition.eta is None and mechanism.rocks_both_ways and least <= 0:
+        if study.definition.restitution is None and mechanism.rocks_both_ways and least <= 0:
             raise InputError(f"its kinematics give a restitution of {least:.4g}: {why_none(least)}")
     except RockingError as error:
         return replace(start, reason=str(error))
@@ -342,7 +342,7 @@ def _refuse_changes(store: Store, facts: dict[str, Any], known: Plan, now: Plan)
             :MAX_NAMED_CHANGES
         ]
     if changes:
-        hint = "give `restart` to run everything again, or `store` OTHER.db to keep both"
+        hint = f"give {named('restart')} to run everything again, or {named('store')} OTHER.db to keep both"
         *others, last = [Problem(change, field="changed since the store was created") for change in changes]
         raise InputError(*others, replace(last, hint=hint))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from itertools import pairwise
 from typing import Annotated, Any, Literal, TypeVar
 
@@ -10,15 +11,19 @@ import numpy as np
 from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, ValidationError
 from pydantic_core import PydanticCustomError
 
+from rocking_cli.ask.asked import as_in
 from rocking_cli.core import Mechanism
 from rocking_cli.core.fields import Name, Restitution
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.errors import InputError
+from rocking_cli.errors import InputError, named
 from rocking_cli.io.yaml_file import Document, Place
-from rocking_cli.names import OPENING
 from rocking_cli.processing.entry import Entry, FloorItem, Steps
 from rocking_cli.processing.reading import Reading, reading_of
 from rocking_cli.processing.steps import parse_steps
+from rocking_cli.questions.fragility.asked import MAX_LEVELS, OfStudy
+from rocking_cli.questions.fragility.asked import OVERTURNING as OVERTURNING
+from rocking_cli.questions.fragility.asked import SLIDING as SLIDING
+from rocking_cli.questions.fragility.asked import UPLIFT as UPLIFT
 from rocking_cli.questions.fragility.distributions import Distribution, Positive, in_units_of_fields
 from rocking_cli.questions.fragility.hazard_curve import wrong_points
 from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE
@@ -34,10 +39,9 @@ from rocking_cli.studies.fragility.quantities import (
 )
 from rocking_cli.studies.fragility.quantities import SCALE as SCALE
 
-UPLIFT, OVERTURNING, SLIDING = "uplift", "overturning", "sliding"
 RESTITUTION = "restitution"
 UPLIFT_MEASURE = "lambda"  # the measure that a motion must exceed to uplift a structure; not a limit state of a study
-MAX_LEVELS = 100_000  # levels of intensity, or samples: more is a typing error
+as_asked = partial(as_in, OfStudy)
 
 
 def _measure(value: object) -> object:
@@ -101,6 +105,11 @@ def _pair(values: list[str]) -> list[str]:
     return values
 
 
+def _polarity(value: object) -> object:
+    """Return a polarity as text: YAML reads 1 as a number."""
+    return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
 def _file(value: object) -> object:
     """Expand an entry that is plain text to a mapping with the text as its `file`."""
     return {"file": value} if isinstance(value, str) else value
@@ -149,11 +158,11 @@ class RecordEntry(Entry, Part):
             yield (), "units, dt, channel, vertical and the like describe a file"
         pair = bool(there & {"with", "other"})
         if "azimuth" in there and not pair:
-            yield ("azimuth",), "is between two components: give the file of the second with `with`"
+            yield ("azimuth",), f"is between two components: give the file of the second with {named('with')}"
         if there & {"with_channel", "other_channel"} and not pair:
-            yield ("with_channel",), "is of a second component: give its file with `with`"
+            yield ("with_channel",), f"is of a second component: give its file with {named('with')}"
         if pair and "azimuth" not in there:
-            yield (), "azimuth is missing: 0 for the record, 90 for that of `with`, or what is between them"
+            yield (), f"azimuth is missing: 0 for the record, 90 for that of {named('with')}, or what is between them"
 
 
 class Levels(Part):
@@ -231,16 +240,16 @@ class HazardEntry(Part):
 class Sampling(Part):
     """Method by which samples of the structures are drawn."""
 
-    samples: int = Field(1, ge=1, le=MAX_LEVELS, description="how many structures are drawn from the distributions")
-    sampling: Literal["random", "latin hypercube"] = Field("latin hypercube", description="how they are drawn")
-    seed: int = Field(0, ge=0, lt=2**63, description="of the random numbers")
+    samples: int = as_asked("samples")
+    sampling: Literal["random", "latin hypercube"] = as_asked("sampling")
+    seed: int = as_asked("seed")
 
 
 class Common(Part):
     """Processing and floor of all records."""
 
-    processing: Steps = Field([], description="corrections of every record, in their order, after its own")
-    floor: FloorItem = Field(None, description="the floor of a building that the structures stand on")
+    processing: Steps = as_asked("processing")
+    floor: FloorItem = as_asked("floor")
 
     @property
     def reading(self) -> Reading:
@@ -249,33 +258,25 @@ class Common(Part):
 
 
 class Definition(Sampling, Common):
-    """The content of a study file."""
+    """The content of a study file: the fields of `OfStudy`, and what each may hold in a file."""
 
-    name: Name | None = Field(None, description="what to call the study")
-    structures: list[Annotated[StructureEntry, BeforeValidator(_file)]] = Field(
-        min_length=1, description="what is shaken"
+    name: Name | None = as_asked("name")
+    structures: list[Annotated[StructureEntry, BeforeValidator(_file)]] = as_asked("structures", min_length=1)
+    records: list[Annotated[RecordEntry, BeforeValidator(_file)]] = as_asked("motions", default=..., min_length=1)
+    method: Literal["cloud", "stripes", "ida"] = as_asked("method", default=...)
+    levels: Levels = as_asked("levels", default=Levels(measure="scale", values=[1.0]))
+    polarity: Annotated[Literal["1", "-1", "both"], BeforeValidator(_polarity)] = as_asked("polarity")
+    restitution: list[Restitution] | None = as_asked("restitution")
+    model: ModelName = as_asked("model")
+    engine: EngineName = as_asked("engine")
+    opening: float = as_asked("opening")
+    limit_states: list[Limit] = as_asked("limit_states")
+    measures: list[Measure] | None = as_asked("measures")
+    bivariate: list[Annotated[list[Measure], Field(min_length=2, max_length=2), AfterValidator(_pair)]] = as_asked(
+        "bivariate"
     )
-    records: list[Annotated[RecordEntry, BeforeValidator(_file)]] = Field(min_length=1, description="what shakes it")
-    method: Literal["cloud", "stripes", "ida"] = Field(description="how records and intensities are combined")
-    levels: Levels = Field(
-        Levels(measure="scale", values=[1.0]), description="intensities to which every record is scaled"
-    )
-    polarities: list[Literal[1, -1]] = Field([1], min_length=1, max_length=2, description="-1 reverses the records")
-    eta: list[Restitution] | None = Field(
-        None, min_length=1, description="restitutions, instead of the structures' own"
-    )
-    model: ModelName = Field("nonlinear", description="equation of motion")
-    engine: EngineName = Field("exact", description="who simulates the runs")
-    opening: float = Field(
-        OPENING, ge=0, le=1, description="largest opening of a joint over D_cr up to which a run holds"
-    )
-    limit_states: list[Limit] = Field([UPLIFT, OVERTURNING], min_length=1, description="what is asked of the motions")
-    measures: list[Measure] | None = Field(None, min_length=1, description="intensities that curves are fitted over")
-    bivariate: list[Annotated[list[Measure], Field(min_length=2, max_length=2), AfterValidator(_pair)]] = Field(
-        [], description="pairs of intensities that surfaces are fitted over"
-    )
-    confidence: float = Field(0.95, gt=0.5, lt=1, description="of intervals and bands")
-    hazard: HazardEntry | None = Field(None, description="how often intensities are exceeded at the site")
+    confidence: float = as_asked("confidence")
+    hazard: HazardEntry | None = as_asked("hazard")
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
@@ -293,17 +294,22 @@ class Definition(Sampling, Common):
         if varied and "samples" not in given:
             yield ("samples",), "is missing: how many structures are drawn from the distributions"
         if not varied and sound("structures") and sound("samples") and given.get("samples", 1) > 1:
-            yield ("samples",), "nothing varies: add `vary` to at least one structure"
-        if given.get("eta") is not None and RESTITUTION in varied:
-            yield ("eta",), "cannot be combined with a structure that varies its restitution: give one of the two"
+            yield ("samples",), f"nothing varies: add {named('vary')} to at least one structure"
+        if given.get(RESTITUTION) is not None and RESTITUTION in varied:
+            yield (RESTITUTION,), "cannot be combined with a structure that varies its restitution: give one of the two"
         if checks_sliding(given) and sound("model") and given.get("model", "nonlinear") != "nonlinear":
             yield ("limit_states",), "sliding requires `model: nonlinear`: linear models do not give the joint forces"
         yield from _wrong_with_free_blocks(given, sound)
-        for name in ("polarities", "eta", "limit_states", "measures", "bivariate"):
+        for name in (RESTITUTION, "limit_states", "measures", "bivariate"):
             values = _right(given, name, sound)
             for k, value in enumerate(values):
                 if value in values[:k] and value not in values[k + 1 :]:
                     yield (name,), f"{' and '.join(value) if isinstance(value, list) else value} is given twice"
+
+    @property
+    def polarities(self) -> list[int]:
+        """The polarities that are run: 1 as given, -1 reversed."""
+        return [1, -1] if self.polarity == "both" else [int(self.polarity)]
 
     @property
     def fitted_measures(self) -> list[str]:
@@ -329,7 +335,10 @@ def _wrong_sets(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, st
         if levels.get("measure") == SCALE:
             yield ("levels", "scaled"), f"levels of the measure {SCALE} are factors: leave scaled out"
         if sound("records") and len(of_sets) < len(entries):
-            yield ("levels", "scaled"), "records are used as they are, so each needs the `level` whose set it is of"
+            yield (
+                ("levels", "scaled"),
+                f"records are used as they are, so each needs the {named('level')} whose set it is of",
+            )
     if not of_sets:
         return
     if given.get("method") != "stripes" and sound("method"):
@@ -357,8 +366,8 @@ def _wrong_with_free_blocks(given: dict[str, Any], sound: Sound) -> Iterator[tup
     if engine == "auto":  # runs of one degree of freedom use these
         return
     restitution = "has no effect with `engine: blocks`, as contact decides the restitution: leave it out"
-    if given.get("eta") is not None:
-        yield ("eta",), restitution
+    if given.get(RESTITUTION) is not None:
+        yield (RESTITUTION,), restitution
     if given.get("opening") is not None:
         yield ("opening",), "has no effect with `engine: blocks`, which simulates every joint: leave it out"
     entries = given.get("structures")

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rocking_cli.arrays import Integers, Reals
 from rocking_cli.ask.answer import Answer, parted
-from rocking_cli.ask.numbers import takes_numbers
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.ask.verbs import verb
+from rocking_cli.ask.watcher import Watcher
+from rocking_cli.errors import InputError, Problem, named
+from rocking_cli.questions.fragility.asked import FitFragilityAsked
 from rocking_cli.questions.fragility.own_fit import EXCEEDANCE, FittedFragility, fit_known
 from rocking_cli.text import one_line
 
@@ -22,43 +24,14 @@ if TYPE_CHECKING:
 
     from rocking_cli.io.tables import Columns
 
-Form = Literal["lognormal", "logit"]
-"""Curve that is fitted to data of one's own."""
 MISSING = ("NAType", "NaTType")  # of pandas, which has no truth value for its own comparison
 COLUMNS = ("probability", "low", "high", "robust_low", "robust_high")
 """Columns of the frame, for the curve and, after `lower_`, for its lower edge."""
 
 
-@takes_numbers
-def fit_fragility(
-    intensity: ArrayLike,
-    exceeded: ArrayLike,
-    *,
-    clusters: Sequence[Hashable] | None = None,
-    curve: Form = "lognormal",
-    confidence: float = 0.9,
-    label: str = "intensity",
-) -> Answer[FittedFragility]:
+@verb(FitFragilityAsked)
+def fit_fragility(asked: FitFragilityAsked, watch: Watcher) -> Answer[FittedFragility]:
     """Fit a fragility curve to your own data: runs of any program, tests, or observed damage.
-
-    Parameters
-    ----------
-    intensity : array_like, shape (n,)
-        Intensity of each run, in any unit. Runs whose intensity is not above zero, or NaN, have no logarithm and are
-        left out.
-    exceeded : array_like, shape (n,)
-        Whether each run exceeds the limit state: 1 or True, 0 or False; NaN if that is unknown. Unknown runs are
-        counted as exceeding in the fit, and as not exceeding in its `lower`: more than 2 % of them make a band.
-    clusters : sequence, shape (n,), optional
-        What runs have in common, such as the names of their records or sites: runs of one cluster are not independent.
-        By default each run is independent of the others.
-    curve : {"lognormal", "logit"}
-        P = Phi(ln(x/median)/dispersion), or P = 1/(1 + (median/x)^b) with b = pi/(sqrt(3) dispersion), logistic in
-        ln x.
-    confidence : float
-        Confidence level of intervals and bands: 0.9 for those from 5 to 95 %.
-    label : str
-        Name of the intensity with its unit, such as "PGA [g]", for the plot and the frame.
 
     Returns
     -------
@@ -90,15 +63,16 @@ def fit_fragility(
     >>> round(fit.median.value, 3), round(fit.dispersion.value, 3)
     (0.406, 0.443)
     """
-    _check_index(intensity, exceeded, clusters)
-    x, known = _numbers("intensity", intensity), _numbers("exceeded", exceeded)
-    label = one_line(str(label))
-    _check(x, known, curve, confidence, label)
+    clusters = asked.clusters
+    _check_index(asked.intensity, asked.exceeded, clusters)
+    x, known = _numbers("intensity", asked.intensity), _numbers("exceeded", asked.exceeded)
+    label = one_line(asked.label)
+    _check(x, known, label)
     record = np.arange(x.size) if clusters is None else _codes(clusters, x.size)
     there = x > 0
     if not there.any():
-        raise InputError(Problem("has no value above zero, so that none has a logarithm", field="`intensity`"))
-    fitted = fit_known(x[there], known[there], record[there], curve, confidence, label)
+        raise InputError(Problem("has no value above zero, so that none has a logarithm", field=named("intensity")))
+    fitted = fit_known(x[there], known[there], record[there], asked.curve, asked.confidence, label)
     return _answer(replace(fitted, left_out=int((~there).sum())), label)
 
 
@@ -107,7 +81,10 @@ def _check_index(*given: Any) -> None:
     indices = [each.index for each in given if hasattr(each, "index") and hasattr(each.index, "equals")]
     if any(not each.equals(indices[0]) for each in indices[1:]):
         hint = "take all of them from one frame, or give arrays"
-        what = "`intensity`, `exceeded` and `clusters` have different rows, or rows in a different order"
+        what = (
+            f"{named('intensity')}, {named('exceeded')} and {named('clusters')} have different rows, or "
+            "rows in a different order"
+        )
         raise InputError(Problem(what, hint=hint))
 
 
@@ -117,18 +94,18 @@ def _numbers(name: str, values: ArrayLike) -> Reals:
         numbers = np.asarray(np.ma.filled(np.ma.asarray(values, dtype=np.float64), np.nan))
     except (TypeError, ValueError):
         hint = "give true or false, 1 or 0, and NaN for unknown" if name == "exceeded" else None
-        raise InputError(Problem("must be an array of numbers", field=f"`{name}`", hint=hint)) from None
+        raise InputError(Problem("must be an array of numbers", field=named(name), hint=hint)) from None
     if numbers.ndim != 1:
-        raise InputError(Problem(f"must have one dimension, has {numbers.ndim}", field=f"`{name}`"))
+        raise InputError(Problem(f"must have one dimension, has {numbers.ndim}", field=named(name)))
     return numbers
 
 
-def _check(x: Reals, known: Reals, curve: str, confidence: float, label: str) -> None:
+def _check(x: Reals, known: Reals, label: str) -> None:
     """Raise `InputError` with every problem of the arguments."""
     problems = []
     if x.size != known.size:
         what = f"must have one value for each intensity: there are {known.size} and {x.size}"
-        problems.append(Problem(what, field="`exceeded`"))
+        problems.append(Problem(what, field=named("exceeded")))
     if np.isinf(x).any():
         problems.append(Problem("must be finite", field=f"`intensity[{int(np.isinf(x).argmax())}]`"))
     wrong = ~(np.isnan(known) | (known == 0) | (known == 1))
@@ -136,28 +113,26 @@ def _check(x: Reals, known: Reals, curve: str, confidence: float, label: str) ->
         k = int(wrong.argmax())
         hint = "for a share of several runs, give one entry per run"
         problems.append(Problem(f"must be 1, 0 or NaN, got {known[k]:g}", field=f"`exceeded[{k}]`", hint=hint))
-    if curve not in get_args(Form):
-        problems.append(Problem(f"must be {' or '.join(get_args(Form))}, got {curve!r}", field="`curve`"))
-    if not 0.5 < confidence < 1:
-        problems.append(Problem(f"must be between 0.5 and 1, got {confidence:g}", field="`confidence`"))
     (name,) = parted({label: x})[0]
     if name.removeprefix("lower_") in COLUMNS:
-        problems.append(Problem(f"must not be {label!r}, the name of another column of the frame", field="`label`"))
+        problems.append(
+            Problem(f"must not be {label!r}, the name of another column of the frame", field=named("label"))
+        )
     if problems:
         raise InputError(*problems)
 
 
-def _codes(clusters: Sequence[Hashable], count: int) -> Integers:
+def _codes(clusters: Any, count: int) -> Integers:
     """Return the number of the cluster of each run."""
     try:
         names = list(clusters)
         numbers = {name: k for k, name in enumerate(dict.fromkeys(names))}
     except TypeError:
         hint = "give a name or a number for each run"
-        raise InputError(Problem("must be a sequence of names", field="`clusters`", hint=hint)) from None
+        raise InputError(Problem("must be a sequence of names", field=named("clusters"), hint=hint)) from None
     if len(names) != count:
         what = f"must have one name for each intensity: there are {len(names)} and {count}"
-        raise InputError(Problem(what, field="`clusters`"))
+        raise InputError(Problem(what, field=named("clusters")))
     missing = [k for k, name in enumerate(names) if name is None or type(name).__name__ in MISSING or name != name]
     if missing:
         hint = "give each independent run its own name"

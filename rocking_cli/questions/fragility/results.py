@@ -10,15 +10,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.answer import Answer, Dimensions
+from rocking_cli.ask.verbs import verb, write_rows
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.io.files import folder
+from rocking_cli.io.tables import stacked
 from rocking_cli.questions.fragility.assess import Bivariate, Fragility, UnknownRuns
 from rocking_cli.questions.fragility.definition import Definition, Limit
 from rocking_cli.questions.fragility.plan import Plan
 from rocking_cli.questions.fragility.quantiles import Quantiles
 from rocking_cli.questions.fragility.ranking import Ranking
+from rocking_cli.questions.fragility.results_asked import ResultsAsked
 from rocking_cli.questions.fragility.store import Store
 
 if TYPE_CHECKING:
@@ -35,7 +38,8 @@ CurveKey = tuple[str, Limit, str]
 class StudyAnswer(Answer[list[Fragility]]):
     """Fragility curves of a study, and what else its store holds.
 
-    `to_frame()` has the points of all curves, one below the other, and `runs()` the runs.
+    `to_frame()` has the points of all curves, one below the other, `runs()` the runs, and `to_xarray()` the runs as
+    labelled arrays over structure, sample, motion, and restitution, level and polarity if there are several.
 
     Parameters
     ----------
@@ -76,9 +80,7 @@ class StudyAnswer(Answer[list[Fragility]]):
 
         The peak of a run that overturns is infinite, so that no comparison or quantile takes it for safe.
         """
-        frame = self.frames["runs"]
-        frame.loc[frame["fell_to"] != 0, "phi_over_phi_cr"] = np.inf
-        return frame
+        return self.frames["runs"]
 
     def run_blocks(self) -> Iterator[Columns]:
         """Yield the runs as columns, read from the store in blocks of rows, as there may be very many."""
@@ -128,30 +130,9 @@ class Curves(Mapping[Limit | CurveKey, Fragility]):
         return f"<curves: {', '.join(map(repr, self))}>"
 
 
-@takes_numbers
-def results(
-    store: str | Path,
-    *,
-    quantiles: bool = False,
-    rank_measures: bool = False,
-    curves: str | Path | None = None,
-    nrml: str | Path | None = None,
-    watch: Watcher = SILENT,
-) -> StudyAnswer:
+@verb(ResultsAsked)
+def results(asked: ResultsAsked, watch: Watcher) -> StudyAnswer:
     """Summarise the fragility curves and runs of a study, from its store.
-
-    Parameters
-    ----------
-    store : str or Path
-        The store, which may be that of a study that is still running.
-    quantiles : bool
-        Whether the quantiles of the peak rotation are shown in words too.
-    rank_measures : bool
-        Whether to rank the intensity measures, by how well they predict the outcome.
-    curves, nrml : str or Path, optional
-        Files to write: the curves, one row per intensity (.csv or .parquet), and the curves for OpenQuake (.xml).
-    watch : Watcher
-        Told how far the counting, the fits and the ranking are.
 
     Returns
     -------
@@ -172,26 +153,37 @@ def results(
     from rocking_cli.questions.fragility.ranking_view import added
     from rocking_cli.questions.fragility.view import left_out, view
 
-    place = Path(store)
+    if asked.plot is not None:
+        folder(str(asked.plot))
+    place = Path(asked.store)
     with Store.reading(place) as kept:
         plan, definition = kept.plan(), _definition(kept)
         finished, failed = kept.count()
         fits, surfaces, outcomes = _fitted(kept, plan, definition, watch)
         spread = list(all_quantiles(kept, plan, definition))
         shown = view(kept, plan, definition, finished, failed, fits, surfaces, outcomes)
-        shown = with_quantiles(shown, spread, outcomes, in_words=quantiles)
+        shown = with_quantiles(shown, spread, outcomes, in_words=asked.quantiles)
         rankings: list[Ranking] = []
-        if rank_measures:
+        if asked.rank_measures:
             with watch.progress(plan.size, "runs ranked") as counted:
                 rankings = rank(kept, plan, definition, counted)
             shown = added(shown, rankings)
+    lacking = [f"{failed} runs could not be simulated and are left out of the curves"] if failed else []
+    lacking += [f"{finished:,} of {plan.total:,} runs are finished so far"] if finished < plan.total else []
+    lacking += [f"{len(bad)} records or samples cannot be used"] if (bad := left_out(plan)) else []
+    runs, several = (
+        partial(_columns, place),
+        dict(zip(("restitution", "level", "polarity"), plan.shape[2:], strict=True)),
+    )
+    along = ("structure", "sample", "motion", *(name for name, count in several.items() if count > 1))
     answer = StudyAnswer(
         "fragility",
         fits,
         shown,
         partial(_curve_columns, fits),
         partial(_figure, definition, fits),
-        tables={"runs": partial(_columns, place)},
+        tables={"runs": runs},
+        dims=[Dimensions(along, table=runs)],
         store=place,
         plan=plan,
         definition=definition,
@@ -199,15 +191,29 @@ def results(
         quantiles=spread,
         rankings=rankings,
         failed=failed,
-        complete=finished == plan.total and not failed and not left_out(plan),
+        complete=not lacking,
     )
-    if curves is not None:
-        from rocking_cli.io.tables import write_table
-
-        write_table(Path(curves), curve_blocks(answer, watch))
-    if nrml is not None:
-        write_nrml(answer, Path(nrml), watch)
+    _write(answer, asked, watch)
+    for sentence in lacking:
+        watch.incomplete(sentence)
     return answer
+
+
+def _write(answer: StudyAnswer, asked: ResultsAsked, watch: Watcher) -> None:
+    """Write the files that are requested; curves that OpenQuake cannot read are no error of the others."""
+    if asked.out is not None:
+        write_rows(asked.out, answer.run_blocks(), watch)
+    if asked.curves is not None:
+        write_rows(asked.curves, curve_blocks(answer, watch), watch)
+    if asked.plot is not None:
+        from rocking_cli.questions.fragility.pictures import draw_all
+
+        draw_all(asked.plot, answer, watch)
+    if asked.nrml is not None:
+        try:
+            write_nrml(answer, asked.nrml, watch)
+        except InputError as error:
+            watch.unwritten(error)
 
 
 def curve_blocks(answer: StudyAnswer, watch: Watcher = SILENT) -> Iterator[Columns]:
@@ -242,7 +248,7 @@ def write_nrml(answer: StudyAnswer, file: Path, watch: Watcher = SILENT) -> None
 def _curve_columns(curves: list[Fragility]) -> Columns:
     from rocking_cli.questions.fragility.table import curve_blocks as blocks
 
-    return _whole(blocks(curves))
+    return stacked(blocks(curves))
 
 
 def _definition(store: Store) -> Definition:
@@ -283,13 +289,7 @@ def _blocks(place: Path) -> Iterator[Columns]:
 
 
 def _columns(place: Path) -> Columns:
-    return _whole(_blocks(place))
-
-
-def _whole(parts: Iterable[Columns]) -> Columns:
-    """Join blocks of rows."""
-    blocks = list(parts)
-    return {name: [value for block in blocks for value in block[name]] for name in blocks[0]}
+    return stacked(_blocks(place))
 
 
 def _figure(definition: Definition, curves: list[Fragility]) -> Figure:

@@ -140,11 +140,11 @@ def examine(source: Source) -> tuple[Record, GroundMotion | None]:
         measured = measure(motion.of_ground)
     except InputError as error:
         return Record(source.name, checksum, reason=str(error).splitlines()[0]), None
-    if measured.pga == 0:
+    if measured.pga_g == 0:
         return Record(source.name, checksum, reason=f"{source.name}: zero throughout: there is nothing to scale"), None
     # Only records are checked: a pulse is exactly what its formula gives.
     doubtful = len(doubts(motion.of_ground, measured)) if source.entry.pulse is None else 0
-    record = Record(source.name, checksum, None, motion.dt, motion.npts, measured.pga, measured.pgv, doubtful)
+    record = Record(source.name, checksum, None, motion.dt, motion.npts, measured.pga_g, measured.pgv, doubtful)
     return record, motion
 
 

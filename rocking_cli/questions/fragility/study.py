@@ -148,8 +148,8 @@ class Study:
                 "values": definition.levels.levels(),
                 **({} if definition.levels.scaled else {"scaled": False}),
             },
-            "polarities": list(definition.polarities),
-            "eta": definition.eta,
+            "polarity": definition.polarity,
+            "restitution": definition.restitution,
             "model": definition.model,
             **({"engine": definition.engine} if definition.engine != "exact" else {}),
             "opening": definition.opening,
@@ -189,7 +189,7 @@ def load_study(given: str | Path | Mapping[str, Any], name: str = "study") -> St
     MechanismError
         If a mechanism's plugin cannot be used.
     """
-    made = Made()
+    made = InMemory()
     if isinstance(given, Mapping):
         path = Path("study")
         document = Document("study", "study", [], _plain(given, made))
@@ -245,7 +245,7 @@ def load_study(given: str | Path | Mapping[str, Any], name: str = "study") -> St
 
 
 @dataclass(frozen=True)
-class Made:
+class InMemory:
     """Mechanisms and ground motions of a study made in Python, by the names that stand for their files."""
 
     structures: dict[str, Mechanism] = field(default_factory=dict)
@@ -261,7 +261,7 @@ class Made:
         return dict(zip(self.motions, named.values(), strict=True))
 
 
-def _plain(given: Mapping[str, Any], made: Made) -> dict[str, Any]:
+def _plain(given: Mapping[str, Any], made: InMemory) -> dict[str, Any]:
     """Return a study made in Python as plain data, and put aside its mechanisms and motions."""
 
     def plain(each: Any) -> Any:

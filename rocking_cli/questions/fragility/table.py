@@ -65,8 +65,8 @@ def points(found: Fragility) -> NDArray[np.float64]:
 
 RUNS_PER_BLOCK = 100_000
 HEADINGS = {
-    "known_to": "known to [s]", "lower_bound": "phi/phi_cr at least", "opening": "opening/D_cr",
-    "slip": "slip [m]", SLIDE_COLUMN: "sliding [s]",
+    "known_to": "known_to [s]", "lower_bound": "peak_lower_bound", "opening": "opening",
+    "slip": "slip [m]", SLIDE_COLUMN: "slide_time [s]",
 }  # fmt: skip
 """Headings of the columns that not every store has."""
 
@@ -98,14 +98,15 @@ def run_blocks(store: Store, plan: Plan, measures: Sequence[str] = ()) -> Iterat
 def _of_runs(plan: Plan, rows: RunRows, measures: Sequence[str]) -> dict[str, Sequence[object]]:
     sample, record, _, level, polarity = plan.places(rows.id)
     trials, records = [plan.trials[k] for k in sample], [plan.records[k] for k in record]
+    fell_to = np.where(np.isin(rows.outcome, (FAILED, UNKNOWN)), 0, np.sign(rows.outcome))
     return {
         "run": rows.id.tolist(),
         "structure": [each.structure for each in trials],
         "sample": [each.number for each in trials],
-        "record": [each.name for each in records],
+        "motion": [each.name for each in records],
         "level": np.array(plan.levels)[level].tolist(),
         "polarity": np.array(plan.polarities)[polarity].tolist(),
-        "eta": rows.eta.tolist(),
+        "restitution": rows.eta.tolist(),
         "scale": rows.scale.tolist(),
         **{label(name): plan.intensities(name, sample, record, level, rows.scale).tolist() for name in measures},
         "outcome": [
@@ -113,12 +114,13 @@ def _of_runs(plan: Plan, rows: RunRows, measures: Sequence[str]) -> dict[str, Se
             else names.outcome(uplifts=rise >= 0, overturned=code != STANDS, unknown=code == UNKNOWN, slides=slip > 0)
             for code, rise, slip in np.stack([rows.outcome, rows.uplift_time, rows.slip], axis=1).tolist()
         ],
-        "fell_to": np.where(np.isin(rows.outcome, (FAILED, UNKNOWN)), 0, np.sign(rows.outcome)).tolist(),
-        "phi/phi_cr": rows.peak_ratio.tolist(),
-        "phi positive [rad]": rows.peak_positive.tolist(),
-        "phi negative [rad]": rows.peak_negative.tolist(),
-        "uplift [s]": rows.uplift_time.tolist(),
-        "overturning [s]": rows.overturning_time.tolist(),
+        "fell_to": fell_to.tolist(),
+        # Infinite, so that no comparison or quantile of peaks takes what overturns for safe.
+        "peak_ratio": np.where(fell_to != 0, np.inf, rows.peak_ratio).tolist(),
+        "peak_positive [rad]": rows.peak_positive.tolist(),
+        "peak_negative [rad]": rows.peak_negative.tolist(),
+        "uplift_time [s]": rows.uplift_time.tolist(),
+        "overturning_time [s]": rows.overturning_time.tolist(),
         **{HEADINGS[name]: getattr(rows, name).tolist() for name in rows.columns if name in HEADINGS},
         **({} if rows.by_blocks is None else {"engine": np.where(rows.by_blocks == 1, "blocks", "exact").tolist()}),
     }  # fmt: skip

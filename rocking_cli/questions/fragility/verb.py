@@ -2,137 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import re
 from contextlib import AbstractContextManager, ExitStack
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 from weakref import finalize
 
 from rocking_cli.ask.answer import Answer, no_plot
 from rocking_cli.ask.given import note_remarks, warn_of
-from rocking_cli.ask.ground_motions import each_of
-from rocking_cli.ask.numbers import refuse_idle, takes_numbers
-from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.ask.verbs import verb
+from rocking_cli.ask.watcher import Watcher
+from rocking_cli.errors import InputError, named
+from rocking_cli.io.files import check_writable, folder, keep_apart
+from rocking_cli.questions.fragility.asked import FragilityAsked, OfCurves
 from rocking_cli.studies.engines import engine_of
 from rocking_cli.views.engines import cost_in_words
 from rocking_cli.views.view import View
 
 if TYPE_CHECKING:
-    from rocking_cli.core import Mechanism
-    from rocking_cli.excitation.base import GroundMotion
-    from rocking_cli.excitation.pulses import Pulse
+    from distributed import Client
+
     from rocking_cli.questions.fragility.plan import Plan
     from rocking_cli.questions.fragility.study import Study
     from rocking_cli.questions.fragility.workers import Workers
     from rocking_cli.studies.engines import EngineName
 
-    Structures = Mechanism | str | Path | Mapping[str, Any] | Sequence[Mechanism | str | Path | Mapping[str, Any]]
-    Shaking = GroundMotion | Pulse | str | Path | Mapping[str, Any]
-    Records = Shaking | Sequence[Shaking]
-
 MAX_NAMED_PROBLEMS = 10  # bad records or samples that a message names
 
 
-@takes_numbers
-def fragility(
-    study: str | Path | Mapping[str, Any] | None = None,
-    *,
-    structures: Structures | None = None,
-    records: Records | None = None,
-    method: Literal["cloud", "stripes", "ida"] | None = None,
-    levels: Mapping[str, Any] | None = None,
-    polarities: Sequence[int] | None = None,
-    eta: Sequence[float] | None = None,
-    samples: int | None = None,
-    sampling: Literal["random", "latin hypercube"] | None = None,
-    seed: int | None = None,
-    model: Literal["nonlinear", "linear1", "linear2"] | None = None,
-    engine: Literal["exact", "blocks", "auto"] | None = None,
-    opening: float | None = None,
-    limit_states: Sequence[str | float] | None = None,
-    measures: Sequence[str] | None = None,
-    bivariate: Sequence[Sequence[str]] | None = None,
-    confidence: float | None = None,
-    hazard: Mapping[str, Any] | None = None,
-    processing: Sequence[str | Mapping[str, Any]] | None = None,
-    floor: str | Mapping[str, Any] | None = None,
-    name: str | None = None,
-    store: str | Path | None = None,
-    check: bool = False,
-    jobs: int | None = None,
-    scheduler: str | None = None,
-    restart: bool = False,
-    rank_measures: bool = False,
-    quantiles: bool = False,
-    nrml: str | Path | None = None,
-    watch: Watcher = SILENT,
-) -> Answer[Any]:
+@verb(FragilityAsked)
+def fragility(asked: FragilityAsked, watch: Watcher) -> Answer[Any]:
     """Run a fragility study, or continue it, and fit its curves.
-
-    Parameters
-    ----------
-    study : str, Path or mapping, optional
-        YAML file of the study, or its fields in Python; docs/fragility.md lists them. Give this, or the fields
-        themselves as the arguments that follow.
-    structures : Mechanism, str, Path or mapping, or a list of these
-        Structures or their files; or entries with a structure or a file as `file`, and `name` and `vary`.
-    records : GroundMotion, Pulse, str, Path or mapping, or a list of these
-        Ground motions, files of records or patterns of them, and pulses such as "sine:1g:0.8s"; or entries with a
-        motion or a file as `file`, and its `weight`, `level`, `processing` and so on.
-    method : {"cloud", "stripes", "ida"}
-        How records and intensities are combined.
-    levels : mapping
-        Intensities to which every record is scaled: `measure`, and `values` or `least`, `most` and `count`.
-    polarities : sequence of int
-        [1], or [1, -1] to run reversed records as well.
-    eta : sequence of float
-        Coefficients of restitution, instead of those of the structures.
-    samples, seed : int
-        Number of structures to draw from the distributions in `vary`, and seed of the random numbers.
-    sampling : {"latin hypercube", "random"}
-        How they are drawn.
-    model : {"nonlinear", "linear1", "linear2"}
-        Equation of motion.
-    engine : {"exact", "blocks", "auto"}
-        Who simulates the runs: one degree of freedom, free blocks, or free blocks where one degree of freedom does not
-        tell the outcome. Free blocks run in processes unless `jobs` is 1: a script then needs
-        `if __name__ == "__main__"`.
-    opening : float
-        Largest opening of a joint over D_cr up to which a run holds.
-    limit_states : sequence of str or float
-        "uplift", "sliding", "overturning", ratios phi/phi_cr, and displacements of the top such as "25 mm".
-    measures, bivariate : sequence of str, sequence of pairs of str
-        Intensity measures of the curves, and of the surfaces.
-    confidence : float
-        Confidence level of intervals and bands.
-    hazard : mapping
-        `measure`, and `file` or `points` of intensity and annual rate.
-    processing, floor : sequence, str or mapping
-        Corrections of every record, and the floor on which the structures stand.
-    name : str
-        Name of the study.
-    store : str or Path, optional
-        File in which the runs are stored; by default next to the study file. Without a study file and a store, the
-        runs last as long as the answer, and those of a study that is interrupted are lost.
-    check : bool
-        Whether only to show what would be run; arguments on the runs and their curves are then refused.
-    jobs : int, optional
-        Number of time histories at a time; by default, one for each processor.
-    scheduler : str, optional
-        Address of a dask.distributed scheduler, such as "tcp://10.0.0.1:8786", to run there instead.
-    restart : bool
-        Whether to start from scratch; the existing store is kept under another name.
-    rank_measures : bool
-        Whether to rank the intensity measures as well, by how well they predict the outcome.
-    quantiles : bool
-        Whether the quantiles of the peak rotation are shown in words too.
-    nrml : str or Path, optional
-        File for the curves that OpenQuake can read (.xml).
-    watch : Watcher
-        Told what is doubtful, which records and samples cannot be run, and how far the runs are.
 
     Returns
     -------
@@ -158,8 +60,8 @@ def fragility(
     >>> import rocking_cli as rk
     >>> pulses = [f"{shape}:1g:{period}s" for shape in ("sine", "ricker") for period in (0.6, 0.8, 1.0, 1.2)]
     >>> answer = rk.fragility(
-    ...     structures=rk.Block(name="pedestal", width=0.7, height=2.8),
-    ...     records=pulses,
+    ...     rk.Block(name="pedestal", width=0.7, height=2.8),
+    ...     pulses,
     ...     method="stripes",
     ...     levels={"measure": "PGA", "least": 0.1, "most": 1.5, "count": 8},
     ... )
@@ -169,29 +71,17 @@ def fragility(
     from rocking_cli.questions.fragility.results import results
     from rocking_cli.questions.fragility.study import load_study
     from rocking_cli.questions.fragility.tally import held
+    from rocking_cli.questions.fragility.workers import CONTINUE_HINT
 
-    fields: dict[str, Any] = {
-        "structures": structures, "records": records, "method": method, "levels": levels, "polarities": polarities,
-        "eta": eta, "samples": samples, "sampling": sampling, "seed": seed, "model": model, "engine": engine,
-        "opening": opening, "limit_states": limit_states, "measures": measures, "bivariate": bivariate,
-        "confidence": confidence, "hazard": hazard, "processing": processing, "floor": floor, "name": name,
-    }  # fmt: skip
-    fields = {key: value for key, value in fields.items() if value is not None}
-    fields |= {key: each_of(fields[key]) for key in ("structures", "records") if key in fields}
-    if study is not None:
-        refuse_idle("beside a study: put them into it", **dict.fromkeys(fields, True))
-    elif not fields:
-        raise InputError(Problem("is missing", field="`study`", hint="give a study, or `structures`, `records` ..."))
-    given = fields if study is None else study
-    if check:
-        refuse_idle(
-            "with `check`, which runs nothing", jobs=jobs is not None, scheduler=scheduler, restart=restart,
-            rank_measures=rank_measures, quantiles=quantiles, nrml=nrml is not None,
-        )  # fmt: skip
-    file = None if isinstance(given, Mapping) else Path(given)
-    if store is None and file is None:
-        refuse_idle("without a store or a study file", restart=restart)
-    loaded = load_study(given, Path(store or "study").stem)
+    try:
+        loaded = load_study(asked.study, asked.store.stem if asked.store is not None else "study")
+    except InputError as error:
+        if asked.motions is None:
+            raise
+        problems = (replace(each, field=re.sub("^records", "motions", each.field or "")) for each in error.problems)
+        raise InputError(*problems) from None
+    if asked.file is not None and asked.store is None:
+        keep_apart([("the store beside the study", asked.place), (named("nrml"), asked.nrml)], [str(asked.file)])
     for mechanism in loaded.structures:
         note_remarks(mechanism, watch)
     # Varied properties may differ much from the file, so the first sample is checked.
@@ -199,35 +89,38 @@ def fragility(
         warn_of(mechanism, watch)
     for sentence in held(loaded):
         watch.warn(sentence)
-    if check:
+    if asked.check:
         return _planned(loaded, watch)
+    if asked.place is not None:
+        check_writable(asked.place)
+    if asked.plot is not None:
+        folder(str(asked.plot))
     with ExitStack() as stack:
-        if store is not None:
-            place = Path(store)
-        elif file is not None:
-            place = file.with_suffix(".db")
-        else:
-            folder = TemporaryDirectory(prefix="rocking-", ignore_cleanup_errors=True)
-            place = Path(stack.enter_context(folder)) / "study.db"
-        workers = workers_of(jobs, scheduler, loaded.definition.engine)
-        _bring_up_to_date(loaded, place, workers, watch, restart=restart, rank_measures=rank_measures)
-        answer = results(place, quantiles=quantiles, rank_measures=rank_measures, nrml=nrml, watch=watch)
-        if store is None and file is None:
+        if (place := asked.place) is None:
+            temporary = TemporaryDirectory(prefix="rocking-", ignore_cleanup_errors=True)
+            place = Path(stack.enter_context(temporary)) / "study.db"
+        workers = workers_of(asked.jobs, asked.scheduler, loaded.definition.engine)
+        try:
+            _bring_up_to_date(loaded, place, workers, watch, asked)
+        except KeyboardInterrupt as stopped:
+            if asked.place is not None:
+                stopped.add_note(CONTINUE_HINT)
+            raise
+        answer = results(place, **asked.part(OfCurves), watch=watch)
+        if asked.place is None:
             answer = replace(answer, view=View(answer.to_dict() | {"store": None}, answer.view.parts))
-        finalize(answer, stack.pop_all().close)  # a temporary store lasts as long as the answer
+        finalize(answer.plan, stack.pop_all().close)  # a temporary store lasts as long as the answer and its copies
     return answer
 
 
 def workers_of(
-    jobs: int | None, scheduler: str | None, engine: EngineName = "exact"
+    jobs: int | None, scheduler: str | Client | None, engine: EngineName = "exact"
 ) -> AbstractContextManager[Workers]:
     """Return the workers that simulate the runs: a cluster, or threads or processes of this machine."""
     from rocking_cli.questions.fragility import workers
 
     if scheduler is None:
         return workers.threads(jobs) if engine == "exact" or jobs == 1 else workers.processes(jobs)
-    if jobs is not None:
-        raise InputError("`jobs` cannot be combined with `scheduler`: a cluster has its own number of workers")
     return workers.cluster(scheduler)
 
 
@@ -246,13 +139,7 @@ def _planned(study: Study, watch: Watcher) -> Answer[Plan]:
 
 
 def _bring_up_to_date(
-    study: Study,
-    place: Path,
-    workers: AbstractContextManager[Workers],
-    watch: Watcher,
-    *,
-    restart: bool,
-    rank_measures: bool,
+    study: Study, place: Path, workers: AbstractContextManager[Workers], watch: Watcher, asked: FragilityAsked
 ) -> None:
     """Simulate the runs that the store lacks; on a restart simulate all, and keep the old store."""
     from rocking_cli.questions.fragility.campaign import SIMULATED_BY, count_steps, left_of_each, prepare, run
@@ -260,10 +147,10 @@ def _bring_up_to_date(
 
     with ExitStack() as stack:
         # The old store is replaced only when workers are available to run the study again.
-        hands = stack.enter_context(workers) if restart else None
-        store = stack.enter_context(Store.writing(place, anew=restart, say=watch.note))
-        with watch.progress(count_steps(study, rank_measures=rank_measures), "records and structures") as advance:
-            prepared = prepare(study, store, advance, rank_measures=rank_measures)
+        hands = stack.enter_context(workers) if asked.restart else None
+        store = stack.enter_context(Store.writing(place, anew=asked.restart, say=watch.note))
+        with watch.progress(count_steps(study, rank_measures=asked.rank_measures), "records and structures") as advance:
+            prepared = prepare(study, store, advance, rank_measures=asked.rank_measures)
         plan = prepared.plan
         _leave_out(plan, watch)
         doubtful = [record.name for record in plan.records if record.doubts]

@@ -47,9 +47,9 @@ def planned(study: Study, plan: Plan) -> View:
         "structures": len(study.structures),
         "samples": sum(samples),
         "records": sum(records),
-        "eta": etas,
+        "restitution": etas,
         "levels": levels,
-        "polarities": polarities,
+        "polarity": polarities,
     }
     rows = [(name, f"{count}") for name, count in counts.items()]
     for name, usable in (("records", records), ("samples", samples)):
@@ -195,9 +195,10 @@ def _records(plan: Plan) -> list[dict[str, Any]]:
     """Return each record as plain data, with the level of its set, if any, and its weight."""
     sets = plan.of_sets
     return [
-        {**asdict(each), "level": plan.levels[sets.level[k]] if sets.level[k] >= 0 else None, "weight": weight}
+        {**{"pga_g" if key == "pga" else key: value for key, value in asdict(each).items()},
+         "level": plan.levels[sets.level[k]] if sets.level[k] >= 0 else None, "weight": weight}
         for k, (each, weight) in enumerate(zip(plan.records, sets.weight.tolist(), strict=True))
-    ]
+    ]  # fmt: skip
 
 
 def _nowhere(plan: Plan, definition: Definition, curves: Sequence[Fragility]) -> list[str]:

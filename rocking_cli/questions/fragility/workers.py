@@ -16,14 +16,14 @@ from concurrent.futures import (
     wait,
 )
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from multiprocessing import get_context
 from typing import TYPE_CHECKING, TypeVar
 
 from rocking_cli import __version__
 from rocking_cli.dynamics.parallel import ENDED, MAX_PROCESSES, begin
-from rocking_cli.errors import InputError, Refused, RockingError
+from rocking_cli.errors import InputError, Problem, Refused, RockingError, named
 
 if TYPE_CHECKING:
     import distributed
@@ -123,13 +123,13 @@ class ClusterError(RockingError):
 
 
 @contextmanager
-def cluster(address: str) -> Iterator[Workers]:
+def cluster(scheduler: str | distributed.Client) -> Iterator[Workers]:
     """Provide the workers of a dask.distributed cluster.
 
     Parameters
     ----------
-    address : str
-        Address of the scheduler, such as tcp://host:8786.
+    scheduler : str or distributed.Client
+        Address of the scheduler, such as tcp://host:8786; or a client of it, which stays open.
 
     Raises
     ------
@@ -142,10 +142,15 @@ def cluster(address: str) -> Iterator[Workers]:
         import distributed
     except ImportError:
         raise InputError("a cluster needs dask.distributed: pip install 'rocking-cli[cluster]'") from None
+    given = scheduler if isinstance(scheduler, distributed.Client) and not scheduler.asynchronous else None
+    if given is None and not isinstance(scheduler, str):
+        what = f"must be an address, or a synchronous Client of dask.distributed, got {type(scheduler).__name__}"
+        raise InputError(Problem(what, field=named("scheduler")))
+    address = str(scheduler) if given is None else str(given.scheduler.address)  # type: ignore[union-attr]
     try:
         with _quiet(), warnings.catch_warnings():
             warnings.filterwarnings("ignore", "Sending large graph")  # large units are intended
-            with _client(address) as client:
+            with _client(address) if given is None else nullcontext(given) as client:
                 workers = _threads(client, address)
 
                 def still_there() -> None:

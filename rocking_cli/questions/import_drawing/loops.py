@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.arrays import Points, Reals
+from rocking_cli.errors import named
 from rocking_cli.io.drawings.arcs import arc_circle, inner_points
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine
 from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, length_in_words, many
@@ -267,7 +268,7 @@ def _nodes(edges: Any, close: float, mended: Mended) -> Points:
     tree = cKDTree(np.stack([points.real, points.imag], axis=1))
     if tree.count_neighbors(tree, close) > MOST_NEIGHBOURS * tree.n:
         what = f"most lines end within {length_in_words(close)} of many others"
-        raise DrawingError("unclosed", f"{what}: give a smaller `close`, or other `units`")
+        raise DrawingError("unclosed", f"{what}: give a smaller {named('close')}, or other {named('units')}")
     one, other = tree.query_pairs(close, output_type="ndarray").T
     graph = coo_array((np.ones(len(one)), (one, other)), shape=(len(points), len(points)))
     count, node_of = connected_components(graph, directed=False)
@@ -420,7 +421,7 @@ def _unclosed(edges: Any, frame: DrawingFrame) -> DrawingError:
     merged = shapely.get_parts(shapely.line_merge(shapely.multilinestrings(curves_of(edges, frame.close))))
     one, *_, other = map(frame.place, _corners(merged[:1])[0])
     what = f"{many(len(edges), 'line')} close{'s' if len(edges) == 1 else ''} nothing: from {one} to {other}"
-    what += f"{gap_in_words}: close the outline, or give a larger `close`"
+    what += f"{gap_in_words}: close the outline, or give a larger {named('close')}"
     return frame.refusal("unclosed", what, loose[:MOST_PLACES].tolist())
 
 

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from rocking_cli.errors import named
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnPoint, DrawnText, LineDrawing
 from rocking_cli.questions.import_drawing.loops import Loop, Placed, curves_of, edges_of, loops
 from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, length_in_words, many
@@ -90,7 +91,7 @@ def by_role(drawing: LineDrawing, roles: Roles, file: str) -> Sorted:
         if role in OF_LINES and _is_shape(chain) and chain.layer not in roles.given:
             take, leave = (quote(f"{each}={seen(chain.layer)}") for each in (Role.BODIES, role))
             what = f"{described(chain)} is closed, and the name of its layer says {role}, which are drawn as lines"
-            raise DrawingError("layers", f"{what}: give `layers` {take}, or {leave}", file)
+            raise DrawingError("layers", f"{what}: give {named('layers')} {take}, or {leave}", file)
         (unknown.setdefault(chain.layer, []) if role is None else chains[role]).append(chain)
     of_bodies = chains[Role.BODIES]
     counts = {layer: count for layer, of in unknown.items() if (count := outline_count(of, of_bodies))}
@@ -114,16 +115,16 @@ def by_role(drawing: LineDrawing, roles: Roles, file: str) -> Sorted:
         guess, frames = proposed({layer: unknown[layer] for layer in counts} | named_bodies)
         if named_bodies.keys() & {*frames}:  # what is drawn in a wall
             guess[Role.OPENINGS] = guess.pop(Role.BODIES, [])
-        named = {role: ",".join(seen(layer) for layer in of if layer in counts) for role, of in guess.items()}
-        give = " ".join(f"`layers` {quote(f'{role}={of}')}" for role, of in named.items() if of)
+        by_role = {role: ",".join(seen(layer) for layer in of if layer in counts) for role, of in guess.items()}
+        give = " ".join(f"{named('layers')} {quote(f'{role}={of}')}" for role, of in by_role.items() if of)
         some = f"{seen(next(iter(counts)))} has" if len(counts) == 1 else f"{len(counts)} of them have"
         counts |= {layer: outline_count(lines) for layer, lines in named_bodies.items()}
         what = f"which layers are bodies? {counted(counts)}; {some} no known role: by what is drawn there, {give}"
         if around := [seen(layer) for layer in frames if layer in counts and layer in unknown]:
             what += f" ({around[0]} is taken for a frame, as it is around all else"
-            if inside := named.get(Role.BODIES):
+            if inside := by_role.get(Role.BODIES):
                 take, leave = quote(f"{Role.BODIES}={around[0]}"), quote(f"{Role.OPENINGS}={inside}")
-                what += f": if it has openings, `layers` {take} `layers` {leave}"
+                what += f": if it has openings, {named('layers')} {take} {named('layers')} {leave}"
             what += ")"
         raise DrawingError("layers", f"{what} (other roles: {', '.join(Role)})", file)
     if not chains[Role.BODIES]:
@@ -135,9 +136,11 @@ def by_role(drawing: LineDrawing, roles: Roles, file: str) -> Sorted:
         where = in_short([f"{seen(layer) or 'no layer'} ({len(lines)} lines)" for layer, lines in unknown.items()])
         if dropped := sorted({seen(each.layer) for each in chains[Role.NOTHING] if _is_shape(each)}):
             give = quote(f"{Role.BODIES}={','.join(dropped)}")
-            what += f", on {in_short(dropped)}, whose name says that nothing on it counts: give `layers` {give}"
+            what += (
+                f", on {in_short(dropped)}, whose name says that nothing on it counts: give {named('layers')} {give}"
+            )
         elif where:
-            what += f"; lines that do not close are on {where}: give `layers` bodies=LAYER if they are bodies"
+            what += f"; lines that do not close are on {where}: give {named('layers')} bodies=LAYER if they are bodies"
         raise DrawingError("empty", f"there is no outline in it, only {what}", file)
     left = Counter((chain.kind, layer) for layer, of in unknown.items() for chain in of)
     left |= Counter((chain.kind, chain.layer) for chain in chains[Role.NOTHING])
@@ -362,7 +365,10 @@ def _nested(outer: Sequence[Loop], frame: DrawingFrame, nested: str | None) -> t
         at = outer[i].ring.moments.centroid
         if nested is None:
             one, other = (f"outline {k + 1} ({described(outer[k].sources[0])})" for k in (i, j))
-            what = f"{one} lies within {other}: is it an opening (`nested` openings), or is the outer one a frame? Put "
+            what = (
+                f"{one} lies within {other}: is it an opening ({named('nested')} openings), or is the outer "
+                "one a frame? Put "
+            )
             raise frame.refusal("nested", f"{what}a frame on a layer of its own", [at])
         if i in holes or j in holes:
             what = f"outline {i + 1} lies within an outline that is itself an opening, at <here>"
@@ -474,7 +480,7 @@ def name_and_weigh(
     layers = {body.layer for body in bodies}
     if unknown := [layer for layer in densities if layer and layer not in layers]:
         where = in_short(sorted(layers))
-        what = f"`density` names the layer {seen(unknown[0])!r}, which has no bodies: they are on {where}"
+        what = f"{named('density')} names the layer {seen(unknown[0])!r}, which has no bodies: they are on {where}"
         raise frame.refusal("density", what)
     for body in bodies:
         body.density = densities.get(body.layer, densities.get(""))
@@ -500,7 +506,7 @@ def name_and_weigh(
     outside_texts = [line for k, label in enumerate(texts) if k not in used for line in label.text.splitlines()]
     if stray := [repr(cut(each)) for each in outside_texts if _weighs(each)]:
         words = f"a density in no body gives none its own: put {in_short(stray)} inside it"
-        notes.append(ImportNote("density", len(stray), f"{words}, or give `density`"))
+        notes.append(ImportNote("density", len(stray), f"{words}, or give {named('density')}"))
     taken = {"ground", "floor", *(f"ground {k + 1}" for k in range(len(of.chains[Role.GROUND])))}
     count = Counter[str]()
     for k, body in enumerate(bodies):

@@ -14,7 +14,7 @@ from math import nan
 
 import numpy as np
 
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.io.drawings.contract import DrawnLine, DrawnPoint, DrawnText, LineDrawing, OmittedKind
 from rocking_cli.text import cut, in_short
 
@@ -80,7 +80,9 @@ def parse_layers(given: Sequence[str]) -> dict[str, list[str]]:
         role, sign, names = text.partition("=")
         if not sign or role.strip().lower() not in {*Role}:
             hint = f"write ROLE=LAYER,LAYER with a role among {', '.join(Role)}"
-            raise InputError(Problem(f"{cut(repr(text))} is not a role and its layers", field="`layers`", hint=hint))
+            raise InputError(
+                Problem(f"{cut(repr(text))} is not a role and its layers", field=named("layers"), hint=hint)
+            )
         layers.setdefault(role.strip().lower(), []).extend(each.strip() for each in names.split(",") if each.strip())
     return layers
 
@@ -113,11 +115,11 @@ class Roles:
                 if not alike:
                     hint = f"its layers are {in_short(sorted(known))}" if known else "it has no layers"
                     raise InputError(
-                        Problem(f"the drawing has no layer {cut(repr(name))}", field="`layers`", hint=hint)
+                        Problem(f"the drawing has no layer {cut(repr(name))}", field=named("layers"), hint=hint)
                     )
                 for each in alike:
                     if given.setdefault(each, Role(role)) != role:
-                        raise InputError(Problem(f"{cut(repr(name))} has two roles", field="`layers`"))
+                        raise InputError(Problem(f"{cut(repr(name))} has two roles", field=named("layers")))
         return cls(given)
 
     def __call__(self, layer: str) -> Role | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from math import isfinite
 
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.io.drawings.contract import DrawingError, LineDrawing
 from rocking_cli.text import cut
 from rocking_cli.units import KINDS
@@ -19,7 +19,7 @@ def scale_of(text: str) -> float:
     """Return the number of a scale such as `1:50`. Raises `InputError` if it is not one."""
     match = re.fullmatch(r"\s*1\s*:\s*([0-9]+(?:\.[0-9]+)?)\s*", text)
     if match is None or not 0 < float(match[1]) <= 1e6:
-        raise InputError(Problem(f"{cut(repr(text))} is not a scale", field="`scale`", hint="write it as 1:50"))
+        raise InputError(Problem(f"{cut(repr(text))} is not a scale", field=named("scale"), hint="write it as 1:50"))
     return float(match[1])
 
 
@@ -28,7 +28,9 @@ def metres(unit: str) -> float:
     units = KINDS["length"]
     if unit not in units:
         raise InputError(
-            Problem(f"{cut(repr(unit))} is not a unit of length", field="`units`", hint=f"one of {', '.join(units)}")
+            Problem(
+                f"{cut(repr(unit))} is not a unit of length", field=named("units"), hint=f"one of {', '.join(units)}"
+            )
         )
     return float(units[unit])
 
@@ -60,7 +62,7 @@ def metres_per_unit(
     if units is not None:
         per, words = metres(units) * times, f"1 unit = 1 {units}" + (f", at {scale}" if scale else "")
         if drawing.paper is not None and abs(per / drawing.paper - 1) < SAME_SIZE:
-            words += ", the size on paper (if it is drawn to a scale, give `scale`)"
+            words += f", the size on paper (if it is drawn to a scale, give {named('scale')})"
     elif scale is not None and drawing.paper is not None:
         per, words = drawing.paper * times, f"the size on paper, at {scale}"
     elif drawing.unit is not None:
@@ -69,14 +71,19 @@ def metres_per_unit(
             f"the unit is {drawing.unit}, as stated in the file" + (f", at {scale}" if scale else ""),
         )
         if not MIN_SIZE <= size * per <= MAX_SIZE:
-            what = f"the file says {drawing.unit}, and what is drawn would be {size * per:.3g} m large: give `units`"
+            what = (
+                f"the file says {drawing.unit}, and what is drawn would be {size * per:.3g} m large: give "
+                f"{named('units')}"
+            )
             raise DrawingError("units", what, file)
     else:
         sizes = ", ".join(f"{size * metres(each):.4g} m if {each}" for each in SHOWN)
         why = drawing.doubt or f"the drawing does not say its units{' or its scale' * (drawing.paper is not None)}"
-        more = " or `scale`" if drawing.paper is not None and scale is None else ""
-        raise DrawingError("units", f"{why}: give `units`{more} (it is {size:.4g} units large: {sizes})", file)
+        more = f" or {named('scale')}" if drawing.paper is not None and scale is None else ""
+        raise DrawingError("units", f"{why}: give {named('units')}{more} (it is {size:.4g} units large: {sizes})", file)
     if not isfinite(size * per) or not 1e-3 <= size * per <= 1e4:
-        what = f"what is drawn would be {size * per:.3g} m large: give other `units` or another `scale`"
+        what = (
+            f"what is drawn would be {size * per:.3g} m large: give other {named('units')} or another {named('scale')}"
+        )
         raise DrawingError("units", what, file)
     return per, words

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil
 from string import ascii_uppercase as LETTERS
@@ -14,12 +14,13 @@ import numpy as np
 from rocking_cli.arrays import Points
 from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
-from rocking_cli.errors import MechanismError, StructureError
+from rocking_cli.errors import MechanismError, StructureError, named
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, LineDrawing
 from rocking_cli.questions.import_drawing import mortar
 from rocking_cli.questions.import_drawing.attached import DECIMALS, BodyFinder, DrawnAttachments, attached, rounded
 from rocking_cli.questions.import_drawing.loops import joined_lines
 from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, length_in_words, many
+from rocking_cli.questions.import_drawing.options import ImportOptions
 from rocking_cli.questions.import_drawing.outlines import (
     AT_A_TIME,
     GRID,
@@ -48,44 +49,6 @@ MAX_SLOPE = 0.01  # of a base that is put level
 CURVED_CORNERS = 5  # of a curve that is within the closing distance of the ground, at least
 FLAT_SHARE = 0.5  # least width of the base over that of what is within the closing distance of the ground
 MAX_CHECKED = 300  # bodies up to which the mechanism checks its fields; of more, this study alone
-
-
-@dataclass(frozen=True)
-class ImportOptions:
-    """How a drawing is read.
-
-    Parameters
-    ----------
-    units, scale : str or None
-        Its unit and its scale, `mm` and `1:50`.
-    layers : mapping of str to sequence of str
-        Layers of each role.
-    densities : mapping of str to float
-        Density of each layer [kg/m3]; "" is that of all others.
-    depth : float or None
-        Depth of the structure [m].
-    merge_gap : float
-        Width of mortar joints that are closed [m].
-    close : float
-        Distance up to which ends are one point, and depth up to which overlaps are mended [m].
-    nested : str or None
-        "openings" if outlines inside others are openings.
-    kind : str or None
-        Mechanism of the structure; None for the one that fits what is drawn.
-    tolerance : float
-        Largest distance of the sides of a curved block from its arcs [m].
-    """
-
-    units: str | None = None
-    scale: str | None = None
-    layers: Mapping[str, Sequence[str]] = field(default_factory=dict)
-    densities: Mapping[str, float] = field(default_factory=dict)
-    depth: float | None = None
-    merge_gap: float = 0.0
-    close: float = 1e-3
-    nested: str | None = None
-    kind: str | None = None
-    tolerance: float = 1e-4
 
 
 @dataclass(frozen=True)
@@ -182,10 +145,10 @@ def structure_from(drawing: LineDrawing, options: ImportOptions, name: str, file
     per, units = metres_per_unit(drawing, size, options.units, options.scale, file)
     middle = complex((drawn.real.min() + drawn.real.max()) / 2, (drawn.imag.min() + drawn.imag.max()) / 2)
     if options.depth is None and drawing.depth is not None:
-        options = replace(options, depth=round(per * drawing.depth, DECIMALS))
+        options = options.model_copy(update={"depth": round(per * drawing.depth, DECIMALS)})
     frame, close = DrawingFrame(per, middle, options.close, file), options.close
     bodies, notes, mended = bodies_of(of, frame, options.nested)
-    notes = [*of.notes, *notes, *name_and_weigh(bodies, of, options.densities, frame)]
+    notes = [*of.notes, *notes, *name_and_weigh(bodies, of, options.density, frame)]
     if drawing.faults:
         words = f"{many(len(drawing.faults), 'fault')} of the file mended as it was read: "
         notes.insert(0, ImportNote("faults", len(drawing.faults), words + in_short(drawing.faults, "; ")))
@@ -219,7 +182,7 @@ def structure_from(drawing: LineDrawing, options: ImportOptions, name: str, file
         lowest = min(bodies, key=lambda body: float(body.ring.z.imag.min()))
         if is_drawn and not _is_level(lowest.ring, ground, close):
             what = f"the ground below {lowest.name} is not level or does not meet it, as a rigid_body needs"
-            raise frame.refusal("below", f"{what}: leave out `kind`, or the ground")
+            raise frame.refusal("below", f"{what}: leave out {named('kind')}, or the ground")
         _check_foot(lowest, frame)
         notes += _levelled(bodies, frame)
     _check_weights(kind, bodies, options, frame, notes)
@@ -297,7 +260,9 @@ def _check_closed(bodies: Sequence[DrawnBody], frame: DrawingFrame) -> None:
     import shapely
 
     for k in np.flatnonzero(~shapely.is_valid(polygons_of([body.ring for body in bodies], frame.close))).tolist():
-        what = f"{bodies[k].name} at <here> crosses itself once its gaps are closed: give a smaller `merge_gap`"
+        what = (
+            f"{bodies[k].name} at <here> crosses itself once its gaps are closed: give a smaller {named('merge_gap')}"
+        )
         raise frame.refusal("crosses", what, [bodies[k].ring.moments.centroid])
 
 
@@ -316,7 +281,7 @@ def check_overlaps(bodies: Sequence[DrawnBody], ground: Sequence[ArcRing], frame
             if depth := depth_of(shared[k], close):
                 one, other = bodies[ones[k]].name, bodies[others[k]].name
                 what = f"{one} and {other} overlap by {shared[k].area:.3g} m2 at <here>, {length_in_words(depth)} deep"
-                what += f": draw them side by side, or give a larger `close` than {length_in_words(close)}"
+                what += f": draw them side by side, or give a larger {named('close')} than {length_in_words(close)}"
                 raise frame.refusal("overlap", what, [at_point(shared[k].centroid)])
     for floor in polygons_of(ground, close):
         for k in tree.query(floor, predicate="intersects").tolist():
@@ -453,14 +418,14 @@ class _Draft:
         loads, ties, options = self.extra.loads, self.extra.ties, self.options
         if kind == "rigid_body":
             loads, ties = _without_body(loads), _without_body(ties)
-        fields |= {"density": options.densities[""]} if "" in options.densities else {}
+        fields |= {"density": options.density[""]} if "" in options.density else {}
         fields |= {"depth": options.depth} if options.depth is not None else {}
         fields |= ({"loads": loads} if loads else {}) | ({"ties": ties} if ties else {})
         return fields | {"rigid_body": self._rigid_body, "assembly": self._assembly, "linkage": self._linkage}[kind]()
 
     def _rigid_body(self) -> dict[str, Any]:
         if self.extra.supports or self.extra.hinges:
-            raise self.frame.refusal("hinge", "a rigid_body has no hinges and supports: leave out `kind`")
+            raise self.frame.refusal("hinge", f"a rigid_body has no hinges and supports: leave out {named('kind')}")
         bodies = self.bodies
         alike = len({body.density for body in bodies}) == 1
         fields = {} if not alike or bodies[0].density is None else {"density": bodies[0].density}
@@ -487,7 +452,7 @@ class _Draft:
                     "centroid": rounded(moments.centroid, CENTROID_DECIMALS),
                     "inertia": float(f"{per_area * moments.polar:.{MASS_DIGITS}g}"),
                 }
-            elif body.density is not None and body.density != self.options.densities.get(""):
+            elif body.density is not None and body.density != self.options.density.get(""):
                 shape["density"] = body.density
             shapes[body.name] = shape
         return shapes
@@ -501,7 +466,7 @@ class _Draft:
 
     def _linkage(self) -> dict[str, Any]:
         if not self.extra.hinges:
-            what = "a linkage needs hinges: draw points on a layer such as HINGES, or leave out `kind`"
+            what = f"a linkage needs hinges: draw points on a layer such as HINGES, or leave out {named('kind')}"
             raise self.frame.refusal("hinge", what)
         touching = dict.fromkeys(joint.between for joint in _joints(self.bodies, self.ground))
         sides: dict[str, Any] = {"positive": "mirror", "negative": "mirror"}
@@ -536,11 +501,11 @@ def _check_weights(
     """Raise `DrawingError` "density" if some bodies have none, or if blocks with arcs or openings have no mass."""
     what, blamed = "", [body for body in bodies if body.density is None]
     if 0 < len(blamed) < len(bodies):
-        what = "some bodies have a density and some have none: give `density` for all"
+        what = f"some bodies have a density and some have none: give {named('density')} for all"
     elif kind != "rigid_body" and (blamed or options.depth is None):
         blamed = [body for body in bodies if not body.is_plain][:1]
         for body in blamed:
-            missing = ["`density`"] * (body.density is None) + ["`depth`"] * (options.depth is None)
+            missing = [named("density")] * (body.density is None) + [named("depth")] * (options.depth is None)
             what = f"{body.name} at <here> has {'arcs' if body.ring.arcs else 'openings'}, so that its mass and "
             what += f"inertia are computed: give {' and '.join(missing)}"
     if what:
@@ -577,7 +542,7 @@ def _checked_by_mechanism(result: Imported, frame: DrawingFrame) -> list[ImportN
             if len(result.bodies) == 1 or any(body.name in f["loc"] or repr(body.name) in f["msg"] for f in faults)
         ]  # fmt: skip
         if any(fault.get("ctx", {}).get("field") == ("depth",) for fault in faults):
-            what = "a density needs the depth of the structure: give `depth`"
+            what = f"a density needs the depth of the structure: give {named('depth')}"
             raise frame.refusal("density", what, blamed) from None
         what = f"{result.kind} cannot take it: {'; '.join(words)}{_nearest_gap(result, joined)}"
         raise frame.refusal("mechanism", what, blamed) from None
@@ -603,4 +568,4 @@ def _nearest_gap(result: Imported, joined: Collection[str]) -> str:
     if not len(gaps):
         return ""
     widest = ceil(1e4 * float(gaps.max()) - 1e-6) / 10  # tenths of a millimetre
-    return f"; faces beside them are up to {widest:.4g} mm apart: give `merge_gap` {widest:.4g}mm"
+    return f"; faces beside them are up to {widest:.4g} mm apart: give {named('merge_gap')} {widest:.4g}mm"

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.arrays import Bools, Integers, Reals
+from rocking_cli.errors import named
 from rocking_cli.io.drawings.contract import DrawingError
 
 Triangles = NDArray[np.int64]
@@ -131,12 +132,16 @@ def closed(points: Reals, triangles: Triangles, file: str) -> None:
     at = [points[ends[0, 0]].tolist()]
     if (np.bincount(name)[loose] % 2 == 0).all():  # passed twice in one sense
         what = f"its surface is closed, but {count:,} edges join triangles that face opposite ways"
-        raise DrawingError("open", what, file, at, "orient its faces outwards, or give `hull` for the convex hull")
+        raise DrawingError(
+            "open", what, file, at, f"orient its faces outwards, or give {named('hull')} for the convex hull"
+        )
     labels = connected_component_labels(ends, len(points))[ends[:, 0]]
     holes = [np.ptp(points[ends[labels == each]].reshape(-1, 3), axis=0) for each in np.unique(labels)[:MAX_SHELLS]]
     _, wide, long = np.sort(max(holes, key=np.linalg.norm))
     what = f"its surface is not closed: {count:,} loose sides, the largest hole {long:.3g} x {wide:.3g} m"
-    raise DrawingError("open", what, file, at, "close its holes, or give `hull` for the convex hull, which is heavier")
+    raise DrawingError(
+        "open", what, file, at, f"close its holes, or give {named('hull')} for the convex hull, which is heavier"
+    )
 
 
 def hull_of(points: Reals, file: str) -> tuple[Reals, Triangles, Reals]:
@@ -237,7 +242,10 @@ def _nested(points: Reals, triangles: Triangles, shell: Integers, volumes: Reals
                 at = probes[within.argmax()].tolist()
                 place = ", ".join(f"{x:.4g}" for x in at)
                 what = f"two of its surfaces cross: one is partly inside the other, at ({place}) m"
-                advice = "join them in the program that made them, or give `hull` for the convex hull, which is heavier"
+                advice = (
+                    f"join them in the program that made them, or give {named('hull')} for the convex hull, "
+                    "which is heavier"
+                )
                 raise DrawingError("shells", what, file, [at], advice)
             nested[k, j] = within.any()
     return nested

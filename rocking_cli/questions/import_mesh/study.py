@@ -12,6 +12,7 @@ import numpy as np
 from rocking_cli.arrays import Reals
 from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
+from rocking_cli.errors import named
 from rocking_cli.io.drawings.contract import DrawingError, MeshSurface
 from rocking_cli.questions.import_mesh.foot import (
     AzimuthRow,
@@ -25,6 +26,7 @@ from rocking_cli.questions.import_mesh.foot import (
     towards,
     weakest_of,
 )
+from rocking_cli.questions.import_mesh.options import MeshOptions
 from rocking_cli.questions.import_mesh.silhouette import Cuts, cuts_of, silhouette
 from rocking_cli.questions.import_mesh.solid import (
     MeshNote,
@@ -47,18 +49,6 @@ GUESSES = ("mm", "cm", "m")
 LEAST_SIZE, MOST_SIZE = 1e-3, 1e4  # of a body [m]
 ROUNDING = 2.0**-24  # of coordinates in single precision, over the largest
 NOTED_ROUNDING, REFUSED_ROUNDING = 1e-4, 1e-2  # rounding over the size from which it is said, and refused
-
-
-@dataclass(frozen=True)
-class MeshOptions:
-    """How a mesh becomes a structure; see `rocking_cli.import_mesh`."""
-
-    units: str | None = None
-    density: float | None = None
-    level: float = 0.001
-    settle: bool = False
-    hull: bool = False
-    up: str = "z"
 
 
 @short_repr
@@ -148,7 +138,7 @@ class ImportedMesh:
     def structure_of(self, row: AzimuthRow | None) -> Mechanism:
         """Return the structure that rocks as the body does towards an azimuth, or over its weakest edge."""
         if self.mass is None:
-            raise DrawingError("density", "the mass of the body is not known: give `density`", self.file)
+            raise DrawingError("density", f"the mass of the body is not known: give {named('density')}", self.file)
         edge, drive = (self.weakest, 1.0) if row is None else (row.edge, row.drive)
         back = (row or towards(self.edges, edge.azimuth, self.height)).back
         outline = silhouette(self._cuts, np.radians(edge.azimuth))
@@ -200,7 +190,7 @@ def imported(surface: MeshSurface, file: str, options: MeshOptions, azimuths: Se
         points, triangles, planes = hull_of(points, file)
     elif not len(triangles):
         what = f"is a cloud of {len(points):,} points without faces, which encloses nothing"
-        advice = "make a surface of the points, or give `hull` for the convex hull, which is heavier"
+        advice = f"make a surface of the points, or give {named('hull')} for the convex hull, which is heavier"
         raise DrawingError("open", what, file, hint=advice)
     else:
         closed(points, triangles, file)
@@ -237,11 +227,11 @@ def _scale(surface: MeshSurface, file: str, units: str | None) -> float:
     size = float(np.ptp(surface.points, axis=0).max())
     if units is None:
         sizes = ", ".join(f"{size * float(KINDS['length'][unit]):.4g} m if {unit}" for unit in GUESSES)
-        what = f"a mesh does not say its units: give `units` (it is {size:.4g} units large: {sizes})"
+        what = f"a mesh does not say its units: give {named('units')} (it is {size:.4g} units large: {sizes})"
         raise DrawingError("units", what, file)
     scale = float(KINDS["length"][units])
     if not LEAST_SIZE <= size * scale <= MOST_SIZE:
-        raise DrawingError("units", f"the body would be {size * scale:.3g} m large: give other `units`", file)
+        raise DrawingError("units", f"the body would be {size * scale:.3g} m large: give other {named('units')}", file)
     return scale
 
 
@@ -282,10 +272,18 @@ def _standing(points: Reals, whole: Moments, corners: Sequence[complex], level: 
         on = "one point" if len(corners) < 2 else "a line"
         what = f"stands on {on} {within} of the ground, {angle:.2f} degrees from a facet of its hull"
         at = [[each.real, each.imag] for each in corners]
-        raise DrawingError("point", what, file, at, "`settle` lays it down; a larger `level` takes in more points")
+        raise DrawingError(
+            "point", what, file, at, f"{named('settle')} lays it down; a larger {named('level')} takes in more points"
+        )
     edges = edges_of(corners, whole)
     least = min(each.c for each in edges)
     if not least > 0:
         what = f"its centre of mass is not above its foot {within} of the ground, but {-least:.3g} m beside it"
-        raise DrawingError("falls", what, file, [[0.0, 0.0]], "`settle` lays it down; check `up` and `level`")
+        raise DrawingError(
+            "falls",
+            what,
+            file,
+            [[0.0, 0.0]],
+            f"{named('settle')} lays it down; check {named('up')} and {named('level')}",
+        )
     return edges

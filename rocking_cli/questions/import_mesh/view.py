@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from rocking_cli.errors import named
 from rocking_cli.questions.import_mesh.foot import AzimuthRow, FootEdge, LevelRow
 from rocking_cli.questions.import_mesh.study import ImportedMesh
 from rocking_cli.text import one_line
@@ -95,7 +96,8 @@ def _by_level(found: ImportedMesh) -> str | None:
         return None
     least, most = (f"{number(each, 3)} at {1000 * level:g} mm" for each, level in (by_lambda[0], by_lambda[-1]))
     return (
-        f"lambda depends on `level`, here {1000 * found.options.level:g} mm: it is {least} and {most}. Choose the "
+        f"lambda depends on {named('level')}, here {1000 * found.options.level:g} mm: it is {least} "
+        f"and {most}. Choose the "
         "level by how the body bears, not by its mesh."
     )
 

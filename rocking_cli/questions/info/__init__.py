@@ -1,3 +1,3 @@
-"""`info`: what is installed."""
+"""Show the installation: versions, plugins, kernels, defaults."""
 
 PLACE = 250

@@ -8,9 +8,10 @@ from typing import Any
 import click
 
 from rocking_cli.cli import defaults, options, terminal
+from rocking_cli.cli.help import Command
 
 
-@click.command(short_help="Show the installation: versions, plugins, kernels, defaults.")
+@click.command(cls=Command, short_help="Show the installation: versions, plugins, kernels, defaults.")
 @options.as_json
 def command(as_json: bool) -> None:
     """Show the installation: versions, extras, plugins and their faults, kernels, and your defaults.

@@ -1,4 +1,4 @@
-"""`margin`: how close ground motions are to overturning a structure."""
+"""Compute how close ground motions are to overturning."""
 
 PLACE = 80
 MORE = {"verb": ["shares"]}

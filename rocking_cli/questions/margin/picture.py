@@ -43,7 +43,7 @@ def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
         look = style.distinct(k) | {"marker": "", "linewidth": style.BOLD}
         colour = look["color"]
         axes.fill_between(each.factors, *each.interval, color=colour, alpha=0.15, linewidth=0)
-        label = style.plain(f"{cut(name, MAX_NAME_LENGTH)}\nPGA {each.pga:.3g} g{_uplift(each, ', ')}")
+        label = style.plain(f"{cut(name, MAX_NAME_LENGTH)}\nPGA {each.pga_g:.3g} g{_uplift(each, ', ')}")
         curves += axes.plot(each.factors, each.overturned, label=label, **look)
         axes.plot(1.0, each.share.lowest, color=colour, clip_on=False, **style.STAR)
         if each.unknown.any():
@@ -59,9 +59,9 @@ def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
     axes.set_ylim(-0.12 if alone else -0.03, 1.03)
     style.in_percent(axes.yaxis)
     axes.margins(x=0.01)
-    if alone and first.pga > 0:
+    if alone and first.pga_g > 0:
         top = axes.secondary_xaxis(
-            "top", functions=(partial(np.multiply, first.pga), partial(np.multiply, 1 / first.pga))
+            "top", functions=(partial(np.multiply, first.pga_g), partial(np.multiply, 1 / first.pga_g))
         )
         style.plain_numbers(top.xaxis)
         top.tick_params(labelsize=style.TICK, colors=style.INK)

@@ -14,13 +14,12 @@ from statistics import NormalDist
 import numpy as np
 
 from rocking_cli.arrays import Reals
-from rocking_cli.dynamics.model import Model
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.short_repr import short_repr
-from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import LEAST_SHARE, Conclusion, NeighbourShare
-from rocking_cli.studies.engines import EXACT, Engine, EngineName
+from rocking_cli.studies.conditions import Conditions
+from rocking_cli.studies.engines import EngineName
 from rocking_cli.studies.intervals import wilson
 from rocking_cli.studies.neighbours import Draws, Neighbourhood, least_uplift, simulate_neighbours
 from rocking_cli.studies.response import concluded
@@ -56,7 +55,7 @@ class Margin:
         Number of neighbours, of all factors and polarities, that were simulated with free blocks.
     off_edge : int
         Number of those of them in which a block falls off an edge; they count as overturned.
-    pga : float
+    pga_g : float
         Peak ground acceleration of the motion at a factor of 1 [standard gravity].
     polarities : sequence of int
         The polarities that were simulated.
@@ -71,7 +70,7 @@ class Margin:
     engine: EngineName = "exact"
     by_blocks: int = 0
     off_edge: int = 0
-    pga: float = field(kw_only=True)
+    pga_g: float = field(kw_only=True)
     polarities: Sequence[int] = field(kw_only=True)
 
     @property
@@ -122,28 +121,21 @@ class Margin:
 
 
 def margin(
-    model: Model,
+    conditions: Conditions,
     motion: GroundMotion,
-    polarities: Sequence[int] = (1, -1),
     *,
-    around: Neighbourhood | None = None,
     factors: Reals = FACTORS,
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
-    engine: Engine = EXACT,
 ) -> Margin:
     """Compute the share of overturning as a function of the factor on a motion.
 
     Parameters
     ----------
-    model : Model
-        A model of the structure; the nonlinear one is the structure itself.
+    conditions : Conditions
+        The structure, how to draw the neighbours of each factor, and the polarities; of both, the worse governs.
     motion : GroundMotion
         The ground motion at a factor of 1.
-    polarities : sequence of int
-        The polarities, 1, -1 or both; of both, the worse governs.
-    around : Neighbourhood, optional
-        How to draw the neighbours of each factor.
     factors : ndarray, shape (n,)
         Factors on the motion, positive and increasing; 1 is added.
     threads : int, optional
@@ -151,8 +143,6 @@ def margin(
     progress : callable, optional
         Called with the number of histories done since the last call; their total is the product of the numbers of
         factors (with 1), neighbours and polarities.
-    engine : Engine
-        Who simulates them.
 
     Raises
     ------
@@ -161,9 +151,10 @@ def margin(
     SolverError
         If a motion cannot be followed.
     """
-    around = (around or Neighbourhood()).of(model)
+    model, polarities = conditions.model, conditions.signs
+    around = conditions.around.of(model)
     if not around.count:
-        raise InputError(Problem("neighbouring motions are needed: at least 1", field="`neighbours`"))
+        raise InputError(Problem("neighbouring motions are needed: at least 1", field=named("neighbours")))
     if not (factors.ndim == 1 and factors.size and np.isfinite(factors).all() and (np.diff([0.0, *factors]) > 0).all()):
         raise InputError("scale factors must be positive and in ascending order")
     factors = np.union1d(factors[np.abs(factors - 1) > FACTOR_TOLERANCE], 1.0)
@@ -180,7 +171,7 @@ def margin(
         repeated = Draws(*(np.concatenate([values] * some.size) if some.size else values[:0] for values in draws))
         outcomes = simulate_neighbours(
             model, motion, repeated, scale=some.repeat(around.count), polarity=sign, threads=threads, progress=progress,
-            engine=engine,
+            engine=conditions.by,
         )  # fmt: skip
         by_blocks, off_edge = by_blocks + int(outcomes.by_blocks.sum()), off_edge + int(outcomes.off_edge.sum())
         fell, doubtful = (of.reshape(some.size, around.count).mean(axis=1) for of in (outcomes.fell, outcomes.unknown))
@@ -190,31 +181,25 @@ def margin(
     uplifts = [least_uplift(model, motion.scaled(sign)) for sign in polarities]
     least = min((uplift for uplift in uplifts if uplift is not None), default=None)
     return Margin(
-        around, least, factors, overturned, at_most - overturned, engine=engine.name, by_blocks=by_blocks,
-        off_edge=off_edge, checked=model.joints is not None or engine.name == "blocks",
-        pga=motion.of_ground.pga_g, polarities=tuple(polarities),
+        around, least, factors, overturned, at_most - overturned, engine=conditions.by.name, by_blocks=by_blocks,
+        off_edge=off_edge, checked=model.joints is not None or conditions.engine == "blocks",
+        pga_g=motion.of_ground.pga_g, polarities=tuple(polarities),
     )  # fmt: skip
 
 
-def conclusion(
-    structure: Structure, motion: GroundMotion, polarities: Sequence[int], found: Margin, engine: Engine = EXACT
-) -> Conclusion:
+def conclusion(conditions: Conditions, motion: GroundMotion, found: Margin) -> Conclusion:
     """Return the conclusion at a factor of 1, with the share, and the factor from which a tenth may overturn.
 
     Parameters
     ----------
-    structure : Structure
-        The structure, with the model of the margin.
+    conditions : Conditions
+        The structure and the conditions of the margin.
     motion : GroundMotion
         The ground motion at a factor of 1.
-    polarities : sequence of int
-        The polarities, 1, -1 or both.
     found : Margin
         The margin.
-    engine : Engine
-        Who simulates the motion itself.
     """
-    runs = {sign: engine.respond(structure, motion.scaled(sign), models=["nonlinear"]) for sign in polarities}
+    runs = {sign: conditions.by.respond(conditions, motion.scaled(sign)) for sign in conditions.signs}
     from_factor = found.first(LEAST_SHARE, unknown=True)
     ratio = inf if from_factor is None else from_factor
     return replace(concluded(runs, {}, motion.name), share=found.share, ratio=ratio)

@@ -10,19 +10,18 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.core import Mechanism
 from rocking_cli.names import peaks_over, percent
 from rocking_cli.questions.margin.study import SHARE_LEVELS, Margin
-from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Conclusion
-from rocking_cli.studies.neighbours import Neighbourhood
+from rocking_cli.studies.conditions import Conditions
 from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.column import Column, of, only_shown, rounded, table_of
 from rocking_cli.views.conclusion import conclusion_data, of_margin
 from rocking_cli.views.engines import BLOCKS_FAILED, engines_in_words
 from rocking_cli.views.neighbours import deviations
+from rocking_cli.views.restitution import heading_of_run, restitution_data, restitution_used
 from rocking_cli.views.verdict import unchecked
-from rocking_cli.views.view import MAX_DETAILED_MOTIONS, Table, View, heading, number
+from rocking_cli.views.view import MAX_DETAILED_MOTIONS, Table, View, number
 
 GOVERNING_ROW = "overturn or unknown"
 
@@ -53,7 +52,7 @@ def _lines(rows: Sequence[MarginRow]) -> Iterator[_Line]:
         doubt = bool(margin.unknown.any())
         governing = f"{name}: {GOVERNING_ROW}" if doubt else name
         yield _Line(
-            governing, number(margin.pga, 3), number(margin.uplift, 3), margin.share.highest, margin, unknown=True
+            governing, number(margin.pga_g, 3), number(margin.uplift, 3), margin.share.highest, margin, unknown=True
         )
         if doubt:
             yield _Line("  known to overturn", "", "", margin.share.lowest, margin, unknown=False)
@@ -76,19 +75,18 @@ COLUMNS: tuple[Column[_Line], ...] = (
 )
 
 
-def view(
-    structure: Structure, rows: Sequence[MarginRow], polarity: str, around: Neighbourhood, end: Conclusion
-) -> View:
+def view(conditions: Conditions, rows: Sequence[MarginRow], end: Conclusion) -> View:
     """Show the margins of a structure under some motions, the conclusion on all of them first."""
-    mechanism, over = structure.mechanism, peaks_over([side.phi_cr is None for side in structure.statics])
-    around = rows[0].margin.around if rows else around  # includes the deviations of the structure
+    structure, mechanism = conditions.structure, conditions.structure.mechanism
+    over = peaks_over([side.phi_cr is None for side in structure.statics])
+    around = conditions.around.of(conditions.model)  # includes the deviations of the structure
     either = {
         "1": "motions as given",
         "-1": "motions reversed",
         "both": "motions as given and reversed (the worse of the two counts)",
-    }[polarity]
+    }[conditions.polarity]
     parts: list[Table | str] = [
-        f"{heading(mechanism)}. {of_margin(end, over)}",
+        f"{heading_of_run(structure)}. {of_margin(end, over)}",
         f"Scale factors on {either}; at each, {around.count} neighbouring motions, {deviations(around)}. 'First at' is "
         "the smallest factor at which so many of them overturn the structure; 'always from' the smallest from which on "
         "no factor tried (up to 5) has fewer.",
@@ -98,29 +96,31 @@ def view(
         parts.append(
             f"The row '{GOVERNING_ROW}' governs; the row below it alone does not prove that the structure stands."
         )
-    if rows:
-        by_blocks, off_edge = (sum(getattr(row.margin, key) for row in rows) for key in ("by_blocks", "off_edge"))
-        parts += engines_in_words(rows[0].margin.engine, by_blocks, mechanism, off_edge)
+    by_blocks, off_edge = (sum(getattr(row.margin, key) for row in rows) for key in ("by_blocks", "off_edge"))
+    parts += [restitution_used(structure)] if structure.restitution is not None else []
+    parts += engines_in_words(conditions.engine, by_blocks, mechanism, off_edge)
     parts += [f"{row.name}: {in_words(row.margin)}" for row in rows] if len(rows) <= MAX_DETAILED_MOTIONS else []
     parts += [f"Caution: {text}" for text in cautions_of(mechanism)]
     if not all(row.margin.checked for row in rows):
         parts.append(unchecked(why=mechanism.unchecked))
-    return View(_data(mechanism, rows, polarity, around) | {"conclusion": conclusion_data(end)}, parts)
+    return View(_data(conditions, rows) | {"conclusion": conclusion_data(end)}, parts)
 
 
-def _data(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around: Neighbourhood) -> dict[str, Any]:
+def _data(conditions: Conditions, rows: Sequence[MarginRow]) -> dict[str, Any]:
+    mechanism = conditions.structure.mechanism
     return {
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
         "model": "nonlinear",
-        "engine": rows[0].margin.engine if rows else "exact",
-        "polarity": polarity,
-        "neighbours": asdict(around),
+        "engine": conditions.engine,
+        "polarity": conditions.polarity,
+        "restitution": restitution_data(conditions.structure),
+        "neighbours": asdict(conditions.around.of(conditions.model)),
         "caution": " ".join(cautions_of(mechanism)) or None,
         "motions": [
             {
                 "name": row.name,
                 "scale": row.factor,
-                "pga": row.margin.pga,
+                "pga_g": row.margin.pga_g,
                 "conclusion": conclusion_data(row.conclusion),
                 **margin_data(row.margin),
                 "verdict": in_words(row.margin),
@@ -162,7 +162,7 @@ def in_words(found: Margin) -> str:
         The margin, with at least one factor.
     """
     doubt = bool(found.unknown.any())
-    at = partial(_at, found.pga)
+    at = partial(_at, found.pga_g)
     does = "overturn the structure, or have an unknown outcome," if doubt else "overturn the structure"
     sentence = _reached(found, found.at_most, does)
     if not doubt:
@@ -183,15 +183,15 @@ def in_words(found: Margin) -> str:
 
 def _reached(found: Margin, shares: NDArray[np.float64], does: str) -> str:
     """Return in words at which factors the shares of neighbours that do something first reach each level."""
-    at = partial(_at, found.pga)
+    at = partial(_at, found.pga_g)
     low, high = found.factors[[0, -1]]
     reached = [
         (level, float(found.factors[(shares >= level).argmax()])) for level in SHARE_LEVELS if (shares >= level).any()
     ]
     if not reached:
         return (
-            f"At no scale factor from {low:.2g} to {high:.2g} (PGA from {low * found.pga:.3g} g to "
-            f"{high * found.pga:.3g} g) do {percent(SHARE_LEVELS[0])} or more of the neighbouring motions "
+            f"At no scale factor from {low:.2g} to {high:.2g} (PGA from {low * found.pga_g:.3g} g to "
+            f"{high * found.pga_g:.3g} g) do {percent(SHARE_LEVELS[0])} or more of the neighbouring motions "
             f"{does.removesuffix(',')}."
         )
     (level, first), *others = reached

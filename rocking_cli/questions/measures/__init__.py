@@ -1,3 +1,3 @@
-"""`measures`: the measures of intensity that are installed."""
+"""List the installed intensity measures."""
 
 PLACE = 230

@@ -5,9 +5,10 @@ from __future__ import annotations
 import click
 
 from rocking_cli.cli import options, terminal
+from rocking_cli.cli.help import Command
 
 
-@click.command(short_help="List the installed intensity measures.")
+@click.command(cls=Command, short_help="List the installed intensity measures.")
 @options.as_json
 def command(as_json: bool) -> None:
     """List the installed intensity measures: their form, unit and dependence on the scale factor of a record.

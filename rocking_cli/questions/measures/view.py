@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from rocking_cli.errors import named
 from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
 from rocking_cli.views.view import View
 
@@ -68,6 +69,6 @@ def view(found: Sequence[InstalledMeasure]) -> View:
             table_of("Intensity measures", COLUMNS, found),
             "The column 'scales with' gives the power of the record's scale factor. A measure that does not scale, or "
             "that is computed for every run, cannot define the levels of a study. `rocking record` computes any of "
-            "them with `measures`; those relative to a structure also need `structure`.",
+            f"them with {named('measures')}; those relative to a structure also need {named('structure')}.",
         ],
     )

@@ -1,3 +1,3 @@
-"""`mechanisms`: the mechanisms that are installed, and their fields."""
+"""List, describe or check the installed mechanisms."""
 
 PLACE = 220

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 import click
 
 from rocking_cli.cli import complete, options, terminal
+from rocking_cli.cli.help import Command
 from rocking_cli.errors import InputError, MechanismError, RockingError
+from rocking_cli.io.files import check_writable
 
 if TYPE_CHECKING:
     from rocking_cli.core import Mechanism
@@ -23,7 +25,7 @@ LOADS_CHECK = "The plugin can be loaded, and is a mechanism."
 TEMPLATE_CHECK = "The file that `rocking new` prints is a structure."
 
 
-@click.command(short_help="List, describe or check the installed mechanisms.")
+@click.command(cls=Command, short_help="List, describe or check the installed mechanisms.")
 @click.argument("name", required=False, shell_complete=complete.plugins(complete.MECHANISMS))
 @click.argument("file", required=False, type=click.Path())
 @click.option(
@@ -32,7 +34,10 @@ TEMPLATE_CHECK = "The file that `rocking new` prints is a structure."
     is_flag=True,
     help="Check NAME against the contract of mechanisms, on its examples or on FILE.",
 )
-@options.plot("Draw all mechanisms, small, to choose one")
+@click.option(
+    "--plot", metavar="FILE.png", type=click.Path(path_type=Path), shell_complete=complete.files,
+    help="Draw all mechanisms, small, to choose one (.png, .svg or .pdf).",
+)  # fmt: skip
 @options.as_json
 def command(name: str | None, file: str | None, checked: bool, plot: Path | None, as_json: bool) -> None:
     """List the installed mechanisms and the structures that each suits; with NAME, show the fields of one.
@@ -87,12 +92,12 @@ def _all(registry: Registry, plot: Path | None, as_json: bool) -> None:
             terminal.debug_traceback(error)
             rows.append(InstalledMechanism(name, None, None, package))
     if plot is not None:
-        from rocking_cli.cli.groups import write_picture
+        check_writable(plot, ".png", ".svg", ".pdf")
+        from rocking_cli.plotting.style import write
         from rocking_cli.questions.mechanisms.picture import draw_chooser
 
-        write_picture(
-            plot, draw_chooser([(each, drawing(each.name, registry) if each.title else None) for each in rows])
-        )
+        write(plot, draw_chooser([(each, drawing(each.name, registry) if each.title else None) for each in rows]))
+        terminal.note(f"wrote {plot}")
     terminal.show(installed(rows), as_json=as_json)
 
 

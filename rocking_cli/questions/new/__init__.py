@@ -1,3 +1,3 @@
-"""`new`: a file or a plugin to start from."""
+"""Print a template file, or create a plugin package."""
 
 PLACE = 240

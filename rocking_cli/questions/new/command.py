@@ -8,6 +8,8 @@ from typing import Any
 import click
 
 from rocking_cli.cli import complete, options, terminal
+from rocking_cli.cli.help import Command
+from rocking_cli.errors import named
 from rocking_cli.io.starters import STARTERS, in_italian, italian, starter, template_of
 from rocking_cli.names import LANGUAGES
 
@@ -17,7 +19,7 @@ SITE = "site"
 """Name of the site file for `rocking verify`."""
 
 
-@click.command(short_help="Print a template file, or create a plugin package.")
+@click.command(cls=Command, short_help="Print a template file, or create a plugin package.")
 @click.argument(
     "name",
     metavar="NAME",
@@ -105,7 +107,9 @@ def _made(word: str, code: str | None, *, as_json: bool) -> dict[str, Any]:
     mechanisms = find(complete.MECHANISMS)
     name = word if word in mechanisms else template_of(word)
     if code is not None and name != SITE:
-        raise click.UsageError("--code requires `site`, as in `rocking new site --code NTC2018`, or --plugin.")
+        raise click.UsageError(
+            f"--code requires {named('site')}, as in `rocking new site --code NTC2018`, or --plugin."
+        )
     if name != word:
         terminal.note(f"{word} is the template {name}")
     if name == STUDY:

@@ -20,10 +20,10 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.plotting import style
 from rocking_cli.plotting.curve_names import name_curves
 from rocking_cli.plotting.region_names import name_regions
-from rocking_cli.questions.overturning.study import CONTOUR_LEVELS, Comparison, Kind, OverturningMap
+from rocking_cli.questions.overturning.study import CONTOUR_LEVELS, Comparison, OutcomeKind, OverturningMap
 
-LABELS, FILLS = list(style.REGIONS), list(style.REGIONS.values())  # by `Kind`
-DARK_KINDS = Kind.AFTER_MORE, Kind.WITHOUT_IMPACT
+LABELS, FILLS = list(style.REGIONS), list(style.REGIONS.values())  # by `OutcomeKind`
+DARK_KINDS = OutcomeKind.AFTER_MORE, OutcomeKind.WITHOUT_IMPACT
 GRID_POINTS = 250  # number of points along either axis on which boundaries are traced
 EQUAL_RATIOS = 1e-6  # relative difference of the steps of a logarithmic axis
 TICKS = (1.0, 2.0, 3.0, 5.0, 7.0)  # multiples of powers of ten along logarithmic axes
@@ -49,7 +49,7 @@ def draw_map(
         Pulses to mark: name and coordinates on the axes.
     """
     figure, axes = style.one_panel(6.0, title)
-    across, up = (found.omega, found.a) if dimensionless else (found.periods, found.accelerations)
+    across, up = (found.omega, found.a) if dimensionless else (found.periods, found.ag)
     for axis, values in ((axes.xaxis, across), (axes.yaxis, up)):
         if _at_equal_ratios(values):
             style.logarithmic(axis, TICKS)
@@ -59,7 +59,7 @@ def draw_map(
     for kind, outlines in found.edges.outlines.items():
         path = Path.make_compound_path(*(Path(place(np.append(each, each[0])), closed=True) for each in outlines))
         axes.add_patch(PathPatch(path, facecolor=FILLS[kind], linewidth=0.0, zorder=1 + kind / 10))
-        if kind == Kind.UNKNOWN:  # a patch of its own: the colour under a hatch would be the same on a dark page
+        if kind == OutcomeKind.UNKNOWN:  # a patch of its own: the colour under a hatch would be the same on a dark page
             axes.add_patch(PathPatch(path, zorder=1 + kind / 10, **style.UNKNOWN))
     handles = _draw_peaks(axes, found, place)
     handles += _draw_boundaries(axes, found, dimensionless=dimensionless)
@@ -82,9 +82,9 @@ def draw_map(
     keys = [
         Patch(
             facecolor=FILLS[kind], edgecolor=style.FAINT, label=LABELS[kind],
-            hatch=style.UNKNOWN["hatch"] if kind == Kind.UNKNOWN else None,
+            hatch=style.UNKNOWN["hatch"] if kind == OutcomeKind.UNKNOWN else None,
         )
-        for kind in Kind if kind not in named and (found.kinds == kind).any()
+        for kind in OutcomeKind if kind not in named and (found.kinds == kind).any()
     ]  # fmt: skip
     if keys or handles:
         style.legend_below(figure, [*keys, *handles])
@@ -123,7 +123,7 @@ def _draw_peaks(axes: Axes, found: OverturningMap, place: Callable[[Points], Rea
     look: dict[str, Any] = {"color": style.MEASURE, "linewidth": style.CURVE}
     lines = [[place(each) for each in pieces] for pieces in found.edges.contours]
     for line in chain.from_iterable(lines):
-        axes.plot(*line.T, zorder=1 + (Kind.ROCKS + 0.5) / 10, **look)
+        axes.plot(*line.T, zorder=1 + (OutcomeKind.ROCKS + 0.5) / 10, **look)
     apart = [np.concatenate([np.empty((0, 2)), *(_inside(axes, line) for line in each)]) for each in lines]
     for k, (level, points) in enumerate(zip(CONTOUR_LEVELS, apart, strict=True)):
         others = np.concatenate([*apart[:k], *apart[k + 1 :]])

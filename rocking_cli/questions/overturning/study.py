@@ -64,7 +64,7 @@ class Region(IntEnum):
 FALLS = Region.AFTER_IMPACT, Region.WITHOUT_IMPACT
 
 
-class Kind(IntEnum):
+class OutcomeKind(IntEnum):
     """A region of a plotted map, in which overturning after one impact is apart; the worse, the higher."""
 
     NO_UPLIFT = 0
@@ -76,10 +76,12 @@ class Kind(IntEnum):
 
 
 def _kinds(found: Outcomes) -> Integers:
-    """Return the `Kind` of outcomes, as integers."""
-    stays = np.where(found.peak_ratio > 0, Kind.ROCKS, Kind.NO_UPLIFT)
-    falls = np.array([Kind.WITHOUT_IMPACT, Kind.AFTER_ONE, Kind.AFTER_MORE])[np.minimum(found.impact_count, 2)]
-    return np.where(found.fell, falls, np.where(found.unknown, Kind.UNKNOWN, stays))
+    """Return the `OutcomeKind` of outcomes, as integers."""
+    stays = np.where(found.peak_ratio > 0, OutcomeKind.ROCKS, OutcomeKind.NO_UPLIFT)
+    falls = np.array([OutcomeKind.WITHOUT_IMPACT, OutcomeKind.AFTER_ONE, OutcomeKind.AFTER_MORE])[
+        np.minimum(found.impact_count, 2)
+    ]
+    return np.where(found.fell, falls, np.where(found.unknown, OutcomeKind.UNKNOWN, stays))
 
 
 @short_repr
@@ -116,18 +118,18 @@ class OverturningMap:
         return self.structure.period(self.omega)
 
     @property
-    def accelerations(self) -> Reals:
+    def ag(self) -> Reals:
         """Pulse amplitudes of the rows [standard gravity]."""
         return self.a * self.structure.unit / STANDARD_GRAVITY
 
     @cached_property
     def regions(self) -> Integers:
         """The `Region` of each point, as integers, shape (m, n)."""
-        return self.kinds - (self.kinds >= Kind.AFTER_MORE)
+        return self.kinds - (self.kinds >= OutcomeKind.AFTER_MORE)
 
     @cached_property
     def kinds(self) -> Integers:
-        """The `Kind` of each point, as integers, shape (m, n)."""
+        """The `OutcomeKind` of each point, as integers, shape (m, n)."""
         return _kinds(self.outcome)
 
     @cached_property
@@ -150,8 +152,13 @@ class OverturningMap:
             )  # fmt: skip
 
         return edges_of(
-            self.kinds, simulated, self.outcome.peak_ratio, CONTOUR_LEVELS, falls=Kind.AFTER_ONE, unknown=Kind.UNKNOWN
-        )
+            self.kinds,
+            simulated,
+            self.outcome.peak_ratio,
+            CONTOUR_LEVELS,
+            falls=OutcomeKind.AFTER_ONE,
+            unknown=OutcomeKind.UNKNOWN,
+        )  # fmt: skip
 
     def at(self, places: Points) -> tuple[Reals, Reals]:
         """Return omega and a at columns u and rows v, fractions included, given as u + iv."""

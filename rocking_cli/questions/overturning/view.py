@@ -12,6 +12,7 @@ import numpy as np
 from rocking_cli.arrays import Reals
 from rocking_cli.core import Mechanism
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.io.tables import Columns, stacked
 from rocking_cli.names import OVERTURNS, UNKNOWN, percent
 from rocking_cli.questions.overturning.study import FALLS, Comparison, OverturningMap, Region
 from rocking_cli.studies.under_pulses import PulsedModel
@@ -21,6 +22,7 @@ from rocking_cli.views.verdict import INVALID_REASON, unchecked
 from rocking_cli.views.view import ABSENT, Table, View, number
 
 MAX_TABLE_ROWS = 9  # rows of a table; --out and --json have the whole curves
+SOURCES = {"run": " (given for this run)", "given": ""}
 FROM_KINEMATICS = " (from kinematics, not measured)"
 NO_JOINTS = (
     "The equivalent block has no joints, so whether those of the structure stay closed is not checked here: the real "
@@ -40,7 +42,7 @@ def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionles
     dimensionless : bool
         Whether to show the map against omega and a; otherwise against the period in s and the amplitude in g.
     """
-    unit = 1.0 if dimensionless else found.accelerations[0] / found.a[0]
+    unit = 1.0 if dimensionless else found.ag[0] / found.a[0]
     what, amplitude = ("omega", "a") if dimensionless else ("T [s]", "a_g [g]")
     curves = {
         "overturns\nfrom": found.least(*FALLS),
@@ -55,10 +57,9 @@ def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionles
         only_shown(what, across.__getitem__, rounded(3), text=True),
         *(only_shown(head, (unit * curve).item, rounded(3)) for head, curve in curves.items()),
     ]
-    source = "" if found.structure.eta_given else FROM_KINEMATICS
     shares = ", ".join(f"{region.label} {100 * share:.1f} %" for region, share in found.shares.items() if share)
     parts: list[Table | str] = [
-        f"{map_title(found)}{source}: amplitudes {amplitude} against {what}",
+        f"{map_title(found)}{source_of(found.structure)}: amplitudes {amplitude} against {what}",
         table_of("", columns, spaced(len(across))),
         f"Shares of the points of the map, which depend on the ranges of its axes: {shares}.",
     ]
@@ -95,6 +96,11 @@ def map_title(found: OverturningMap) -> str:
     return f"{shaken.name}, {_pulse(found)}, {shaken.model.name}, eta = {shaken.eta:.4g}"
 
 
+def source_of(shaken: PulsedModel) -> str:
+    """Return the source of the restitution, to be added to its value; empty if the file gives it."""
+    return SOURCES.get(shaken.restitution_source, FROM_KINEMATICS)
+
+
 def _pulse(found: OverturningMap | Comparison) -> str:
     """Return shape and polarity of the pulses, for a heading."""
     turned = {(1,): "", (-1,): " reversed", (1, -1): " of either polarity"}[found.polarities]
@@ -105,29 +111,26 @@ def _polarity(found: OverturningMap | Comparison) -> int | str:
     return found.polarities[0] if len(found.polarities) == 1 else "both"
 
 
-def map_table(found: OverturningMap, mechanism: Mechanism | None) -> dict[str, Sequence[object]]:
+def map_table(found: OverturningMap, mechanism: Mechanism | None) -> Columns:
     """Return the columns of a map, with a row for each point; with periods and accelerations for a structure."""
     rows, columns = np.indices(found.regions.shape)
     row, column = rows.ravel(), columns.ravel()
-    result: dict[str, Sequence[object]] = {"omega": found.omega[column].tolist(), "a": found.a[row].tolist()}
+    result: dict[str, Any] = {"omega": found.omega[column].tolist(), "a": found.a[row].tolist()}
     if mechanism is not None:
         result |= {
             "period [s]": found.periods[column].tolist(),
-            "acceleration [g]": found.accelerations[row].tolist(),
+            "ag [g]": found.ag[row].tolist(),
         }
-    outcome = found.outcome
-    before = zip(outcome.fell.ravel().tolist(), outcome.impact_count.ravel().tolist(), strict=True)
-    result |= {
+    outcome = found.outcome.by_field(np.ravel)
+    return result | {
         "outcome": [Region(region).label for region in found.regions.ravel().tolist()],
-        "peak phi/phi_cr": np.where(outcome.unknown, np.nan, outcome.peak_ratio).ravel().tolist(),
-        "impacts before overturning": [count if falls else "" for falls, count in before],
+        "overturned": outcome.overturned,
+        "unknown": outcome.unknown if found.structure.checked else np.full(row.size, np.nan),
+        "peak_ratio": np.where(outcome.fell, np.inf, np.where(outcome.unknown, np.nan, outcome.peak_ratio)),
+        "impact_count": outcome.impact_count,
+        "known_to [s]": outcome.known_to,
+        "peak_lower_bound": np.where(outcome.unknown, outcome.lower_bound, np.nan),
     }
-    if found.structure.may_open:
-        result |= {
-            "known to [s]": outcome.known_to.ravel().tolist(),
-            "peak phi/phi_cr, at least": np.where(outcome.unknown, outcome.lower_bound, np.nan).ravel().tolist(),
-        }
-    return result
 
 
 def _map_data(found: OverturningMap, mechanism: Mechanism | None, *, dimensionless: bool) -> dict[str, Any]:
@@ -141,6 +144,7 @@ def _map_data(found: OverturningMap, mechanism: Mechanism | None, *, dimensionle
         "by_blocks": int(found.outcome.by_blocks.sum()),
         "off_edge": int(found.outcome.off_edge.sum()),
         "eta": shaken.eta,
+        "restitution": shaken.restitution_source,
         "polarity": _polarity(found),
         "dimensionless": dimensionless,
         "shares": {
@@ -150,7 +154,7 @@ def _map_data(found: OverturningMap, mechanism: Mechanism | None, *, dimensionle
         "omega": found.omega.tolist(),
         "period": found.periods.tolist() if here else None,
         "a": found.a.tolist(),
-        "acceleration": found.accelerations.tolist() if here else None,
+        "ag": found.ag.tolist() if here else None,
         "least_a": {
             "overturning": numbers(found.least(*FALLS)),
             "after_impact": numbers(found.least(Region.AFTER_IMPACT)),
@@ -230,7 +234,9 @@ def comparison_view(found: Comparison, mechanisms: Sequence[Mechanism]) -> View:
 
 def comparison_title(found: Comparison) -> str:
     """Return the pulses and the model of a comparison, as a heading."""
-    return f"{_pulse(found)}, {found.structures[0].model.name}"
+    first = found.structures[0]
+    eta = f", eta = {first.eta:.4g}" if first.restitution_source == "run" else ""
+    return f"{_pulse(found)}, {first.model.name}{eta}"
 
 
 def _firsts(found: Comparison) -> list[list[str]]:
@@ -241,16 +247,17 @@ def _firsts(found: Comparison) -> list[list[str]]:
     ]
 
 
-def comparison_table(found: Comparison) -> dict[str, Sequence[object]]:
-    """Return the columns of the curves, with a row for each period."""
-    curves: dict[str, Sequence[object]] = {"period [s]": found.periods.tolist()}
-    for each, least, possible in zip(found.structures, found.least, found.possible, strict=True):
-        curves[f"{each.name} [g]"] = least.tolist()
-        if each.may_open:
-            curves[f"{each.name}, overturns or unknown [g]"] = possible.tolist()
-    firsts = [f"tie: {', '.join(names)}" if len(names) > 1 else "".join(names) for names in _firsts(found)]
-    undecided = zip(firsts, found.undecided.tolist(), strict=True)
-    return curves | {"first": [UNKNOWN if open_ else first for first, open_ in undecided]}
+def comparison_table(found: Comparison) -> Columns:
+    """Return the columns of the curves, with a row for each structure and period."""
+    return stacked(
+        {
+            "structure": each.name, "period [s]": found.periods, "least [g]": least, "possible [g]": possible,
+            "first": np.where(found.undecided, np.nan, first),
+        }
+        for each, least, possible, first in zip(
+            found.structures, found.least, found.possible, found.firsts, strict=True
+        )
+    )  # fmt: skip
 
 
 def _comparison_data(found: Comparison, mechanisms: Sequence[Mechanism]) -> dict[str, Any]:
@@ -265,8 +272,9 @@ def _comparison_data(found: Comparison, mechanisms: Sequence[Mechanism]) -> dict
             {
                 **_structure(shaken, mechanism),
                 "eta": shaken.eta,
+                "restitution": shaken.restitution_source,
                 "least": numbers(least),
-                "least_or_unknown": numbers(possible) if shaken.checked else None,
+                "possible": numbers(possible) if shaken.checked else None,
             }
             for shaken, mechanism, least, possible in each
         ],

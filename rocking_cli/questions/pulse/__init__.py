@@ -1,3 +1,3 @@
-"""`pulse`: the response to a pulse."""
+"""Compute the response to a pulse."""
 
 PLACE = 150

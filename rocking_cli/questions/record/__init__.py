@@ -1,4 +1,4 @@
-"""`record`: the contents and the strength of a record."""
+"""Inspect records: contents, strength and possible defects."""
 
 PLACE = 50
 MORE = {"verb": ["response_spectrum"]}

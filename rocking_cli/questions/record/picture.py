@@ -46,7 +46,7 @@ def draw_record(motion: GroundMotion, measures: Measures) -> Figure:
     panels = every[:, 0]
     style.heading(panels[0], motion.name)
     style.time_axis(panels[3], 0.0, motion.duration)
-    peaks = f"PGA {measures.pga:.3g} g", f"PGV {measures.pgv:.3g} m/s", f"PGD {measures.pgd:.3g} m"
+    peaks = f"PGA {measures.pga_g:.3g} g", f"PGV {measures.pgv:.3g} m/s", f"PGD {measures.pgd:.3g} m"
     points: dict[Axes, list[Line2D]] = {}
     for axes, (label, values), peak in zip(panels, _quantities(motion), peaks, strict=False):
         style.draw_samples(axes, values, motion.dt, color=style.INK, linewidth=style.CURVE)

@@ -35,7 +35,7 @@ def table(spectra: Mapping[str, ResponseSpectrum]) -> Columns:
     """Return spectra as columns, one motion below the other."""
     all_spectra = list(spectra.values())
     return {
-        "record": [name for name, each in spectra.items() for _ in each.periods],
+        "motion": [name for name, each in spectra.items() for _ in each.periods],
         "damping": [each.damping for each in all_spectra for _ in each.periods],
         **{column.heading: np.concatenate([column.of(each) for each in all_spectra]).tolist() for column in ORDINATES},
     }

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import nan
 
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.intensity import Measure, Reference, RunMeasure
 from rocking_cli.structure import Structure
@@ -48,7 +48,7 @@ def intensities(
     """
     bare = [str(measure) for measure in measures if measure.is_relative]
     if bare and structure is None:
-        raise InputError(Problem(f"{', '.join(bare)}: relative to what is shaken", hint="give a `structure`"))
+        raise InputError(Problem(f"{', '.join(bare)}: relative to what is shaken", hint=f"give a {named('structure')}"))
     values: dict[Measure, float] = {}
     for measure in measures:
         if isinstance(measure, RunMeasure):

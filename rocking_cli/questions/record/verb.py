@@ -8,29 +8,29 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from rocking_cli.ask.answer import Answer, drawn
-from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, done, motion_of, signs_of, unprocessed
-from rocking_cli.ask.numbers import takes_numbers
-from rocking_cli.ask.several import Answers, answers, are_several, of_motions
-from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.ask.answer import Answer, Dimensions, drawn
+from rocking_cli.ask.ground_motions import Motions, done, motion_of, unprocessed
+from rocking_cli.ask.kinds import STANDARD_OUTPUT
+from rocking_cli.ask.several import Answers, answers, are_several
+from rocking_cli.ask.verbs import verb, write_rows
+from rocking_cli.ask.watcher import Watcher
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.measures import Measures
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.processing.intensity import Measure
 from rocking_cli.processing.listed import Listed
+from rocking_cli.questions.record.asked import RecordAsked, ResponseSpectrumAsked
 from rocking_cli.questions.record.view import Examined
 from rocking_cli.views.view import View
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rocking_cli.ask.given import StructureLike
     from rocking_cli.io.tables import Columns
     from rocking_cli.processing.listed import Scaled
     from rocking_cli.processing.oscillator import ResponseSpectrum
@@ -60,50 +60,9 @@ class RecordAnswer(Answer[Measures]):
         return {str(measure): value for measure, value in self.examined[0].asked.items()}
 
 
-@of_motions
-@takes_numbers
-def record(
-    motion: Motion | Motions | Sequence[Motion],
-    *,
-    polarity: str | int = "1",
-    structure: StructureLike | None = None,
-    fit_pulse: bool = False,
-    measures: str | Sequence[str] | None = None,
-    spectrum: bool = False,
-    period: tuple[float, float] | None = None,
-    damping: float | None = None,
-    out: str | Path | None = None,
-    watch: Watcher = SILENT,
-    **options: Unpack[MotionArguments],
-) -> RecordAnswer | Answers[RecordAnswer]:
+@verb(RecordAsked)
+def record(asked: RecordAsked, watch: Watcher) -> RecordAnswer | Answers[RecordAnswer]:
     """Measure the strength of ground motions, and check them for defects.
-
-    Parameters
-    ----------
-    motion : GroundMotion, Pulse, str or Path, or a sequence of these
-        The motion, its file, or a pulse as text; a pattern such as `records/*.AT2`, or a sequence, gives several.
-    polarity : {"1", "-1", "both"}
-        Polarity of the motion: as given, reversed, or one after the other.
-    structure : Mechanism, str or Path, optional
-        Structure, to check the sampling interval and for relative measures.
-    fit_pulse : bool
-        Whether to fit a sine, a Ricker and a near-fault pulse; the plot shows the best.
-    measures : str or sequence of str, optional
-        Names of intensity measures to compute as well, such as "Sa(1.0), PGV/v_imp", or "all"; the answer has their
-        values in `measures`.
-    spectrum : bool
-        Whether to compute the response spectrum, for `frames["spectrum"]` and the plot.
-    period : (float, float), optional
-        Shortest and longest period of the spectrum [s]; by default 0.02 and 10.
-    damping : float, optional
-        Damping ratio of the spectrum; by default 0.05.
-    out : str or Path, optional
-        Where each record is written as a clean file of time and acceleration: a file that ends in .csv, or a folder,
-        created if missing, that receives NAME.csv.
-    watch : Watcher
-        Told what is doubtful about the records, how far the fits are, and which of several motions cannot be used.
-    **options
-        How the motion is read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionArguments`.
 
     Returns
     -------
@@ -124,7 +83,7 @@ def record(
     Examples
     --------
     >>> import rocking_cli as rk
-    >>> round(rk.record("ricker:0.6g:0.5s").pga, 6)
+    >>> round(rk.record("ricker:0.6g:0.5s").pga_g, 6)
     0.6
     >>> block = rk.Block(width=0.7, height=2.8)
     >>> round(rk.record("ricker:0.6g:0.5s", structure=block, measures="PGA/(g lambda)").measures["PGA/(g lambda)"], 6)
@@ -132,48 +91,48 @@ def record(
     """
     from rocking_cli.questions.record.view import parts
 
-    if not spectrum and (period is not None or damping is not None):
-        raise InputError("`period` and `damping` require a response spectrum: give `spectrum`")
-    motions, signs = Motions.of(motion, options), signs_of(polarity)
-    if not motions:
-        raise InputError("no ground motion is given: give `motion`")
+    motions, signs, spectrum = asked.ground_motions, asked.signs, asked.spectrum is not False
     motions.check()
-    places = _clean_places(Path(out), motions, signs) if out is not None else {}
+    motions.remark(watch)
+    places = _places(asked.out, motions, signs) if asked.out is not None else {}
     ready = None
-    if structure is not None:
+    if asked.structure is not None:
         from rocking_cli.ask.given import structure_of
 
-        ready = structure_of(structure, watch)
-
-    def one(read: Scaled) -> RecordAnswer:
-        seen, scaled = _examine(read, signs, ready, watch, measures, fit_pulse=fit_pulse)
-        if spectrum:
-            seen = [
-                each._replace(spectrum=_spectrum(signed, period, damping))
-                for each, signed in zip(seen, scaled, strict=True)
-            ]
-        return _answer(seen, scaled, read)
+        ready = structure_of(asked.structure, watch)
+    several = are_several(asked.motions, motions)
+    if asked.plot is not None and not spectrum and motions.count * len(signs) > 1:
+        raise InputError(f"{named('plot')} draws a single record: give one FILE and one polarity")
 
     by_name = dict[str, RecordAnswer]()
     for k, source in enumerate(motions.sources):
         try:
-            answer = one(motions.read(source))
+            read = motions.read(source)
+            seen, scaled = _examine(read, signs, ready, watch, asked.measures, fit_pulse=asked.fit_pulse)
         except InputError as error:
             if not by_name and k == motions.count - 1:
                 raise
             watch.leave_out(error)
             continue
-        for sign, signed in zip(signs, answer.motions, strict=True):
+        if spectrum:
+            seen = [each._replace(spectrum=_spectrum(one, asked)) for each, one in zip(seen, scaled, strict=True)]
+        for sign, each, one in zip(signs, seen, scaled, strict=True):
             if (k, sign) in places:
-                _write_clean(places[k, sign], signed, watch)
-        watch.take(answer)
-        by_name[_unique(answer.examined[0], by_name)] = answer
-    if not are_several(motion, motions):
-        return answer
+                _write(places[k, sign], each, watch)
+            watch.take(_answer([each], [one], read))
+        by_name[_unique(seen[0], by_name)] = _answer(seen, scaled, read)
     examined = [seen for each in by_name.values() for seen in each.examined]
-    kept = {"spectrum": partial(_spectra_table, examined)} if spectrum else {}
-    figure = _spectra_figure(examined) if spectrum else None
-    return answers("records", "motion", by_name, list(parts(examined, 100)), figure, kept)
+    answer: RecordAnswer | Answers[RecordAnswer] = by_name[next(iter(by_name))]
+    if several:
+        kept = {"spectrum": partial(_spectra_table, examined)} if spectrum else {}
+        figure = _spectra_figure(examined) if spectrum else None
+        answer = answers("records", "motion", by_name, list(parts(examined, 100)), figure, kept)
+    if isinstance(asked.spectrum, Path):
+        write_rows(asked.spectrum, [answer.tables["spectrum"]()], watch)
+    if asked.plot is not None:
+        answer.plot(asked.plot)
+        watch.note(f"wrote {asked.plot}")
+    return answer
 
 
 def _examine(
@@ -219,7 +178,7 @@ def _answer(examined: Sequence[Examined], scaled: Sequence[GroundMotion], read: 
     from rocking_cli.questions.record.view import data, parts
 
     first, measures = examined[0], examined[0].measures
-    sentence = f"{first.label}: PGA {measures.pga:.3g} g, PGV {measures.pgv:.3g} m/s."
+    sentence = f"{first.label}: PGA {measures.pga_g:.3g} g, PGV {measures.pgv:.3g} m/s."
     with_spectra = first.spectrum is not None
     return RecordAnswer(
         "record",
@@ -233,20 +192,28 @@ def _answer(examined: Sequence[Examined], scaled: Sequence[GroundMotion], read: 
     )
 
 
-def _clean_places(out: Path, motions: Motions, signs: Sequence[int]) -> dict[tuple[int, int], Path]:
-    """Return the clean file of each record, by its index and polarity; in a folder, named after record and channel.
+def _places(
+    out: Path | BinaryIO, motions: Motions, signs: Sequence[int]
+) -> dict[tuple[int, int], Path | BinaryIO]:  # fmt: skip
+    """Return the file for each record, by its index and polarity; in a folder, named after record and channel.
 
-    All are checked: they can be written, no file that is read is among them, and files that are not clean records are
-    kept.
+    All are checked: they can be written, no file that is read is among them, and files that are not prepared records
+    are kept.
     """
-    from rocking_cli.excitation.record_csv import is_record_csv
     from rocking_cli.excitation.records.opening import name_of
+    from rocking_cli.excitation.records.prepared import is_record_csv
     from rocking_cli.io.files import check_writable, folder, keep_apart
+    from rocking_cli.io.tables import PARQUET
 
     paths: dict[tuple[int, int], Path] = {}
-    alone = out.suffix.lower() == ".csv" and not out.is_dir()
+    streamed = not isinstance(out, Path) or str(out) == STANDARD_OUTPUT
+    alone = not isinstance(out, Path) or streamed or (out.suffix.lower() == ".csv" and not out.is_dir())
     if alone and (motions.count > 1 or len(signs) > 1):
-        raise InputError("`out` FILE.csv takes one record: give one motion and one polarity, or a folder")
+        raise InputError(f"{named('out')} FILE.csv takes one record: give one motion and one polarity, or a folder")
+    if not isinstance(out, Path) or streamed:
+        return {(0, signs[0]): out}
+    if out.suffix.lower() == PARQUET:
+        check_writable(out, ".csv")
     if alone:
         paths[0, signs[0]] = out
     else:
@@ -264,20 +231,30 @@ def _clean_places(out: Path, motions: Motions, signs: Sequence[int]) -> dict[tup
                 raise InputError(Problem(what, str(path), hint="write them one by one"))
             paths[k, sign] = path
     for path in paths.values():
-        keep_apart([("`out`", path)], [str(each.path) for each in motions.records])
+        keep_apart([(named("out"), path)], [str(each.path) for each in motions.records])
         if not alone and path.exists() and not is_record_csv(path):
-            what = "`out` would overwrite a file that rocking did not write"
+            what = f"{named('out')} would overwrite a file that rocking did not write"
             raise InputError(Problem(what, str(path), hint="move it, or name another folder"))
         check_writable(path)
-    return paths
+    return {**paths}
 
 
-def _write_clean(path: Path, motion: GroundMotion, watch: Watcher) -> None:
-    from rocking_cli.excitation.record_csv import write_record_csv
+def _write(place: Path | BinaryIO, seen: Examined, watch: Watcher) -> None:
+    """Write a record, as it is scaled."""
+    from rocking_cli.excitation.records.prepared import write_record_csv
     from rocking_cli.io.files import write_whole
+    from rocking_cli.processing.steps import multiplied
 
-    write_whole(path, partial(write_record_csv, motion=motion))
-    watch.note(f"wrote {path.resolve()}")
+    motion = multiplied(seen.motion, seen.factor)
+    if not isinstance(place, Path):
+        write_record_csv(place, motion)
+        return
+    if str(place) == STANDARD_OUTPUT:
+        with watch.standard_output() as stream:
+            write_record_csv(stream, motion)
+        return
+    write_whole(place, partial(write_record_csv, motion=motion))
+    watch.note(f"wrote {place.resolve()}")
 
 
 def _unique(record: Examined, taken: Iterable[str]) -> str:
@@ -336,11 +313,11 @@ def _measured(
     return intensities(motion, parsed, reference_of(structure) if structure is not None else None)
 
 
-def _spectrum(motion: GroundMotion, period: tuple[float, float] | None, damping: float | None) -> ResponseSpectrum:
+def _spectrum(motion: GroundMotion, asked: RecordAsked) -> ResponseSpectrum:
     from rocking_cli.processing import oscillator
 
-    periods = oscillator.periods_between(*(period or (oscillator.SHORTEST_PERIOD, oscillator.LONGEST_PERIOD)))
-    return oscillator.response_spectrum(motion, periods, oscillator.DAMPING if damping is None else damping)
+    periods = oscillator.periods_between(*(asked.period or (oscillator.SHORTEST_PERIOD, oscillator.LONGEST_PERIOD)))
+    return oscillator.response_spectrum(motion, periods, asked.damping)
 
 
 def _columns(motion: GroundMotion) -> Columns:
@@ -366,22 +343,9 @@ def _best(fits: Sequence[PulseFit]) -> list[PulseFit]:
     return [by_criterion["velocity"], by_criterion["acceleration"]]
 
 
-@takes_numbers
-def response_spectrum(
-    motion: Motion, periods: ArrayLike | None = None, *, damping: float = 0.05, scale: float = 1.0
-) -> Answer[ResponseSpectrum]:
+@verb(ResponseSpectrumAsked)
+def response_spectrum(asked: ResponseSpectrumAsked, watch: Watcher) -> Answer[ResponseSpectrum]:
     """Compute the response spectrum of a ground motion: the peak responses of linear oscillators.
-
-    Parameters
-    ----------
-    motion : GroundMotion, Pulse, str or Path
-        The motion, its file, or a pulse as text.
-    periods : array_like, shape (n,), optional
-        Undamped periods of the oscillators [s]; by default 200 from 0.02 to 10 s at equal ratios.
-    damping : float
-        Damping ratio of the oscillators, from 0 to below 1.
-    scale : float
-        Scale factor on the motion.
 
     Returns
     -------
@@ -407,8 +371,11 @@ def response_spectrum(
     from rocking_cli.processing.oscillator import response_spectrum as respond_linearly
     from rocking_cli.questions.record import response_spectrum_view as views
 
-    scaled = motion_of(motion).scaled(scale)
-    spectrum = respond_linearly(scaled, periods, damping)
+    scaled = motion_of(asked.motions).scaled(asked.scale)
+    spectrum = respond_linearly(scaled, asked.periods, asked.damping)
     named = {scaled.name: spectrum}
     figure = drawn("questions.record.response_spectrum_picture.draw_response_spectra", named)
-    return Answer("response spectrum", spectrum, views.view(scaled.name, spectrum), partial(views.table, named), figure)
+    dims = [Dimensions(("motion", "period"))]
+    return Answer(
+        "response spectrum", spectrum, views.view(scaled.name, spectrum), partial(views.table, named), figure, dims=dims
+    )

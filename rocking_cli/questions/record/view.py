@@ -73,10 +73,11 @@ AS_READ: tuple[Column[Examined], ...] = (
     Column("dt", of("motion.dt"), "s", "dt", number),
     Column("duration", of("motion.duration"), "s", "duration", number),
     only_shown("processed", lambda record: "\n".join(record.motion.processing) or None),
+    only_shown("prepared from", lambda record: record.motion.prepared_from or None, _folded),
     Column("factor", of("factor"), head="scaled by", form=number),
 )
 MEASURED: tuple[Column[Examined], ...] = (
-    Column("pga", of("measures.pga"), "g", "PGA"),
+    Column("pga_g", of("measures.pga_g"), "g", "PGA"),
     Column("pgv", of("measures.pgv"), "m/s", "PGV"),
     Column("pgd", of("measures.pgd"), "m", "PGD"),
     Column("arias_intensity", of("measures.arias"), "m/s", "Arias intensity"),
@@ -157,7 +158,7 @@ def _columns(records: Sequence[Examined]) -> list[Column[Examined]]:
     """Return the columns that tables show: those with information on any record, and the requested measures."""
     # Rows in which all records have these values are left out.
     silent = {"channel": ABSENT, "processed": ABSENT, "scaled by": "1", "p dt": ABSENT}
-    silent |= dict.fromkeys(("earthquake", "station", "magnitude", "distance"), ABSENT)
+    silent |= dict.fromkeys(("prepared from", "earthquake", "station", "magnitude", "distance"), ABSENT)
     columns = [
         column
         for column in (*AS_READ, *MEASURED)

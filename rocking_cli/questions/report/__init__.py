@@ -1,3 +1,3 @@
-"""`report`: the assessment of a structure, as a page."""
+"""Write a report on a structure, as HTML, PDF or .docx."""
 
 PLACE = 210

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rocking_cli.core import Mechanism
-from rocking_cli.dynamics.history import RTOL, TAIL_SECONDS, History
+from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import NEAR_OVERTURNING, disagree
 from rocking_cli.errors import InputError, SolverError
@@ -23,11 +23,10 @@ from rocking_cli.questions.overturning.study import OverturningMap, overturning_
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Conclusion, worst
-from rocking_cli.studies.engines import respond
-from rocking_cli.studies.neighbours import Neighbourhood
+from rocking_cli.studies.conditions import Conditions
 from rocking_cli.studies.picture import Picture, picture
 from rocking_cli.studies.provenance import File, TitleBlock, file_of_motion, versions
-from rocking_cli.studies.response import Question, Response, response_of
+from rocking_cli.studies.response import Response, response_of
 from rocking_cli.studies.under_pulses import parse_shape, pulsed_model
 
 # Values of phi/phi_cr, and multiples of the uplift acceleration, at which errors of the block are stated.
@@ -138,8 +137,8 @@ class Assessment:
 
     Parameters
     ----------
-    structure : Structure
-        The structure.
+    conditions : Conditions
+        The structure and the conditions of the runs.
     file : File
         The file of the structure.
     picture : Picture
@@ -158,7 +157,7 @@ class Assessment:
         Versions of the software, by package.
     """
 
-    structure: Structure
+    conditions: Conditions
     file: File
     picture: Picture
     curves: tuple[Linearisation, ...]
@@ -178,6 +177,11 @@ class Assessment:
         return replace(worst(each), motions=[one.motion for one in each])
 
     @property
+    def structure(self) -> Structure:
+        """The structure, as the runs have it."""
+        return self.conditions.structure
+
+    @property
     def mechanism(self) -> Mechanism:
         """The mechanism of the structure."""
         return self.structure.mechanism
@@ -194,31 +198,25 @@ class Assessment:
 
 
 def gather(
-    structure: Structure,
+    conditions: Conditions,
     file: File,
     given: Sequence[Scaled],
-    polarities: Sequence[int],
     *,
     title: TitleBlock,
-    around: Neighbourhood | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Assessment:
     """Compute all results that a report shows.
 
     Parameters
     ----------
-    structure : Structure
-        The structure.
+    conditions : Conditions
+        The structure, the polarities to simulate, and how to draw the neighbours of each motion, at least one.
     file : File
         The file of the structure.
     given : sequence of Scaled
         The ground motions; may be empty.
-    polarities : sequence of int
-        The polarities to simulate: 1, -1 or both.
     title : TitleBlock
         The heading of the report.
-    around : Neighbourhood, optional
-        How to draw the neighbours of each motion; at least one neighbour.
     progress : callable, optional
         Called with the number of steps done since the last call; `count_steps(given)` is their total.
 
@@ -228,17 +226,17 @@ def gather(
         Any error that the studies raise.
     """
     done = progress or (lambda count: None)
-    mechanism = structure.mechanism
+    structure, mechanism = conditions.structure, conditions.structure.mechanism
     curves, marks, why = _error_of_block(structure)
     done(1)
     results = []
     for each in given:
-        results.append(_result(structure, each, polarities, around or Neighbourhood()))
+        results.append(_result(conditions, each))
         done(1)
     pulse_map = _map(structure, results)
     done(1)
     return Assessment(
-        structure=structure,
+        conditions=conditions,
         file=file,
         picture=picture(mechanism),
         curves=tuple(curves),
@@ -266,24 +264,23 @@ def count_steps(given: Sequence[Scaled]) -> int:
     return len(given) + 2
 
 
-def _result(structure: Structure, given: Scaled, polarities: Sequence[int], around: Neighbourhood) -> MotionResult:
+def _result(conditions: Conditions, given: Scaled) -> MotionResult:
     ground = given.motion.of_ground
     doubtful = [] if given.pulse is not None else doubts(ground, measure(ground))
-    doubtful = [*doubtful, *(coarse_for(given.motion, structure.p) if given.pulse is None else [])]
-    question = Question(tuple(polarities), release=None, tail=TAIL_SECONDS, rtol=RTOL, around=around)
-    response = response_of(structure, structure.default_models, given, question)
+    doubtful = [*doubtful, *(coarse_for(given.motion, conditions.structure.p) if given.pulse is None else [])]
+    response, alike = response_of(conditions, given), replace(conditions, models=["nonlinear"])
     scaled = given.motion.scaled(given.factor)
     fits = _fits(given, scaled)
     if fits:
         alone = fits[0].alone(scaled)
-        runs = {sign: respond(structure, alone.scaled(sign), models=["nonlinear"]) for sign in polarities}
+        runs = {sign: alike.by.respond(alike, alone.scaled(sign)) for sign in alike.signs}
         response = replace(response, to_pulse=Response(given=None, first=alone, runs=runs, neighbours={}, contacts={}))
     return MotionResult(
         **vars(response),
         file=file_of_motion(given),
         measured=measure(scaled),
         doubts=tuple(doubtful),
-        margin=margin(structure.model("nonlinear"), scaled, polarities, around=around),
+        margin=margin(alike, scaled),
         fits=fits,
     )
 

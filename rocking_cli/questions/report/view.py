@@ -60,7 +60,7 @@ def view(content: Assessment, verified: Verification | None = None, language: st
                 "file": each.file.name if each.file else None,
                 "sha256": each.file.checksum if each.file else None,
                 "factor": each.given.factor,
-                "pga": each.pga_of_ground,
+                "pga_g": each.pga_of_ground,
                 **processing.data(each.motion),
                 "headline": f"{headline(each.conclusion, over)}{' (close)' if each.close else ''}",
                 "unknown": each.unknown,

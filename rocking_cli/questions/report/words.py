@@ -32,7 +32,7 @@ from rocking_cli.views.cautions import before_rocking, cautions_of
 from rocking_cli.views.conclusion import NEXT_STEPS, counted, does, headline, next_in_words
 from rocking_cli.views.contact import contact_words
 from rocking_cli.views.neighbours import deviations, neighbours_in_words
-from rocking_cli.views.restitution import restitution_source, restitution_used
+from rocking_cli.views.restitution import restitution_used
 from rocking_cli.views.sheet.language import Language, plain
 from rocking_cli.views.sheet.template import guarded
 from rocking_cli.views.verdict import blocks_in_words, ends, joints_in_words, why_unknown
@@ -246,7 +246,7 @@ def context(content: Assessment, say: Language, verified: Verification | None = 
         "sliding": any(contact.assumed_friction is not None for contact in contacts),
         "governs": governs,
         "alike": [each for each in content.results if governs is not None and are_alike(each.conclusion, governs)],
-        "restitution_by": restitution_source(mechanism),
+        "restitution_by": structure.restitution_source,
         "joint": lambda label: guarded(say.joint(mechanism.mechanism, label)),
         "force": dict(zip(("per", "unit"), force_unit(mechanism), strict=True)),
         "step": partial(next_step, say),

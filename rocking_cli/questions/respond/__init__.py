@@ -1,4 +1,4 @@
-"""`respond`: the response to a ground motion or a release."""
+"""Compute the response to a ground motion or a release."""
 
 PLACE = 70
 MORE = {"each_verb": ["respond_each"], "motion_verbs": ["correct", "on_floor", "respond_around"]}

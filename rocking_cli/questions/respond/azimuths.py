@@ -9,11 +9,11 @@ import numpy as np
 
 from rocking_cli.arrays import Bools, Reals
 from rocking_cli.dynamics.batch import Runs, respond_many
-from rocking_cli.dynamics.history import RTOL
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import SolverError
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.names import RTOL
 from rocking_cli.processing.reading import turned
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
@@ -35,7 +35,7 @@ class AzimuthResponses:
     azimuths : ndarray, shape (n,)
         Directions of the structure's plane, counted from the first component towards the second [deg]; as they go all
         around, both polarities are among them.
-    pga : ndarray, shape (n,)
+    pga_g : ndarray, shape (n,)
         Peak ground acceleration in each direction, after scaling [standard gravity].
     outcomes : mapping of str to Outcome
         The outcomes under each model, as arrays over the azimuths.
@@ -46,7 +46,7 @@ class AzimuthResponses:
     names: tuple[str, str]
     scale: float
     azimuths: Reals
-    pga: Reals
+    pga_g: Reals
     outcomes: Mapping[ModelName, Outcomes]
     checked: bool = True
 

@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 
 from rocking_cli import names
 from rocking_cli.dynamics.outcome import Outcomes
-from rocking_cli.io.tables import Columns
+from rocking_cli.io.tables import Columns, stacked
 from rocking_cli.names import percent
 from rocking_cli.questions.respond.azimuths import AzimuthResponses, sectors
 from rocking_cli.structure import Structure
 from rocking_cli.views.column import Column, of, only_shown, table_of
+from rocking_cli.views.restitution import heading_of_run, restitution_data, restitution_used
 from rocking_cli.views.verdict import unchecked
-from rocking_cli.views.view import Table, View, heading
+from rocking_cli.views.view import Table, View
 
 Flags = NDArray[np.bool_]
 
@@ -55,15 +56,16 @@ def view(structure: Structure, found: AzimuthResponses, doubts: Iterable[str] = 
     rows = [_Model(name, found.azimuths, each) for name, each in found.outcomes.items()]
     sentence = (
         f"0 degrees is {one}, 90 degrees {other}; {found.azimuths.size} directions of the structure's plane, one every "
-        f"{found.azimuths[1] - found.azimuths[0]:g} degrees. PGA {found.pga.min():.3g} to {found.pga.max():.3g} g, the "
-        f"largest at {found.azimuths[found.pga.argmax()]:g} degrees."
+        f"{found.azimuths[1] - found.azimuths[0]:g} degrees. PGA {found.pga_g.min():.3g} to {found.pga_g.max():.3g} g, "
+        f"the largest at {found.azimuths[found.pga_g.argmax()]:g} degrees."
     )
     parts: list[Table | str] = [
-        heading(structure.mechanism),
+        heading_of_run(structure),
         sentence,
         table_of("", models, rows),
     ]
     parts += [f"{name}: {in_words(found, each)}" for name, each in found.outcomes.items()]
+    parts += [restitution_used(structure)] if structure.restitution is not None else []
     parts += [] if found.checked else [unchecked(why=structure.mechanism.unchecked)]
     return View(_data(structure, found), [*parts, *doubts])
 
@@ -88,14 +90,15 @@ def _where(found: AzimuthResponses, flags: Flags) -> str:
 
 
 def columns(found: AzimuthResponses) -> Columns:
-    """Return a table with a row for each direction. Overturning has no peak; an unknown outcome has its peak so far."""
-    table: dict[str, Any] = {"azimuth [deg]": found.azimuths, "PGA [g]": found.pga}
-    for name, each in found.outcomes.items():
-        table |= {f"peak phi/phi_cr {name}": each.peak_ratio, f"overturns {name}": each.fell.astype(int)}
-        if each.unknown.any():
-            table[f"overturns {name}"] = each.overturned
-            table |= {f"unknown {name}": each.unknown.astype(int), f"known to {name} [s]": each.known_to}
-    return table
+    """Return a table with a row for each model and direction; of an unknown outcome, the peak is that so far."""
+    return stacked(
+        {
+            "model": name, "azimuth [deg]": found.azimuths, "pga_g [g]": found.pga_g,
+            "peak_ratio": np.where(each.fell, np.inf, each.peak_ratio), "overturned": each.overturned,
+            "unknown": each.unknown, "known_to [s]": each.known_to,
+        }
+        for name, each in found.outcomes.items()
+    )  # fmt: skip
 
 
 def _data(structure: Structure, found: AzimuthResponses) -> dict[str, Any]:
@@ -104,8 +107,9 @@ def _data(structure: Structure, found: AzimuthResponses) -> dict[str, Any]:
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
         "components": list(found.names),
         "scale": found.scale,
+        "restitution": restitution_data(structure),
         "azimuths": found.azimuths.tolist(),
-        "pga": found.pga.tolist(),
+        "pga_g": found.pga_g.tolist(),
         "responses": {
             name: {
                 "peak_ratio": [None if np.isnan(peak) else peak for peak in each.peak_ratio.tolist()],

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from math import isclose, isnan, nan, prod
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,19 +15,17 @@ from rocking_cli import names
 from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.dynamics.batch import Runs, respond_many
-from rocking_cli.dynamics.history import TAIL_SECONDS, follow
+from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.dynamics.parallel import in_parts
-from rocking_cli.errors import InputError, Problem, SolverError
+from rocking_cli.errors import InputError, Problem, SolverError, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.measures import Measures, measure
+from rocking_cli.io.tables import Columns, stacked
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.movements import centroid_moved, largest_on_the_way
-
-if TYPE_CHECKING:
-    from rocking_cli.io.tables import Columns
 
 FAILED = "failed"
 OUTCOMES = (names.NO_UPLIFT, names.SLIDES, names.ROCKS, names.STILL_ROCKING, names.OVERTURNS, names.UNKNOWN, FAILED)
@@ -99,7 +97,7 @@ class RunGrid:
         )
         if not self.of_pga:
             return runs
-        return replace(runs, scale=runs.scale / np.array([each.pga for each in self.measured])[runs.record])
+        return replace(runs, scale=runs.scale / np.array([each.pga_g for each in self.measured])[runs.record])
 
     @cached_property
     def measured(self) -> list[Measures]:
@@ -112,9 +110,9 @@ class RunGrid:
         return dict(zip(self.axes, np.indices(self.shape).reshape(len(self.shape), -1), strict=True))
 
     @property
-    def pga(self) -> Reals:
+    def pga_g(self) -> Reals:
         """Peak ground acceleration of each run of one model [g], shape (n,)."""
-        return self._scaled([each.pga for each in self.measured])
+        return self._scaled([each.pga_g for each in self.measured])
 
     @property
     def pgv(self) -> Reals:
@@ -130,7 +128,7 @@ class RunGrid:
         """The structures with each restitution, by their places; raises `InputError` if one would add energy."""
         etas = enumerate(() if self.restitutions is None else self.restitutions.tolist())
         given = [(j, eta) for j, eta in etas if not isnan(eta)]
-        return {(k, j): each.with_eta(eta) for k, each in enumerate(self.structures) for j, eta in given}
+        return {(k, j): each.under(restitution=eta) for k, each in enumerate(self.structures) for j, eta in given}
 
     def prepared(self, name: ModelName) -> tuple[list[Model], Runs]:
         """Return the models of all structures and their runs.
@@ -157,14 +155,14 @@ class RunGrid:
     def time(self) -> Reals:
         """Times of the rotations [s]: at the smallest interval of the motions, to ten seconds after the longest."""
         dt = min(each.every * each.dt for each in self.motions)
-        return np.arange(0.0, max(each.duration for each in self.motions) + TAIL_SECONDS, dt)
+        return np.arange(0.0, max(each.duration for each in self.motions) + names.TAIL_SECONDS, dt)
 
     def check_memory(self) -> None:
         """Raise `InputError` if all rotations would not fit in memory."""
         if self.count * self.time.size > MOST_VALUES:
             what = f"{self.count:,} histories of {self.time.size:,} samples are more than {MOST_VALUES:,} values"
-            hint = "run fewer at a time, or leave out `histories`: outcomes and peaks do not need them"
-            raise InputError(Problem(what, field="`histories`", hint=hint))
+            hint = f"run fewer at a time, or leave out {named('histories')}: outcomes and peaks do not need them"
+            raise InputError(Problem(what, field=named("histories"), hint=hint))
 
     def rotations(self, model: ModelName, threads: int | None, progress: Callable[[int], None]) -> Reals:
         """Return the signed rotations of all runs of a model at `time` [rad], of the shape of the grid and the times.
@@ -195,14 +193,18 @@ def columns(grid: RunGrid, outcomes: Mapping[ModelName, Outcomes]) -> Columns:
     table["scale"] = grid.runs.scale
     table["polarity"] = grid.runs.polarity
     of_structure = np.array([_common(each.etas) for each in grid.structures])[place["structure"]]
-    table["eta"] = np.where(np.isnan(grid.runs.eta), of_structure, grid.runs.eta)
-    table["pga_g [g]"], table["pgv [m/s]"] = grid.pga, grid.pgv
-    parts = [
-        table | {"model": np.full(grid.count, model, dtype=object)} | _outcome_columns(grid, outcome)
-        for model, outcome in outcomes.items()
-    ]
-    heads = ["structure", "model", *(each for each in parts[0] if each not in ("structure", "model"))]
-    return {head: np.concatenate([part[head] for part in parts]) for head in heads}
+    table["restitution"] = np.where(np.isnan(grid.runs.eta), of_structure, grid.runs.eta)
+    table["pga_g [g]"], table["pgv [m/s]"] = grid.pga_g, grid.pgv
+    first = {"structure": table.pop("structure")}
+    return stacked(
+        first | {"model": model} | table | _outcome_columns(grid, outcome) for model, outcome in outcomes.items()
+    )
+
+
+def labelled_columns(grid: RunGrid, outcomes: Mapping[ModelName, Outcomes]) -> Columns:
+    """Return the rows with the values along each axis: a target of the PGA, and a restitution as given, among them."""
+    along = {name: np.tile(values[grid.places[name]], len(outcomes)) for name, values in grid.axes.items()}
+    return {**columns(grid, outcomes), **along}
 
 
 def _outcome_columns(grid: RunGrid, outcome: Outcomes) -> dict[str, Any]:
@@ -224,7 +226,7 @@ def _outcome_columns(grid: RunGrid, outcome: Outcomes) -> dict[str, Any]:
         "overturning_time [s]": outcome.overturning_time,
         "end_time [s]": outcome.end_time,
         "known_to [s]": outcome.known_to,
-        "peak_ratio_at_least": outcome.lower_bound,
+        "peak_lower_bound": outcome.lower_bound,
         "opening": outcome.opening,
         "slip [m]": outcome.slip,
     }

@@ -23,7 +23,7 @@ LABELS = {
     "pga_g": "PGA [g]",
     "pgv": "PGV [m/s]",
     "scale": "scale factor of the motion",
-    "eta": r"restitution $\eta$",
+    "restitution": r"restitution $\eta$",
 }
 BAND = 0.08  # height of the band of runs without a value, over that of the plane
 WIDEST_SPREAD = 20.0  # ratio of the largest and the smallest positive value from which an axis is logarithmic

@@ -2,29 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from importlib.util import find_spec
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Unpack
+from math import prod
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from rocking_cli.arrays import Reals
-from rocking_cli.ask.answer import MappingAnswer, parted
-from rocking_cli.ask.given import StructureLike, models_of, structures_of
-from rocking_cli.ask.ground_motions import MAX_PGA, Motion, Motions, each_of, type_in_words
-from rocking_cli.ask.numbers import takes_numbers
-from rocking_cli.ask.several import write_files
-from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.ask.answer import Dimensions, MappingAnswer, framed
+from rocking_cli.ask.given import structures_of
+from rocking_cli.ask.ground_motions import MAX_PGA, Motions, each_of
+from rocking_cli.ask.groups import Reading
+from rocking_cli.ask.verbs import verb
+from rocking_cli.ask.watcher import Watcher
 from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcomes
-from rocking_cli.errors import InputError, Problem
-from rocking_cli.names import OPENING
-from rocking_cli.processing.reading_options import ReadingArguments
-from rocking_cli.questions.respond.each import FAILED, OUTCOMES, RunGrid, columns
+from rocking_cli.errors import InputError, Problem, named
+from rocking_cli.io.tables import stacked
+from rocking_cli.questions.respond.asked import RespondEachAsked
+from rocking_cli.questions.respond.each import FAILED, OUTCOMES, RunGrid, columns, labelled_columns
+from rocking_cli.studies.intervals import fractile
+from rocking_cli.views.long_names import long_name
 from rocking_cli.views.view import View
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ class EachAnswer(MappingAnswer[ModelName, Outcomes]):
         """
         rows: dict[str, Any] = dict(self.columns())
         exceeds = np.where(rows["peak_ratio"] > ratio, 1.0, 0.0)
-        doubtful = np.where(rows["peak_ratio_at_least"] > ratio, 1.0, np.nan)
+        doubtful = np.where(rows["peak_lower_bound"] > ratio, 1.0, np.nan)
         exceeds = np.where(rows["unknown"], doubtful, exceeds)
         return np.where(rows["outcome"] == FAILED, np.nan, exceeds)
 
@@ -97,97 +98,100 @@ class EachAnswer(MappingAnswer[ModelName, Outcomes]):
         return frame
 
     def to_xarray(self) -> xarray.Dataset:
-        """Return the columns of the frame as labelled arrays, with `rotation` in time if there are `histories`.
+        """Return labelled arrays, see `Answer.to_xarray`, with `rotation` over `t` if there are `histories`.
+
+        The dimensions are model, structure, motion, scale (or target_pga), and polarity and restitution if given;
+        `pga_g` and `pgv` are over the third and the fourth.
+        """
+        arrays = super().to_xarray()
+        if self.rotation:
+            from pandas import factorize
+
+            codes = (
+                factorize(each, use_na_sentinel=False)[0] for each in (np.array(list(self)), *self.grid.axes.values())
+            )
+            firsts = np.ix_(*(np.unique(each, return_index=True)[1] for each in codes))  # a scale may be given twice
+            turned = np.stack([self.rotation[model] for model in self])[firsts]
+            arrays["t"] = "t", self.time, {"units": "s", "long_name": long_name("t")}
+            arrays["rotation"] = [*self.dims[-1].names, "t"], turned, {"units": "rad", "long_name": long_name("phi")}
+        return arrays
+
+    def quantiles(self, *shares: float, over: str | Sequence[str] = "motion") -> pandas.DataFrame:
+        """Return quantiles of the peak ratio over runs, in which runs that overturn rank above every finite peak.
+
+        Parameters
+        ----------
+        *shares : float
+            The quantiles, each from 0 to 1.
+        over : str or sequence of str
+            The axes whose runs are ranked together: "motion", or others of `grid.axes`, such as
+            `["motion", "polarity"]`.
 
         Returns
         -------
-        xarray.Dataset
-            The axes are model, structure, motion, scale (or `target_pga`), and polarity and restitution if given;
-            `pga_g` and `pgv` are over the third and the fourth. Each variable has its units as an attribute.
+        pandas.DataFrame
+            A row for each quantile and each combination of the other axes. `peak_ratio` is infinite where the quantile
+            is a run that overturns, or lies between one and a run that does not. Runs of unknown outcome count as
+            overturning; in `peak_lower_bound` they count with the lower bound of their peak, so that the quantile lies
+            between the two. Failed runs are left out: `runs` is the number that is ranked. Without any, quantiles are
+            NaN.
 
         Raises
         ------
         InputError
-            If xarray is not installed.
+            If a number is no quantile, there is no such axis, or pandas is not installed.
+
+        Notes
+        -----
+        The k-th of n ordered peaks is the quantile (k - 1)/(n - 1), with linear interpolation, as in NumPy and xarray.
+        These two give NaN for a quantile beside an infinite peak, as `to_xarray().peak_ratio.quantile(0.84, "motion")`
+        does. xarray skips NaN, so that quantiles of arrays in which a peak that overturns is NaN, such as
+        `answer["nonlinear"].peak_ratio`, are those of the runs that stand, and too low.
+
+        Examples
+        --------
+        >>> import rocking_cli as rk
+        >>> block = rk.Block(width=0.7, height=2.8)
+        >>> runs = rk.respond_each(block, "sine:1g:0.8s", model="nonlinear", scale=[0.2, 0.3, 0.4, 0.5])
+        >>> runs.quantiles(0.16, 0.5, over="scale").peak_ratio.round(2).tolist()
+        [0.05, inf]
         """
-        if find_spec("xarray") is None:
-            hint = "pip install 'rocking-cli[xarray]'"
-            raise InputError(Problem("labelled arrays require the package xarray", hint=hint))
-        from xarray import Dataset, Variable
+        axes = self.grid.axes
+        over = [over] if isinstance(over, str) else list(dict.fromkeys(over))
+        if unknown := [each for each in over if each not in axes]:
+            raise InputError(Problem(f"is not an axis of these runs: {', '.join(axes)}", field=f"{unknown[0]!r}"))
+        if wrong := [each for each in shares if not 0 <= each <= 1]:
+            raise InputError(Problem("is not a quantile from 0 to 1", field=f"{wrong[0]:g}"))
+        kept = [name for name in axes if name not in over]
+        order = [list(axes).index(name) for name in (*over, *kept)]
+        labels = np.meshgrid(*(axes[name] for name in kept), indexing="ij")
+        along = dict(zip(kept, map(np.ravel, labels), strict=True))
 
-        values, units = parted(self.columns())
-        axes: dict[str, NDArray[Any]] = {"model": np.array(list(self), dtype=object), **self.grid.axes}
-        shape = [each.size for each in axes.values()]
-        of_units = {name: {"units": unit} for name, unit in units.items()}
-        labelled = {
-            name: Variable(list(axes), np.reshape(each, shape), of_units.get(name, {}))
-            for name, each in values.items()
-            if name not in (*axes, *MEASURES)
-        }
-        for name in MEASURES:
-            of_first = np.reshape(values[name], shape)[0, 0].reshape(*self.grid.shape[1:3], -1)
-            labelled[name] = Variable(list(axes)[2:4], of_first[..., 0], of_units.get(name, {}))
-        if self.rotation:
-            stacked = np.stack([self.rotation[model] for model in self])
-            labelled["rotation"] = Variable([*axes, "time"], stacked, {"units": "rad"})
-            axes["time"] = self.time
-        coordinates = {name: Variable([name], each) for name, each in axes.items()}
-        return Dataset(labelled, coordinates)
+        def ranked(each: Outcomes, doubtful: float | Reals) -> Reals:
+            """Return the peaks with a row for each run to rank, those of unknown outcome `doubtful`."""
+            peaks = np.where(each.fell, np.inf, np.where(each.unknown, doubtful, each.peak_ratio))
+            peaks = np.where(each.failed, np.nan, peaks).transpose(order)
+            return peaks.reshape(prod(peaks.shape[: len(over)]), -1)
+
+        def tables() -> Iterator[dict[str, Any]]:
+            for model, each in self.items():
+                highest, lowest = ranked(each, np.inf), ranked(each, each.lower_bound)
+                count = np.count_nonzero(~np.isnan(highest), axis=0)
+                for q in shares:
+                    ends = {"peak_ratio": fractile(highest, q), "peak_lower_bound": fractile(lowest, q)}
+                    yield {"model": model, **along, "quantile": q, **ends, "runs": count}
+
+        return framed(lambda: stacked(tables()))
 
 
-@takes_numbers
-def respond_each(
-    structures: StructureLike | Sequence[StructureLike],
-    motions: Motion | Sequence[Motion],
-    *,
-    models: str | Sequence[str] | None = None,
-    scales: ArrayLike | None = None,
-    target_pga: ArrayLike | None = None,
-    polarities: Sequence[int] | None = None,
-    restitutions: Sequence[float] | Reals | None = None,
-    histories: bool = False,
-    threads: int | None = None,
-    opening: float = OPENING,
-    out: str | Path | None = None,
-    watch: Watcher = SILENT,
-    **options: Unpack[ReadingArguments],
-) -> EachAnswer:
+@verb(RespondEachAsked)
+def respond_each(asked: RespondEachAsked, watch: Watcher) -> EachAnswer:
     """Compute the outcome of every structure under every motion with every scale factor, polarity and restitution.
-
-    Parameters
-    ----------
-    structures : Mechanism, str or Path, or a sequence of these
-        The structures, or their YAML files.
-    motions : GroundMotion, Pulse, str, Path or ndarray, or a sequence of these
-        The motions, their files, patterns such as `"records/*.AT2"`, pulses as text; or samples in an array of shape
-        (npts,), or (n, npts) for n motions, with `dt` [s] and `units`, both required.
-    models : str or sequence of str, optional
-        Models "nonlinear", "linear1" or "linear2"; by default all, or the nonlinear one alone if the others mislead.
-    scales : array_like
-        Scale factors on the motions, 1 by default; negative ones reverse them.
-    target_pga : array_like, optional
-        In place of `scales`: peak ground accelerations to which each motion is scaled [g], the third axis then.
-    polarities : sequence of int, optional
-        Polarities 1 and -1, as a further axis; by default, motions are as given.
-    restitutions : array_like, optional
-        Ratios of the rotation rates after and before an impact, as a further axis; NaN for that of the structure.
-    histories : bool
-        Whether to keep the rotations in time: `answer.rotation[model]` at `answer.time`.
-    threads : int, optional
-        Number of time histories at a time; by default, one for each processor.
-    opening : float
-        Largest opening of a joint up to which a history is valid, over D_cr.
-    out : str or Path, optional
-        File for the rows of `to_frame`, with units in the headings (.csv or .parquet).
-    watch : Watcher
-        Told what was read, what is doubtful about structures and motions, and how far the runs are.
-    **options
-        How files are read and corrected: see `rocking_cli.ask.ground_motions.ReadingArguments`.
 
     Returns
     -------
     EachAnswer
-        Arrays by model, of shape (structures, motions, scales), and (..., polarities) and (..., restitutions) if these
+        Arrays by model, of shape (structures, motions, scales), and (..., polarities) and (..., restitutions) if those
         are given; `failed` marks motions that could not be simulated, and `unknown` those whose outcome is unknown
         from `known_to` on: their `overturned` is NaN, and `share()` gives the lowest and the highest share of the
         motions that overturn. `to_frame()` has a row for each run, `to_xarray()` labelled arrays.
@@ -208,60 +212,52 @@ def respond_each(
     --------
     >>> import rocking_cli as rk
     >>> blocks = [rk.Block(width=0.7, height=2.8), rk.Block(width=0.5, height=2.8)]
-    >>> answer = rk.respond_each(blocks, "sine:0.4g:0.8s", models="nonlinear", scales=[0.5, 1.0])
+    >>> answer = rk.respond_each(blocks, "sine:0.4g:0.8s", model="nonlinear", scale=[0.5, 1.0])
     >>> answer["nonlinear"].overturned.tolist()
     [[[0.0, 1.0]], [[0.0, 1.0]]]
     >>> answer["nonlinear"].share()
     (0.5, 0.5)
     """
-    from rocking_cli.io.tables import check_table
-
-    if out is not None:
-        check_table(Path(out))
-    if scales is not None and target_pga is not None:
-        raise InputError("`scales` and `target_pga` cannot be combined: give one of them")
-    if not (given := each_of(structures)):
-        raise InputError(Problem("is empty: give at least one structure", field="`structures`"))
-    ready = structures_of(given, watch, opening)
-    chosen = models_of(models)
-    if models is None and any(len(each.default_models) < len(MODELS) for each in ready):
-        chosen = ("nonlinear",)
-    sources = Motions.of(motions, options)
-    if sources.repeated:
-        watch.warn(f"a motion that is given twice is used once: {sources.repeated} left out")
+    ready = structures_of(each_of(asked.structures), watch, asked.opening)
+    whole = all(len(each.default_models) == len(MODELS) for each in ready)
+    chosen = asked.models(MODELS if whole else ("nonlinear",))
+    sources = Motions.of(asked.motions, asked.part(Reading))
     shaking = sources.gather(max(each.growth for each in ready), watch)
-    if target_pga is not None and (still := [one.motion.name for one in shaking if one.motion.of_ground.pga_g == 0]):
+    of_pga = asked.target_pga is not None
+    if of_pga and (still := [one.motion.name for one in shaking if one.motion.of_ground.pga_g == 0]):
         raise InputError(Problem("is zero throughout and cannot be scaled to a peak", still[0]))
+    numbers: Any = asked  # arrays, as they were read
     grid = RunGrid(
         ready,
         [one.motion if one.factor == 1 else one.motion.scaled(one.factor) for one in shaking],
-        _axis("scales", 1.0 if scales is None else scales) if target_pga is None else _axis("target_pga", target_pga),
-        None if polarities is None else _signs(polarities),
-        None if restitutions is None else _axis("restitutions", restitutions),
-        target_pga is not None,
+        numbers.target_pga if of_pga else np.ones(1) if asked.scale is None else numbers.scale,
+        numbers.polarity,
+        numbers.restitution,
+        of_pga,
     )
-    if (pga := float(grid.pga.max())) > MAX_PGA:
-        what, scaled = (
-            f"up to {pga:.4g} g is not plausible for a ground motion",
-            "target_pga" if grid.of_pga else "scales",
-        )
-        raise InputError(Problem(what, field=f"`{scaled}`", hint=f"give at most {MAX_PGA:g} g: check the units"))
-    if histories:
+    if (pga := float(grid.pga_g.max())) > MAX_PGA:
+        scaled = named("target_pga" if of_pga else "scale")
+        hint = f"give at most {MAX_PGA:g} g: check the units"
+        raise InputError(Problem(f"up to {pga:.4g} g is not plausible for a ground motion", field=scaled, hint=hint))
+    if asked.histories:
         grid.check_memory()
-    with watch.progress(grid.count * len(chosen) * (1 + histories), "runs") as advance:
-        outcomes = {name: grid.outcomes(name, threads, advance) for name in chosen}
-        rotation = {name: grid.rotations(name, threads, advance) for name in chosen if histories}
-    answer = EachAnswer(
+    with watch.progress(grid.count * len(chosen) * (1 + asked.histories), "runs") as advance:
+        outcomes = {name: grid.outcomes(name, asked.jobs, advance) for name in chosen}
+        rotation = {name: grid.rotations(name, asked.jobs, advance) for name in chosen if asked.histories}
+    runs, table = ("model", *grid.axes), partial(labelled_columns, grid, outcomes)
+    return EachAnswer(
         "responses",
         outcomes,
-        View(partial(_data, outcomes), [_sentence(chosen[0], outcomes[chosen[0]]), _kept(grid) if histories else ""]),
+        View(
+            partial(_data, outcomes),
+            [_sentence(chosen[0], outcomes[chosen[0]]), _kept(grid) if asked.histories else ""],
+        ),
         partial(columns, grid, outcomes),
         partial(_figure, grid, outcomes),
+        dims=[Dimensions(runs[2:4], MEASURES, table), Dimensions(runs, table=table)],
         grid=grid,
         rotation=rotation,
     )
-    write_files(answer, out, None, watch)
-    return answer
 
 
 def _figure(
@@ -270,24 +266,6 @@ def _figure(
     from rocking_cli.questions.respond.each_picture import draw_each
 
     return draw_each(grid, outcomes, x, y)
-
-
-def _axis(name: str, given: ArrayLike) -> Reals:
-    try:
-        values = np.atleast_1d(np.asarray(given, dtype=np.float64))
-    except (TypeError, ValueError):
-        raise InputError(Problem(f"must be numbers, got {type_in_words(given)}", field=f"`{name}`")) from None
-    if values.ndim > 1 or not values.size:
-        what = f"must be one number or a list of them, got an array of shape {values.shape}"
-        raise InputError(Problem(what, field=f"`{name}`"))
-    return values
-
-
-def _signs(given: ArrayLike) -> NDArray[np.int64]:
-    signs = _axis("polarities", given)
-    if not (np.abs(signs) == 1).all():
-        raise InputError(Problem(f"must be 1 or -1, got {signs[np.abs(signs) != 1][0]:g}", field="`polarities`"))
-    return signs.astype(np.int64)
 
 
 def _sentence(model: ModelName, found: Outcomes) -> str:
@@ -304,6 +282,7 @@ def _data(outcomes: Mapping[ModelName, Outcomes]) -> dict[str, Any]:
     for name, each in outcomes.items():
         data[name] = {"overturned": _with_gaps(each.fell, each.unknown | each.failed)}
         data[name] |= {column: getattr(each, column) for column in OUTCOME_FIELDS}
+        data[name]["peak_lower_bound"] = data[name].pop("lower_bound")
         if name == "nonlinear" and np.isnan(each.opening).any():
             data[name]["unknown"] = _with_gaps(each.unknown, np.isnan(each.opening) & ~each.unknown)
     return data

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.studies.movements import Watched
 
@@ -16,14 +17,8 @@ Reals = NDArray[np.float64]
 ROWS_PER_BLOCK = 25_000
 
 
-def _ratio(run: History) -> str:
-    return (
-        "phi/limit" if all(run.ends_at_limit) else "phi/(phi_cr or limit)" if any(run.ends_at_limit) else "phi/phi_cr"
-    )
-
-
 def blocks(
-    histories: Mapping[str, History],
+    histories: Mapping[ModelName, History] | Mapping[str, History],
     motion: GroundMotion | None,
     rows: int = ROWS_PER_BLOCK,
     watched: Watched | None = None,
@@ -61,7 +56,7 @@ def blocks(
         if motion is not None and (up := motion.vertical) is not None:
             columns["v_g [g]"] = np.interp(longest.time[part], up.time, up.acceleration, right=0.0) / STANDARD_GRAVITY
         for name, run in histories.items():
-            series = {"phi [rad]": run.phi, "phi_dot [rad/s]": run.rate, _ratio(run): run.ratio}
+            series = {"phi [rad]": run.phi, "phi_dot [rad/s]": run.rate, "phi_ratio": run.ratio}
             columns |= {f"{name} {what}": _padded(values, part, _after(run)) for what, values in series.items()}
             if run.slid is not None:
                 columns[f"{name} slip [m]"] = np.asarray(_slip(run, part))

@@ -2,30 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from rocking_cli.ask.answer import Answer, drawn
-from rocking_cli.ask.given import StructureLike, doubts_of, models_of, structure_of
-from rocking_cli.ask.ground_motions import Motion, Motions, introduce, motion_of, warn_about
-from rocking_cli.ask.numbers import takes_numbers
-from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.dynamics.history import RTOL
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.ask.answer import Answer, Dimensions, drawn
+from rocking_cli.ask.given import doubts_of, structure_of
+from rocking_cli.ask.ground_motions import Motion, introduce, motion_of, warn_about
+from rocking_cli.ask.groups import FromTilt
+from rocking_cli.ask.verbs import verb
+from rocking_cli.ask.watcher import Watcher
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.measures import measure
 from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.listed import Scaled
 from rocking_cli.processing.steps import Step, parse_steps, process
+from rocking_cli.questions.respond.asked import ByTolerance, OfModels, RespondAroundAsked, RespondAsked
 from rocking_cli.questions.respond.azimuths import AzimuthResponses
 from rocking_cli.structure import Structure
-from rocking_cli.studies.release import Release
-from rocking_cli.views.view import heading
-
-if TYPE_CHECKING:
-    pass
+from rocking_cli.views.restitution import heading_of_run
 
 
 def correct(motion: Motion, *steps: Step | str | Mapping[str, Any]) -> GroundMotion:
@@ -84,33 +81,9 @@ def on_floor(motion: Motion, floor: Floor | str | Mapping[str, Any]) -> GroundMo
     return (floor if isinstance(floor, Floor) else Floor.parse(floor)).of(motion_of(motion))
 
 
-@takes_numbers
-def respond_around(
-    structure: StructureLike,
-    one: Motion,
-    other: Motion,
-    *,
-    models: str | Sequence[str] | None = None,
-    scale: float = 1.0,
-    release: Release | float | str | None = None,
-    rtol: float = RTOL,
-) -> Answer[AzimuthResponses]:
+@verb(RespondAroundAsked)
+def respond_around(asked: RespondAroundAsked, watch: Watcher) -> Answer[AzimuthResponses]:
     """Compute the response of a structure in every direction between two components.
-
-    Parameters
-    ----------
-    structure : Mechanism, str or Path
-        The structure, or its YAML file.
-    one, other : GroundMotion, Pulse, str or Path
-        The components at 0 and at 90 degrees, of equal length and sampling interval.
-    models : str or sequence of str, optional
-        Models "nonlinear", "linear1" or "linear2"; all by default.
-    scale : float
-        Scale factor on both.
-    release : float or str, optional
-        Initial tilt of a release from rest: a fraction of phi_cr, or an angle such as "0.05rad".
-    rtol : float
-        Relative error tolerance per step of the nonlinear integration.
 
     Returns
     -------
@@ -127,58 +100,47 @@ def respond_around(
     from rocking_cli.questions.respond.azimuths import all_around
     from rocking_cli.questions.respond.azimuths_view import columns, view
 
-    ready = structure_of(structure)
-    chosen = models_of(models) if models is not None else ready.default_models
-    tilt = release if release is None or isinstance(release, Release) else Release.of(release)
-    ratio = tilt.ratio(ready) if tilt is not None else None
-    result = all_around(ready, chosen, (motion_of(one), motion_of(other)), scale, release=ratio, rtol=rtol)
+    ready = structure_of(asked.structure)
+    pair, models = (motion_of(asked.one), motion_of(asked.other)), asked.models(ready.default_models)
+    result = all_around(ready, models, pair, asked.scale, release=asked.ratio(ready), rtol=asked.rtol)
 
     free = [side.phi_cr is None for side in ready.statics]
-    figure = drawn("questions.respond.azimuths_picture.draw_azimuths", result, heading(ready.mechanism), free)
+    figure = drawn("questions.respond.azimuths_picture.draw_azimuths", result, heading_of_run(ready), free)
     shown = view(ready, result, doubts_of(ready.mechanism))
-    return Answer("all directions", result, shown, partial(columns, result), figure)
+    dims = [Dimensions(("azimuth",), ("pga_g",)), Dimensions(("model", "azimuth"))]
+    return Answer("all directions", result, shown, partial(columns, result), figure, dims=dims)
 
 
-def all_directions(
-    structure: Structure, motions: Motions, vertical: tuple[Any, Any, Any], *, watch: Watcher = SILENT, **question: Any
-) -> Any:
+def all_directions(structure: Structure, asked: RespondAsked, watch: Watcher) -> Answer[AzimuthResponses]:
     """Answer `respond` with `azimuth` "all": read a pair of components, and ask `respond_around`.
-
-    Parameters
-    ----------
-    structure : Structure
-        The structure.
-    motions : Motions
-        One record with a second component.
-    vertical : tuple
-        The vertical component or its file, or None; its sampling interval and its channel.
-    watch : Watcher
-        Told what was read, and what is doubtful about it.
-    **question
-        Further arguments of `respond_around`.
-
-    Returns
-    -------
-    Answer of AzimuthResponses
 
     Raises
     ------
     InputError
         If there is not one record, or its components cannot be combined.
     """
+    motions = asked.ground_motions
     if motions.count != 1 or not motions.records:
-        raise InputError(Problem("all takes a single pair of components: give one record", field="`azimuth`"))
+        raise InputError(Problem("all takes a single pair of components: give one record", field=named("azimuth")))
     (record,) = motions.records
     one, other = record.reading(motions.reading).pair(record.path)
     for component in (one, other):
         introduce("component", Scaled(component, 1.0), watch)
         warn_about([component], watch, structure.growth)
-    given, dt, channel = vertical
-    if given is not None:
-        if not isinstance(given, GroundMotion):
-            given = motions.vertical(Scaled(one, 1.0, record=record), given, dt, channel, watch)
-        one = replace(one, vertical=given)
+    one = with_vertical(asked, Scaled(one, 1.0, record=record), watch).motion
     factor = motions.factor(one, measure(one.of_ground))
     if factor != 1:
         watch.note(f"scaled by {factor:.6g}: PGA = {abs(factor) * one.of_ground.pga_g:.4g} g at 0 degrees")
-    return respond_around(structure, one, other, scale=factor, **question)
+    given = {**asked.part(OfModels), **asked.part(FromTilt), **asked.part(ByTolerance)}
+    return respond_around(structure, one, other, scale=factor, **given)
+
+
+def with_vertical(asked: RespondAsked, motion: Scaled, watch: Watcher) -> Scaled:
+    """Return a motion with its vertical component, if one is given. Raises as `Motions.vertical`."""
+    vertical = asked.vertical
+    if vertical is None:
+        return motion
+    if not isinstance(vertical, GroundMotion):
+        dt, channel = asked.vertical_dt, asked.vertical_channel
+        vertical = asked.ground_motions.vertical(motion, vertical, dt, channel, watch)
+    return motion._replace(motion=replace(motion.motion, vertical=vertical))

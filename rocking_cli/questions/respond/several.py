@@ -13,8 +13,8 @@ from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import digits_apart, peaks_over
-from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Conclusion
+from rocking_cli.studies.conditions import Conditions
 from rocking_cli.studies.contact import ContactDemand
 from rocking_cli.studies.engines import EngineName
 from rocking_cli.studies.movements import Movements, Watched
@@ -28,9 +28,9 @@ from rocking_cli.views.contact import contact_words
 from rocking_cli.views.engines import engines_in_words
 from rocking_cli.views.neighbours import deviations, neighbour_columns
 from rocking_cli.views.response import apart, model_heads, models_used
-from rocking_cli.views.restitution import restitution_used
+from rocking_cli.views.restitution import heading_of_run, restitution_used
 from rocking_cli.views.verdict import CROSSCHECK, unchecked, unknown_after
-from rocking_cli.views.view import ABSENT, Table, heading, number
+from rocking_cli.views.view import ABSENT, Table, number
 
 
 class MotionRow(NamedTuple):
@@ -51,20 +51,15 @@ class Several:
 
     Parameters
     ----------
-    structure : Structure
-        The structure.
-    models : tuple of str
-        The models simulated.
+    conditions : Conditions
+        The structure and the conditions of the runs.
     asked : int
         Number of motions that were given, with those that could not be used.
-    engine : {"exact", "blocks", "auto"}
-        Who simulated them.
     """
 
-    def __init__(
-        self, structure: Structure, models: Sequence[ModelName], asked: int, engine: EngineName = "exact"
-    ) -> None:
-        self._title = heading(structure.mechanism)
+    def __init__(self, conditions: Conditions, asked: int) -> None:
+        structure, models, engine = conditions.structure, conditions.models, conditions.engine
+        self._title = heading_of_run(structure)
         rocks = structure.no_model is None
         self._free = [side.phi_cr is None for side in structure.statics] if rocks else [False]
         self._restitution = restitution_used(structure) if rocks else ""
@@ -137,7 +132,7 @@ class Several:
 
     def columns(self) -> Columns:
         """Return the peaks under each motion as columns: of the control point [m] and of ties [N]."""
-        first = Column(None, of("name"), name="motion", text=True), Column(None, of("pga"), "g", name="PGA")
+        first = Column(None, of("name"), name="motion", text=True), Column(None, of("pga"), "g", name="pga_g")
         return frame_of([*first, *self._peaks()], self._rows)
 
     def parts(self, left_out: Sequence[str] = ()) -> Iterator[Table | str]:

@@ -1,3 +1,3 @@
-"""`score`: compare stated shares of overturning with shake-table tests."""
+"""Score stated shares of overturning against tests."""
 
 PLACE = 120

@@ -9,8 +9,9 @@ from math import inf
 from pathlib import Path
 from typing import Any
 
+from rocking_cli.ask.given import sheet_of
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Row, Spreadsheet, read_sheet, unit_in
+from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Row, Spreadsheet, unit_in
 from rocking_cli.short_repr import short_repr
 from rocking_cli.text import cut, did_you_mean, one_line
 from rocking_cli.units import UnitError, read, units_of
@@ -109,7 +110,7 @@ def read_tests(path: Path) -> TableOfTests:
     InputError
         With every problem of the file, by line and column.
     """
-    return parse_tests(read_sheet(path), path.parent)
+    return parse_tests(sheet_of(path), path.parent)
 
 
 def parse_columns(columns: Mapping[str, Sequence[Any]], name: str = "table") -> TableOfTests:

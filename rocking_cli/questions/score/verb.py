@@ -5,65 +5,30 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Any
 
 from rocking_cli.ask.answer import Answer, drawn
 from rocking_cli.ask.given import structure_of
-from rocking_cli.ask.ground_motions import Motions, ReadingArguments, files_of, pulse_in
-from rocking_cli.ask.numbers import takes_numbers
-from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.errors import InputError, RockingError
+from rocking_cli.ask.ground_motions import Motions, files_of, pulse_in
+from rocking_cli.ask.groups import ReadsRecords
+from rocking_cli.ask.verbs import verb
+from rocking_cli.ask.watcher import Watcher
+from rocking_cli.errors import InputError, RockingError, named
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.names import OPENING
-from rocking_cli.processing.reading import reading_of
+from rocking_cli.questions.score.asked import ScoreAsked
 from rocking_cli.structure import Structure, check_opening
-from rocking_cli.studies.neighbours import Neighbourhood
 
 if TYPE_CHECKING:
     from rocking_cli.questions.score.study import Scored
     from rocking_cli.questions.score.table import TableOfTests
 
+MAX_NAMED_TESTS = 20  # tests that cannot be simulated, in a message
 MAX_RECORDS_IN_MEMORY = 16  # tests under one record are simulated together
 
 
-@takes_numbers
-def score(
-    tests: str | Path | Mapping[str, Sequence[Any]] | TableOfTests,
-    *,
-    neighbours: int = Neighbourhood.count,
-    amplitude_deviation: float = Neighbourhood.amplitude,
-    slenderness_deviation: float | None = None,
-    restitution_deviation: float | None = None,
-    opening: float = OPENING,
-    threads: int | None = None,
-    usual: Mapping[str, Any] | None = None,
-    watch: Watcher = SILENT,
-    **options: Unpack[ReadingArguments],
-) -> Answer[Scored]:
+@verb(ScoreAsked)
+def score(asked: ScoreAsked, watch: Watcher) -> Answer[Scored]:
     """Score stated shares of overturning against the outcomes of shake-table tests.
-
-    Parameters
-    ----------
-    tests : str or Path, or mapping
-        A table of tests as a CSV file, whose paths are relative to its folder; or its columns by their headings (a
-        frame of pandas is one), with paths relative to the current folder. The columns are `structure`, `record`,
-        `overturned` or `peak`, and optionally `censored`, `scale`, `time_scale`, `polarity`, `cluster`, `half`,
-        `motion`, `pgv` and `pred_NAME`; see docs/commands.md.
-    neighbours : int
-        Number of neighbouring motions to simulate for each test, at least 1.
-    amplitude_deviation, slenderness_deviation, restitution_deviation : float, optional
-        Standard deviations of the neighbours: of ln amplitude, of ln slenderness and of restitution; by default those
-        of each structure.
-    opening : float
-        Largest opening of a joint up to which a history is valid, over D_cr.
-    threads : int, optional
-        Number of tests at a time; by default, one for each processor.
-    usual : mapping of str to object, optional
-        Options for records that do not state their unit, interval or channel themselves.
-    watch : Watcher
-        Told how far the work is, and which tests cannot be simulated.
-    **options
-        How the records are read and corrected: see `rocking_cli.ask.ground_motions.ReadingArguments`.
 
     Returns
     -------
@@ -88,17 +53,20 @@ def score(
     [0.0, 0.0, 1.0]
     """
     from rocking_cli.questions.score.study import score_tests
-    from rocking_cli.questions.score.view import columns, view
+    from rocking_cli.questions.score.view import columns, reason, view
 
-    around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
-    check_opening(opening)
-    table = tests_of(tests)
-    structures = _structures(table, watch, opening)
-    motion_of = motions_of(table, options, usual)
+    check_opening(asked.opening)
+    table = tests_of(asked.tests)
+    structures, motion_of = _structures(table, watch, asked.opening), motions_of(table, asked)
+    around = asked.neighbourhood(asked.neighbours)
     with watch.progress(len(table.tests), "tests") as advance:
         result = score_tests(
-            table.tests, partial(_known, structures), motion_of, around, threads=threads, progress=advance
+            table.tests, partial(_known, structures), motion_of, around, threads=asked.jobs, progress=advance
         )
+    for each in result.failed[:MAX_NAMED_TESTS]:
+        watch.incomplete(f"{table.file}:{each.test.line}: {reason(each)}")
+    if (more := len(result.failed) - MAX_NAMED_TESTS) > 0:
+        watch.incomplete(f"{more} more tests could not be simulated: JSON and {named('out')} have their errors")
     figure = drawn("questions.score.picture.draw_reliability", result)
     return Answer("score", result, view(result, table.file), partial(columns, result), figure)
 
@@ -114,39 +82,36 @@ def tests_of(given: str | Path | Mapping[str, Sequence[Any]] | TableOfTests) -> 
     return parse_columns(given)
 
 
-def motions_of(
-    table: TableOfTests, options: ReadingArguments, usual: Mapping[str, Any] | None
-) -> Callable[[str], GroundMotion]:
+def motions_of(table: TableOfTests, asked: ReadsRecords) -> Callable[[str], GroundMotion]:
     """Return the function that reads the record of a test, or samples its pulse; it keeps the last ones."""
-    motions = Motions((), reading_of(options, usual).check())
-    return lru_cache(MAX_RECORDS_IN_MEMORY)(partial(_motion, table.folder, motions))
+    return lru_cache(MAX_RECORDS_IN_MEMORY)(partial(_motion, table.folder, Motions((), asked.reading.check())))
 
 
 def _structures(table: TableOfTests, watch: Watcher, opening: float) -> dict[str, Structure | RockingError]:
     """Return each structure, read once, or its error if it cannot be used."""
     structures: dict[str, Structure | RockingError] = {}
-    for named in dict.fromkeys(test.structure for test in table.tests):
+    for each in dict.fromkeys(test.structure for test in table.tests):
         try:
-            structure = structure_of(table.folder / named, watch, opening)
+            structure = structure_of(table.folder / each, watch, opening)
             structure.model("nonlinear")
-            structures[named] = structure
+            structures[each] = structure
         except RockingError as error:
-            structures[named] = error
+            structures[each] = error
     return structures
 
 
-def _known(structures: Mapping[str, Structure | RockingError], named: str) -> Structure:
-    structure = structures[named]
+def _known(structures: Mapping[str, Structure | RockingError], name: str) -> Structure:
+    structure = structures[name]
     if isinstance(structure, RockingError):
         raise structure
     return structure
 
 
-def _motion(folder: Path, motions: Motions, named: str) -> GroundMotion:
+def _motion(folder: Path, motions: Motions, name: str) -> GroundMotion:
     """Read the record of a test without warnings of doubts, or sample its pulse."""
-    if (pulse := pulse_in(named)) is not None:
+    if (pulse := pulse_in(name)) is not None:
         return motions.reading.on_floor(pulse.sampled())
-    files = files_of(str(folder / named))
+    files = files_of(str(folder / name))
     if len(files) > 1:
         raise InputError(f"{len(files)} motions are given where one is expected: ask for one after the other")
     return motions.read(files[0]).motion

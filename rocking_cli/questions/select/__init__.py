@@ -1,3 +1,3 @@
-"""`select`: records whose mean spectrum matches a target."""
+"""Select records whose mean spectrum matches a target."""
 
 PLACE = 60

@@ -8,8 +8,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rocking_cli.cli import terminal
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.processing.listed import LIST_FILE
 from rocking_cli.text import numbered, one_line
 
@@ -22,7 +21,7 @@ OVERWRITE_HINT = "move it, or name another folder"
 LIST_HEADER = "# A set of records, chosen by rocking select."
 
 
-def write_set(folder_: Path, results: ShownSet, readings: Sequence[Reading | None]) -> None:
+def write_set(folder_: Path, results: ShownSet, readings: Sequence[Reading | None]) -> str:
     """Write the scaled records and their list; records of an earlier set in that folder are removed.
 
     Parameters
@@ -34,12 +33,18 @@ def write_set(folder_: Path, results: ShownSet, readings: Sequence[Reading | Non
     readings : sequence of (Reading or None)
         How each record of the set was read; None if it cannot be read again: the list then names its scaled file.
 
+    Returns
+    -------
+    str
+        What was written and removed, in words.
+
     Notes
     -----
     The existing files have passed `check_folder`.
     """
-    from rocking_cli.excitation.record_csv import write_record_csv
+    from rocking_cli.excitation.records.prepared import write_record_csv
     from rocking_cli.io.files import folder, write_files
+    from rocking_cli.processing.steps import multiplied
 
     selection = results.found
     place = folder(str(folder_))
@@ -47,8 +52,8 @@ def write_set(folder_: Path, results: ShownSet, readings: Sequence[Reading | Non
     stale = [each for each in place.glob("*.csv") if each.name in _earlier(place / LIST_FILE) and each not in paths]
 
     def files() -> Iterator[tuple[str, bytes]]:
-        for path, motion in zip(paths, selection.motions, strict=True):
-            write_record_csv(stream := BytesIO(), motion)
+        for path, k, factor in zip(paths, selection.chosen.tolist(), selection.factors.tolist(), strict=True):
+            write_record_csv(stream := BytesIO(), multiplied(selection.candidates.motions[k], factor))
             yield path.name, stream.getvalue()
         for each in stale:
             each.unlink()
@@ -56,7 +61,7 @@ def write_set(folder_: Path, results: ShownSet, readings: Sequence[Reading | Non
 
     write_files(place, files())
     gone = f"; {len(stale)} of an earlier set removed" if stale else ""
-    terminal.note(f"wrote {len(paths)} record{'s' * (len(paths) > 1)} and {LIST_FILE} to {place.resolve()}{gone}")
+    return f"wrote {len(paths)} record{'s' * (len(paths) > 1)} and {LIST_FILE} to {place.resolve()}{gone}"
 
 
 def _paths(place: Path, motions: list[GroundMotion]) -> list[Path]:
@@ -78,7 +83,7 @@ def check_folder(folder_: Path, inputs: Sequence[Path]) -> None:
     InputError
         If the folder holds input files, or records not written by this command.
     """
-    from rocking_cli.excitation.record_csv import is_record_csv
+    from rocking_cli.excitation.records.prepared import is_record_csv
     from rocking_cli.io.files import check_writable, discard, folder
 
     place = folder(str(folder_))
@@ -86,7 +91,7 @@ def check_folder(folder_: Path, inputs: Sequence[Path]) -> None:
     for each in inputs:
         if each.exists() and each.resolve().parent == place.resolve():
             hint = "name a separate folder for the set"
-            raise InputError(Problem("`out` is the folder of an input file", str(each), hint=hint))
+            raise InputError(Problem(f"{named('out')} is the folder of an input file", str(each), hint=hint))
     check_writable(place / LIST_FILE)
     earlier = _earlier(place / LIST_FILE)
     for each in sorted(place.glob("*.csv")):
@@ -104,7 +109,7 @@ def _earlier(path: Path) -> set[str]:
     lines = path.read_text(encoding="utf-8", errors="replace").splitlines() if path.is_file() else []
     if lines[:1] != [LIST_HEADER]:
         raise InputError(
-            Problem("`out` would overwrite a file that rocking did not write", str(path), hint=OVERWRITE_HINT)
+            Problem(f"{named('out')} would overwrite a file that rocking did not write", str(path), hint=OVERWRITE_HINT)
         )
     return {line.removeprefix("#   ") for line in lines if line.startswith("#   ")}
 

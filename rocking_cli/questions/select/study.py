@@ -9,22 +9,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import ceil, isfinite, log
+from math import ceil, log
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.arrays import Bools, Reals
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.oscillator import DAMPING, response_spectrum
 from rocking_cli.questions.select import subsets
+from rocking_cli.questions.select.asked import FACTOR_LIMITS, MEAN_LIMITS
 from rocking_cli.questions.select.target_spectrum import TargetSpectrum
 from rocking_cli.short_repr import short_repr
 
-MEAN_LIMITS = (0.9, 1.3)  # NTC 2018, 3.2.3.6; EN 1998-1:2004, 3.2.3.1.2(4)c, has only the lower one
-FACTOR_LIMITS = (0.2, 5.0)
-ONE_PER = ("event", "station", "none")
 PERIOD_SPACING = (0.01, 0.05)  # bounds of the step of ln T: the damping ratio is half the width of a resonance
 MIN_BAND_PERIODS = 50
 MAX_TARGET_PERIODS = 100  # periods of the target within the band that are added, if there are no more
@@ -54,11 +52,6 @@ class SetRequirements:
         Whether all records have the same factor.
     seed : int
         Seed of the random searches, used if there are too many sets to try all.
-
-    Raises
-    ------
-    InputError
-        If a value is out of range.
     """
 
     count: int
@@ -69,20 +62,6 @@ class SetRequirements:
     one_per: str = "event"
     same_factor: bool = False
     seed: int = 0
-
-    def __post_init__(self) -> None:
-        if self.count < 1:
-            raise InputError(Problem(f"a set has at least one record, got {self.count}", field="`count`"))
-        for name in ("band", "within", "factors"):
-            low, high = getattr(self, name)
-            if not (0 < low < high and isfinite(high)):
-                message = f"it must be two positive numbers, the smaller first, got {low:g} and {high:g}"
-                raise InputError(Problem(message, field=f"`{name}`"))
-        if not 0 <= self.damping < 1:
-            message = f"a damping ratio is from 0 to below 1, got {self.damping:g}"
-            raise InputError(Problem(message, field="`damping`", hint="5 % is 0.05"))
-        if self.one_per not in ONE_PER:
-            raise InputError(Problem(f"it is one of {', '.join(ONE_PER)}, got {self.one_per}", field="`one_per`"))
 
 
 @short_repr
@@ -343,7 +322,7 @@ def _check_enough(given: int, usable: int, groups: int, wanted: SetRequirements)
         f"a set of {wanted.count} was requested, but {given} {'record is' if given == 1 else 'records are'} available"
     )
     message = f"{sentence}{out if usable < given else ''}{one}"
-    hints = ["give more records, or a smaller `count`"]
-    hints += ["wider limits with `factors`"] if usable < given and usable < wanted.count else []
-    hints += ["`one_per` none"] if groups < usable and wanted.count <= usable else []
-    raise InputError(Problem(message, field="`count`", hint=", or ".join(hints)))
+    hints = [f"give more records, or a smaller {named('count')}"]
+    hints += [f"wider limits with {named('factors')}"] if usable < given and usable < wanted.count else []
+    hints += [f"{named('one_per')} none"] if groups < usable and wanted.count <= usable else []
+    raise InputError(Problem(message, field=named("count"), hint=", or ".join(hints)))

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from rocking_cli.arrays import Reals
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.records.record_units import CHOICES, UNITS, canonical, header_units
 from rocking_cli.short_repr import short_repr
@@ -79,14 +79,17 @@ class TargetSpectrum:
         first, last = float(self.periods[0]), float(self.periods[-1])
         if not (first <= band[0] and band[1] <= last):
             message = f"the target goes from {first:g} to {last:g} s, and the band from {band[0]:g} to {band[1]:g} s"
-            hint = "choose a `band` within the target, or give a target that covers it: the target is not extrapolated"
+            hint = (
+                f"choose a {named('band')} within the target, or give a target that covers it: the target "
+                "is not extrapolated"
+            )
             raise InputError(Problem(message, self.name, hint=hint))
         inside = (self.periods > band[0]) & (self.periods < band[1])
         known = np.concatenate([[band[0]], self.periods[inside], [band[1]]])
         ordinates = self.at(known)
         if not (ordinates > 0).all():
             where = float(known[np.argmin(ordinates)])
-            hint = "records cannot be scaled to zero: choose a `band` in which the target is positive"
+            hint = f"records cannot be scaled to zero: choose a {named('band')} in which the target is positive"
             raise InputError(Problem(f"the target is zero at {where:g} s", self.name, hint=hint))
 
 
@@ -154,7 +157,7 @@ def target_of_site(site: SiteFile, state: str | None, damping: float) -> TargetS
     state = spectra.first if state is None else state
     if state not in spectra.states:
         message, hint = f"the site gives no limit state {state!r}", did_you_mean(state, [*spectra.states])
-        raise InputError(Problem(message, site.document.file, field="`state`", hint=hint))
+        raise InputError(Problem(message, site.document.file, field=named("state"), hint=hint))
     ground, corners = spectra.states[state].ground, spectra.states[state].corners
 
     def ordinate(period: float) -> float:

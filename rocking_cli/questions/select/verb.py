@@ -2,102 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from rocking_cli.ask.answer import Answer, drawn
-from rocking_cli.ask.given import SiteLike, site_of
-from rocking_cli.ask.ground_motions import Motion, Motions, ReadingArguments, Source
-from rocking_cli.ask.numbers import refuse_idle, takes_numbers
-from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.ask.answer import Answer, Dimensions, drawn
+from rocking_cli.ask.given import site_of
+from rocking_cli.ask.ground_motions import Motions, Source
+from rocking_cli.ask.verbs import verb
+from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.records.opening import STANDARD_INPUT
 from rocking_cli.processing.listed import Listed
+from rocking_cli.questions.select.asked import SelectAsked
 from rocking_cli.questions.select.study import RecordSet
 
 if TYPE_CHECKING:
-    from rocking_cli.processing.reading import Reading
     from rocking_cli.questions.select.target_spectrum import TargetSpectrum
-    from rocking_cli.questions.select.view import ShownSet
 
 
-SITE_SUFFIXES = (".yaml", ".yml")
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class SetAnswer(Answer[RecordSet]):
-    """Set of records, with what is needed to write it.
-
-    Parameters
-    ----------
-    shown : ShownSet
-        The set, its target and the files of all candidates.
-    readings : tuple of (Reading or None)
-        How each chosen file is read; None for what is not a file.
-    """
-
-    shown: ShownSet = field(kw_only=True)
-    readings: tuple[Reading | None, ...] = field(kw_only=True)
-
-
-@takes_numbers
-def select(
-    records: Motions | Motion | Sequence[Motion],
-    target: TargetSpectrum | SiteLike | tuple[ArrayLike, ArrayLike],
-    *,
-    band: tuple[float, float],
-    count: int,
-    state: str | None = None,
-    within: tuple[float, float] = (0.9, 1.3),
-    damping: float = 0.05,
-    factors: tuple[float, float] = (0.2, 5.0),
-    one_per: str = "event",
-    same_factor: bool = False,
-    seed: int = 0,
-    watch: Watcher = SILENT,
-    **options: Unpack[ReadingArguments],
-) -> SetAnswer:
+@verb(SelectAsked)
+def select(asked: SelectAsked, watch: Watcher) -> Answer[RecordSet]:
     """Select records whose mean response spectrum matches a target, with a scale factor for each.
-
-    Parameters
-    ----------
-    records : GroundMotion, Pulse, str or Path, or a sequence of these
-        Records to select from; a text may be a pattern of files, such as `records/*.AT2`.
-    target : str or Path, mapping, or (array_like, array_like)
-        The file of the spectrum, or its periods [s] and pseudo-accelerations [standard gravity]; or a site file (.yaml)
-        or its fields, of which the code gives the elastic spectrum of the ground.
-    band : (float, float)
-        Period range over which the mean must match [s].
-    count : int
-        Number of records to select.
-    state : str, optional
-        Limit state of the site whose spectrum is the target, such as `"SLC"`; by default that which decides, SLV.
-    within : (float, float)
-        Lower and upper limit on the ratio of mean to target.
-    damping : float
-        Damping ratio of the target.
-    factors : (float, float)
-        Lower and upper limit on the scale factor of each record.
-    one_per : {"event", "station", "none"}
-        Source from which at most one record is taken, if the files name it.
-    same_factor : bool
-        Whether all records have the same scale factor.
-    seed : int
-        Seed of the random searches, if there are too many sets to try all.
-    watch : Watcher
-        Told what was read, what is doubtful about it, and how far the search is.
-    **options
-        How the records are read and corrected: see `rocking_cli.ask.ground_motions.ReadingArguments`.
 
     Returns
     -------
-    SetAnswer
+    Answer of RecordSet
         `fits` is whether the set stays within the limits, `motions` are the scaled records, and `factors` their scale
         factors; `mean`, and `periods`, `target` and `spectra` of `candidates`, are spectra.
 
@@ -112,12 +45,19 @@ def select(
     times the fundamental period of a structure.
     """
     from rocking_cli.questions.select import study as record_set
+    from rocking_cli.questions.select.set_folder import check_folder, write_set
     from rocking_cli.questions.select.view import ShownSet, table, title, view
 
-    wanted = record_set.SetRequirements(count, band, within, damping, factors, one_per, same_factor, seed)
-    spectrum = _target(target, state, damping, watch)
+    wanted = record_set.SetRequirements(
+        asked.count, asked.band, asked.within, asked.damping, asked.factors, asked.one_per, asked.same_factor,
+        asked.seed,
+    )  # fmt: skip
+    spectrum = _target(asked, watch)
     spectrum.check(wanted.band)
-    motions = _without(target, Motions.of(records, options), watch)
+    motions = _without(asked.target, asked.ground_motions, watch)
+    if asked.out is not None:
+        target = [Path(asked.target)] if isinstance(asked.target, str | Path) else []
+        check_folder(asked.out, [*target, *(each.path for each in motions.records)])
     chosen = motions.gather(0.0, watch)
     candidates = [each.motion for each in chosen]
     with watch.progress(len(candidates), "spectra") as advance:
@@ -137,12 +77,12 @@ def select(
     results = ShownSet(result, spectrum, files, unusable)
 
     figure = drawn("questions.select.picture.draw_record_set", result, title(results))
-    readings = tuple(
-        None if str(chosen[k].file) == STANDARD_INPUT else chosen[k].reading for k in result.chosen.tolist()
-    )
-    return SetAnswer(
-        "record set", result, view(results), lambda: table(results), figure, shown=results, readings=readings
-    )
+    if asked.out is not None:
+        used = [chosen[k] for k in result.chosen.tolist()]
+        readings = [None if str(each.file) == STANDARD_INPUT else each.reading for each in used]
+        watch.note(write_set(asked.out, results, readings))
+    dims = [Dimensions(("period",), ("target_Sa", "mean_Sa")), Dimensions(("motion", "period"))]
+    return Answer("record set", result, view(results), lambda: table(results), figure, dims=dims)
 
 
 def _without(target: object, motions: Motions, watch: Watcher) -> Motions:
@@ -161,12 +101,12 @@ def _is_of(source: Source, file: Path) -> bool:
     return isinstance(source, Listed) and source.path.exists() and source.path.samefile(file)
 
 
-def _target(given: Any, state: str | None, damping: float, watch: Watcher) -> TargetSpectrum:
+def _target(asked: SelectAsked, watch: Watcher) -> TargetSpectrum:
     from rocking_cli.questions.select.target_spectrum import TargetSpectrum, read_target, target_of_site
 
-    if isinstance(given, Mapping) or (isinstance(given, str | Path) and Path(given).suffix.lower() in SITE_SUFFIXES):
-        return target_of_site(site_of(given), state, damping)
-    refuse_idle("for a target without limit states: give a site file as `target`", state=state)
+    given: Any = asked.target
+    if asked.of_site:
+        return target_of_site(site_of(given), asked.state, asked.damping)
     if isinstance(given, TargetSpectrum):
         return given
     if isinstance(given, str | Path):

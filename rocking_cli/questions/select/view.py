@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.io.tables import Columns, stacked
 from rocking_cli.questions.select.study import RecordSet
 from rocking_cli.questions.select.subsets import SEARCH_STARTS
 from rocking_cli.questions.select.target_spectrum import TargetSpectrum
@@ -75,7 +76,7 @@ RECORDS: tuple[Column[_Chosen], ...] = (
     Column("magnitude", of("motion.origin.magnitude")),
     Column("distance", of("motion.origin.distance"), "km"),
     Column("factor", of("factor"), head="factor"),
-    Column("pga", lambda row: row.factor * row.motion.of_ground.pga_g, "g", "PGA as\nscaled [g]", rounded(3)),
+    Column("pga_g", lambda row: row.factor * row.motion.of_ground.pga_g, "g", "PGA as\nscaled [g]", rounded(3)),
 )
 ENDS: tuple[Column[_Extreme], ...] = (
     only_shown("", of("what"), text=True),
@@ -130,16 +131,16 @@ def data(results: ShownSet) -> dict[str, Any]:
     }
 
 
-def table(results: ShownSet) -> dict[str, Sequence[object]]:
-    """Return the columns of the spectra: the target, the mean, and each scaled record."""
+def table(results: ShownSet) -> Columns:
+    """Return the columns of the spectra, with a row for each scaled record and period, beside target and mean."""
     selection = results.found
-    names = [each.motion.name for each in _chosen(results)]
-    return {
-        "period [s]": selection.candidates.periods.tolist(),
-        "target Sa [g]": selection.candidates.target.tolist(),
-        "mean Sa [g]": selection.mean.tolist(),
-        **{f"Sa of {name} [g]": each.tolist() for name, each in zip(names, selection.spectra, strict=True)},
-    }
+    return stacked(
+        {
+            "motion": each.motion.name, "period [s]": selection.candidates.periods, "Sa [g]": spectrum,
+            "target Sa [g]": selection.candidates.target, "mean Sa [g]": selection.mean,
+        }
+        for each, spectrum in zip(_chosen(results), selection.spectra, strict=True)
+    )  # fmt: skip
 
 
 def title(results: ShownSet) -> str:

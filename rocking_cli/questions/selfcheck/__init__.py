@@ -1,3 +1,3 @@
-"""`selfcheck`: whether this installation computes correctly."""
+"""Check that this installation computes correctly."""
 
 PLACE = 260

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking_cli.arrays import Bools, Reals
+from rocking_cli.ask.read import read_record
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics import batch, exact_batch, ways
 from rocking_cli.dynamics.batch import Runs, respond_many
@@ -30,11 +31,11 @@ from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcomes
 from rocking_cli.errors import BrokenKernels, RockingError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses.shapes import Sine
-from rocking_cli.excitation.records import read_record
 from rocking_cli.processing.steps import parse_step, process
 from rocking_cli.questions.selfcheck.study import NotRun
 from rocking_cli.structure import Structure
 from rocking_cli.studies import neighbours as near
+from rocking_cli.studies.conditions import Conditions
 from rocking_cli.units import KINDS, read
 
 GRAVITY = 9.80665  # m/s2, repeated here as are all expected values
@@ -172,7 +173,7 @@ def _pulses(eta: float, omegas: tuple[float, ...]) -> float:
     brackets = np.array([bracket for omega in omegas for bracket in _brackets(omega, eta)])
     omega, low, high, begins = brackets.T
     of = block(0.7, 2.8)
-    equivalence = of.structure.with_eta(eta).equivalence
+    equivalence = of.structure.under(restitution=eta).equivalence
     unit, periods = GRAVITY * tan(of.alpha), 2 * pi / (of.p * omega)
 
     def computed(a: Reals) -> Bools:
@@ -358,7 +359,7 @@ def neighbours(quick: bool) -> float:
         (1.06, 0.1, near.Neighbourhood(amplitude=0.0)),
     ):
         held = GroundMotion("held", 0.5, np.full(20, x * tan(of.alpha) * GRAVITY), unit="m/s2")
-        computed.append(near.neighbours(model, held, around).overturned)
+        computed.append(near.neighbours(Conditions(of.structure, around=around), held).overturned)
         expected.append(normal(log(x) / deviation))
     for eta in (0.85, 0.9, 0.95):
         computed.append(float((near.Neighbourhood().drawn(model).eta[:, 0] < eta).mean()))

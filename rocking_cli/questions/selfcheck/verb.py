@@ -7,23 +7,17 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 from rocking_cli.ask.answer import Answer, no_plot
-from rocking_cli.ask.numbers import takes_numbers
-from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.ask.verbs import verb
+from rocking_cli.ask.watcher import Watcher
+from rocking_cli.questions.selfcheck.asked import SelfcheckAsked
 
 if TYPE_CHECKING:
     from rocking_cli.questions.selfcheck.study import SelfCheck
 
 
-@takes_numbers
-def selfcheck(*, quick: bool = False, watch: Watcher = SILENT) -> Answer[SelfCheck]:
+@verb(SelfcheckAsked)
+def selfcheck(asked: SelfcheckAsked, watch: Watcher) -> Answer[SelfCheck]:
     """Check that this installation computes correctly, against formulas, literal values and a general solver.
-
-    Parameters
-    ----------
-    quick : bool
-        Whether to compute a few cases of each check only.
-    watch : Watcher
-        Told how far the work is.
 
     Returns
     -------
@@ -42,6 +36,8 @@ def selfcheck(*, quick: bool = False, watch: Watcher = SILENT) -> Answer[SelfChe
 
     began = monotonic()
     with watch.progress(len(CHECKS), "checks") as advance:
-        results = run_checks(CHECKS, quick=quick, progress=advance, began=began)
+        results = run_checks(CHECKS, quick=asked.quick, progress=advance, began=began)
+    for each in results.failed:
+        watch.fail(each.error)
     figure = no_plot("the checks of an installation have no plot", "`to_frame` has them as a table")
     return Answer("selfcheck", results, view(results), partial(columns, results), figure)

@@ -1,3 +1,3 @@
-"""`spectrum`: peak rotation against size."""
+"""Compute the rocking spectrum: peak rotation against size."""
 
 PLACE = 170

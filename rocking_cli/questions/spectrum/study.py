@@ -22,12 +22,13 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes
-from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
+from rocking_cli.errors import InputError, MechanismError, Problem, named, of_structure
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.io.field_problems import of_arguments
 from rocking_cli.names import MIN_MOTIONS, OPENING
 from rocking_cli.short_repr import short_repr
-from rocking_cli.structure import Structure, with_restitution
+from rocking_cli.structure import Structure
+from rocking_cli.studies.intervals import fractile
 from rocking_cli.studies.under_pulses import Progress, PulsedModel, parse_shape, pulsed_model, uplift
 
 SIZE_TOLERANCE = 1e-9  # relative difference below which a size is that of the structure as given
@@ -101,7 +102,7 @@ def radius(periods: Reals, gravity: float) -> Reals:
     return 3 * gravity / 4 * (periods / (2 * pi)) ** 2
 
 
-def shape_of(structure: Structure, model: ModelName, eta: float | None = None) -> SpectrumShape:
+def shape_of(structure: Structure, model: ModelName) -> SpectrumShape:
     """Prepare a structure for scaling to other sizes.
 
     Parameters
@@ -110,8 +111,6 @@ def shape_of(structure: Structure, model: ModelName, eta: float | None = None) -
         The structure.
     model : {"nonlinear", "linear1", "linear2"}
         The equation of motion.
-    eta : float, optional
-        Coefficient of restitution of every impact; by default that of the structure.
 
     Raises
     ------
@@ -119,10 +118,9 @@ def shape_of(structure: Structure, model: ModelName, eta: float | None = None) -
         If the structure does not stand, or its restitution is not known.
     """
     # A full sine is equal in both directions, so that the one with the smaller uplift acceleration uplifts first.
-    pulsed = pulsed_model(structure, model, parse_shape("sine"), eta=eta)
+    pulsed = pulsed_model(structure, model, parse_shape("sine"))
     mechanism = structure.mechanism
-    built = mechanism if eta is None else with_restitution(mechanism, eta)
-    sizes = Sizes(built, model, pulsed.direction, structure.opening)
+    sizes = Sizes(mechanism, model, pulsed.direction, structure.opening)
     rebuilt = None if sizes.are_alike() else sizes
     return SpectrumShape(
         pulsed,
@@ -142,7 +140,7 @@ def _height(mechanism: Mechanism) -> float | None:
     return float(np.ptp([point.imag for each in carrier.outlines.values() for line in each for point in line]))
 
 
-def blocks_of(slenderness: float, model: ModelName, eta: float | None = None) -> SpectrumShape:
+def blocks_of(slenderness: float, model: ModelName, restitution: float | None = None) -> SpectrumShape:
     """Return rectangular blocks of one slenderness alpha = atan(b/h) [rad] and any size. Raises as `shape_of`."""
     if not 0 < slenderness < pi / 2:
         raise InputError(
@@ -155,12 +153,14 @@ def blocks_of(slenderness: float, model: ModelName, eta: float | None = None) ->
     sides = {"width": 2 * sin(slenderness), "height": 2 * cos(slenderness)}  # R = 1 m
     block = Registry()["block"].model_validate({"name": name, **sides})
     kinematic_eta = block.eta(Direction.POSITIVE)
-    if eta is None and kinematic_eta <= 0:
+    if restitution is None and kinematic_eta <= 0:
         message = (
             f"blocks of {name}: the kinematics give {kinematic_eta:.3g} for an impact: too stocky to rock the other way"
         )
-        raise InputError(Problem(message, hint="give a measured eta in (0, 1], or a smaller slenderness"))
-    return SpectrumShape(shape_of(Structure(block), model, eta).structure, slenderness)
+        raise InputError(
+            Problem(message, hint=f"give a measured {named('restitution')} in (0, 1], or a smaller slenderness")
+        )
+    return SpectrumShape(shape_of(Structure(block, restitution=restitution), model).structure, slenderness)
 
 
 def usual_sizes(shapes: Sequence[SpectrumShape]) -> tuple[float, float]:
@@ -268,32 +268,6 @@ class Spectrum:
     def fractile_overturns(self, q: float) -> Bools:
         """Return whether the q-fractile overturns even if no unknown outcome does, shape (n,)."""
         return np.isinf(fractile(np.where(self.unknown, self.lower_bound, self.peak_ratio), q))
-
-
-def fractile(peaks: Reals, q: float) -> Reals:
-    """Return the q-fractile of peaks under several motions; overturning ranks above any peak.
-
-    Parameters
-    ----------
-    peaks : ndarray, shape (m, n)
-        Peaks under m motions, inf for overturning; NaN values are left out.
-    q : float
-        Fractile in [0, 1]; 0.5 for the median.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        By linear interpolation between the ordered peaks, of which the k-th has the fractile (k - 1)/(m - 1); inf if a
-        neighbour in the order overturns, NaN if there is no peak.
-    """
-    ordered = np.sort(peaks, axis=0)  # NaNs come last
-    last = np.maximum(np.count_nonzero(~np.isnan(peaks), axis=0) - 1, 0)
-    place = np.round(q * last, 9)  # so that rounding gives no weight to a neighbour
-    k = np.floor(place).astype(int)
-    below, above = (np.take_along_axis(ordered, row[None], axis=0)[0] for row in (k, np.ceil(place).astype(int)))
-    with np.errstate(invalid="ignore"):  # inf - inf is NaN, which is replaced
-        between: Reals = below + (place - k) * (above - below)
-    return np.where(below == above, below, between)
 
 
 def spectra(

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from rocking_cli.arrays import Integers, Reals
+from rocking_cli.io.tables import Columns, stacked
 from rocking_cli.names import MIN_MOTIONS, NO_UPLIFT, OVERTURNS, ROCKS, UNKNOWN
 from rocking_cli.processing.listed import Scaled
-from rocking_cli.questions.overturning.view import FROM_KINEMATICS, NO_JOINTS, numbers, spaced
+from rocking_cli.questions.overturning.view import NO_JOINTS, numbers, source_of, spaced
 from rocking_cli.questions.spectrum.study import Spectrum
 from rocking_cli.short_repr import short_repr
 from rocking_cli.views import processing
@@ -75,7 +76,7 @@ def _all(results: ShownSpectra) -> dict[str, Any]:
         "fractiles": list(results.fractiles),
         "motions": [
             {"name": motion.name, "format": motion.format, "npts": motion.npts, "dt": motion.dt}
-            | {"pga": motion.of_ground.pga_g, "scale": factor, **processing.data(motion)}
+            | {"pga_g": motion.of_ground.pga_g, "scale": factor, **processing.data(motion)}
             for motion, factor, *_ in results.motions
         ],
         "spectra": [_data(results, each) for each in results.spectra],
@@ -116,38 +117,47 @@ def lost(results: ShownSpectra) -> str:
     )
 
 
-def table(results: ShownSpectra) -> dict[str, Sequence[object]]:
-    """Return the columns of the curves, with a row for each shape and size."""
-    columns: dict[str, list[object]] = {}
-    doubtful = any(each.shape.structure.may_open for each in results.spectra)
+def table(results: ShownSpectra) -> Columns:
+    """Return the columns of the peaks, with a row for each shape, motion and size."""
+    return stacked(
+        _sizes(results, each)
+        | {
+            "motion": under.motion.name, "peak_ratio": peaks,
+            "overturned": np.where(unknown | np.isnan(peaks), np.nan, np.isinf(peaks)),
+            "unknown": unknown if each.checked else np.nan, "peak_lower_bound": least,
+        }
+        for each in results.spectra
+        for under, peaks, unknown, least in zip(
+            results.motions, each.peak_ratio, each.unknown,
+            np.broadcast_to(each.lower_bound, each.peak_ratio.shape), strict=True,
+        )
+    )  # fmt: skip
 
-    def add(heading: str, values: Sequence[object]) -> None:
-        columns.setdefault(heading, []).extend(values)
 
-    for each in results.spectra:
-        blocks = each.shape.slenderness is not None
-        nothing = [np.nan] * each.scales.size
-        add("structure", [each.shape.structure.name] * each.scales.size)
-        add("2 pi/p [s]", each.periods.tolist())
-        add("scale", nothing if blocks else each.scales.tolist())
-        add("R of the block [m]", each.scales.tolist() if blocks else nothing)
-        if any(other.shape.own is not None for other in results.spectra):
-            add("lambda", each.uplifts.tolist())
-        if not results.one:
-            add("motions", each.followed.tolist())
-            add("overturned share", each.share.tolist())
-            if doubtful:
-                add("unknown share", (each.share_at_most - each.share).tolist())
-            for q in results.fractiles:
-                add(f"{q:g}-fractile of peak phi/phi_cr", each.fractile(q).tolist())
-        for peaks, unknown, under in zip(each.peak_ratio, each.unknown, results.motions, strict=True):
-            known = [UNKNOWN if hidden else peak for peak, hidden in zip(peaks.tolist(), unknown.tolist(), strict=True)]
-            add(f"peak phi/phi_cr under {under.motion.name}", known)
-        if doubtful:
-            bounds = np.broadcast_to(each.lower_bound, each.peak_ratio.shape)
-            for bound, under in zip(bounds, results.motions, strict=True):
-                add(f"peak phi/phi_cr under {under.motion.name}, at least", bound.tolist())
-    return columns  # type: ignore[return-value]
+def fractile_table(results: ShownSpectra) -> Columns:
+    """Return the columns of the fractiles over the motions, with a row for each shape, fractile and size."""
+    return stacked(
+        _sizes(results, each)
+        | {
+            "fractile": q, "peak_ratio": each.fractile(q), "motions": each.followed, "overturned": each.share,
+            "unknown": each.share_at_most - each.share if each.checked else np.nan,
+        }
+        for each in results.spectra
+        for q in results.fractiles
+    )  # fmt: skip
+
+
+def _sizes(results: ShownSpectra, each: Spectrum) -> dict[str, object]:
+    """Return the columns of the sizes of a shape."""
+    blocks = each.shape.slenderness is not None
+    differ = any(other.shape.own is not None for other in results.spectra)
+    return {
+        "structure": each.shape.structure.name,
+        "size [s]": [float(f"{period:.12g}") for period in each.periods.tolist()],  # equal for all shapes
+        "scale": np.nan if blocks else each.scales,
+        "R [m]": each.scales if blocks else np.nan,
+        **({"lambda": each.uplifts} if differ else {}),
+    }
 
 
 def _data(results: ShownSpectra, each: Spectrum) -> dict[str, Any]:
@@ -171,7 +181,7 @@ def _data(results: ShownSpectra, each: Spectrum) -> dict[str, Any]:
         "overturned": each.overturned.tolist(),
         "unknown": each.doubtful.tolist() if each.checked else None,
         "peaks": [_finite(each.fractile(q)) for q in results.fractiles],
-        "every_peak": [_finite(peaks) for peaks in each.peak_ratio],
+        "every_peak_ratio": [_finite(peaks) for peaks in each.peak_ratio],
         "every_overturned": [
             [None if hidden else peak == np.inf for peak, hidden in zip(*row, strict=True)]
             for row in zip(each.peak_ratio.tolist(), each.unknown.tolist(), strict=True)
@@ -204,7 +214,7 @@ def _curve(results: ShownSpectra, each: Spectrum) -> Iterator[Table | str]:
     side = "" if structure.symmetric else f" ({structure.direction.label})"
     yield (
         f"{structure.name}{side}, {structure.model.name}: uplift at {structure.lambda_:.4g} g, eta = "
-        f"{structure.eta:.4g}{'' if structure.eta_given else FROM_KINEMATICS}, under {results.shaking}"
+        f"{structure.eta:.4g}{source_of(structure)}, under {results.shaking}"
     )
     if each.shape.own is not None:
         ends = (f"at {each.uplifts[k]:.4g} g at scale {each.scales[k]:.3g}" for k in (0, -1))

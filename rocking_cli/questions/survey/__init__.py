@@ -1,3 +1,3 @@
-"""`survey`: the structures of a table, the most vulnerable first."""
+"""Rank the structures of a table, the most vulnerable first."""
 
 PLACE = 100

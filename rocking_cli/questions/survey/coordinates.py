@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rocking_cli.arrays import Reals
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.io.spreadsheet import Row, Spreadsheet, unit_in
 from rocking_cli.text import cut, one_line
 
@@ -65,7 +65,7 @@ def columns_of(sheet: Spreadsheet | None) -> dict[str, int]:
     if len(columns) < len(MAX_DEGREES):
         lacks = " and ".join(each for each in MAX_DEGREES if each not in columns)
         file = sheet.file if sheet is not None else None
-        hint = "`map` needs columns longitude and latitude (or lon and lat), in degrees"
+        hint = f"{named('map')} needs columns longitude and latitude (or lon and lat), in degrees"
         raise InputError(Problem(f"the structures have no {lacks}", file, hint=hint))
     return columns
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from unicodedata import normalize
 
 from rocking_cli.ask.given import SiteLike, yaml_of
+from rocking_cli.ask.groups import Identity
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, Problem, Refused, RockingError
 from rocking_cli.io.files import check_writable, discard, folder, write_files
@@ -60,8 +61,8 @@ class SheetFolder:
         Suffix of the sheets, such as ".html".
     language : str
         Language of the sheets.
-    head : Head
-        Heading of the sheets.
+    head : Identity
+        What the heading of the sheets names.
     call : str
         The command that writes them.
     """
@@ -71,7 +72,7 @@ class SheetFolder:
     given: SiteLike
     suffix: str
     language: str
-    head: sheets.Head
+    head: Identity
     call: str
 
     def check(self) -> None:
@@ -132,7 +133,7 @@ class SheetFolder:
         verification = verify(structure, site)
         source = f"{Path(found.sheet.file).name}, line {entry.line}" if found.sheet is not None else structure.name
         origin = sheets.SheetOrigin(self.call, File(source, yaml_of(structure.mechanism).encode()))
-        title = self.head.block(origin, self.language)
+        title = self.head.title(origin.command, self.language)
         content = sheets.sheet_for(verification, site, self.given, [], self.language, title, origin)
         return sheets.rendered(content, self.suffix)
 

@@ -13,13 +13,14 @@ from typing import Any
 
 import yaml
 
+from rocking_cli.ask.given import sheet_of
 from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_file import TEMPLATE_HINT, of_document
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.io.dotted import closed, put, replace_at, words
 from rocking_cli.io.field_problems import by_meaning, fields_at, lists_models, types_at
-from rocking_cli.io.spreadsheet import DECIMAL_COMMA, NUMBER, THOUSANDS, Row, Spreadsheet, read_sheet
+from rocking_cli.io.spreadsheet import DECIMAL_COMMA, NUMBER, THOUSANDS, Row, Spreadsheet
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text, spell
 from rocking_cli.questions.survey.coordinates import coordinate
 from rocking_cli.text import cut, did_you_mean, one_line
@@ -118,7 +119,7 @@ class StructureTable(Sequence["TableRow"]):
     @classmethod
     def read(cls, path: Path) -> StructureTable:
         """Read a table from a CSV file. Raises `InputError` if it cannot be used."""
-        return cls(read_sheet(path), path.parent)
+        return cls(sheet_of(path), path.parent)
 
     def __len__(self) -> int:
         return len(self.sheet.rows)

@@ -26,6 +26,7 @@ from rocking_cli.names import OPENING
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure, check_opening
 from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare
+from rocking_cli.studies.conditions import Conditions
 from rocking_cli.studies.neighbours import Neighbourhood, neighbours
 from rocking_cli.verification.check import code_of, of_each, questioned, row_numbers, verify
 from rocking_cli.verification.code import SiteFile
@@ -357,7 +358,7 @@ def _part(
 ) -> list[Surveyed | Bad | None]:
     """Return the results of the structures from index `first` to before `stop`, in any process."""
     ready: dict[int, Structure] = {}
-    models: dict[int, Model] = {}
+    moving: dict[int, Structure] = {}
     rows: list[Surveyed | Bad | None] = [None] * (stop - first)
     for k, place in enumerate(range(first, stop)):
         entry = entries[place]
@@ -370,13 +371,14 @@ def _part(
             alone = replace(_alone(place, entry, ready[k], site), doubt="; ".join(odd) or None)
             rows[k] = replace(alone, side="depth" if weaker is not None else None, remarks=made.remarks)
             if _may_move(ready[k], shaking):
-                models[k] = ready[k].model("nonlinear")
+                ready[k].model("nonlinear")
+                moving[k] = ready[k]
         except RockingError as error:
             ready.pop(k, None)
             rows[k] = Bad(place + 1, entry.line, entry.name, _placed(error, entry))
     if motions := shaking.motions:
-        under = _under(list(models.values()), shaking)
-        answers = dict(zip(models, under, strict=True))
+        under = _under(list(moving.values()), shaking)
+        answers = dict(zip(moving, under, strict=True))
         for k, structure in ready.items():
             one = rows[k]
             assert isinstance(one, Surveyed)
@@ -441,10 +443,11 @@ def _may_move(structure: Structure, shaking: Shaking) -> bool:
     return any(each.vertical is not None or each.pga_g >= least for each in shaking.motions)
 
 
-def _under(models: Sequence[Model], shaking: Shaking) -> list[Under | SolverError]:
+def _under(structures: Sequence[Structure], shaking: Shaking) -> list[Under | SolverError]:
     """Return the response of each of some structures to ground motions; an error if a motion cannot be simulated."""
-    if not models:
+    if not structures:
         return []
+    models = [structure.model("nonlinear") for structure in structures]
     motions, polarities, around = shaking
     places = [
         (i, j, sign)
@@ -456,20 +459,21 @@ def _under(models: Sequence[Model], shaking: Shaking) -> list[Under | SolverErro
     runs = Runs.of(which[:, 0], which[:, 1], polarity=which[:, 2])
     outcomes = respond_many(models, motions, runs, threads=1, only_peaks=True)
     each = [_of_one(model, which[:, 0] == i, which[:, 1], outcomes, motions) for i, model in enumerate(models)]
-    for i, (model, one) in enumerate(zip(models, each, strict=True)):
+    for i, (structure, one) in enumerate(zip(structures, each, strict=True)):
         if around.count and isinstance(one, Under):
             try:
-                each[i] = replace(one, share=_share(model, np.unique(which[which[:, 0] == i, 2]), shaking))
+                each[i] = replace(one, share=_share(structure, np.unique(which[which[:, 0] == i, 2]), shaking))
             except SolverError as error:
                 each[i] = error
     return each
 
 
-def _share(model: Model, signs: Integers, shaking: Shaking) -> NeighbourShare:
+def _share(structure: Structure, signs: Integers, shaking: Shaking) -> NeighbourShare:
     """Return the share of the neighbours that overturn a structure: of the worse polarity, the mean over motions."""
+    conditions = Conditions(structure, ["nonlinear"], around=shaking.around)
     low, high = [], []
     for motion in shaking.motions:
-        by_sign = [neighbours(model, motion.scaled(int(sign)), shaking.around, threads=1) for sign in signs]
+        by_sign = [neighbours(conditions, motion.scaled(int(sign)), threads=1) for sign in signs]
         low.append(max(each.overturned for each in by_sign))
         high.append(max(each.at_most for each in by_sign))
     return NeighbourShare(fmean(low), fmean(high), shaking.around.count)

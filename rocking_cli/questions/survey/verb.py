@@ -7,106 +7,30 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Any
 
 from rocking_cli.ask.answer import Answer, drawn
-from rocking_cli.ask.given import SiteLike, StructureLike, around_of, language_of, site_of, structure_of
-from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
-from rocking_cli.ask.numbers import refuse_idle, takes_numbers
-from rocking_cli.ask.watcher import SILENT, Advance, Watcher
-from rocking_cli.errors import InputError, Problem, RockingError
-from rocking_cli.names import OPENING
-from rocking_cli.questions.survey.view import DEFAULT_ROWS
+from rocking_cli.ask.given import language_of, site_of, structure_of
+from rocking_cli.ask.verbs import verb
+from rocking_cli.ask.watcher import Advance, Watcher
+from rocking_cli.errors import InputError, MechanismError, Problem, RockingError
+from rocking_cli.questions.survey.asked import SurveyAsked
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.text import one_line
 
 if TYPE_CHECKING:
-    from rocking_cli.questions.survey.structure_table import StructureTable
     from rocking_cli.questions.survey.study import Survey, SurveyEntry
     from rocking_cli.views.sheet.language import Language
 
-TableLike = str | Path | Mapping[str, Sequence[Any]]
-"""CSV file, or columns by their headings."""
 MIN_ROWS_FOR_PROCESSES, MIN_ROWS_FOR_PROCESSES_WITH_MOTION = 10_000, 1_000  # rows from which processes pay
 SAMPLE_TIME = 3.0  # s of work from which the time of all is known
+MAX_NAMED_ROWS = 20  # rows that cannot be used, in a message
 MAX_LISTED_DOUBTS = 3  # doubts about sizes that are printed
 
 
-@takes_numbers
-def survey(
-    structures: TableLike | StructureTable | Sequence[StructureLike],
-    motions: Motion | Motions | Sequence[Motion] = (),
-    *,
-    polarity: str | int = "1",
-    site: SiteLike | None = None,
-    neighbours: int | None = None,
-    amplitude_deviation: float = Neighbourhood.amplitude,
-    slenderness_deviation: float | None = None,
-    restitution_deviation: float | None = None,
-    opening: float = OPENING,
-    top: int = DEFAULT_ROWS,
-    threads: int | None = None,
-    processes: bool = False,
-    page: str | Path | None = None,
-    map: str | Path | None = None,
-    sheets: str | Path | None = None,
-    sheet_format: str = "html",
-    language: str | None = None,
-    project: str | None = None,
-    place: str | None = None,
-    client: str | None = None,
-    author: str | None = None,
-    logo: str | Path | None = None,
-    origin: str | None = None,
-    watch: Watcher = SILENT,
-    **options: Unpack[MotionArguments],
-) -> Answer[Survey]:
+@verb(SurveyAsked)
+def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
     """Rank many structures by vulnerability.
-
-    Parameters
-    ----------
-    structures : str or Path, or mapping, or sequence of Mechanism, str or Path
-        A table of structures as a CSV file, or its columns by their headings (a frame of pandas is one); or structures,
-        or their YAML files.
-    motions : GroundMotion, Pulse, str or Path, or a sequence of these
-        Ground motions; without any, the structures are ranked by their uplift acceleration.
-    polarity : {"1", "-1", "both"}
-        Polarity of the motions: as given, reversed, or both, of which the worse governs.
-    site : mapping, str or Path, optional
-        Fields of a site file, or the file: each structure is verified by its code and ranked by the ratio of capacity
-        to demand.
-    neighbours : int, optional
-        Number of neighbouring motions to simulate for each structure and motion, 0 for none; by default 200, or as many
-        as take about a minute.
-    amplitude_deviation, slenderness_deviation, restitution_deviation : float, optional
-        Standard deviations of the neighbours: of ln amplitude, of ln slenderness and of restitution; by default those
-        of each structure.
-    opening : float
-        Largest opening of a joint up to which a history is valid, over D_cr.
-    top : int
-        Number of structures in the tables of the answer.
-    threads : int, optional
-        Number of structures at a time; by default, one for each processor.
-    processes : bool
-        Whether processes share the work of thousands of structures; a script then needs `if __name__ == "__main__"`.
-    page : str or Path, optional
-        File for an HTML page with a plot, a map if rows have coordinates, and all rows in a sortable table.
-    map : str or Path, optional
-        File for a map of the structures by the columns longitude and latitude: .png, .svg or .pdf.
-    sheets : str or Path, optional
-        Folder for the calculation sheets of the verifications, one for each structure.
-    sheet_format : {"html", "docx", "pdf"}
-        Format of the sheets; "docx" needs an extra package, "pdf" another one or a browser.
-    language : {"en", "it"}, optional
-        Language of the answer, the page, plots and sheets; by default that of the site.
-    project, place, client, author, logo : str, str, str, str, path, optional
-        Entries for the heading of the sheets, and a picture in .png, .jpg or .svg.
-    origin : str, optional
-        What the sheets say of how they were made; by default this function.
-    watch : Watcher
-        Told what was read, how far the work is, what is doubtful, and which of several motions cannot be used.
-    **options
-        How the motions are read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionArguments`.
 
     Returns
     -------
@@ -129,62 +53,64 @@ def survey(
     >>> [row.name for row in rk.survey(table).rows]
     ['b', 'a']
     """
+    from rocking_cli.io.tables import PARQUET
     from rocking_cli.plotting.language import in_language
     from rocking_cli.questions.survey.study import survey as study
     from rocking_cli.questions.survey.view import blocks, columns, texts_in, title, view
 
-    if sheets is None:
-        head = {"project": project, "place": place, "client": client, "author": author, "logo": logo}
-        without = "without calculation sheets: give `sheets`"
-        idle = {"sheet_format": sheet_format != "html", "origin": origin}
-        refuse_idle(without, **idle, **head)
-    elif site is None:
-        raise InputError("`sheets` requires a site to verify at: give `site`")
-    signs, where = signs_of(polarity), site_of(site) if site is not None else None
-    say = texts_in(language := language_of(language, where, watch))
-    entries, requested = _entries(structures, watch), Motions.of(motions, options)
-    if not requested:
-        refuse_idle("without ground motions", polarity=signs != (1,), opening=opening != OPENING, neighbours=neighbours)
-    count = Neighbourhood.count if neighbours is None and requested else neighbours or 0
-    around = around_of(count, amplitude_deviation, restitution_deviation, slenderness_deviation)
+    where = None if asked.site is None else site_of(asked.site)
+    say = texts_in(language := language_of(asked.language, where, watch))
+    entries, requested = _entries(asked.structures, watch), asked.ground_motions
     shaken = [each.motion.scaled(each.factor) for each in requested.gather(0.0, watch)] if requested else []
     writer = None
-    if sheets is not None and site is not None and where is not None:
+    if asked.sheets is not None and asked.site is not None and where is not None:
         from rocking_cli.questions.survey.sheets import SheetFolder
-        from rocking_cli.questions.verify.sheets import Head
 
-        titled = Head(project, place, client, author, logo)
-        call = origin or "rocking_cli.survey(...)"
-        writer = SheetFolder(Path(sheets), where, site, f".{sheet_format}", language, titled, call)
+        call = asked.origin or "rocking_cli.survey(...)"
+        writer = SheetFolder(asked.sheets, where, asked.site, f".{asked.sheet_format}", language, asked, call)
         writer.check()
-    if map is not None:
+    sheet = getattr(entries, "sheet", None)
+    if asked.map is not None:
         from rocking_cli.questions.survey.coordinates import columns_of
 
-        columns_of(getattr(entries, "sheet", None))
-    processes_used = _processes(len(entries), bool(shaken) or where is not None) if processes else None
+        columns_of(sheet)
+    processes = _processes(len(entries), asked.jobs, shaken=bool(shaken) or where is not None)
     with watch.progress(len(entries), "structures") as advance:
         result = study(
-            entries, shaken, signs, site=where, around=around, bounded=neighbours is None, opening=opening,
-            threads=threads, processes=processes_used, progress=_timed(advance, len(entries), watch),
+            entries, shaken, asked.signs, site=where, around=asked.neighbourhood(Neighbourhood.count if shaken else 0),
+            bounded=asked.neighbours is None, opening=asked.opening, threads=asked.jobs,
+            processes=processes if asked.in_processes else None, progress=_timed(advance, len(entries), watch),
         )  # fmt: skip
+    _tell_bad(result, "structures" if sheet is None else sheet.file, watch)
     _warn_of_sizes(result, watch)
-    if hasattr(entries, "sheet"):  # a table: weights of other structures were noted when they were opened
+    if sheet is not None:  # weights of other structures were noted when they were opened
         _note_remarks(result, watch)
-    if page is not None and result.rows:
-        file = getattr(entries, "sheet", None)
-        _write_page(Path(page), result, Path(file.file).name if file is not None else "structures", say, watch)
-    if map is not None and result.rows:
-        _write_map(Path(map), result, title(result), say, watch)
-    if writer is not None and result.rows:
+    if asked.page is not None:
+        _write_page(asked.page, result, "structures" if sheet is None else Path(sheet.file).name, say, watch)
+    if asked.map is not None:
+        _write_map(asked.map, result, title(result), say, watch)
+    if writer is not None:
         try:
             writer.write(result, entries, watch)
         except RockingError as error:
             watch.unwritten(error)
-    figure, files = (
-        in_language(say, drawn("questions.survey.picture.draw_survey", result, title(result))),
-        partial(blocks, result, "."),
-    )
-    return Answer("survey", result, view(result, top, say), partial(columns, result), figure, files)
+    # Spreadsheets open a CSV file, with their decimal sign; Parquet keeps the cells that came in.
+    decimal = None if asked.out is not None and asked.out.suffix.lower() == PARQUET else asked.decimal or "."
+    figure = in_language(say, drawn("questions.survey.picture.draw_survey", result, title(result)))
+    files = partial(blocks, result, decimal)
+    return Answer("survey", result, view(result, asked.top, say), partial(columns, result), figure, files)
+
+
+def _tell_bad(found: Survey, file: str, watch: Watcher) -> None:
+    """Tell of the rows that cannot be used; raise their errors if none can be."""
+    from rocking_cli.questions.survey.view import bad_lines
+
+    lines = [*bad_lines(found.bad, file, MAX_NAMED_ROWS)]
+    if lines and not found.rows:
+        first = found.bad[0].error
+        raise first if isinstance(first, MechanismError) else InputError(*lines)
+    for line in lines:
+        watch.incomplete(line)
 
 
 def _entries(given: Any, watch: Watcher) -> Sequence[SurveyEntry]:
@@ -206,11 +132,11 @@ def _entries(given: Any, watch: Watcher) -> Sequence[SurveyEntry]:
     return table
 
 
-def _processes(rows: int, shaken: bool) -> int | None:
+def _processes(rows: int, jobs: int | None, *, shaken: bool) -> int | None:
     """Return the number of processes that share the work; None if threads are as fast."""
     from rocking_cli.dynamics.parallel import MAX_PROCESSES
 
-    count = min(os.cpu_count() or 1, MAX_PROCESSES)
+    count = jobs or min(os.cpu_count() or 1, MAX_PROCESSES)
     if count < 2 or rows < (MIN_ROWS_FOR_PROCESSES_WITH_MOTION if shaken else MIN_ROWS_FOR_PROCESSES):
         return None
     return count

@@ -9,6 +9,7 @@ from functools import partial
 from math import isnan
 from typing import Any, NamedTuple
 
+from rocking_cli.errors import named
 from rocking_cli.io.spreadsheet import Spreadsheet
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import digits_apart, percent
@@ -21,7 +22,6 @@ from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.sheet.language import ENGLISH, Language, texts_of, translated
 from rocking_cli.views.view import Table, View, number
 
-DEFAULT_ROWS = 20
 MAX_NAME_LENGTH = 30  # characters, in the table
 MAX_CAUTIONED = 3  # structures whose cautions are printed
 ROWS_PER_BLOCK = 10_000  # rows of a file that are written at once
@@ -125,7 +125,7 @@ def texts_in(key: str) -> Language:
     return Language(key, texts_of("rocking_cli.questions.survey", key), is_plain=True)
 
 
-def view(found: Survey, top: int = DEFAULT_ROWS, say: Language = ENGLISH) -> View:
+def view(found: Survey, top: int, say: Language = ENGLISH) -> View:
     """Show the most vulnerable structures, and how many of all overturn."""
     parts: list[Table | str] = []
     if found.rows:
@@ -342,7 +342,7 @@ def sentences(found: Survey, top: int | None = None, say: Language = ENGLISH) ->
     if turned := [each for each in rows if each.side is not None]:
         lines.append(
             f"{_named(turned)}: ranked about the depth, the weaker side of the base. If a structure cannot rock about "
-            "it, give its column `plane` the word width."
+            f"it, give its column {named('plane')} the word width."
         )
     if found.motions:
         lines.append(
@@ -372,7 +372,7 @@ def sentences(found: Survey, top: int | None = None, say: Language = ENGLISH) ->
 
 def _of_neighbours(found: Survey) -> Iterator[str]:
     """Yield what the shares are shares of, and why there are fewer neighbours than usual, or none."""
-    fewer = "more would take over a minute for this table: give `neighbours` to fix their number"
+    fewer = f"more would take over a minute for this table: give {named('neighbours')} to fix their number"
     if not found.around.count:
         why = f" There are no neighbours, as {fewer}." if found.reduced else ""
         yield f"One time history is one sample: `rocking margin` shows how close the result is.{why}"
@@ -409,4 +409,4 @@ def bad_lines(found: Sequence[Bad], file: str, most: int) -> Iterator[str]:
         place = place.removesuffix(f"{each.line}: ") if message.startswith(f"{each.line}: ") else place
         yield f"{place}{message}"
     if len(found) > most:
-        yield f"{len(found) - most:,} more structures cannot be used: `as_json` lists them all"
+        yield f"{len(found) - most:,} more structures cannot be used: JSON lists them all"

@@ -1,3 +1,3 @@
-"""`verify`: a mechanism verified by a code of practice."""
+"""Verify a masonry mechanism by a code, such as NTC 2018."""
 
 PLACE = 90

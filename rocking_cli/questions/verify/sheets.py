@@ -45,26 +45,6 @@ def _file_of(structure: Structure) -> File:
     return File(file, original(STANDARD_INPUT if file == name_of(STANDARD_INPUT) else file))
 
 
-class Head(NamedTuple):
-    """Heading of a document, as it is given."""
-
-    project: str | None = None
-    place: str | None = None
-    client: str | None = None
-    author: str | None = None
-    logo: str | Path | None = None
-
-    def block(self, origin: SheetOrigin, language: str = "en") -> TitleBlock:
-        """Return the title block, with the date of today. Raises `InputError` if the logo cannot be used."""
-        picture = None
-        if self.logo is not None:
-            from rocking_cli.documents.logo import embedded
-
-            picture = embedded(Path(self.logo))
-        today = Language(language).today()
-        return TitleBlock(origin.command, today, self.project, self.place, self.client, self.author, picture)
-
-
 def check(file: Path, site: SiteFile, language: str) -> None:
     """Raise `InputError`, before any work, if a sheet cannot be written."""
     check_writable(file, ".html", ".docx", ".pdf")

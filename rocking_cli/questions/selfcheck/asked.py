@@ -1,17 +1,11 @@
-"""`rocking selfcheck`: check that this installation computes correctly."""
+"""What `rocking selfcheck` and `rk.selfcheck` are asked."""
 
 from __future__ import annotations
 
-import click
-
-from rocking_cli.cli import options, terminal
+from rocking_cli.ask.asked import AskedModel, option
 
 
-@click.command(short_help="Check that this installation computes correctly.")
-@click.option("--quick", is_flag=True, help="Compute a few cases of each check only.")
-@options.as_json
-@click.pass_context
-def command(ctx: click.Context, quick: bool, as_json: bool) -> None:
+class SelfcheckAsked(AskedModel):
     """Check that this installation computes correctly, against formulas, literal values and a general solver.
 
     Released blocks and walls are compared with quadrature, thresholds of overturning, filters, shares of neighbours,
@@ -27,13 +21,5 @@ def command(ctx: click.Context, quick: bool, as_json: bool) -> None:
       rocking selfcheck
       rocking selfcheck --quick --json
     """
-    from rocking_cli.cli.watching import OnTerminal
-    from rocking_cli.errors import SolverError
-    from rocking_cli.questions.selfcheck.verb import selfcheck
 
-    answer = selfcheck(quick=quick, watch=OnTerminal())
-    terminal.show(answer.view, as_json=as_json)
-    for each in answer.failed:
-        terminal.debug_traceback(each.error)
-    if answer.failed:
-        ctx.exit(SolverError.exit_code)
+    quick: bool = option("Compute a few cases of each check only.", default=False)

@@ -1,53 +1,19 @@
-"""Show, draw and write the contents of the store of a fragility study."""
+"""Draw all that the store of a fragility study holds: a picture of each curve, surface and ranking."""
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from rocking_cli.cli import terminal
-from rocking_cli.cli.groups import write_table
-from rocking_cli.cli.watching import OnTerminal
+from rocking_cli.ask.watcher import Watcher
 from rocking_cli.text import numbered
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rocking_cli.questions.fragility.results import StudyAnswer
 
-
-@dataclass(frozen=True)
-class StudyOutput:
-    """Outputs of a study: plots, a file for OpenQuake, the tables of runs and of curves; or one JSON object."""
-
-    plot: str | None
-    nrml: Path | None
-    as_json: bool
-    out: Path | None = None
-    curves: Path | None = None
-
-
-def show_study(answer: StudyAnswer, shown: StudyOutput, watch: OnTerminal) -> None:
-    """Show what a study found, write its runs and curves and draw them; tell the watcher if it is not complete."""
-    from rocking_cli.questions.fragility.results import curve_blocks, write_nrml
-
-    if shown.out is not None:
-        write_table(shown.out, answer.run_blocks())
-    if shown.curves is not None:
-        write_table(shown.curves, curve_blocks(answer, watch))
-    if shown.plot is not None:
-        _draw_all(Path(shown.plot), answer)
-    terminal.show(answer.view, as_json=shown.as_json)
-    if shown.nrml is not None:  # last, so that curves which OpenQuake cannot read have been shown
-        write_nrml(answer, shown.nrml, watch)
-    if answer.failed:
-        terminal.error(f"{answer.failed} runs could not be simulated and are left out of the curves")
-    watch.left_out += not answer.complete
-
-
-def _draw_all(folder: Path, answer: StudyAnswer) -> None:
+def draw_all(folder: Path, answer: Any, watch: Watcher) -> None:
     """Draw the curves of each structure, the comparison of structures, the data behind them, surfaces and rankings."""
     from rocking_cli.plotting.style import plain, write
     from rocking_cli.questions.fragility.picture import LabelledCurve, draw_curves, draw_surface, limit_in_picture
@@ -86,14 +52,14 @@ def _draw_all(folder: Path, answer: StudyAnswer) -> None:
     for ranking in answer.rankings:
         if ranking.measures:
             add(f"{ranking.structure} which measure serves", draw_ranking(ranking))
-    with terminal.progress(len(drawn), "pictures") as advance:
+    with watch.progress(len(drawn), "pictures") as advance:
         for file, figure in drawn.items():
             write(folder / file, figure)
             advance(1)
-    terminal.note(f"wrote {len(drawn)} plots to {folder}")
+    watch.note(f"wrote {len(drawn)} plots to {folder}")
 
 
-def _increments(answer: StudyAnswer, structure: str) -> Figure:
+def _increments(answer: Any, structure: str) -> Figure:
     import numpy as np
 
     from rocking_cli.questions.fragility.definition import SCALE

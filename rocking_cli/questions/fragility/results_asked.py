@@ -1,0 +1,31 @@
+"""What `rocking results` and `rk.results` are asked."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rocking_cli.ask.asked import option
+from rocking_cli.ask.groups import table_file
+from rocking_cli.ask.kinds import FILE
+from rocking_cli.questions.fragility.asked import OfCurves
+
+
+class ResultsAsked(OfCurves):
+    """Summarise and export the fragility curves and runs of a study, from its store.
+
+    The command needs no other file of the study, and can read the store while the study runs.
+
+    \b
+    Example:
+      rocking results study.db
+      rocking results study.db --out runs.parquet --plot pictures
+      rocking results study.db --curves curves.csv --nrml fragility.xml
+      rocking results study.db --rank-measures
+    """
+
+    store: str | Path = option(
+        "The store, which may be that of a study that is still running.",
+        FILE, where="input", default=..., typed="STORE.db",
+    )  # fmt: skip
+    out: Path | None = table_file("Write all runs (.csv or .parquet).", ".csv", ".parquet")
+    curves: Path | None = table_file("Write the curves, one line per intensity (.csv or .parquet).", ".csv", ".parquet")

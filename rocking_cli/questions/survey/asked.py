@@ -1,0 +1,109 @@
+"""What `rocking survey` and `rk.survey` are asked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, Self
+
+from pydantic import model_validator
+
+from rocking_cli.ask.asked import Idle, option
+from rocking_cli.ask.groups import (
+    DEVIATIONS,
+    IDENTITY,
+    NEIGHBOURS,
+    Around,
+    Identity,
+    InLanguage,
+    MaybeUnderMotions,
+    OfJoints,
+    WithTable,
+    plot_file,
+    table_file,
+)
+from rocking_cli.ask.kinds import FOLDER, SITE, WHOLE, output
+from rocking_cli.errors import InputError, named
+from rocking_cli.names import MAX_NEIGHBOURS
+
+if TYPE_CHECKING:
+    from rocking_cli.ask.given import SiteLike, StructureLike
+    from rocking_cli.questions.survey.structure_table import StructureTable
+else:  # heavy to import, and not checked by the model
+    SiteLike = StructureLike = StructureTable = Any
+
+
+class SurveyAsked(MaybeUnderMotions, OfJoints, Around, InLanguage, Identity, WithTable):
+    """Rank many structures, one per table row, by vulnerability.
+
+    The columns of the table are `mechanism`, `name` and fields of mechanisms, with dots for nested fields
+    (loads.0.mass, ties.bar.stiffness); each row may have any mechanism. A column `file` names YAML files, whose fields
+    the other columns replace. An empty cell means that the field is not given; give units in cells (800 mm) or in
+    headings (width [mm]). TABLE.csv may be - for standard input.
+
+    Without ground motions, structures are ranked by their uplift acceleration. With ground motions, they are ranked by
+    the share of neighbouring motions that overturn them and then by their largest peak rotation, both from the
+    nonlinear model; a motion whose outcome is unknown, because a joint opens or slides that the model keeps closed,
+    counts as overturning. Of two polarities, the worse governs. At a site, each is verified by its code and ranked by
+    its ratio of capacity to demand.
+
+    A block that is alone, and less deep than wide, is ranked as it rocks about its depth, unless its column plane says
+    width.
+
+    A row that cannot be used is reported with its line number and skipped, and the exit code is 5.
+
+    \b
+    Example:
+      rocking survey parapets.csv --page parapets.html
+      rocking survey parapets.csv --record "records/*.AT2" --polarity both --out ranked.csv
+    """
+
+    structures: str | Path | Mapping[str, Sequence[Any]] | StructureTable | Sequence[StructureLike] = option(
+        "A table of structures as a CSV file, or its columns by their headings (a frame of pandas is one); or "
+        "structures, or their YAML files.",
+        where="input", default=..., typed="TABLE.csv",
+    )  # fmt: skip
+    site: SiteLike | None = option(
+        "Site file, or its fields in Python: each structure is verified by its code and ranked by the ratio of "
+        "capacity to demand. `rocking new site` prints a template.",
+        SITE,
+    )
+    neighbours: int | None = option(
+        "Number of neighbouring motions to simulate as well, 0 for none.", WHOLE, ge=0, le=MAX_NEIGHBOURS,
+        usual="200, or as many as take about a minute",
+    )  # fmt: skip
+    top: int = option("Number of structures to show.", WHOLE, default=20, ge=1)
+    jobs: int | None = option("Number of processor cores to use.", WHOLE, ge=1, usual="one for each processor")
+    in_processes: bool = option(
+        "Share the work of thousands of structures among processes; a script then needs "
+        '`if __name__ == "__main__"`.',
+        default=False, where="Python", on_terminal=True,  # a command is always such a script
+    )  # fmt: skip
+    out: Path | None = table_file("Write all rows in ranked order (.csv or .parquet).", ".csv", ".parquet")
+    page: Path | None = option(
+        "Write an HTML page with a plot, a map and all rows in a sortable table.", output(".html")
+    )
+    map: Path | None = option(
+        "Draw a map of the structures, by the columns longitude and latitude (.png, .svg or .pdf).",
+        output(".png", ".svg", ".pdf"),
+    )
+    sheets: Path | None = option(
+        "Write the calculation sheet of each structure into this folder; it needs a site.", FOLDER
+    )
+    sheet_format: Literal["html", "docx", "pdf"] = option(
+        "Format of the sheets (docx and pdf need an extra package; a browser does for pdf).", default="html"
+    )
+    plot: Path | None = plot_file("Plot the uplift acceleration against the frequency parameter")
+    idle = (
+        Idle("without calculation sheets: give {sheets}", lambda asked: asked.sheets is None,
+             ("sheet_format", *IDENTITY)),
+        Idle("without ground motions", lambda asked: not asked.ground_motions, ("polarity", "opening", *NEIGHBOURS)),
+        Idle("without neighbours", lambda asked: asked.neighbours == 0, DEVIATIONS),
+    )  # fmt: skip
+
+    @model_validator(mode="after")
+    def _sheets_of_a_site(self) -> Self:
+        """Refuse sheets without a site."""
+        if self.sheets is not None and self.site is None:
+            raise InputError(f"{named('sheets')} requires a site to verify at: give {named('site')}")
+        return self
