@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 
 PROJECT = Path(__file__).resolve().parents[1]
 LISTED = Path(__file__).with_suffix(".toml")
-LAYERS = ("core", "dynamics", "studies", "structure.py", "processing", "mechanisms")
+LAYERS = ("core", "dynamics", "studies", "structure.py", "names.py", "processing", "mechanisms")
 KERNELS = ("rocking_cli.dynamics.kernels", "rocking_cli.dynamics.pulse_motion")
 NEIGHBOURS = 20
 SURE = (0.05, 0.95)  # shares of overturning neighbours below and above which a verdict is sure
@@ -299,8 +299,8 @@ def case(number: int) -> Case:
     level, period = lam * dice.of(1, 6), dice.of(0.15, 2)
     if dice.random() < 0.6:
         shape = dice.choice(["sine", "cosine", "ricker", "half_sine"])
-        return Case(make.__name__[1:], fields, {"motion": f"{shape}:{level:.3f}g:{period}s"})
-    ask: dict[str, Any] = {"motion": str(dice.choice(_records())), "target_pga": round(level, 3)}
+        return Case(make.__name__[1:], fields, {"motions": f"{shape}:{level:.3f}g:{period}s"})
+    ask: dict[str, Any] = {"motions": str(dice.choice(_records())), "target_pga": round(level, 3)}
     if dice.random() < 0.3:
         ask["vertical"] = str(PROJECT / "examples" / "accel_transverse.csv")
     return Case(make.__name__[1:], fields, ask)
@@ -348,7 +348,7 @@ def ask(number: int) -> tuple[Verdict, str]:
 
     given = case(number)
     try:
-        answer = rk.respond(_made(given), models="nonlinear", neighbours=NEIGHBOURS, **given.ask)
+        answer = rk.respond(_made(given), model="nonlinear", neighbours=NEIGHBOURS, **given.ask)
     except rk.RockingError as error:
         return Verdict(refused=str(error)), ""
     share = answer.conclusion.share

@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from rocking_cli.ask.read import read_record
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
-from rocking_cli.excitation.records import read_record
 from tests.conftest import FORMATS, RECORDS
 
 OUTCOMES = ("refused", "doubted", "same", "silent")

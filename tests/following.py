@@ -2,7 +2,8 @@
 
 from rocking_cli.names import OPENING
 from rocking_cli.structure import Structure
-from rocking_cli.studies import engines
+from rocking_cli.studies.conditions import Conditions
+from rocking_cli.studies.engines import EXACT
 
 _recent: list[Structure] = []
 
@@ -18,7 +19,12 @@ def structure_of(mechanism, opening=OPENING):
 
 
 def respond(mechanism, motion=None, opening=OPENING, **how):
-    return engines.respond(structure_of(mechanism, opening), motion, **how)
+    return EXACT.respond(Conditions(structure_of(mechanism, opening), **how), motion)
+
+
+def conditions(mechanism, around=None, opening=OPENING, model="nonlinear", **how):
+    more = {} if around is None else {"around": around}
+    return Conditions(structure_of(mechanism, opening), (model,), **more, **how)
 
 
 def build_model(mechanism, name, opening=OPENING):

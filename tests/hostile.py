@@ -96,7 +96,7 @@ def _spoil(draw, text: str) -> str:
 SLOW = {"report", "animate", "fragility", "results"}  # a process of seconds, even on good input
 GOOD = {
     "ag": "0.6g", "period": "0.8", "omega": "0.5:10", "a": "2", "eta": "0.9", "shape": "sine", "sizes": "1:10:6",
-    "slenderness": "0.2,0.3", "fractiles": "0.16,0.84", "models": "linear1,nonlinear", "model": "nonlinear",
+    "slenderness": "0.2,0.3", "fractiles": "0.16,0.84", "model": "nonlinear",
     "at": "0.5", "release": "0.5", "points": "8", "jobs": "1", "channel": "1", "dt": "0.01", "units": "g",
     "speed": "2", "fps": "5", "rtol": "1e-6", "tail": "2", "scale": "1.5", "target_pga": "0.5",
 }  # fmt: skip

@@ -7,7 +7,6 @@ import cmath
 from itertools import pairwise
 
 import numpy as np
-import scipy.sparse as sparse
 from scipy.optimize import linprog
 
 HIGHS = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10}
@@ -128,46 +127,13 @@ class Voussoirs:
         self.weight = 1 / n
         self.centroid = first / area * np.exp(1j * (np.pi / 2 + beta / 2 - self.psi[1:]))
 
-    def static_lambda(self):
+    def thrust(self):
         """Greatest horizontal multiplier for which equilibrium is possible with the thrust inside every joint.
 
-        Unknowns: normal force N >= 0, shear T and moment M about the joint's middle, as the left side acts on the
-        right, for each joint, and lambda. Three equations of equilibrium a voussoir; |M| <= N t/2 a joint.
-        Returns lambda, or "infeasible" or "unbounded".
-        """
-        n, w = self.n, self.weight
-        N, T, M, last = np.arange(n + 1), np.arange(n + 1) + n + 1, np.arange(n + 1) + 2 * (n + 1), 3 * (n + 1)
-        rows, columns, values, right = [], [], [], []
-
-        def add(row, column, value):
-            rows.append(row), columns.append(column), values.append(value)
-
-        for k in range(n):
-            for joint, sign in ((k, 1.0), (k + 1, -1.0)):
-                t, r = self.tangent[joint], self.radial[joint]
-                add(3 * k, N[joint], sign * t.real), add(3 * k, T[joint], sign * r.real)
-                add(3 * k + 1, N[joint], sign * t.imag), add(3 * k + 1, T[joint], sign * r.imag)
-                # N acts clockwise about the centre at the radius 1 + M/N; T has no arm.
-                add(3 * k + 2, N[joint], -sign), add(3 * k + 2, M[joint], -sign)
-            add(3 * k, last, w)
-            add(3 * k + 2, last, -w * self.centroid[k].imag)
-            right += [0.0, w, w * self.centroid[k].real]
-        equal = sparse.csr_array((values, (rows, columns)), shape=(3 * n, last + 1))
-        eye, none = sparse.eye_array(n + 1), sparse.csr_array((n + 1, n + 1))
-        zero = sparse.csr_array((n + 1, 1))
-        half = -self.ratio / 2 * eye
-        inside = sparse.vstack([sparse.hstack([half, none, eye, zero]), sparse.hstack([half, none, -eye, zero])])
-        bounds = [(0, None)] * (n + 1) + [(None, None)] * (2 * n + 2) + [(0, None)]
-        cost = np.zeros(last + 1)
-        cost[last] = -1.0
-        return _solve(cost, inside, np.zeros(2 * n + 2), equal, np.array(right), bounds)[0]
-
-    def thrust(self):
-        """The same programme in four unknowns: the reaction at the left springing (force, moment) and lambda.
-
-        The force and moment at a joint follow by summing the loads to its left: much faster for many joints.
-        Returns lambda and the collapse mechanism: the (joint, face) whose constraints carry the dual solution,
-        from the left springing; "I" is a hinge on the intrados. Both faces of one joint mean that it parts.
+        Four unknowns: the reaction at the left springing (force, moment) and lambda. The force and moment at a joint
+        follow by summing the loads to its left. Returns lambda, or "infeasible" or "unbounded", and the collapse
+        mechanism: the (joint, face) whose constraints carry the dual solution, from the left springing; "I" is a hinge
+        on the intrados. Both faces of one joint mean that it parts.
         """
         w, n = self.weight, self.n
         count = np.arange(n + 1)
@@ -184,16 +150,16 @@ class Voussoirs:
         lower = moment + (1 - self.ratio / 2) * normal
         rows = np.concatenate([upper.T, lower.T])
         free = [(None, None)] * 3 + [(0, None)]
-        value, duals = _solve(np.array([0.0, 0.0, 0.0, -1.0]), rows[:, :4], -rows[:, 4], None, None, free)
+        value, duals = _solve(np.array([0.0, 0.0, 0.0, -1.0]), rows[:, :4], -rows[:, 4], free)
         if isinstance(value, str):
             return value, []
         active = np.flatnonzero(np.abs(duals) > 1e-9 * np.abs(duals).max())
         return value, sorted((int(k % (n + 1)), "EI"[k // (n + 1)]) for k in active)
 
 
-def _solve(cost, inside, most, equal, right, bounds):
+def _solve(cost, inside, most, bounds):
     for presolve in (True, False):  # with presolve HiGHS may fail to tell infeasible from unbounded
-        answer = linprog(cost, inside, most, equal, right, bounds, options={**HIGHS, "presolve": presolve})
+        answer = linprog(cost, inside, most, bounds=bounds, options={**HIGHS, "presolve": presolve})
         if answer.status in (0, 2, 3):
             break
     if answer.status == 0:

@@ -17,11 +17,11 @@ from matplotlib.ticker import NullFormatter
 from PIL import Image, ImageFilter
 from scipy.special import ndtr
 
+from rocking_cli.ask.read import read_record
 from rocking_cli.core.structure_file import load_structure
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records import read_record
 from rocking_cli.plotting.structure import draw_structure
 from rocking_cli.questions.fragility.assess import Bivariate
 from rocking_cli.questions.fragility.curves import fit_curve, fit_surface
@@ -73,7 +73,9 @@ def _margin() -> Figure:
     shares = np.clip(2 * np.log(factors), 0, 1) * np.where((factors > 2) & (factors < 2.6), 0.3, 1.0)  # and an island
     other = np.clip(np.log(factors / 0.6), 0, 0.95)
     none = np.zeros(factors.size)
-    found = [Margin(Neighbourhood(), 0.4, factors, each, none, pga=0.3, polarities=(1, -1)) for each in (shares, other)]
+    found = [
+        Margin(Neighbourhood(), 0.4, factors, each, none, pga_g=0.3, polarities=(1, -1)) for each in (shares, other)
+    ]
     return draw_margins({"one": found[0], "other": found[1]}, "margin")
 
 

@@ -33,7 +33,7 @@ records:
   - pulse: sine:0.6g:0.8s
   - pulse: ricker:0.6g:1.2s
 levels: {{measure: PGA, least: 0.1, most: 1.2, count: LEVELS}}
-polarities: [1, -1]
+polarity: both
 samples: 4
 method: stripes
 limit_states: [uplift, overturning]
@@ -60,7 +60,7 @@ def command(*arguments: object, code: int | None = None) -> Any:
 
 def shown(text: str) -> dict[str, Any]:
     """What `--json` prints, but where the store is."""
-    return {key: value for key, value in json.loads(text).items() if key != "store"}
+    return {key: value for key, value in json.loads(text).items() if key not in ("store", "given")}
 
 
 def version_of(place: Path) -> int:
@@ -277,7 +277,7 @@ def is_sound(place: Path, sound: Path, told: str) -> None:
 WAITS = """
 import sys, time
 from pathlib import Path
-import rocking_cli.questions.fragility.command, rocking_cli.questions.fragility.study_output
+import rocking_cli.cli.made, rocking_cli.questions.fragility.verb, rocking_cli.questions.fragility.results
 import rocking_cli.questions.fragility.campaign
 import rocking_cli.dynamics.kernels, rocking_cli.questions.fragility.view
 from rocking_cli.cli.main import main

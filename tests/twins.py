@@ -33,7 +33,7 @@ BARE: Mapping[str, tuple[dict[str, Any], Structure]] = {
     ),
     "wall": (
         {"thickness": 0.3, "height": 3.0, "mass": 1500.0},
-        Wall(0.3, 3.0, 1500.0, support="pivot"),
+        Wall(0.3, 3.0, 1500.0),
     ),
     "asymmetric_frame": (
         {"column_width": 1.0, "left_height": 6.0, "right_height": 7.5, "spacing": 8.0, "beam_depth": 1.0,

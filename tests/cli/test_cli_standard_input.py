@@ -8,8 +8,8 @@ import zipfile
 import pytest
 from click.testing import CliRunner
 
+from rocking_cli.ask.kinds import PULSE_AMPLITUDE
 from rocking_cli.cli.main import main
-from rocking_cli.cli.quantities import PULSE_AMPLITUDE, quantity
 from rocking_cli.excitation.pulses import parse_pulse
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
@@ -33,7 +33,7 @@ def piped(*arguments, code=0, content=None):
     [
         ("record", "{}", "--json"),
         ("respond", BLOCK, "--record", "{}", "--model", "linear2", "--neighbours", "2", "--json"),
-        ("spectrum", BLOCK, "--record", "{}", "--sizes", "2:3:2", "--json"),
+        ("spectrum", BLOCK, "--record", "{}", "--sizes", "2:3", "--count", "2", "--json"),
         ("report", BLOCK, "--record", "{}", "--neighbours", "2", "--json"),
     ],
 )
@@ -57,9 +57,6 @@ def test_standard_input_is_there_once():
     found = piped("respond", "--record", "-", "--vertical", "-", code=2)
     assert "standard input: it can be read once only" in found.stderr
     assert found.stdout == ""
-    both = piped("record", "-", "-", "--json", code=5)
-    assert len(both.stdout.splitlines()) == 1
-    assert "once" in both.stderr
 
 
 def test_a_clean_file_of_standard_input(tmp_path):
@@ -86,12 +83,12 @@ def test_a_unit_may_be_spelled_as_in_a_header(said, tmp_path):
 @pytest.mark.parametrize(("said", "pga"), [("mg", 0.002), ("%g", 0.02), ("G", 2.0)])
 def test_parts_of_g(said, pga, tmp_path):
     (tmp_path / "bare.txt").write_text("0 1\n0.01 2\n", encoding="utf-8")
-    assert run_json("record", "bare.txt", "--units", said)["pga"] == pytest.approx(pga, rel=1e-12)
+    assert run_json("record", "bare.txt", "--units", said)["pga_g"] == pytest.approx(pga, rel=1e-12)
 
 
 @pytest.mark.parametrize("said", ["300mg", "30%g", "30 % g", "0.3g", "2.941995m/s^2", "294.1995 cm/s²"])
 def test_an_amplitude_may_be_in_them_too(said):
-    assert quantity(PULSE_AMPLITUDE, said) == pytest.approx(0.3, rel=1e-12)
+    assert PULSE_AMPLITUDE.read(said) == pytest.approx(0.3, rel=1e-12)
 
 
 def test_the_amplitude_of_a_pulse_may_be_in_them_too():
@@ -104,7 +101,7 @@ def test_the_channel_of_an_archive_is_in_the_results(tmp_path):
         archive.writestr("both.csv", "t,x [g],y [g]\n0,1,2\n0.01,1,3\n0.02,1,2\n")
     found = run_json("record", "records.zip", "--channel", "both.csv:y")
     assert (found["name"], found["channel"]) == ("records.zip channel both.csv:y [g]", "both.csv:y [g]")
-    assert found["pga"] == 3.0
+    assert found["pga_g"] == 3.0
     assert "1: north.csv" in run("record", "records.zip", code=2).stderr
 
 

@@ -51,7 +51,7 @@ def test_an_interrupt_ends_any_command_with_130(monkeypatch):
     def interrupt(*arguments, **options):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("rocking_cli.ask.given.structure_of", interrupt)
+    monkeypatch.setattr("rocking_cli.questions.equiv.verb.structure_of", interrupt)
     result = CliRunner().invoke(main, ["equiv", str(EXAMPLES / "block.yaml")])
     assert result.exit_code == 130 and result.stderr == "error: interrupted\n"
 

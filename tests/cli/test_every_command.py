@@ -105,7 +105,7 @@ def walked(line, **files):
     command = line.split()[0]
     assert done.exit_code == 0 or isinstance(done.exception, SystemExit), done.exception
     assert not HARMFUL.search(done.stdout + done.stderr)
-    assert screens.text() or command in PLAIN or "--csv" in line or done.exit_code
+    assert screens.text() or command in PLAIN or "-o -" in line or done.exit_code
     if command == "record" and "*" in line:  # only the table of several is laid out by the width
         screens.out |= {width: StringIO(run(line, env={"COLUMNS": str(width)}).stdout) for width in WIDTHS}
     screens.check()
@@ -189,7 +189,7 @@ HISTORIES = {
     "overturning A --model nonlinear --ag 1.9g:2g --period 0.4:0.41 --points 3 --plot p.svg": (
         lambda found: found["shares"]["unknown"] == 1
     ),
-    "spectrum A N --record R --sizes 2.4:2.5:2 --plot p.svg --out out.csv": (
+    "spectrum A N --record R --sizes 2.4:2.5 --count 2 --plot p.svg --out out.csv": (
         lambda found: [each["unknown"] for each in found["spectra"]] == [[1, 1, 1]] * 2
     ),
     "equivalent_pulses A N --ag 2g --period 0.4 --plot p.svg": (
@@ -208,7 +208,7 @@ WITHOUT_HISTORY = (
     "overturning --compare A N --ag 1.9g:2g --period 0.4:0.41 --points 3 --plot p.svg",
     "record R --plot p.svg",
 )  # fmt: skip
-AS_TEXT = ("record R --fit-pulse --plot p.svg", "equiv A N --csv")
+AS_TEXT = ("record R --fit-pulse --plot p.svg", "equiv A N -o -")
 # These follow no history; `selfcheck` follows those of its blocks. `calibrate` judges no structure: the outcomes of its
 # tests were observed.
 WITHOUT = {
@@ -326,7 +326,7 @@ SHOWN = (
     "respond examples/frame.yaml --record records/*.csv --with-pulse sine --neighbours 5",
     "margin examples/block.yaml --record records/*.csv --neighbours 5 --json",
     "pulse examples/frame.yaml --ag 0.4g --period 0.8 --json",
-    "spectrum examples/block.yaml --record records/*.csv --slenderness 0.2 --sizes 1:6:3 --json",
+    "spectrum examples/block.yaml --record records/*.csv --slenderness 0.2 --sizes 1:6 --count 3 --json",
     "mechanisms block --check --json",
 )
 """What is asked for its tables alone."""

@@ -43,7 +43,7 @@ STRUCTURES = (
     ("verify", "{}", "--site", str(SITE)),
     ("respond", "{}", "--pulse", "sine:0.4g:0.8s", "--neighbours", "0"),
     ("margin", "{}", "--pulse", "sine:0.4g:0.8s", "--neighbours", "2"),
-    ("spectrum", "{}", "--pulse", "sine:0.4g:0.8s", "--sizes", "0.5:2:3"),
+    ("spectrum", "{}", "--pulse", "sine:0.4g:0.8s", "--sizes", "0.5:2", "--count", "3"),
     ("overturning", "{}", "--points", "3"),
     ("draw", "{}", "--plot", "drawn.svg"),
     ("error", "{}"),

@@ -7,6 +7,7 @@ import click
 import pytest
 from click.testing import CliRunner
 
+from rocking_cli.cli.help import OUTPUT_HEADING
 from rocking_cli.cli.main import main
 from rocking_cli.io import files
 from rocking_cli.plugins.rooms import commands
@@ -45,7 +46,7 @@ LINES = {
     ("survey", "--sheets"): f"survey.csv --site {SITE}",
     ("import", "--page"): "box.obj --units m --density 2000",
 }
-INPUTS = ("--record", "--set")
+INPUTS = ("--record",)
 FOLDERS = {"FOLDER": "folder", "PLACE": "folder"}
 
 
@@ -55,7 +56,9 @@ def outputs():
         for option in main.get_command(click.Context(main), command).params:
             named = str(option.metavar)
             if max(option.opts, key=len) not in INPUTS and (
-                "output_path" in getattr(option.callback, "__qualname__", "") or named in FOLDERS
+                "output_path" in getattr(option.callback, "__qualname__", "")
+                or named in FOLDERS
+                or (getattr(option, "heading", "") == OUTPUT_HEADING and named.startswith("FILE"))
             ):
                 yield command, max(option.opts, key=len), FOLDERS.get(named, named.replace(".png", ".svg"))
 

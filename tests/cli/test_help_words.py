@@ -1,15 +1,14 @@
 """The help of every command speaks one language: section 6 of the style guide, checked command by command."""
 
 import re
-from importlib import import_module
 
 import click
 from click.testing import CliRunner
 
-from rocking_cli.cli.help import OPTIONS_HEADING, RECORDS_HEADING, RecordOption
+from rocking_cli.cli.help import CORRECTIONS_HEADING, HEADINGS, RECORDS_HEADING, heading_of
 from rocking_cli.cli.main import main
-from rocking_cli.cli.options import CORRECTIONS
 from rocking_cli.plugins.rooms import commands
+from rocking_cli.processing.reading_options import CORRECTIONS
 
 WIDEST = 60
 NO_VERBS = ("The", "A", "An", "Its", "What", "Which", "Who", "How", "Where", "Whether")
@@ -17,16 +16,24 @@ QUESTIONS = ("Which", "How many", "How much", "What", "Who", "Where", "Whether")
 DIFFERENT = {
     "--a": "of `error` it is a constant acceleration, of the others the amplitude of a pulse",
     "--at": "`draw` draws one rotation, `error` evaluates several",
+    "--count": "of `select` records, of `spectrum` sizes",
     "--check": "`fragility` shows a plan, `mechanisms` checks a mechanism",
     "--language": "of `verify` that of the sheet, of `new` that of the comments of a template",
     "--neighbours": "of `calibrate` they are those of each point of a grid",
+    "--pulse": "of `equivalent_pulses` it is sized, of the others a motion",
     "--points": "of `calibrate`, for one of two ways only",
+    "--site": "of `survey` each structure is verified and ranked there",
     "--slenderness": "of `spectrum` values, of `calibrate` a range of factors",
     "--out": "the text names what is written",
     "--period": "of `record` it is that of a spectrum, of the others that of a pulse",
     "--plot": "the text names what is plotted",
     "--azimuth": "of `import` it is that of a mesh, of the others that of the structure between two components",
+    "--model": "`respond` takes several",
+    "--omega": "of `overturning` a range",
+    "--ag": "of `overturning` a range",
+    "--shape": "of `overturning` that of all pulses",
     "--page": "of `import` it shows a mesh, of `survey` a table",
+    "--restitution": "of `pulse` that of the linear block, of `calibrate` a range, of `equivalent_pulses` whose it is",
     "--scale": "of `import` it is that of a drawing, of the others a factor on motions",
     "--units": "of `import` it is that of a drawing or mesh, of the others that of a record",
     "--state": "of `select` it is that of the target, of the others that of the records",
@@ -35,7 +42,7 @@ DIFFERENT = {
 ONCE = {f"--{name}" for name in CORRECTIONS}
 """Options that are declared as multiple only to refuse a second one by themselves."""
 
-COMMANDS_BY_NAME = {name: import_module(module).command for name, module in commands().items()}
+COMMANDS_BY_NAME = {name: main.get_command(click.Context(main), name) for name in commands()}
 EVERY_OPTION = [
     (name, max(each.opts, key=len), each)
     for name, command in COMMANDS_BY_NAME.items()
@@ -86,27 +93,24 @@ def test_an_option_says_what_its_value_is():
     assert not wrong, "\n".join(wrong)
 
 
-def test_options_of_records_have_a_heading_of_their_own():
+def test_every_option_stands_under_its_heading():
     wrong = []
     for name in commands():
         result = CliRunner().invoke(main, [name, "--help"], env={"COLUMNS": "100"})
-        before, _, after = result.output.partition(f"\n{RECORDS_HEADING}:\n")
-        own = before.partition(f"\n{OPTIONS_HEADING}:\n")[2]
-        if "--help" not in own:
-            wrong.append(f"{name}: --help is not among its {OPTIONS_HEADING}")
-        rows = re.findall(r"^  \S+", own + after, re.MULTILINE)
-        wrong += [f"{name}: {row} is not an option" for row in rows if not row.startswith("  -")]
+        heads = "|".join(HEADINGS)
+        parts = dict(zip(*[iter(re.split(rf"^({heads}):\n", result.output, flags=re.MULTILINE)[1:])] * 2, strict=True))
         for _, option, each in (found for found in EVERY_OPTION if found[0] == name):
-            of_records = isinstance(each, RecordOption)
             listed = re.compile(rf"^  (-\w, )?{option}\b(?!-)", re.MULTILINE)
-            if bool(listed.search(after)) != of_records or bool(listed.search(before)) == of_records:
-                wrong.append(f"{name} {option} is listed under the wrong heading")
+            where = [head for head, rows in parts.items() if listed.search(rows)]
+            wrong += [] if where == [heading_of(each)] else [f"{name} {option} is listed under {where}"]
     assert not wrong, "\n".join(wrong)
 
 
-def test_every_command_that_reads_records_has_the_same_options_for_that():
-    listed = {}
+def test_every_command_that_reads_records_has_the_same_options_for_that_and_one_corrects_them():
+    listed = {RECORDS_HEADING: {}, CORRECTIONS_HEADING: {}}
     for name, option, each in EVERY_OPTION:
-        if isinstance(each, RecordOption) and not option.startswith(("--vertical", "--scale", "--target")):
-            listed.setdefault(name, []).append(option)
-    assert len(listed) > 10 and len({tuple(each) for each in listed.values()}) == 1, listed
+        if heading_of(each) in listed and not option.startswith("--vertical"):
+            listed[heading_of(each)].setdefault(name, []).append(option)
+    reading = listed[RECORDS_HEADING]
+    assert len(reading) > 10 and len({tuple(each) for each in reading.values()}) == 1, reading
+    assert set(listed[CORRECTIONS_HEADING]) == {"record"}

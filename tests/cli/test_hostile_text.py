@@ -107,6 +107,6 @@ def test_a_structure_file_that_a_study_does_not_find_has_a_line(tmp_path):
 @pytest.mark.parametrize("name", ["a\nerror: b\t.yaml", " .yaml", "\x1b.yaml"])
 def test_a_structure_is_called_after_any_file(name, tmp_path):
     (tmp_path / name).write_text(BLOCK, encoding="utf-8")
-    assert len(run("equiv", name, "--csv").stdout.splitlines()) == 3
+    assert len(run("equiv", name, "-o", "-").stdout.splitlines()) == 3
     (tmp_path / name).write_text("mechanism: blok\n", encoding="utf-8")
     assert run("equiv", name, code=2).stderr.startswith(f"error: {one_line(name)}:1:12: mechanism: unknown")

@@ -11,24 +11,42 @@ import pytest
 import yaml
 
 from rocking_cli.cli.main import main
-from tests.cli.test_every_option import BLOCK_FILE, COMMAND_LINES, STUDY, TRACED
+from tests.cli.test_every_option import ACCEL, ACROSS, BLOCK_FILE, DRAWN_FILE, SITE, STUDY, TRACED
 from tests.conftest import EXAMPLES
 
+UNDER = f"{BLOCK_FILE} --record {ACCEL}"
 LINES = {
-    **COMMAND_LINES,
-    **{name: f"{COMMAND_LINES[name]} --neighbours 0" for name in ("respond", "survey")},
-    **{name: f"{COMMAND_LINES[name]} --neighbours 3" for name in ("margin", "score")},
-    "animate": f"{COMMAND_LINES['animate'].replace('.gif', '.html')} --neighbours 0",
-    "calibrate": f"{TRACED} --free {EXAMPLES / 'calibrate' / 'trace.csv'}",
-    "fragility": "study.yaml --store study.db",
-    "overturning": f"{BLOCK_FILE} --points 3",
-    "report": f"{BLOCK_FILE} --out r.html",
-    "verify": f"{BLOCK_FILE} --site {EXAMPLES / 'verify' / 'site.yaml'}",
-    "selfcheck": "--help",
-    "": "--help",
+    "draw": f"{BLOCK_FILE}",
     "equiv": "gone.yaml",
-    "crosscheck": f"{BLOCK_FILE} --record gone.csv",
+    "collapse": f"{BLOCK_FILE}",
+    "import": f"{DRAWN_FILE} --scale 1:50 --depth 1 --density 2000",
+    "error": f"{BLOCK_FILE}",
+    "record": f"{ACCEL}",
+    "select": f"{ACCEL} {ACROSS} --target {EXAMPLES / 'target.csv'} --band 0.2:2 --count 2",
+    "verify": f"{BLOCK_FILE} --site {EXAMPLES / 'verify' / 'site.yaml'}",
+    "demand": f"{SITE}",
+    "survey": f"{EXAMPLES / 'survey' / 'parapets.csv'} --record {ACCEL} --neighbours 0",
+    "design": f"{UNDER} --vary width=0.5:0.9 --until 'lambda>=0.2'",
+    "score": f"{EXAMPLES / 'tests.csv'} --neighbours 3",
+    "calibrate": f"{TRACED} --free {EXAMPLES / 'calibrate' / 'trace.csv'}",
+    "animate": f"{UNDER} --out film.html --neighbours 0",
+    "pulse": f"{BLOCK_FILE} --ag 0.3g --period 0.5",
+    "overturning": f"{BLOCK_FILE} --points 3",
+    "equivalent_pulses": f"{BLOCK_FILE} {BLOCK_FILE} --ag 0.5g --period 0.6",
+    "fragility": "study.yaml --store study.db",
+    "results": "study.db",
+    "mechanisms": "block",
+    "measures": "",
     "new": "block",
+    "info": "",
+    "selfcheck": "--help",
+    "completion": "bash",
+    "respond": f"{BLOCK_FILE} --record {ACCEL} --neighbours 0",
+    "margin": f"{BLOCK_FILE} --record {ACCEL} --neighbours 3",
+    "report": f"{BLOCK_FILE} --out r.html",
+    "": "--help",
+    "crosscheck": f"{BLOCK_FILE} --record gone.csv",
+    "spectrum": f"{UNDER}",
 }
 """A command line of each command, those that take longest in short."""
 ENDS = {

@@ -48,7 +48,11 @@ def test_help_uses_a_wide_terminal(monkeypatch):
 
 @pytest.mark.parametrize(
     "arguments",
-    [("equiv", "--an-option-that-no-command-has"), ("equiv", "a_file_that_is_not_here.yaml"), ("respond", "--dt", "0")],
+    [
+        ("equiv", "--an-option-that-no-command-has"),
+        ("equiv", "a_file_that_is_not_here.yaml"),
+        ("respond", "--dt", "0.01 kilograms"),
+    ],
 )
 def test_errors_fit(arguments, monkeypatch):
     wide = run(*arguments, code=2).stderr
@@ -62,10 +66,10 @@ def test_a_pipe_gets_lines_as_they_are_and_so_do_programs(monkeypatch):
     said = run("equiv", FRAME).stdout
     assert any("frequency parameter: small for large structures" in line for line in said.splitlines())
     assert max(map(len, said.splitlines())) > 100
-    whole = [run(*words).stdout for words in (("equiv", FRAME, "--csv"), ("new", "wall"), ("equiv", FRAME, "--json"))]
+    whole = [run(*words).stdout for words in (("equiv", FRAME, "-o", "-"), ("new", "wall"), ("equiv", FRAME, "--json"))]
     monkeypatch.setenv("COLUMNS", "40")
     assert whole == [
-        run(*words).stdout for words in (("equiv", FRAME, "--csv"), ("new", "wall"), ("equiv", FRAME, "--json"))
+        run(*words).stdout for words in (("equiv", FRAME, "-o", "-"), ("new", "wall"), ("equiv", FRAME, "--json"))
     ]
 
 

@@ -412,10 +412,10 @@ def test_a_structure_whose_faces_at_rest_are_not_known_bears_while_it_rocks_only
 
 def test_neighbours_that_fall_out_of_step_count_though_no_joint_is_checked():
     """Without spacing the joints are not checked; giving less must not make the share look better."""
-    answer = rk.respond(rk.SymmetricFrame(**COLONNADE, columns=4), "sine:0.8g:0.6s", models="nonlinear", neighbours=20)
+    answer = rk.respond(rk.SymmetricFrame(**COLONNADE, columns=4), "sine:0.8g:0.6s", model="nonlinear", neighbours=20)
     (near,) = answer.neighbours.values()
     assert answer["nonlinear"].check is None and near.unknown > 0
     assert (answer.conclusion.share.lowest, answer.conclusion.share.highest) == (near.overturned, near.at_most)
     assert f"the outcome under {round(20 * near.unknown)}" in neighbours_in_words(near)
-    two = rk.respond(rk.SymmetricFrame(**COLONNADE, columns=2), "sine:0.8g:0.6s", models="nonlinear", neighbours=20)
+    two = rk.respond(rk.SymmetricFrame(**COLONNADE, columns=2), "sine:0.8g:0.6s", model="nonlinear", neighbours=20)
     assert all(each.unknown is None for each in two.neighbours.values())

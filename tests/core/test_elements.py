@@ -179,7 +179,7 @@ def test_a_law_from_another_package_is_followed(law, tmp_path):
         lambda t, y: [y[1], -moment(y[0]) / inertia], (0, 9), [tilt, 0.0], events=lands, rtol=1e-12, atol=1e-14
     )
     (first,) = back.t_events[0]
-    history = rk.respond(wall, release=f"{tilt}rad", models="nonlinear")["nonlinear"]
+    history = rk.respond(wall, release=f"{tilt}rad", model="nonlinear")["nonlinear"]
     assert history.first_impact == approx(first, rel=1e-8)
 
 

@@ -42,7 +42,7 @@ ASKED = {
     "survey": ["alone.csv", *PULSE, "--out", "survey.csv"],
     "animate": ["tied.yaml", *PULSE, "--model", "nonlinear", "--neighbours", 2, "--out", "film.html"],
     "overturning": ["tied.yaml", "--model", "nonlinear", *PLANE, "--out", "map.csv"],
-    "spectrum": ["tied.yaml", *PULSE, "--model", "nonlinear", "--sizes", "3.2:3.6:2", "--out", "spectrum.csv"],
+    "spectrum": ["tied.yaml", *PULSE, "--sizes", "3.2:3.6", "--count", "2", "--out", "spectrum.csv"],
     "fragility": ["alone.yaml", "--jobs", 2],
     "pulse": ["tied.yaml", "--ag", "0.6g", "--period", 0.6],
     "equivalent_pulses": ["tied.yaml", "bare.yaml", "--ag", "2g", "--period", 0.4],

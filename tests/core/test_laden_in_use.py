@@ -24,6 +24,7 @@ from rocking_cli.studies.neighbours import Neighbourhood, neighbours
 from rocking_cli.studies.under_pulses import outcomes, parse_shape, pulsed_model
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
+from tests.following import conditions
 from tests.oracle import Ground, simulate
 from tests.twins import shaking, twin
 
@@ -228,19 +229,19 @@ def test_a_restitution_for_all_that_a_structure_cannot_have_is_refused(eta):
     most = min(frame.greatest_restitution(direction) for direction in Direction)
     assert most < 0.999
     with pytest.raises(InputError, match=r"must be at most 0\.99"):
-        Structure(frame).with_eta(eta)
+        Structure(frame).under(restitution=eta)
     with pytest.raises(InputError, match=r"must be at most 0\.99"):
         equivalent_pulses([Structure(frame)], parse_pulse("sine:0.5g:1s"), eta=eta)
-    asked = ("overturning", EXAMPLES / "frame.yaml", "--eta", eta, "--points", 3)
+    asked = ("overturning", EXAMPLES / "frame.yaml", "--restitution", eta, "--points", 3)
     said = " ".join(run(*asked, code=2).stderr.split())
-    assert "restitution: valley bridge" in said and "would add energy at an impact" in said
+    assert "--restitution: valley bridge" in said and "would add energy at an impact" in said
 
 
 def test_one_restitution_for_all_is_the_rebound_of_what_rocks_to_one_side():
     sided = made("block", width=0.6, height=8.0, one_sided="positive")
-    assert shape_of(Structure(sided), "nonlinear", 0.5).structure.model.eta == (0.5, 0.5)
+    assert shape_of(Structure(sided, restitution=0.5), "nonlinear").structure.model.eta == (0.5, 0.5)
     with pytest.raises(InputError, match="less than 1"):
-        shape_of(Structure(sided), "nonlinear", 1.0)
+        shape_of(Structure(sided, restitution=1.0), "nonlinear")
 
 
 LADEN = {"width": 0.6, "height": 8.0, "one_sided": "positive", "density": 1800.0, "depth": 1.0}
@@ -295,7 +296,7 @@ def test_a_rebound_of_nothing_stays_where_it_hits():
     still = made("block", **BLOCK, one_sided="positive", rebound=0.0)
     (model,) = build_models(still, ("nonlinear",))
     motion = shaking(vertical=False)[0]
-    near = neighbours(model, motion, Neighbourhood(20))
+    near = neighbours(conditions(still, Neighbourhood(20)), motion)
     assert near.as_itself == 1.0
     history = follow(model, None, release=0.4)
     assert history.impact_count == 1 and history.at_rest
@@ -313,7 +314,7 @@ levels: {measure: PGA, values: [0.1, 0.3]}
 """
 
 
-@pytest.mark.parametrize(("rebound", "eta"), [("", ""), ("rebound: 0\n", ""), ("", "eta: [0.3, 0.5]\n")])
+@pytest.mark.parametrize(("rebound", "eta"), [("", ""), ("rebound: 0\n", ""), ("", "restitution: [0.3, 0.5]\n")])
 def test_a_study_of_what_rocks_to_one_side(rebound, eta, tmp_path):
     text = f"mechanism: block\nwidth: 0.6\nheight: 8\none_sided: positive\n{rebound}"
     (tmp_path / "facade.yaml").write_text(text, encoding="utf-8")

@@ -1,7 +1,6 @@
 """I, J, G and B of wall and arch from T and V by Lagrange's equation in symbols: no code and no formula is shared.
 
-Each link's rotation is a coordinate of its own, and what holds the links together are constraints with multipliers. The
-same is done for the asymmetric frame, in exact numbers, in test_asymmetric_frame.py.
+Each link's rotation is a coordinate of its own, and what holds the links together are constraints with multipliers.
 """
 
 from dataclasses import dataclass
@@ -56,12 +55,8 @@ def agrees(got, turns, pieces, constraints, phis):
     ]  # fmt: skip
     equations += [constraint.diff(t, 2) for constraint in constraints]
     n = len(turns)
-    x, v, w, ground = (
-        sp.symbols(f"x:{n}"),
-        sp.symbols(f"v:{n}"),
-        sp.symbols(f"w:{n + len(pulls)}"),
-        sp.symbols("ground"),
-    )
+    x, v, w = (sp.symbols(f"{name}:{count}") for name, count in (("x", n), ("v", n), ("w", n + len(pulls))))
+    ground = sp.symbols("ground")
 
     def plain(expression):
         pairs = [(u.diff(t, 2), ground), (u.diff(t), 0), *zip((turn.diff(t, 2) for turn in turns), w, strict=False)]

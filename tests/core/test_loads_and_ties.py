@@ -1,10 +1,12 @@
 """Loads, ties, supports and forces by the tool, held to the printed values and to the second program."""
 
+from decimal import Decimal
 from functools import cache
 from math import atan
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from rocking_cli import load_structure
 from rocking_cli.core import Direction, NoEquivalentBlock, equivalent_block
@@ -12,14 +14,19 @@ from rocking_cli.core.equivalence import both_statics, impulse_velocity
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.history import follow
 from rocking_cli.structure import Structure, build_models
-from tests.mechanisms.test_walls_oracle import G, printed
 from tests.oracle import simulate
 from tests.twins import Twin, shaking, twin
 
+G = 9.80665
 ALPHA = atan(0.2)
 MG = 1000 * G
 PLUS, MINUS = Direction
 TALL = {"width": 1.0, "height": 5.0, "mass": 1000.0}
+
+
+def printed(value, number):
+    """Whether a value is a number as it is printed: to half of its last digit."""
+    return abs(value - float(number)) <= 0.500001 * 10.0 ** Decimal(number).as_tuple().exponent
 
 
 def made(mechanism, **fields):
@@ -45,6 +52,19 @@ def test_a_floor_that_turns_about_its_far_end(floor, sideways):
     assert inertia == pytest.approx(m * (sideways * velocity.real**2 + velocity.imag**2 / 3), rel=1e-9)
     assert weight == pytest.approx(m * velocity.imag / 2, rel=1e-9)
     assert push == pytest.approx(m * sideways * velocity.real, rel=1e-9, abs=1e-9 * m)
+
+
+def test_loads_with_shares_by_hand():
+    # About the right foot x' = y and y' = b - x of a point, b half the width; about the left one x' = -y, y' = b + x.
+    h, v, w, M, x, y = 0.7, 1 / 3, 0.5, 2000.0, 0.2, 4.0
+    load = {"name": "a", "mass": M, "at": [x, y], "horizontal": h, "vertical": v, "weight": w}
+    block = made("block", **TALL, loads=[load])
+    at = block.coefficients(np.zeros(1), PLUS)
+    assert at.I[0] == pytest.approx(26e3 / 3 + M * (h * y**2 + v * (0.5 - x) ** 2), rel=1e-12)
+    assert at.B[0] == pytest.approx(2.5e3 + M * h * y, rel=1e-12)
+    assert at.G[0] == pytest.approx(500 + M * w * (0.5 - x), rel=1e-12)
+    jump = 26e3 / 3 - 500 + M * (h * y**2 - v * (0.5 - x) * (0.5 + x))
+    assert block.eta(PLUS) == pytest.approx(jump / (26e3 / 3 + M * (h * y**2 + v * (0.5 + x) ** 2)), rel=1e-12)
 
 
 # Section 1: the printed values.
@@ -121,14 +141,9 @@ def test_a_facade_that_rocks_outwards_only():
 
 def follow_energy(structure, rate):
     """The rotation at which a rate at rest is used up."""
-    low, high = 0.0, structure.critical_rotation(MINUS)
     energy = structure.kinetic_inertia(np.zeros(1), MINUS)[0] * rate**2 / 2
-    for _ in range(60):
-        middle = (low + high) / 2
-        low, high = (
-            (middle, high) if structure.potential_energy(np.array([middle]), MINUS)[0] < energy else (low, middle)
-        )
-    return low
+    left = lambda phi: structure.potential_energy(np.array([phi]), MINUS)[0] - energy  # noqa: E731
+    return brentq(left, 0.0, structure.critical_rotation(MINUS), xtol=1e-14)
 
 
 def test_until_its_first_impact_it_is_the_two_sided_block():

@@ -52,7 +52,7 @@ def test_commands_that_vary_a_field_take_either_name(tmp_path):
         json.loads(run("design", "w.yaml", "--vary", f"{name}=2:6", "--until", "lambda >= 0.1", "--json").stdout)
         for name in ("length", "depth")
     ]
-    assert found[0]["given"] == found[1]["given"] == 4.0
+    assert found[0]["in_file"] == found[1]["in_file"] == 4.0
     (tmp_path / "t.csv").write_text("mechanism,name,thickness,height,length\nwall,a,0.3,3,4\n")
     assert json.loads(run("survey", "t.csv", "--json").stdout)["bad"] == []
 

@@ -219,7 +219,7 @@ def test_a_steep_bar_that_comes_taut_on_the_way():
     model = build_models(tied, ("nonlinear",))[0]
     history = follow(model, None, release=start / model.phi_cr[0], tail=5.0)
     motion = simulate(second(STEEP, E * 1e-6 / long), release=start, impacts=3)
-    assert any(each.what == "slack" for each in motion.events)
+    assert motion.switched
     for mine, other in zip(history.impacts, motion.impacts, strict=False):
         assert (mine[0], mine[2]) == pytest.approx((other.time, other.before), rel=1e-6)
 

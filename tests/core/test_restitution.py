@@ -247,15 +247,6 @@ def test_arch_is_that_of_impulses(beta, ratio, n, direction):
 # --- what a restitution may do ---------------------------------------------------------------------------------------
 
 
-def test_stocky_blocks_have_no_kinematic_restitution():
-    # sin^2(alpha) = 2/3 at 54.7 deg.
-    for degrees, sign in ((54.0, 1), (54.73, 1), (54.74, -1), (60.0, -1), (80.0, -1)):
-        block = Block(width=2 * sin(radians(degrees)), height=2 * cos(radians(degrees)))
-        assert np.sign(block.restitution_from_kinematics(POSITIVE)) == sign
-        assert block.restitution_from_kinematics(POSITIVE) == approx(1 - 1.5 * sin(radians(degrees)) ** 2, abs=1e-12)
-        assert block.eta(NEGATIVE) == block.restitution_from_kinematics(NEGATIVE)
-
-
 def every_mechanism():
     rng = np.random.default_rng(6000)
     for _ in range(8):

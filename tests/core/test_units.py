@@ -162,7 +162,7 @@ def test_a_plugin_that_fails_is_judged_by_its_fields_alone():
 def test_every_command_warns_of_millimetres(command, tmp_path):
     (tmp_path / "w.yaml").write_text("mechanism: block\nwidth: 800\nheight: 12000\n")
     more = {
-        "respond": ["--release", "0.5"], "spectrum": ["--pulse", "sine:0.1g:1s", "--sizes", "100:200:2"],
+        "respond": ["--release", "0.5"], "spectrum": ["--pulse", "sine:0.1g:1s", "--sizes", "100:200", "--count", "2"],
         "overturning": ["--points", "3"], "pulse": ["--ag", "0.1g", "--period", "1"], "draw": ["--json"],
         "report": ["-o", "r.html"],
     }  # fmt: skip
@@ -185,7 +185,7 @@ def test_the_notes_of_respond_say_it_too(tmp_path):
 def test_a_slenderness_is_an_angle(tmp_path):
     import json
 
-    asked = "--pulse", "sine:0.5g:0.8s", "--sizes", "1:3:2"
+    asked = "--pulse", "sine:0.5g:0.8s", "--sizes", "1:3", "--count", "2"
     spectra = json.loads(run("spectrum", "--slenderness", "0.2,18 deg", *asked, "--json").stdout)["spectra"]
     assert [each["slenderness"] for each in spectra] == [0.2, pytest.approx(pi / 10, rel=1e-15)]
     assert "is a mass, not an angle" in run("spectrum", "--slenderness", "5kg", *asked, code=2).stderr

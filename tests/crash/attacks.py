@@ -31,6 +31,7 @@ BLOCK, SITE, TESTS = f"{EXAMPLES}/block.yaml", f"{EXAMPLES}/verify/site.yaml", f
 STUDY = f"{EXAMPLES}/study/pedestal.yaml"
 LINES = {
     "draw": f"draw {BLOCK} --plot p.svg --dxf d.dxf",
+    "equiv": f"equiv {BLOCK} --out o.csv",
     "collapse": "collapse INPUTS/pillar.yaml --out o.yaml --plot p.png",
     "error": f"error {BLOCK} --plot p.pdf",
     "record": f"record {EXAMPLES}/accel.csv --out o.csv --spectrum s.csv --plot p.png",
@@ -39,7 +40,7 @@ LINES = {
     "--band 0.2:2 --count 2 --out folder --plot p.png",
     "respond": f"respond {BLOCK} {UNDER} --out o.csv --plot p.svg",
     "crosscheck": "crosscheck INPUTS/short.yaml --pulse sine:0.3g:0.2s --out o.csv --plot p.png --animate a.html",
-    "margin": f"margin {BLOCK} {UNDER} --plot p.png",
+    "margin": f"margin {BLOCK} {UNDER} --out o.csv --plot p.png",
     "demand": f"demand {SITE} --out o.csv --plot p.png",
     "verify": f"verify {BLOCK} --site {SITE} --plot p.png --sheet s.html",
     "survey": f"survey INPUTS/table.csv {UNDER} --out o.csv --page p.html --map m.png --plot p.png",
@@ -49,7 +50,7 @@ LINES = {
     "calibrate": f"calibrate {EXAMPLES}/calibrate/block.yaml --free INPUTS/trace.csv --out o.yaml --plot p.png",
     "animate": f"animate {BLOCK} --pulse sine:0.5g:0.3s --neighbours 0 --speed 9 --out a.gif",
     "overturning": f"overturning {BLOCK} --points 3 --out o.csv --plot p.png",
-    "spectrum": f"spectrum {BLOCK} --record {EXAMPLES}/accel.csv --sizes 1:6:3 --out o.csv --plot p.png",
+    "spectrum": f"spectrum {BLOCK} --record {EXAMPLES}/accel.csv --sizes 1:6 --count 3 --out o.csv --plot p.png",
     "equivalent_pulses": f"equivalent_pulses {BLOCK} {EXAMPLES}/frame.yaml --ag 0.5g --period 0.6 --out o.csv "
     "--plot p.png",
     "fragility": f"fragility {STUDY} --store s.db --jobs 1 --plot folder --nrml n.xml",
@@ -78,7 +79,7 @@ INPUTS = {
     "short.yaml": "mechanism: block\nwidth: 1\nheight: 2\nname: short\n",
     "table.csv": "mechanism,name,width,height,longitude,latitude\nblock,low,0.5,1.5,10,45\nblock,high,0.4,2,10.1,45\n",
     "free.yaml": "structures: [short.yaml]\nrecords: [{pulse: sine:0.9g:0.3s}]\nmethod: stripes\nengine: blocks\n"
-    "levels: {measure: PGA, least: 0.3, most: 0.6, count: 2}\nlimit_states: [overturning]\npolarities: [1]\n",
+    "levels: {measure: PGA, least: 0.3, most: 0.6, count: 2}\nlimit_states: [overturning]\npolarity: 1\n",
 }
 LEFT = re.compile(r"\..+\.[0-9a-f]{16}(\.[\w-]+)?")
 """What a killed command may leave until the next one: a file, or a folder, that is not whole."""

@@ -91,11 +91,11 @@ def test_what_needs_more_friction_than_masonry_has_is_not_called_valid(pulse, tm
     )
     said = joints_in_words(history, found.assumed_friction)
     assert assumes in said and not VALID.search(said)
-    answer = rk.respond(SQUAT, pulse, models="nonlinear", neighbours=0)
+    answer = rk.respond(SQUAT, pulse, model="nonlinear", neighbours=0)
     whole = " ".join(answer.sentences)
     assert whole.count(assumes) == 1 and not VALID.search(whole)
     assert assumes in answer.to_dict()["verdict"]
-    film = rk.animate(SQUAT, pulse, str(tmp_path / "x.html"), neighbours=0).film
+    film = rk.animate(SQUAT, pulse, out=tmp_path / "x.html", neighbours=0).film
     assert assumes in verdict_of(film) and not VALID.search(verdict_of(film))
     assert replace(found, friction=10.0).assumed_friction is None
 

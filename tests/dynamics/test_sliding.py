@@ -16,6 +16,7 @@ from rocking_cli.errors import MechanismError
 from rocking_cli.structure import build_models
 from rocking_cli.studies.neighbours import Neighbourhood, neighbours
 from rocking_cli.views.verdict import why_unknown
+from tests.following import build_model, conditions
 
 G = 9.80665
 
@@ -169,16 +170,17 @@ def test_ties_and_walls_at_its_side_leave_a_body_as_it_was() -> None:
 
 
 def test_each_neighbour_is_judged_with_its_own_slenderness() -> None:
-    (model,) = build_models(made(width=0.4, height=0.9, friction=0.42), ("nonlinear",))
+    sliding = made(width=0.4, height=0.9, friction=0.42)
+    model = build_model(sliding, "nonlinear")
     motion = GroundMotion("step", 0.01, np.full(60, 0.9 * G), unit="m/s2")
-    found = neighbours(model, motion, Neighbourhood(1000))
+    found = neighbours(conditions(sliding, Neighbourhood(1000)), motion)
     expected = NormalDist().cdf(log(0.42 / (0.4 / 0.9)) / 0.10)
     assert found.unknown == pytest.approx(expected, abs=0.03)
     assert found.slides == pytest.approx(1 - expected, abs=0.03)
     assert (found.overturned, found.at_most) == (0.0, found.unknown)
     two = respond_many([model], [motion], Runs.of(0, 0, slender=[0.94, 0.95]))  # 0.42 h/b is .945
     assert two.unknown.tolist() == [True, False]
-    exact = neighbours(model, motion, Neighbourhood(100, slenderness=0.0))
+    exact = neighbours(conditions(sliding, Neighbourhood(100, slenderness=0.0)), motion)
     assert (exact.unknown, exact.slides) == (0.0, 1.0)
     # x = (a - mu g) t^2/2 (1 + (a - mu g)/(mu g)) for each amplitude.
     draws = Neighbourhood(100, slenderness=0.0).drawn(model)

@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rocking_cli.ask.read import read_record
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY as G
 from rocking_cli.excitation.base import Doubt, GroundMotion
 from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
-from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.records import usc as usc_v1
 from rocking_cli.excitation.records.record_units import Asked
 from tests.cli.test_cli import run, run_json

@@ -1,13 +1,15 @@
 """What instruments write: displacements, velocities, volts, counts, uneven clocks."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from rocking_cli.ask.read import read_record
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.excitation.records import read_record
+from rocking_cli.excitation.records import read_measured
 from rocking_cli.excitation.records.record_units import Gain
 from rocking_cli.processing.reading import Reading
 from rocking_cli.processing.steps import parse_steps
@@ -108,13 +110,16 @@ class TestDerivatives:
         [
             ("t [s],u [mm]", "displacement", "m", "the header says the unit is mm, but `units` says m"),
             ("t [s],v [cm/s]", "displacement", "mm", "are in cm/s, a unit of velocities"),
-            ("t [s],v [cm/s]", "displacement", None, "is it `from` velocity"),
+            ("t [s],v [cm/s]", "displacement", None, "is it `quantity` velocity"),
         ],
     )
     def test_a_header_that_says_something_else(self, tmp_path, header, quantity, units, words):
         file = write(tmp_path / "x.csv", header, T, U)
         with pytest.raises(InputError, match=words):
             read_record(file, quantity=quantity, units=units)
+        asked = ("--from", quantity, *(("--units", units) if units else ()))
+        typed = words.replace("`quantity`", "--from").replace("`units`", "--units")
+        assert typed in run("record", file, *asked, code=2).stderr
 
     def test_a_default_unit_of_accelerations_says_nothing_of_others(self, moved, tmp_path, monkeypatch):
         monkeypatch.setenv("ROCKING_UNITS", "g")
@@ -172,7 +177,7 @@ class TestGain:
         motion = read_record(file, gain="3 m/s2/V")
         assert motion.acceleration == pytest.approx(ACC)
         assert motion.processing == ("gain 3 m/s2/V",)
-        with pytest.raises(InputError, match="but `from` says velocity"):
+        with pytest.raises(InputError, match="but `quantity` says velocity"):
             read_record(file, gain="3 m/s2/V", quantity="velocity")
         with pytest.raises(InputError, match="leave `units` or `gain` out"):
             read_record(file, gain="3 m/s2/V", units="g")
@@ -222,12 +227,12 @@ class TestUnevenTimes:
 
     def test_they_are_refused_unless_asked_for(self, jittered):
         file, _ = jittered
-        with pytest.raises(InputError, match="`resample` puts it on an even grid"):
+        with pytest.raises(InputError, match=r"`rk.read_record\(FILE, resample=\S+\)` puts it on an even grid"):
             read_record(file)
 
     def test_a_grid_is_put_over_them(self, jittered):
         file, t = jittered
-        motion = read_record(file, uneven=True)
+        motion = read_measured(file, uneven=True)[0]
         assert motion.dt == pytest.approx(DT, rel=0.1)
         wanted = np.interp(motion.time, t, np.interp(t, T, ACC))
         assert motion.acceleration == pytest.approx(wanted)
@@ -242,25 +247,26 @@ class TestUnevenTimes:
         file = write(tmp_path / "three.csv", "# as the logger wrote it", t, a, 2 * a)
         with pytest.raises(InputError):
             read_record(file, channel="column 2", units="m/s2")
-        motion = read_record(file, channel="column 2", units="m/s2", uneven=True)
+        motion = read_measured(file, channel="column 2", units="m/s2", uneven=True)[0]
         assert motion.acceleration == pytest.approx(np.interp(motion.time, t, a))
 
     def test_a_gap_is_not_filled_with_a_line(self, tmp_path):
         file = write(tmp_path / "gap.csv", "t [s],a [g]", np.array([0, 0.01, 0.02, 1e9]), np.zeros(4))
         with pytest.raises(InputError, match=r"gap.csv:5: gap in the record from 0.02 to 1e\+09 s"):
-            read_record(file, uneven=True)
+            read_measured(file, uneven=True)[0]
 
     def test_time_must_still_go_on(self, tmp_path):
         file = write(tmp_path / "back.csv", "t [s],a [g]", np.array([0, 0.1, 0.05, 0.2]), np.zeros(4))
         with pytest.raises(InputError, match="time does not increase"):
-            read_record(file, uneven=True)
+            read_measured(file, uneven=True)[0]
 
     def test_the_command_takes_them_with_a_grid(self, jittered):
         file, _ = jittered
         data = run_json("record", file, "--resample", "0.005")
         assert data["dt"] == pytest.approx(0.005)
         assert "uneven" in [each["kind"] for each in data["warnings"]]
-        assert "--resample puts it on an even grid" in run("record", file, code=2).stderr
+        said = run("record", file, code=2).stderr
+        assert re.search(r"`rocking record FILE --resample \S+ --out PREPARED.csv` puts it on an even grid", said)
 
 
 @NEEDS_EXPERIMENTS
@@ -275,7 +281,7 @@ class TestLaboratoryFile:
             "record", RAW, "--channel", "column 2", "--units", "g", "--baseline", "linear", "--highpass", "0.1",
             "--lowpass", "25",
         )  # fmt: skip
-        assert data["pga"] == pytest.approx(float(self.row()["pga_acc_g"]), rel=0.02)
+        assert data["pga_g"] == pytest.approx(float(self.row()["pga_acc_g"]), rel=0.02)
         assert data["processing"] == ["baseline linear", "highpass 0.1", "lowpass 25"]
 
     def test_its_transducer_of_displacement(self):

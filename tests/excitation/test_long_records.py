@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rocking_cli.ask.read import read_record
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.records import lines as module
-from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.records.lines import Lines
 
 COUNT = 300_000

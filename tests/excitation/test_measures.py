@@ -12,12 +12,12 @@ from hypothesis.extra.numpy import arrays
 from numpy.polynomial import Polynomial
 from scipy.integrate import quad
 
+from rocking_cli.ask.read import read_record
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY as G
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.doubts import coarse_for, doubts
 from rocking_cli.excitation.measures import arias_build_up, measure
-from rocking_cli.excitation.records import read_record
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS
 
 MOTIONS = arrays(np.float64, st.integers(2, 30), elements=st.floats(-10, 10).map(lambda x: round(x, 3)))
@@ -134,7 +134,7 @@ class TestScaling:
     @pytest.mark.parametrize("factor", [-1.0, 3.0, 1e-100, 1e120])
     def test_measures_follow_a_factor(self, factor):
         one, other = measure(NOISE), measure(NOISE.scaled(factor))
-        for name in ("pga", "pgv", "pgd", "rms"):
+        for name in ("pga_g", "pgv", "pgd", "rms"):
             assert getattr(other, name) == pytest.approx(abs(factor) * getattr(one, name))
         assert other.mean == pytest.approx(factor * one.mean)
         assert other.arias == pytest.approx(factor * factor * one.arias)
@@ -142,7 +142,7 @@ class TestScaling:
 
     def test_no_motion_has_no_duration(self):
         found = measure(GroundMotion("nothing", 0.01, np.zeros(10), unit="m/s2"))
-        assert found.pga == found.pgv == found.pgd == found.arias == 0
+        assert found.pga_g == found.pgv == found.pgd == found.arias == 0
         assert found.significant_duration is None and found.mean_period is None
 
     def test_beyond_the_range_of_numbers(self):

@@ -7,7 +7,8 @@ import sys
 import numpy as np
 import pytest
 
-from rocking_cli.excitation.records import formats, read_record
+from rocking_cli.ask.read import read_record
+from rocking_cli.excitation.records import formats
 from tests.conftest import PROJECT
 from tests.excitation import networks
 from tests.excitation.networks import COMPONENTS, MADE, afad, asa, cwa, geonet_v1a, jma
@@ -19,16 +20,6 @@ NAMES = {
     "cwa": ("U", "N", "E"),
     "jma": ("NS", "EW", "UD"),
 }
-
-
-@pytest.fixture
-def write(tmp_path):
-    def write(content: str):
-        path = tmp_path / "record.txt"
-        path.write_text(content, encoding="latin-1")
-        return path
-
-    return write
 
 
 @pytest.mark.parametrize("name", MADE)
@@ -157,7 +148,7 @@ def test_reading_a_file_imports_the_reader_of_no_other_format(name, tmp_path):
     path = tmp_path / "record.dat"
     path.write_bytes(samples()[name].content)
     code = (
-        "import sys; from rocking_cli.excitation.records import read_record, formats; "
+        "import sys; from rocking_cli import read_record; from rocking_cli.excitation.records import formats; "
         f"read_record({str(path)!r}, channel={'1' if name == 'jma' else None!r}); "
         "modules = {each.module for each in vars(formats).values() if isinstance(each, formats.Format)}; "
         "loaded = sorted(each for each in modules if formats.__package__ + '.' + each in sys.modules); "

@@ -5,8 +5,9 @@ import warnings
 import numpy as np
 import pytest
 
+from rocking_cli.ask.read import read_record
 from rocking_cli.excitation.base import NOT_SAID, Origin
-from rocking_cli.excitation.records import origins, read_record
+from rocking_cli.excitation.records import origins
 from tests.cli.test_cli import run, run_json
 from tests.conftest import record
 from tests.excitation import test_record_formats as made

@@ -7,23 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rocking_cli.ask.read import read_record
 from rocking_cli.errors import DoubtWarning
 from rocking_cli.excitation.base import STANDARD_GRAVITY as G
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records import read_measured, read_record
+from rocking_cli.excitation.records import read_measured
 from rocking_cli.excitation.records.by_obspy import form_of
 from tests.excitation.test_record_formats import VALUES, columns, cosmos, csmip, esm, geonet, problem, smc
 from tests.questions.verify.test_grid import workbook
-
-
-@pytest.fixture
-def write(tmp_path):
-    def write(content: str | bytes) -> Path:
-        path = tmp_path / "record.txt"
-        path.write_bytes(content.encode() if isinstance(content, str) else content)
-        return path
-
-    return write
 
 
 def peer(series: str) -> str:
@@ -54,7 +45,7 @@ def test_a_file_of_another_quantity_says_the_way_in_which_it_is_then_read(name, 
     content, quantity, size = HELD[name]
     path = write(content)
     found = problem(path)
-    assert f"`from` {quantity}" in found.hint or "by `from`" in found.hint
+    assert f"`quantity` {quantity}" in found.hint or "by `quantity`" in found.hint
     measured, of = read_measured(path, quantity=quantity)
     assert of == quantity
     np.testing.assert_allclose(measured.acceleration, size * VALUES, rtol=1e-7)
@@ -62,7 +53,7 @@ def test_a_file_of_another_quantity_says_the_way_in_which_it_is_then_read(name, 
         inner = size * (VALUES[2:] - VALUES[:-2]) / 0.02
         np.testing.assert_allclose(read_record(path, quantity=quantity).acceleration[1:-1], inner, rtol=1e-6)
     other = "displacement" if quantity == "velocity" else "velocity"
-    assert "`from`" in problem(path, quantity=other).hint
+    assert "`quantity`" in problem(path, quantity=other).hint
 
 
 @pytest.mark.parametrize(
@@ -90,7 +81,7 @@ def test_velocities_beside_the_accelerations(content, size, write):
 )
 def test_accelerations_are_not_read_as_velocities(content, write):
     found = problem(write(content), quantity="velocity", units="cm/s")
-    assert "a unit of accelerations" in found.message and found.hint == "is it `from` acceleration?"
+    assert "a unit of accelerations" in found.message and found.hint == "is it `quantity` acceleration?"
 
 
 def test_a_velocity_has_no_unit_of_acceleration(write):

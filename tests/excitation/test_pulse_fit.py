@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy.optimize import differential_evolution, minimize
 
+from rocking_cli.ask.read import read_record
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulse_fit import CRITERIA, FITTED, PulseFit, _PulseSearch, fit_pulse, fit_pulses
 from rocking_cli.excitation.pulses.shapes import MavroeidisPapageorgiou, Ricker, Sine
-from rocking_cli.excitation.records import read_record
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS
 
 RINALDI = RECORDS / "Rinaldi228.AT2"

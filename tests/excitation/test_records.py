@@ -14,9 +14,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from rocking_cli.ask.read import read_record
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
-from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.records.record_units import canonical
 from rocking_cli.excitation.records.text import on_grid
 from tests.conftest import NEEDS_RECORDS, PROJECT, record
@@ -25,18 +25,6 @@ EXAMPLES = PROJECT / "examples"
 G = STANDARD_GRAVITY
 
 UNTIMED = settings(deadline=None)  # they write files: a slow disk is no failure
-
-
-@pytest.fixture
-def write(tmp_path):
-    """Write a file and return its path; text with exactly the newlines given."""
-
-    def write(content: str | bytes, name: str = "record.txt") -> Path:
-        path = tmp_path / name
-        path.write_bytes(content if isinstance(content, bytes) else content.encode())
-        return path
-
-    return write
 
 
 def problems(path: Path, **options) -> tuple[Problem, ...]:
@@ -184,25 +172,8 @@ def test_a_long_record_is_read_quickly(write):
         *[(s, "m/s2") for s in ("m/sec/sec", "m/sec**2", "m.s-2")],
         *[(s, "mg") for s in ("mg", "mG", "MG", "milli g", "milli-g", "millig")],
         *[(s, "%g") for s in ("%g", "% g", "percent g")],
-        *[
-            (s, None)
-            for s in (
-                "m/s",
-                "cm",
-                "ft s2",
-                "in s2",
-                "in s-2",
-                "%",
-                "",
-                "s",
-                "m/s3",
-                "g/10",
-                "km/s2",
-                "gs2",
-                "gall",
-                "mgal",
-            )
-        ],
+        *[(s, None) for s in ("m/s", "cm", "ft s2", "in s2", "in s-2", "%", "", "s", "m/s3", "g/10", "km/s2", "gs2")],
+        *[(s, None) for s in ("gall", "mgal")],
     ],
 )
 def test_spellings(spelling, name):
@@ -269,7 +240,7 @@ def test_the_unit_is_never_guessed(write, header):
 
 def test_unknown_unit_of_the_user(write):
     (found,) = problems(write("0,1\n0.5,2\n"), units="km/s2")
-    assert "unknown unit 'km/s2'" in found.message
+    assert "'km/s2' is not a known unit" in found.message
     assert found.field == "`units`"
     assert "g, m/s2, cm/s2, mm/s2, gal" in found.hint
 
@@ -303,7 +274,7 @@ def test_everything_missing_is_said_at_once(write):
 @pytest.mark.parametrize("content", ["accel_g\n1\n2\n", "t,accel_g\n0,1\n0.01,2\n"])
 def test_the_interval_must_be_positive_and_finite(write, content, dt):
     (found,) = problems(write(content), dt=dt)
-    assert "positive" in found.message
+    assert "is not positive" in found.message or "is not a finite number" in found.message
     assert found.field == "`dt`"
 
 

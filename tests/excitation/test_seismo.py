@@ -10,9 +10,9 @@ from types import ModuleType
 import numpy as np
 import pytest
 
+from rocking_cli.ask.read import read_record
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY as G
-from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.records.formats import miniseed, sac
 from tests.excitation.test_record_formats import claims
 
@@ -136,7 +136,7 @@ def test_the_unit_must_be_given(made, form):
     path = made(form, ("HNE", VALUES))
     found = problem(path, units=None)
     assert "does not say what unit" in found.message and "`units`" in found.hint
-    with pytest.raises(InputError, match="unknown unit 'V'"):
+    with pytest.raises(InputError, match="'V' is not a known unit"):
         read_record(path, units="V")
 
 

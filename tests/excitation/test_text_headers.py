@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from rocking_cli.ask.read import read_record
 from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError
-from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.records.header_words import component
 from tests import header_files
 from tests.conftest import RECORDS
@@ -25,16 +25,6 @@ FINDINGS = RECORDS.parent / "findings" / "records"
 BY_TEXT = pytest.mark.parametrize("name", [name for name in FILES if name not in header_files.OTHER_READERS])
 BY_FILE = pytest.mark.parametrize("name", FILES)
 SPOILT = int(os.environ.get("HEADERS", "10000"))
-
-
-@pytest.fixture
-def write(tmp_path):
-    def write(text: str):
-        path = tmp_path / "record.txt"
-        path.write_text(text, encoding="utf-8")
-        return path
-
-    return write
 
 
 def options(file: TextFile, channel) -> dict:

@@ -116,27 +116,27 @@ def test_a_response_is_the_histories_and_the_json_of_the_command(wall):
 
 
 def test_a_model_may_be_one_name_and_an_unknown_one_is_told(wall):
-    assert list(rk.respond(wall, "sine:0.2g:1s", models="linear2")) == ["linear2"]
-    with pytest.raises(rk.InputError, match="models must be of nonlinear, linear1, linear2, got linear3"):
-        rk.respond(wall, "sine:0.2g:1s", models="linear3")
+    assert list(rk.respond(wall, "sine:0.2g:1s", model="linear2")) == ["linear2"]
+    with pytest.raises(rk.InputError, match="`model` must be one of nonlinear, linear1, linear2, got 'linear3'"):
+        rk.respond(wall, "sine:0.2g:1s", model="linear3")
 
 
 def test_a_motion_may_be_a_file_a_pulse_its_text_or_samples(wall):
     pulse = rk.parse_pulse("ricker:0.4g:0.8s")
     ways = [pulse, "ricker:0.4g:0.8s", pulse.sampled()]
-    peaks = {rk.respond(wall, each, models="nonlinear")["nonlinear"].peak_ratio for each in ways}
+    peaks = {rk.respond(wall, each, model="nonlinear")["nonlinear"].peak_ratio for each in ways}
     assert len(peaks) == 1
-    assert rk.respond(wall, ACCEL, scale=-1.0, models="nonlinear")["nonlinear"].peak_ratio > 0
+    assert rk.respond(wall, ACCEL, scale=-1.0, model="nonlinear")["nonlinear"].peak_ratio > 0
     with pytest.raises(rk.InputError, match="no such file"):
         rk.respond(wall, "nowhere.csv")
 
 
 def test_every_structure_under_every_motion_with_every_factor(wall):
     block = rk.Block(width=0.7, height=2.8)
-    answer = rk.respond_each([block, wall], ["sine:0.4g:0.8s", ACCEL], models="nonlinear", scales=[0.5, -1.0, 2.0])
+    answer = rk.respond_each([block, wall], ["sine:0.4g:0.8s", ACCEL], model="nonlinear", scale=[0.5, -1.0, 2.0])
     found = answer["nonlinear"]
     assert found.peak_ratio.shape == (2, 2, 3)
-    one = rk.respond(wall, ACCEL, scale=-1.0, models="nonlinear", tail=0.0)["nonlinear"]
+    one = rk.respond(wall, ACCEL, scale=-1.0, model="nonlinear", tail=0.0)["nonlinear"]
     assert found.peak_ratio[1, 1, 1] == one.peak_ratio and found.fell_to[1, 1, 1] == one.fell_to
     frame = answer.to_frame()
     assert len(frame) == 12 and frame["peak_ratio"][10] == one.peak_ratio
@@ -160,12 +160,12 @@ def test_doubts_are_warnings_of_python_unless_something_watches():
 
 
 OF_A_MAP = (
-    "omega; a; period [s]; acceleration [g]; outcome; peak phi/phi_cr; impacts before overturning; known to [s]; "
-    "peak phi/phi_cr, at least"
+    "omega; a; period [s]; ag [g]; outcome; overturned; unknown; peak_ratio; impact_count; known_to [s]; "
+    "peak_lower_bound"
 )
 FRAMES = {
     "equiv": (
-        "name; mechanism; direction; p [rad/s]; phi_cr [rad]; lambda [g]; lambda_lin [g]; kappa1; kappa2; "
+        "structure; mechanism; direction; p [rad/s]; phi_cr [rad]; lambda [g]; lambda_lin [g]; kappa1; kappa2; "
         "theta_cr1 [rad]; theta_cr2 [rad]; eta; v_imp [m/s]; I_eq [kg m2]; G_eq [kg m]; B_eq [kg m]; per unit mass",
         {"lambda [g]": lambda _, data: [side["lambda"] for side in data["directions"].values()]},
     ),
@@ -175,53 +175,53 @@ FRAMES = {
     ),
     "draw": ("length", {"length": lambda answer, _: [each.text for each in answer.sketch.lengths]}),
     "error": (
-        "direction; phi/phi_cr; period [s]; period_ratio",
-        {"period [s]": lambda _, data: [each["period"] for each in data["directions"]["positive"]["free_period"]]},
+        "structure; direction; kappa; quantity; amplitude; acceleration; unit; value; ratio",
+        {"ratio": lambda _, data: [
+            ratio if isinstance(ratio, float) else ratio[f"kappa{kappa}"] for side in data["directions"].values()
+            for kappa in (1, 2)
+            for ratio in (
+                side["uplift_ratio"], side["v_imp_ratio"], side["free_period"][0]["ratio"],
+                side["overturning_time"][0]["ratio"],
+            )
+        ]},
     ),
     "respond": (
-        "t [s]; a_g [g]; "
-        + "; ".join(f"{model} {what}" for model in MODELS for what in ("phi [rad]", "phi_dot [rad/s]", "phi/phi_cr"))
-        + "".join(f"; {model} top {what} [m]" for model in MODELS for what in ("u_x", "u_y"))
-        + "; nonlinear base shear [N/kg]",
-        {"linear1 phi [rad]": lambda answer, _: answer["linear1"].phi},
+        "model; t [s]; a_g [g]; phi [rad]; phi_dot [rad/s]; phi_ratio; top u_x [m]; top u_y [m]; base shear [N/kg]",
+        {"phi_ratio": lambda answer, _: [value for model in MODELS for value in padded(answer, model)]},
     ),
     "respond_each": (
         "structure; model; motion; scale; polarity; eta; pga_g [g]; pgv [m/s]; outcome; overturned; unknown; "
         "peak_ratio; peak_rotation [rad]; peak_displacement [m]; impact_count; uplift_time [s]; overturning_time [s]; "
-        "end_time [s]; known_to [s]; peak_ratio_at_least; opening; slip [m]",
+        "end_time [s]; known_to [s]; peak_lower_bound; opening; slip [m]",
         {"peak_ratio": lambda _, data: [data[model]["peak_ratio"][0][0][0] for model in MODELS]},
     ),
     "respond_around": (
-        "azimuth [deg]; PGA [g]; peak phi/phi_cr nonlinear; overturns nonlinear",
-        {"PGA [g]": lambda _, data: data["pga"]},
+        "model; azimuth [deg]; pga_g [g]; peak_ratio; overturned; unknown; known_to [s]",
+        {"pga_g [g]": lambda _, data: data["pga_g"]},
     ),
     "crosscheck": (
-        "t [s]; a_g [g]; exact phi [rad]; exact phi/phi_cr; blocks phi [rad]; blocks phi/phi_cr",
-        {"blocks phi [rad]": lambda answer, _: answer.of_blocks.phi},
+        "engine; t [s]; a_g [g]; phi [rad]; phi_ratio",
+        {"phi [rad]": lambda answer, _: [*answer.extended(answer.exact.phi), *answer.of_blocks.phi]},
     ),
-    "animate": ("time; phi", {"phi": lambda answer, _: answer.film.history.phi}),
+    "animate": ("t [s]; phi [rad]", {"phi [rad]": lambda answer, _: answer.film.history.phi}),
     "pulse": (
         "polarity; model; peak_ratio; outcome",
         {"peak_ratio": lambda _, data: [each["peak_ratio"] for each in data["responses"].values()]},
     ),
     "spectrum": (
-        "structure; 2 pi/p [s]; scale; R of the block [m]; motions; overturned share; unknown share; "
-        "0.16-fractile of peak phi/phi_cr; 0.5-fractile of peak phi/phi_cr; 0.84-fractile of peak phi/phi_cr; "
-        "peak phi/phi_cr under sine:0.9g:0.5s; peak phi/phi_cr under sine:0.3g:0.5s; "
-        "peak phi/phi_cr under sine:0.9g:0.5s, at least; peak phi/phi_cr under sine:0.3g:0.5s, at least",
-        {"scale": lambda _, data: data["spectra"][0]["scale"],
-         "unknown share": lambda _, data: [each / 2 for each in data["spectra"][0]["unknown"]]},
+        "structure; size [s]; scale; R [m]; motion; peak_ratio; overturned; unknown; peak_lower_bound",
+        {"scale": lambda _, data: data["spectra"][0]["scale"] * 2,
+         "unknown": lambda _, data: np.ravel(data["spectra"][0]["every_unknown"])},
     ),
     "overturning": (OF_A_MAP, {"omega": lambda _, data: data["omega"] * 3}),
-    "overturning_map": (OF_A_MAP, {"acceleration [g]": lambda _, data: np.repeat(data["acceleration"], 3)}),
+    "overturning_map": (OF_A_MAP, {"ag [g]": lambda _, data: np.repeat(data["ag"], 3)}),
     "overturning_curves": (
-        "period [s]; weak [g]; weak, overturns or unknown [g]; block [g]; block, overturns or unknown [g]; first",
-        {"weak [g]": lambda _, data: data["structures"][0]["least"],
-         "block [g]": lambda _, data: data["structures"][1]["least"]},
+        "structure; period [s]; least [g]; possible [g]; first",
+        {"possible [g]": lambda _, data: [value for each in data["structures"] for value in each["possible"]]},
     ),
     "margin": (
-        "motion; factor; overturned; unknown",
-        {"factor": lambda _, data: data["motions"][0]["factors"],
+        "motion; scale; pga_g [g]; overturned; unknown; uplift",
+        {"scale": lambda _, data: data["motions"][0]["factors"],
          "overturned": lambda _, data: data["motions"][0]["shares"]},
     ),
     "shares": ("overturned; stands; unknown; checked", {"stands": lambda _, data: [data["stands"]]}),
@@ -236,11 +236,13 @@ FRAMES = {
         {"width [m]": lambda _, data: data["scan"]["values"], "peak_ratio": lambda answer, _: answer.metric},
     ),
     "equivalent_pulses": (
-        "p t; block t [s]; block phi/phi_cr; weak t [s]; weak phi/phi_cr; linear block phi/phi_cr",
-        {"p t": lambda answer, _: answer.members[0].block.p * answer.members[0].history.time},
+        "structure; p_t; t [s]; phi_ratio",
+        {"phi_ratio": lambda answer, _: [
+            value for each in (*(one.history for one in answer.members), answer.linear) for value in each.ratio
+        ]},
     ),
     "response_spectrum": (
-        "record; damping; period [s]; pseudo Sa [g]; pseudo Sv [m/s]; Sd [m]",
+        "motion; damping; period [s]; pseudo Sa [g]; pseudo Sv [m/s]; Sd [m]",
         {"pseudo Sv [m/s]": lambda _, data: data["sv"]},
     ),
     "record": ("t [s]; a_g [g]", {"a_g [g]": lambda *_: RECORD.acceleration / 9.80665}),
@@ -251,12 +253,12 @@ FRAMES = {
         ]},
     ),
     "demand": (
-        "period [s]; SLO Sa [g]; SLO Sd [m]; SLD Sa [g]; SLD Sd [m]; SLV Sa [g]; SLV Sd [m]; SLC Sa [g]; SLC Sd [m]",
-        {"SLV Sa [g]": lambda _, data: data["states"]["SLV"]["acceleration"]},
+        "state; period [s]; Sa [g]; Sd [m]",
+        {"Sa [g]": lambda _, data: [value for each in data["states"].values() for value in each["acceleration"]]},
     ),
     "select": (
-        "period [s]; target Sa [g]; mean Sa [g]; Sa of r0 [g]; Sa of r5 [g]",
-        {"mean Sa [g]": lambda _, data: data["spectrum"]["mean"]},
+        "motion; period [s]; Sa [g]; target Sa [g]; mean Sa [g]",
+        {"mean Sa [g]": lambda _, data: data["spectrum"]["mean"] * 2},
     ),
     "fragility": (
         "structure; limit_state; measure; unit; kind; median; dispersion; scale; x; probability; low; high; unknown; "
@@ -299,6 +301,13 @@ QUESTIONS = {verb: given for verb, (given, _) in CALLS.items()} | {
 }  # fmt: skip
 
 
+def padded(answer, model):
+    """The ratios of a history, zero after its end."""
+    return np.concatenate([answer[model].ratio, np.zeros(max(run.time.size for run in answer.values()))])[
+        : max(run.time.size for run in answer.values())
+    ]
+
+
 def name_of(head):
     """The name that a column of a file has in a frame: "known to [s]" is known_to."""
     words = "".join(
@@ -335,6 +344,75 @@ def test_every_frame_has_its_columns_and_the_numbers_of_its_answer(tmp_path, mon
         assert "<table>" in answer._repr_html_() or verb == "draw"
         long = {type(each).__name__: line for each in held(answer) if unfit(line := repr(each))}
         assert not long, verb
+
+
+GRIDS = {
+    "respond": {"model", "t"}, "respond_each": {"model", "structure", "motion", "scale"},
+    "respond_around": {"model", "azimuth"}, "crosscheck": {"engine", "t"}, "spectrum": {"structure", "motion", "size"},
+    "overturning_map": {"ag", "period"}, "overturning": {"ag", "period"}, "overturning_curves": {"structure", "period"},
+    "margin": {"motion", "scale"}, "error": {"direction", "kappa", "amplitude", "acceleration"},
+    "equivalent_pulses": {"structure", "p_t"}, "response_spectrum": {"motion", "period"}, "demand": {"state", "period"},
+    "select": {"motion", "period"}, "fragility": {"structure", "sample", "motion", "level"},
+}  # fmt: skip
+"""The dimensions of the labelled arrays of each verb whose frame is a grid."""
+
+
+@pytest.mark.filterwarnings("ignore::rocking_cli.DoubtWarning")
+@pytest.mark.parametrize("verb", GRIDS)
+def test_every_grid_is_its_frame_as_labelled_arrays(verb, tmp_path, monkeypatch):
+    pytest.importorskip("xarray")
+    if verb == "crosscheck":
+        pytest.importorskip("mujoco", reason="free blocks need mujoco")
+    monkeypatch.chdir(tmp_path)
+    answer = getattr(rk, verb)(**QUESTIONS[verb])
+    frame, arrays = answer.runs() if verb == "fragility" else answer.to_frame(), answer.to_xarray()
+    assert set(arrays.dims) == GRIDS[verb]
+    for name, each in arrays.variables.items():
+        assert each.attrs["long_name"]
+        if name in frame:
+            assert each.attrs.get("units") == frame.attrs["units"].get(name), name
+    seen = 0
+    for _, row in frame.iloc[:: len(frame) // 7 + 1].iterrows():
+        for name, each in arrays.data_vars.items():
+            if name in frame:
+                there = each.sel({dim: row[dim] for dim in each.dims}).item()
+                assert there == row[name] or (there != there and row[name] != row[name]), name
+                seen += 1
+    assert seen or verb == "error"
+
+
+def test_ratios_of_the_equivalent_block_are_one_frame_and_arrays_of_each_quantity():
+    asked = {"at": [0.2, 0.6], "a": [1.5, 2.0, 4.0]}
+    answer = rk.error(EXAMPLES / "frame.yaml", **asked)
+    frame, (positive, _) = answer.to_frame(), answer.result
+    assert frame.quantity.value_counts().to_dict() == {"overturning": 12, "period": 8, "uplift": 4, "v_imp": 4}
+    mine = frame.query("direction == 'positive' and quantity == 'overturning'")
+    for kappa in (1, 2):
+        own = mine[mine.kappa == kappa]
+        assert own.acceleration.tolist() == asked["a"] and own.value.tolist() == positive.overturning.tolist()
+        assert own.ratio.tolist() == getattr(positive, f"overturning_ratio{kappa}").tolist()
+    pytest.importorskip("xarray")
+    arrays = answer.to_xarray()
+    assert arrays.period_ratio.sel(direction="positive", kappa=2).values.tolist() == positive.period_ratio.tolist()
+    assert arrays.uplift_ratio.sel(direction="positive").values.tolist() == [
+        positive.uplift_ratio1, positive.uplift_ratio2,
+    ]  # fmt: skip
+    assert arrays.overturning.attrs["units"] == "s" and arrays.v_imp.dims == ("direction",)
+
+
+def test_several_answers_are_one_grid_and_what_is_none_says_so(monkeypatch):
+    block = rk.Block(width=0.7, height=2.8)
+    with pytest.raises(rk.InputError, match="an answer of equivalent block is not a grid"):
+        rk.equiv(block).to_xarray()
+    pytest.importorskip("xarray")
+    answers = rk.respond(block, ["sine:0.3g:0.8s", "ricker:0.3g:0.8s"], model="nonlinear")
+    arrays = answers.to_xarray()
+    for name, each in answers.items():
+        history, own = each["nonlinear"], arrays.phi.sel(motion=name, model="nonlinear").dropna("t")
+        assert own.values.tolist() == history.phi.tolist() and own.t.values.tolist() == history.time.tolist()
+    monkeypatch.setattr("rocking_cli.ask.answer.find_spec", lambda name: None)
+    with pytest.raises(rk.InputError, match=r"labelled arrays require the package xarray\n  pip install"):
+        answers.to_xarray()
 
 
 def unfit(line):
@@ -395,7 +473,7 @@ def test_a_map_of_a_structure_is_that_of_the_command():
 
 
 def test_a_report_is_written_with_what_gives_the_structure_again(tmp_path):
-    answer = rk.report(rk.Block(name="made here", width=0.7, height=2.8), (), tmp_path / "r.html")
+    answer = rk.report(rk.Block(name="made here", width=0.7, height=2.8), out=tmp_path / "r.html")
     page = (tmp_path / "r.html").read_text(encoding="utf-8")
     assert "made here" in page and "width: 0.7" in page
     assert "made here" in repr(answer)
@@ -479,11 +557,11 @@ from rocking_cli.questions.respond.verb import ResponseAnswer
 from rocking_cli.ask.several import Answers
 block = rk.Block(width=0.7, height=2.8)
 assert_type(rk.respond(block, "sine:0.3g:0.5s", tail=3), ResponseAnswer)
-assert_type(rk.respond(structure=block, motion=["a.csv", "b.csv"]), Answers[ResponseAnswer])
+assert_type(rk.respond(structure=block, motions=["a.csv", "b.csv"]), Answers[ResponseAnswer])
 assert_type(rk.record("a.csv", scale=2.0), RecordAnswer)
 assert_type(rk.record(["a.csv"]), Answers[RecordAnswer])
-rk.animate(block, "a.csv", "a.html").film
-rk.animate(block, ["a.csv"], "a.html")["a.csv"].film
+rk.animate(block, "a.csv", out="a.html").film
+rk.animate(block, ["a.csv"], out="a.html")["a.csv"].film
 rk.equiv(block).positive
 rk.equiv([block])["block"].positive
 rk.respond(block, "a.csv", tale=3)
@@ -514,11 +592,13 @@ MODULES = (
     ".dynamics.exact",
     ".dynamics.outcome",
     ".excitation.base",
+    ".io.tables",
     ".names",
     ".short_repr",
     ".structure",
     ".units",
     ".views.column",
+    ".views.long_names",
 )
 
 
@@ -546,8 +626,8 @@ def test_a_motion_keeps_samples_of_its_own():
 
 @pytest.mark.parametrize("scales", [[[1.0], [2.0], [3.0]], np.ones((2, 2))])
 def test_factors_in_several_dimensions_are_refused(scales):
-    with pytest.raises(rk.InputError, match="`scales` must be one number or a list of them"):
-        rk.respond_each(rk.Block(width=0.7, height=2.8), "sine:0.4g:0.8s", models="nonlinear", scales=scales)
+    with pytest.raises(rk.InputError, match="`scale` must be one number or a list of them"):
+        rk.respond_each(rk.Block(width=0.7, height=2.8), "sine:0.4g:0.8s", model="nonlinear", scale=scales)
 
 
 # --- what is refused, and what travels
@@ -559,8 +639,8 @@ def test_factors_in_several_dimensions_are_refused(scales):
         (lambda block: rk.equiv({"mechanism": "block"}), "structure must be a mechanism or a YAML file, got a dict"),
         (lambda block: rk.respond(build_models(block)[0], ACCEL), "structure must be a mechanism or a YAML file"),
         (lambda block: rk.respond(block, np.zeros(9)), "`dt` is missing: samples in an array"),
-        (lambda block: rk.spectrum(block, ACCEL, count=-1), "count must be a whole number of at least 1, got -1"),
-        (lambda block: rk.spectrum(block, ACCEL, count=0), "count must be a whole number of at least 1, got 0"),
+        (lambda block: rk.spectrum(block, ACCEL, count=-1), "`count` must be at least 1, got -1"),
+        (lambda block: rk.spectrum(block, ACCEL, count=0), "`count` must be at least 1, got 0"),
         (lambda block: block.coefficients(0.1, rk.Direction.POSITIVE), "phi must be an array of rotations, got 0.1"),
         (lambda block: block.coefficients("a", rk.Direction.POSITIVE), "phi must be an array of rotations, got 'a'"),
         (lambda block: block.kinetic_inertia(0.1, rk.Direction.POSITIVE), "phi must be an array of rotations"),
@@ -573,7 +653,7 @@ def test_an_argument_of_another_kind_is_an_error_of_the_tool(ask, said):
 
 def test_answers_can_be_pickled_with_their_plots():
     block = rk.Block(width=0.7, height=2.8)
-    for answer in (rk.equiv(block), rk.respond(block, "sine:0.3g:0.8s", models="nonlinear")):
+    for answer in (rk.equiv(block), rk.respond(block, "sine:0.3g:0.8s", model="nonlinear")):
         copy = pickle.loads(pickle.dumps(answer))
         assert copy.to_dict() == answer.to_dict() and copy.sentences == answer.sentences
         columns = answer.columns()
@@ -581,7 +661,7 @@ def test_answers_can_be_pickled_with_their_plots():
             np.testing.assert_array_equal(copy.columns()[name], values)
         assert len(copy.plot().axes) == len(answer.plot().axes)
         assert pickle.loads(pickle.dumps(copy)).to_dict() == answer.to_dict()
-    many = pickle.loads(pickle.dumps(rk.respond_each(block, "sine:0.3g:0.8s", models="nonlinear")))
+    many = pickle.loads(pickle.dumps(rk.respond_each(block, "sine:0.3g:0.8s", model="nonlinear")))
     assert len(many.plot().axes) == 1
 
 

@@ -43,7 +43,7 @@ def test_only_a_sure_verdict_changes(before, after, changed):
 
 def test_doubled_in_defaults_and_in_what_is_derived():
     code = (
-        "from tests import bounds; bounds.double(['rocking_cli.dynamics.history.TAIL_SECONDS']);"
+        "from tests import bounds; bounds.double(['rocking_cli.names.TAIL_SECONDS']);"
         "import inspect; from rocking_cli.studies.engines.exact import follow;"
         "print(inspect.signature(follow).parameters['tail'].default)"
     )

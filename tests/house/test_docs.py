@@ -98,7 +98,7 @@ def test_another_picture_is_not_alike(made, tmp_path):
         "pedestal": "rocking new block > pedestal.yaml",
         "drawing": "rocking draw pedestal.yaml --at 0.9 --plot drawing.png",
         "response": "rocking respond pedestal.yaml --record examples/accel.csv --scale 1.02 --plot response.png",
-        "map": "rocking overturning pedestal.yaml --eta 0.9 --plot map.png",
+        "map": "rocking overturning pedestal.yaml --restitution 0.9 --plot map.png",
         "error": "rocking error examples/arch.yaml --at 0.6 --a 2 --plot error.png",
         "moving": "rocking animate examples/frame.yaml --record examples/accel.csv --speed 2 --fps 5 --out moving.gif",
     }
@@ -208,6 +208,7 @@ NOT_SHOWN = {
     "Counts", "Numbers",  # of an `Outcome`, where these are variables
     "Path",  # of the standard library
     "Spreadsheet",  # in which a table of structures stands
+    "Dimensions",  # of which an answer makes its labelled arrays
 }  # fmt: skip
 """Names of classes of the package that the fields of a result name, and that no page of the reference needs."""
 
@@ -237,7 +238,7 @@ def test_a_name_is_called_with_the_types_and_defaults_of_its_arguments(made):
     assert called("turned", rocking_cli.turned) == (
         "turned(one: GroundMotion, other: GroundMotion, azimuth: float) -> GroundMotion"
     )
-    assert ", *, ag: float | None = None, period" in called("pulse", rocking_cli.pulse)
+    assert ", *, a: float | None = None, omega" in called("pulse", rocking_cli.pulse)
     assert called("first", Margin.first) == "first(level: float, *, unknown: bool = False) -> float | None"
     assert "held: Reals = ..., ends_at_limit: tuple[bool, bool] = (False, False), " in called("Model", Model)
     assert called("Mechanism", core.Mechanism) == "Mechanism"
@@ -321,7 +322,7 @@ def test_the_statue_of_the_guide_holds_the_contract_and_is_checked():
             [1.3 * g, 0.15 * g - s * tilt, 0.15 * g + s * tilt], rel=1e-9
         )
     weak, strong = (
-        rocking_cli.respond(statue, f"sine:{level}g:0.6s", models="nonlinear")["nonlinear"] for level in (0.36, 0.8)
+        rocking_cli.respond(statue, f"sine:{level}g:0.6s", model="nonlinear")["nonlinear"] for level in (0.36, 0.8)
     )
     assert weak.lifted and not weak.unknown and weak.opening < 1e-4
     assert strong.unknown and strong.check.joint == "pedestal and statue" and strong.check.reason == "opens"

@@ -19,9 +19,9 @@ from tests.cli.test_every_option import BLOCK, OF_TESTS, OTHER, PULSE, RECORD, S
 from tests.house.test_api import QUESTIONS
 
 ASKED = {verb: (verb, given) for verb, given in QUESTIONS.items()} | {
-    "release": ("respond", {"structure": OTHER, "release": 0.3, "models": "nonlinear"}),
-    "motion": ("record", {"motion": RECORD}),
-    "fitted": ("record", {"motion": RECORD, "fit_pulse": True}),
+    "release": ("respond", {"structure": OTHER, "release": 0.3, "model": "nonlinear"}),
+    "motion": ("record", {"motions": RECORD}),
+    "fitted": ("record", {"motions": RECORD, "fit_pulse": True}),
     "one spectrum": ("spectrum", {"structures": BLOCK, "motions": PULSE, "count": 4}),
     "margins": ("margin", {"structure": WEAK, "motions": [STRONG, PULSE], "neighbours": 4}),
     "region": ("calibrate", OF_TESTS[0]),

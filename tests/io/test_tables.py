@@ -27,7 +27,9 @@ def test_numbers_stay_numbers_and_words_words(text):
 def test_an_option_leaves_texts_as_they_are(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "b.yaml").write_text("mechanism: block\nname: =1+1\nwidth: 0.5\nheight: 2\n", encoding="utf-8")
-    names = [run(*words, "equiv", "b.yaml", "--csv").stdout.splitlines()[1][:6] for words in ((), ("--formulas",), ())]
+    names = [
+        run(*words, "equiv", "b.yaml", "-o", "-").stdout.splitlines()[1][:6] for words in ((), ("--formulas",), ())
+    ]
     assert names == ["'=1+1,", "=1+1,b", "'=1+1,"]
 
 

@@ -79,7 +79,7 @@ def test_histories_and_checks_of_joints_are_those_of_the_assembly(name, scale):
     # The springings of the first are drawn to whole millimetres: without their faces, joints would be taken as level.
     found = load_structure(EXAMPLES / f"{name}.yaml")
     ours, theirs = (
-        rk.respond(each, ACCEL, models="nonlinear", neighbours=0, scale=scale).to_dict()["responses"]["nonlinear"]
+        rk.respond(each, ACCEL, model="nonlinear", neighbours=0, scale=scale).to_dict()["responses"]["nonlinear"]
         for each in (found, written(found))
     )
     ours, theirs = ({**each, **each["contact"]} for each in (ours, theirs))

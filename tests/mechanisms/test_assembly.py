@@ -561,7 +561,7 @@ def test_every_command_takes_both(tmp_path):
         # Only these know of the new: heavier models are those of all structures.
         run("draw", file, "--json")
         run("design", file, "--vary", f"{varied}=1500:2500", "--until", "lambda > 0.1", "--points", 2)
-        run("spectrum", file, "--pulse", "sine:0.5g:0.8s", "--sizes", "1:2:2")
+        run("spectrum", file, "--pulse", "sine:0.5g:0.8s", "--sizes", "1:2", "--count", "2")
         said = run_json("verify", file, "--site", site)["directions"]["positive"]
         assert said["alpha0"] == approx(rk.load_structure(file).uplift(POSITIVE), rel=1e-9)
 
@@ -571,7 +571,7 @@ def test_what_rests_is_ground_to_the_base_shear():
     step = {"low": rectangle(-1.0, 0.0, 2.0, 1.0), "top": rectangle(0.0, 1.0, 1.0, 5.0)}
     found = []
     for each in (assembly(step), rk.Block(width=1.0, height=4.0, **WEIGHT)):
-        history = rk.respond(each, "sine:0.4g:0.8s", models="nonlinear")["nonlinear"]
+        history = rk.respond(each, "sine:0.4g:0.8s", model="nonlinear")["nonlinear"]
         found.append(Contacts(each).check(history, None))
     assert found[0].base_shear == approx(found[1].base_shear, rel=1e-9) and found[0].base_shear > 1e3
     assert found[0].friction_needed == approx(found[1].friction_needed, rel=1e-9)

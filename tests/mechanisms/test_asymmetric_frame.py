@@ -6,17 +6,17 @@ the scan's G_nl and J_nl: G = s G_nl, J = s J_nl, while I and B keep their sign.
 
 from types import SimpleNamespace
 
-import mpmath
 import numpy as np
 import pytest
 import sympy as sp
 from pytest import approx
-from scipy.optimize import brentq, root
+from scipy.optimize import brentq
 
 from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.symmetric_frame import SymmetricFrame
 from rocking_cli.core import Direction, equivalent_block
-from tests.reference_mechanics import FourBar, deviation
+from tests.core.test_lagrange import Piece, agrees, point, t, turned
+from tests.reference_mechanics import deviation
 
 CASES = range(40)
 BOTH = list(Direction)
@@ -65,15 +65,14 @@ class Scan:
         self.I_AB, self.I_CD = 4 / 3 * self.m_AB * self.R0**2, 4 / 3 * self.m_CD * self.R1**2
         self.I_BC = self.m_BC * (self.r_BC**2 + ((L + 2 * b) ** 2 + (2 * h) ** 2) / 12)
 
-    def angles(self, phi, f=np):
-        """Eq. 27 with atan2 and |AB| = 2 R0, |CD| = 2 R1, |AD| = 2 r0; `f` may be mpmath."""
+    def angles(self, phi):
+        """Eq. 27 with atan2 and |AB| = 2 R0, |CD| = 2 R1, |AD| = 2 r0."""
         v = self.varphi_0 - self.s * phi
         R0, R1, r0, L = self.R0, self.R1, self.r0, self.L
-        x, y = 2 * (R0 * f.cos(v) - r0 * f.cos(self.phi_AD)), 2 * (R0 * f.sin(v) - r0 * f.sin(self.phi_AD))
-        bd = f.sqrt(x * x + y * y)
-        atan2, acos = (f.arctan2, f.arccos) if f is np else (f.atan2, f.acos)
-        v_CD = atan2(y, x) - acos((bd * bd + 4 * R1 * R1 - L * L) / (4 * R1 * bd))
-        v_BC = atan2(2 * R1 * f.sin(v_CD) - y, 2 * R1 * f.cos(v_CD) - x)
+        x, y = 2 * (R0 * np.cos(v) - r0 * np.cos(self.phi_AD)), 2 * (R0 * np.sin(v) - r0 * np.sin(self.phi_AD))
+        bd = np.hypot(x, y)
+        v_CD = np.arctan2(y, x) - np.arccos((bd * bd + 4 * R1 * R1 - L * L) / (4 * R1 * bd))
+        v_BC = np.arctan2(2 * R1 * np.sin(v_CD) - y, 2 * R1 * np.cos(v_CD) - x)
         return v, v_BC, v_CD
 
     def rates(self, phi):
@@ -153,41 +152,6 @@ class Scan:
 
 def rotations(frame, direction):
     return np.array([0.0, 0.03, 0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 0.93]) * frame.limit(direction)
-
-
-@pytest.mark.parametrize("case", CASES)
-@pytest.mark.parametrize("direction", BOTH)
-def test_closed_form_angles_close_the_loop_on_the_branch_of_rest(case, direction):
-    scan = Scan(fields(case), int(direction))
-    end = AsymmetricFrame(**fields(case)).limit(direction)
-    v_BC, v_CD = 0.0, np.pi / 2 + direction * np.arctan(scan.b / scan.H1)
-
-    def gap(unknown, v):
-        two, three = unknown
-        z = scan.a + 2 * scan.R0 * np.exp(1j * v) + scan.L * np.exp(1j * two)
-        z -= scan.d + 2 * scan.R1 * np.exp(1j * three)
-        return [z.real, z.imag]
-
-    for phi in np.linspace(0.0, 0.93 * end, 25):  # followed from rest, so the branch is the right one
-        v = scan.varphi_0 - direction * phi
-        found = root(gap, [v_BC, v_CD], args=(v,), tol=1e-13)
-        v_BC, v_CD = found.x
-        assert np.abs(gap(found.x, v)).max() < 1e-11
-        turns = np.array(scan.angles(phi)) - (v, v_BC, v_CD)
-        assert np.abs(np.exp(1j * turns) - 1).max() < 1e-10  # the root may be whole turns away
-
-
-@pytest.mark.parametrize("case", range(6))
-@pytest.mark.parametrize("direction", BOTH)
-def test_rates_by_hand_are_the_derivatives_of_the_angles(case, direction):
-    scan = Scan(fields(case), int(direction))
-    with mpmath.workdps(40):
-        for part in (0.1, 0.6):
-            phi = part * AsymmetricFrame(**fields(case)).limit(direction)
-            # d/dvarphi is -s d/dphi.
-            expected = [-direction * mpmath.diff(lambda x, i=i: scan.angles(x, mpmath)[i], phi) for i in (1, 2)]
-            expected += [mpmath.diff(lambda x, i=i: scan.angles(x, mpmath)[i], phi, 2) for i in (1, 2)]
-            assert scan.rates(phi) == approx([float(value) for value in expected], rel=1e-11, abs=1e-13)
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -287,86 +251,24 @@ def test_equal_columns_are_the_symmetric_frame(case):
 
 
 def test_lagranges_equation_in_symbols_gives_the_coefficients():
-    """T and V of three bodies on a moving ground by sympy, Lagrange's equation with multipliers for the loop.
-
-    No f, f' or closed form of the linkage: the three rotations are coordinates, the loop closure is two constraints.
-    """
-    values = {
-        "column_width": 1.0, "left_height": 6.0, "right_height": 7.5, "spacing": 8.0, "beam_depth": 1.2,
-        "left_mass": 2.0, "beam_mass": 5.0, "right_mass": 3.0,
-    }  # fmt: skip
-    b, H, H1, L, h = sp.Rational(1, 2), sp.Integer(3), sp.Rational(15, 4), sp.Integer(8), sp.Rational(3, 5)
-    t, g = sp.symbols("t g")
-    q, beam, column, u = (sp.Function(name)(t) for name in ("q", "beam", "column", "u"))
-    turns = (q, beam, column)  # of AB clockwise, of BC and CD anticlockwise
-
-    def turned(x, y, angle):
-        return sp.Matrix([x * sp.cos(angle) - y * sp.sin(angle), x * sp.sin(angle) + y * sp.cos(angle)])
-
+    """No closed form of the linkage: the three rotations are coordinates, the loop closure is two constraints."""
+    b, H, H1, L, h = 0.5, 3.0, 3.75, 8.0, 0.6
+    frame = AsymmetricFrame(
+        column_width=2 * b, left_height=2 * H, right_height=2 * H1, spacing=L, beam_depth=2 * h,
+        left_mass=2.0, beam_mass=5.0, right_mass=3.0,
+    )  # fmt: skip
+    turns = phi, beam, right = tuple(sp.Function(name)(t) for name in ("phi", "beam", "right"))
     # Positive direction: A and D are right foot corners, B and C left top corners.
-    a, d = sp.Matrix([b, 0]), sp.Matrix([L + b, 2 * H - 2 * H1])
-    B = a + turned(-2 * b, 2 * H, -q)
-    loop = B + turned(L, 0, beam) - d - turned(-2 * b, 2 * H1, column)
-    bodies = [
-        (2, a + turned(-b, H, -q), q, 2 * b, 2 * H),
-        (5, B + turned(L / 2 + b, h, beam), beam, L + 2 * b, 2 * h),
-        (3, d + turned(-b, H1, column), column, 2 * b, 2 * H1),
+    a, d = point(complex(b)), point(complex(L + b, 2 * H - 2 * H1))
+    B = a + turned(complex(-2 * b, 2 * H), -phi)
+    loop = B + turned(complex(L), beam) - d - turned(complex(-2 * b, 2 * H1), right)
+    pieces = [
+        Piece(m, m * (wide**2 + high**2) / 12, place, turn)
+        for m, wide, high, place, turn in (
+            (2.0, 2 * b, 2 * H, a + turned(complex(-b, H), -phi), phi),
+            (5.0, L + 2 * b, 2 * h, B + turned(complex(L / 2 + b, h), beam), beam),
+            (3.0, 2 * b, 2 * H1, d + turned(complex(-b, H1), right), right),
+        )
     ]
-    T = V = sp.Integer(0)
-    for m, place, angle, wide, high in bodies:
-        velocity = place.diff(t) + sp.Matrix([u.diff(t), 0])
-        T += sp.Rational(m, 2) * (velocity.dot(velocity) + (wide**2 + high**2) / 12 * angle.diff(t) ** 2)
-        V += m * g * place[1]
-    pull = sp.symbols("pull_x pull_y")
-    equations = [
-        T.diff(turn.diff(t)).diff(t) - T.diff(turn) + V.diff(turn) - sum(loop.diff(turn)[i] * pull[i] for i in (0, 1))
-        for turn in turns
-    ]
-    equations += list(loop.diff(t, 2))
-    speeds = [turn.diff(t) for turn in turns]
-    forces = [*(turn.diff(t, 2) for turn in turns), *pull]
-    x, v, w = sp.symbols("x:3"), sp.symbols("v:3"), sp.symbols("w:5")
-    ground = sp.symbols("ground")
-
-    def plain(expression):
-        pairs = [(u.diff(t, 2), ground), (u.diff(t), 0), *zip(forces, w, strict=True)]
-        pairs += [*zip(speeds, v, strict=True), *zip(turns, x, strict=True)]
-        return expression.subs(pairs)
-
-    matrix, right = sp.linear_eq_to_matrix([plain(e) for e in equations], w)
-    matrix = sp.lambdify((x, v, g, ground), matrix, "mpmath")
-    right = sp.lambdify((x, v, g, ground), right, "mpmath")
-    close, slip = (sp.lambdify((x, v), plain(e), "mpmath") for e in (loop, loop.diff(t)))
-    energy = sp.lambdify((x, v), plain(T), "mpmath")
-
-    phi = [0.02, 0.1, 0.3]
-    got = AsymmetricFrame(**values).coefficients(np.array(phi), Direction.POSITIVE)
-    with mpmath.workdps(30):
-        guess = (mpmath.mpf(0), mpmath.mpf(0))
-        for i, at in enumerate(phi):
-            guess = tuple(mpmath.findroot(lambda *y, at=at: tuple(close((at, *y), (0, 0, 0))), guess))
-            place = (mpmath.mpf(at), *guess)
-            # Rates of BC and CD for a rate 1 of AB: the velocities of the two halves of the loop agree.
-            moved = [slip(place, unit) for unit in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
-            rates = mpmath.lu_solve(mpmath.matrix([[moved[k][j] for k in (1, 2)] for j in (0, 1)]), -moved[0])
-            turning, still = (1, *rates), (0, 0, 0)
-
-            def acceleration(*state, place=place):
-                return float(mpmath.lu_solve(matrix(place, *state), right(place, *state))[0])
-
-            assert got.I[i] == approx(float(2 * energy(place, turning)), rel=1e-12)
-            # I phi.. = - J phi.^2 - g G - s B u_g''
-            assert got.J[i] / got.I[i] == approx(-acceleration(turning, 0, 0), rel=1e-11)
-            assert got.G[i] / got.I[i] == approx(-acceleration(still, 1, 0), rel=1e-11)
-            assert got.B[i] / got.I[i] == approx(-acceleration(still, 0, 1), rel=1e-11)
-
-
-def test_the_two_references_agree():
-    # Newton's method on the loop (used for the arch) against Eq. 27 and the sine rule written for the frame.
-    scan = Scan(fields(7), -1)
-    b, c = scan.a + 2 * scan.R0 * np.exp(1j * scan.varphi_0), complex(scan.L + scan.b, 2 * scan.H)
-    bar = FourBar(scan.a, b, c, scan.d, -1)
-    for phi in (0.0, 0.05, 0.2):
-        angles = bar.angles(phi)
-        assert angles == approx(scan.angles(phi), abs=1e-12)
-        assert bar.rates(angles) == approx(scan.rates(phi), rel=1e-10, abs=1e-12)
+    phis = [0.02, 0.1, 0.3]
+    agrees(frame.coefficients(np.array(phis), Direction.POSITIVE), turns, pieces, list(loop), phis)

@@ -56,7 +56,7 @@ class TestGlue:
         ("equiv",), ("collapse",), ("respond", "--pulse", "sine:0.5g:1s", "--neighbours", "0"),
         ("margin", "--pulse", "sine:0.5g:1s", "--neighbours", "5"),
         ("overturning", "--period", "1:2", "--ag", "0.5g:1g", "--points", "3"),
-        ("spectrum", "--pulse", "sine:0.5g:1s", "--sizes", "1:2:2"),
+        ("spectrum", "--pulse", "sine:0.5g:1s", "--sizes", "1:2", "--count", "2"),
         ("design", "--vary", "density=2000kg/m3:2400kg/m3", "--until", "lambda > 0.2", "--points", "2"),
     ], ids=lambda command: command[0])  # fmt: skip
     def test_every_command_that_shows_lambda_says_so(self, command, file):

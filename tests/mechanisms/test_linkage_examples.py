@@ -102,7 +102,7 @@ def test_joints_too_many_leave_the_forces_to_sums_over_the_whole():
 
 def test_no_velocity_of_impacts_is_given_where_the_other_foot_rests():
     record = rk.read_record(EXAMPLES / "accel.csv")
-    answer = rk.respond(structure("masonry/buttressed_arch"), record, models=("nonlinear",))
+    answer = rk.respond(structure("masonry/buttressed_arch"), record, model=("nonlinear",))
     assert len(answer["nonlinear"].impacts) > 10
     from rocking_cli.studies.movements import _landing
 
@@ -152,7 +152,7 @@ def test_a_load_on_what_rests_changes_nothing(tmp_path):
     for k, content in enumerate((text, text + more)):
         file = tmp_path / f"{k}.yaml"
         file.write_text(content, encoding="utf-8")
-        answers.append(rk.respond(file, "sine:0.4g:0.8s", models="nonlinear")["nonlinear"])
+        answers.append(rk.respond(file, "sine:0.4g:0.8s", model="nonlinear")["nonlinear"])
     one, other = answers
     assert one.peak_ratio == pytest.approx(other.peak_ratio, rel=1e-9) and one.peak_ratio > 0.1
     assert one.opening == pytest.approx(other.opening, abs=1e-12)

@@ -80,7 +80,7 @@ def test_all_commands_with_cautions_say_it(tmp_path, monkeypatch):
         ("margin", "stele.yaml", *pulse, "--neighbours", "2"),
         ("verify", "stele.yaml", "--site", "site.yaml"),
         ("design", "stele.yaml", "--vary", "height=2:3", "--until", "lambda>=0.24"),
-        ("spectrum", "stele.yaml", *pulse, "--sizes", "1:1.1:2"),
+        ("spectrum", "stele.yaml", *pulse, "--sizes", "1:1.1", "--count", "2"),
         ("overturning", "stele.yaml", "--ag", "0.2g:0.3g", "--period", "0.5:0.6", "--points", "4"),
     ):
         assert said in " ".join(run(*asked).stdout.split()), asked
@@ -96,7 +96,7 @@ def test_a_bookcase_that_does_not_uplift_rocks_about_its_depth():
     motion = record("RSN6_IMPVALL.I_I-ELC180.AT2")
     bookcase = rk.Block(width=0.9, height=2.2, depth=0.35)
     as_given, turned = (
-        rk.respond(each, motion, models="nonlinear", neighbours=0)["nonlinear"]
+        rk.respond(each, motion, model="nonlinear", neighbours=0)["nonlinear"]
         for each in (bookcase, bookcase.weaker_side())
     )
     assert as_given.words == "does not uplift" and turned.peak_ratio == pytest.approx(0.57, abs=0.005)

@@ -6,7 +6,6 @@ structure at its feet, on the upper of two bodies, on the wall at its top.
 
 from __future__ import annotations
 
-from math import cos, sin
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,19 +17,10 @@ STEP = 1e-30
 
 
 class Force(NamedTuple):
-    """A force, or an impulse, x to the right and y up."""
+    """A force, x to the right and y up."""
 
     x: float
     y: float
-
-    def on(self, tilt: float) -> Force:
-        """Along a face turned anticlockwise by `tilt` and along its normal: T and N."""
-        return Force(self.x * cos(tilt) + self.y * sin(tilt), self.y * cos(tilt) - self.x * sin(tilt))
-
-    @property
-    def friction(self) -> float:
-        """|T|/N on a level face."""
-        return abs(self.x) / self.y
 
 
 class _Shift(NamedTuple):
@@ -98,24 +88,3 @@ def reactions(
         return float(momentum + (inertia * turning) @ move.spin + axial @ move.springs - move.pushed.sum())
 
     return {joint: Force(work(joint, 1 + 0j), work(joint, 1j)) for joint in structure.joints()}
-
-
-def impulses(structure: Structure, s: int, eta: float | None = None) -> dict[str, Force]:
-    """Impulses at the joints of the other direction, for phi. = 1 before the impact in which direction s ends [N s].
-
-    "whole" is the sum of all that come from outside. With any eta but the kinematic one it is all that is determined.
-    """
-    own = structure.eta(s)
-    (old, mass), (new, _) = structure.fields(s), structure.fields(-s)
-    jump = mass * ((own if eta is None else eta) * new + old)
-    count = len(structure.masses(structure.place(s, np.array([0.0])))[0])
-    found = {"whole": Force(float(jump[:count].sum()), float(jump[count : 2 * count].sum()))}
-    if eta is not None and eta != own:
-        return found
-    for joint in structure.joints():
-        along = []
-        for axis in (1 + 0j, 1j):
-            move = _shift(structure, -s, 0.0, joint, axis)
-            along.append(float(jump @ np.concatenate([move.x, move.y, move.spin])))
-        found[joint] = Force(*along)
-    return found

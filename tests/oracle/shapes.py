@@ -6,9 +6,8 @@ from math import pi
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 
-from .structures import WHOLE, Load, Piece, Rigid, Slips, Structure
+from .structures import WHOLE, Piece, Rigid, Slips, Structure
 
 NONE = (0.0, 0.0)
 
@@ -49,49 +48,22 @@ class Block(Structure):
 
 @dataclass(frozen=True)
 class Wall(Structure):
-    """A wall between floors that opens at its foot and at a hinge, and whose top is held sideways.
+    """A wall between floors that opens at its foot and at half its height; its top is held on the foot's face.
 
-    hinge       its height over that of the wall, or one for each direction (+, -)
-    overburden  force on top [N], `seat` from the axis [m]; the share `inertia` of its mass moves vertically
-    support     where the top is held: at the "load", on the foot's face ("pivot"), or so far from the axis
-
-    Its bodies are "lower" and "upper", and "middle" between two hinges.
+    Its bodies are "lower" and "upper".
     """
 
     thickness: float
     height: float
     mass: float = 1.0
-    hinge: float | tuple[float, float] = 0.5
-    overburden: float = 0.0
-    seat: float = 0.0
-    inertia: float = 1.0
-    support: str | float = "load"
-
-    def hinges(self) -> tuple[float, float]:
-        return self.hinge if isinstance(self.hinge, tuple) else (self.hinge, self.hinge)
 
     def pieces(self) -> Sequence[Piece]:
-        cuts = [0.0, *sorted(set(self.hinges())), 1.0]
-        names = ("lower", "upper") if len(cuts) == 3 else ("lower", "middle", "upper")
-        return [
-            box(name, self.mass * (b - a), self.thickness, (b - a) * self.height, 0.5j * (a + b) * self.height)
-            for name, a, b in zip(names, cuts[:-1], cuts[1:], strict=True)
-        ]
-
-    def carried(self) -> Sequence[Load]:
-        if not self.overburden:
-            return self.loads
-        top = self.seat + 1j * self.height
-        return (Load("upper", top, self.overburden / self.gravity, 0.0, self.inertia), *self.loads)
-
-    def top(self, s: int) -> complex:
-        """C at rest."""
-        places = {"load": self.seat, "pivot": s * self.thickness / 2}
-        return complex(places[self.support] if isinstance(self.support, str) else self.support, self.height)
+        half = self.mass / 2, self.thickness, self.height / 2
+        return [box(name, *half, at * self.height * 1j) for name, at in (("lower", 0.25), ("upper", 0.75))]
 
     def _corners(self, s: int) -> tuple[complex, complex, complex]:
         foot = s * self.thickness / 2
-        return complex(foot), complex(-foot, self.hinges()[0 if s > 0 else 1] * self.height), self.top(s)
+        return complex(foot), complex(-foot, self.height / 2), complex(foot, self.height)
 
     def place(self, s: int, phi: Any, slips: Slips = WHOLE) -> Sequence[Rigid]:
         foot, hinge, top = self._corners(s)
@@ -101,8 +73,7 @@ class Wall(Structure):
         x, y = x + hx, y + hy
         across = top.real + tx - x
         up = np.sqrt(abs(top - hinge) ** 2 - across**2)
-        upper = Rigid(hinge, x, y, turned_from(top - hinge, across, up))
-        return [lower if piece.centre.imag < hinge.imag else upper for piece in self._points[0]]
+        return lower, Rigid(hinge, x, y, turned_from(top - hinge, across, up))
 
     def joints(self) -> Sequence[str]:
         return ("foot", "hinge", "top")
@@ -113,18 +84,6 @@ class Wall(Structure):
         x, _ = Rigid(foot, foot.real, 0.0, -s * phi).at(hinge)
         locked = abs(top.real - x) >= abs(top - hinge)
         return float(phi[locked.argmax() - 1] if locked.any() else pi / 2)
-
-    def weakest(self, s: int) -> float:
-        """The height of the hinge, over that of the wall, with the least lambda in direction s."""
-
-        def slope(xi: float) -> float:
-            return sum(
-                weight * (replace(self, hinge=xi + k / 500).uplift(s) - replace(self, hinge=xi - k / 500).uplift(s))
-                for k, weight in ((1, 45), (2, -9), (3, 1))  # of sixth order
-            )
-
-        assert slope(0.95) > 0, "the weakest hinge runs to the top: the whole wall turns"
-        return float(brentq(slope, 0.05, 0.95, xtol=1e-13))
 
 
 @dataclass(frozen=True)

@@ -123,10 +123,6 @@ class Structure(ABC):
         """The rotation at which it lies flat or can turn no further."""
         return pi / 2
 
-    def carried(self) -> Sequence[Load]:
-        """All loads, also those that belong to the structure."""
-        return self.loads
-
     # What is hung on it.
 
     def with_load(
@@ -197,7 +193,7 @@ class Structure(ABC):
         """h M, v M, w M and x and y of all bodies and loads."""
         points = [body.at(piece.centre) for piece, body in zip(self._points[0], bodies, strict=True)]
         shares = [[piece.mass] * 3 for piece in self._points[0]]
-        for load in self.carried():
+        for load in self.loads:
             points.append(self.body(bodies, load.body).at(load.at))
             shares.append([load.mass * share for share in (load.horizontal, load.vertical, load.weight)])
         h, v, w = np.array(shares).T
@@ -316,7 +312,7 @@ class Structure(ABC):
 
     @cached_property
     def _rest_heights(self) -> Reals:
-        centres = [piece.centre for piece in self._points[0]] + [load.at for load in self.carried()]
+        centres = [piece.centre for piece in self._points[0]] + [load.at for load in self.loads]
         return np.array(centres).imag
 
     def acceleration(
@@ -327,11 +323,6 @@ class Structure(ABC):
         return -(it.d_inertia / 2 * rate**2 + it.dV + v * it.G + u * it.X) / it.inertia
 
     # What follows at once.
-
-    def uplift(self, s: int) -> float:
-        """lambda: the ground acceleration, over g, that lifts the structure."""
-        it = self.terms(s, 0.0)
-        return it.dV / (s * it.X * self.gravity)
 
     def critical(self, s: int) -> float | None:
         """phi_cr: where V' passes through zero, downwards and without a jump; none before the limit, then None."""
@@ -346,16 +337,6 @@ class Structure(ABC):
                 phi = float(brentq(slope, scan[i], scan[i + 1], xtol=1e-15, rtol=1e-14))
                 return phi if abs(slope(phi)) < 1e-9 * values[0] else None
         return None
-
-    def p(self, s: int) -> float:
-        """The frequency parameter of the equivalent block [rad/s]."""
-        it = self.terms(s, self._critical(s))
-        return float(np.sqrt(-it.ddV / it.inertia))
-
-    def kappa1(self, s: int) -> float:
-        """B over -V''/g at phi_cr."""
-        it = self.terms(s, self._critical(s))
-        return s * it.X / (-it.ddV / self.gravity)
 
     def _critical(self, s: int) -> float:
         phi = self.critical(s)

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from rocking_cli.ask.read import read_record
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records import read_record
 from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.reading import turned
 from rocking_cli.questions.respond.azimuths import all_around, sectors
@@ -131,8 +131,8 @@ class TestFloor:
     def test_targets_are_of_the_ground(self):
         data = run_json("respond", "--neighbours", 0, "--record", ACCEL, "--target-pga", 0.2, "--floor", FLOOR)
         record = data["record"]
-        assert record["scale"] == pytest.approx(0.2 / record["pga"])
-        assert record["floor_pga"] > 1.1 * record["pga"]
+        assert record["scale"] == pytest.approx(0.2 / record["pga_g"])
+        assert record["floor_pga"] > 1.1 * record["pga_g"]
         assert record["processing"] == [f"floor {FLOOR}"]
 
     def test_the_response_is_that_to_the_floor(self, tmp_path, quake):
@@ -147,7 +147,7 @@ class TestFloor:
 
     def test_a_pulse_shakes_a_building_too(self):
         data = run_json("respond", "--neighbours", 0, "--pulse", "sine:0.3g:0.5s", "--floor", FLOOR)
-        assert data["record"]["floor_pga"] > data["record"]["pga"]
+        assert data["record"]["floor_pga"] > data["record"]["pga_g"]
 
     def test_a_study_runs_on_a_floor(self, tmp_path):
         (tmp_path / "block.yaml").write_text("mechanism: block\nwidth: 0.7\nheight: 2.8\n")
@@ -162,12 +162,12 @@ class TestFloor:
             run("fragility", tmp_path / f"{name}.yaml", "--jobs", 1)
             run("results", tmp_path / f"{name}.db", "--out", tmp_path / f"{name}.csv")
             table = np.genfromtxt(tmp_path / f"{name}.csv", delimiter=",", names=True, dtype=None, encoding="utf-8")
-            peaks[name] = table["phiphi_cr"]
+            peaks[name] = table["peak_ratio"]
             assert table["PGA_g"] == pytest.approx([0.2, 0.3, 0.5])  # of the ground
         assert peaks["stiff"] == pytest.approx(peaks["ground"], rel=1e-3)
-        assert (np.nan_to_num(peaks["floor"], nan=9) > np.nan_to_num(peaks["ground"], nan=9)).any()
+        assert (peaks["floor"] > peaks["ground"]).any()
         record = json.loads(run("results", tmp_path / "floor.db", "--json").stdout)["records"][0]
-        assert record["pga"] == pytest.approx(read_record(ACCEL).pga_g)
+        assert record["pga_g"] == pytest.approx(read_record(ACCEL).pga_g)
 
 
 class TestTurned:
@@ -207,7 +207,7 @@ class TestTurned:
             (("--with", "AGAIN", "--azimuth", "30"), "give the channel of the second with --with-channel"),
             (
                 ("--with", "EAST", "--azimuth", "all", "--polarity", "both"),
-                "--polarity cannot be combined with --azimuth all",
+                "--polarity has no effect with --azimuth all",
             ),
         ],
     )
@@ -235,7 +235,7 @@ class TestAllAround:
                 if not one[model]["overturned"]:
                     assert data["responses"][model]["peak_ratio"][k] == pytest.approx(one[model]["peak_ratio"])
         assert (tmp_path / "all.png").stat().st_size > 10_000
-        assert len((tmp_path / "a.csv").read_text().splitlines()) == 1 + len(data["azimuths"])
+        assert len((tmp_path / "a.csv").read_text().splitlines()) == 1 + len(data["responses"]) * len(data["azimuths"])
 
     def test_what_is_said_is_what_was_found(self, pair):
         data = run_json("respond", "--record", ACCEL, "--with", pair, "--scale", 2, "--azimuth", "all")
@@ -274,12 +274,10 @@ def test_in_python(quake, tmp_path):
     other = rk.correct(quake, "trim 0:6", {"lowpass": 20})
     assert other.processing == ("trim 0:6", "lowpass 20")
     assert rk.on_floor(quake, FLOOR).pga_g == Floor.parse(FLOOR).of(quake).pga_g
-    found = rk.respond_around(
-        rk.Block(width=0.7, height=2.8), quake, rk.correct(quake, "lowpass 3"), models="nonlinear"
-    )
+    found = rk.respond_around(rk.Block(width=0.7, height=2.8), quake, rk.correct(quake, "lowpass 3"), model="nonlinear")
     assert list(found.to_dict()["responses"]) == ["nonlinear"]
     assert found.outcomes["nonlinear"].peak_ratio[0] == pytest.approx(
-        rk.respond(rk.Block(width=0.7, height=2.8), quake, models="nonlinear")["nonlinear"].peak_ratio
+        rk.respond(rk.Block(width=0.7, height=2.8), quake, model="nonlinear")["nonlinear"].peak_ratio
     )
     found.plot(tmp_path / "around.svg")
     assert (tmp_path / "around.svg").read_text(encoding="utf-8").startswith("<?xml")

@@ -417,7 +417,7 @@ def test_a_response_concludes_the_same_in_text_json_and_report(tmp_path, pulse, 
 
 
 def test_an_unknown_response_is_concluded_with_its_joint_and_time():
-    answer = rk.respond(EXAMPLES / "masonry" / "portal.yaml", "sine:1g:0.8s", models="nonlinear")
+    answer = rk.respond(EXAMPLES / "masonry" / "portal.yaml", "sine:1g:0.8s", model="nonlinear")
     run_, end = answer["nonlinear"], answer.conclusion
     assert run_.unknown == (end.concluded is Concluded.UNKNOWN)
     assert end.known_until == (run_.known_to if run_.unknown else None)
@@ -491,7 +491,7 @@ def test_every_surface_of_a_response_has_one_conclusion(file, pulse):
     """Text, data and Python of all shipped structures."""
     if not yaml.safe_load(file.read_text(encoding="utf-8")).get("mechanism"):
         return
-    answer = rk.respond(file, pulse, models="nonlinear", neighbours=0)
+    answer = rk.respond(file, pulse, model="nonlinear", neighbours=0)
     end, history = answer.conclusion, answer["nonlinear"]
     words = end.concluded.value.replace("_", " ")
     said = " ".join(answer.sentences)

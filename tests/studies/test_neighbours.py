@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.special import ndtr, ndtri
 
+from rocking_cli.ask.read import read_record
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.core.structure_file import load_structure, parse_structure
 from rocking_cli.dynamics.exact_batch import exact_many
@@ -14,7 +15,6 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.excitation.pulses.shapes import Sine
-from rocking_cli.excitation.records import read_record
 from rocking_cli.studies.neighbours import (
     Draws,
     Neighbourhood,
@@ -26,7 +26,7 @@ from rocking_cli.studies.neighbours import (
 )
 from rocking_cli.views.neighbours import deviations, neighbours_data, neighbours_in_words
 from tests.conftest import EXAMPLES
-from tests.following import build_model, respond
+from tests.following import build_model, conditions, respond
 
 BLOCK = parse_structure("mechanism: block\nwidth: 0.7\nheight: 2.8\n", "block", "block")
 FRAME = load_structure(EXAMPLES / "frame.yaml")
@@ -122,7 +122,7 @@ def test_neighbours_are_what_each_would_be_alone(mechanism, scale, motion):
     model, motion = build_model(mechanism, "nonlinear", opening), motion.scaled(scale)
     drawn = zip(*around.drawn(model), strict=True)
     fates = np.array([fate(alone(mechanism, motion, opening, *each)) for each in drawn])
-    found = neighbours(model, motion, around)
+    found = neighbours(conditions(mechanism, around, opening), motion)
     assert found.overturned == np.isinf(fates).mean()
     assert found.unknown == 0
     ranks = np.sort(fates)[[int(np.ceil(share * 30)) - 1 for share in (0.16, 0.5, 0.84)]]
@@ -144,7 +144,7 @@ def test_neighbours_of_unknown_outcome_are_what_each_would_be_alone(file, openin
     around, motion = Neighbourhood(20, 0.1, 0.03, 0.0), ACCEL.scaled(scale)
     model = build_model(structure, "nonlinear", opening)
     histories = [alone(structure, motion, opening, *each) for each in zip(*around.drawn(model), strict=True)]
-    found = neighbours(model, motion, around)
+    found = neighbours(conditions(structure, around, opening), motion)
     assert found.unknown == np.mean([each.unknown for each in histories]) and some <= found.unknown < 1
     assert found.overturned == np.mean([each.fell for each in histories]) >= fell
     assert found.at_most == pytest.approx(np.mean([np.isinf(fate(each)) for each in histories]), abs=1e-12)
@@ -155,14 +155,14 @@ def test_neighbours_of_unknown_outcome_are_what_each_would_be_alone(file, openin
 
 
 def test_nothing_is_known_of_joints_that_the_mechanism_does_not_name():
-    found = neighbours(build_model(load_structure(EXAMPLES / "curve.yaml"), "nonlinear"), ACCEL, Neighbourhood(5))
+    found = neighbours(conditions(load_structure(EXAMPLES / "curve.yaml"), Neighbourhood(5)), ACCEL)
     assert found.unknown is None and found.at_most == found.overturned
 
 
 def test_nor_where_nothing_can_lift_it():
     faint = ACCEL.scaled(0.01)
     for structure, unknown in ((load_structure(EXAMPLES / "curve.yaml"), None), (BLOCK, 0.0)):
-        found = neighbours(build_model(structure, "nonlinear"), faint, Neighbourhood(5))
+        found = neighbours(conditions(structure, Neighbourhood(5)), faint)
         assert not found.lifted and found.unknown == unknown == neighbours_data(found)["unknown"]
         assert found.at_most == found.overturned == 0
 
@@ -179,8 +179,8 @@ def test_nor_where_nothing_can_lift_it():
 )
 def test_two_hundred_tell_the_share_of_thousands(file, pulse):
     """On smooth cases and on fractal ones; independent samples would scatter by 3.5 % about a half."""
-    model, motion = build_model(load_structure(EXAMPLES / f"{file}.yaml"), "nonlinear"), parse_pulse(pulse).sampled()
-    few, many = (neighbours(model, motion, Neighbourhood(count)) for count in (200, 2_500))
+    structure, motion = load_structure(EXAMPLES / f"{file}.yaml"), parse_pulse(pulse).sampled()
+    few, many = (neighbours(conditions(structure, Neighbourhood(count)), motion) for count in (200, 2_500))
     assert few.overturned == pytest.approx(many.overturned, abs=3.5 * 0.035)
     assert few.unknown == pytest.approx(many.unknown, abs=3.5 * 0.035)
 
@@ -195,7 +195,6 @@ def test_the_share_of_a_linear_block_is_that_of_its_islands(varied):
     """
     period, deviation = 0.6, 0.01
     block = equivalent_block(BLOCK)
-    model = build_model(BLOCK, "linear2")
     fine = np.linspace(2.0, 9.0, 70_001)
     falls = exact_many(block, Sine(1.0, period), fine, period, kappa=2, gravity=BLOCK.gravity).fell
     edges = fine[1:][np.diff(falls.astype(np.int8)) != 0]
@@ -213,7 +212,7 @@ def test_the_share_of_a_linear_block_is_that_of_its_islands(varied):
                 unit="m/s2",
             )
             deviations = {"amplitude": 0.0, "restitution": 0.0, "slenderness": 0.0, varied: deviation}
-            found = neighbours(model, motion, Neighbourhood(1000, **deviations))
+            found = neighbours(conditions(BLOCK, Neighbourhood(1000, **deviations), model="linear2"), motion)
             # Each part of the range has one sample: the share is off by a part at each boundary.
             assert found.overturned == pytest.approx(exact, abs=3e-3)
             checked += 0.05 < exact < 0.95
@@ -223,7 +222,7 @@ def test_the_share_of_a_linear_block_is_that_of_its_islands(varied):
 class TestWithoutShaking:
     def test_nothing_is_followed_where_nothing_can_lift(self, monkeypatch):
         monkeypatch.setattr("rocking_cli.studies.engines.exact.respond_many", None)
-        found = neighbours(build_model(BLOCK, "nonlinear"), ACCEL.scaled(0.01))
+        found = neighbours(conditions(BLOCK), ACCEL.scaled(0.01))
         assert (found.overturned, found.peak_ratio, found.sensitive) == (0.0, (0.0, 0.0, 0.0), False)
 
     @pytest.mark.parametrize("off", [-1e-9, 1e-9])
@@ -244,14 +243,14 @@ class TestWithoutShaking:
         drawn = Neighbourhood().drawn(model)
         first = ACCEL.scaled(least_uplift(model, ACCEL) / (drawn.amplitude / drawn.slender).max())
         assert not can_lift(model, first, 1.2)
-        assert neighbours(model, first.scaled(1 + off)).lifted == (off > 0)
+        assert neighbours(conditions(BLOCK), first.scaled(1 + off)).lifted == (off > 0)
 
     def test_a_release_as_a_share_of_the_critical_rotation_is_that_of_every_neighbour(self):
-        found = neighbours(build_model(BLOCK, "nonlinear"), None, release=0.5)
+        found = neighbours(conditions(BLOCK, release=0.5), None)
         assert found.overturned == 0 and found.peak_ratio == pytest.approx((0.5,) * 3, rel=1e-9)
 
     def test_a_release_by_an_angle_is_more_to_the_more_slender(self):
-        found = neighbours(build_model(BLOCK, "nonlinear"), None, release=0.5, release_is_angle=True)
+        found = neighbours(conditions(BLOCK, release=0.5, release_is_angle=True), None)
         expected = [0.5 * exp(0.1 * ndtri(share)) for share in (0.16, 0.5, 0.84)]
         assert found.overturned == 0 and found.peak_ratio == pytest.approx(tuple(expected), rel=2e-3)
 
@@ -260,7 +259,7 @@ class TestWithoutShaking:
         model, around = build_model(BLOCK, "nonlinear"), Neighbourhood(40, restitution=0.0)
         drawn, tilt = around.drawn(model), 0.6
         push = GroundMotion("push", 0.01, np.append(-0.11 * STANDARD_GRAVITY * np.ones(60), np.zeros(5)), unit="m/s2")
-        found = neighbours(model, push, around, release=tilt, release_is_angle=True)
+        found = neighbours(conditions(BLOCK, around, release=tilt, release_is_angle=True), push)
         alone = [
             simulate_neighbours(model, push, Draws(*(each[k : k + 1] for each in drawn)), release=tilt / k_e).fell[0]
             for k, k_e in enumerate(drawn.slender)
@@ -271,10 +270,10 @@ class TestWithoutShaking:
     def test_a_release_next_to_the_critical_rotation_falls_as_often_as_it_is_beyond_it(self, sign):
         model = build_model(FRAME, "nonlinear")
         dull = Neighbourhood(restitution=0.0)
-        found = neighbours(model, None, dull, release=0.99 * sign, release_is_angle=True)
+        found = neighbours(conditions(FRAME, dull, release=0.99 * sign, release_is_angle=True), None)
         assert found.overturned == (dull.drawn(model).slender < 0.99).mean()
         assert found.overturned == pytest.approx(ndtr(log(0.99) / 0.10), abs=0.01)
-        assert neighbours(model, None, dull, release=0.99 * sign).overturned == 0
+        assert neighbours(conditions(FRAME, dull, release=0.99 * sign), None).overturned == 0
 
 
 NEAR = "(standard deviations 4 % of amplitude, 10 % of slenderness, 0.05 of restitution),"
@@ -283,7 +282,7 @@ OPEN = (0.1, np.inf, np.inf)
 
 class TestWords:
     def test_where_nothing_can_lift_it(self):
-        found = neighbours(build_model(BLOCK, "nonlinear"), parse_pulse("sine:0.1g:1s").sampled())
+        found = neighbours(conditions(BLOCK), parse_pulse("sine:0.1g:1s").sampled())
         assert neighbours_in_words(found) == f"None of 200 neighbouring motions {NEAR[:-1]} uplifts the structure."
 
     def sentence(self, overturned, peaks, unknown=0.0):

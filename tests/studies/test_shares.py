@@ -1,5 +1,6 @@
 """Shares of neighbours: how they are drawn, and what they are where that is known exactly."""
 
+from dataclasses import replace
 from math import log, sqrt
 from statistics import NormalDist
 
@@ -8,7 +9,8 @@ import pytest
 
 from rocking_cli import GroundMotion, Registry
 from rocking_cli.errors import InputError
-from rocking_cli.structure import build_models
+from rocking_cli.structure import Structure
+from rocking_cli.studies.conditions import Conditions
 from rocking_cli.studies.neighbours import Neighbourhood, neighbours
 from rocking_cli.views.neighbours import deviations
 
@@ -16,8 +18,11 @@ NORMAL = NormalDist()
 
 
 def model(name="block", **fields):
-    fields = fields or {"width": 0.7, "height": 2.8}
-    return build_models(Registry()[name](**fields), ("nonlinear",))[0]
+    return structure(name, **fields).model("nonlinear")
+
+
+def structure(name="block", **fields):
+    return Structure(Registry()[name](**(fields or {"width": 0.7, "height": 2.8})))
 
 
 def held(level, push=-1):
@@ -27,8 +32,8 @@ def held(level, push=-1):
 
 @pytest.mark.parametrize(("level", "restitution"), [(0.85, None), (0.9, None), (1.03, None), (1.1, None), (1.03, 0.5)])
 def test_a_held_acceleration_overturns_the_share_that_is_exact(level, restitution):
-    made = model("block", width=0.7, height=2.8, restitution=restitution)
-    found = neighbours(made, held(level * made.lambda_[0]))
+    made = structure("block", width=0.7, height=2.8, restitution=restitution)
+    found = neighbours(Conditions(made), held(level * made.model("nonlinear").lambda_[0]))
     assert found.overturned == pytest.approx(NORMAL.cdf(log(level) / sqrt(0.04**2 + 0.10**2)), abs=0.03)
 
 
@@ -88,16 +93,15 @@ def test_deviations_come_from_the_file_and_options_win():
 
 
 def test_without_deviations_all_neighbours_are_the_motion_itself():
-    made = model()
-    motion = held(1.2 * made.lambda_[0])
-    found = neighbours(made, motion, Neighbourhood(50, amplitude=0.0, restitution=0.0, slenderness=0.0))
+    motion = held(1.2 * model().lambda_[0])
+    around = Neighbourhood(50, amplitude=0.0, restitution=0.0, slenderness=0.0)
+    found = neighbours(Conditions(structure(), around=around), motion)
     assert found.as_itself == 1
 
 
 def test_a_release_stays_a_share_of_phi_cr_or_an_angle():
-    made = model("block", width=0.7, height=2.8, restitution=0.5)
-    share = neighbours(made, None, Neighbourhood(200), release=0.9)
-    angle = neighbours(made, None, Neighbourhood(200), release=0.9, release_is_angle=True)
+    share = Conditions(structure("block", width=0.7, height=2.8, restitution=0.5), release=0.9)
+    share, angle = (neighbours(replace(share, release_is_angle=each), None) for each in (False, True))
     assert share.overturned == 0
     # An angle of 0.9 phi_cr overturns whatever is less slender than 0.9 of the nominal.
     assert angle.overturned == pytest.approx(NORMAL.cdf(log(0.9) / 0.10), abs=0.02)

@@ -30,6 +30,7 @@ from rocking_cli.questions.survey.picture import draw_survey
 from rocking_cli.questions.survey.study import ORDERS, Survey, Surveyed, Under
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Concluded, Conclusion
+from rocking_cli.studies.conditions import Conditions
 from rocking_cli.studies.movements import Watched, largest
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours
 from rocking_cli.views.conclusion import does
@@ -60,7 +61,7 @@ def folder(tmp_path_factory):
 class TestMargin:
     FOUND = Margin(
         Neighbourhood(20, 0.04, 0.05, 0.1), 0.3, np.array([0.5, 1.0, 2.0, 4.0]), np.array([0.0, 0.05, 0.2, 0.6]),
-        np.array([0.0, 0.1, 0.4, 0.4]), pga=0.5, polarities=(1,),
+        np.array([0.0, 0.1, 0.4, 0.4]), pga_g=0.5, polarities=(1,),
     )  # fmt: skip
 
     END = Conclusion(concluded=Concluded.ROCKS, peak_ratio=0.2, motion="a", ratio=1.0, share=FOUND.share)
@@ -70,7 +71,7 @@ class TestMargin:
         assert margin_views.margin_data(found)["unknown"] is None
         structure, end = Structure(rk.load_structure(EXAMPLES / "curve.yaml")), self.END
         row = margin_views.MarginRow("a", 1.0, found, end)
-        parts = margin_views.view(structure, [row], "1", found.around, end).parts
+        parts = margin_views.view(Conditions(structure, around=found.around), [row], end).parts
         assert str(parts[-1]).startswith("Caution: the joints of this mechanism are not checked")
 
 
@@ -173,7 +174,7 @@ class TestAzimuths:
 
     def test_they_are_told_apart(self):
         found = self.found()
-        structure = SimpleNamespace(mechanism=rk.Block(width=0.5, height=2.0, name="b"))
+        structure = Structure(rk.Block(width=0.5, height=2.0, name="b"))
         view = azimuth_views.view(structure, found)
         data = view.data if isinstance(view.data, dict) else view.data()
         mine = data["responses"]["nonlinear"]
@@ -184,7 +185,7 @@ class TestAzimuths:
         # The largest peak is one of a direction whose outcome is known.
         assert view.parts[2].rows == [["nonlinear", "17 %", "33 %", "0 %", "0.4", "180"]]
         assert "it overturns in 1 of 6 directions, at 0 degrees; its outcome is unknown in 2 of 6" in view.parts[3]
-        assert np.isnan(azimuth_views.columns(found)["overturns nonlinear"][1:3]).all()
+        assert np.isnan(azimuth_views.columns(found)["overturned"][1:3]).all()
 
     def test_no_curve_is_drawn_there(self):
         axes = draw_azimuths(self.found(), "", (False, False)).axes[0]
@@ -287,7 +288,7 @@ class TestReport:
 
 
 def test_many_histories_in_python_have_no_outcome_where_it_is_unknown(folder):
-    found = rk.respond_each([folder / "arch.yaml", EXAMPLES / "curve.yaml"], PULSE[1], models="nonlinear")
+    found = rk.respond_each([folder / "arch.yaml", EXAMPLES / "curve.yaml"], PULSE[1], model="nonlinear")
     data = found.to_dict()["nonlinear"]
     assert np.ravel(data["overturned"]).tolist()[0] is None and np.ravel(data["unknown"]).tolist() == [True, None]
     assert "and the outcome of 1 is unknown." in found.sentences[0]

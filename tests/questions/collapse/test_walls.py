@@ -10,9 +10,9 @@ from matplotlib.colors import to_rgb
 
 from mechanisms.assembly import Assembly
 from mechanisms.symmetric_frame import SymmetricFrame
+from rocking_cli.ask.read import read_record
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.core.structure_file import load_structure
-from rocking_cli.excitation.records import read_record
 from rocking_cli.plotting import style
 from rocking_cli.plotting.structure import LINE_WEIGHT_SHARE, MIN_FORCE_SHARE, draw_structure, weight
 from rocking_cli.plotting.style import POINTS_PER_INCH

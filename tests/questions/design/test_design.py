@@ -13,10 +13,11 @@ from rocking_cli.questions.design.metrics import METRICS, Excitation, Metric
 from rocking_cli.questions.design.picture import draw_design
 from rocking_cli.questions.design.study import Aim, Span, design
 from rocking_cli.questions.design.view import answer
-from rocking_cli.structure import Structure, build_models
+from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Neighbourhood, neighbours
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
+from tests.following import conditions
 
 ACCEL = EXAMPLES / "accel.csv"
 BLOCK = EXAMPLES / "block.yaml"
@@ -151,8 +152,7 @@ class TestShares:
         peaks = rk.design(BLOCK, "width=0.3:1.2", "peak_ratio < 0.5", self.SINE, neighbours=20, points=7)
         block = rk.load_structure(BLOCK)
         for width, share, peak in zip(found.values, found.metric, peaks.metric, strict=True):
-            model = build_models(block.model_copy(update={"width": float(width)}), ("nonlinear",))[0]
-            near = neighbours(model, motion, around)
+            near = neighbours(conditions(block.model_copy(update={"width": float(width)}), around), motion)
             assert share == near.overturned and peak == near.peak_ratio[1]
 
     def test_the_answer_holds_and_just_below_it_does_not(self):
@@ -264,7 +264,7 @@ class TestCommand:
         arguments = ("design", BLOCK, "--vary", "width=200mm:0.8m", "--until", "lambda >= 0.2", "--points", "7")
         data = json.loads(run(*arguments, "--json", "--plot", "p.svg", "--out", "o.csv").stdout)
         assert isclose(data["value"], 0.56) and data["field"] == "width" and data["unit"] == "m"
-        assert data["holds"][0][1] == 0.8 and data["monotone"] and data["given"] == 0.7
+        assert data["holds"][0][1] == 0.8 and data["monotone"] and data["in_file"] == 0.7
         assert data["scan"]["metric"] == pytest.approx([each / 2.8 for each in data["scan"]["values"]])
         assert Path("p.svg").stat().st_size > 1000
         lines = Path("o.csv").read_text(encoding="utf-8").splitlines()

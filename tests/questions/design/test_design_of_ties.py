@@ -8,10 +8,10 @@ import pytest
 
 import rocking_cli as rk
 from rocking_cli.errors import InputError
-from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Neighbourhood, neighbours
 from tests.cli.test_cli import run
 from tests.core.test_ties_of_steel import MASS, PLATE, SITE, G, facade
+from tests.following import conditions
 
 FURTHER = {"SLD": {"ag": 0.08, "F0": 2.5, "TC": 0.4, "S": 1.2}, "SLC": {"ag": 0.25, "F0": 2.5, "TC": 0.4, "S": 1.2}}
 CONSTANT = {"stiffness": 0, "prestress": 1e4}
@@ -153,7 +153,7 @@ ALPHA = atan(0.6 / 2.4)
 
 def median(structure, ratio_of=lambda near: near.peak_ratio[1]):
     motion = rk.parse_pulse(PULSE).sampled()
-    return ratio_of(neighbours(Structure(structure).model("nonlinear"), motion, Neighbourhood(20, slenderness=0.0)))
+    return ratio_of(neighbours(conditions(structure, Neighbourhood(20, slenderness=0.0)), motion))
 
 
 @pytest.mark.parametrize(
@@ -176,7 +176,7 @@ def test_the_drift_of_a_wall_that_is_held_at_its_top_is_that_of_its_hinge():
     wall = rk.Wall(thickness=0.3, height=3.0, restitution=0.9)
     found = rk.design(wall, "gravity=9.80665:9.9", "drift < 1", "sine:0.5g:0.3s", **AROUND)
     motion = rk.parse_pulse("sine:0.5g:0.3s").sampled()
-    near = neighbours(Structure(wall).model("nonlinear"), motion, Neighbourhood(20, slenderness=0.0))
+    near = neighbours(conditions(wall, Neighbourhood(20, slenderness=0.0)), motion)
     phi = np.sort(near.rotations.max(axis=1))[9]
     assert phi > 1e-3 and found.metric[0] == pytest.approx((0.3 * (1 - cos(phi)) + 1.5 * sin(phi)) / 1.5, rel=1e-9)
 
@@ -197,7 +197,7 @@ def test_the_force_of_a_tie():
     block = rk.Block(**{**BLOCK, "restitution": None}, one_sided="positive", rebound=0.5, ties=[tie])
     found = rk.design(block, "gravity=9.80665:9.9", "tie_force <= 90 kN", PULSE, **AROUND)
     motion = rk.parse_pulse(PULSE).sampled()
-    near = neighbours(Structure(block).model("nonlinear"), motion, Neighbourhood(20, slenderness=0.0))
+    near = neighbours(conditions(block, Neighbourhood(20, slenderness=0.0)), motion)
     phi = np.sort(near.rotations[:, 0])[9]  # the tenth of twenty
     end = 0.3 + (-0.6 + 2j) * np.exp(-1j * phi)
     force = 1e6 * (abs(end - (-2.3 + 2j)) - 2)

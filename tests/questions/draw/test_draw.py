@@ -481,13 +481,13 @@ class TestCommand:
 
     def test_json_is_the_picture(self, tmp_path):
         data = run_json("draw", EXAMPLES / "arch.yaml")
-        assert data == picture(ARCH).as_dict()
+        assert data == {**picture(ARCH).as_dict(), "given": {}}
         assert sum(len(part["outlines"]) for part in data["parts"]) == 7
         assert list(tmp_path.iterdir()) == []
 
     def test_a_rotation_beyond_the_end_is_refused(self):
         assert "at most 6." in run("draw", "--at", "7", code=2).stderr
-        assert "above 0" in run("draw", "--at", "-0.5", code=2).stderr
+        assert "more than 0" in run("draw", "--at", "-0.5", code=2).stderr
 
 
 @pytest.mark.parametrize(

@@ -149,7 +149,7 @@ def test_dxf_alone_writes_nothing_else(tmp_path):
 
 
 def test_another_ending_and_a_missing_folder_are_refused(tmp_path):
-    for name, words in (("b.dwg", "ends in .dxf"), ("none/b.dxf", "does not exist")):
+    for name, words in (("b.dwg", "does not end in .dxf"), ("none/b.dxf", "does not exist")):
         with pytest.raises(rk.InputError, match=words):
             rk.draw(rk.Block(width=1.0, height=4.0), dxf=tmp_path / name)
     assert not list(tmp_path.iterdir())

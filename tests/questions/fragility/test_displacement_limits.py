@@ -33,7 +33,7 @@ STUDY = {
     "records": [str(EXAMPLES / "accel.csv"), {"pulse": "sine:0.6g:0.8s"}, {"pulse": "ricker:0.6g:1.2s"}],
     "method": "stripes",
     "levels": {"measure": "PGA", "least": 0.15, "most": 1.2, "count": 8},
-    "polarities": [1, -1],
+    "polarity": "both",
     "samples": 3,
     "limit_states": ["uplift", "overturning", "25 mm", "0.2 m"],
 }  # fmt: skip
@@ -140,7 +140,7 @@ def test_each_run_exceeds_when_its_own_history_says_so(whole):
     assert ((found.peaks[one_way] > table["200 mm"][sample][one_way]).sum(axis=0) > 0).all()
     for k in sorted({*range(0, plan.size, 7), *np.flatnonzero(one_way).tolist()}):
         motion = motions[record[k]].scaled(float(scale[k]) * plan.polarities[polarity[k]])
-        history = respond(study.samples[sample[k]].mechanism, motion, models=("nonlinear",))["nonlinear"]
+        history = respond(study.samples[sample[k]].mechanism, motion, model=("nonlinear",))["nonlinear"]
         top = next(each for each in watched[sample[k]].peaks(history).points if each.name == "top")
         for limit, metre in zip(LIMITS, (0.025, 0.2), strict=True):
             expected = history.overturned or top.horizontal > metre
@@ -171,7 +171,7 @@ def test_a_body_that_only_slides_exceeds_what_its_slip_exceeds(tmp_path):
     limits = ["uplift", "sliding", "20 mm", "80 mm", "overturning"]
     path = write(
         tmp_path, structures=["plinth.yaml"], records=[{"pulse": "sine:1g:0.8s"}], samples=1, limit_states=limits,
-        levels={"measure": "PGA", "values": levels}, polarities=[1],
+        levels={"measure": "PGA", "values": levels}, polarity=1,
     )  # fmt: skip
     carry_out(path, tmp_path / "study.db", jobs=1)
     slips = np.array([slip_of_a_sine(level, 0.8, 0.15) for level in levels])

@@ -32,7 +32,7 @@ STUDY = {
     ],
     "method": "stripes",
     "levels": {"measure": "PGA", "least": 0.1, "most": 1.3, "count": 17},
-    "polarities": [1, -1],
+    "polarity": "both",
     "limit_states": LIMITS,
     "measures": ["PGA", "PGA/(g lambda)", "PGV"],
 }
@@ -94,7 +94,7 @@ def test_what_is_cut_is_said(answer):
     assert "a motion uplifts the structure exactly if its PGA exceeds 0.25 g, so no curve is fitted." in text
     assert "overturning" in text and "cut by that of uplift, which it implies: by up to" in text
     assert "Curve and band are cut by lambda, up to which nothing uplifts" in text
-    for found, shown in zip(answer.result, answer.view.data["curves"], strict=True):
+    for found, shown in zip(answer.result, answer.to_dict()["curves"], strict=True):
         x = np.geomspace(found.seen.x.min(), found.seen.x.max(), 200)
         own, cut = found.curve.own, found.curve
         most = max((own.probability(x) - cut.probability(x)).max(), *(np.array(own.band(x)) - cut.band(x)).max(axis=1))

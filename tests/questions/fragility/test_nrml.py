@@ -218,7 +218,7 @@ def test_the_command_refuses_places_and_says_when_nothing_is_left(store, tmp_pat
     study.write_text(text + "measures: [PGA/(g lambda)]\n", encoding="utf-8")
     out = tmp_path / "f.xml"
     found = command("fragility", study, "--nrml", out)
-    assert found.exit_code == 2 and "OpenQuake accepts none of the curves" in found.stderr and not out.exists()
+    assert found.exit_code == 5 and "OpenQuake accepts none of the curves" in found.stderr and not out.exists()
     assert "pedestal, over PGA/(g lambda)" in found.stdout
 
 

@@ -74,7 +74,7 @@ def test_robust_interval_leaves_out_each_cluster(curve, size):
         moved.append(np.linalg.solve(-rest.hessian(best, scale=1.0), rest.score(best, scale=1.0)))
     count = len(moved)
     covariance = np.array(moved).T @ np.array(moved) * (count - 1) / count
-    agree(fit.robust_interval, ends(*best, covariance, student.ppf(0.95, count - 1), DEVIATION[curve]))
+    agree(fit.robust_interval, ends(*best, covariance, student.ppf(0.975, count - 1), DEVIATION[curve]))
 
 
 def test_two_shares_give_the_curve_through_them():
@@ -106,7 +106,7 @@ def test_unknown_runs_are_counted_both_ways():
     assert fit.lower.robust_interval == lower.robust_interval
     assert (fit.unknown, fit.is_band) == (5, True)
     assert fit.sentences[0].endswith(
-        f"90 % robust intervals; {int(np.nansum(known))} of 150 runs exceed; the outcome of 5 is unknown."
+        f"95 % robust intervals; {int(np.nansum(known))} of 150 runs exceed; the outcome of 5 is unknown."
     )
     assert any("whether 5 of 150 runs (3.3 %) exceed the limit is unknown; the result is the band" in each
                for each in fit.sentences)  # fmt: skip
@@ -167,8 +167,8 @@ GOOD = [0.1, 0.2, 0.3, 0.4], [0, 1, 0, 1]
         (GOOD, {"clusters": ["a"]}, "`clusters` must have one name for each intensity: there are 1 and 4"),
         (GOOD, {"clusters": ["a", None, "b", "c"]}, r"`clusters\[1\]` is missing"),
         (GOOD, {"clusters": [[1], [2], [3], [4]]}, "`clusters` must be a sequence of names"),
-        (GOOD, {"curve": "probit"}, "`curve` must be lognormal or logit, got 'probit'"),
-        (GOOD, {"confidence": 95}, "`confidence` must be between 0.5 and 1, got 95"),
+        (GOOD, {"curve": "probit"}, "`curve` must be lognormal or logit, got the text probit"),
+        (GOOD, {"confidence": 95}, "`confidence` must be less than 1, got 95"),
         (GOOD, {"label": "lower_high"}, "`label` must not be 'lower_high', the name of another column"),
         (GOOD, {"label": "lower high [g]"}, "`label` must not be 'lower high .g.', the name of another column"),
         (GOOD, {"cluster": "abcd"}, "`cluster` is not an argument"),

@@ -37,7 +37,7 @@ def however_few():
 
 def study(folder, method, measures=MEASURES):
     given = {
-        "structures": [str(EXAMPLES / "frame.yaml"), BLOCK], "records": PULSES, "polarities": [1, -1], "samples": 3,
+        "structures": [str(EXAMPLES / "frame.yaml"), BLOCK], "records": PULSES, "polarity": "both", "samples": 3,
         "measures": measures, "limit_states": ["uplift", "overturning"], "method": method,
         "levels": {"measure": "scale" if method == "cloud" else "PGA", "least": 0.15, "most": 1.5, "count": 7},
     }  # fmt: skip

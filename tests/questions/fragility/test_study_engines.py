@@ -31,7 +31,7 @@ structures: [block.yaml]
 records: [{pulse: "sine:1g:0.8s"}]
 method: stripes
 levels: {measure: PGA, values: [0.1, 1.5]}
-polarities: [-1]
+polarity: -1
 limit_states: [uplift, 0.5, overturning]
 opening: 0
 engine: auto
@@ -144,7 +144,7 @@ def test_runs_that_slide_and_runs_that_fall_off_an_edge_are_told_apart(tmp_path,
     assert rows.outcome.tolist() == [0, 0, -OFF_EDGE]
     assert (rows.slip > 0.1).tolist() == [False, True, False]
     counts = {each.limit: each.curve.exceedances for each in answer.result}
-    assert np.isinf(answer.runs()["phi_over_phi_cr"]).tolist() == [False, False, True]
+    assert np.isinf(answer.runs()["peak_ratio"]).tolist() == [False, False, True]
     assert counts == {"uplift": 1, "100 mm": 2, "overturning": 1}
     shown = command("results", tmp_path / "study.db", "--json", "--out", tmp_path / "runs.csv")
     assert json.loads(shown.stdout)["outcomes"][0]["off_edge"] == 1
@@ -194,7 +194,7 @@ def test_units_of_free_blocks_have_few_runs_of_one_structure(tmp_path):
     [
         ("blocks", "model: linear1", ":9:8: model: linear1 cannot be combined with `engine: blocks`"),
         ("auto", "model: linear2", ":9:8: model: linear2 cannot be combined with `engine: auto`"),
-        ("blocks", "eta: [0.9]", ":9:6: eta has no effect with `engine: blocks`"),
+        ("blocks", "restitution: [0.9]", ":9:14: restitution has no effect with `engine: blocks`"),
         ("blocks", "opening: 0.005", ":9:10: opening has no effect with `engine: blocks`"),
         ("auto", "", ":6:15: limit_states: sliding cannot be combined with `engine: auto`"),
         ("blocks", "samples: 2", ":1:53: structures[1].vary.restitution has no effect with `engine: blocks`"),
@@ -216,7 +216,7 @@ def test_fields_without_meaning_are_refused_at_their_place(engine, field, said, 
 def test_with_both_engines_runs_of_one_degree_of_freedom_use_restitution_and_opening(tmp_path, monkeypatch):
     monkeypatch.setattr(scene, "find_spec", lambda name: None)
     with pytest.raises(InputError) as refused:
-        load_study(write(tmp_path, STUDY + "eta: [0.8, 0.9]\n"))
+        load_study(write(tmp_path, STUDY + "restitution: [0.8, 0.9]\n"))
     assert len(refused.value.problems) == 1  # MuJoCo
 
 

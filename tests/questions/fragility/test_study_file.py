@@ -19,7 +19,7 @@ records:
   - pulse: sine:0.6g:0.8s
 method: stripes
 levels: {{measure: pga/(G lambda), least: 0.5, most: 4, count: 8}}
-polarities: [1, -1]
+polarity: both
 samples: 5
 limit_states: [uplift, 0.25, overturning]
 """
@@ -68,7 +68,7 @@ def test_the_hash_is_of_what_decides_the_runs(tmp_path):
         GOOD + "seed: 3\n",
         GOOD.replace("samples: 5", "samples: 6"),
         GOOD.replace("most: 4", "most: 4.1"),
-        GOOD.replace("[1, -1]", "[1]"),
+        GOOD.replace("polarity: both", "polarity: 1"),
         GOOD.replace("0.6g", "0.7g"),
         GOOD.replace("0.05", "0.06"),
         GOOD + "model: linear2\n",
@@ -86,7 +86,7 @@ def test_a_plain_study_may_be_short(tmp_path):
     [
         (("method: stripes", "method: cloud"), "levels", "scales records by factors"),
         (("levels:", "#"), "levels", "is missing"),
-        (("polarities", "eta: [0.9]\npolarities"), "eta", "varies its restitution"),
+        (("polarity", "restitution: [0.9]\npolarity"), "restitution", "varies its restitution"),
         (("width: {normal", "mechanism: {normal"), "structures[2].vary.mechanism", "not a number among"),
         (("deviation: 0.05", "deviation: 2"), "structures[2].vary", "of 5 samples cannot be built"),
         (("name: uncertain", "name: valley bridge"), "structures", "two of them are called valley bridge"),
@@ -147,8 +147,8 @@ hazard: {{points: [[1, 2], [0.5, 1], [2, x], [3, 5], [1]]}}
 limit_states: [uplift, -1, 0.5, uplift, 0.5]
 bivariate: [[PGA, pga], [PGA, PGV], [PGA, PGX], [pgv, PGA], [PGA, PGV]]
 seed: -1
-polarities: [1, 2]
-eta: [1.2]
+polarity: 2
+restitution: [1.2]
 measures: [pga, PGA]
 confidence: 95
 colour: red
@@ -188,8 +188,8 @@ def test_no_mistake_hides_another(tmp_path):
         ("bivariate[1]", 17, "PGA is paired with itself"),
         ("bivariate[3][2]", 17, "unknown measure: PGX"),
         ("seed", 18, "must be at least 0"),
-        ("polarities[2]", 19, "must be 1 or -1"),
-        ("eta[1]", 20, "must be at most 1"),
+        ("polarity", 19, "must be 1"),
+        ("restitution[1]", 20, "must be at most 1"),
         ("measures", 21, "PGA is given twice"),
         ("confidence", 22, "must be less than 1"),
         ("colour", 23, "is not a field of the study"),

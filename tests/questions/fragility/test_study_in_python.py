@@ -27,7 +27,7 @@ def block(name="pillar", width=0.6):
 
 def study(records, structures=None, **more):
     structures = block() if structures is None else structures
-    return rk.fragility(structures=structures, records=records, method="stripes", levels=LEVELS, **more)
+    return rk.fragility(structures, records, method="stripes", levels=LEVELS, **more)
 
 
 @pytest.fixture(scope="module")
@@ -41,6 +41,15 @@ def folder(tmp_path, monkeypatch):
     (tmp_path / "temporary").mkdir()
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "temporary"))
     return tmp_path / "temporary"
+
+
+def test_a_structure_and_motions_need_no_names():
+    asked = {"method": "stripes", "levels": LEVELS, "check": True}
+    named = rk.fragility(structures=block(), motions=PULSES[:2], **asked).to_dict()
+    assert rk.fragility(block(), PULSES[:2], **asked).to_dict() == named
+    assert rk.fragility([block()], PULSES[:2], **asked).to_dict() == named
+    with pytest.raises(TypeError, match="got structures twice"):
+        rk.fragility(block(), PULSES[:2], structures=block(), **asked)
 
 
 class TestTheRuns:
@@ -82,10 +91,10 @@ class TestTheRuns:
 
     def test_those_of_a_motion_are_its_responses(self):
         runs = study(shaken()).runs()
-        for scale, ratio in zip(runs["scale"], runs["phi_over_phi_cr"], strict=True):
-            history = rk.respond(block(), shaken(), scale=scale, models="nonlinear", neighbours=0)["nonlinear"]
+        for scale, ratio in zip(runs["scale"], runs["peak_ratio"], strict=True):
+            history = rk.respond(block(), shaken(), scale=scale, model="nonlinear", neighbours=0)["nonlinear"]
             assert ratio == (inf if history.fell else pytest.approx(history.peak_ratio, rel=1e-6))
-        assert (runs["phi_over_phi_cr"] < inf).any() and (runs["outcome"] == "overturns").any()
+        assert (runs["peak_ratio"] < inf).any() and (runs["outcome"] == "overturns").any()
 
     @pytest.mark.parametrize(
         "how",
@@ -100,7 +109,7 @@ class TestTheRuns:
             study([{"file": each, **how}, *PULSES[:3]], processing=["lowpass 12"], measures=["PGA", "Sa(0.5)"])
             for each in (ACCEL, rk.read_record(ACCEL))
         )
-        assert of_motion.runs().drop(columns="record").equals(of_file.runs().drop(columns="record"))
+        assert of_motion.runs().drop(columns="motion").equals(of_file.runs().drop(columns="motion"))
         assert of_motion.to_frame().equals(of_file.to_frame())
 
     @pytest.mark.parametrize("part", ["vertical", "ground"])
@@ -114,40 +123,53 @@ class TestTheRuns:
 class TestTheArguments:
     def test_motions_of_one_name_are_told_apart(self):
         runs = study([shaken(), shaken(size=2.0), shaken("mine"), rk.parse_pulse("sine:1g:0.7s")]).runs()
-        assert list(dict.fromkeys(runs["record"])) == ["mine", "mine-2", "mine-3", "sine:1g:0.7s"]
+        assert list(dict.fromkeys(runs["motion"])) == ["mine", "mine-2", "mine-3", "sine:1g:0.7s"]
 
     def test_names_of_any_kind_are_shown_in_one_line(self):
         found = study([shaken("a\n\x1b[1m$\\x$" * 20)], limit_states=["overturning"])
-        assert "\\n" in found.runs()["record"][0] and "\x1b" not in found.runs()["record"][0]
+        assert "\\n" in found.runs()["motion"][0] and "\x1b" not in found.runs()["motion"][0]
         assert found.plot()
 
     def test_entries_may_have_motions_with_sets_and_weights(self):
         motion = shaken()
         records = [{"file": motion, "level": 0.2}, {"file": motion, "level": 1.6, "weight": 3.0}, {"file": shaken("b")}]
         found = study(records)
-        assert dict(found.runs()["record"].value_counts()) == {"b": 6, "mine at 0.2": 1, "mine at 1.6": 1}
+        assert dict(found.runs()["motion"].value_counts()) == {"b": 6, "mine at 0.2": 1, "mine at 1.6": 1}
         assert len(set(found.plan.of_sets.one)) == 2  # both sets have the same record
 
     @pytest.mark.parametrize(
         ("given", "message"),
         [
-            ({}, "`study` is missing"),
-            ({"study": "x.yaml", "seed": 3, "name": "n"}, "`seed` and `name` have no effect beside a study"),
-            ({"records": [], "structures": []}, "structures must have at least 1 entry"),
-            ({"records": PULSES[:1], "structures": block()}, "method is missing"),
-            ({"restart": True, "records": PULSES[:1]}, "`restart` has no effect without a store or a study file"),
-            ({"records": [object()], "structures": 3}, "study: cannot hold an object"),
-            ({"records": ["sine:bad"], "structures": "no.yaml"}, "malformed pulse 'sine:bad'"),
+            ({}, "`structures` is missing"),
+            ({"structures": "x.yaml", "seed": 3, "name": "n"}, "`seed` and `name` have no effect beside a study"),
+            ({"motions": [], "structures": []}, "motions must have at least 1 entry"),
+            ({"motions": PULSES[:1], "structures": block()}, "method is missing"),
             (
-                {"records": ["gone.csv"], "structures": "no.yaml"},
+                {"structures": block(), "restart": True, "motions": PULSES[:1]},
+                "`restart` has no effect without a store or a study file",
+            ),
+            ({"motions": [object()], "structures": 3}, "study: cannot hold an object"),
+            ({"motions": ["sine:bad"], "structures": "no.yaml"}, "malformed pulse 'sine:bad'"),
+            (
+                {"motions": ["gone.csv"], "structures": "no.yaml"},
                 r"structures\[1\]: no.yaml: no such file(.|\n)*gone.csv",
             ),
-            ({"records": [MINE := shaken(), MINE], "structures": block()}, "records: two of them are called mine"),
-            ({"records": [shaken("accel.csv"), "accel.csv"]}, "records: two of them are called accel.csv"),
-            ({"records": [{"file": shaken(), "units": "g"}]}, r"records\[1\]: units, dt, channel, .* this is a ground"),
-            ({"records": [shaken(size=0.0)], "structures": block(), "method": "cloud"}, "mine: zero throughout"),
-            ({"records": PULSES, "samples": "3"}, "`samples` must be a number, got the text '3'"),
-            ({"recrods": PULSES}, r"`recrods` is not an argument\n  did you mean records\?"),
+            ({"motions": [MINE := shaken(), MINE], "structures": block()}, "motions: two of them are called mine"),
+            (
+                {"structures": block(), "motions": [shaken("accel.csv"), "accel.csv"]},
+                "motions: two of them are called accel.csv",
+            ),
+            (
+                {"structures": block(), "motions": [{"file": shaken(), "units": "g"}]},
+                r"motions\[1\]: units, dt, channel, .* this is a ground",
+            ),
+            ({"motions": [shaken(size=0.0)], "structures": block(), "method": "cloud"}, "mine: zero throughout"),
+            (
+                {"structures": block(), "motions": PULSES, "samples": "x"},
+                "`samples` must be a whole number, got the text 'x'",
+            ),
+            ({"structures": block(), "samples": 3}, "`motions` is missing"),
+            ({"structures": block(), "mtoions": PULSES}, r"`mtoions` is not an argument\n  did you mean motions\?"),
         ],
         ids=lambda value: "" if isinstance(value, dict) else value[:30],
     )
@@ -199,7 +221,7 @@ class TestTheCurves:
     def test_the_runs_fitted_anew_give_them_again(self, answer):
         runs, each = answer.runs(), answer.curves["overturning"]
         fell = runs["outcome"] == "overturns"
-        again = rk.fit_fragility(runs["PGA"], fell, clusters=runs["record"], confidence=0.95)
+        again = rk.fit_fragility(runs["PGA"], fell, clusters=runs["motion"], confidence=0.95)
         own = each.curve.own  # before it is cut by the curve of uplift
         assert again.curve.kind == own.kind == "lognormal"
         assert again.median.value == pytest.approx(own.median.value)

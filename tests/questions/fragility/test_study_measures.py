@@ -63,7 +63,7 @@ class TestIntensities:
         rows = runs_of(measured[0])
         assert len(rows) == 2 * 3 * 4
         for record, motion in zip(("accel.csv", "ricker:1g:0.5s", "ricker:1g:1.1s"), motions(), strict=True):
-            for row in (each for each in rows if each["record"] == record):
+            for row in (each for each in rows if each["motion"] == record):
                 found = response_spectrum(motion.scaled(float(row["scale"])), 1.0).sa[0]
                 assert found == pytest.approx(float(row["level"]), rel=1e-6)
                 assert row["Sa(1.0) [g]"] == row["level"]
@@ -72,7 +72,7 @@ class TestIntensities:
         by_name = dict(zip(("accel.csv", "ricker:1g:0.5s", "ricker:1g:1.1s"), motions(), strict=True))
         study = load_study(write(measured[0]))
         for row in runs_of(measured[0]):
-            motion = by_name[row["record"]].scaled(float(row["scale"]))
+            motion = by_name[row["motion"]].scaled(float(row["scale"]))
             block = equivalent_block(study.samples[int(row["sample"])].mechanism).positive
             t = np.linspace(0, motion.duration, 400_001)
             a = np.abs(np.interp(t, motion.time, motion.acceleration))
@@ -88,7 +88,7 @@ class TestIntensities:
         assert command("fragility", write(tmp_path, "arias")).exit_code == 0
         for row in runs_of(tmp_path):
             assert row["Arias [m/s]"] == row["level"]
-        scale = {row["level"]: float(row["scale"]) for row in runs_of(tmp_path) if row["record"] == "accel.csv"}
+        scale = {row["level"]: float(row["scale"]) for row in runs_of(tmp_path) if row["motion"] == "accel.csv"}
         assert scale["0.6"] / scale["0.3"] == pytest.approx(2**0.5)
 
     def test_runs_without_any_have_no_part_and_this_is_said(self, measured):

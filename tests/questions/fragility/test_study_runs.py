@@ -8,6 +8,7 @@ import sqlite3
 import subprocess
 import sys
 import time
+from concurrent.futures import Executor
 from dataclasses import replace
 from pathlib import Path
 
@@ -49,7 +50,7 @@ records:
   - pulse: ricker:0.6g:1.2s
 method: stripes
 levels: {{measure: PGA/(g lambda), least: 0.8, most: 4, count: COUNT}}
-polarities: [1, -1]
+polarity: both
 samples: 4
 limit_states: [uplift, 0.25, overturning]
 """
@@ -98,7 +99,7 @@ def test_each_run_is_what_respond_gives(whole):
         trial, known = plan.trials[sample], plan.records[record]
         factor = plan.levels[level] * trial.lambda_ * trial.gravity / (known.pga * STANDARD_GRAVITY)
         motion = motions[record].scaled(plan.polarities[polarity] * factor)
-        history = respond(study.samples[sample].mechanism, motion, models=("nonlinear",))["nonlinear"]
+        history = respond(study.samples[sample].mechanism, motion, model=("nonlinear",))["nonlinear"]
         assert rows.outcome[k] == history.fell_to
         assert rows.scale[k] == pytest.approx(factor, rel=1e-14)
         if not history.overturned:
@@ -229,7 +230,7 @@ def test_interrupted_it_says_so_and_keeps_what_is_finished(long_study, tmp_path)
     process.send_signal(signal.SIGINT)
     out, said = process.communicate()
     assert process.returncode == 130 and not out
-    assert said.endswith("interrupted: finished runs are kept; run the same command again to continue\n")
+    assert said.endswith("interrupted: finished runs are kept: run the same command again to continue\n")
     assert 0 < finished(place) < long_study[1].plan.total
 
 
@@ -285,7 +286,20 @@ def test_a_cluster_gives_the_same_though_a_worker_is_killed(long_study, tmp_path
 def test_a_scheduler_that_is_not_there_is_said_so(whole, tmp_path, monkeypatch):
     monkeypatch.setattr(workers, "SCHEDULER_TIMEOUT", 0.3)
     with pytest.raises(workers.ClusterError, match="no scheduler answers"):
-        carry_out(whole[0], tmp_path / "x.db", workers.cluster, address="tcp://127.0.0.1:9")
+        carry_out(whole[0], tmp_path / "x.db", workers.cluster, scheduler="tcp://127.0.0.1:9")
+
+
+def test_a_client_of_a_cluster_is_taken_and_stays_open(whole, tmp_path):
+    distributed = pytest.importorskip("distributed", reason="dask.distributed, of the extra cluster, is not installed")
+    with (
+        distributed.LocalCluster(n_workers=1, processes=False, dashboard_address=None) as local,
+        local.get_client() as own,
+    ):
+        carry_out(whole[0], tmp_path / "x.db", workers.cluster, scheduler=own)
+        assert own.submit(int, 3).result() == 3
+    assert dump(tmp_path / "x.db") == dump(whole[2])
+    with pytest.raises(InputError, match=r"`scheduler` must be an address, or a synchronous Client .* got Executor"):
+        carry_out(whole[0], tmp_path / "y.db", workers.cluster, scheduler=Executor())
 
 
 class TestChanges:
@@ -449,9 +463,8 @@ class TestBadParts:
         result = command("fragility", write(tmp_path, text), "--json", code=5)
         assert "its kinematics give a restitution of -0.35" in result.stderr
         assert {each["structure"] for each in json.loads(result.stdout)["curves"]} == {"valley bridge", "uncertain"}
-        given = STUDY.replace("structures:", "eta: [0.5]\nstructures:\n  - stocky.yaml").replace(
-            "restitution", "height"
-        )
+        given = STUDY.replace("restitution", "height")
+        given = given.replace("structures:", "restitution: [0.5]\nstructures:\n  - stocky.yaml")
         path = write(tmp_path, given.replace("low: 0.85, high: 0.95", "low: 2, high: 3"))
         command("fragility", path, "--restart")
 
@@ -651,7 +664,7 @@ def test_one_is_the_least_pga_over_g_lambda_that_uplifts():
     scales = Reference(p=1.0, lambda_=lam, gravity=block.gravity)
     unit = float(parse_measure("PGA/(g lambda)").relative(motion.pga_g, scales))
     for a, uplifts in ((0.999, False), (1.001, True)):
-        history = respond(block, motion.scaled(a / unit), models=("linear2",))["linear2"]
+        history = respond(block, motion.scaled(a / unit), model=("linear2",))["linear2"]
         assert (history.peak_ratio != 0) == uplifts
 
 
@@ -726,12 +739,12 @@ def test_the_example_runs_with_pictures_and_tables(tmp_path):
         plan = kept.plan()
         assert len(rows) == len(table["run"]) == plan.total
         exact = kept.runs(0, plan.total)
-    assert table["phi/phi_cr"] == [None if np.isnan(each) else each for each in exact.peak_ratio.tolist()]
+    assert table["peak_ratio"] == np.where(np.isnan(exact.peak_ratio), np.inf, exact.peak_ratio).tolist()
     levels = {float(row["level"]) for row in rows}
     assert sorted(levels) == pytest.approx(plan.levels, rel=1e-8)
     for row in rows[:: len(rows) // 50]:
         assert float(row["PGA [g]"]) == pytest.approx(float(row["level"]), rel=1e-8)
-        assert (row["phi/phi_cr"] == "") == (row["outcome"] == "overturns")
+        assert (row["peak_ratio"] == "inf") == (row["outcome"] == "overturns")
 
 
 @pytest.mark.rest
@@ -778,7 +791,7 @@ def test_check_counts_what_is_left_out_apart(tmp_path):
 
 
 def test_samples_that_differ_in_their_restitution_only(tmp_path):
-    text = STUDY.replace("      width: {normal: {mean: 0.7, deviation: 0.05}}\n", "").replace("[1, -1]", "[1]")
+    text = STUDY.replace("      width: {normal: {mean: 0.7, deviation: 0.05}}\n", "").replace("both", "1")
     prepared = carry_out(write(tmp_path, text, count=3), tmp_path / "study.db")
     study, plan = prepared.study, prepared.plan
     with Store.reading(tmp_path / "study.db") as kept:
@@ -788,7 +801,7 @@ def test_samples_that_differ_in_their_restitution_only(tmp_path):
     for k in range(9, plan.total):
         sample, record, _, _, _ = (int(place) for place in np.unravel_index(k, plan.shape))
         if record == 1:
-            history = respond(study.samples[sample].mechanism, motion.scaled(rows.scale[k]), models=("nonlinear",))
+            history = respond(study.samples[sample].mechanism, motion.scaled(rows.scale[k]), model=("nonlinear",))
             assert rows.eta[k] == study.samples[sample].mechanism.restitution
             peak = history["nonlinear"].peak_ratio
             assert (

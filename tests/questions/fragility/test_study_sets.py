@@ -55,7 +55,7 @@ class TestSets:
         run("results", folder / "study.db", "--out", folder / "runs.csv")
         table = np.genfromtxt(folder / "runs.csv", delimiter=",", names=True, dtype=None, encoding="utf-8")
         assert table["PGA_g"] == pytest.approx(table["level"])
-        assert table["record"].tolist() == [
+        assert table["motion"].tolist() == [
             "a.csv at 0.2", "b.csv at 0.2", "c.csv at 0.35", "d.csv at 0.35", "e.csv at 0.5", "a.csv at 0.5",
             "b.csv at 0.8", "c.csv at 0.8",
         ]  # fmt: skip
@@ -73,7 +73,7 @@ class TestSets:
         def outcomes(name):
             table = np.genfromtxt(folder / name, delimiter=",", names=True, dtype=None, encoding="utf-8")
             return {
-                (each["record"].partition(" at ")[0], round(float(each["level"]), 9)): float(each["phiphi_cr"])
+                (each["motion"].partition(" at ")[0], round(float(each["level"]), 9)): float(each["peak_ratio"])
                 for each in table
             }
 

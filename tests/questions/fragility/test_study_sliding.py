@@ -43,7 +43,7 @@ records:
   - pulse: ricker:0.6g:1.2s
 method: stripes
 levels: {{measure: PGA/(g lambda), least: 0.8, most: 3, count: COUNT}}
-polarities: [1, -1]
+polarity: both
 samples: 3
 limit_states: [uplift, sliding, overturning]
 """
@@ -52,7 +52,7 @@ structures: [frame.yaml, block.yaml]
 records: [{pulse: sine:0.6g:0.8s}, {pulse: ricker:0.6g:1.2s}, ACCEL]
 method: ida
 levels: {measure: PGA, least: 0.2, most: 0.6, count: 9}
-eta: [0.8, 0.93]
+restitution: [0.8, 0.93]
 limit_states: [sliding, uplift]
 """.replace("ACCEL", str(EXAMPLES / "accel.csv"))
 
@@ -215,7 +215,7 @@ class TestTheStore:
         sliding = [each for each in json.loads(shown.stdout)["curves"] if each["limit_state"] == "sliding"]
         assert sum(each["exceedances"] for each in sliding) == np.isfinite(rows.slide_time).sum() > 0
         header, *lines = (tmp_path / "runs.csv").read_text(encoding="utf-8").splitlines()
-        last = header.split(",").index("sliding [s]")
+        last = header.split(",").index("slide_time [s]")
         found = [float(line.split(",")[last] or "nan") for line in lines]
         assert found == pytest.approx(rows.slide_time.tolist(), nan_ok=True)
         assert any(each.name.startswith("sliding") for each in (tmp_path / "pictures").iterdir())

@@ -4,7 +4,8 @@ import numpy as np
 
 from rocking_cli.core import Direction
 from rocking_cli.io.drawings.contract import DrawnLine, DrawnPoint, DrawnText, LineDrawing
-from rocking_cli.questions.import_drawing.study import ImportOptions, structure_from
+from rocking_cli.questions.import_drawing.options import ImportOptions
+from rocking_cli.questions.import_drawing.study import structure_from
 
 
 def outline(points, layer="BLOCKS", bulges=None, **more):

@@ -8,7 +8,7 @@ from rocking_cli.io.drawings.contract import DrawingError
 from tests.questions.import_drawing.sheets import box, imported, line, spot, text, words
 
 PORTAL = [box(0, 0, 0.4, 3), box(3.6, 0, 0.4, 3), box(0, 3, 4, 0.6)]
-WEIGHTS = {"densities": {"": 2000.0}, "depth": 1.0}
+WEIGHTS = {"density": {"": 2000.0}, "depth": 1.0}
 
 
 def tied(label, start=(0.4, 2.5), end=(3.6, 0.5)):

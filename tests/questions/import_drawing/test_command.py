@@ -68,8 +68,8 @@ def test_a_plot_fills_its_page_without_warnings(tmp_path, caplog):
 
 
 def test_options_of_the_other_kind_are_refused():
-    assert "--settle is for meshes" in run("pillar.csv", "--units", "mm", "--settle").stderr
-    assert "--scale is for drawings" in run("box.obj", "--units", "m", "--scale", "1:50").stderr
+    assert "--settle has no effect on a drawing" in run("pillar.csv", "--units", "mm", "--settle").stderr
+    assert "--scale has no effect on a mesh" in run("box.obj", "--units", "m", "--scale", "1:50").stderr
 
 
 def test_the_answers_of_imports_stand_for_structures():

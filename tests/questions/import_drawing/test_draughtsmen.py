@@ -139,14 +139,14 @@ def test_joints_that_cross_the_arcs_of_a_ring_part_it():
     for k in range(7):
         over, way = 0.02 * (0 < k < 6), np.exp(1j * np.pi * k / 6)
         ring.append(line(*((r * way.real, r * way.imag) for r in (1.0 - over, 1.3 + over))))
-    found = imported(*ring, depth=1.0, densities={"": 2000.0})
+    found = imported(*ring, depth=1.0, density={"": 2000.0})
     area = np.pi * (1.3**2 - 1) / 12
     assert [body.moments.area for body in found.bodies] == approx([area] * 6, rel=1e-3)  # chords to .1 mm of 1.2 m
     assert "10 ends of lines beyond a corner left out, up to 20" in words(found)
 
 
 def test_a_line_across_a_closed_one_cuts_it():
-    found = imported(box(0, 0, 1, 2), line((-0.05, 1.2), (1.05, 1.2)), depth=1.0, densities={"": 2000.0})
+    found = imported(box(0, 0, 1, 2), line((-0.05, 1.2), (1.05, 1.2)), depth=1.0, density={"": 2000.0})
     assert [body.moments.area for body in found.bodies] == approx([1.2, 0.8], rel=1e-9)
     with pytest.raises(DrawingError, match="close nothing"):
         imported(box(0, 0, 1, 2), line((-0.5, 1.2), (1.5, 1.2)))

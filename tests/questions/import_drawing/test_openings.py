@@ -8,7 +8,7 @@ import pytest
 from rocking_cli.io.drawings.contract import DrawingError
 from tests.questions.import_drawing.sheets import box, imported, lambdas, line, outline
 
-WEIGHED = {"densities": {"": 2000.0}, "depth": 1.0}
+WEIGHED = {"density": {"": 2000.0}, "depth": 1.0}
 STEP = box(2, 0, 1, 2)  # beside the wall of each case, so that it is a block
 WINDOW = box(0.5, 1, 1, 1, "FORI")
 CASES = {  # openings in a wall 2 x 4, what is said, and where
@@ -66,6 +66,6 @@ def test_a_density_without_depth_is_refused_as_such(ground):
     z = np.array([0, 1, 1 + 2j, 2j]) * slope
     stone = outline(np.stack([z.real, z.imag], axis=1))
     with pytest.raises(DrawingError, match="needs the depth of the structure: give `depth`") as caught:
-        imported(stone, *ground, densities={"": 2000.0})
+        imported(stone, *ground, density={"": 2000.0})
     assert (caught.value.refused, caught.value.at) == ("density", [pytest.approx([z.mean().real, z.mean().imag])])
     assert imported(stone, *ground, depth=1.0).kind == ("assembly" if ground else "rigid_body")

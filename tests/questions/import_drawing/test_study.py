@@ -53,7 +53,7 @@ def springing(degrees, layer="TERRENO"):
 @cache
 def oppenheims_arch():
     chains = *map(voussoir, range(7)), springing(168.75), springing(11.25)
-    return imported(*chains, densities={"": 2400.0}, depth=1.0)
+    return imported(*chains, density={"": 2400.0}, depth=1.0)
 
 
 class TestCheckValues:
@@ -68,7 +68,7 @@ class TestCheckValues:
             ([box(0, 0, 2, 4), box(1, 1.8, 0.8, 1.2, "FINESTRE")], {}, 7.04, (0.54205607, 0.48598131),
              (0.49672378, 0.45236989)),
             ([box(0, 0, 0.3, 3, "PIETRA"), box(0.3, 0, 0.5, 3, "MATTONE")],
-             {"densities": {"PIETRA": 2200.0, "MATTONE": 1400.0}, "kind": "rigid_body"}, 2.4,
+             {"density": {"PIETRA": 2200.0, "MATTONE": 1400.0}, "kind": "rigid_body"}, 2.4,
              (0.29607843, 0.23725490), (0.28785515, 0.23294778)),
             ([box(0, 0.21 * k, 0.4, 0.2) for k in range(5)], {"merge_gap": 0.012}, 0.416, (0.38461538, 0.38461538),
              (0.36717383, 0.36717383)),
@@ -241,7 +241,7 @@ class TestMended:
             bulges = np.array([0.0, *[np.tan(np.angle(z[2] / z[1]) / 4)], 0.0, -np.tan(np.angle(z[3] / z[0]) / 4)])
             shrunk.append(DrawnLine(z, bulges, True, "CONCI", "LWPOLYLINE"))
         closed = imported(
-            *shrunk, springing(168.75), springing(11.25), densities={"": 2400.0}, depth=1.0, merge_gap=0.012
+            *shrunk, springing(168.75), springing(11.25), density={"": 2400.0}, depth=1.0, merge_gap=0.012
         )
         assert lambdas(closed) == approx(lambdas(found), rel=1e-4)
         areas = [body.moments.area for body in closed.bodies]
@@ -257,7 +257,7 @@ class TestAttached:
                 text("roof 3 t", 1, 3.4, "CARICHI"), text("12 kN", 2.05, 4, "CARICHI"),
                 text("chain: area 452 mm2, modulus 210 GPa", 2, 2.6, "CATENE"),
             ],
-            densities={"": 2000.0}, depth=1.0,
+            density={"": 2000.0}, depth=1.0,
         )  # fmt: skip
         mass, force = found.fields["loads"]
         assert mass == {"name": "roof", "mass": "3 t", "at": [1.0, 3.3], "body": "b3"}
@@ -280,7 +280,7 @@ class TestAttached:
             spot(-0.15, 0, "HINGES-"),
             spot(0.15, 1.5, "HINGES-"),
         ]
-        found = imported(*wall, spots=hinges, densities={"": 1800.0}, depth=1.0)
+        found = imported(*wall, spots=hinges, density={"": 1800.0}, depth=1.0)
         assert found.kind == "linkage"
         assert found.fields["positive"]["joints"]["C"] == {"slide": "b2", "at": [0.3, 3.0], "along": [0.0, 1.0]}
         assert found.structure.uplift(Direction.POSITIVE) == approx(0.4)
@@ -301,7 +301,7 @@ class TestAttached:
         beside = text("tufo \u03b3 = 16 kN/m\u00b3", 5, 5), text("16 m", 5, 6)
         with pytest.raises(DrawingError, match=r"`density` and `depth`; a density in no body .* put 'tufo"):
             imported(*arch, labels=beside)
-        found = imported(*arch, labels=beside, densities={"": 1600.0}, depth=1.0)
+        found = imported(*arch, labels=beside, density={"": 1600.0}, depth=1.0)
         assert [note.count for note in found.notes if note.kind == "density"] == [1]
 
     def test_open_joints_are_refused_with_their_width(self):
@@ -381,7 +381,7 @@ def test_many_cut_shuffled_turned_and_repeated_drawings_give_one_file(data):
 
 def give_one_file(data):
     walls = data.draw(drawn_walls())
-    options = {"densities": {"": 2000.0}, "depth": 1.0}
+    options = {"density": {"": 2000.0}, "depth": 1.0}
     plain = imported(*(outline([(z.real, z.imag) for z in of], bulges=b) for of, b in walls), **options)
     chains = []
     for corners, bulges in walls:

@@ -15,9 +15,10 @@ from rocking_cli.core.polygons import fault_of
 from rocking_cli.io.drawings.contract import DrawingError, MeshSurface
 from rocking_cli.questions.import_mesh import solid
 from rocking_cli.questions.import_mesh.foot import settled
+from rocking_cli.questions.import_mesh.options import MeshOptions
 from rocking_cli.questions.import_mesh.page import MAX_DRAWN, drawn_triangles, scene
 from rocking_cli.questions.import_mesh.picture import draw_compass
-from rocking_cli.questions.import_mesh.study import MeshOptions, imported
+from rocking_cli.questions.import_mesh.study import imported
 from rocking_cli.questions.import_mesh.view import data, sentences
 from tests.browser import launch, opened
 from tests.meshes import box, extruded, inwards, obj, ply, several, stl, turned, upright
@@ -340,7 +341,7 @@ class TestFiles:
         assert rk.draw("a.yaml").sketch.outlines["body"]
 
     def test_the_file_names_the_command_that_made_it(self):
-        words = "statue.obj --units m --density 2000 --azimuth 30 --level 2mm --settle"
+        words = "statue.obj --azimuth 30 --level 2mm --settle --units m --density 2000"
         done = CliRunner().invoke(main, ["import", *words.split(), "-o", "c.yaml"])
         assert done.exit_code == 0
         assert f"by: rocking import {words}\n" in Path("c.yaml").read_text("utf-8").replace("\n# ", " ", 1)
@@ -371,9 +372,9 @@ class TestFiles:
         ("options", "words"),
         [
             ({"units": "foot"}, "`units` must be one of m, mm"),
-            ({"up": "x"}, "`up` must be one of z, y"),
+            ({"up": "x"}, "`up` must be z or y"),
             ({"density": -1.0}, "`density` must be above 0"),
-            ({"level": "-1 mm"}, "`level` must be a length"),
+            ({"level": "-1 mm"}, "`level`: '-1 mm' is not positive"),
             ({"level": "2 kg"}, "`level`"),
             ({"azimuth": "north"}, "`azimuth` is not a direction: 'north'"),
             ({"azimuth": "90:0:10"}, "`azimuth`"),
@@ -381,8 +382,8 @@ class TestFiles:
             ({"azimuth": "0:1e6:1"}, "has more than 720 directions"),
             ({"azimuth": "inf"}, "or not finite ones"),
             ({"azimuth": "0:inf:1"}, "`azimuth`"),
-            ({"page": "a.pdf"}, "ends in .html"),
-            ({"out": "statue.obj"}, "would overwrite an input file"),
+            ({"page": "a.pdf"}, "does not end in .html"),
+            ({"out": "statue.obj"}, "does not end in .yaml or .yml"),
         ],
     )
     def test_wrong_arguments_are_refused_by_name(self, options, words):

@@ -10,23 +10,24 @@ import numpy as np
 import pytest
 from scipy.stats import binomtest
 
+from rocking_cli.ask.read import read_record
 from rocking_cli.core import Direction
 from rocking_cli.core.structure_file import load_structure, parse_structure
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
-from rocking_cli.excitation.records import read_record
 from rocking_cli.plotting import style
 from rocking_cli.questions.margin import study as margins
 from rocking_cli.questions.margin.picture import draw_margins
 from rocking_cli.questions.margin.study import FACTORS, SHARE_LEVELS, Margin, margin
 from rocking_cli.questions.margin.view import in_words
 from rocking_cli.structure import Structure, build_models
-from rocking_cli.studies import engines
+from rocking_cli.studies.conditions import Conditions
+from rocking_cli.studies.engines import EXACT
 from rocking_cli.studies.neighbours import Neighbourhood
 from tests.cli.test_cli import run, run_json, some
 from tests.conftest import EXAMPLES
-from tests.following import build_model
+from tests.following import build_model, conditions
 
 BLOCK = parse_structure("mechanism: block\nwidth: 0.7\nheight: 2.8\n", "block", "block")
 CORNERS = "mechanism: rigid_body\npolygon: [[0, 0], [0.7, 0], [0.69, 2.8], [0, 2.8]]\n"
@@ -45,7 +46,7 @@ def alone(mechanism, motion, factor, slender, etas):
         given = {"positive_to_negative": etas[0], "negative_to_positive": etas[1]}
         data = {**mechanism.model_dump(), "restitution": given}
         SINGLE[key] = Structure(type(mechanism).model_validate(data))
-    return engines.respond(SINGLE[key], motion.scaled(factor / slender), models=("nonlinear",))["nonlinear"]
+    return EXACT.respond(Conditions(SINGLE[key], ("nonlinear",)), motion.scaled(factor / slender))["nonlinear"]
 
 
 def share(mechanism, motion, factor, polarities, around=AROUND):
@@ -72,8 +73,7 @@ def share(mechanism, motion, factor, polarities, around=AROUND):
 )
 def test_the_shares_are_those_of_neighbours_followed_alone(mechanism, pulse, polarities):
     motion = parse_pulse(pulse).sampled()
-    model = build_model(mechanism, "nonlinear")
-    found = margin(model, motion, polarities, around=AROUND)
+    found = margin(conditions(mechanism, AROUND, signs=polarities), motion)
     assert found.around == Neighbourhood(20, 0.04, 0.05, 0.10) and found.checked and not found.unknown.any()
     partly = np.flatnonzero((found.overturned > 0) & (found.overturned < 1))
     assert found.factors.tolist() == sorted([*FACTORS, 1.0]) and partly.size
@@ -87,7 +87,7 @@ def test_the_shares_of_unknown_outcome_are_those_of_neighbours_followed_alone(po
     """Of a body that slides: more overturn for certain under one polarity, and more may do so under the other."""
     body = parse_structure(f"{CORNERS}friction: 0.4\n".replace("0.69", "0.6"), "sliding", "sliding")
     motion, around = read_record(EXAMPLES / "accel.csv"), Neighbourhood(10, slenderness=0.0)
-    found = margin(build_model(body, "nonlinear"), motion, polarities, around=around, factors=np.array([0.5, 2.0, 3.0]))
+    found = margin(conditions(body, around, signs=polarities), motion, factors=np.array([0.5, 2.0, 3.0]))
     assert found.factors.tolist() == [0.5, 1.0, 2.0, 3.0]
     expected = [share(body, motion, factor, polarities, around) for factor in found.factors]
     np.testing.assert_allclose(list(zip(found.overturned, found.at_most, strict=True)), expected, atol=1e-12)
@@ -96,8 +96,12 @@ def test_the_shares_of_unknown_outcome_are_those_of_neighbours_followed_alone(po
 
 
 def test_of_joints_that_the_mechanism_does_not_name_nothing_is_said_to_be_unknown():
-    curve = build_model(load_structure(EXAMPLES / "curve.yaml"), "nonlinear")
-    found = margin(curve, parse_pulse("sine:0.5g:1s").sampled(), around=Neighbourhood(2), factors=np.array([2.0]))
+    curve = load_structure(EXAMPLES / "curve.yaml")
+    found = margin(
+        conditions(curve, Neighbourhood(2), signs=(1, -1)),
+        parse_pulse("sine:0.5g:1s").sampled(),
+        factors=np.array([2.0]),
+    )
     assert not found.checked and not found.unknown.any()
 
 
@@ -115,13 +119,12 @@ def test_a_reversed_motion_is_followed_only_where_it_can_add_something(monkeypat
     every = 61 * around.count
     # A little heavier at one side, so that a reversed motion is another one.
     leaning = parse_structure(CORNERS, "leaning", "leaning")
-    model = build_model(leaning, "nonlinear")
-    one = margin(model, motion, (1,), around=around)
+    one = margin(conditions(leaning, around), motion)
     certain = int((one.overturned == 1).sum())
     for each, again in ((BLOCK, 0), (leaning, 61 - certain)):
         followed.clear()
         done.clear()
-        margin(build_model(each, "nonlinear"), motion, (1, -1), around=around, progress=done.append)
+        margin(conditions(each, around, signs=(1, -1)), motion, progress=done.append)
         assert followed == [every, again * around.count]
         assert sum(done) == 2 * every
     assert certain > 10
@@ -142,7 +145,7 @@ def test_sixty_factors_from_a_fifth_to_five():
 def made(*shares, unknown=None) -> Margin:
     doubtful = np.zeros(len(shares)) if unknown is None else np.array(unknown, dtype=float)
     factors = np.arange(1.0, len(shares) + 1)
-    return Margin(AROUND, 0.5, factors, np.array(shares, dtype=float), doubtful, pga=0.5, polarities=(1,))
+    return Margin(AROUND, 0.5, factors, np.array(shares, dtype=float), doubtful, pga_g=0.5, polarities=(1,))
 
 
 class TestLevels:
@@ -195,7 +198,7 @@ class TestWords:
 
     def test_the_numbers_are_those_of_the_shares(self):
         motion = parse_pulse("ricker:0.7g:0.9s").sampled()
-        found = margin(build_model(BLOCK, "nonlinear"), motion, around=AROUND)
+        found = margin(conditions(BLOCK, AROUND, signs=(1, -1)), motion)
         words = in_words(found).split("; the factors")[0]
         said = re.findall(
             r"(\d+) % (?:[a-z ]* first overturn the structure )?at (?:a factor of )?([\d.]+) \((?:PGA )?([\d.]+) g\)",
@@ -212,16 +215,16 @@ class TestWords:
 def test_uplift_is_a_quotient(polarities):
     """A ground acceleration to the left lifts a block clockwise, at tan(alpha) g."""
     motion = GroundMotion("two pushes", 0.1, np.array([0.0, 4.0, 0.0, -2.0, 0.0]), unit="m/s2")
-    found = margin(build_model(BLOCK, "nonlinear"), motion, polarities, around=Neighbourhood(1))
+    found = margin(conditions(BLOCK, Neighbourhood(1), signs=polarities), motion)
     assert found.uplift == pytest.approx(0.25 * BLOCK.gravity / 4.0, rel=1e-12)
-    still = margin(build_model(BLOCK, "nonlinear"), motion.scaled(0), polarities, around=Neighbourhood(1))
+    still = margin(conditions(BLOCK, Neighbourhood(1), signs=polarities), motion.scaled(0))
     assert still.uplift is None and not still.overturned.any()
 
 
 @pytest.mark.parametrize("wrong", [[], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0], [1.0, np.inf], [[1.0]]])
 def test_factors_must_ascend(wrong):
     with pytest.raises(InputError, match="ascending"):
-        margin(build_model(BLOCK, "nonlinear"), parse_pulse("sine:1g:1s").sampled(), factors=np.array(wrong))
+        margin(conditions(BLOCK), parse_pulse("sine:1g:1s").sampled(), factors=np.array(wrong))
 
 
 @pytest.mark.parametrize(("friction", "rocks"), [(0.15, False), (0.5, True)])
@@ -229,7 +232,7 @@ def test_what_only_slides_uplifts_at_no_factor(friction, rocks):
     """A block of 0.4 m x 0.9 m rocks only on friction above 4/9."""
     plinth = BLOCK.model_copy(update={"width": 0.4, "height": 0.9, "friction": friction})
     motion = parse_pulse("sine:0.5g:0.5s").sampled()
-    found = margin(build_model(plinth, "nonlinear"), motion, around=Neighbourhood(1))
+    found = margin(conditions(plinth, Neighbourhood(1), signs=(1, -1)), motion)
     assert (found.uplift is not None) == rocks
 
 
@@ -243,7 +246,7 @@ def test_uplift_is_that_of_the_worse_polarity():
         "push", 0.01, np.append(0.1 * leaning.gravity * np.sin(np.linspace(0, np.pi, 41)), np.zeros(9)), unit="m/s2"
     )
     for polarities, lam in (((1,), lambdas[1]), ((-1,), lambdas[0]), ((1, -1), min(lambdas))):
-        found = margin(build_model(leaning, "nonlinear"), push, polarities=polarities, around=AROUND)
+        found = margin(conditions(leaning, AROUND, signs=polarities), push)
         assert found.uplift == pytest.approx(lam / 0.1, rel=1e-9)
 
 
@@ -255,8 +258,8 @@ class TestCommand:
         data = run_json("margin", self.BLOCK, "--record", self.ACCEL, "--pulse", "sine:0.5g:0.8s", "--neighbours", 20)
         assert data["neighbours"] == {"count": 20, "amplitude": 0.04, "restitution": 0.05, "slenderness": 0.10}
         assert len(data["motions"]) == 2 and data["motions"][0]["name"] == "accel.csv"
-        model = build_model(load_structure(self.BLOCK), "nonlinear")
-        found = margin(model, parse_pulse("sine:0.5g:0.8s").sampled(), around=AROUND)
+        asked = conditions(load_structure(self.BLOCK), AROUND, signs=(1, -1))
+        found = margin(asked, parse_pulse("sine:0.5g:0.8s").sampled())
         theirs = data["motions"][1]
         assert theirs["shares"] == found.overturned.tolist() and theirs["unknown"] == [0.0] * 61
         assert theirs["factors"] == sorted([*FACTORS.tolist(), 1.0])
@@ -264,7 +267,7 @@ class TestCommand:
         assert set(theirs["levels"]) == {"10", "50", "90"}
         assert theirs["levels"]["50"]["first"] == found.first(0.5)
         assert theirs["verdict"] == in_words(found)
-        assert theirs["pga"] == found.pga == pytest.approx(0.5, rel=1e-3) and found.polarities == (1, -1)
+        assert theirs["pga_g"] == found.pga_g == pytest.approx(0.5, rel=1e-3) and found.polarities == (1, -1)
 
     def test_options_go_before_the_file(self, tmp_path):
         file = tmp_path / "b.yaml"
@@ -281,8 +284,8 @@ class TestCommand:
     def test_unknown_outcomes_are_a_share_of_their_own(self):
         words = ("margin", EXAMPLES / "arch.yaml", "--record", self.ACCEL, "--neighbours", 5, "--polarity", 1)
         (ours,) = run_json(*words)["motions"]
-        model = build_model(load_structure(EXAMPLES / "arch.yaml"), "nonlinear")
-        found = margin(model, read_record(self.ACCEL), (1,), around=Neighbourhood(5))
+        arch = conditions(load_structure(EXAMPLES / "arch.yaml"), Neighbourhood(5))
+        found = margin(arch, read_record(self.ACCEL))
         assert ours["unknown"] == found.unknown.tolist() and max(ours["unknown"]) > 0.5
         assert ours["levels"]["50"]["first_or_unknown"] == found.first(0.5, unknown=True) is not None
         assert ours["levels"]["10"]["last_below_or_unknown"] == found.last_below(0.1, unknown=True) is not None
@@ -306,7 +309,7 @@ class TestCommand:
     @pytest.mark.parametrize(
         ("words", "fragment"),
         [
-            ((), "--record PLACE or --pulse PULSE"),
+            ((), "--record or --pulse is missing"),
             (("--pulse", "sine:0.4g:0.8s", "--neighbours", 0), "at least 1"),
             (("--record", "x", "--amplitude-deviation", 1), "from 0 up to, but not including, 1"),
             (("--record", "x", "--slenderness-deviation", "100%"), "from 0 up to, but not including, 1"),
@@ -327,7 +330,7 @@ def test_a_missing_record_of_several_leaves_the_others():
 
 def shown(uplift=0.5, shares=0.0, unknown=0.0, polarities=(1, -1)) -> Margin:
     zeros = np.zeros(FACTORS.size)
-    return Margin(AROUND, uplift, FACTORS, zeros + shares, zeros + unknown, pga=0.4, polarities=polarities)
+    return Margin(AROUND, uplift, FACTORS, zeros + shares, zeros + unknown, pga_g=0.4, polarities=polarities)
 
 
 @pytest.mark.parametrize(
@@ -337,7 +340,7 @@ def shown(uplift=0.5, shares=0.0, unknown=0.0, polarities=(1, -1)) -> Margin:
 )  # fmt: skip
 def test_the_factor_of_the_conclusion_is_the_first_at_which_a_tenth_overturns_or_may(shares, unknown, ratio):
     motion = parse_pulse("sine:0.05g:0.5s").sampled()
-    end = margins.conclusion(Structure(BLOCK), motion, (1,), made(*shares, unknown=unknown))
+    end = margins.conclusion(conditions(BLOCK), motion, made(*shares, unknown=unknown))
     assert end.ratio == ratio
     assert (end.share.lowest, end.share.highest) == pytest.approx((shares[0], shares[0] + unknown[0]))
 

@@ -145,12 +145,12 @@ def test_sampling_is_refined_until_it_changes_nothing(block):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ((), "--a and --omega are missing"),
-        (("--a", 2, "--omega", 3, "--ag", "0.4g"), "--a is for the dimensionless block, --ag for a structure"),
-        (("--ag", "0.4g", "--period", 1, "--eta", 0.9), "eta is `restitution` in its file"),
+        ((), "--ag is missing for a pulse on a structure such as 0.6g"),
+        (("--a", 2, "--omega", 3, "--ag", "0.4g"), "--ag has no effect on the dimensionless block, which --a"),
+        (("--ag", "0.4g", "--period", 1, "--restitution", 0.8), "has its own in its file"),
         (("--ag", "0.6", "--period", 0.8), "'0.6' has no unit: give one of g, m/s2"),
         (("--ag=-0.6g", "--period", 0.8), "--polarity -1 reverses the pulse"),
-        (("--polarity", "-1"), "--ag is missing for a pulse on a structure such as 0.6 g"),
+        (("--polarity", "-1"), "--ag is missing for a pulse on a structure such as 0.6g"),
         (("--ag", "0.6g", "--period", 1, "--shape", "sin"), "did you mean sine?"),
         (("--ag", "0.6g", "--period", 1, "--shape", "sine:3"), "expected sine:AMPLITUDE:PERIOD"),
         (("--a", 2, "--omega", 3, "--shape", "ricker"), "for other shapes, give a structure, --ag and --period"),

@@ -267,8 +267,8 @@ def run(*arguments):
 
 
 def test_the_command_prints_both_answers_as_one_line_of_json():
-    got = run("--a", 4, "--omega", 6, "--eta", 0.8)
-    assert set(got) == {"shape", "a", "omega", "eta", "closed_form", "exact"}
+    got = run("--a", 4, "--omega", 6, "--restitution", 0.8)
+    assert set(got) == {"shape", "a", "omega", "eta", "closed_form", "exact", "given"}
     assert (got["a"], got["omega"], got["eta"]) == (4, 6, 0.8)
     assert set(got["closed_form"]) >= {"D0", "max_ratio", "overturns", "valid", "conditions"}
     assert set(got["exact"]) >= EXACT_KEYS

@@ -14,17 +14,18 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import rocking_cli as rk
+from rocking_cli.ask.read import read_record
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.cli.main import main
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.measures import measure
-from rocking_cli.excitation.record_csv import write_record_csv
-from rocking_cli.excitation.records import read_record
+from rocking_cli.excitation.records.prepared import write_record_csv
 from rocking_cli.processing.oscillator import response_spectrum
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 
 ACCEL = str(EXAMPLES / "accel.csv")
+ACROSS = EXAMPLES / "accel_transverse.csv"
 
 
 @pytest.fixture
@@ -44,14 +45,14 @@ class TestWhatIsShown:
         found = measure(read_record(ACCEL))
         assert (data["file"], data["name"], data["format"], data["channel"]) == (ACCEL, "accel.csv", "text", None)
         assert (data["npts"], data["dt"], data["unit"], data["duration"]) == (1201, 0.01, "g", 12)
-        assert (data["pga"], data["pgv"], data["pgd"]) == (found.pga, found.pgv, found.pgd)
+        assert (data["pga_g"], data["pgv"], data["pgd"]) == (found.pga_g, found.pgv, found.pgd)
         assert (data["arias_intensity"], data["significant_duration"]) == (found.arias, found.significant_duration)
         assert (data["mean_acceleration"], data["warnings"], data["factor"]) == (found.mean, [], 1)
 
     def test_the_table_has_every_measure_and_no_row_that_says_nothing(self):
         result = run("record", ACCEL)
         data = run_json("record", ACCEL)
-        for key in ("pga", "pgv", "pgd", "arias_intensity", "significant_duration", "t_5", "t_95"):
+        for key in ("pga_g", "pgv", "pgd", "arias_intensity", "significant_duration", "t_5", "t_95"):
             assert f"{data[key]:.4g}" in result.stdout
         assert all(word in result.stdout for word in ("accel.csv", "text", "1201", "m/s", "5-95 %"))
         assert not any(word in result.stdout for word in ("channel", "scaled", "p dt"))
@@ -59,10 +60,10 @@ class TestWhatIsShown:
 
     def test_several_files_in_a_pipe_are_a_row_each(self, monkeypatch):
         monkeypatch.delenv("COLUMNS", raising=False)
-        one, other = run("record", ACCEL, "--scale", "2").stdout, run("record", ACCEL, ACCEL, "--scale", "2").stdout
-        first, second = [re.split("  +", line.strip()) for line in other.splitlines() if line.startswith(" accel.csv")]
+        one, other = run("record", ACCEL, "--scale", "2").stdout, run("record", ACCEL, ACROSS, "--scale", "2").stdout
+        (first,) = [re.split("  +", line.strip()) for line in other.splitlines() if line.startswith(" accel.csv")]
         lines = [re.split("  +", line.strip()) for line in one.splitlines()[3:] if line.strip(" ─-")]
-        assert first == second == ["accel.csv", *(value for _, value, *_ in lines)]
+        assert first == ["accel.csv", *(value for _, value, *_ in lines)]
         assert max(map(len, other.splitlines())) < 200 and "95 % of Arias at" in one
 
     def test_a_channel_is_named(self, tmp_path):
@@ -112,7 +113,7 @@ class TestDoubts:
 
 
 class TestScaling:
-    @pytest.mark.parametrize(("option", "key"), [("--target-pga", "pga"), ("--target-pgv", "pgv")])
+    @pytest.mark.parametrize(("option", "key"), [("--target-pga", "pga_g"), ("--target-pgv", "pgv")])
     def test_a_target_is_reached_and_the_factor_said(self, option, key):
         plain, scaled = run_json("record", ACCEL), run_json("record", ACCEL, option, "0.4")
         assert scaled[key] == pytest.approx(0.4, rel=1e-12)
@@ -122,14 +123,14 @@ class TestScaling:
 
     def test_polarity_reverses(self):
         plain, reversed_ = run_json("record", ACCEL), run_json("record", ACCEL, "--polarity", "-1", "--scale", "2")
-        assert reversed_["factor"] == -2 and reversed_["pga"] == 2 * plain["pga"]
+        assert reversed_["factor"] == -2 and reversed_["pga_g"] == 2 * plain["pga_g"]
         assert reversed_["final_displacement"] == pytest.approx(-2 * plain["final_displacement"])
 
     def test_respond_scales_to_the_same(self):
         for option in ("--target-pga", "--target-pgv"):
             record = run_json("respond", "--record", ACCEL, option, "0.3", "--polarity", "-1")["record"]
             assert record["scale"] == run_json("record", ACCEL, option, "0.3")["factor"]
-            assert (record["pga"], record["polarity"]) == (pytest.approx(0.55), -1)
+            assert (record["pga_g"], record["polarity"]) == (pytest.approx(0.55), -1)
         assert "PGV = 0.3 m/s" in run("respond", "--record", ACCEL, "--target-pgv", "0.3").stderr
 
     def test_an_odd_unit_is_not_hidden_by_a_target(self, tmp_path):
@@ -148,7 +149,9 @@ class TestScaling:
 
     def test_both_polarities_stand_side_by_side(self, tmp_path):
         lines = [json.loads(line) for line in run("record", ACCEL, "--polarity", "both", "--json").stdout.splitlines()]
-        assert lines == [run_json("record", ACCEL), run_json("record", ACCEL, "--polarity", "-1")]
+        assert [line.pop("given") for line in lines] == [{"polarity": "both"}] * 2
+        alone = [run_json("record", ACCEL, "--polarity", sign) for sign in ("1", "-1")]
+        assert lines == [{key: each[key] for key in each if key != "given"} for each in alone]
         text = " ".join(run("record", ACCEL, "--polarity", "both").stdout.split())
         assert " accel.csv text " in text and "accel.csv, reversed text" in text and "scaled by" in text
         assert "one polarity" in run("record", ACCEL, "--polarity", "both", "--plot", "r.png", code=2).stderr
@@ -179,7 +182,9 @@ class TestCleanFile:
         source.write_text("accel_g\n0\n0.1\n-0.3\n0\n", encoding="utf-8")
         result = run("record", source, "--dt", "0.01", "--out", ".", "--scale", "2")
         assert f"wrote {(tmp_path / 'motion.csv').resolve()}" in result.stderr
-        assert (tmp_path / "motion.csv").read_text(encoding="utf-8").splitlines()[0] == "t [s],a [m/s2]"
+        assert (tmp_path / "motion.csv").read_text(encoding="utf-8").splitlines()[1:4] == [
+            "# from: motion.txt", "# done: factor 2", "t [s],a [m/s2]",
+        ]  # fmt: skip
         back, want = read_record(tmp_path / "motion.csv"), read_record(source, dt=0.01).scaled(2)
         assert back.dt == 0.01 and (back.acceleration == want.acceleration).all()
         run("record", source, "--dt", "0.01", "--out", ".")  # its own file may be renewed
@@ -224,7 +229,7 @@ class TestCleanFile:
 
 class TestPlot:
     def test_of_one_record_only_and_never_over_it(self, tmp_path):
-        assert "one FILE" in run("record", ACCEL, ACCEL, "--plot", "x.png", code=2).stderr
+        assert "one FILE" in run("record", ACCEL, ACROSS, "--plot", "x.png", code=2).stderr
         (tmp_path / "a.png").write_bytes((EXAMPLES / "accel.csv").read_bytes())
         assert "would overwrite an input file" in run("record", "a.png", "--plot", "a.png", code=2).stderr
 
@@ -242,23 +247,23 @@ class TestSpectrum:
         np.testing.assert_allclose(found["sv"], 2 * np.pi / period * found["sd"], rtol=1e-12)
         np.testing.assert_allclose(found["sa"], (2 * np.pi / period) ** 2 * found["sd"] / 9.80665, rtol=1e-12)
         rows = list(csv.DictReader((tmp_path / "s.csv").read_text(encoding="utf-8").splitlines()))
-        assert list(rows[0]) == ["record", "damping", "period [s]", "pseudo Sa [g]", "pseudo Sv [m/s]", "Sd [m]"]
+        assert list(rows[0]) == ["motion", "damping", "period [s]", "pseudo Sa [g]", "pseudo Sv [m/s]", "Sd [m]"]
         for key, name in (("pseudo Sa [g]", "sa"), ("pseudo Sv [m/s]", "sv"), ("Sd [m]", "sd")):
             np.testing.assert_allclose([float(row[key]) for row in rows], found[name], rtol=1e-8)
         assert (tmp_path / "s.png").stat().st_size > 10_000
 
     def test_several_records_and_periods(self, tmp_path):
         asked = ("--spectrum", "s.csv", "--plot", "s.svg", "--period", "0.1:1s")
-        run("record", ACCEL, ACCEL, ACCEL, "--polarity", "both", *asked)
+        run("record", ACCEL, ACROSS, "--polarity", "both", *asked)
         rows = list(csv.DictReader((tmp_path / "s.csv").read_text(encoding="utf-8").splitlines()))
-        names = list(dict.fromkeys(row["record"] for row in rows))
-        assert len(rows) == 200 * len(names) and len(names) == 6 and (tmp_path / "s.svg").exists()
+        names = list(dict.fromkeys(row["motion"] for row in rows))
+        assert len(rows) == 200 * len(names) and len(names) == 4 and (tmp_path / "s.svg").exists()
         assert {row["period [s]"] for row in rows[::200]} == {"0.1"}
 
     @pytest.mark.parametrize("option", [("--damping", "2%"), ("--period", "1:2")])
     def test_options_that_need_it(self, option):
         result = CliRunner().invoke(main, ["record", str(ACCEL), *option])
-        assert result.exit_code == 2 and "give --spectrum" in result.stderr
+        assert result.exit_code == 2 and "has no effect without --spectrum" in result.stderr
 
 
 class TestMeasures:
@@ -312,11 +317,17 @@ def test_a_call_in_python_takes_several_records(tmp_path):
     assert (first, second) == ("accel.csv", "accel_transverse.csv") and third == f"accel.csv ({tmp_path / 'accel.csv'})"
     assert len(left_out) == 1 and "gone.csv" in left_out[0]
     alone = rk.record(across, spectrum=True)
-    assert answer[second].to_dict() == alone.to_dict()
-    assert set(answer.tables["spectrum"]()["record"]) == set(answer)
+    assert answer[second].to_dict() | {"given": alone.to_dict()["given"]} == alone.to_dict()
+    assert set(answer.tables["spectrum"]()["motion"]) == set(answer)
     with pytest.raises(rk.InputError, match="no common plot"):
         rk.record([ACCEL, across]).plot()
     rk.record([ACCEL, across], out=tmp_path / "clean")
     for name in (first, second):
         clean = read_record(tmp_path / "clean" / name).acceleration
         np.testing.assert_allclose(clean, answer[name].motions[0].acceleration, atol=1e-6)
+
+
+def test_a_file_that_is_given_twice_is_shown_once_and_said():
+    asked = run("record", ACCEL, ACCEL, "--json")
+    assert len(asked.stdout.splitlines()) == 1
+    assert "a motion that is given twice is used once: 1 left out" in asked.stderr

@@ -70,7 +70,7 @@ def text_of(tmp_path, monkeypatch):
         if isinstance(structure, str):
             Path("s.yaml").write_text(structure, encoding="utf-8")
             structure = Path("s.yaml")
-        rk.report(structure, motions, "r.html", neighbours=5 if motions else 200, language="it", **options)
+        rk.report(structure, motions, out="r.html", neighbours=5 if motions else 200, language="it", **options)
         page = Path("r.html").read_text(encoding="utf-8")
         names = yaml.safe_dump({"names": [{"name": str(each)} for each in motions]})
         sources = [structure.read_text(encoding="utf-8"), names]

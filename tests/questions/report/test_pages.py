@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 
+from rocking_cli.ask.read import read_record
 from rocking_cli.core.structure_file import load_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.excitation.records import read_record
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.picture import picture
 from tests.browser import launch, opened

@@ -16,9 +16,9 @@ import numpy as np
 import pytest
 
 import rocking_cli as rk
+from rocking_cli.ask.read import read_record
 from rocking_cli.core.structure_file import load_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.excitation.records import read_record
 from rocking_cli.questions.survey.page import symbols
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.neighbours import deviations
@@ -51,10 +51,10 @@ class TestContent:
 
     def test_its_map_is_that_of_overturning(self, monkeypatch):
         monkeypatch.setattr("rocking_cli.questions.report.study.MAP_POINTS", 8)
-        found, (mark, *_) = (answer := rk.report(BLOCK, ACCEL, None, neighbours=5).map).found, answer.marks
+        found, (mark, *_) = (answer := rk.report(BLOCK, ACCEL, neighbours=5).map).found, answer.marks
         alone = rk.overturning_map(BLOCK, points=8)
         np.testing.assert_array_equal(found.regions, alone.regions)
-        np.testing.assert_allclose((found.periods, found.accelerations), (alone.periods, alone.accelerations))
+        np.testing.assert_allclose((found.periods, found.ag), (alone.periods, alone.ag))
         assert mark[0] == "accel.csv" and mark[1].pulse.name == "sine" and not answer.outside
 
     def test_pulses_off_the_map_are_named(self, monkeypatch, tmp_path):
@@ -62,7 +62,7 @@ class TestContent:
         out = tmp_path / "r.html"
         time = np.arange(0, 2, 0.001)
         slow = rk.GroundMotion("off", 0.01, 0.3 * np.sin(2 * np.pi * time / 0.05), unit="g")
-        found = rk.report(BLOCK, slow, out, neighbours=2).map
+        found = rk.report(BLOCK, slow, out=out, neighbours=2).map
         assert not found.marks and list(found.outside) == ["off"]
         assert "Outside the map: those of off." in read(out).words
 
@@ -334,9 +334,9 @@ def test_without_a_browser_the_result_is_printed_first(call, tmp_path, monkeypat
 
 
 def test_python_refuses_another_ending_and_language(tmp_path):
-    with pytest.raises(rk.InputError, match="must be one of en, it, got 'xx'"):
+    with pytest.raises(rk.InputError, match="`language` must be en or it"):
         rk.report(rk.Block(width=0.7, height=2.8), language="xx")
-    with pytest.raises(rk.InputError, match=r"ends in \.html, \.pdf or \.docx"):
+    with pytest.raises(rk.InputError, match=r"end in \.html or \.pdf or \.docx"):
         rk.report(rk.Block(width=0.7, height=2.8), out=tmp_path / "r.txt")
 
 

@@ -43,4 +43,4 @@ def test_data_are_null_where_nothing_is_known(checked):
     np.testing.assert_array_equal(data["known_to"], KNOWN_TO)
     np.testing.assert_array_equal(data["peak_lower_bound"], np.where(np.isfinite(KNOWN_TO), 0.05, np.nan))
     table = columns(around())
-    np.testing.assert_array_equal(table["overturns nonlinear"], [0.0, 0.0, np.nan, 1.0, np.nan, 0.0])
+    np.testing.assert_array_equal(table["overturned"], [0.0, 0.0, np.nan, 1.0, np.nan, 0.0])

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import rocking_cli as rk
+from rocking_cli.ask.read import read_record
 from rocking_cli.errors import InputError
-from rocking_cli.excitation.records import read_record
 from rocking_cli.views.view import Table
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES, rows_of
@@ -60,7 +60,7 @@ class TestRespond:
         objects = {each["record"]["name"]: each for each in lines("respond", BLOCK, "--record", records)}
         assert list(rows) == list(objects) == ["east.csv", "north.csv", "west.csv"]
         for name, (pga, *cells) in rows.items():
-            assert pga == f"{objects[name]['record']['pga']:.4g}"
+            assert pga == f"{objects[name]['record']['pga_g']:.4g}"
             *cells, moved, share, sign, median = " ".join(cells).replace("no uplift", "none").split()
             top = objects[name]["responses"]["nonlinear"]["points"]["top"]["horizontal"]
             assert moved == ("-" if top is None else f"{1000 * top:.4g}")
@@ -96,9 +96,9 @@ class TestRespond:
         """
         tie = {"name": "bar", "stiffness": 2e4, "from": {"ground": [-3.0, 2.0]}, "to": {"at": [-0.35, 2.0]}}
         block = rk.Block(name="b", width=0.7, height=2.8, mass=3000.0, one_sided="positive", ties=[tie])
-        answer = rk.respond(block, ["sine:0.4g:0.5s", "sine:0.5g:0.6s", "sine:0.05g:0.5s"], models="nonlinear")
+        answer = rk.respond(block, ["sine:0.4g:0.5s", "sine:0.5g:0.6s", "sine:0.05g:0.5s"], model="nonlinear")
         frame = answer.frames["peaks"]
-        assert list(frame) == ["motion", "PGA", "top_horizontal_displacement", "bar_force"]
+        assert list(frame) == ["motion", "pga_g", "top_horizontal_displacement", "bar_force"]
         (table,) = (part for part in answer.view.parts if isinstance(part, Table))
         assert table.columns[3:5] == ["top\n[mm]", "bar\n[kN]"]
         for k, (name, each) in enumerate(answer.items()):
@@ -114,7 +114,7 @@ class TestRespond:
 
     def test_a_wall_held_at_its_top_has_millimetres_of_its_hinge(self):
         wall = rk.Wall(thickness=0.3, height=3.0)
-        answer = rk.respond(wall, ["sine:0.7g:0.3s", "sine:0.65g:0.3s"], models="nonlinear")
+        answer = rk.respond(wall, ["sine:0.7g:0.3s", "sine:0.65g:0.3s"], model="nonlinear")
         columns = answer.frames["peaks"]
         assert "joint_B_horizontal_displacement" in columns
         for name, each in answer.items():
@@ -197,13 +197,9 @@ class TestRespond:
     @pytest.mark.parametrize(
         ("options", "said"),
         [
-            (("--record", "r/*.csv", "--vertical", "r/east.csv"), "--vertical applies to a single motion"),
-            (
-                ("--record", "r/east.csv", "--pulse", "sine:0.3g:1s"),
-                "--record and --pulse cannot be combined: choose one",
-            ),
+            (("--record", "r/*.csv", "--vertical", "r/east.csv"), "--vertical has no effect with several motions"),
             (("--record", "r/east.csv", "r/north.csv"), "use a quoted pattern: --record '*.csv'"),
-            ((BLOCK, BLOCK, "--record", "r/east.csv"), "takes one structure, but 2 are given"),
+            ((BLOCK, BLOCK, "--record", "r/east.csv"), "One structure is expected, but 2 are given"),
         ],
     )
     def test_what_does_not_go_together(self, records, options, said):
@@ -279,7 +275,7 @@ class TestPython:
             rk.respond(FRAME, ["bad.csv", records])
 
     def test_animations(self, records):
-        found = rk.animate(BLOCK, ["r/east.csv", "r/north.csv"], "m.html", neighbours=0)
+        found = rk.animate(BLOCK, ["r/east.csv", "r/north.csv"], out="m.html", neighbours=0)
         assert [Path(each.to_dict()["file"]).name for each in found.values()] == ["m-east.html", "m-north.html"]
         assert all(Path(each.to_dict()["file"]).is_file() for each in found.values())
 
@@ -289,12 +285,12 @@ class TestPython:
         assert len(found.to_frame()) == sum(len(rk.equiv(each).to_frame()) for each in (FRAME, BLOCK))
 
     def test_all_azimuths(self, records):
-        pair = {"other": "r/west.csv", "azimuth": "all", "models": "nonlinear"}
+        pair = {"other": "r/west.csv", "azimuth": "all", "model": "nonlinear"}
         found = rk.respond(BLOCK, "r/north.csv", **pair)
         asked = ("respond", BLOCK, "--record", "r/north.csv", "--with", "r/west.csv", "--azimuth", "all")
         assert lines(*asked, "--model", "nonlinear") == [found.to_dict()]
         for given in ({"polarity": "both"}, {"neighbours": 5}, {"tail": 3.0}, {"impacts": True}):
-            with pytest.raises(InputError, match=f"`{next(iter(given))}` cannot be combined with `azimuth` all"):
+            with pytest.raises(InputError, match=f"`{next(iter(given))}` has no effect with `azimuth` all"):
                 rk.respond(BLOCK, "r/north.csv", **pair, **given)
         with pytest.raises(InputError, match="`azimuth` can be all for `respond` only"):
             rk.margin(BLOCK, "r/north.csv", other="r/west.csv", azimuth="all")

@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rocking_cli.ask.read import read_record
 from rocking_cli.core.structure_file import load_structure
 from rocking_cli.dynamics.history import contact_lost
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records import read_record
 from rocking_cli.views.response import vertical_notes
 from tests.cli.test_cli import ACCEL, FRAME, run, run_json
 from tests.following import respond
@@ -37,8 +37,8 @@ def test_it_changes_the_response_as_the_library_says(up):
         assert data["responses"][name]["contact_lost"] is None
         assert data["responses"][name]["peak_ratio"] != without["responses"][name]["peak_ratio"]
     assert data["record"]["vertical"] == {
-        "name": "up.csv", "npts": 1500, "dt": 0.004, "unit": "g", "pga": pytest.approx(0.3, rel=1e-3), "format": "text",
-        "processing": [],
+        "name": "up.csv", "npts": 1500, "dt": 0.004, "unit": "g", "pga_g": pytest.approx(0.3, rel=1e-3),
+        "format": "text", "processing": [],
     }  # fmt: skip
     assert without["record"]["vertical"] is None
     assert (len(data["notes"]), without["notes"]) == (1, [])
@@ -97,7 +97,7 @@ def test_one_column_takes_its_own_interval_or_that_of_the_record(tmp_path):
 
 def test_wrong_use_is_refused(up, tmp_path):
     assert "--record" in run("respond", "--release", "0.3", "--vertical", up, code=2).stderr
-    assert "give --vertical" in run("respond", "--record", ACCEL, "--vertical-dt", "0.1", code=2).stderr
+    assert "without --vertical" in run("respond", "--record", ACCEL, "--vertical-dt", "0.1", code=2).stderr
     assert "no such file" in run("respond", "--record", ACCEL, "--vertical", tmp_path / "none.csv", code=2).stderr
     assert "overwrite" in run("respond", "--record", ACCEL, "--vertical", up, "--out", up, code=2).stderr
 
@@ -110,5 +110,5 @@ def test_the_tolerance_can_be_set_and_holds():
     usual = run_json("respond", FRAME, "--record", ACCEL)["responses"]["nonlinear"]["peak_ratio"]
     assert usual == pytest.approx(tight, rel=1e-9)
     assert loose == pytest.approx(tight, rel=1e-2) and loose != tight
-    for wrong, said in (("1", "from 1e-14 to below 1"), ("9e-15", "from 1e-14 to below 1"), ("0", "positive")):
+    for wrong, said in (("1", "must be less than 1"), ("9e-15", "must be at least 1e-14"), ("0", "positive")):
         assert said in run("respond", "--record", ACCEL, "--rtol", wrong, code=2).stderr

@@ -1,7 +1,7 @@
 """`respond_each`: frames, labelled arrays and rotations against single responses, which share no code of the grid."""
 
 import importlib.util
-from math import atan, hypot, nan, sin
+from math import atan, hypot, inf, nan, sin
 
 import numpy as np
 import pytest
@@ -23,10 +23,10 @@ def answer():
     return rk.respond_each(
         [block(), block(name="low", height=2.0, friction=0.36)],
         [ACCEL, "sine:0.6g:0.8s"],
-        models=["nonlinear", "linear1"],
-        scales=SCALES,
-        polarities=POLARITIES,
-        restitutions=RESTITUTIONS,
+        model=["nonlinear", "linear1"],
+        scale=SCALES,
+        polarity=POLARITIES,
+        restitution=RESTITUTIONS,
         histories=True,
     )
 
@@ -39,15 +39,15 @@ def test_each_row_is_the_response_that_it_names(answer):
         given = {} if row.Index % 2 == 0 else {"restitution": 0.8}
         body = block(**given) if row.structure == "tall" else block(name="low", height=2.0, friction=0.36, **given)
         motion = ACCEL if row.motion == "accel.csv" else row.motion
-        one = rk.respond(body, motion, scale=row.scale, polarity=row.polarity, models=row.model)
+        one = rk.respond(body, motion, scale=row.scale, polarity=row.polarity, model=row.model)
         run = one[row.model]
         assert (row.outcome, row.impact_count) == (run.words, run.impact_count)
-        assert row.eta == pytest.approx(
+        assert row.restitution == pytest.approx(
             given.get("restitution", 1 - 1.5 * sin(atan(0.7 / body.height)) ** 2), rel=1e-12
         )
         known = np.nan if run.overturned is None else float(run.overturned)
         np.testing.assert_equal(
-            [row.overturned, row.peak_ratio, row.uplift_time, row.known_to, row.peak_ratio_at_least],
+            [row.overturned, row.peak_ratio, row.uplift_time, row.known_to, row.peak_lower_bound],
             [known, np.inf if run.fell else run.peak_ratio, run.uplift_time, run.known_to, run.lower_bound],
         )
         shaken = rk.read_record(ACCEL) if row.motion == "accel.csv" else rk.parse_pulse(row.motion).sampled()
@@ -89,7 +89,7 @@ def test_rotations_are_those_of_single_responses(answer):
         turned = np.isfinite(run.phi) & np.isfinite(at)
         assert turned.sum() > 300
         np.testing.assert_allclose(at[turned], run.phi[turned], atol=2e-3 * np.nanmax(abs(run.phi)))
-    coarse = rk.respond_each(block(), ACCEL, models="nonlinear", histories=True)  # on the samples of the record itself
+    coarse = rk.respond_each(block(), ACCEL, model="nonlinear", histories=True)  # on the samples of the record itself
     alone = rk.respond(block(), ACCEL)["nonlinear"]
     np.testing.assert_array_equal(coarse.rotation["nonlinear"][0, 0, 0][: alone.time.size], alone.phi)
     assert not coarse.rotation["nonlinear"][0, 0, 0][alone.time.size :].any()
@@ -101,7 +101,7 @@ def test_what_exceeds_a_ratio_is_known_only_as_far_as_the_model_holds(answer):
         if row.outcome == "overturns":
             wanted = 1.0
         elif row.outcome == "unknown":
-            wanted = 1.0 if row.peak_ratio_at_least > 0.3 else np.nan
+            wanted = 1.0 if row.peak_lower_bound > 0.3 else np.nan
         else:
             wanted = float(row.peak_ratio > 0.3)
         np.testing.assert_equal(exceeds, wanted)
@@ -111,7 +111,7 @@ def test_what_exceeds_a_ratio_is_known_only_as_far_as_the_model_holds(answer):
 
 def test_motions_are_scaled_to_a_peak_each():
     motions = [ACCEL, "ricker:1g:0.8s"]
-    runs = rk.respond_each(block(), motions, models="nonlinear", target_pga=[0.4, 0.8], polarities=[1, -1])
+    runs = rk.respond_each(block(), motions, model="nonlinear", target_pga=[0.4, 0.8], polarity=[1, -1])
     frame = runs.to_frame()
     np.testing.assert_allclose(frame["pga_g"], [0.4, 0.4, 0.8, 0.8] * 2, rtol=1e-12)
     assert list(runs.grid.axes) == ["structure", "motion", "target_pga", "polarity"]
@@ -120,16 +120,16 @@ def test_motions_are_scaled_to_a_peak_each():
         assert arrays.pga_g.dims == ("motion", "target_pga") and arrays.sel(
             target_pga=0.8
         ).pga_g.values == pytest.approx(0.8)
-    alone = rk.respond(block(), ACCEL, target_pga=0.4, polarity=-1, models="nonlinear")["nonlinear"]
+    alone = rk.respond(block(), ACCEL, target_pga=0.4, polarity=-1, model="nonlinear")["nonlinear"]
     assert 0 < runs["nonlinear"].peak_ratio[0, 0, 0, 1] == pytest.approx(alone.peak_ratio, rel=1e-6)
 
 
 def test_columns_under_a_beam_have_the_restitution_that_is_given():
     frame = rk.load_structure(EXAMPLES / "symmetric_frame.yaml")
-    asked = {"models": "nonlinear", "histories": True}
-    many = rk.respond_each(frame, "ricker:0.6g:1.2s", scales=[0.8], restitutions=[nan, 0.85], **asked)
+    asked = {"model": "nonlinear", "histories": True}
+    many = rk.respond_each(frame, "ricker:0.6g:1.2s", scale=[0.8], restitution=[nan, 0.85], **asked)
     for k, structure in enumerate((frame, frame.replace(restitution=0.85))):
-        alone = rk.respond(structure, "ricker:0.6g:1.2s", scale=0.8, models="nonlinear")["nonlinear"]
+        alone = rk.respond(structure, "ricker:0.6g:1.2s", scale=0.8, model="nonlinear")["nonlinear"]
         assert many["nonlinear"].peak_ratio[0, 0, 0, k] == alone.peak_ratio
         assert many["nonlinear"].unknown[0, 0, 0, k] == alone.unknown
         assert np.nanmax(abs(many.rotation["nonlinear"][0, 0, 0, k])) == pytest.approx(
@@ -144,21 +144,68 @@ def test_labelled_arrays_are_the_frame(answer):
     assert arrays["pga_g"].dims == ("motion", "scale") and arrays["pgv"].attrs["units"] == "m/s"
     row = frame[
         (frame.model == "linear1") & (frame.structure == "low") & (frame.motion == "accel.csv")
-        & (frame.scale == 1.0) & (frame.polarity == -1) & (frame.eta == 0.8)
+        & (frame.scale == 1.0) & (frame.polarity == -1) & (frame.restitution == 0.8)
     ].iloc[0]  # fmt: skip
     at = arrays.sel(model="linear1", structure="low", motion="accel.csv", scale=1.0, polarity=-1, restitution=0.8)
     assert (at.peak_ratio, at.uplift_time, at.outcome, at.pga_g) == (
         row.peak_ratio, row.uplift_time, row.outcome, row.pga_g,
     )  # fmt: skip
-    assert at.rotation.dims == ("time",) and abs(at.rotation).max() == pytest.approx(row.peak_rotation, rel=1e-2)
+    assert (
+        at.rotation.dims == ("t",)
+        and arrays.t.attrs["units"] == "s"
+        and abs(at.rotation).max() == pytest.approx(row.peak_rotation, rel=1e-2)
+    )
+
+
+def own_quantile(peaks, q):
+    """The quantile of peaks by sorting, with interpolation between neighbours of which none is infinite."""
+    order, place = sorted(peaks), q * (len(peaks) - 1)
+    k, part = int(place), place - int(place)
+    if part < 1e-9:
+        return order[k]
+    return order[k] if order[k] == order[k + 1] else (1 - part) * order[k] + part * order[k + 1]
+
+
+def test_quantiles_rank_what_overturns_above_every_peak():
+    pulses = [f"{shape}:0.5g:{period}s" for shape in ("sine", "ricker") for period in (0.5, 0.7, 0.9, 1.1, 1.3)]
+    runs = rk.respond_each(
+        [block(), block(name="low", height=2.0, friction=0.36)], pulses, model="nonlinear", scale=[0.6, 1.0, 1.6]
+    )
+    frame, shares = runs.to_frame(), (0.16, 0.5, 5 / 9, 0.84, 1.0)
+    found = runs.quantiles(*shares, over="motion")
+    assert len(found) == 2 * 3 * len(shares) and set(found.runs) == {10}
+    kinds = set()
+    for row in found.itertuples():
+        own = frame[(frame.structure == row.structure) & (frame.scale == row.scale)]
+        highest = [inf if unknown else peak for peak, unknown in zip(own.peak_ratio, own.unknown, strict=True)]
+        lowest = [bound if unknown else peak for peak, unknown, bound in
+                  zip(own.peak_ratio, own.unknown, own.peak_lower_bound, strict=True)]  # fmt: skip
+        wanted = own_quantile(highest, row.quantile), own_quantile(lowest, row.quantile)
+        assert (row.peak_ratio, row.peak_lower_bound) == pytest.approx(wanted, rel=1e-12)
+        kinds.add((row.peak_ratio == inf, row.peak_lower_bound == inf))
+    assert kinds == {(False, False), (True, False), (True, True)}
+    both = runs.quantiles(0.5, over=["motion", "structure"])
+    assert list(both) == ["model", "scale", "quantile", "peak_ratio", "peak_lower_bound", "runs"]
+    assert both.runs.tolist() == [20] * 3
+    with pytest.raises(rk.InputError, match=r"'record' is not an axis of these runs: structure, motion, scale"):
+        runs.quantiles(0.5, over="record")
+    with pytest.raises(rk.InputError, match=r"16 is not a quantile from 0 to 1"):
+        runs.quantiles(16)
+
+
+def test_quantiles_leave_out_what_failed():
+    runs = rk.respond_each(block(), ["sine:0.3g:0.5s", "sine:0.5g:0.5s", "sine:0.5g:2s"], model="nonlinear")
+    runs["nonlinear"].failed[0, 2, 0] = True
+    found = runs.quantiles(1.0)
+    assert found.runs.tolist() == [2] and found.peak_ratio.tolist() == runs["nonlinear"].peak_ratio[0, 1:2, 0].tolist()
 
 
 def test_samples_files_and_patterns_are_motions(tmp_path):
     shaking = np.stack([0.5 * np.sin(np.arange(300) / 10), 0.3 * np.cos(np.arange(300) / 9)])
-    many = rk.respond_each(block(), shaking, dt=0.01, units="g", models="nonlinear")
+    many = rk.respond_each(block(), shaking, dt=0.01, units="g", model="nonlinear")
     assert many.share() == many["nonlinear"].share()
     made = [rk.GroundMotion(f"motion {k}", 0.01, row * 9.80665, unit="m/s2") for k, row in enumerate(shaking, 1)]
-    same = rk.respond_each(block(), made, models="nonlinear")
+    same = rk.respond_each(block(), made, model="nonlinear")
     assert list(many.grid.axes["motion"]) == ["motion 1", "motion 2"]
     np.testing.assert_array_equal(many["nonlinear"].peak_ratio, same["nonlinear"].peak_ratio)
     assert (
@@ -167,7 +214,7 @@ def test_samples_files_and_patterns_are_motions(tmp_path):
     )
     for name in ("a.csv", "b.csv"):
         (tmp_path / name).write_bytes((EXAMPLES / "accel.csv").read_bytes())
-    found = rk.respond_each([block(), block()], str(tmp_path / "*.csv"), models="nonlinear", out=tmp_path / "o.parquet")
+    found = rk.respond_each([block(), block()], str(tmp_path / "*.csv"), model="nonlinear", out=tmp_path / "o.parquet")
     assert list(found.grid.axes["motion"]) == ["a.csv", "b.csv"]
     assert list(found.grid.axes["structure"]) == ["tall", "tall-2"]
     read = pytest.importorskip("pandas").read_parquet(tmp_path / "o.parquet")
@@ -177,15 +224,18 @@ def test_samples_files_and_patterns_are_motions(tmp_path):
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ({"polarities": [0]}, "`polarities` must be 1 or -1, got 0"),
-        ({"polarities": []}, "`polarities` must be one number or a list"),
-        ({"restitutions": [1.5]}, "restitution: tall: .* at most 1.*got 1.5"),
+        ({"polarity": [0]}, "`polarity` must be 1 or -1, got 0"),
+        ({"polarity": []}, "`polarity` must be one number or a list"),
+        ({"restitution": [1.5]}, "`restitution`: tall: .* at most 1.*got 1.5"),
         (
-            {"structures": str(EXAMPLES / "linkage.yaml"), "restitutions": [0.7, 0.9]},
+            {"structures": str(EXAMPLES / "linkage.yaml"), "restitution": [0.7, 0.9]},
             "must be at most 0.775781, got 0.9",
         ),
-        ({"structures": str(EXAMPLES / "verify" / "facade.yaml"), "restitutions": [1.0]}, "rebound: facade: "),
-        ({"scales": [1e5]}, "up to 4e.04 g is not plausible"),
+        (
+            {"structures": str(EXAMPLES / "verify" / "facade.yaml"), "restitution": [1.0]},
+            "`restitution`: facade: rebound: ",
+        ),
+        ({"scale": [1e5]}, "up to 4e.04 g is not plausible"),
         (
             {"motions": np.ones(50), "dt": 0.01, "units": "g", "quantity": "velocity"},
             "`quantity` describes a file, and",
@@ -194,8 +244,8 @@ def test_samples_files_and_patterns_are_motions(tmp_path):
             {"motions": rk.GroundMotion("m", 0.01, np.ones(50), unit="m/s2"), "dt": 0.02},
             "`dt` describes a file, and no file is given",
         ),
-        ({"models": []}, "models must be of nonlinear, linear1, linear2, got none"),
-        ({"scales": [nan]}, "scale must be finite"),
+        ({"model": []}, "`model` must have at least 1 entry"),
+        ({"scale": [nan]}, "scale must be finite"),
         ({"motions": np.ones(50)}, r"`dt` is missing(?s:.*)units='g'"),
         ({"motions": np.ones(50), "dt": 0.01}, "`units` is missing"),
         (
@@ -206,26 +256,26 @@ def test_samples_files_and_patterns_are_motions(tmp_path):
             {"motions": np.ones((1000, 2)), "dt": 0.01, "units": "g"},
             "would be 1,000 motions of 2 samples(?s:.*)samples.T",
         ),
-        ({"motions": np.ones(50), "dt": 0.01, "units": "furlong"}, "not a unit of acceleration"),
+        ({"motions": np.ones(50), "dt": 0.01, "units": "furlong"}, "'furlong' is not a known unit"),
         ({"motions": np.full(50, nan), "dt": 0.01, "units": "g"}, "sample 1 is not a number"),
-        ({"structures": []}, "`structures` is empty"),
-        ({"scales": (each for each in (1, 2))}, "`scales` must be numbers, got a generator"),
-        ({"scales": 2.0, "target_pga": 0.5}, "`scales` and `target_pga` cannot be combined"),
+        ({"structures": []}, "`structures` must have at least 1 entry"),
+        ({"scale": (each for each in (1, 2))}, "`scale` must be numbers, got a generator"),
+        ({"scale": 2.0, "target_pga": 0.5}, "`scale` and `target_pga` cannot be combined"),
         (
             {"motions": np.zeros(50), "dt": 0.01, "units": "g", "target_pga": 0.5},
             "zero throughout and cannot be scaled",
         ),
-        ({"eta": 0.9}, "`eta` is not an argument\n  did you mean restitutions"),
+        ({"eta": 0.9}, "`eta` is not an argument\n  did you mean restitution"),
         (
-            {"histories": True, "scales": np.linspace(1, 2, 200_000)},
+            {"histories": True, "scale": np.linspace(1, 2, 200_000)},
             "200,000 histories of .* are more than 200,000,000 values",
         ),
-        ({"out": "runs.txt", "scale": 2.0}, "`scale` is not an argument"),
+        ({"out": "runs.txt", "scales": 2.0}, "`scales` is not an argument"),
     ],
 )
 def test_what_cannot_be_combined_is_said(given, said):
     with pytest.raises(rk.InputError, match=said):
-        rk.respond_each(**{"structures": block(), "motions": "sine:0.4g:0.8s", "models": "nonlinear"} | given)
+        rk.respond_each(**{"structures": block(), "motions": "sine:0.4g:0.8s", "model": "nonlinear"} | given)
 
 
 def test_a_motion_that_is_given_twice_is_used_once_and_said():
@@ -235,7 +285,7 @@ def test_a_motion_that_is_given_twice_is_used_once_and_said():
         ([both, "sine:1g:1s", ACCEL, "sine:1g:1s"], 2, 3),
     ):
         with pytest.warns(rk.DoubtWarning, match=f"a motion that is given twice is used once: {left_out} left out"):
-            assert rk.respond_each(block(), given, models="nonlinear")["nonlinear"].fell.shape == (1, used, 1)
+            assert rk.respond_each(block(), given, model="nonlinear")["nonlinear"].fell.shape == (1, used, 1)
 
 
 def test_a_plot_is_of_any_two_columns(answer):
@@ -259,5 +309,5 @@ def test_a_plot_is_of_any_two_columns(answer):
 
 def test_a_structure_whose_name_begins_with_an_underscore_is_in_the_legend():
     block = rk.Block(width=0.7, height=2.8, name="_$1")
-    figure = rk.respond_each(block, "sine:0.4g:0.8s", models="nonlinear", scales=[0.1, 0.5, 4]).figure()
+    figure = rk.respond_each(block, "sine:0.4g:0.8s", model="nonlinear", scale=[0.1, 0.5, 4]).figure()
     assert [text.get_text() for text in figure.legends[0].get_texts()] == [r"_\$1", "above the line: overturns"]

@@ -11,8 +11,8 @@ from tests.conftest import EXAMPLES
 
 def test_a_block_turns_about_its_corners():
     block, motion = rk.Block(width=0.7, height=2.8), "sine:0.4g:0.6s"
-    frame = rk.respond(block, motion, models="nonlinear", each_block=True).columns()
-    phi = rk.respond(block, motion, models="nonlinear").runs[1]["nonlinear"].phi
+    frame = rk.respond(block, motion, model="nonlinear", each_block=True).columns()
+    phi = rk.respond(block, motion, model="nonlinear").runs[1]["nonlinear"].phi
     assert phi.min() < -0.01 or phi.max() > 0.01
     corner = np.where(phi >= 0, 0.35, -0.35)  # of the foot, about its middle; clockwise about the right one
     arm_x, arm_z = -corner, 1.4
@@ -53,4 +53,4 @@ def test_hinged_blocks_stay_together(tmp_path, monkeypatch):
 
 def test_the_table_needs_a_file():
     refused = run("respond", "--pulse", "sine:0.4g:0.6s", "--each-block", code=2)
-    assert "--each-block is about the table" in refused.stderr
+    assert "--each-block has no effect without --out" in refused.stderr

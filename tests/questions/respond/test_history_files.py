@@ -42,8 +42,8 @@ def test_the_columns_are_time_ground_and_three_of_each_model():
     histories = respond(BLOCK, PULSE, models=("nonlinear", "linear2"))
     header, *lines = rows(histories, PULSE)
     assert header == [
-        "t [s]", "a_g [g]", "nonlinear phi [rad]", "nonlinear phi_dot [rad/s]", "nonlinear phi/phi_cr",
-        "linear2 phi [rad]", "linear2 phi_dot [rad/s]", "linear2 phi/phi_cr",
+        "t [s]", "a_g [g]", "nonlinear phi [rad]", "nonlinear phi_dot [rad/s]", "nonlinear phi_ratio",
+        "linear2 phi [rad]", "linear2 phi_dot [rad/s]", "linear2 phi_ratio",
     ]  # fmt: skip
     table = np.array(lines, dtype=float).T
     run = histories["nonlinear"]

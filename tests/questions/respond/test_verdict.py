@@ -246,7 +246,7 @@ def check(text, motion, folder, opening=0.005):
     rows = rows_of(table)
     said, runs = data["verdict"], data["responses"]
     p = max(side["p"] for side in block.values())
-    curves = {name: np.array([float(row[f"{name} phi/phi_cr"] or "nan") for row in rows]) for name in runs}
+    curves = {name: np.array([float(row[f"{name} phi_ratio"] or "nan") for row in rows]) for name in runs}
     time = np.array([float(row["t [s]"]) for row in rows])
     uplift = max((side["lambda_ratio"] - 1 for side in block.values()), key=abs)
     best = runs["nonlinear"]
@@ -361,7 +361,7 @@ def test_an_outcome_has_one_name(facts, word):
 def test_every_command_calls_an_outcome_the_same(structure, pulse, word, tmp_path):
     block = EXAMPLES / f"{structure}.yaml"
     _, amplitude, period = pulse.split(":")
-    smaller = run("spectrum", block, "--pulse", pulse, "--sizes", "5:6:2").stdout
+    smaller = run("spectrum", block, "--pulse", pulse, "--sizes", "5:6", "--count", "2").stdout
     texts = {
         "respond": run("respond", block, "--pulse", pulse, "--neighbours", 0).stdout,
         "animate": run("animate", block, "--pulse", pulse, "--neighbours", 0, "--out", tmp_path / "a.html").stdout,
@@ -425,4 +425,4 @@ def test_a_release_without_a_known_restitution_ends_at_its_first_impact(block):
     with pytest.raises(rk.InputError, match=r"restitution|rebound"):  # a ground motion goes on after impacts
         rk.respond(block, "sine:0.5g:0.5s", neighbours=0)
     with pytest.raises(rk.InputError, match=r"restitution|rebound"):
-        rk.respond(block, release=0.5, models="linear2")
+        rk.respond(block, release=0.5, model="linear2")

@@ -259,7 +259,7 @@ def test_a_symmetric_structure_is_simulated_once(monkeypatch):
         lambda *a, **k: followed.append(k["polarity"]) or simulate_neighbours(*a, **k),
     )
     given = {"record": ["sine:0.41g:0.8s"] * 3, "peak": ["0.1 rad"] * 3, "polarity": [1, -1, ""]}
-    one, other, both = rk.score({"structure": [BLOCK] * 3, **given}, neighbours=COUNT, threads=1).tests
+    one, other, both = rk.score({"structure": [BLOCK] * 3, **given}, neighbours=COUNT, jobs=1).tests
     assert len(followed) == 3 and 0 < one.share == other.share == both.share < 1
     assert (both.count, both.rank) == (COUNT, one.rank)
     leaning = {"structure": [str(EXAMPLES / "rigid_body.yaml")], "record": ["sine:0.5g:0.9s"], "overturned": [1]}

@@ -116,7 +116,7 @@ class TestEachCheck:
         scan = Scan(np.radians(157.5), 0.15, [k * np.radians(157.5) / 7 for k, _ in hinges], radius=10.0)
         phi_cr = scan.critical(0.08)
         inertia, _, G, B = scan.eq_39(phi_cr)
-        own = {"lambda_": Voussoirs(np.radians(157.5), 0.15, 7).static_lambda(), "phi_cr": phi_cr, "kappa1": B / G}
+        own = {"lambda_": Voussoirs(np.radians(157.5), 0.15, 7).thrust()[0], "phi_cr": phi_cr, "kappa1": B / G}
         assert own | {"p": (9.80665 * G / inertia) ** 0.5} == pytest.approx(checks.OPPENHEIM, rel=2e-11)
 
     @pytest.mark.parametrize(

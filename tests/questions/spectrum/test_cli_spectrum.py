@@ -7,15 +7,16 @@ from functools import partial
 import numpy as np
 import pytest
 
+import rocking_cli as rk
+from rocking_cli.ask.read import read_record
 from rocking_cli.core.structure_file import load_structure
-from rocking_cli.excitation.records import read_record
 from rocking_cli.questions.spectrum import study
 from tests.cli.test_cli import run as command
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS, rows_of
 from tests.following import respond
 
 ACCEL, BLOCK, FRAME = (str(EXAMPLES / name) for name in ("accel.csv", "block.yaml", "frame.yaml"))
-QUICK = ("--sizes", "1:6:5")
+QUICK = ("--sizes", "1:6", "--count", "5")
 run = partial(command, "spectrum")
 
 
@@ -42,32 +43,37 @@ class TestNumbers:
         motion = read_record(ACCEL).scaled(data["motions"][0]["scale"])
         assert found["scale"][place] == 1.0 and found["size"][place] == pytest.approx(2 * np.pi / found["p"])
         alone = respond(load_structure(FRAME), motion, models=("nonlinear",))["nonlinear"]
-        assert found["every_peak"][0][place] == alone.peak_ratio
-        assert found["peaks"][data["fractiles"].index(0.5)] == found["every_peak"][0]
+        assert found["every_peak_ratio"][0][place] == alone.peak_ratio
+        assert found["peaks"][data["fractiles"].index(0.5)] == found["every_peak_ratio"][0]
         assert f"{alone.peak_ratio:.3g} of phi_cr" in found["verdict"]
 
     def test_csv_and_json_agree_and_overturning_is_inf_and_null(self, records, tmp_path):
         data = run_json(BLOCK, "--slenderness", "0.15", "--record", records, *QUICK, "--out", "s.csv")
         rows = rows_of(tmp_path / "s.csv")
         own, blocks = data["spectra"]
-        assert [row["structure"] for row in rows] == ["pedestal"] * 6 + ["alpha = 0.15"] * 5
-        assert {row["R of the block [m]"] for row in rows[:6]} == {""} == {row["scale"] for row in rows[6:]}
-        for k, row in enumerate(rows[:6]):
-            assert float(row["2 pi/p [s]"]) == pytest.approx(own["size"][k])
-            for m in range(3):
-                peak, fell = own["every_peak"][m][k], own["every_overturned"][m][k]
-                written = float(row[f"peak phi/phi_cr under r{m}.csv"])
-                assert (peak is None) == fell == np.isinf(written) and (fell or written == pytest.approx(peak))
-            assert float(row["overturned share"]) == pytest.approx(own["overturned"][k] / own["motions"][k])
-            median, want = float(row["0.5-fractile of peak phi/phi_cr"]), own["peaks"][1][k]
-            assert median == pytest.approx(want) if want is not None else np.isinf(median)
+        assert [row["structure"] for row in rows] == ["pedestal"] * 18 + ["alpha = 0.15"] * 15
+        assert {row["R [m]"] for row in rows[:18]} == {""} == {row["scale"] for row in rows[18:]}
+        assert [row["motion"] for row in rows[:18:6]] == ["r0.csv", "r1.csv", "r2.csv"]
+        for place, row in enumerate(rows[:18]):
+            m, k = divmod(place, 6)
+            assert float(row["size [s]"]) == pytest.approx(own["size"][k])
+            peak, fell, written = own["every_peak_ratio"][m][k], own["every_overturned"][m][k], float(row["peak_ratio"])
+            assert (peak is None) == fell == np.isinf(written) == (row["overturned"] == "1")
+            assert fell or written == pytest.approx(peak)
+        asked = {"slenderness": [0.15], "sizes": (1.0, 6.0), "count": 5}
+        frame = rk.spectrum(BLOCK, records, **asked).frames["fractiles"].query("structure == 'pedestal'")
+        for q, peaks in zip(data["fractiles"][:2], own["peaks"], strict=False):
+            rows = frame[frame.fractile == q]
+            assert rows.overturned.tolist() == [each / 3 for each in own["overturned"]]
+            for found, want in zip(rows.peak_ratio, peaks, strict=True):
+                assert found == pytest.approx(want) if want is not None else not np.isfinite(found)
         assert own["overturned"] == np.sum(own["every_overturned"], axis=0).tolist()
         assert {0, 1, 2} == set(own["overturned"])
         assert (blocks["slenderness"], blocks["given"], blocks["scale"], own["R"]) == (0.15, None, None, None)
 
     def test_the_number_of_processors_changes_nothing(self, records):
         asked = (BLOCK, "--record", records, *QUICK)
-        assert run_json(*asked, "--jobs", "1") == run_json(*asked)
+        assert run_json(*asked, "--jobs", "1")["spectra"] == run_json(*asked)["spectra"]
 
     def test_without_anything_it_takes_the_usual_structure_around_its_size(self):
         result = run("--pulse", "sine:0.4g:0.8s", "--pulse", "ricker:0.3g:1s", "--json")
@@ -147,7 +153,7 @@ class TestReported:
         assert "pedestal at 2 pi/p = 1 s under r0.csv; pedestal at 2 pi/p = 1.565 s under r1.csv" in result.stderr
         found = json.loads(result.stdout)["spectra"][0]
         assert found["motions"] == [2, 2, 3, 3, 3, 3]
-        assert found["every_peak"][0][0] is None and found["every_overturned"][0][0] is False
+        assert found["every_peak_ratio"][0][0] is None and found["every_overturned"][0][0] is False
         assert found["overturned"][0] == full["overturned"][0] - full["every_overturned"][0][0]
 
     def test_doubts_of_a_few_are_said_and_of_many_summed_up(self, tmp_path):
@@ -169,15 +175,15 @@ class TestWrongUse:
     @pytest.mark.parametrize(
         ("arguments", "said"),
         [
-            ((), "--record PLACE or --pulse PULSE"),
+            ((), "--record or --pulse is missing: give a ground motion"),
             (("--pulse", "sine:0.4:1s"), "no unit of amplitude"),
             (("--record", "a.AT2", "b.AT2"), "--record '*.AT2'"),
             (("--record", ACCEL, "--slenderness", "5"), "alpha = atan(b/h)"),
             (("--record", ACCEL, "--slenderness", "1.2"), "too stocky"),
             (("--record", ACCEL, "--fractiles", "0.16,1"), "1 is not a fractile between 0 and 1"),
             (("--record", ACCEL, "--sizes", "3:1"), "'3:1' is not increasing: give the smaller value first"),
-            (("--record", ACCEL, "--sizes", "1:3:1"), "'1' is not a number of sizes"),
-            (("--record", ACCEL, "--eta", "1.5"), "--eta must be in (0, 1], got 1.5"),
+            (("--record", ACCEL, "--sizes", "1:3", "--count", "0"), "--count must be at least 1, got 0"),
+            (("--record", ACCEL, "--restitution", "1.5"), "--restitution must be at most 1, got 1.5"),
         ],
     )
     def test_it_is_said(self, arguments, said):
@@ -193,9 +199,9 @@ class TestWrongUse:
 @NEEDS_RECORDS
 def test_real_records_of_one_station(tmp_path):
     place = str(RECORDS / "Rinaldi[23]*.AT2")
-    found = run_json(BLOCK, "--record", place, "--polarity", "both", "--sizes", "2:9:8", "--plot", "s.png")["spectra"][
-        0
-    ]
+    found = run_json(
+        BLOCK, "--record", place, "--polarity", "both", "--sizes", "2:9", "--count", "8", "--plot", "s.png"
+    )["spectra"][0]
     assert found["motions"] == [2] * 9
     assert found["overturned"][0] == 2 and found["overturned"][-1] == 0
     assert (tmp_path / "s.png").stat().st_size > 10_000

@@ -142,7 +142,7 @@ class TestTheStructureItself:
         assert count_histories([shape], periods, 1, (1, -1)) == 5
 
     def test_a_restitution_given_is_that_of_every_impact(self):
-        shape = shape_of(Structure(Block(**BLOCK)), "nonlinear", 0.8)
+        shape = shape_of(Structure(Block(**BLOCK), restitution=0.8), "nonlinear")
         (found,) = spectra([shape], np.array([shape.period]), [a_record(pga=0.4)])
         assert shape.structure.eta == 0.8
         assert found.peak_ratio[0, 0] == worst(Block(**BLOCK, restitution=0.8), a_record(pga=0.4))

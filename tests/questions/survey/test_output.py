@@ -120,12 +120,12 @@ class TestTables:
     @pytest.mark.parametrize(
         ("options", "said"),
         [
-            (("--separator", ";"), "--separator writes a CSV table, and none is requested: add --out FILE.csv"),
+            (("--separator", ";"), "--separator writes a CSV table, and none is requested: give --out"),
             (("--separator", ";", "--decimal", ","), "--separator and --decimal write a CSV table, and none"),
-            (("--decimal", ",", "--out", "o.csv"), "--decimal , cannot be the separator too: add --separator ';'"),
+            (("--decimal", ",", "--out", "o.csv"), "--decimal cannot be the separator too: give --separator ';'"),
             (("--decimal", ",", "--separator", ",", "--out", "o.csv"), "cannot be the separator too"),
             (("--separator", ";", "--out", "o.parquet"), "o.parquet is not one: give a name that ends in .csv"),
-            (("--separator", "|", "--out", "o.csv"), "'|' is not one of ',', ';', 'tab'"),
+            (("--separator", "|", "--out", "o.csv"), "--separator must be ,, ; or tab, got the text |"),
         ],
     )  # fmt: skip
     def test_signs_without_a_table_to_write_are_refused(self, options, said):
@@ -517,7 +517,7 @@ class TestSheets:
             "--sheets requires a site to verify at: give --site"
             in run("survey", "s.csv", "--sheets", "sh", code=2).stderr
         )
-        with pytest.raises(InputError, match="must be one of en, it, got 'fr'"):
+        with pytest.raises(InputError, match="`language` must be en or it, got the text fr"):
             rk.survey("s.csv", site=SITE, sheets="sh", language="fr")
-        with pytest.raises(InputError, match=r"ends in \.html, \.docx or \.pdf"):
+        with pytest.raises(InputError, match="`sheet_format` must be html, docx or pdf"):
             rk.survey("s.csv", site=SITE, sheets="sh", sheet_format="txt")

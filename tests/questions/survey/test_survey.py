@@ -281,7 +281,7 @@ class TestRanking:
             b, h = blocks[row["name"]]
             histories = {
                 motion: [
-                    rk.respond(rk.Block(width=b, height=h), given, models="nonlinear", scale=s)["nonlinear"]
+                    rk.respond(rk.Block(width=b, height=h), given, model="nonlinear", scale=s)["nonlinear"]
                     for s in (1, -1)
                 ]
                 for motion, given in (("accel.csv", ACCEL), ("sine", "sine:0.3g:0.5s"))
@@ -358,7 +358,7 @@ class TestRanking:
         said = " ".join(run("survey", "t.csv").stdout.split())
         assert "front: ranked about the depth, the weaker side of the base." in said
         (shaken,) = [row for row in found("survey", "t.csv", "--pulse", "sine:0.1g:0.5s")["rows"] if row["side"]]
-        turned = rk.respond(rk.Block(width=0.18, height=2.4), "sine:0.1g:0.5s", models="nonlinear", neighbours=0)
+        turned = rk.respond(rk.Block(width=0.18, height=2.4), "sine:0.1g:0.5s", model="nonlinear", neighbours=0)
         assert shaken["peak_ratio"] == pytest.approx(turned["nonlinear"].peak_ratio, rel=1e-9)
 
     def test_a_collection_under_el_centro(self):
@@ -411,7 +411,7 @@ class TestRanking:
         alone, shaken = (survey([MadeStructure(block)], [motion]).rows[0].under for motion in (push, both))
         assert alone == Under(0.0, 0.0, "push")
         with pytest.warns(rk.DoubtWarning):
-            wanted = rk.respond(block, both, models="nonlinear")["nonlinear"]
+            wanted = rk.respond(block, both, model="nonlinear")["nonlinear"]
         assert wanted.lifted and (shaken.overturned, shaken.over) == (float(wanted.overturned), "phi_cr")
         if not wanted.overturned:
             assert isclose(shaken.peak_ratio, wanted.peak_ratio, rel_tol=1e-9)

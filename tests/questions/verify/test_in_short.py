@@ -26,7 +26,7 @@ STRUCTURES = [
     *(EXAMPLES / f"{name}.yaml" for name in ("arch", "block", "assembly")),
     EXAMPLES / "masonry" / "wall_of_three.yaml",  # two directions that differ
 ]
-SETS = ("--state", "SLV", "--set", EXAMPLES / "accel.csv", "--state", "SLC", "--set", EXAMPLES / "accel_transverse.csv")
+SETS = ("--set", f"SLV={EXAMPLES / 'accel.csv'}", "--set", f"SLC={EXAMPLES / 'accel_transverse.csv'}")
 RECORDS = ("--record", EXAMPLES / "accel.csv", "--record", EXAMPLES / "accel_transverse.csv", "--polarity", "both")
 WITHOUT_HISTORIES = "tied_facade"  # its file has no `rebound`
 
@@ -89,7 +89,7 @@ def test_wider_terminals_have_the_same_tables(width, monkeypatch):
 
 
 def _answer(structure, site=SITES[0], **how):
-    return rk.verify(structure, site, in_short=True, **how)
+    return rk.verify(structure, site, in_full=False, **how)
 
 
 @pytest.mark.every(12)
@@ -190,7 +190,8 @@ def _table(answer):
 def test_python_shows_all_unless_asked_and_data_are_the_same():
     whole = rk.verify(EXAMPLES / "verify" / "facade.yaml", SITES[0])
     short = _answer(EXAMPLES / "verify" / "facade.yaml")
-    assert whole.to_dict() == short.to_dict() and len(whole.view.parts) > len(short.view.parts)
+    data = [{key: value for key, value in each.to_dict().items() if key != "given"} for each in (whole, short)]
+    assert data[0] == data[1] and len(whole.view.parts) > len(short.view.parts)
     assert any(TERMINAL(each) in whole.sentences for each in whole.result.remarks)
 
 

@@ -69,7 +69,7 @@ def of_pulse(ag, confidence):
 
 
 def verified(folder, **sets):
-    return rk.verify(FACADE, SITE, motions={state: folder / place for state, place in sets.items()})
+    return rk.verify(FACADE, SITE, sets={state: folder / place for state, place in sets.items()})
 
 
 def side_of(answer):
@@ -95,7 +95,7 @@ class TestNumbers:
             alone = rk.verify(FACADE, SITE, motions=folder / state / "set.yaml", state=state).to_dict()
             assert alone["directions"]["positive"]["dynamic"] == {state: both[state]}
         monkeypatch.chdir(folder / "SLC")  # sets of another folder, whose paths are their own
-        sets = ("--set", "../SLV", "--state", "SLV", "--state", "SLC", "--set", "set.yaml")
+        sets = ("--set", "SLV=../SLV", "--set", "SLC=set.yaml")
         found = run_json("verify", "../b.yaml", "--site", "../site.yaml", *sets)
         assert found["directions"]["positive"]["dynamic"] == both
 
@@ -113,7 +113,7 @@ class TestNumbers:
 
     def test_scale_options_apply_to_all_sets(self, folder):
         sets = {state: folder / state for state in FACTORS}
-        found = side_of(rk.verify(FACADE, SITE, motions=sets, scale=0.5)).dynamic
+        found = side_of(rk.verify(FACADE, SITE, sets=sets, scale=0.5)).dynamic
         assert [found[state].records[0].scale_factor for state in FACTORS] == pytest.approx([0.45, 0.55])
 
 
@@ -156,14 +156,14 @@ class TestConclusions:
         assert [each.key for each in end.limits] == ["long"] and side_of(found).states["SLC"].T > 4
         assert [(each.name, each.state) for each in end.left_out] == [(f"r{k}.csv", "SLC") for k in range(3)]
         assert "Not counted at SLC: time histories under r0.csv, r1.csv, r2.csv" in found.sentences[0]
-        short = rk.verify(FACADE, SITE, in_short=True, motions={"SLV": folder / "SLV", "SLC": folder / "few"})
+        short = rk.verify(FACADE, SITE, in_full=False, sets={"SLV": folder / "SLV", "SLC": folder / "few"})
         (table,) = (each for each in short.view.parts if isinstance(each, Table) and "time histories" in each.title)
         assert [(row[0], row[-1]) for row in table.rows] == [("SLV", "passes"), ("SLC", "too few")]
 
     def test_a_record_that_cannot_be_read_is_named(self, folder):
         (folder / "records" / "r6.csv").write_text("no numbers\n", encoding="utf-8")
         asked = ("verify", folder / "b.yaml", "--site", folder / "site.yaml")
-        sets = ("--state", "SLV", "--set", folder / "SLV", "--state", "SLC", "--set", folder / "records" / "r[0-3].csv")
+        sets = ("--set", f"SLV={folder / 'SLV'}", "--set", f"SLC={folder / 'records' / 'r[0-3].csv'}")
         at = json.loads(run(*asked, *sets, "--json", code=5).stdout)["directions"]["positive"]["dynamic"]
         assert (at["SLV"]["refused"], at["SLC"]["refused"]) == (["r6.csv"], [])
         assert at["SLV"]["concluded"] is at["SLC"]["concluded"] is None and len(at["SLV"]["records"]) == 6
@@ -175,18 +175,15 @@ class TestWrongInput:
     @pytest.mark.parametrize(
         ("options", "said"),
         [
-            ("--state SLV --set SLV --set SLC", "--state is given for 1, and --set for 2"),
-            ("--state SLV --state SLC --set SLV", "--state is given for 2, and --set for 1"),
-            ("--set SLV", "--state is given for 0, and --set for 1"),
-            ("--state SLV --state SLC", "give the records of each state with --set"),
-            ("--state SLC --set SLV --state SLC --set SLC", "--state SLC is given twice"),
-            ("--state SLV --set SLV --record records/r0.csv", "--set cannot be combined with --record"),
-            ("--state SLV --set SLV --state SLD --set SLC", "'SLD' is not a limit state of displacement"),
-            ("--state SLV --set SLV --state ULS --set SLC", "'ULS' is not a limit state of displacement"),
-            ("--state SLV --set records", "this is a folder"),
-            ("--state SLV --set empty", "records must have at least 1"),
-            ("--state SLV --set gone", "no such file"),
-            ("--state SLV --record records/r0.csv --state SLC", "give the records of each state with --set"),
+            ("--set SLV", "--set: 'SLV' is not a set of a limit state: give STATE=PLACE"),
+            ("--set SLC=SLV --set SLC=SLC", "--set has SLC twice"),
+            ("--set SLV=SLV --record records/r0.csv", "--record or --pulse cannot be combined with --set"),
+            ("--set SLV=SLV --state SLV", "--state cannot be combined with --set"),
+            ("--set SLV=SLV --set SLD=SLC", "'SLD' is not a limit state of displacement"),
+            ("--set SLV=SLV --set ULS=SLC", "'ULS' is not a limit state of displacement"),
+            ("--set SLV=records", "this is a folder"),
+            ("--set SLV=empty", "records must have at least 1"),
+            ("--set SLV=gone", "no such file"),
         ],
     )
     def test_the_command_says_what_is_wrong(self, folder, monkeypatch, options, said):
@@ -199,15 +196,13 @@ class TestWrongInput:
     def test_a_state_that_the_site_does_not_give(self, folder):
         site = {key: value for key, value in SITE.items() if key != "SLC"}
         with pytest.raises(rk.InputError, match="SLC is not given by the site"):
-            rk.verify(FACADE, site, motions={"SLV": folder / "SLV", "SLC": folder / "SLC"})
+            rk.verify(FACADE, site, sets={"SLV": folder / "SLV", "SLC": folder / "SLC"})
 
     def test_in_python(self, folder):
-        with pytest.raises(rk.InputError, match="`motions` has no ground motion for SLC"):
-            rk.verify(FACADE, SITE, motions={"SLV": folder / "SLV", "SLC": []})
-        with pytest.raises(rk.InputError, match="`motions` has no ground motion for any state"):
-            rk.verify(FACADE, SITE, motions={})
-        with pytest.raises(rk.InputError, match="`state` cannot be combined with motions of each limit state"):
-            rk.verify(FACADE, SITE, motions={"SLV": folder / "SLV"}, state="SLC")
+        with pytest.raises(rk.InputError, match="`sets` has no ground motion for SLC"):
+            rk.verify(FACADE, SITE, sets={"SLV": folder / "SLV", "SLC": []})
+        with pytest.raises(rk.InputError, match="`sets` has no ground motion for any state"):
+            rk.verify(FACADE, SITE, sets={})
 
 
 def drawn_in(answer):
@@ -249,7 +244,7 @@ class TestSheet:
         """Records to the right alone press it against its wall, until their half sine ends."""
         for k, ag in enumerate(AMPLITUDES):
             write_record(folder / "records" / f"r{k}.csv", -ag)
-        found = rk.verify(FACADE, SITE, motions={"SLV": folder / "SLV"}, polarity=polarity)
+        found = rk.verify(FACADE, SITE, sets={"SLV": folder / "SLV"}, polarity=polarity)
         at = side_of(found).dynamic["SLV"]
         if polarity == "1":
             assert at.largest(confident=True) == 0.0
@@ -287,7 +282,7 @@ class TestSheet:
         for k, ag in enumerate(AMPLITUDES):
             write_record(folder / "SLC" / f"r{k}.csv", 1.1 * ag)
         sets = {"SLV": folder / "SLV", "SLC": str(folder / "SLC" / "*.csv")}
-        rk.verify(FACADE, SITE, motions=sets, sheet=folder / "s.html", language=language)
+        rk.verify(FACADE, SITE, sets=sets, sheet=folder / "s.html", language=language)
         page = (folder / "s.html").read_text(encoding="utf-8")
         assert all(each in page for each in heads)
         for k in range(7):
@@ -348,7 +343,7 @@ def test_spectra_of_motions_of_the_floor_are_compared_with_its_spectrum(folder):
     site, say = {**SITE, "soil": "B", "floor": floor}, build.SHEET.language("en")
     ground = SiteGround(site_of(site).site)
     for on_floor, named in ((True, "the floor"), (False, "the ground")):
-        found = rk.verify(FACADE, site, motions={"SLV": folder / "SLV"}, on_floor=on_floor)
+        found = rk.verify(FACADE, site, sets={"SLV": folder / "SLV"}, on_floor=on_floor)
         at = side_of(found).dynamic["SLV"]
         lines = dynamic_figures.draw_spectra(say, at, ground, "").axes[0].get_lines()
         assert lines[-1].get_label() == f"target: {named} at SLV"

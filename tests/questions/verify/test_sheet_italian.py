@@ -290,7 +290,7 @@ def test_the_terminal_compares_and_shakes_in_italian():
     tied = EXAMPLES / "verify" / "tied_facade.yaml"
     for options in ({"strengthened": tied}, {"motions": ["sine:0.09g:0.5s", "ricker:2g:1s"], "polarity": "both"}):
         for in_short in (True, False):
-            answer = rk.verify(facade, site, language="it", in_short=in_short, **options)
+            answer = rk.verify(facade, site, language="it", in_full=not in_short, **options)
             assert not english_in(shown_in(answer.view), "facade", "an example site", "roof", "floor", "bar", "sine")
 
 
@@ -390,7 +390,7 @@ def test_a_sliding_floor_and_weights_of_the_mechanism_are_said_in_short_in_itali
     """The letter of the code on both, of which no example has the first."""
     roof = {"name": "r", "mass": 6000.0, "at": [0.0, 8.0], "floor": "sliding", "seat": 0.3}
     wall = rk.Block(name="w", width=0.6, height=8.0, depth=5.0, density=1800.0, one_sided="positive", loads=[roof])
-    said = " ".join(rk.verify(wall, yaml.safe_load(SITE), language="it", in_short=True).sentences)
+    said = " ".join(rk.verify(wall, yaml.safe_load(SITE), language="it", in_full=False).sentences)
     alpha = 0.3 * (43200 + 3000) / (4 * 43200 + 8 * 3000)  # rad: by the letter half of the roof moves sideways too
     assert f"alpha0 sarebbe {0.3 * 46200 / (4 * 43200):.4g} invece di {alpha:.4g}".replace(".", ",") in said
 

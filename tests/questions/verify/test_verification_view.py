@@ -234,7 +234,7 @@ class TestInPython:
     def test_a_site_may_be_a_mapping(self):
         with pytest.raises(rk.InputError, match=r"FC must be at least 1, got 0\.5"):
             rk.verify(FACADE, {**SITE, "FC": 0.5})
-        with pytest.raises(rk.InputError, match="`polarity` must be 1, -1 or 'both', got 2"):
+        with pytest.raises(rk.InputError, match="`polarity` must be one of 1, -1, both, got 2"):
             rk.verify(FACADE, SITE, polarity=2)
         answer = rk.verify(FACADE, SITE, motions=["sine:0.15g:0.6s"])
         assert list(answer.directions[Direction.POSITIVE].dynamic) == ["SLV"]
