@@ -51,7 +51,7 @@ def beside_runs(folder: Path) -> None:
     for method, asked in METHODS.items():
         path = folder / f"{method}.yaml"
         path.write_text(
-            f"structures: [{files}]\nrecords: ['records/*.csv']\npolarities: [1, -1]\n{asked}{ASKED}", encoding="utf-8"
+            f"structures: [{files}]\nrecords: ['records/*.csv']\npolarity: both\n{asked}{ASKED}", encoding="utf-8"
         )
         in_process(path)  # loads the kernel
         place = folder / f"{method}.db"
@@ -69,10 +69,10 @@ def beside_runs(folder: Path) -> None:
 def _fits(place: Path) -> float:
     """Seconds from a finished store to its curves, in a new process but for what every command imports."""
     code = (
-        "import sys, time; from rocking_cli.questions.fragility.study_output import StudyOutput, show_study;"
-        "from rocking_cli.cli.watching import OnTerminal; from rocking_cli.questions.fragility.results import results;"
+        "import sys, time; from rocking_cli.cli.watching import OnTerminal; from rocking_cli.cli import terminal;"
+        "from rocking_cli.questions.fragility.results import results;"
         "import rocking_cli.questions.fragility.campaign; start = time.perf_counter();"
-        "show_study(results(sys.argv[1]), StudyOutput(None, None, as_json=True), OnTerminal());"
+        "terminal.show(results(sys.argv[1], watch=OnTerminal()).view, as_json=True);"
         "print(time.perf_counter() - start, file=sys.stderr)"
     )
     done = subprocess.run([sys.executable, "-c", code, str(place)], check=True, capture_output=True, text=True)
@@ -93,7 +93,7 @@ def memory(folder: Path) -> None:
 def _large(folder: Path, name: str, samples: int, asked: str, goal: float) -> None:
     path, place = folder / "large.yaml", folder / "large.db"
     text = VARIED.format(block=EXAMPLES / "block.yaml", samples=samples)
-    path.write_text(text + "polarities: [1, -1]\n" + asked, encoding="utf-8")
+    path.write_text(text + "polarity: both\n" + asked, encoding="utf-8")
     place.unlink(missing_ok=True)
     with Store.writing(place) as store:
         plan = prepare(load_study(path), store).plan
@@ -117,7 +117,7 @@ def _drawn(plan, runs, random):  # type: ignore[no-untyped-def]
     peak = np.where(fell, np.nan, x / (1.2 * scatter))
     nothing = np.full(runs.size, np.nan)
     uplift = np.where(x > 0.3 * scatter, 1.0, np.nan)
-    ended, known = np.where(fell, 2.0, np.nan), (nothing, nothing, nothing)
+    ended, known = np.where(fell, 2.0, np.nan), (nothing, nothing, nothing, nothing)
     return RunRows(runs, scale, nothing, fell.astype(np.int64), peak, peak, peak, uplift, ended, *known)
 
 

@@ -34,7 +34,7 @@ structures: [{structures}]
 records: ['records/*.csv']
 method: stripes
 levels: {{measure: PGA, least: 0.1, most: 2, count: {levels}}}
-polarities: [1, -1]
+polarity: both
 limit_states: [uplift, 0.5, overturning]
 """
 

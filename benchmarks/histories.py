@@ -25,9 +25,10 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics import kernels as at
 from rocking_cli.dynamics.batch import HISTORIES_PER_TASK, Runs, respond_many
 from rocking_cli.dynamics.deck import MAX_IMPACTS, lay_out, run_deck
-from rocking_cli.dynamics.history import RTOL, follow
+from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.parallel import in_parts
+from rocking_cli.names import RTOL
 from rocking_cli.structure import build_models
 
 PROJECT = Path(__file__).resolve().parents[1]
@@ -214,7 +215,7 @@ def bulk(motion: GroundMotion) -> None:
         in_parts(partial(run, rows, np.empty((BATCH, at.MARKS))), BATCH, HISTORIES_PER_TASK, None, None)
 
     def verb() -> Any:
-        return respond_each(block, motion, models="nonlinear", scales=scales, polarities=[1, -1], restitutions=etas)
+        return respond_each(block, motion, model="nonlinear", scale=scales, polarity="both", restitution=etas)
 
     answer = verb()
     alone, whole, frame = seconds(kernel, 3), seconds(verb, 3), seconds(answer.to_frame, 3)
@@ -235,7 +236,7 @@ def length() -> None:
         for n in (1_000, 10_000, 100_000, 1_000_000):
             one = Prepared(model, GroundMotion("noise", 0.01, ground[:n], unit="m/s2"))
             spent = seconds(one.run, max(3, 200_000 // n))
-            impacts, rocking = one.marks[0, at.IMPACTS], np.mean(one.out["phi"] != 0)
+            impacts, rocking = one.marks[0, at.IMPACTS], np.mean(one.samples.phi != 0)
             row = [
                 model.name,
                 f"{n:,}",

@@ -26,18 +26,19 @@ from matplotlib.ticker import ScalarFormatter
 from numpy.typing import NDArray
 
 from rocking_cli import Mechanism, Registry
+from rocking_cli.ask.read import read_record
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.dynamics.history import History, follow
 from rocking_cli.errors import MechanismError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulse_fit import fit_pulse
 from rocking_cli.excitation.pulses.shapes import Sine
-from rocking_cli.excitation.records import read_record
 from rocking_cli.plotting import style
 from rocking_cli.plotting.structure import draw_at_rest
 from rocking_cli.questions.error.study import linearisation
 from rocking_cli.structure import Structure
-from rocking_cli.studies.engines import respond
+from rocking_cli.studies.conditions import Conditions
+from rocking_cli.studies.engines import EXACT
 from rocking_cli.studies.picture import picture
 
 Reals = NDArray[np.float64]
@@ -352,7 +353,8 @@ def record_response(record: Path = RECORD) -> PaperFigure:
     ground.curves.append(PaperCurve("sine pulse in it", time, alone.acceleration / STANDARD_GRAVITY))
     response = PaperPanel("response", "time [s]", OVER)
     for what, shaking in (("record", motion), ("its pulse", alone)):
-        for name, run in respond(Structure(frame), shaking, models=("nonlinear", "linear2"), tail=0.0).items():
+        conditions = Conditions(Structure(frame), ("nonlinear", "linear2"), tail=0.0)
+        for name, run in EXACT.respond(conditions, shaking).items():
             response.curves.append(_followed(f"{LABELS[name]}, {what}", run))
     caption = (
         f"An asymmetric frame with the paper's uplift accelerations (0.197 g positive, 0.241 g negative) under "

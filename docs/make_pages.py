@@ -61,6 +61,8 @@ def made(kind: str, what: str, runs: dict[str, Run]) -> str:
         return make_reference.helpers(what, rocking_cli)
     if kind == "chooser":
         return make_chooser.listed(what)
+    if kind == "study":
+        return make_reference.study_fields()
     if kind == "index":
         return make_reference.index(what)
     return {"options": make_reference.command_line, "formulas": make_reference.standing_of_formulas}[kind]()

@@ -16,8 +16,11 @@ from pydantic import BaseModel
 
 import rocking_cli
 from rocking_cli import core
-from rocking_cli.cli.help import RECORDS_HEADING, RecordOption
+from rocking_cli.ask.asked import told_of
+from rocking_cli.cli.help import RECORDS_HEADING, heading_of
 from rocking_cli.cli.main import main
+from rocking_cli.questions.fragility.asked import OfStudy
+from rocking_cli.questions.fragility.definition import Definition
 from rocking_cli.verification import Code
 from rocking_cli.views.mechanisms import fields
 
@@ -69,7 +72,7 @@ def options(command: click.Command, ctx: click.Context) -> str:
 def listed(command: click.Command, ctx: click.Context, *, of_records: bool) -> dict[str, str]:
     """Return the meanings of the options under one heading of `--help`, by their names."""
     wanted = (each for each in command.get_params(ctx) if isinstance(each, click.Option))
-    found = (each.get_help_record(ctx) for each in wanted if isinstance(each, RecordOption) == of_records)
+    found = (each.get_help_record(ctx) for each in wanted if (heading_of(each) == RECORDS_HEADING) == of_records)
     return dict(each for each in found if each is not None)
 
 
@@ -106,6 +109,17 @@ def table_of_fields(cls: Any) -> str:
             rows.append(f"| `{row['field']}` | {' | '.join(words)} | {default} |")
     common = ", ".join(f"`{row['field']}`" for row in fields(cls) if row["common"])
     return "\n".join(rows) + f"\n\nand {common}, see [what is common to all](../mechanisms.md)."
+
+
+def study_fields() -> str:
+    """Return the fields of a study file."""
+    rows = ["| field | what it is | default |", "| --- | --- | --- |"]
+    for name, field in OfStudy.model_fields.items():
+        key, told, value = "records" if name == "motions" else name, told_of(field), field.default
+        default = ", ".join(value) if isinstance(value, list) else "" if value is None else str(value)
+        default = "required" if Definition.model_fields[key].is_required() else told.usual or default
+        rows.append(f"| `{key}` | {plain(str(field.description))} | {plain(default)} |")
+    return "\n".join(rows)
 
 
 def names_of(page: str) -> list[str]:

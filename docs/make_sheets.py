@@ -18,9 +18,10 @@ from parts import NUMBER
 
 import rocking_cli as rk
 from rocking_cli.ask.given import site_of
+from rocking_cli.cli.made import Made
 from rocking_cli.documents.sheet_page import render
 from rocking_cli.documents.sheet_typst import page_pictures
-from rocking_cli.questions.verify.command import command
+from rocking_cli.questions.verify.asked import VerifyAsked
 from rocking_cli.studies.provenance import RECORDED_PACKAGES, File, TitleBlock
 from rocking_cli.views.sheet.build import SheetSources, sheet
 from rocking_cli.views.sheet.document import Sheet
@@ -36,7 +37,7 @@ COMMANDS = {
     "parapet": "rocking verify examples/verify/parapet.yaml --site examples/verify/roof.yaml",
     "arch_on_piers": "rocking verify examples/verify/arch_on_piers.yaml --site examples/verify/site.yaml",
     "buttressed_arch": "rocking verify examples/masonry/buttressed_arch.yaml --site examples/verify/lowland.yaml"
-    " --state SLV --set examples/verify/slv.yaml --state SLC --set examples/verify/slc.yaml --language it",
+    " --set SLV=examples/verify/slv.yaml --set SLC=examples/verify/slc.yaml --language it",
 }
 PICTURED = "facade"
 PAGES = {"sheet_page_1.png": (1, "summary"), "sheet_page_2.png": (5, "figures"), "sheet_page_3.png": (12, "positive")}
@@ -49,16 +50,16 @@ def made(name: str) -> Sheet:
     """Return a sheet by the name of its file."""
     call = f"{COMMANDS[name]} --sheet {name}.html"
     with chdir(PROJECT):
-        asked = command.make_context("verify", shlex.split(call)[2:]).params
-        files = {key: File(asked[key], Path(asked[key]).read_bytes()) for key in ("file", "site")}
-        sets = dict(zip(asked["states"], asked["sets"], strict=True))
-        found = rk.verify(asked["file"], asked["site"], motions=sets or ()).result
+        asked = Made("verify", VerifyAsked, "").make_context("verify", shlex.split(call)[2:]).params
+        structure, site = (File(file, Path(file).read_bytes()) for file in (asked["structure"][0], asked["site"]))
+        sets = dict(each.split("=") for each in asked["sets"])
+        found = rk.verify(structure.name, site.name, sets=sets or None).result
         records = {RECORDS: File(RECORDS, Path(RECORDS).read_bytes())} if sets else {}
         own = f"mechanism {found.mechanism.mechanism}"
         packages = {"rocking-cli": RELEASE, own: f"rocking-cli {RELEASE}", **MACHINE}
         say = Language(asked["language"] or "en")
-        sources = SheetSources(files["file"], files["site"], records, packages)
-        return sheet(found, site_of(asked["site"]), say, TitleBlock(call, say.day(DAY)), sources)
+        sources = SheetSources(structure, site, records, packages)
+        return sheet(found, site_of(site.name), say, TitleBlock(call, say.day(DAY)), sources)
 
 
 def pages() -> dict[str, str]:

@@ -170,11 +170,11 @@ def errors() -> Iterator[Check]:
     for file in ("block", "wall", "frame", "arch"):
         mechanism = load_structure(EXAMPLES / f"{file}.yaml")
         found = linearisation(mechanism, Direction.POSITIVE, 0.5, 2.0)
-        free = respond(mechanism, release=0.5, opening=1000.0, models=("nonlinear",))["nonlinear"]
+        free = respond(mechanism, release=0.5, opening=1000.0, model=("nonlinear",))["nonlinear"]
         yield Check(rf"{file}: free period from $\phi_{{cr}}/2$ [s]", "integrated motion",
                     4 * float(free.impacts[0, 0]), float(found.period[0]), test)  # fmt: skip
         push = GroundMotion("constant", 0.01, np.full(3000, -2 * found.block.lambda_ * mechanism.gravity), unit="m/s2")
-        fall = respond(mechanism, push, opening=1000.0, models=("nonlinear",))["nonlinear"]
+        fall = respond(mechanism, push, opening=1000.0, model=("nonlinear",))["nonlinear"]
         yield Check(rf"{file}: time to overturn at $2 \lambda g$ [s]", "integrated motion",
                     fall.overturning_time or inf, float(found.overturning[0]), test)  # fmt: skip
 
@@ -183,7 +183,7 @@ def histories() -> Iterator[Check]:
     """Limit cases of the engine."""
     mechanism = make("block", width=0.7, height=2.8)
     block = equivalent_block(mechanism).positive
-    free = respond(mechanism, release=0.4, models=("linear2",))["linear2"]
+    free = respond(mechanism, release=0.4, model=("linear2",))["linear2"]
     yield Check("linear block let go at 0.4: first impact [s]", r"$\operatorname{arcosh}(1/0.6)/p$",
                 acosh(1 / 0.6) / block.p, float(free.impacts[0, 0]), "test_history_events.py")  # fmt: skip
     rate = block.p * block.phi_cr * sqrt(1 - 0.36)
@@ -196,7 +196,7 @@ def histories() -> Iterator[Check]:
     )
     t = 0.4
     above = GroundMotion("step", t, np.array([-2 * block.lambda_ * G] * 2), unit="m/s2")
-    held = respond(mechanism, above, models=("linear2",))["linear2"]
+    held = respond(mechanism, above, model=("linear2",))["linear2"]
     yield Check(r"linear block pushed at $2 \lambda g$ for 0.4 s: $\phi/\phi_{cr}$", r"$\cosh pt - 1$",
                 cosh_minus_one(block.p * t), float(held.ratio[1]), "test_history_linear.py")  # fmt: skip
 

@@ -33,7 +33,7 @@ STRUCTURES = sorted(
 )
 ACCEL = "--record examples/accel.csv"
 SITE = "--site examples/verify/site.yaml"
-SETS = "--state SLV --set examples/accel.csv --state SLC --set examples/accel_transverse.csv --target-pga 0.1"
+SETS = "--set SLV=examples/accel.csv --set SLC=examples/accel_transverse.csv --target-pga 0.1"
 OF_EACH = (
     "equiv {0} --json",
     "equiv {0}",
@@ -93,7 +93,7 @@ FOR_KEYS = (
     "selfcheck --quick --json",
     "completion bash --json",
     "new block --json",
-    "crosscheck examples/masonry/portal.yaml --record examples/accel.csv --trim 1:1.5 --json",
+    "crosscheck examples/masonry/portal.yaml --pulse sine:0.6g:0.2s --json",
     "animate examples/block.yaml --pulse ricker:0.4g:1s --out moving.html --json",
     "select examples/accel.csv --target examples/target.csv --count 1 --band 0.2:2 --json",
     "overturning examples/block.yaml --points 5 --json",
