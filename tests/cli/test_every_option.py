@@ -148,7 +148,8 @@ CALLS = {
         {"structures": WEAK, "model": "nonlinear", "points": 3, "period": (0.3, 2.0), "ag": (0.2, 1.5)},
         {"structures": BLOCK, "compare": True, "shape": "cosine", "model": "linear1", "restitution": 0.7,
          "period": (0.2, 1.0), "ag": (0.3, 2.0), "omega": (1.0, 3.0), "a": (1.0, 3.0), "dimensionless": True,
-         "polarity": "both", "points": 4, "opening": 1.0, "engine": "auto"},
+         "polarity": "both", "points": 4, "opening": 1.0, "engine": "auto", "out": "o.csv", "plot": "p.svg",
+         "separator": ";", "decimal": ","},
     ),
     "overturning_curves": (
         {"structures": [WEAK, BLOCK], "points": 2, "period": (0.4, 1.0)},

@@ -20,6 +20,7 @@ BLOCK, ACCEL, ACROSS = EXAMPLES / "block.yaml", EXAMPLES / "accel.csv", EXAMPLES
 SITE, PULSE = EXAMPLES / "verify" / "site.yaml", "--pulse sine:0.5g:0.5s"
 LINES = {
     "draw": f"{BLOCK}",
+    "equiv": f"{BLOCK}",
     "collapse": f"{EXAMPLES / 'assembly.yaml'}",
     "import": "outline.csv --units mm --depth 1 --density 2000",
     "error": f"{BLOCK}",
@@ -46,7 +47,7 @@ LINES = {
     ("survey", "--sheets"): f"survey.csv --site {SITE}",
     ("import", "--page"): "box.obj --units m --density 2000",
 }
-INPUTS = ("--record",)
+NO_FILE_OF_OURS = ("--record", "--store")  # what is read, and what SQLite writes
 FOLDERS = {"FOLDER": "folder", "PLACE": "folder"}
 
 
@@ -55,7 +56,7 @@ def outputs():
     for command in commands():
         for option in main.get_command(click.Context(main), command).params:
             named = str(option.metavar)
-            if max(option.opts, key=len) not in INPUTS and (
+            if max(option.opts, key=len) not in NO_FILE_OF_OURS and (
                 "output_path" in getattr(option.callback, "__qualname__", "")
                 or named in FOLDERS
                 or (getattr(option, "heading", "") == OUTPUT_HEADING and named.startswith("FILE"))

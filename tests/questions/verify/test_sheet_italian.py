@@ -364,7 +364,8 @@ def test_a_survey_and_its_page_are_italian(tmp_path):
             "floor",
             "κ₂",
         )
-        assert not english_in(shown_in(answer.view), *names) and answer.to_dict() == english.to_dict()
+        assert not english_in(shown_in(answer.view), *names)
+        assert answer.to_dict() | {"given": None} == english.to_dict() | {"given": None}
         assert any("A 1.5" in text for text in shown_in(answer.view))
         page = (tmp_path / "p.html").read_text(encoding="utf-8")
         assert not english_in([rest_of(page)], *names)
