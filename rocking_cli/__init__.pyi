@@ -225,7 +225,7 @@ def animate(  # type: ignore[overload-overlap]
     structures : StructureLike | Sequence[StructureLike]
         One structure or several, or their YAML files.
     motions : Motion | Sequence[Motion] | Motions
-        One motion or several, their files, or pulses as text; a pattern such as records/*.AT2 gives several.
+        One motion or several, their files, or pulses as text; a pattern such as `records/*.AT2` gives several.
     out : str | Path
         Output file: an animated GIF (.gif), a video (.mp4, requires ffmpeg), or a self-contained page with a slider
         (.html). Of several motions each has its own, with its name in the file name.
@@ -1550,7 +1550,7 @@ def margin(
     structure : StructureLike
         The structure, or its YAML file.
     motions : Motion | Sequence[Motion] | Motions
-        One motion or several, their files, or pulses as text; a pattern such as records/*.AT2 gives several.
+        One motion or several, their files, or pulses as text; a pattern such as `records/*.AT2` gives several.
     plot : str | Path | None, optional
         Plot the shares against the scale factor (.png, .svg or .pdf).
     units : str | None, optional
@@ -1668,7 +1668,7 @@ def shares(
     structure : StructureLike
         The structure, or its YAML file.
     motions : Motion | Sequence[Motion] | Motions
-        One motion or several, their files, or pulses as text; a pattern such as records/*.AT2 gives several.
+        One motion or several, their files, or pulses as text; a pattern such as `records/*.AT2` gives several.
     units : str | None, optional
         Unit of the record, if the file does not state it.
     dt : float | str | None, optional
@@ -2088,7 +2088,7 @@ def record(  # type: ignore[overload-overlap]
     Parameters
     ----------
     motions : Motion | Sequence[Motion] | Motions
-        One motion or several, their files, or pulses as text; a pattern such as records/*.AT2 gives several.
+        One motion or several, their files, or pulses as text; a pattern such as `records/*.AT2` gives several.
     structure : StructureLike | None, optional
         Structure, or its file, to check the sampling interval and for relative measures.
     fit_pulse : bool, optional
@@ -2491,7 +2491,7 @@ def respond(  # type: ignore[overload-overlap]
     structure : StructureLike
         The structure, or its YAML file.
     motions : Motion | Sequence[Motion] | Motions, optional
-        One motion or several, their files, or pulses as text; a pattern such as records/*.AT2 gives several.
+        One motion or several, their files, or pulses as text; a pattern such as `records/*.AT2` gives several.
     tail : float, optional
         Length of output after the end of the record. [s] By default 10.0.
     plot : str | Path | None, optional
@@ -3002,7 +3002,7 @@ def select(
     Parameters
     ----------
     motions : Motion | Sequence[Motion] | Motions
-        Records to select from, their files, or patterns such as records/*.AT2.
+        Records to select from, their files, or patterns such as `records/*.AT2`.
     target : TargetSpectrum | SiteLike | tuple[ArrayLike, ArrayLike]
         Target spectrum, of the damping ratio given: one column of periods in s, and one of ordinates in g or in the
         unit of its heading; or a site file (.yaml), of which the code gives the spectrum of the ground.

@@ -169,7 +169,7 @@ class OfRecords(Reading):
     """A question about ground motions, which are read."""
 
     motions: Motion | Sequence[Motion] | Motions = option(
-        "One motion or several, their files, or pulses as text; a pattern such as records/*.AT2 gives several.",
+        "One motion or several, their files, or pulses as text; a pattern such as `records/*.AT2` gives several.",
         where="input", default=...,
     )  # fmt: skip
 

@@ -59,7 +59,7 @@ class RecordAsked(UnderMotions, Correcting):
 
     writes_each: ClassVar[bool] = True
     motions: Motion | Sequence[Motion] | Motions = option(
-        "One motion or several, their files, or pulses as text; a pattern such as records/*.AT2 gives several.",
+        "One motion or several, their files, or pulses as text; a pattern such as `records/*.AT2` gives several.",
         where="input", default=..., typed="FILE...",
     )  # fmt: skip
     structure: StructureLike | None = option(

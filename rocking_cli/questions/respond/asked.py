@@ -148,7 +148,7 @@ class RespondAsked(
 
     writes_each: ClassVar[bool] = True
     motions: Motion | Sequence[Motion] | Motions | None = option(  # type: ignore[assignment]
-        "One motion or several, their files, or pulses as text; a pattern such as records/*.AT2 gives several.",
+        "One motion or several, their files, or pulses as text; a pattern such as `records/*.AT2` gives several.",
         where="input",
     )  # fmt: skip
     tail: float = option("Length of output after the end of the record.", TAIL, default=TAIL_SECONDS)

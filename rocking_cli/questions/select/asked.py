@@ -54,7 +54,7 @@ class SelectAsked(OfRecords, OfTarget):
     """
 
     motions: Motion | Sequence[Motion] | Motions = option(
-        "Records to select from, their files, or patterns such as records/*.AT2.",
+        "Records to select from, their files, or patterns such as `records/*.AT2`.",
         where="input", typed="RECORD...", default=...,
     )  # fmt: skip
     state: str | None = option(
