@@ -625,9 +625,9 @@ def crosscheck(
     out : str | Path | None, optional
         Write both rotations against time (.csv or .parquet).  - is standard output.
     separator : {",", ";", "tab"}, optional
-        Separator of the CSV table. By default ,.
+        Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
-        Decimal sign of the CSV table. By default ..
+        Decimal sign of the CSV table. By default a point.
     watch : Watcher
         Told what is read and written, what is doubtful, and how far the work is.
 
@@ -684,9 +684,9 @@ def demand(
     out : str | Path | None, optional
         Write the spectra over all periods (.csv or .parquet).  - is standard output.
     separator : {",", ";", "tab"}, optional
-        Separator of the CSV table. By default ,.
+        Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
-        Decimal sign of the CSV table. By default ..
+        Decimal sign of the CSV table. By default a point.
     watch : Watcher
         Told what is read and written, what is doubtful, and how far the work is.
 
@@ -810,9 +810,9 @@ def design(
     out : str | Path | None, optional
         Write the scanned values and the metric at each (.csv or .parquet).  - is standard output.
     separator : {",", ";", "tab"}, optional
-        Separator of the CSV table. By default ,.
+        Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
-        Decimal sign of the CSV table. By default ..
+        Decimal sign of the CSV table. By default a point.
     watch : Watcher
         Told what is read and written, what is doubtful, and how far the work is.
 
@@ -901,9 +901,9 @@ def equiv(
     out : str | Path | None, optional
         Write the parameters, a row for each direction of each structure.  - is standard output.
     separator : {",", ";", "tab"}, optional
-        Separator of the CSV table. By default ,.
+        Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
-        Decimal sign of the CSV table. By default ..
+        Decimal sign of the CSV table. By default a point.
     watch : Watcher
         Told what is read and written, what is doubtful, and how far the work is.
 
@@ -1002,9 +1002,9 @@ def equivalent_pulses(
     out : str | Path | None, optional
         Write the responses against p t.  - is standard output.
     separator : {",", ";", "tab"}, optional
-        Separator of the CSV table. By default ,.
+        Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
-        Decimal sign of the CSV table. By default ..
+        Decimal sign of the CSV table. By default a point.
     watch : Watcher
         Told what is read and written, what is doubtful, and how far the work is.
 
@@ -1602,9 +1602,9 @@ def margin(
     out : str | Path | None, optional
         Write the shares.  - is standard output.
     separator : {",", ";", "tab"}, optional
-        Separator of the CSV table. By default ,.
+        Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
-        Decimal sign of the CSV table. By default ..
+        Decimal sign of the CSV table. By default a point.
     watch : Watcher
         Told what is read and written, what is doubtful, and how far the work is.
 
@@ -1805,9 +1805,9 @@ def overturning(
     out : str | Path | None, optional
         Write the map, one point per line, or the curves.  - is standard output.
     separator : {",", ";", "tab"}, optional
-        Separator of the CSV table. By default ,.
+        Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
-        Decimal sign of the CSV table. By default ..
+        Decimal sign of the CSV table. By default a point.
     watch : Watcher
         Told what is read and written, what is doubtful, and how far the work is.
 
@@ -2570,9 +2570,9 @@ def respond(  # type: ignore[overload-overlap]
     out : str | Path | None, optional
         Write the time histories (.csv or .parquet).  - is standard output.
     separator : {",", ";", "tab"}, optional
-        Separator of the CSV table. By default ,.
+        Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
-        Decimal sign of the CSV table. By default ..
+        Decimal sign of the CSV table. By default a point.
     watch : Watcher
         Told what is read and written, what is doubtful, and how far the work is.
 
@@ -2784,9 +2784,9 @@ def respond_each(
     out : str | Path | None, optional
         Write the rows of `to_frame`, with units in the headings.  - is standard output.
     separator : {",", ";", "tab"}, optional
-        Separator of the CSV table. By default ,.
+        Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
-        Decimal sign of the CSV table. By default ..
+        Decimal sign of the CSV table. By default a point.
     watch : Watcher
         Told what is read and written, what is doubtful, and how far the work is.
 
@@ -2940,9 +2940,9 @@ def score(
     out : str | Path | None, optional
         Write what is stated of each test (.csv or .parquet).  - is standard output.
     separator : {",", ";", "tab"}, optional
-        Separator of the CSV table. By default ,.
+        Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
-        Decimal sign of the CSV table. By default ..
+        Decimal sign of the CSV table. By default a point.
     watch : Watcher
         Told what is read and written, what is doubtful, and how far the work is.
 
@@ -3191,9 +3191,9 @@ def spectrum(
     out : str | Path | None, optional
         Write the curves, including those of each motion.  - is standard output.
     separator : {",", ";", "tab"}, optional
-        Separator of the CSV table. By default ,.
+        Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
-        Decimal sign of the CSV table. By default ..
+        Decimal sign of the CSV table. By default a point.
     watch : Watcher
         Told what is read and written, what is doubtful, and how far the work is.
 
@@ -3354,9 +3354,9 @@ def survey(
     out : str | Path | None, optional
         Write all rows in ranked order (.csv or .parquet).  - is standard output.
     separator : {",", ";", "tab"}, optional
-        Separator of the CSV table. By default ,.
+        Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
-        Decimal sign of the CSV table. By default ..
+        Decimal sign of the CSV table. By default a point.
     watch : Watcher
         Told what is read and written, what is doubtful, and how far the work is.
 

@@ -187,10 +187,14 @@ class AskedModel(BaseModel):
         """Refuse fields that have no effect, but those that are only a user's defaults."""
         self._usual = (info.context or {}).get("usual", ())
         self._order = (info.context or {}).get("order", ())
-        for rule in (rule for cls in type(self).__mro__ for rule in vars(cls).get("idle", ())):
-            if rule.holds(self):
-                self.refuse(rule.why, rule.fields)
+        for rule in self.idle_rules():
+            self.refuse(rule.why, rule.fields)
         return self
+
+    def idle_rules(self) -> list[Idle]:
+        """Return the rules that hold, those of base classes too."""
+        rules = [rule for cls in type(self).__mro__ for rule in vars(cls).get("idle", ())]
+        return [rule for rule in rules if rule.holds(self)]
 
     def refuse(self, why: str, fields: Sequence[str]) -> None:
         """Raise `InputError` if any of these fields, which have no effect, was given and is no user's default."""
@@ -199,8 +203,10 @@ class AskedModel(BaseModel):
 
     def has(self, name: str) -> bool:
         """Return whether a field was given, and not as its default."""
+        if name not in self.model_fields_set:
+            return False
         value, default = getattr(self, name), type(self).model_fields[name].default
-        return name in self.model_fields_set and not (type(value) is type(default) and value == default)
+        return not (type(value) is type(default) and value == default)
 
     def given(self) -> dict[str, Any]:
         """Return the options that were given, for JSON: numbers and words as they are, all else as text."""
@@ -218,9 +224,7 @@ class AskedModel(BaseModel):
 
     def part(self, group: type[AskedModel]) -> dict[str, Any]:
         """Return the fields of a group that were given, by name."""
-        return {
-            name: getattr(self, name) for name in group.model_fields if name in self.model_fields_set and self.has(name)
-        }
+        return {name: getattr(self, name) for name in group.model_fields if self.has(name)}
 
 
 def _plain(value: Any) -> Any:
@@ -271,8 +275,7 @@ def checked(model: type[M], given: Mapping[str, Any], usual: Mapping[str, Any] |
     usual = {name: value for name, value in (usual or {}).items() if name not in given}
     try:
         asked = model.model_validate({**usual, **given}, context={"usual": tuple(usual), "order": (*usual, *given)})
-        rules = [rule for cls in model.__mro__ for rule in vars(cls).get("idle", ()) if rule.holds(asked)]
-        idle = {name for rule in rules for name in rule.fields} & usual.keys()
+        idle = {name for rule in asked.idle_rules() for name in rule.fields} & usual.keys()
         return asked if not idle else checked(model, given, {name: usual[name] for name in usual.keys() - idle})
     except ValidationError as error:
         from rocking_cli.io.field_problems import of_arguments

@@ -165,13 +165,13 @@ class BothWays(AskedModel):
         return (1, -1) if self.polarity == "both" else (int(self.polarity),)
 
 
+ANY_MOTIONS = "One motion or several, their files, or pulses as text; a pattern such as `records/*.AT2` gives several."
+
+
 class OfRecords(Reading):
     """A question about ground motions, which are read."""
 
-    motions: Motion | Sequence[Motion] | Motions = option(
-        "One motion or several, their files, or pulses as text; a pattern such as `records/*.AT2` gives several.",
-        where="input", default=...,
-    )  # fmt: skip
+    motions: Motion | Sequence[Motion] | Motions = option(ANY_MOTIONS, where="input", default=...)
 
     @cached_property
     def ground_motions(self) -> Motions:
@@ -357,8 +357,8 @@ class WithTable(AskedModel):
 
     heading: ClassVar[str] = "Output"
     out: Path | None = option("Write the table.", output(".csv"))
-    separator: Literal[",", ";", "tab"] | None = option("Separator of the CSV table.", usual=",")
-    decimal: Literal[".", ","] | None = option("Decimal sign of the CSV table.", usual=".")
+    separator: Literal[",", ";", "tab"] | None = option("Separator of the CSV table.", usual="a comma")
+    decimal: Literal[".", ","] | None = option("Decimal sign of the CSV table.", usual="a point")
 
     @model_validator(mode="after")
     def _signs_fit(self) -> Self:

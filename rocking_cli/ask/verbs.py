@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 from rocking_cli.ask.answer import Answer, Answers
 from rocking_cli.ask.asked import AskedModel, M, checked, choices, in_order, owner_of, told_of
 from rocking_cli.ask.groups import WithTable
+from rocking_cli.ask.kinds import STANDARD_OUTPUT
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.processing.reading_options import CORRECTIONS, SCALING, corrected_once
@@ -118,7 +119,7 @@ def write_rows(
     from rocking_cli.io.tables import write_csv, write_table
 
     signs: Any = {"separator": "\t" if separator == "tab" else separator or ",", "decimal": decimal or "."}
-    if str(out) == "-":
+    if str(out) == STANDARD_OUTPUT:
         with watch.standard_output() as stream:
             write_csv(stream, blocks, **signs)
     else:
@@ -207,7 +208,6 @@ def _signature(model: type[AskedModel], function: Callable[..., Any]) -> Signatu
         kind = Parameter.POSITIONAL_OR_KEYWORD if "input" in told_of(field).where else Parameter.KEYWORD_ONLY
         default = Parameter.empty if field.is_required() else field.default
         parameters.append(Parameter(name, kind, default=default, annotation=type_in_words(model, name)))
-    parameters.sort(key=lambda each: (each.kind, each.default is not Parameter.empty))
     watch = Parameter("watch", Parameter.KEYWORD_ONLY, default=SILENT, annotation="Watcher")
     return Signature([*parameters, watch], return_annotation=signature(function).return_annotation)
 

@@ -214,7 +214,8 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
         number = f"a number{f' in{unit}' if unit else ''}, or " if info and float in get_args(info.annotation) else ""
         close = did_you_mean(value, re.findall("'(.*?)'", ctx["expected"])) if isinstance(value, str) else None
         hint = close if close and close.startswith("did") else None  # the message lists the other fields
-        return f"must be {number}{ctx['expected']}, {got}".replace("'", ""), _of_comma(value) or hint
+        # Quotes remain around signs, ',' or ';'.
+        return re.sub(r"'(-?\w.*?)'", r"\1", f"must be {number}{ctx['expected']}, {got}"), _of_comma(value) or hint
     if kind in ("too_short", "too_long"):
         least, most = ctx.get("min_length"), ctx.get("max_length")
         wanted, count = ("at least", least) if least is not None else ("at most", most)

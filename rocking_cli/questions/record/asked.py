@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from rocking_cli.ask.asked import AskedModel, Idle, Kind, option
 from rocking_cli.ask.groups import (
+    ANY_MOTIONS,
     Correcting,
     Motion,
     Motions,
@@ -58,10 +59,7 @@ class RecordAsked(UnderMotions, Correcting):
     """
 
     writes_each: ClassVar[bool] = True
-    motions: Motion | Sequence[Motion] | Motions = option(
-        "One motion or several, their files, or pulses as text; a pattern such as `records/*.AT2` gives several.",
-        where="input", default=..., typed="FILE...",
-    )  # fmt: skip
+    motions: Motion | Sequence[Motion] | Motions = option(ANY_MOTIONS, where="input", default=..., typed="FILE...")
     structure: StructureLike | None = option(
         "Structure, or its file, to check the sampling interval and for relative measures.", FILE
     )

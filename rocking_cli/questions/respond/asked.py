@@ -10,6 +10,7 @@ from pydantic import model_validator
 
 from rocking_cli.ask.asked import AskedModel, Idle, Kind, option
 from rocking_cli.ask.groups import (
+    ANY_MOTIONS,
     DEVIATIONS,
     Around,
     ByEngine,
@@ -147,10 +148,7 @@ class RespondAsked(
     """
 
     writes_each: ClassVar[bool] = True
-    motions: Motion | Sequence[Motion] | Motions | None = option(  # type: ignore[assignment]
-        "One motion or several, their files, or pulses as text; a pattern such as `records/*.AT2` gives several.",
-        where="input",
-    )  # fmt: skip
+    motions: Motion | Sequence[Motion] | Motions | None = option(ANY_MOTIONS, where="input")  # type: ignore[assignment]
     tail: float = option("Length of output after the end of the record.", TAIL, default=TAIL_SECONDS)
     # Whoever reads one answer on a terminal should see how close it is; a program asks often, and for speed.
     neighbours: int = neighbours(

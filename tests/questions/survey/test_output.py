@@ -125,7 +125,7 @@ class TestTables:
             (("--decimal", ",", "--out", "o.csv"), "--decimal cannot be the separator too: give --separator ';'"),
             (("--decimal", ",", "--separator", ",", "--out", "o.csv"), "cannot be the separator too"),
             (("--separator", ";", "--out", "o.parquet"), "o.parquet is not one: give a name that ends in .csv"),
-            (("--separator", "|", "--out", "o.csv"), "--separator must be ,, ; or tab, got the text |"),
+            (("--separator", "|", "--out", "o.csv"), "--separator must be ',', ';' or tab, got the text '|'"),
         ],
     )  # fmt: skip
     def test_signs_without_a_table_to_write_are_refused(self, options, said):
