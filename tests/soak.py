@@ -1,6 +1,6 @@
-"""What takes too long for the tests: damaged stores, races, and record readers. `make soak` runs all.
+"""What takes too long for the tests: damaged stores, races, kills, and record readers. `make soak` runs all.
 
-STORES, RACES and READERS in the environment are how often: `READERS=20 make soak`.
+STORES, RACES, KILLS and READERS in the environment are how often: `READERS=20 make soak`.
 """
 
 import os
@@ -14,9 +14,9 @@ from functools import partial
 from pathlib import Path
 
 from tests import readers
-from tests.stores import RUNS, Sound, attack, race
+from tests.stores import Sound, attack, kills, race
 
-TIMES = {"STORES": 500, "RACES": 50, "READERS": 3000}
+TIMES = {"STORES": 500, "RACES": 50, "KILLS": 40, "READERS": 3000}
 AT_ONCE = 2  # processes that read records
 
 
@@ -28,16 +28,13 @@ def soak() -> int:
         folder = Path(name)
         os.chdir(folder)
         failures = _stores(folder, times["STORES"]) + _races(folder, times["RACES"])
+        failures += _count("runs after kills", [partial(kills, folder / "killed", times["KILLS"])])
         return failures + _readers(folder, times["READERS"])
 
 
 def _stores(folder: Path, times: int) -> int:
     sound = Sound(folder) if times else None
-    tried = [*((k, None) for k in range(times)), *((k, each) for k, each in enumerate(RUNS[:times]))]
-    return _count(
-        "damaged stores",
-        (partial(attack, sound, folder / f"attacked{k}", *each) for k, each in enumerate(tried)),
-    )
+    return _count("damaged stores", (partial(attack, sound, folder / f"attacked{k}", k) for k in range(times)))
 
 
 def _races(folder: Path, times: int) -> int:

@@ -11,7 +11,7 @@ from pydantic import model_validator
 
 from rocking_cli.ask.asked import AskedModel, Idle, Kind, option
 from rocking_cli.ask.groups import EngineName, ModelName, Polarity
-from rocking_cli.ask.kinds import FOLDER, SHARE, WHOLE, as_given, output, written
+from rocking_cli.ask.kinds import FOLDER, SHARE, WHOLE, as_given, output
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.names import OPENING
 
@@ -33,6 +33,17 @@ else:  # heavy to import, and not checked by the model
 UPLIFT, OVERTURNING, SLIDING = "uplift", "overturning", "sliding"
 MAX_LEVELS = 100_000  # levels of intensity, or samples: more is a typing error
 in_file = partial(option, where="Python")
+
+
+def _part(value: Any) -> tuple[int, int]:
+    """Return the part and the number of parts of a text such as 3/40."""
+    try:
+        k, parts = (int(each) for each in value.split("/"))
+    except (AttributeError, ValueError):
+        raise ValueError(f"{value!r} is not a part of the runs: give a text such as 3/40") from None
+    if not 1 <= k <= parts:
+        raise ValueError(f"{value!r} is not a part of the runs: parts are counted from 1/{parts} to {parts}/{parts}")
+    return k, parts
 
 
 def confidence() -> Any:
@@ -157,10 +168,10 @@ class OfCurves(AskedModel):
 class FragilityAsked(OfStudy, OfCurves):
     """Run a fragility study and fit its curves.
 
-    STUDY.yaml names structures, records, intensity levels and limit states; docs/fragility.md lists its fields. Every
-    finished run is kept in a store, an SQLite file next to the study file. You may stop the command at any time: the
-    same command continues with the missing runs, and the final store is the same. `rocking results` shows and exports
-    it; `rocking measures` lists the intensity measures that can be ranked.
+    STUDY.yaml names structures, records, intensity levels and limit states; docs/fragility.md lists its fields.
+    Finished runs are kept in a store, a folder next to the study file. You may stop the command at any time: the same
+    command continues with the missing runs, and the final store is the same. `rocking results` shows and exports it;
+    `rocking measures` lists the intensity measures that can be ranked.
 
     A record that cannot be used is reported and skipped, and the exit code is 5.
 
@@ -169,7 +180,8 @@ class FragilityAsked(OfStudy, OfCurves):
       rocking fragility study.yaml --check
       rocking fragility study.yaml --plot pictures --rank-measures
       rocking fragility study.yaml --scheduler tcp://10.0.0.1:8786
-      rocking results study.db --out runs.csv
+      rocking fragility study.yaml --share 3/40
+      rocking results study.runs --out runs.csv
     """
 
     heading: ClassVar[str] = "Options"
@@ -179,19 +191,32 @@ class FragilityAsked(OfStudy, OfCurves):
         "Address of a dask.distributed scheduler, or in Python a client of it, to run there.",
         Kind(as_given, "tcp://HOST:PORT"),
     )
+    share: tuple[int, int] | None = option(
+        "Run only this part of the runs, such as 3/40, into the store that all parts share, and fit no curves.",
+        Kind(_part, "K/PARTS"), type="str | None",
+    )  # fmt: skip
     store: Path | None = option(
-        "File in which the runs are stored. Without one and a study file, the runs last as long as the answer.",
-        written("FILE.db"), usual="next to the study file",
+        "Folder in which the runs are stored. Without one and a study file, the runs last as long as the answer.",
+        Kind(Path, "FOLDER", words="output"), usual="next to the study file, such as study.runs",
     )  # fmt: skip
     restart: bool = option("Start from scratch; the existing store is kept under another name.", default=False)
     idle = (
         Idle(
             "if only the plan is shown",
             lambda asked: asked.check,
-            ("jobs", "scheduler", "restart", *OfCurves.model_fields),
+            ("jobs", "scheduler", "share", "restart", *OfCurves.model_fields),
+        ),
+        Idle(
+            "with a part of the runs: start again or fit curves once, without it",
+            lambda asked: asked.share is not None,
+            ("restart", *OfCurves.model_fields),
         ),
         Idle("on a cluster, which has its own number of workers", lambda asked: asked.scheduler is not None, ("jobs",)),
-        Idle("without a store or a study file", lambda asked: asked.store is None and asked.file is None, ("restart",)),
+        Idle(
+            "without a store or a study file",
+            lambda asked: asked.store is None and asked.file is None,
+            ("restart", "share"),
+        ),
         Idle(
             "beside a study: put them into it, or give motions",
             lambda asked: asked.whole is not None,
@@ -213,7 +238,7 @@ class FragilityAsked(OfStudy, OfCurves):
     @property
     def place(self) -> Path | None:
         """Where the store is; None for one that lasts as long as the answer."""
-        return self.file.with_suffix(".db") if self.store is None and self.file is not None else self.store
+        return self.file.with_suffix(".runs") if self.store is None and self.file is not None else self.store
 
     @property
     def study(self) -> str | Path | Mapping[str, Any]:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from importlib.metadata import version
 from math import isclose, isnan, nan
 from typing import Any
 
+import numpy as np
+
 from rocking_cli import __version__
+from rocking_cli.arrays import Bools, Integers
 from rocking_cli.core import Mechanism, NoEquivalentBlock, both_statics, equivalent_block
 from rocking_cli.core.mechanism import why_none
 from rocking_cli.core.registry import Registry
@@ -17,13 +20,13 @@ from rocking_cli.dynamics.model import NO_REBOUND, check_elements
 from rocking_cli.errors import InputError, Problem, RockingError, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.intensity import all_measures, parse_measure
-from rocking_cli.questions.fragility.definition import SLIDING, Definition
+from rocking_cli.questions.fragility.definition import Definition
 from rocking_cli.questions.fragility.plan import Plan, Trial, complete, weaker
 from rocking_cli.questions.fragility.sources import KeptMotions
-from rocking_cli.questions.fragility.store import UNKNOWN, Store
+from rocking_cli.questions.fragility.store import NO_RUNS, DamagedFile, RunRows, Store
 from rocking_cli.questions.fragility.study import Sample, Study, digest
 from rocking_cli.questions.fragility.tally import UPLIFT_FACT, accelerations, rotations, samples_of
-from rocking_cli.questions.fragility.work_units import carry_out, unit_size, units
+from rocking_cli.questions.fragility.work_units import WorkUnit, carry_out, runs_per_chunk, unit_of
 from rocking_cli.questions.fragility.workers import Workers
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import EngineName
@@ -35,6 +38,9 @@ Progress = Callable[[int, int], None]
 PARAMETER_TOLERANCE = 1e-9  # relative difference between machines of parameters from the same mechanics
 MAX_NAMED_CHANGES = 10  # changed samples that an error message names
 Examined = Callable[[int], None]
+Share = tuple[int, int]
+"""Which part of the chunks of a study, counted from 1, and of how many parts."""
+WHOLE: Share = (1, 1)
 SIMULATED_BY: dict[EngineName, tuple[EngineName, ...]] = {
     "exact": ("exact",), "blocks": ("blocks",), "auto": ("exact", "blocks"),
 }  # fmt: skip
@@ -53,8 +59,8 @@ class Prepared:
         The plan of its runs.
     motions : KeptMotions
         Its ground motions.
-    finished, failed : int
-        Number of runs in the store, and of those among them that could not be simulated.
+    store : Store
+        The folder with its runs.
     mended : tuple of str
         Names of records that could not be used when the study was started, and now can.
     """
@@ -62,13 +68,12 @@ class Prepared:
     study: Study
     plan: Plan
     motions: KeptMotions
-    finished: int
-    failed: int
+    store: Store
     mended: tuple[str, ...]
 
 
 def prepare(
-    study: Study, store: Store, examined: Examined | None = None, *, rank_measures: bool = False
+    study: Study, store: Store, examined: Examined = lambda count: None, *, rank_measures: bool = False
 ) -> Prepared:  # fmt: skip
     """Read the records and structures of a study, and start its store or check the study against it.
 
@@ -90,39 +95,35 @@ def prepare(
         If anything on which the runs depend has changed since the store was started; the error lists every change. If
         no structure or no record can be used.
     """
-    known = store.plan() if not store.empty else None
+    known = store.plan if not store.empty else None
     plan, motions = examine_study(study, examined, known)
     definition, records = study.definition, plan.records
     bad = {each.name for each in known.records if each.reason is not None} if known is not None else set()
-    mended = [k for k, record in enumerate(records) if record.reason is None and record.name in bad]
-    facts = {"description": study.description(), "versions": versions(study), "hash": digest(study.description())}
-    parameters = {
+    mended = tuple(each.name for each in records if each.reason is None and each.name in bad)
+    described = study.description()
+    facts: dict[str, Any] = {"description": described, "versions": versions(study), "hash": digest(described)}
+    if known is None:
+        _refuse_useless(plan)
+        facts |= {"libraries": libraries(), "runs_per_chunk": runs_per_chunk(plan, definition)}
+    else:
+        _refuse_changes(store, facts, known, plan)
+    every = [str(each) for each in all_measures()] if rank_measures else []
+    told = examined if _measures(study, rank_measures=rank_measures) else lambda count: None
+    plan = measured(study, plan, motions, [*definition.asked_measures, *every], told, origins=rank_measures)
+    facts |= {
         "name": study.name,
         "definition": definition.model_dump(mode="json", exclude_unset=True, by_alias=True),
         # Plain data, so that the store does not depend on the file.
         "hazard": study.hazard and [study.hazard.intensity.tolist(), study.hazard.annual_rate.tolist()],
         "weights": [source.entry.weight for source in study.sources],
+        UPLIFT_FACT: accelerations(study, plan),
     }
-    if known is None:
-        _refuse_useless(plan)
-    else:
-        _refuse_changes(store, facts, known, plan)
-    every = [str(each) for each in all_measures()] if rank_measures else []
-    told = examined if examined is not None and _measures(study, rank_measures=rank_measures) else lambda count: None
-    plan = measured(study, plan, motions, [*definition.asked_measures, *every], told, origins=rank_measures)
-    parameters |= {UPLIFT_FACT: accelerations(study, plan)}
-    if known is None:
-        parameters |= _displacements(study, plan, {})
-        store.begin(plan, {**facts, **parameters, "libraries": libraries()})
-    else:
-        parameters |= _displacements(study, plan, store.facts().get(ROTATIONS_FACT, {}))
-        for k in mended:
-            store.replace_record(k, records[k])
-        store.note(parameters)
-        store.keep(plan.measured)
-        store.commit()
-    finished, failed = store.count()
-    return Prepared(study, plan, motions, finished, failed, tuple(records[k].name for k in mended))
+    if limits := displacement_limits(definition.limit_states):
+        facts[ROTATIONS_FACT] = rotations(study.samples, plan.trials, limits, store.facts.get(ROTATIONS_FACT, {}))
+    if store.started_meanwhile():
+        return prepare(study, store, rank_measures=rank_measures)
+    store.keep(plan, facts)
+    return Prepared(study, plan, motions, store, mended)
 
 
 def count_steps(study: Study, *, rank_measures: bool = False) -> int:
@@ -200,61 +201,117 @@ def _of_one_kind(one: Plan, other: Plan) -> bool:
     )
 
 
-def run(
-    prepared: Prepared, store: Store, workers: Workers, progress: Progress | None = None, engine: EngineName = "exact"
-) -> None:
-    """Simulate the runs that the store lacks by one engine, and add them to it.
+@dataclass(frozen=True)
+class Left:
+    """The chunks that a store lacks, wholly or in part.
 
-    In a study by both engines, those of unknown outcome by one degree of freedom are left to free blocks.
+    Parameters
+    ----------
+    chunks : list of int
+        Their numbers.
+    finished, failed : int
+        Number of runs that the store has of all chunks, and of those among them that could not be simulated.
+    total : int
+        Number of all runs.
+    """
+
+    chunks: list[int]
+    finished: int
+    failed: int
+    total: int
+
+
+def left(
+    prepared: Prepared, engine: EngineName, share: Share = WHOLE, damaged: Callable[[str], None] = lambda file: None
+) -> Left:  # fmt: skip
+    """Return what is left to simulate by one engine.
 
     Parameters
     ----------
     prepared : Prepared
         The result of `prepare`.
-    store : Store
-        Open to write.
+    engine : {"exact", "blocks"}
+        The engine. In a study by both, runs of unknown outcome by one degree of freedom are left to free blocks.
+    share : (int, int)
+        Which part of the chunks, and of how many parts.
+    damaged : callable, optional
+        Called with each file that is damaged; its runs are left.
+    """
+    chunks, finished, failed, total = [], 0, 0, 0
+    for k in prepared.store.chunks[share[0] - 1 :: share[1]]:
+        rows, numbers = _lacking(prepared, k, engine, damaged)
+        if numbers.size:
+            chunks.append(k)
+        final = rows.select(_is_final(prepared, rows))
+        finished, failed = finished + len(final), failed + final.failed
+        total += prepared.plan.numbers(*prepared.store.ends(k)).size
+    return Left(chunks, finished, failed, total)
+
+
+def run(prepared: Prepared, workers: Workers, engine: EngineName, chunks: Iterable[int], progress: Progress) -> None:
+    """Simulate what chunks lack by one engine, and add it to the store.
+
+    Parameters
+    ----------
+    prepared : Prepared
+        The result of `prepare`.
     workers : Workers
         The processes or threads that simulate; results do not depend on them.
-    progress : callable, optional
-        See `Progress`.
     engine : {"exact", "blocks"}
-        Who simulates them.
+        Who simulates.
+    chunks : iterable of int
+        Numbers of the chunks.
+    progress : callable
+        See `Progress`.
     """
-    study, plan, definition = prepared.study, prepared.plan, prepared.study.definition
-    size = unit_size(plan.total - prepared.finished, workers.count)
-    checked = SLIDING in definition.limit_states
-    to_do = units(
-        plan,
-        study.samples,
-        prepared.motions,
-        definition.model,
-        store.finished,
-        size,
-        engine=engine,
-        checked=checked,
-        opening=definition.opening,
-    )
-    for done in workers.map(carry_out, to_do):
-        left = engine == "exact" and definition.engine == "auto"
-        rows = done.select(done.outcome != UNKNOWN) if left else done
+    store, study, plan = prepared.store, prepared.study, prepared.plan
+
+    def units() -> Iterator[WorkUnit]:
+        for k in chunks:
+            rows, numbers = _lacking(prepared, k, engine)
+            if numbers.size:
+                yield unit_of(numbers, plan, study, store.fact("hash"), prepared.motions, engine)
+            else:  # another process has been faster
+                progress(len(rows), rows.failed)
+
+    for rows in workers.map(carry_out, units()):
         store.add(rows)
-        if progress is not None:
-            progress(len(rows), rows.failed)
+        final = rows.select(_is_final(prepared, rows))
+        progress(len(final), final.failed)
 
 
-def left_of_each(prepared: Prepared, store: Store) -> Iterator[tuple[str, Structure, GroundMotion, int]]:
-    """Yield each structure, one of its samples, a motion of usual length, and the number of runs that are left."""
+def _lacking(
+    prepared: Prepared, k: int, engine: EngineName, damaged: Callable[[str], None] = lambda file: None
+) -> tuple[RunRows, Integers]:  # fmt: skip
+    """Return the runs of a chunk in the store, and the numbers of those that an engine still has to simulate."""
+    try:
+        rows = prepared.store.chunk(k)
+    except DamagedFile as file:
+        damaged(str(file))
+        rows = NO_RUNS
+    done = rows.run if engine == "exact" else rows.run[_is_final(prepared, rows)]
+    return rows, np.setdiff1d(prepared.plan.numbers(*prepared.store.ends(k)), done, assume_unique=True)
+
+
+def _is_final(prepared: Prepared, rows: RunRows) -> Bools:
+    """Return which runs are finished, and not left to free blocks."""
+    return ~rows.unknown | rows.by_blocks | (prepared.study.definition.engine == "exact")
+
+
+def left_of_each(prepared: Prepared, chunks: Iterable[int]) -> Iterator[tuple[str, Structure, GroundMotion, int]]:
+    """Yield each structure, one of its samples, a motion of usual length, and how many runs are left to free blocks."""
     plan = prepared.plan
     records = [k for k, record in enumerate(plan.records) if record.reason is None]
     records.sort(key=lambda k: plan.records[k].dt * plan.records[k].npts)
     motion = prepared.motions[records[len(records) // 2]]
-    usable = [k for k, trial in enumerate(plan.trials) if trial.reason is None]
+    each = np.zeros(len(plan.trials), dtype=np.int64)
+    for k in chunks:
+        each += np.bincount(plan.places(_lacking(prepared, k, "blocks")[1])[0], minlength=each.size)
     for name in plan.structures:
-        samples, each = samples_of(plan, name), len(plan.records) * plan.block
-        those = [k for k in usable if k in samples]
-        done = store.finished(samples.start * each, samples.stop * each).size
-        if left := plan.total // len(usable) * len(those) - done:
-            yield name, Structure(prepared.study.samples[those[0]].mechanism), motion, left
+        samples = samples_of(plan, name)
+        if count := int(each[samples.start : samples.stop].sum()):
+            first = samples[int(np.flatnonzero(each[samples.start : samples.stop])[0])]
+            yield name, Structure(prepared.study.samples[first].mechanism), motion, count
 
 
 def versions(study: Study) -> dict[str, str]:
@@ -315,12 +372,6 @@ def _mechanics(mechanism: Mechanism, asked: Definition) -> tuple[float, float, t
     return *weaker(block, asked.model), (block.positive.phi_cr, block.negative.phi_cr)
 
 
-def _displacements(study: Study, plan: Plan, known: dict[str, Any]) -> dict[str, Any]:
-    """Return the rotations at which the top reaches the displacements among the limit states; empty without any."""
-    limits = displacement_limits(study.definition.limit_states)
-    return {ROTATIONS_FACT: rotations(study.samples, plan.trials, limits, known)} if limits else {}
-
-
 def _refuse_useless(plan: Plan) -> None:
     for what, those in (("structure", plan.trials), ("record", plan.records)):
         if all(each.reason is not None for each in those):
@@ -342,7 +393,7 @@ def _refuse_changes(store: Store, facts: dict[str, Any], known: Plan, now: Plan)
             :MAX_NAMED_CHANGES
         ]
     if changes:
-        hint = f"give {named('restart')} to run everything again, or {named('store')} OTHER.db to keep both"
+        hint = f"give {named('restart')} to run everything again, or {named('store')} OTHER to keep both"
         *others, last = [Problem(change, field="changed since the store was created") for change in changes]
         raise InputError(*others, replace(last, hint=hint))
 

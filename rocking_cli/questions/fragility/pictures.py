@@ -71,8 +71,7 @@ def _increments(answer: Any, structure: str) -> Figure:
     plan, measure = answer.plan, answer.definition.levels.measure
     across = "factor on the records" if measure == SCALE else label(measure)
     usable = [k for k, each in enumerate(plan.records) if each.reason is None]
-    with Store.reading(answer.store) as store:
-        table = peaks(store, plan, structure)
+    table = peaks(Store.reading(answer.store), plan, structure)
     records, ladders = np.unique(plan.of_sets.one[usable]).size, len(samples_of(plan, structure)) * plan.block
     named = [plan.records[k].name for k in usable] if ladders == len(plan.levels) else []
     return draw_ida(np.array(plan.levels), table, across, structure, records, named)

@@ -5,10 +5,11 @@ What a study requests and its store does not hold yet is measured: values of rec
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from math import nan, prod
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -78,14 +79,6 @@ class Sets:
         """Whether the records have different weights."""
         return bool(np.ptp(self.weight) > INTENSITY_TOLERANCE * self.weight.max()) if self.weight.size else False
 
-    def there(self, record: int, levels: int) -> Bools:
-        """Return a mask of the levels at which a record is run."""
-        return (
-            np.ones(levels, dtype=bool)
-            if self.level[record] == EVERY_LEVEL
-            else np.arange(levels) == self.level[record]
-        )
-
 
 def described(description: dict[str, Any], weights: Sequence[float]) -> Sets:
     """Build the sets of a store from the description of its study and the weights last requested."""
@@ -97,16 +90,6 @@ def described(description: dict[str, Any], weights: Sequence[float]) -> Sets:
         [each.get("file", each["name"]) for each in records],
         scaled=levels.get("scaled", True),
     )
-
-
-class Value(NamedTuple):
-    """One value as a store keeps it. Indices on which the value does not depend are None; a missing value is None."""
-
-    measure: str
-    sample: int | None
-    record: int | None
-    level: int | None
-    value: float | None
 
 
 @short_repr
@@ -127,53 +110,6 @@ class Measured:
     of_record: Mapping[str, Reals] = field(default_factory=dict)
     of_sample: Mapping[str, Reals] = field(default_factory=dict)
     of_run: Mapping[str, Reals] = field(default_factory=dict)
-
-    def __bool__(self) -> bool:
-        return bool(self.of_record or self.of_sample or self.of_run)
-
-    def values(self) -> Iterator[Value]:
-        """Yield all values that are not NaN, one at a time."""
-        for name, values in self.of_record.items():
-            yield from (Value(name, None, k, None, value) for (k,), value in _there(values))
-        for name, values in self.of_sample.items():
-            yield from (Value(name, k, None, None, value) for (k,), value in _there(values))
-        for name, values in self.of_run.items():
-            yield from (Value(name, s, r, k, value) for (s, r, k), value in _there(values))
-
-    @classmethod
-    def of(cls, values: Iterator[Value], shape: tuple[int, int, int]) -> Measured:
-        """Collect single values of a study with a given number of samples, records and levels.
-
-        Raises
-        ------
-        ValueError
-            If the indices of a value are not those of a record, a sample or a run.
-        IndexError
-            If an index is out of range.
-        """
-        samples, records, levels = shape
-        kinds: tuple[tuple[dict[str, Reals], tuple[int, ...]], ...] = (
-            ({}, (records,)),
-            ({}, (samples,)),
-            ({}, (samples, records, levels)),
-        )
-        patterns = ((False, True, False), (True, False, False), (True, True, True))
-        for value in values:
-            places = (value.sample, value.record, value.level)
-            arrays, size = kinds[patterns.index(tuple(place is not None for place in places))]
-            if value.measure not in arrays:
-                arrays[value.measure] = np.full(size, np.nan)
-            place = tuple(place for place in places if place is not None)
-            if min(place) < 0:
-                raise IndexError(place)
-            arrays[value.measure][place] = np.nan if value.value is None else value.value
-        return cls(*(arrays for arrays, _ in kinds))
-
-
-def _there(values: Reals) -> Iterator[tuple[Any, float]]:
-    """Return the index and the value of every entry that is not NaN."""
-    places = np.argwhere(~np.isnan(values)).tolist()
-    return zip((tuple(place) for place in places), values[~np.isnan(values)].tolist(), strict=True)
 
 
 @short_repr
@@ -278,30 +214,34 @@ class Plan:
         """Number of runs of one sample under one record; their numbers are consecutive."""
         return prod(self.shape[2:])
 
+    @cached_property
+    def usable_samples(self) -> Bools:
+        """Whether each sample can be simulated."""
+        return np.array([each.reason is None for each in self.trials])
+
+    @cached_property
+    def usable_records(self) -> Bools:
+        """Whether each record can be used at each level, shape (records, levels)."""
+        at, levels = self.of_sets.level[:, None], np.arange(len(self.levels))
+        usable = np.array([[each.reason is None] for each in self.records])
+        return np.asarray(usable & ((at == EVERY_LEVEL) | (at == levels)))
+
     @property
     def total(self) -> int:
         """Number of runs that can be simulated: without samples and records that cannot be used."""
-        _, _, etas, levels, polarities = self.shape
-        usable = sum(each.reason is None for each in self.trials)
-        places = [k for k, each in enumerate(self.records) if each.reason is None]
-        rungs = sum(int(self.of_sets.there(k, levels).sum()) for k in places)
-        return usable * rungs * etas * polarities
+        _, _, etas, _, polarities = self.shape
+        return int(self.usable_samples.sum() * self.usable_records.sum()) * etas * polarities
+
+    def numbers(self, first: int, stop: int) -> Integers:
+        """Return the numbers of the runs from `first` to before `stop` that can be simulated."""
+        runs = np.arange(first, min(stop, self.size))
+        sample, record, _, level, _ = self.places(runs)
+        return runs[self.usable_samples[sample] & self.usable_records[record, level]]
 
     @property
     def size(self) -> int:
         """Number of all combinations, whether or not they can be simulated."""
         return prod(self.shape)
-
-    def name(self, run: int) -> str:
-        """Describe a run in words."""
-        if not 0 <= run < self.size:
-            return f"run {run}, which the study does not have"
-        sample, record, _, level, polarity = (int(place[0]) for place in self.places(np.array([run])))
-        trial = self.trials[sample]
-        return (
-            f"run {run} ({trial.structure}, sample {trial.number}, {self.records[record].name}, "
-            f"level {self.levels[level]:.6g}, polarity {self.polarities[polarity]:+d})"
-        )
 
     def places(self, runs: Integers) -> tuple[Integers, Integers, Integers, Integers, Integers]:
         """Return the indices of sample, record, restitution, level and polarity of runs."""
@@ -310,10 +250,14 @@ class Plan:
 
     def reference(self, sample: Integers) -> Reference:
         """Return the reference values of dimensionless measures for samples given by their indices."""
-        columns = np.array([(each.p, each.lambda_, each.gravity) for each in self.trials])[sample]
+        columns = self._of_samples[sample]
         p = np.where(columns[:, 0] > 0, columns[:, 0], np.nan)
         steps = self.measured.of_sample.get("v_imp", np.full(len(self.trials), nan))
         return Reference(p, columns[:, 1], columns[:, 2], steps[sample])
+
+    @cached_property
+    def _of_samples(self) -> Reals:
+        return np.array([(each.p, each.lambda_, each.gravity) for each in self.trials])
 
     def of_records(self, measure: str) -> Reals:
         """Return a measure of the unscaled motions, shape (records,); NaN where it is not known."""

@@ -273,9 +273,9 @@ def rocking(store: Store, plan: Plan, structure: str) -> tuple[Integers, Reals]:
     samples = samples_of(plan, structure)
     each = len(plan.records) * plan.block
     ids, peaks = [np.zeros(0, dtype=np.int64)], [np.zeros(0)]
-    for endings in store.endings(samples.start * each, samples.stop * each):
+    for endings in store.rows(samples.start * each, samples.stop * each):
         rocks = endings.uplifts & (endings.outcome == STANDS) & (endings.peak_ratio > 0)
-        ids.append(endings.id[rocks])
+        ids.append(endings.run[rocks])
         peaks.append(np.log(endings.peak_ratio[rocks]))
     return np.concatenate(ids), np.concatenate(peaks)
 

@@ -16,7 +16,7 @@ from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.files import folder
 from rocking_cli.io.tables import stacked
-from rocking_cli.questions.fragility.assess import Bivariate, Fragility, UnknownRuns
+from rocking_cli.questions.fragility.assess import Bivariate, Fragility
 from rocking_cli.questions.fragility.definition import Definition, Limit
 from rocking_cli.questions.fragility.plan import Plan
 from rocking_cli.questions.fragility.quantiles import Quantiles
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking_cli.io.tables import Columns
+    from rocking_cli.questions.fragility.tally import Tally
 
 CurveKey = tuple[str, Limit, str]
 """Structure, limit state and measure of a curve."""
@@ -44,7 +45,7 @@ class StudyAnswer(Answer[list[Fragility]]):
     Parameters
     ----------
     store : Path
-        The store; a temporary file, which lasts as long as the answer, of a study without a file and a store.
+        The store; a temporary folder, which lasts as long as the answer, of a study without a file and a store.
     plan : Plan
         Structures, samples, records and levels.
     definition : Definition
@@ -145,8 +146,9 @@ def results(asked: ResultsAsked, watch: Watcher) -> StudyAnswer:
     Raises
     ------
     InputError
-        If the file is not a store of this version, or is damaged.
+        If the folder is not a store of this version, or is damaged.
     """
+    from rocking_cli.questions.fragility.assess import counted, unknown_runs
     from rocking_cli.questions.fragility.quantiles import all_quantiles
     from rocking_cli.questions.fragility.quantiles_view import with_quantiles
     from rocking_cli.questions.fragility.ranking import rank
@@ -156,18 +158,20 @@ def results(asked: ResultsAsked, watch: Watcher) -> StudyAnswer:
     if asked.plot is not None:
         folder(str(asked.plot))
     place = Path(asked.store)
-    with Store.reading(place) as kept:
-        plan, definition = kept.plan(), _definition(kept)
-        finished, failed = kept.count()
-        fits, surfaces, outcomes = _fitted(kept, plan, definition, watch)
-        spread = list(all_quantiles(kept, plan, definition))
-        shown = view(kept, plan, definition, finished, failed, fits, surfaces, outcomes)
-        shown = with_quantiles(shown, spread, outcomes, in_words=asked.quantiles)
-        rankings: list[Ranking] = []
-        if asked.rank_measures:
-            with watch.progress(plan.size, "runs ranked") as counted:
-                rankings = rank(kept, plan, definition, counted)
-            shown = added(shown, rankings)
+    kept = Store.reading(place)
+    plan, definition = kept.plan, _definition(kept)
+    with watch.progress(plan.size, "runs counted") as advance:
+        tallies = counted(kept, plan, definition, advance)
+    finished, failed = (sum(getattr(each, name) for each in tallies.values()) for name in ("finished", "failed"))
+    fits, surfaces = _fitted(kept, tallies, definition, watch)
+    outcomes, spread = unknown_runs(tallies), list(all_quantiles(kept, plan, definition))
+    shown = view(kept, plan, definition, finished, failed, fits, surfaces, outcomes)
+    shown = with_quantiles(shown, spread, outcomes, in_words=asked.quantiles)
+    rankings: list[Ranking] = []
+    if asked.rank_measures:
+        with watch.progress(plan.size, "runs ranked") as advance:
+            rankings = rank(kept, plan, definition, advance)
+        shown = added(shown, rankings)
     lacking = [f"{failed} runs could not be simulated and are left out of the curves"] if failed else []
     lacking += [f"{finished:,} of {plan.total:,} runs are finished so far"] if finished < plan.total else []
     lacking += [f"{len(bad)} records or samples cannot be used"] if (bad := left_out(plan)) else []
@@ -238,8 +242,8 @@ def write_nrml(answer: StudyAnswer, file: Path, watch: Watcher = SILENT) -> None
         watch.warn(f"not in {file}: {each}")
     for each in model.doubts:
         watch.warn(each)
-    with Store.reading(answer.store) as store:
-        version, study, name = store.fact("versions")["rocking-cli"], store.fact("hash"), store.fact("name")
+    store = Store.reading(answer.store)
+    version, study, name = store.fact("versions")["rocking-cli"], store.fact("hash"), store.fact("name")
     document = nrml(model, name, f"{answer.sentences[0]}; rocking-cli {version}, study {study[:12]}")
     write_whole(file, lambda stream: stream.write(document))
     watch.note(f"wrote {file}")
@@ -265,27 +269,25 @@ def _definition(store: Store) -> Definition:
 
 
 def _fitted(
-    store: Store, plan: Plan, definition: Definition, watch: Watcher
-) -> tuple[list[Fragility], list[Bivariate], list[UnknownRuns]]:
-    """Count the runs of a store, and fit the curves of its study."""
-    from rocking_cli.questions.fragility import assess
+    store: Store, tallies: Mapping[str, Tally], definition: Definition, watch: Watcher
+) -> tuple[list[Fragility], list[Bivariate]]:  # fmt: skip
+    """Fit the curves of a study to its counted runs."""
+    from rocking_cli.questions.fragility.assess import fitted
     from rocking_cli.questions.fragility.hazard_curve import HazardCurve
 
     points = store.fact("hazard")
     hazard = HazardCurve(*np.array(points)) if points is not None else None
-    with watch.progress(plan.size, "runs counted") as advance:
-        counted = assess.counted(store, plan, definition, advance)
     fits = len(definition.limit_states) * (len(definition.fitted_measures) + len(definition.bivariate))
-    with watch.progress(fits * len(counted), "fits") as advance:
-        return *assess.fitted(counted, definition, hazard, advance), assess.unknown_runs(counted)
+    with watch.progress(fits * len(tallies), "fits") as advance:
+        return fitted(tallies, definition, hazard, advance)
 
 
 def _blocks(place: Path) -> Iterator[Columns]:
     """Yield the runs of a store as columns, in blocks of rows."""
     from rocking_cli.questions.fragility.table import run_blocks
 
-    with Store.reading(place) as store:
-        yield from run_blocks(store, store.plan(), _definition(store).asked_measures)
+    store = Store.reading(place)
+    yield from run_blocks(store, store.plan, _definition(store).asked_measures)
 
 
 def _columns(place: Path) -> Columns:

@@ -17,15 +17,15 @@ class ResultsAsked(OfCurves):
 
     \b
     Example:
-      rocking results study.db
-      rocking results study.db --out runs.parquet --plot pictures
-      rocking results study.db --curves curves.csv --nrml fragility.xml
-      rocking results study.db --rank-measures
+      rocking results study.runs
+      rocking results study.runs --out runs.parquet --plot pictures
+      rocking results study.runs --curves curves.csv --nrml fragility.xml
+      rocking results study.runs --rank-measures
     """
 
     store: str | Path = option(
         "The store, which may be that of a study that is still running.",
-        FILE, where="input", default=..., typed="STORE.db",
+        FILE, where="input", default=..., typed="STORE",
     )  # fmt: skip
     out: Path | None = table_file("Write all runs (.csv or .parquet).", ".csv", ".parquet")
     curves: Path | None = table_file("Write the curves, one line per intensity (.csv or .parquet).", ".csv", ".parquet")

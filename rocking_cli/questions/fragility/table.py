@@ -12,8 +12,9 @@ from rocking_cli import names
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.questions.fragility.assess import Fragility
 from rocking_cli.questions.fragility.curves import FragilityCurve
+from rocking_cli.questions.fragility.definition import SLIDING
 from rocking_cli.questions.fragility.plan import Plan
-from rocking_cli.questions.fragility.store import FAILED, OFF_EDGE, SLIDE_COLUMN, STANDS, UNKNOWN, RunRows, Store
+from rocking_cli.questions.fragility.store import FAILED, NO_RUNS, OFF_EDGE, STANDS, UNKNOWN, RunRows, Store
 from rocking_cli.studies.fragility.quantities import USUAL_MEASURES, label
 
 CURVE_POINTS = 101
@@ -63,14 +64,6 @@ def points(found: Fragility) -> NDArray[np.float64]:
     return np.union1d(x, [end for step in steps for end in (step.low, step.value, step.high)])
 
 
-RUNS_PER_BLOCK = 100_000
-HEADINGS = {
-    "known_to": "known_to [s]", "lower_bound": "peak_lower_bound", "opening": "opening",
-    "slip": "slip [m]", SLIDE_COLUMN: "slide_time [s]",
-}  # fmt: skip
-"""Headings of the columns that not every store has."""
-
-
 def run_blocks(store: Store, plan: Plan, measures: Sequence[str] = ()) -> Iterator[Mapping[str, Sequence[object]]]:
     """Yield the finished runs as blocks of a table, in the order of their numbers.
 
@@ -88,19 +81,22 @@ def run_blocks(store: Store, plan: Plan, measures: Sequence[str] = ()) -> Iterat
     mapping of str to sequence
         The columns by heading, with units; the first block is yielded even if it is empty.
     """
-    end, columns_asked = int(np.prod(plan.shape)), tuple(dict.fromkeys([*USUAL_MEASURES, *measures]))
-    for first in range(0, end, RUNS_PER_BLOCK):
-        rows = store.runs(first, min(first + RUNS_PER_BLOCK, end))
-        if len(rows) or first == 0:
-            yield _of_runs(plan, rows, columns_asked)
+    asked, none = tuple(dict.fromkeys([*USUAL_MEASURES, *measures])), True
+    for rows in store.rows(0, plan.size):
+        yield _of_runs(plan, rows, asked, store.fact("description"))
+        none = False
+    if none:
+        yield _of_runs(plan, NO_RUNS, asked, store.fact("description"))
 
 
-def _of_runs(plan: Plan, rows: RunRows, measures: Sequence[str]) -> dict[str, Sequence[object]]:
-    sample, record, _, level, polarity = plan.places(rows.id)
+def _of_runs(
+    plan: Plan, rows: RunRows, measures: Sequence[str], study: Mapping[str, Any]
+) -> dict[str, Sequence[object]]:  # fmt: skip
+    sample, record, _, level, polarity = plan.places(rows.run)
     trials, records = [plan.trials[k] for k in sample], [plan.records[k] for k in record]
     fell_to = np.where(np.isin(rows.outcome, (FAILED, UNKNOWN)), 0, np.sign(rows.outcome))
     return {
-        "run": rows.id.tolist(),
+        "run": rows.run.tolist(),
         "structure": [each.structure for each in trials],
         "sample": [each.number for each in trials],
         "motion": [each.name for each in records],
@@ -121,6 +117,10 @@ def _of_runs(plan: Plan, rows: RunRows, measures: Sequence[str]) -> dict[str, Se
         "peak_negative [rad]": rows.peak_negative.tolist(),
         "uplift_time [s]": rows.uplift_time.tolist(),
         "overturning_time [s]": rows.overturning_time.tolist(),
-        **{HEADINGS[name]: getattr(rows, name).tolist() for name in rows.columns if name in HEADINGS},
-        **({} if rows.by_blocks is None else {"engine": np.where(rows.by_blocks == 1, "blocks", "exact").tolist()}),
+        "known_to [s]": rows.known_to.tolist(),
+        "peak_lower_bound": rows.lower_bound.tolist(),
+        "opening": rows.opening.tolist(),
+        "slip [m]": rows.slip.tolist(),
+        **({"slide_time [s]": rows.slide_time.tolist()} if SLIDING in study else {}),
+        **({"engine": np.where(rows.by_blocks, "blocks", "exact").tolist()} if "engine" in study else {}),
     }  # fmt: skip

@@ -22,7 +22,7 @@ from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.questions.fragility.definition import OVERTURNING, RESTITUTION, SLIDING, UPLIFT, Limit
 from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE
 from rocking_cli.questions.fragility.plan import Plan, Trial
-from rocking_cli.questions.fragility.store import FAILED, STANDS, Endings, Store
+from rocking_cli.questions.fragility.store import FAILED, STANDS, RunRows, Store
 from rocking_cli.questions.fragility.study import Sample, Study
 from rocking_cli.studies.fragility.quantities import PGA, displacement_limits, kept, metres, of_the_motion, proportional
 from rocking_cli.studies.movements import is_held, top
@@ -61,6 +61,8 @@ class Tally:
         Number of runs that were simulated with free blocks, and of those in which a block falls off an edge.
     slides : bool
         Whether a body only slides in some run: it may then exceed displacements without uplift.
+    finished, failed : int
+        Number of all runs in the store, and of those that could not be simulated.
     lower : Tally or None
         The counts with undecided runs as not exceeding; None if no outcome is unknown.
     uplift : (float or None, float or None), optional
@@ -77,6 +79,8 @@ class Tally:
     by_blocks: int = 0
     off_edge: int = 0
     slides: bool = False
+    finished: int = 0
+    failed: int = 0
     lower: Tally | None = None
     uplift: Pair | None = None
 
@@ -243,18 +247,19 @@ def count(
     there = np.zeros((len(samples), records, etas, levels, polarities) if ladders else 0, dtype=bool)
     rungs = (len(samples), records, etas, polarities)
     upper, lower = _Counts(limits, shape, rungs if ladders else None, levels), None
-    checked, slides, by_blocks, off_edge = True, False, 0, 0
+    checked, slides, by_blocks, off_edge, finished, failed = True, False, 0, 0, 0, 0
     each = records * plan.block
     start = samples.start * each
-    for endings in store.endings(start, samples.stop * each, counted):
-        endings = endings.select(endings.outcome != FAILED)
-        sample, record, eta, level, polarity = plan.places(endings.id)
+    for rows in store.rows(start, samples.stop * each, counted):
+        endings = rows.select(rows.outcome != FAILED)
+        finished, failed = finished + len(rows), failed + rows.failed
+        sample, record, eta, level, polarity = plan.places(endings.run)
         sample = sample - samples.start
         cell = np.ravel_multi_index((sample if apart else np.zeros_like(sample), record, level), shape)
         ladder = np.ravel_multi_index((sample, record, eta, polarity), rungs)
         _add(runs, cell)
         if ladders:
-            there.ravel()[endings.id - start] = True
+            there.ravel()[endings.run - start] = True
         checked &= bool(endings.checked.all())
         slides |= bool((endings.slip > 0).any())
         by_blocks, off_edge = by_blocks + int(endings.by_blocks.sum()), off_edge + int(endings.off_edge.sum())
@@ -270,11 +275,11 @@ def count(
                 lower.add(limit, known, cell, ladder, level)
 
     # Free blocks may move in other ways than the mechanism, from other accelerations; a body that slides never uplifts.
-    uplifts = store.facts().get(UPLIFT_FACT, {}).get(structure) if not (by_blocks or slides) else None
+    uplifts = store.facts.get(UPLIFT_FACT, {}).get(structure) if not (by_blocks or slides) else None
 
     def tally(counts: _Counts, of_known: Tally | None) -> Tally:
         of_ladders = Ladders(counts.first, there) if ladders else None
-        many = unknown, checked, by_blocks, off_edge, slides
+        many = unknown, checked, by_blocks, off_edge, slides, finished, failed
         return Tally(plan, samples, runs, counts.exceeding, of_ladders, *many, of_known, uplifts)
 
     checked |= store.fact("description")["model"] != "nonlinear"  # equivalent blocks have no joints
@@ -297,13 +302,13 @@ class _Counts:
             np.minimum.at(self.first[limit].ravel(), ladder[beyond], level[beyond].astype(np.int32))
 
 
-def exceeds(found: Endings, limit: Limit, reach: Reals | None = None) -> Bools:
+def exceeds(found: RunRows, limit: Limit, reach: Reals | None = None) -> Bools:
     """Return which runs exceed a limit state or may exceed it because their outcome is unknown.
 
     Parameters
     ----------
-    found : Endings
-        The endings of n runs.
+    found : RunRows
+        n runs.
     limit : limit state
         The limit state.
     reach : ndarray, shape (n, 2), optional
@@ -312,7 +317,7 @@ def exceeds(found: Endings, limit: Limit, reach: Reals | None = None) -> Bools:
     return np.asarray(found.unknown | _exceeds(found, limit, reach, found.peak_ratio))
 
 
-def known_to_exceed(found: Endings, limit: Limit, reach: Reals | None, phi_cr: Reals) -> Bools:
+def known_to_exceed(found: RunRows, limit: Limit, reach: Reals | None, phi_cr: Reals) -> Bools:
     """Return which runs are known to exceed a limit state, even if their outcome is unknown.
 
     A run of unknown outcome is known by its uplift, its first slip, or its peak until the first joint would fail.
@@ -335,7 +340,7 @@ def known_to_exceed(found: Endings, limit: Limit, reach: Reals | None, phi_cr: R
     return np.asarray(np.where(found.unknown, surely | _slides_past(found, limit), known))
 
 
-def _exceeds(found: Endings, limit: Limit, reach: Reals | None, ratio: Reals) -> Bools:
+def _exceeds(found: RunRows, limit: Limit, reach: Reals | None, ratio: Reals) -> Bools:
     """Return which runs exceed a limit state, by their peaks over phi_cr if the limit state is a ratio."""
     if limit == SLIDING:
         return found.slides
@@ -349,7 +354,7 @@ def _exceeds(found: Endings, limit: Limit, reach: Reals | None, ratio: Reals) ->
         return np.asarray(overturned | (ratio > limit))
 
 
-def _slides_past(found: Endings, limit: Limit) -> Bools:
+def _slides_past(found: RunRows, limit: Limit) -> Bools:
     """Return which runs slide past a displacement without uplift; none past another limit state."""
     return np.asarray(found.slip > (metres(limit) or np.inf))
 
@@ -374,11 +379,11 @@ def endings_of(store: Store, plan: Plan, structure: str) -> Reals:
     samples = samples_of(plan, structure)
     table = np.full((len(samples), *plan.shape[1:]), np.nan)
     start = samples.start * len(plan.records) * plan.block
-    for endings in store.endings(start, start + table.size):
-        endings = endings.select(endings.outcome != FAILED)
+    for rows in store.rows(start, start + table.size):
+        endings = rows.select(rows.outcome != FAILED)
         rocks = np.where(endings.uplifts, np.maximum(endings.peak_ratio, np.finfo(np.float64).tiny), 0.0)
         ends = np.where(endings.unknown, UNKNOWN_PEAK, np.inf)
-        table.ravel()[endings.id - start] = np.where(endings.outcome == STANDS, rocks, ends)
+        table.ravel()[endings.run - start] = np.where(endings.outcome == STANDS, rocks, ends)
     return table
 
 

@@ -14,8 +14,8 @@ from rocking_cli.ask.answer import Answer, no_plot
 from rocking_cli.ask.given import note_remarks, warn_of
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
-from rocking_cli.errors import InputError, named
-from rocking_cli.io.files import check_writable, folder, keep_apart
+from rocking_cli.errors import InputError, Refused, named
+from rocking_cli.io.files import folder, keep_apart
 from rocking_cli.questions.fragility.asked import FragilityAsked, OfCurves
 from rocking_cli.studies.engines import engine_of
 from rocking_cli.views.engines import cost_in_words
@@ -24,6 +24,7 @@ from rocking_cli.views.view import View
 if TYPE_CHECKING:
     from distributed import Client
 
+    from rocking_cli.questions.fragility.campaign import Left, Prepared
     from rocking_cli.questions.fragility.plan import Plan
     from rocking_cli.questions.fragility.study import Study
     from rocking_cli.questions.fragility.workers import Workers
@@ -69,9 +70,9 @@ def fragility(asked: FragilityAsked, watch: Watcher) -> Answer[Any]:
     (0.59, 64)
     """
     from rocking_cli.questions.fragility.results import results
+    from rocking_cli.questions.fragility.store import CONTINUE_HINT
     from rocking_cli.questions.fragility.study import load_study
     from rocking_cli.questions.fragility.tally import held
-    from rocking_cli.questions.fragility.workers import CONTINUE_HINT
 
     try:
         loaded = load_study(asked.study, asked.store.stem if asked.store is not None else "study")
@@ -91,21 +92,21 @@ def fragility(asked: FragilityAsked, watch: Watcher) -> Answer[Any]:
         watch.warn(sentence)
     if asked.check:
         return _planned(loaded, watch)
-    if asked.place is not None:
-        check_writable(asked.place)
     if asked.plot is not None:
         folder(str(asked.plot))
     with ExitStack() as stack:
         if (place := asked.place) is None:
             temporary = TemporaryDirectory(prefix="rocking-", ignore_cleanup_errors=True)
-            place = Path(stack.enter_context(temporary)) / "study.db"
+            place = Path(stack.enter_context(temporary)) / "study.runs"
         workers = workers_of(asked.jobs, asked.scheduler, loaded.definition.engine)
         try:
-            _bring_up_to_date(loaded, place, workers, watch, asked)
-        except KeyboardInterrupt as stopped:
+            prepared = _bring_up_to_date(loaded, place, workers, watch, asked)
+        except (KeyboardInterrupt, Refused) as stopped:
             if asked.place is not None:
                 stopped.add_note(CONTINUE_HINT)
             raise
+        if asked.share is not None:
+            return _share(prepared, asked.share)
         answer = results(place, **asked.part(OfCurves), watch=watch)
         if asked.place is None:
             answer = replace(answer, view=View(answer.to_dict() | {"store": None}, answer.view.parts))
@@ -140,18 +141,27 @@ def _planned(study: Study, watch: Watcher) -> Answer[Plan]:
 
 def _bring_up_to_date(
     study: Study, place: Path, workers: AbstractContextManager[Workers], watch: Watcher, asked: FragilityAsked
-) -> None:
+) -> Prepared:  # fmt: skip
     """Simulate the runs that the store lacks; on a restart simulate all, and keep the old store."""
-    from rocking_cli.questions.fragility.campaign import SIMULATED_BY, count_steps, left_of_each, prepare, run
+    from rocking_cli.questions.fragility.campaign import (
+        SIMULATED_BY,
+        WHOLE,
+        count_steps,
+        left,
+        left_of_each,
+        prepare,
+        run,
+    )
     from rocking_cli.questions.fragility.store import Store
 
+    share = asked.share or WHOLE
     with ExitStack() as stack:
         # The old store is replaced only when workers are available to run the study again.
         hands = stack.enter_context(workers) if asked.restart else None
-        store = stack.enter_context(Store.writing(place, anew=asked.restart, say=watch.note))
+        store = Store.writing(place, anew=asked.restart, say=watch.note)
         with watch.progress(count_steps(study, rank_measures=asked.rank_measures), "records and structures") as advance:
             prepared = prepare(study, store, advance, rank_measures=asked.rank_measures)
-        plan = prepared.plan
+        plan, engines = prepared.plan, SIMULATED_BY[study.definition.engine]
         _leave_out(plan, watch)
         doubtful = [record.name for record in plan.records if record.doubts]
         if doubtful:
@@ -160,19 +170,31 @@ def _bring_up_to_date(
             watch.warn(f"{count} doubtful; run `rocking record FILE` to see why: {named}")
         for name in prepared.mended:
             watch.note(f"{name}: could not be used when the study was started; it is run now")
-        if prepared.finished:
-            watch.note(f"{prepared.finished} of {plan.total} runs are in the store already")
-        for engine in SIMULATED_BY[study.definition.engine]:
-            finished, failed = store.count()
-            if finished == plan.total:
-                return
+        for engine in engines:
+            there = left(prepared, engine, share, lambda file: watch.warn(f"damaged, and computed again: {file}"))
+            if there.finished and engine == engines[0]:
+                watch.note(f"{there.finished} of {there.total} runs are in the store already")
+            if not there.chunks:
+                continue
             hands = hands or stack.enter_context(workers)
             if engine == "blocks":
-                for name, structure, motion, left in left_of_each(prepared, store):
-                    cost = cost_in_words(engine_of("blocks"), structure, motion, left, hands.count)
+                for name, structure, motion, runs in left_of_each(prepared, there.chunks):
+                    cost = cost_in_words(engine_of("blocks"), structure, motion, runs, hands.count)
                     watch.note(f"{name}: {cost}" if len(plan.structures) > 1 else cost)
-            with watch.progress(plan.total, "runs", done=finished, failed=failed) as advance:
-                run(prepared, store, hands, advance, engine)
+            with watch.progress(there.total, "runs", done=there.finished, failed=there.failed) as advance:
+                run(prepared, hands, engine, there.chunks, advance)
+        return prepared
+
+
+def _share(prepared: Prepared, share: tuple[int, int]) -> Answer[Left]:
+    """Return how many runs of a part are in the store."""
+    from rocking_cli.questions.fragility.campaign import SIMULATED_BY, left
+    from rocking_cli.questions.fragility.view import shared
+
+    done = left(prepared, SIMULATED_BY[prepared.study.definition.engine][-1], share)
+    figure = no_plot("a part of the runs has no plot: plot the curves of all of them")
+    shown = shared(prepared.store.path, share, done)
+    return Answer("share", done, shown, lambda: {"finished": [done.finished]}, figure)
 
 
 def _leave_out(plan: Plan, watch: Watcher) -> None:

@@ -19,7 +19,10 @@ from rocking_cli.views.engines import ALL_EXACT, BLOCKS_FAILED, blocks_in_words
 from rocking_cli.views.view import Table, View, number
 
 if TYPE_CHECKING:  # avoids importing scipy, which only fits need
+    from pathlib import Path
+
     from rocking_cli.questions.fragility.assess import Bivariate, Fragility, UnknownRuns
+    from rocking_cli.questions.fragility.campaign import Left
     from rocking_cli.questions.fragility.curves import Cut, FragilityCurve, Surface
     from rocking_cli.questions.fragility.definition import Definition, Limit
     from rocking_cli.questions.fragility.hazard_curve import Rate
@@ -58,6 +61,20 @@ def planned(study: Study, plan: Plan) -> View:
             rows.insert(place, (f"{name} left out", f"{len(usable) - sum(usable)}"))
     table = table_of(study.name, PLANNED, [*rows, ("runs", f"{plan.total:,}")])
     return View({"study": study.name, **counts, "runs": plan.total, "left_out": left_out(plan)}, [table])
+
+
+def shared(place: Path, share: tuple[int, int], done: Left) -> View:
+    """Show how many runs of a part of a study are in its store."""
+    data = {
+        "store": str(place),
+        "share": f"{share[0]}/{share[1]}",
+        "runs": done.total,
+        "finished": done.finished,
+        "failed": done.failed,
+    }
+    failed = f", {done.failed:,} of them could not be simulated" if done.failed else ""
+    sentence = f"Part {data['share']}: {done.finished:,} of {done.total:,} runs are in {place}{failed}."
+    return View(data, [sentence, f"When all parts are finished, `rocking results {place}` fits the curves."])
 
 
 def left_out(plan: Plan) -> list[str]:

@@ -24,13 +24,13 @@ from typing import TYPE_CHECKING, TypeVar
 from rocking_cli import __version__
 from rocking_cli.dynamics.parallel import ENDED, MAX_PROCESSES, begin
 from rocking_cli.errors import InputError, Problem, Refused, RockingError, named
+from rocking_cli.questions.fragility.store import CONTINUE_HINT
 
 if TYPE_CHECKING:
     import distributed
 
 A = TypeVar("A")
 B = TypeVar("B")
-CONTINUE_HINT = "finished runs are kept: run the same command again to continue"
 UNITS_PER_WORKER = 2  # units for each worker: one at work, one waiting
 MAX_LOST_WORKERS = 5  # workers lost with the same unit, before the study gives up
 CHECK_INTERVAL = 20.0  # s without a finished unit, after which the workers are checked

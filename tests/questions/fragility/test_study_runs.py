@@ -4,13 +4,11 @@ import json
 import os
 import shutil
 import signal
-import sqlite3
 import subprocess
 import sys
 import time
 from concurrent.futures import Executor
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -23,18 +21,19 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.processing.intensity import Reference, parse_measure
 from rocking_cli.processing.reading import Reading
-from rocking_cli.questions.fragility import assess, curves, sources, store, tally, work_units, workers
-from rocking_cli.questions.fragility.campaign import differences, prepare, run
+from rocking_cli.questions.fragility import assess, campaign, curves, sources, store, tally, work_units, workers
+from rocking_cli.questions.fragility.campaign import differences, left, prepare, run
 from rocking_cli.questions.fragility.definition import RecordEntry
 from rocking_cli.questions.fragility.observed import few_records
-from rocking_cli.questions.fragility.plan import Trial, weaker
+from rocking_cli.questions.fragility.plan import weaker
 from rocking_cli.questions.fragility.sources import Source
-from rocking_cli.questions.fragility.store import COLUMNS, Store, StoreError
+from rocking_cli.questions.fragility.store import COLUMNS, Store
 from rocking_cli.questions.fragility.study import load_study
 from rocking_cli.studies.fragility.quantities import USUAL_MEASURES
 from tests.cli.test_cli import run as command
 from tests.cli.test_cli import run_json
 from tests.conftest import EXAMPLES, rows_of
+from tests.stores import contents, every_run
 
 STUDY = f"""\
 structures:
@@ -63,19 +62,15 @@ def write(folder, text=STUDY, count=5):
 
 
 def carry_out(path, place, make=workers.threads, **options):
-    with Store.writing(place) as kept, make(**options) as hands:
-        prepared = prepare(load_study(path), kept)
-        run(prepared, kept, hands)
+    prepared = prepare(load_study(path), Store.writing(place))
+    with make(**options) as hands:
+        run(prepared, hands, "exact", left(prepared, "exact").chunks, lambda finished, failed: None)
     return prepared
 
 
-def dump(place):
-    """All that a store holds, as text."""
-    connection = sqlite3.connect(place)
-    try:
-        return list(connection.iterdump())
-    finally:
-        connection.close()
+def finished(place):
+    """How many runs a store holds so far."""
+    return len(every_run(place)) if (place / "study.json").exists() else 0
 
 
 @pytest.fixture(scope="module")
@@ -83,14 +78,13 @@ def whole(tmp_path_factory):
     """A study and its store, run without interruption on one worker."""
     folder = tmp_path_factory.mktemp("whole")
     path = write(folder)
-    return path, carry_out(path, folder / "study.db", jobs=1), folder / "study.db"
+    return path, carry_out(path, folder / "study.runs", jobs=1), folder / "study.runs"
 
 
 def test_each_run_is_what_respond_gives(whole):
     path, prepared, place = whole
     study, plan = load_study(path), prepared.plan
-    with Store.reading(place) as kept:
-        rows = kept.runs(0, plan.total)
+    rows = every_run(place)
     assert len(rows) == plan.total == 5 * 3 * 5 * 2
     assert set(rows.outcome.tolist()) == {-1, 0, 1}
     motions = [source.read() for source in study.sources]
@@ -106,42 +100,32 @@ def test_each_run_is_what_respond_gives(whole):
             assert rows.peak_ratio[k] == pytest.approx(history.peak_ratio, rel=1e-9)
 
 
-def test_the_view_says_in_words_what_the_numbers_stand_for(whole):
-    _, prepared, place = whole
-    connection = sqlite3.connect(place)
-    rows = connection.execute(
-        "SELECT structure, sample, record, level, polarity, pga, uplift_time, fell_to, outcome FROM runs"
-    ).fetchall()
-    connection.close()
-    plan = prepared.plan
-    for k in range(0, plan.total, 11):
-        sample, record, _, level, polarity = np.unravel_index(k, plan.shape)
-        trial = plan.trials[sample]
-        assert rows[k][:5] == (
-            trial.structure, trial.number, plan.records[record].name, plan.levels[level], plan.polarities[polarity],
-        )  # fmt: skip
-        assert rows[k][5] * STANDARD_GRAVITY / (trial.gravity * trial.lambda_) == pytest.approx(plan.levels[level])
-    for *_, uplift_time, fell_to, outcome in rows:
-        assert outcome == ("overturns" if fell_to else "does not uplift" if uplift_time is None else "rocks")
-    assert {row[-1] for row in rows} == {"does not uplift", "rocks", "overturns"}
-
-
 class TestSameResults:
     @pytest.mark.every(2)
     @pytest.mark.parametrize("size", [1, 7, 64, 1000])
-    def test_whatever_the_units(self, whole, tmp_path, monkeypatch, size):
-        monkeypatch.setattr("rocking_cli.questions.fragility.campaign.unit_size", lambda runs, workers: size)
-        carry_out(whole[0], tmp_path / "other.db", jobs=3)
-        assert dump(tmp_path / "other.db") == dump(whole[2])
+    def test_whatever_the_chunks(self, whole, tmp_path, monkeypatch, size):
+        monkeypatch.setattr(campaign, "runs_per_chunk", lambda plan, definition: size)
+        carry_out(whole[0], tmp_path / "other.runs", jobs=3)
+        assert len(contents(tmp_path / "other.runs")) == 1 + -(-150 // size)
+        one, other = every_run(whole[2]), every_run(tmp_path / "other.runs")
+        assert all(getattr(one, name).tobytes() == getattr(other, name).tobytes() for name in COLUMNS)
 
-    def test_whatever_memory_there_is_for_records(self, whole, tmp_path, monkeypatch):
-        monkeypatch.setattr(work_units, "MAX_SAMPLES", 1)
-        monkeypatch.setattr("rocking_cli.questions.fragility.sources.MAX_SAMPLES_IN_MEMORY", 1)
-        carry_out(whole[0], tmp_path / "other.db", jobs=2)
-        assert dump(tmp_path / "other.db") == dump(whole[2])
+    def test_whatever_memory_there_is_for_records_and_models(self, whole, tmp_path, monkeypatch):
+        monkeypatch.setattr(sources, "MAX_SAMPLES_IN_MEMORY", 1)
+        monkeypatch.setattr(work_units, "MAX_MODELS", 1)
+        carry_out(whole[0], tmp_path / "other.runs", jobs=2)
+        assert contents(tmp_path / "other.runs") == contents(whole[2]) and len(work_units._MODELS) == 1
+
+    def test_in_parts_into_one_folder(self, whole, tmp_path):
+        place, told = tmp_path / "other.runs", []
+        for k in (3, 1, 2):
+            shown = json.loads(command("fragility", whole[0], "--store", place, "--share", f"{k}/3", "--json").stdout)
+            told.append((shown["share"], shown["runs"], shown["finished"], shown["failed"]))
+        assert told == [("3/3", 22, 22, 0), ("1/3", 64, 64, 0), ("2/3", 64, 64, 0)]
+        assert contents(place) == contents(whole[2])
 
     def test_after_an_error_in_the_middle(self, whole, tmp_path, monkeypatch):
-        monkeypatch.setattr("rocking_cli.questions.fragility.campaign.unit_size", lambda runs, workers: 20)
+        monkeypatch.setattr(campaign, "runs_per_chunk", lambda plan, definition: 20)
         done = []
 
         def breaks(unit):
@@ -150,34 +134,17 @@ class TestSameResults:
             done.append(unit)
             return work_units.carry_out(unit)
 
-        place = tmp_path / "other.db"
-        monkeypatch.setattr("rocking_cli.questions.fragility.campaign.carry_out", breaks)
+        place = tmp_path / "other.runs"
+        monkeypatch.setattr(campaign, "carry_out", breaks)
         with pytest.raises(OSError, match="on fire"):
             carry_out(whole[0], place, jobs=1)
-        with Store.reading(place) as kept:
-            assert 0 < kept.count()[0] < whole[1].plan.total
+        before = finished(place)
+        assert 0 < before < 150
         ran = []
-        monkeypatch.setattr(
-            "rocking_cli.questions.fragility.campaign.carry_out",
-            lambda unit: ran.append(unit) or work_units.carry_out(unit),
-        )
-        before = whole[1].plan.total - carry_out(whole[0], place, jobs=2).finished
-        assert sum(len(unit.id) for unit in ran) == before  # nothing twice
-        assert dump(place) == dump(whole[2])
-
-    def test_after_a_full_disk(self, whole, tmp_path, monkeypatch):
-        monkeypatch.setattr(store, "COMMIT_INTERVAL", 0.0)
-        monkeypatch.setattr("rocking_cli.questions.fragility.campaign.unit_size", lambda runs, workers: 10)
-        place = tmp_path / "other.db"
-        with pytest.raises(StoreError, match="full"), Store.writing(place) as kept, workers.threads(1) as hands:
-            prepared = prepare(load_study(whole[0]), kept)
-            (pages,) = kept._connection.execute("PRAGMA page_count").fetchone()
-            kept._connection.execute(f"PRAGMA max_page_count = {pages + 1}")
-            run(prepared, kept, hands)
-        with Store.reading(place) as kept:
-            assert 0 < kept.count()[0] < whole[1].plan.total
+        monkeypatch.setattr(campaign, "carry_out", lambda unit: ran.append(unit) or work_units.carry_out(unit))
         carry_out(whole[0], place, jobs=2)
-        assert dump(place) == dump(whole[2])
+        assert sum(len(unit.id) for unit in ran) == 150 - before  # nothing twice
+        assert finished(place) == 150
 
 
 def program(*arguments, **options):
@@ -188,18 +155,6 @@ def program(*arguments, **options):
         [sys.executable, "-c", code, *map(str, arguments)], env=environment, text=True, encoding="utf-8",
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options,
     )  # fmt: skip
-
-
-def finished(place):
-    """How many runs a store holds so far."""
-    try:
-        connection = sqlite3.connect(place)
-        try:
-            return connection.execute("SELECT count(*) FROM run").fetchone()[0]
-        finally:
-            connection.close()
-    except sqlite3.Error:
-        return 0
 
 
 def wait_until_some_are_finished(place, process):
@@ -218,13 +173,13 @@ def long_study(tmp_path_factory):
     """A study of some seconds, and its uninterrupted store."""
     folder = tmp_path_factory.mktemp("long")
     path = write(folder, count=LONG)
-    return path, carry_out(path, folder / "whole.db"), folder / "whole.db"
+    return path, carry_out(path, folder / "whole.runs"), folder / "whole.runs"
 
 
 @pytest.mark.rest
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no interrupt to send to one process")
 def test_interrupted_it_says_so_and_keeps_what_is_finished(long_study, tmp_path):
-    place = tmp_path / "interrupted.db"
+    place = tmp_path / "interrupted.runs"
     process = program("fragility", long_study[0], "--store", place, "--jobs", 1)
     wait_until_some_are_finished(place, process)
     process.send_signal(signal.SIGINT)
@@ -235,24 +190,26 @@ def test_interrupted_it_says_so_and_keeps_what_is_finished(long_study, tmp_path)
 
 
 @pytest.mark.rest
-def test_while_it_runs_others_read_and_do_not_write(long_study, tmp_path):
-    path, prepared, _ = long_study
-    place = tmp_path / "busy.db"
+def test_while_it_runs_others_read_and_write(long_study, tmp_path):
+    path, prepared, whole = long_study
+    place = tmp_path / "busy.runs"
     process = program("fragility", path, "--store", place, "--jobs", 1)
     try:
         wait_until_some_are_finished(place, process)
-        assert "another process is at work" in command("fragility", path, "--store", place, code=2).stderr
         assert 0 < json.loads(command("results", place, "--json", code=5).stdout)["finished"] < prepared.plan.total
         assert process.poll() is None
+        command("fragility", path, "--store", place)
+        assert process.wait() == 0
     finally:
         process.kill()
         process.communicate()
+    assert contents(place) == contents(whole)
 
 
 @pytest.mark.rest
 def test_a_cluster_gives_the_same_though_a_worker_is_killed(long_study, tmp_path):
     path, prepared, whole = long_study
-    place, address = tmp_path / "cluster.db", tmp_path / "scheduler.json"
+    place, address = tmp_path / "cluster.runs", tmp_path / "scheduler.json"
 
     def dask(*arguments):
         return subprocess.Popen(
@@ -280,13 +237,13 @@ def test_a_cluster_gives_the_same_though_a_worker_is_killed(long_study, tmp_path
         for each in started:
             each.kill()
             each.wait()
-    assert dump(place) == dump(whole)
+    assert contents(place) == contents(whole)
 
 
 def test_a_scheduler_that_is_not_there_is_said_so(whole, tmp_path, monkeypatch):
     monkeypatch.setattr(workers, "SCHEDULER_TIMEOUT", 0.3)
     with pytest.raises(workers.ClusterError, match="no scheduler answers"):
-        carry_out(whole[0], tmp_path / "x.db", workers.cluster, scheduler="tcp://127.0.0.1:9")
+        carry_out(whole[0], tmp_path / "x.runs", workers.cluster, scheduler="tcp://127.0.0.1:9")
 
 
 def test_a_client_of_a_cluster_is_taken_and_stays_open(whole, tmp_path):
@@ -295,18 +252,18 @@ def test_a_client_of_a_cluster_is_taken_and_stays_open(whole, tmp_path):
         distributed.LocalCluster(n_workers=1, processes=False, dashboard_address=None) as local,
         local.get_client() as own,
     ):
-        carry_out(whole[0], tmp_path / "x.db", workers.cluster, scheduler=own)
+        carry_out(whole[0], tmp_path / "x.runs", workers.cluster, scheduler=own)
         assert own.submit(int, 3).result() == 3
-    assert dump(tmp_path / "x.db") == dump(whole[2])
+    assert contents(tmp_path / "x.runs") == contents(whole[2])
     with pytest.raises(InputError, match=r"`scheduler` must be an address, or a synchronous Client .* got Executor"):
-        carry_out(whole[0], tmp_path / "y.db", workers.cluster, scheduler=Executor())
+        carry_out(whole[0], tmp_path / "y.runs", workers.cluster, scheduler=Executor())
 
 
 class TestChanges:
     @pytest.fixture
     def place(self, whole, tmp_path):
         """A copy of the finished store."""
-        return Path(shutil.copy(whole[2], tmp_path / "study.db"))
+        return shutil.copytree(whole[2], tmp_path / "study.runs")
 
     @pytest.mark.parametrize(
         ("old", "new", "said"),
@@ -325,7 +282,7 @@ class TestChanges:
             carry_out(path, place)
         assert said in str(caught.value) and "`restart`" in str(caught.value)
         assert len(caught.value.problems) == 1
-        assert dump(place) == dump(whole[2])
+        assert contents(place) == contents(whole[2])
 
     ENTRY = "{file: a.csv, units: m, from: displacement, with: b.csv, azimuth: 30, processing: [lowpass 20]}"
 
@@ -345,7 +302,7 @@ class TestChanges:
             u = 0.05 * np.sin(np.pi * t / 4) ** 2 * np.sin((8 if name == "a" else 9) * t)
             np.savetxt(tmp_path / f"{name}.csv", np.column_stack([t, u]), delimiter=",")
         text = f"structures: ['{EXAMPLES / 'block.yaml'}']\nrecords: [{self.ENTRY}]\nmethod: cloud\n"
-        path, place = write(tmp_path, text), tmp_path / "study.db"
+        path, place = write(tmp_path, text), tmp_path / "study.runs"
         carry_out(path, place)
         carry_out(path, place)
         path.write_text(text.replace(old, new).replace("units: m, gain", "gain"), encoding="utf-8")
@@ -374,11 +331,11 @@ class TestChanges:
     def test_a_changed_record_is_named(self, tmp_path):
         (tmp_path / "accel.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
         path = write(tmp_path, STUDY.replace(f"{EXAMPLES}/*accel.csv", "accel.csv"))
-        carry_out(path, tmp_path / "study.db")
+        carry_out(path, tmp_path / "study.runs")
         with (tmp_path / "accel.csv").open("a", encoding="utf-8") as file:
             file.write("\n")
         with pytest.raises(InputError, match=r"the record accel.csv has changed"):
-            carry_out(path, tmp_path / "study.db")
+            carry_out(path, tmp_path / "study.runs")
 
     def test_another_version_is_named(self, whole, tmp_path, place, monkeypatch):
         monkeypatch.setattr("rocking_cli.questions.fragility.campaign.__version__", "9.9")
@@ -412,15 +369,15 @@ class TestChanges:
         monkeypatch.setattr(workers, "SCHEDULER_TIMEOUT", 0.3)
         asked = ("fragility", whole[0], "--store", place, "--restart", "--scheduler", "tcp://127.0.0.1:9")
         assert "no scheduler answers" in command(*asked, code=1).stderr
-        assert dump(place) == dump(whole[2])
-        assert [each.name for each in tmp_path.iterdir()] == ["study.db"]
+        assert contents(place) == contents(whole[2])
+        assert [each.name for each in tmp_path.iterdir()] == ["study.runs"]
 
     def test_restart_begins_anew(self, whole, tmp_path, place):
         path = write(tmp_path, STUDY.replace("samples: 4", "samples: 4\nseed: 9"))
         result = command("fragility", path, "--restart", "--json")
         assert json.loads(result.stdout)["seed"] == 9
         assert "the store as it was is kept as" in result.stderr
-        assert dump(tmp_path / "study.before.db") == dump(whole[2])
+        assert contents(tmp_path / "study.before.runs") == contents(whole[2])
 
 
 class TestBadParts:
@@ -437,7 +394,7 @@ class TestBadParts:
         assert len(found["left_out"]) == 1 and "bad.csv" in found["left_out"][0]
         # And again when nothing is left to run.
         command("fragility", with_bad_record, code=5)
-        command("results", tmp_path / "study.db", code=5)
+        command("results", tmp_path / "study.runs", code=5)
 
     def test_a_record_put_right_is_run(self, with_bad_record, whole, tmp_path):
         command("fragility", with_bad_record, code=5)
@@ -455,7 +412,7 @@ class TestBadParts:
         (tmp_path / "zero.csv").write_text("t,accel_g\n0,0\n0.01,0\n0.02,0\n", encoding="utf-8")
         path = write(tmp_path, f"structures: [{EXAMPLES / 'block.yaml'}]\nrecords: [zero.csv]\nmethod: cloud\n")
         assert "no record can be used" in command("fragility", path, code=2).stderr
-        assert not (tmp_path / "study.db").exists()
+        assert not (tmp_path / "study.runs").exists()
 
     def test_a_structure_too_stocky_for_its_kinematics(self, tmp_path):
         (tmp_path / "stocky.yaml").write_text("mechanism: block\nwidth: 3\nheight: 1\n", encoding="utf-8")
@@ -469,57 +426,9 @@ class TestBadParts:
         command("fragility", path, "--restart")
 
 
-class TestOtherFiles:
-    def test_a_text_is_no_store(self, whole, tmp_path):
-        (tmp_path / "notes.db").write_text("nothing here, but longer than a header of a database would be" * 5)
-        for words in (["results"], ["fragility", whole[0], "--store"]):
-            assert "not the store of a study" in command(*words, tmp_path / "notes.db", code=2).stderr
-
-    def test_another_database_is_left_alone(self, whole, tmp_path):
-        place = tmp_path / "other.db"
-        connection = sqlite3.connect(place)
-        connection.execute("CREATE TABLE precious (x)")
-        connection.commit()
-        connection.close()
-        for more in ([], ["--restart"]):
-            assert "another database" in command("fragility", whole[0], "--store", place, *more, code=2).stderr
-        assert "precious" in dump(place)[1]
-
-    def test_a_store_that_is_not_there_is_not_made(self, tmp_path):
-        assert "no such store" in command("results", tmp_path / "none.db", code=2).stderr
-        assert not (tmp_path / "none.db").exists()
-
-    @pytest.mark.parametrize("name", [".", "..", ""])
-    def test_a_folder_is_no_study(self, name):
-        assert "this is a folder" in command("fragility", name, code=2).stderr
-        assert "this is a folder" in command("results", ".", code=2).stderr
-
-    def test_a_study_is_not_its_own_store(self, tmp_path):
-        write(tmp_path, count=5).rename(tmp_path / "study.db")
-        assert "would overwrite an input file" in command("fragility", tmp_path / "study.db", code=2).stderr
-
-
-def test_a_reader_that_takes_its_time_does_not_stop_the_study(whole, tmp_path, monkeypatch):
-    monkeypatch.setattr(store, "LOCK_TIMEOUT", 0.2)
-    monkeypatch.setattr(store, "COMMIT_INTERVAL", 0.0)
-    place = tmp_path / "study.db"
-    with Store.writing(place) as kept, workers.threads(1) as hands:
-        prepared = prepare(load_study(whole[0]), kept)
-        with Store.reading(place) as reader:
-            assert reader.count() == (0, 0)
-            run(prepared, kept, hands)
-            assert reader.count()[0] > 0
-
-
-def test_units_hold_few_models(tmp_path, monkeypatch):
-    monkeypatch.setattr(work_units, "MAX_MODELS", 3)
-    path = write(tmp_path, STUDY.replace("samples: 4", "samples: 20"), count=2)
-    with Store.writing(tmp_path / "study.db") as kept:
-        prepared = prepare(load_study(path), kept)
-        study, plan = prepared.study, prepared.plan
-        made = list(work_units.units(plan, study.samples, prepared.motions, "nonlinear", kept.finished, 1000))
-    assert max(len(each.models) for each in made) == 3
-    assert np.concatenate([each.id for each in made]).tolist() == list(range(plan.total))
+@pytest.mark.parametrize("name", [".", "..", ""])
+def test_a_folder_is_no_study(name):
+    assert "this is a folder" in command("fragility", name, code=2).stderr
 
 
 def test_the_rate_is_there_though_other_measures_are_asked_for(tmp_path):
@@ -539,7 +448,7 @@ method:"""
 
 def both_as_text_and_json(path):
     """A study's results, and its curves and surfaces as JSON."""
-    place, text = path.with_suffix(".db"), command("fragility", path).stdout
+    place, text = path.with_suffix(".runs"), command("fragility", path).stdout
     assert command("results", place).stdout == text
     found = run_json("results", place)
     return text, found["curves"], found["surfaces"]
@@ -578,10 +487,9 @@ def test_measures_in_proportion_give_one_curve(tmp_path, method, of):
 
 
 def test_runs_are_grouped_by_level_where_it_decides_their_intensity(whole):
-    with Store.reading(whole[2]) as kept:
-        plan, limits = kept.plan(), ["uplift", "overturning"]
-        found = {name: tally.count(kept, plan, name, limits, USUAL_MEASURES) for name in ("valley bridge", "uncertain")}
-        rows = kept.runs(0, plan.total)
+    kept, rows, limits = Store.reading(whole[2]), every_run(whole[2]), ["uplift", "overturning"]
+    plan = kept.plan
+    found = {name: tally.count(kept, plan, name, limits, USUAL_MEASURES) for name in ("valley bridge", "uncertain")}
     over = {name: {each for each in USUAL_MEASURES if found[name].decided_by_level(each)} for name in found}
     assert over == {"valley bridge": {"PGA", "PGA/(g lambda)"}, "uncertain": {"PGA/(g lambda)"}}  # its lambda varies
     # Of the bridge one sample, of the other four: 3 records at 5 levels each, of both polarities.
@@ -603,13 +511,11 @@ def test_runs_are_grouped_by_level_where_it_decides_their_intensity(whole):
 
 
 def test_what_is_counted_does_not_depend_on_how_it_is_read(whole, monkeypatch):
-    with Store.reading(whole[2]) as kept:
-        plan, seen = kept.plan(), []
-        once = tally.count(kept, plan, "uncertain", ["uplift", 0.25], USUAL_MEASURES, ladders=True, counted=seen.append)
-        monkeypatch.setattr(store, "RUNS_PER_READ", 7)
-        piecewise = tally.count(
-            kept, plan, "uncertain", ["uplift", 0.25], USUAL_MEASURES, ladders=True, counted=seen.append
-        )
+    kept, seen = Store.reading(whole[2]), []
+    plan, limits = kept.plan, ["uplift", 0.25]
+    once = tally.count(kept, plan, "uncertain", limits, USUAL_MEASURES, ladders=True, counted=seen.append)
+    monkeypatch.setattr(store, "ROWS_PER_READ", 7)
+    piecewise = tally.count(kept, plan, "uncertain", limits, USUAL_MEASURES, ladders=True, counted=seen.append)
     assert sum(seen) == 2 * 120
     np.testing.assert_array_equal(piecewise.runs, once.runs)
     np.testing.assert_array_equal(piecewise.ladders.there, once.ladders.there)
@@ -668,31 +574,14 @@ def test_one_is_the_least_pga_over_g_lambda_that_uplifts():
         assert (history.peak_ratio != 0) == uplifts
 
 
-def test_columns_of_a_row_are_those_of_the_table(whole):
-    connection = sqlite3.connect(whole[2])
-    names = [row[1] for row in connection.execute("PRAGMA table_info(run)")]
-    connection.close()
-    assert tuple(names) == (*COLUMNS, "checksum")
-
-
-@pytest.mark.parametrize(("table", "kind"), [("sample", Trial), ("record", sources.Record)])
-def test_columns_of_a_table_are_the_fields_of_what_it_holds_in_their_order(whole, table, kind):
-    connection = sqlite3.connect(whole[2])
-    names = [row[1] for row in connection.execute(f"PRAGMA table_info({table})")]
-    connection.close()
-    assert names == ["id", *kind.__dataclass_fields__]
-
-
 def test_a_file_that_changes_before_it_is_read_again_stops_the_study(tmp_path, monkeypatch):
     monkeypatch.setattr(sources, "MAX_SAMPLES_IN_MEMORY", 1)
     (tmp_path / "accel.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
     path = write(tmp_path, STUDY.replace(f"{EXAMPLES}/*accel.csv", "accel.csv"))
-    with Store.writing(tmp_path / "study.db") as kept, workers.threads(1) as hands:
-        prepared = prepare(load_study(path), kept)
-        prepared = replace(prepared)
-        (tmp_path / "accel.csv").write_text("t,accel_g\n0,0\n0.01,1\n", encoding="utf-8")
-        with pytest.raises(InputError, match="has changed while the study ran"):
-            run(prepared, kept, hands)
+    prepared = prepare(load_study(path), Store.writing(tmp_path / "study.runs"))
+    (tmp_path / "accel.csv").write_text("t,accel_g\n0,0\n0.01,1\n", encoding="utf-8")
+    with pytest.raises(InputError, match="has changed while the study ran"), workers.threads(1) as hands:
+        run(prepared, hands, "exact", prepared.store.chunks, print)
 
 
 def test_a_linear_block_under_one_pulse_shape_overturns_at_a_step(tmp_path):
@@ -725,20 +614,18 @@ def test_a_linear_block_under_one_pulse_shape_overturns_at_a_step(tmp_path):
 @pytest.mark.rest
 def test_the_example_runs_with_pictures_and_tables(tmp_path):
     study = EXAMPLES / "study" / "near_fault.yaml"
-    where = ["--store", "near.db", "--plot", "drawn"]
+    where = ["--store", "near.runs", "--plot", "drawn"]
     result = command("fragility", study, *where)
     assert "[1/year]" in result.stdout and "annual rate" in result.stdout and "c2" in result.stdout
     assert len(list((tmp_path / "drawn").glob("*.png"))) == 13
     for name in ("runs.csv", "runs.parquet"):
-        command("results", "near.db", "--out", name)
+        command("results", "near.runs", "--out", name)
     from pyarrow import parquet
 
     table = parquet.read_table(tmp_path / "runs.parquet").to_pydict()
     rows = rows_of(tmp_path / "runs.csv")
-    with Store.reading(tmp_path / "near.db") as kept:
-        plan = kept.plan()
-        assert len(rows) == len(table["run"]) == plan.total
-        exact = kept.runs(0, plan.total)
+    plan, exact = Store.reading(tmp_path / "near.runs").plan, every_run(tmp_path / "near.runs")
+    assert len(rows) == len(table["run"]) == plan.total
     assert table["peak_ratio"] == np.where(np.isnan(exact.peak_ratio), np.inf, exact.peak_ratio).tolist()
     levels = {float(row["level"]) for row in rows}
     assert sorted(levels) == pytest.approx(plan.levels, rel=1e-8)
@@ -751,11 +638,10 @@ def test_the_example_runs_with_pictures_and_tables(tmp_path):
 def test_incremental_analysis_takes_the_first_exceedance(tmp_path):
     path = write(tmp_path, STUDY.replace("method: stripes", "method: ida"), count=6)
     command("fragility", path, "--json", "--plot", "drawn")
-    with Store.reading(tmp_path / "study.db") as kept:
-        plan, definition = kept.plan(), load_study(path).definition
-        found = tally.count(kept, plan, "uncertain", definition.limit_states, ["PGA/(g lambda)"], ladders=True)
-        rows = kept.runs(36, plan.total)
-        assert tally.peaks(kept, plan, "uncertain").shape == (24, 6)
+    kept, definition = Store.reading(tmp_path / "study.runs"), load_study(path).definition
+    plan, (rows,) = kept.plan, kept.rows(36, kept.plan.total)
+    found = tally.count(kept, plan, "uncertain", definition.limit_states, ["PGA/(g lambda)"], ladders=True)
+    assert tally.peaks(kept, plan, "uncertain").shape == (24, 6)
     (_, _, overturning) = assess.curves(found, "uncertain", definition, None)
     table = (rows.outcome != 0).reshape(4, 3, 6, 2)
     lower, upper, exceeding = [], [], np.zeros((6, 3))
@@ -792,10 +678,9 @@ def test_check_counts_what_is_left_out_apart(tmp_path):
 
 def test_samples_that_differ_in_their_restitution_only(tmp_path):
     text = STUDY.replace("      width: {normal: {mean: 0.7, deviation: 0.05}}\n", "").replace("both", "1")
-    prepared = carry_out(write(tmp_path, text, count=3), tmp_path / "study.db")
+    prepared = carry_out(write(tmp_path, text, count=3), tmp_path / "study.runs")
     study, plan = prepared.study, prepared.plan
-    with Store.reading(tmp_path / "study.db") as kept:
-        rows = kept.runs(0, plan.total)
+    rows = every_run(tmp_path / "study.runs")
     assert len(set(rows.eta[9:].tolist())) == 4 and np.isnan(rows.eta[:9]).all()
     motion = study.sources[1].read()
     for k in range(9, plan.total):
