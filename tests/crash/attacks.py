@@ -253,7 +253,7 @@ class Attacked:
 
     def _half(self, found: State, *, left: bool = False, done: bool = False) -> Iterator[str]:
         for path, text in found.items():
-            if path.parts[0] == "home":  # caches, which the next run sees
+            if path.parts[0].startswith(("home", "s.before-")):  # caches; a store that is put aside half-way
                 continue
             if any(LEFT.fullmatch(part) for part in path.parts):
                 if not left and (done or len(path.parts) == 1):  # in a folder the next run takes them away

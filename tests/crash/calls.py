@@ -257,6 +257,8 @@ def _apply(call: Call, names: dict[Path, _File], sure: dict[Path, _File], opened
             for each in moved:
                 del names[each]
             names |= {target / each.relative_to(path): file for each, file in moved.items()}
+            # What a folder surely holds, it holds under any name.
+            sure |= {target / each.relative_to(path): file for each, file in sure.items() if path in each.parents}
         case "unlink" | "unlinkat" | "rmdir":
             names.pop(path, None)
         case "link" | "linkat":

@@ -197,6 +197,7 @@ class Store:
         self._anew = False
         self._say: Say = lambda text: None
         self._state: tuple[int, int] | None = None
+        self._text = b""
 
     @classmethod
     def reading(cls, path: str | Path) -> Store:
@@ -296,13 +297,12 @@ class Store:
             "samples": [asdict(each) for each in plan.trials],
             "measured": {"records": measured.of_record, "samples": measured.of_sample},
         }
-        new = json.loads(json_text(new))
+        text = json_text(new).encode()
         if self.empty:
             self._make_folder()
-        if new != self.facts:
-            text = json_text({"checksum": _digest(new), **new})
-            write_whole(self.path / STUDY, lambda stream: stream.write(text.encode()))
-        self.facts = new
+        if text != self._text:
+            write_whole(self.path / STUDY, lambda stream: stream.write(_sealed(text)))
+        self._text, self.facts = text, json.loads(text)
         if measured.of_run:
             self._write(MEASURED, measured.of_run)
         self.__dict__.pop("plan", None)
@@ -452,18 +452,15 @@ class Store:
             content = place.read_bytes()
         except OSError as error:
             raise InputError(Problem(f"cannot be read: {error.strerror}", str(place))) from None
-        try:
-            facts = json.loads(content)
-            sound = facts.pop("checksum") == _digest(facts)
-        except (ValueError, KeyError, AttributeError, TypeError):
-            sound = False
-        if not sound:
+        text = b"{" + content[len(_sealed(b"")) :]
+        if content != _sealed(text):
             what = f"the store is damaged: {STUDY} does not match its checksum"
             raise InputError(Problem(what, str(self.path), hint=f"restore a copy of it, or {RESTART_HINT}"))
+        facts = json.loads(text)
         if facts["layout"] != LAYOUT:
             what = f"this store has the layout {facts['layout']}, and this version of rocking reads {LAYOUT} only"
             raise InputError(Problem(what, str(self.path), hint=RESTART_HINT))
-        self.facts = facts
+        self._text, self.facts = text, facts
 
     def _refuse_foreign(self) -> None:
         """Raise `InputError` if there is something else in this place."""
@@ -512,8 +509,9 @@ class DamagedFile(Exception):
 RESTART_HINT = "run the study again with `restart`, which keeps this folder under another name"
 
 
-def _digest(facts: Mapping[str, Any]) -> str:
-    return hashlib.sha256(json_text(facts, sort_keys=True).encode()).hexdigest()
+def _sealed(text: bytes) -> bytes:
+    """Return the JSON text of a mapping with its checksum as the first item."""
+    return b'{"checksum": "' + hashlib.sha256(text).hexdigest().encode() + b'", ' + text[1:]
 
 
 def _state(path: Path) -> tuple[int, int] | None:

@@ -10,6 +10,7 @@ import pytest
 
 from rocking_cli.errors import InputError
 from rocking_cli.io import files
+from rocking_cli.questions.fragility import store
 from rocking_cli.questions.fragility.campaign import prepare
 from rocking_cli.questions.fragility.store import COLUMNS, Store
 from rocking_cli.questions.fragility.study import load_study
@@ -28,12 +29,6 @@ def place(sound, tmp_path):
 
 def names(folder):
     return sorted(each.name for each in folder.iterdir())
-
-
-def change(place, **facts):
-    """Change a description as another program would."""
-    data = json.loads((place / "study.json").read_text(encoding="utf-8"))
-    (place / "study.json").write_text(json.dumps({**data, **facts}), encoding="utf-8")
 
 
 def test_numpy_and_pandas_read_it(place):
@@ -127,13 +122,16 @@ def test_files_of_another_study_are_refused(sound, place, name):
     assert contents(place) == found
 
 
-def test_a_damaged_description_and_one_of_another_layout_are_refused_and_kept_by_restart(sound, place):
-    change(place, seed=3)
-    assert "study.json does not match its checksum" in command("results", place, code=2).stderr
-    change(place, layout=8, checksum="")
+def test_a_damaged_description_and_one_of_another_layout_are_refused_and_kept_by_restart(sound, place, monkeypatch):
+    found = contents(place)
+    with monkeypatch.context() as patch:
+        patch.setattr(store, "LAYOUT", 10)
+        assert "the layout 9, and this version of rocking reads 10 only" in command("results", place, code=2).stderr
+    (place / "study.json").write_bytes(found["study.json"].replace(b'"seed": 0', b'"seed": 1'))
     found = contents(place)
     for words in (["results", place], ["fragility", sound.study, "--store", place]):
-        assert "restart" in command(*words, code=2).stderr
+        said = command(*words, code=2).stderr
+        assert "study.json does not match its checksum" in said and "restart" in said
     run = command("fragility", sound.study, "--store", place, "--restart", "--json", code=0)
     assert shown(run.stdout) == sound.shown and contents(place.with_name("study.before.runs")) == found
 
@@ -167,14 +165,14 @@ def test_a_study_that_another_process_begins_meanwhile_is_gone_on_with(sound, tm
 
 
 def test_a_writer_whose_store_another_process_has_put_aside_stops(sound, place):
-    store = Store.writing(place)
-    rows = store.chunk(0)
+    writer = Store.writing(place)
+    rows = writer.chunk(0)
     command("fragility", sound.study, "--store", place, "--restart", code=0)
-    store.add(rows)  # the same study: the same runs
+    writer.add(rows)  # the same study: the same runs
     assert contents(place) == contents(sound.store)
     shutil.rmtree(place)
     with pytest.raises(InputError, match="another process has moved this store"):
-        store.add(rows)
+        writer.add(rows)
     shutil.copytree(sound.other.with_suffix(".runs"), place)
     with pytest.raises(InputError, match="another process has moved this store"):
-        store.add(rows)
+        writer.add(rows)
