@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.dynamics import kernels
-from rocking_cli.dynamics.deck import MAX_IMPACTS, STILL, check_tolerance, lay_out, never_lifts, read_marks, run_deck
+from rocking_cli.dynamics.deck import MAX_IMPACTS, NEVER_LIFTED, check_rtol, lay_out, never_lifts, read_marks, run_deck
 from rocking_cli.dynamics.history import out_of_step
 from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import Outcomes
@@ -204,7 +204,7 @@ def respond_many(
     """
     if threads is not None and threads < 1:
         raise InputError(f"threads must be 1 or more, got {threads}")
-    check_tolerance(rtol)
+    check_rtol(rtol)
     for name, places, there in (("model", runs.model, len(models)), ("record", runs.record, len(motions))):
         if len(runs) and places.max() >= there:
             raise InputError(f"run {int(places.argmax())}: there is no {name} {places.max()}, only {there}")
@@ -230,12 +230,12 @@ def respond_many(
         run = partial(run_deck, deck, rtol=rtol, most_impacts=most_impacts)
 
         def simulate(which: Bools, progress: Callable[[int], None] | None = None) -> None:
-            some, found = rows[which], marks[which]
-            in_parts(partial(run, some, found), len(some), HISTORIES_PER_TASK, threads, progress)
-            marks[which] = found
+            chosen, their_marks = rows[which], marks[which]
+            in_parts(partial(run, chosen, their_marks), len(chosen), HISTORIES_PER_TASK, threads, progress)
+            marks[which] = their_marks
 
         still = never_lifts(deck, rows)
-        marks[still] = STILL
+        marks[still] = NEVER_LIFTED
         if progress is not None and still.any():
             progress(int(still.sum()))
         simulate(~still, progress)

@@ -27,10 +27,10 @@ Number = TypeVar("Number", np.float64, np.int64)
 NO_VALUES = np.empty(0)
 RELEASE_DT = 0.005  # s, for a free motion without a record
 MAX_IMPACTS = 20_000  # impacts after the record; with more, a structure is still rocking (eta = 0.999 takes 14,000)
-STILL = np.full(kernels.MARKS, np.nan)  # marks of a run that ends as it began, at rest
-STILL[[kernels.PEAK, kernels.PEAK + 1, kernels.IMPACTS, kernels.ENDED, kernels.SIDE]] = 0.0
-STILL[[kernels.LARGEST, kernels.LONGEST]] = 0.0
-STILL[kernels.STATUS] = kernels.AT_REST
+NEVER_LIFTED = np.full(kernels.MARKS, np.nan)  # marks of a run that ends as it began, at rest
+NEVER_LIFTED[[kernels.PEAK, kernels.PEAK + 1, kernels.IMPACTS, kernels.ENDED, kernels.SIDE]] = 0.0
+NEVER_LIFTED[[kernels.LARGEST, kernels.LONGEST]] = 0.0
+NEVER_LIFTED[kernels.STATUS] = kernels.AT_REST
 
 
 def run_deck(
@@ -62,7 +62,7 @@ def run_deck(
     run(first, len(runs) if stop is None else stop, runs, deck, rtol, most_impacts, brief, samples, marks, room)
 
 
-def check_tolerance(rtol: float) -> None:
+def check_rtol(rtol: float) -> None:
     """Raise `InputError` if the relative error of a step is out of range."""
     if not FINEST_RTOL <= rtol < 1:
         raise InputError(f"rtol must be at least {FINEST_RTOL:g} and below 1, got {rtol:g}: rounding allows no less")

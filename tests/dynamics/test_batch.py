@@ -6,11 +6,13 @@ from functools import cache
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
 import rocking_cli as rk
 from mechanisms.arch import Arch
 from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
+from rocking_cli import structure
 from rocking_cli.core import Direction
 from rocking_cli.core.given import DirectionalRestitution
 from rocking_cli.dynamics import batch
@@ -55,6 +57,16 @@ def test_columns_are_out_of_step_where_one_alone_is_unknown(friction):
 @cache
 def models(name, k=1.0):
     return build_models((MECHANISMS | FREE)[name](k))
+
+
+def test_models_are_built_by_one_thread_of_the_library_of_matrices(monkeypatch):
+    during = []
+    monkeypatch.setattr(structure, "build", lambda *_, **__: during.extend(threadpool_info()))
+    with threadpool_limits(2, "blas"):
+        before = threadpool_info()
+        build_models(MECHANISMS["block"](), ("nonlinear",))
+        assert threadpool_info() == before
+    assert {each["num_threads"] for each in during if each["user_api"] == "blas"} == {1}
 
 
 @cache
