@@ -1,6 +1,7 @@
 """Entry point of the command `rocking` and of `python -m rocking_cli`; handles interrupts from the first import on."""
 
 import gc
+import os
 import sys
 
 GARBAGE_THRESHOLD = 100_000
@@ -10,6 +11,8 @@ GARBAGE_THRESHOLD = 100_000
 def run() -> None:
     """Run the command line."""
     gc.set_threshold(GARBAGE_THRESHOLD)
+    # Before numpy is imported: the matrices of a command are small, and on busy cores threads wait for each other.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         from rocking_cli.cli.main import main
     except KeyboardInterrupt:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
+from threadpoolctl import threadpool_limits
 
 from rocking_cli.core import Equivalence, Mechanism, NoEquivalentBlock, Statics, both_statics, equivalent_block
 from rocking_cli.core.advice import uplift_error
@@ -263,7 +264,7 @@ class Structure:
         """Return a model of the structure. Raises `InputError` or `MechanismError` if it cannot be built."""
         if name not in self._models:
             statics, equivalence = self.statics, self.equivalence if name != "nonlinear" else None
-            with self.named():
+            with self.named(), threadpool_limits(1, "blas"):  # threads wait for each other on busy cores
                 self._models[name] = build(
                     self.mechanism, statics, equivalence, name, self.opening, to_first_impact=self.to_first_impact
                 )

@@ -9,9 +9,9 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rocking_cli.arrays import Integers, Reals
+from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.dynamics import kernels
-from rocking_cli.dynamics.deck import MAX_IMPACTS, lay_out, read_marks, run_deck
+from rocking_cli.dynamics.deck import MAX_IMPACTS, NEVER_LIFTED, check_rtol, lay_out, never_lifts, read_marks, run_deck
 from rocking_cli.dynamics.history import out_of_step
 from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import Outcomes
@@ -204,6 +204,7 @@ def respond_many(
     """
     if threads is not None and threads < 1:
         raise InputError(f"threads must be 1 or more, got {threads}")
+    check_rtol(rtol)
     for name, places, there in (("model", runs.model, len(models)), ("record", runs.record, len(motions))):
         if len(runs) and places.max() >= there:
             raise InputError(f"run {int(places.argmax())}: there is no {name} {places.max()}, only {there}")
@@ -225,13 +226,22 @@ def respond_many(
     rows[:, kernels.STRUCTURE] = runs.model
     rows[:, kernels.LOOSE] = np.array([model.to_first_impact for model in models])[runs.model]
     if len(runs):
-        run = partial(run_deck, lay_out(models, motions), rtol=rtol, most_impacts=most_impacts)
-        in_parts(partial(run, rows, marks), len(rows), HISTORIES_PER_TASK, threads, progress)
+        deck = lay_out(models, motions)
+        run = partial(run_deck, deck, rtol=rtol, most_impacts=most_impacts)
+
+        def simulate(which: Bools, progress: Callable[[int], None] | None = None) -> None:
+            chosen, their_marks = rows[which], marks[which]
+            in_parts(partial(run, chosen, their_marks), len(chosen), HISTORIES_PER_TASK, threads, progress)
+            marks[which] = their_marks
+
+        still = never_lifts(deck, rows)
+        marks[still] = NEVER_LIFTED
+        if progress is not None and still.any():
+            progress(int(still.sum()))
+        simulate(~still, progress)
         loose = out_of_step(models, motions, rows, marks, tilts, rtol=rtol, most_impacts=most_impacts, threads=threads)
-        again, new_marks = rows[loose], marks[loose]
-        again[:, kernels.LOOSE] = 1.0
-        in_parts(partial(run, again, new_marks), len(again), HISTORIES_PER_TASK, threads, None)
-        marks[loose] = new_marks
+        rows[loose, kernels.LOOSE] = 1.0
+        simulate(loose)
     reach = np.array([model.reach for model in models])
     phi_cr = np.array([model.phi_cr for model in models]).reshape(-1, 2)[runs.model]
     slip, _ = settle(marks, [model.sliding for model in models], motions, rows)

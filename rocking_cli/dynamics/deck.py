@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.arrays import Integers, Reals
+from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.dynamics import kernels, ways
 from rocking_cli.dynamics.calling import HISTORIES, TIED
 from rocking_cli.dynamics.joints import laid_out
@@ -27,6 +27,10 @@ Number = TypeVar("Number", np.float64, np.int64)
 NO_VALUES = np.empty(0)
 RELEASE_DT = 0.005  # s, for a free motion without a record
 MAX_IMPACTS = 20_000  # impacts after the record; with more, a structure is still rocking (eta = 0.999 takes 14,000)
+NEVER_LIFTED = np.full(kernels.MARKS, np.nan)  # marks of a run that ends as it began, at rest
+NEVER_LIFTED[[kernels.PEAK, kernels.PEAK + 1, kernels.IMPACTS, kernels.ENDED, kernels.SIDE]] = 0.0
+NEVER_LIFTED[[kernels.LARGEST, kernels.LONGEST]] = 0.0
+NEVER_LIFTED[kernels.STATUS] = kernels.AT_REST
 
 
 def run_deck(
@@ -42,10 +46,8 @@ def run_deck(
 ) -> None:
     """Run the kernel; it fills `marks` and, if given, the samples of the last history.
 
-    Without samples, a history ends as soon as its outcome is unknown. Raises `InputError` if `rtol` is out of range.
+    Without samples, a history ends as soon as its outcome is unknown.
     """
-    if not FINEST_RTOL <= rtol < 1:
-        raise InputError(f"rtol must be at least {FINEST_RTOL:g} and below 1, got {rtol:g}: rounding allows no less")
     run = ways.kernel(TIED if deck.forces.ndim == 4 else HISTORIES)
     brief = samples is None
     if samples is None:
@@ -58,6 +60,38 @@ def run_deck(
         np.empty(4 * joint_count, np.int64),
     )
     run(first, len(runs) if stop is None else stop, runs, deck, rtol, most_impacts, brief, samples, marks, room)
+
+
+def check_rtol(rtol: float) -> None:
+    """Raise `InputError` if the relative error of a step is out of range."""
+    if not FINEST_RTOL <= rtol < 1:
+        raise InputError(f"rtol must be at least {FINEST_RTOL:g} and below 1, got {rtol:g}: rounding allows no less")
+
+
+@np.errstate(over="ignore", invalid="ignore")  # what is beyond the range of numbers is left to the kernel
+def never_lifts(deck: kernels.Deck, runs: Reals) -> Bools:
+    """Return the runs that end at rest without uplift, and without a joint that fails, shape (n,).
+
+    The kernel passes over a record while `stays` and `steady` hold at its samples. Both bound u_g'', and rounding keeps
+    the order of products: they hold at all samples if they hold at the extreme ones, in the same arithmetic. Runs with
+    a vertical component or a release are left to the kernel.
+    """
+    structure, record = (runs[:, column].astype(np.int64) for column in (kernels.STRUCTURE, kernels.RECORD))
+    size, slender = runs[:, kernels.SIZE], runs[:, kernels.SLENDER]
+    places = deck.records[:, [kernels.U_FIRST, kernels.U_SIZE]].astype(np.int64)
+    samples = [deck.u[first : first + count] for first, count in places]
+    extremes = np.array([[each.min(initial=0.0), each.max(initial=0.0)] for each in samples])
+    push = extremes.T[:, record] * (runs[:, kernels.FACTOR] / size)
+    low, high = np.minimum(*push), np.maximum(*push)
+    gravity, *_, steady_from, steady_to = deck.joints.numbers.T[:, structure]
+    weight = deck.numbers[:, 0, kernels.GRAVITY][structure] / size
+    to_left, to_right = deck.numbers[:, :, kernels.LAMBDA].T[:, structure] * (weight * (1 + kernels.MARGIN))
+    stays = (-to_left <= low) & (high <= to_right)
+    low, high = low / (weight / gravity), high / (weight / gravity)
+    steady = (steady_from <= np.minimum(low, low * slender)) & (np.maximum(high, high * slender) <= steady_to)
+    unchecked = deck.joints.sizes[structure, 1] == 0
+    level = (runs[:, kernels.START] == 0) & (deck.records[record, kernels.V_SIZE] == 0)
+    return np.asarray(level & stays & (steady | unchecked))
 
 
 def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
@@ -83,7 +117,8 @@ def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
     peaks = np.take_along_axis(marks, until, axis=1)
     end = np.where(unknown, passed, np.where(overturned & ~np.isnan(crossed), crossed, np.inf))
     warned = np.where(marks[:, kernels.WARNED] <= end, marks[:, kernels.WARNED], np.nan)
-    bound = (marks[:, kernels.WARNED_PEAK : kernels.WARNED_PEAK + 2] / phi_cr).max(axis=1)
+    ratio = np.maximum(*(peaks / phi_cr).T)
+    bound = np.maximum(*(marks[:, kernels.WARNED_PEAK : kernels.WARNED_PEAK + 2] / phi_cr).T)
     uplift = marks[:, kernels.FIRST_UPLIFT]
     impacts = np.where(unknown, marks[:, kernels.PASSED_IMPACTS], marks[:, kernels.IMPACTS])
     return Outcome(
@@ -92,7 +127,7 @@ def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
         fell_to=fell_to,
         peak_positive=np.where(fell_to == 1, np.nan, peaks[:, 0]),
         peak_negative=np.where(fell_to == -1, np.nan, peaks[:, 1]),
-        peak_ratio=np.where(overturned, np.nan, (peaks / phi_cr).max(axis=1)),
+        peak_ratio=np.where(overturned, np.nan, ratio),
         overturning_time=np.where(overturned, marks[:, kernels.CROSSED], np.nan),
         uplift_time=np.where(unknown & (uplift > passed), np.nan, uplift),
         impact_count=np.nan_to_num(impacts).astype(np.int64),
@@ -100,7 +135,7 @@ def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
         unknown=unknown,
         known_to=np.where(unknown, passed, np.nan),
         warned=warned,
-        lower_bound=np.where(np.isnan(warned), np.where(unknown, (peaks / phi_cr).max(axis=1), np.nan), bound),
+        lower_bound=np.where(np.isnan(warned), np.where(unknown, ratio, np.nan), bound),
         opening=marks[:, kernels.LARGEST] / reach,
         by_blocks=np.zeros(len(marks), np.bool_),
         slip=np.zeros(len(marks)),

@@ -14,7 +14,7 @@ from rocking_cli import names
 from rocking_cli.arrays import Bools, Reals
 from rocking_cli.core.bounds import Bound
 from rocking_cli.dynamics import kernels
-from rocking_cli.dynamics.deck import MAX_IMPACTS, RELEASE_DT, lay_out, read_marks, run_deck
+from rocking_cli.dynamics.deck import MAX_IMPACTS, RELEASE_DT, check_rtol, lay_out, read_marks, run_deck
 from rocking_cli.dynamics.joints import JointCheck, check_of
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcome
@@ -174,6 +174,7 @@ def follow(
     `release` is 0 without a release; `most_kept` is the number of impacts to keep; `eta` is the restitution of both
     directions, NaN for that of the model.
     """
+    check_rtol(rtol)
     every = motion.every if motion is not None else 1
     dt = every * motion.dt if motion is not None else RELEASE_DT  # interval of the recorded samples
     npts = 0

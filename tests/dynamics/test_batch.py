@@ -6,21 +6,24 @@ from functools import cache
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
 import rocking_cli as rk
 from mechanisms.arch import Arch
 from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
+from rocking_cli import structure
 from rocking_cli.core import Direction
 from rocking_cli.core.given import DirectionalRestitution
 from rocking_cli.dynamics import batch
 from rocking_cli.dynamics.batch import Runs, respond_many
-from rocking_cli.dynamics.deck import run_deck
+from rocking_cli.dynamics.deck import never_lifts, run_deck
 from rocking_cli.dynamics.model import MODELS
 from rocking_cli.dynamics.outcome import OUTCOME_FIELDS
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import build_models
+from tests.conftest import PROJECT
 from tests.following import respond
 from tests.unchecked import UncheckedFrame
 
@@ -54,6 +57,16 @@ def test_columns_are_out_of_step_where_one_alone_is_unknown(friction):
 @cache
 def models(name, k=1.0):
     return build_models((MECHANISMS | FREE)[name](k))
+
+
+def test_models_are_built_by_one_thread_of_the_library_of_matrices(monkeypatch):
+    during = []
+    monkeypatch.setattr(structure, "build", lambda *_, **__: during.extend(threadpool_info()))
+    with threadpool_limits(2, "blas"):
+        before = threadpool_info()
+        build_models(MECHANISMS["block"](), ("nonlinear",))
+        assert threadpool_info() == before
+    assert {each["num_threads"] for each in during if each["user_api"] == "blas"} == {1}
 
 
 @cache
@@ -227,8 +240,8 @@ def test_an_interruption_in_progress_stops_what_has_not_begun(monkeypatch, error
 
     monkeypatch.setattr(batch, "run_deck", counted)
     monkeypatch.setattr(batch, "HISTORIES_PER_TASK", 1)
-    with pytest.raises(error):
-        respond_many(every, motions(), runs, threads=1, progress=interrupt)
+    with pytest.raises(error):  # of released structures, as those that never lift are done before any begins
+        respond_many(every, motions(), runs, release=0.2, threads=1, progress=interrupt)
     assert 1 <= len(begun) < 200
 
 
@@ -243,6 +256,45 @@ def test_memory_grows_by_a_few_numbers_a_run_and_not_by_its_samples():
         tracemalloc.stop()
     assert (peaks[2] - peaks[1]) / 10_000 < 500
     assert peaks[1] < 10 * long.acceleration.nbytes
+
+
+# --- what never lifts
+
+
+NEVER = {
+    **{name: lambda name=name: MECHANISMS[name]() for name in MECHANISMS},
+    "block that slides before it lifts": lambda: Block(width=0.8, height=1.6, density=2000.0, depth=1.0, friction=0.3),
+    "frame that slides": lambda: rk.SymmetricFrame(
+        column_width=1.0, column_height=3.0, mass_ratio=1.5, density=2400.0, depth=1.0, friction=0.2
+    ),
+    **{file: lambda file=file: rk.load_structure(PROJECT / "examples" / file) for file in (
+        "linkages/leaning_slab.yaml", "walls/facade.yaml", "masonry/cracked_facade.yaml", "verify/tied_facade.yaml"
+    )},
+}  # fmt: skip
+
+
+@pytest.mark.every(3)
+@pytest.mark.parametrize("name", NEVER)
+def test_what_never_lifts_is_what_the_kernel_finds_to_the_last_bit(monkeypatch, name):
+    """At, below and above each acceleration at which it lifts, or a joint fails at rest, by rounding and by far."""
+    every = build_models(NEVER[name](), MODELS if name in MECHANISMS else ("nonlinear",))
+    limits = {abs(limit) for model in every for limit in np.multiply(model.lambda_, model.gravity)}
+    limits |= {abs(limit) for model in every if model.joints is not None for limit in model.joints.steady}
+    limits = [limit for limit in limits if 0 < limit < 100]
+    shares = np.array([0.5, *(1 + k * 2.0**-52 for k in range(-3, 4)), *(1 + k * 1e-12 for k in (-2, 1, 2)), 1.2])
+    uneven = [one.scaled(sign / one.acceleration[k]) for one in motions()[:3] for k, sign in (
+        (one.acceleration.argmax(), 1), (one.acceleration.argmin(), -1)
+    )]  # fmt: skip
+    scales, signs = np.outer(limits, shares).ravel(), (1, -1)
+    runs = Runs.every(len(every), len(uneven), scales=scales, polarities=signs, sizes=(1.0, 0.7))
+    runs = replace(runs, slender=np.where(np.arange(len(runs)) % 3 == 0, 1.1, 1.0))
+    short = []
+    monkeypatch.setattr(batch, "never_lifts", lambda *given: short.append(never_lifts(*given)) or short[0])
+    got = respond_many(every, uneven, runs, only_peaks=True)
+    monkeypatch.setattr(batch, "never_lifts", lambda _, rows: np.zeros(len(rows), bool))
+    same(got, respond_many(every, uneven, runs, only_peaks=True))
+    at_rest = np.isnan(got.uplift_time) & np.isnan(got.warned) & np.isin(runs.record, (0, 1, 2, 3))
+    assert short[0].sum() >= at_rest[short[0]].sum() > 0.9 * at_rest.sum() > 0
 
 
 # --- which runs
