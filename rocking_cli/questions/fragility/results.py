@@ -200,7 +200,7 @@ def results(asked: ResultsAsked, watch: Watcher) -> StudyAnswer:
 
 
 def _write(answer: StudyAnswer, asked: ResultsAsked, watch: Watcher) -> None:
-    """Write the files that are requested; curves that OpenQuake cannot read are no error of the others."""
+    """Write the files that are requested; curves that another program cannot read are no error of the others."""
     if asked.out is not None:
         write_rows(asked.out, answer.run_blocks(), watch)
     if asked.curves is not None:
@@ -209,9 +209,10 @@ def _write(answer: StudyAnswer, asked: ResultsAsked, watch: Watcher) -> None:
         from rocking_cli.questions.fragility.pictures import draw_all
 
         draw_all(asked.plot, answer, watch)
-    if asked.nrml is not None:
+    for place, write in ((asked.nrml, write_nrml), (asked.pelicun, write_pelicun)):
         try:
-            write_nrml(answer, asked.nrml, watch)
+            if place is not None:
+                write(answer, place, watch)
         except InputError as error:
             watch.unwritten(error)
 
@@ -243,6 +244,21 @@ def write_nrml(answer: StudyAnswer, file: Path, watch: Watcher = SILENT) -> None
     document = nrml(model, name, f"{answer.sentences[0]}; rocking-cli {version}, study {study[:12]}")
     write_whole(file, lambda stream: stream.write(document))
     watch.note(f"wrote {file}")
+
+
+def write_pelicun(answer: StudyAnswer, place: Path, watch: Watcher = SILENT) -> None:
+    """Write the curves that pelicun can read, and name the others. Raises `InputError` if there are none."""
+    from rocking_cli.questions.fragility.pelicun import components
+
+    found, file = components(answer.result), place / "fragility.csv"
+    for each in found.left_out:
+        watch.warn(f"not in {file}: {each}")
+    for each in found.doubts:
+        watch.warn(each)
+    folder(str(place))
+    write_rows(file, [found.columns], watch)
+    for each in found.states:
+        watch.note(each)
 
 
 def _curve_columns(curves: list[Fragility]) -> Columns:
