@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking_cli.io.tables import Columns
+    from rocking_cli.questions.fragility.cloud import Cloud
 
 CurveKey = tuple[str, Limit, str]
 """Structure, limit state and measure of a curve."""
@@ -85,6 +86,56 @@ class StudyAnswer(Answer[list[Fragility]]):
     def run_blocks(self) -> Iterator[Columns]:
         """Yield the runs as columns, read from the store in blocks of rows, as there may be very many."""
         yield from _blocks(self.store)  # which holds on to the answer, and with it to a store in memory
+
+    def to_cloud(
+        self, measure: str = "PGA", edp: str = "peak_ratio", censored: float = 1.5, structure: str | None = None
+    ) -> Cloud:
+        """Return what a censored cloud analysis takes, in the order of `do_cloud_analysis` of oq-vmtk.
+
+        Runs of unknown outcome, those that failed, and those without a positive intensity are left out with a warning.
+        Weights of records are not included.
+
+        Parameters
+        ----------
+        measure : str
+            Intensity measure: PGA, PGV, or one that the study names.
+        edp : {"peak_ratio"}
+            The demand parameter: the peak rotation over the critical rotation [-].
+        censored : float
+            Value of runs that overturn, above every damage threshold: they count as collapse [-].
+        structure : str, optional
+            Name of the structure; needed if the study has several.
+
+        Returns
+        -------
+        imls : ndarray, shape (n,)
+            Intensity of each run, in the unit of the measure.
+        edps : ndarray, shape (n,)
+            Peak of each run: 0 if it does not uplift, `censored` if it overturns [-].
+        damage_thresholds : ndarray, shape (m,)
+            The ratios among the limit states, and 1 for overturning, increasing [-].
+        lower_limit : float
+            A tenth of the lowest threshold: runs below it are left out of the regression [-].
+        censored_limit : float
+            `censored` [-].
+
+        Raises
+        ------
+        InputError
+            If the study does not have the measure, the structure or the parameter, or if `censored` is too low.
+
+        Examples
+        --------
+        >>> import rocking_cli as rk
+        >>> pulses = [f"ricker:1g:{period}s" for period in (0.4, 0.6, 0.9)]
+        >>> answer = rk.fragility(rk.Block(width=0.7, height=2.8), pulses, method="cloud", limit_states=[0.5])
+        >>> imls, edps, thresholds, lower, censored = answer.to_cloud("PGA")
+        >>> edps.round(2).tolist(), thresholds.tolist(), lower
+        ([0.32, 1.5, 1.5], [0.5, 1.0], 0.05)
+        """
+        from rocking_cli.questions.fragility.cloud import cloud
+
+        return cloud(self, measure, edp, censored, structure)
 
 
 class UnknownCurve(InputError, KeyError):
