@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,43 +15,32 @@ from rocking_cli.studies.fragility.quantities import label, standard_measure
 if TYPE_CHECKING:
     from rocking_cli.questions.fragility.results import StudyAnswer
 
-PEAK_RATIO = "peak_ratio"
+PEAK = "peak_ratio"
 OVERTURNED = 1.0  # peak rotation over the critical rotation
 LOWER_SHARE = 0.1  # of the lowest threshold: below it runs say little of damage
 
 
-class Cloud(NamedTuple):
-    """The arguments of `do_cloud_analysis` of oq-vmtk, in its order; see `StudyAnswer.to_cloud`."""
-
-    imls: Reals
-    edps: Reals
-    damage_thresholds: Reals
-    lower_limit: float
-    censored_limit: float
-
-
-def cloud(answer: StudyAnswer, measure: str, edp: str, censored: float, structure: str | None) -> Cloud:
+def cloud(
+    answer: StudyAnswer, measure: str, edp: str, censored: float, structure: str | None
+) -> tuple[Reals, Reals, Reals, float, float]:
     """Return the runs of a structure as a cloud; see `StudyAnswer.to_cloud`."""
     runs, names, limits = stacked(answer.run_blocks()), answer.plan.structures, answer.definition.limit_states
     thresholds = np.array(sorted({*(limit for limit in limits if isinstance(limit, float)), OVERTURNED}))
-    if (heading := label(standard_measure(measure))) not in runs:
-        hint = "add it to `measures` of the study"
-        raise InputError(Problem(f"the runs have no {measure}", field=named("measure"), hint=hint))
-    if edp != PEAK_RATIO:
-        raise InputError(Problem(f"{edp!r} is not kept of every run", field=named("edp"), hint=f"give {PEAK_RATIO}"))
-    if not censored > thresholds[-1]:
-        hint = f"give more than the highest threshold, {thresholds[-1]:g}"
-        raise InputError(Problem(f"{censored:g} is too low", field=named("censored"), hint=hint))
-    if structure not in names and (structure or len(names) > 1):
-        what = "is missing" if structure is None else f"{structure!r} is not one of this study"
-        raise InputError(Problem(what, field=named("structure"), hint=f"give one of {', '.join(names)}"))
-    own = runs["structure"] == (structure or names[0])
-    intensity, peak, outcome = (runs[name][own] for name in (heading, PEAK_RATIO, "outcome"))
+    heading, structure = label(standard_measure(measure)), structure or (names[0] if len(names) == 1 else None)
+    for field, given, suits, hint in (
+        ("measure", measure, heading in runs, "give one that the study names, or PGA or PGV"),
+        ("edp", edp, edp == PEAK, f"give {PEAK}"),
+        ("censored", censored, censored > thresholds[-1], f"give more than the highest threshold, {thresholds[-1]:g}"),
+        ("structure", structure, structure in names, f"give one of {', '.join(names)}"),
+    ):
+        if not suits:
+            raise InputError(Problem(f"does not suit this study: {given!r}", field=named(field), hint=hint))
+    of_structure = runs["structure"] == structure
+    intensity, peak, outcome = (runs[head][of_structure] for head in (heading, PEAK, "outcome"))
     usable = ~np.isin(outcome, (UNKNOWN, "failed")) & (intensity > 0)
     if not usable.all():
-        warn(DoubtWarning(
-            f"{(~usable).sum()} of {usable.size} runs are left out: {(outcome == UNKNOWN).sum()} of unknown outcome, "
-            f"{(outcome == 'failed').sum()} failed, the others without a positive {measure}"
-        ))  # fmt: skip
-    edps = np.where(np.isinf(peak), censored, peak)[usable]  # the peak of a run that overturns is infinite
-    return Cloud(intensity[usable], edps, thresholds, LOWER_SHARE * float(thresholds[0]), censored)
+        of_unknown, failed = ((outcome == each).sum() for each in (UNKNOWN, "failed"))
+        what = f"{of_unknown} of {UNKNOWN} outcome, {failed} failed, the others without a positive {measure}"
+        warn(DoubtWarning(f"{(~usable).sum()} of {usable.size} runs are left out: {what}"))
+    peaks = np.where(np.isinf(peak), censored, peak)[usable]  # that of a run that overturns is infinite
+    return intensity[usable], peaks, thresholds, LOWER_SHARE * float(thresholds[0]), censored

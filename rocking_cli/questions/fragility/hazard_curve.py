@@ -99,14 +99,12 @@ def _of_openquake(file: str, comment: str, rows: Sequence[tuple[int, str]], meas
     """Return the annual rates of the probabilities of exceedance that OpenQuake exports for a site."""
     from rocking_cli.questions.fragility.nrml import intensity_type
 
-    years = re.search(r"investigation_time=([0-9.e+]+)", comment)
-    there = re.search(r"""imt=['"]+([^'"]+)""", comment)
+    years, there = (re.search(rf"{key}=['\"]*([^'\",]+)", comment) for key in ("investigation_time", "imt"))
     if years is None or there is None:
         hint = "keep the line that OpenQuake writes above the heading"
         raise InputError(Problem("investigation_time or imt is missing", file, 1, hint=hint))
     name, factor = intensity_type(measure) or (measure, 1.0)
-    given, _ = intensity_type(there[1]) or (there[1], 1.0)  # SA(1.0) is SA(1) as well
-    if given != name:
+    if (intensity_type(there[1]) or (there[1],))[0] != name:  # SA(1.0) is SA(1) as well
         hint = f"export the curve of {name}, or set the measure of the hazard"
         raise InputError(Problem(f"the intensities are {there[1]}, but the hazard is in {measure}", file, 1, hint=hint))
     if len(rows) != 2:

@@ -7,46 +7,20 @@ used.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from rocking_cli.errors import InputError
+from rocking_cli.questions.fragility import nrml as openquake
 from rocking_cli.questions.fragility.assess import Fragility
 from rocking_cli.questions.fragility.definition import Limit
-from rocking_cli.questions.fragility.nrml import (
-    SPECTRAL_MEASURE,
-    Function,
-    by_severity,
-    doubts,
-    identifier,
-    intensity_type,
-    median_and_spread,
-    why_not,
-)
+
+if TYPE_CHECKING:
+    from rocking_cli.io.tables import Columns
 
 DEMANDS = {"PGA": ("Peak Ground Acceleration", "g"), "PGV": ("Peak Ground Velocity", "mps")}
 MAX_LIMITS = 9  # pelicun sorts limit states as text, LS10 before LS2
-
-
-class Components(NamedTuple):
-    """The table for pelicun.
-
-    Parameters
-    ----------
-    columns : mapping of str to sequence
-        The columns by heading.
-    states : sequence of str
-        A sentence for each row on what its limit states are.
-    left_out : sequence of str
-        A sentence on each curve that is not written, with the reason.
-    doubts : sequence of str
-        Warnings about the curves that are written.
-    """
-
-    columns: Mapping[str, Sequence[object]]
-    states: Sequence[str]
-    left_out: Sequence[str]
-    doubts: Sequence[str]
+DIRECTIONAL = 1  # a demand that is not directional is multiplied, by 1.2 unless told otherwise
 
 
 def demand(measure: str) -> tuple[str, str] | None:
@@ -54,13 +28,12 @@ def demand(measure: str) -> tuple[str, str] | None:
 
     The PGD of pelicun is a permanent deformation of the ground, and its spectral displacement has no damping.
     """
-    if spectral := SPECTRAL_MEASURE.fullmatch(measure):
-        return f"Spectral Acceleration|{float(spectral[1])}", "g"
-    return DEMANDS.get(measure)
+    spectral = openquake.SPECTRAL_MEASURE.fullmatch(measure)
+    return (f"Spectral Acceleration|{float(spectral[1])}", "g") if spectral else DEMANDS.get(measure)
 
 
-def components(curves: Sequence[Fragility]) -> Components:
-    """Make the table of the curves that pelicun can hold.
+def components(curves: Sequence[Fragility]) -> tuple[list[openquake.Function], list[str]]:
+    """Return the components of a study with their curves in order of severity, and why other curves are left out.
 
     Parameters
     ----------
@@ -79,55 +52,41 @@ def components(curves: Sequence[Fragility]) -> Components:
             left_out[reason] = None
         else:
             held.setdefault((each.structure, each.measure), {})[each.limit] = each
-    for structure, measure in [key for key, by_limit in held.items() if len(by_limit) > MAX_LIMITS]:
-        left_out[f"{structure} over {measure}: pelicun sorts at most {MAX_LIMITS} limit states correctly"] = None
-        del held[structure, measure]
-    if not held:
+    several = len({measure for _, measure in held}) > 1
+    rows: list[openquake.Function] = []
+    for (structure, measure), by_limit in held.items():
+        kind, factor = openquake.intensity_type(measure) or (measure, 1.0)
+        taken = [row.name.replace(".", "-") for row in rows]  # pelicun splits names at -
+        name = f"{structure}_{kind}" if several else structure
+        name = openquake.identifier(name.replace("-", "_"), taken).replace("-", ".")
+        if len(by_limit) > MAX_LIMITS:
+            left_out[f"{structure} over {measure}: pelicun sorts at most {MAX_LIMITS} limit states correctly"] = None
+        else:
+            ordered = [by_limit[limit] for limit in openquake.by_severity(by_limit, by_limit)]
+            rows.append(openquake.Function(name, ordered, kind, factor))
+    if not rows:
         raise InputError("pelicun accepts none of the curves: " + "; ".join(left_out or ["the study has no curves"]))
-    rows = _rows(held)
-    demands = [demand(each.curves[0].measure) or ("", "") for each in rows]
-    columns: dict[str, Sequence[object]] = {
-        "ID": [each.name for each in rows],
-        "Incomplete": [0] * len(rows),
-        "Demand-Type": [kind for kind, _ in demands],
-        "Demand-Unit": [unit for _, unit in demands],
-        "Demand-Offset": [0] * len(rows),
-        # pelicun multiplies a demand that is not directional, by 1.2 unless told otherwise.
-        "Demand-Directional": [1] * len(rows),
-    }
-    for k in range(max(len(each.curves) for each in rows)):
-        state = [each.curves[k] if k < len(each.curves) else None for each in rows]
-        numbers = [median_and_spread(each) if each else ("", "") for each in state]
-        columns[f"LS{k + 1}-Family"] = ["lognormal" if each else "" for each in state]
-        columns[f"LS{k + 1}-Theta_0"] = [median for median, _ in numbers]
-        columns[f"LS{k + 1}-Theta_1"] = [dispersion for _, dispersion in numbers]
-        columns[f"LS{k + 1}-DamageStateWeights"] = [""] * len(rows)
-    crossing = "a share below zero", "and pelicun uses the graver"
-    return Components(
-        columns,
-        [f"{each.name}: {', '.join(f'LS{k} {one.limit}' for k, one in enumerate(each.curves, 1))}" for each in rows],
-        list(left_out),
-        [each.replace(*crossing) for each in doubts(rows)],
-    )
+    return rows, list(left_out)
 
 
-def _why_not(found: Fragility) -> str:
+def _why_not(curve: Fragility) -> str:
     """Return the reason why pelicun cannot hold a curve; empty if it can."""
-    if demand(found.measure) is None:
-        return f"all curves over {found.measure}: curves for pelicun are over PGA, PGV or Sa of 5 % damping"
-    reason = why_not(found).replace("OpenQuake accepts only", "the table for pelicun has only")
+    if demand(curve.measure) is None:
+        return f"all curves over {curve.measure}: curves for pelicun are over PGA, PGV or Sa of 5 % damping"
+    reason = openquake.why_not(curve).replace("OpenQuake accepts only", "the table for pelicun has only")
     return reason.replace("OpenQuake", "pelicun")
 
 
-def _rows(held: Mapping[tuple[str, str], Mapping[Limit, Fragility]]) -> list[Function]:
-    """Return the curves of each component in order of severity, with a unique name without the sign - ."""
-    several = len({measure for _, measure in held}) > 1
-    rows: list[Function] = []
-    for (structure, measure), by_limit in held.items():
-        there = intensity_type(measure)
-        assert there is not None
-        name = f"{structure}_{there[0]}" if several else structure
-        taken = [each.name.replace(".", "-") for each in rows]
-        name = identifier(name.replace("-", "_"), taken).replace("-", ".")
-        rows.append(Function(name, [by_limit[limit] for limit in by_severity(by_limit, by_limit)], *there))
-    return rows
+def table(rows: Sequence[openquake.Function]) -> Columns:
+    """Return the table of components by its headings."""
+    most = max(len(row.curves) for row in rows)
+    heads = ["ID", "Incomplete", "Demand-Type", "Demand-Unit", "Demand-Offset", "Demand-Directional"]
+    of_state = "Family", "Theta_0", "Theta_1", "DamageStateWeights"
+    heads += [f"LS{k}-{head}" for k in range(1, most + 1) for head in of_state]
+    cells = []
+    for row in rows:
+        line = [row.name, 0, *(demand(row.curves[0].measure) or ()), 0, DIRECTIONAL]
+        for curve in row.curves:
+            line += ["lognormal", *openquake.median_and_spread(curve), ""]
+        cells.append(line + [""] * (len(heads) - len(line)))
+    return dict(zip(heads, zip(*cells, strict=True), strict=True))

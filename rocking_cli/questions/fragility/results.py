@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     import pandas
     from matplotlib.figure import Figure
 
+    from rocking_cli.arrays import Reals
     from rocking_cli.io.tables import Columns
-    from rocking_cli.questions.fragility.cloud import Cloud
 
 CurveKey = tuple[str, Limit, str]
 """Structure, limit state and measure of a curve."""
@@ -89,7 +89,7 @@ class StudyAnswer(Answer[list[Fragility]]):
 
     def to_cloud(
         self, measure: str = "PGA", edp: str = "peak_ratio", censored: float = 1.5, structure: str | None = None
-    ) -> Cloud:
+    ) -> tuple[Reals, Reals, Reals, float, float]:
         """Return what a censored cloud analysis takes, in the order of `do_cloud_analysis` of oq-vmtk.
 
         Runs of unknown outcome, those that failed, and those without a positive intensity are left out with a warning.
@@ -299,17 +299,18 @@ def write_nrml(answer: StudyAnswer, file: Path, watch: Watcher = SILENT) -> None
 
 def write_pelicun(answer: StudyAnswer, place: Path, watch: Watcher = SILENT) -> None:
     """Write the curves that pelicun can read, and name the others. Raises `InputError` if there are none."""
-    from rocking_cli.questions.fragility.pelicun import components
+    from rocking_cli.questions.fragility.nrml import doubts
+    from rocking_cli.questions.fragility.pelicun import components, table
 
-    found, file = components(answer.result), place / "fragility.csv"
-    for each in found.left_out:
+    rows, left_out = components(answer.result)
+    file = folder(str(place)) / "fragility.csv"
+    for each in left_out:
         watch.warn(f"not in {file}: {each}")
-    for each in found.doubts:
-        watch.warn(each)
-    folder(str(place))
-    write_rows(file, [found.columns], watch)
-    for each in found.states:
-        watch.note(each)
+    for each in doubts(rows):
+        watch.warn(each.replace("a share below zero", "and pelicun uses the graver"))
+    write_rows(file, [table(rows)], watch)
+    for row in rows:
+        watch.note(f"{row.name}: {', '.join(f'LS{k} {curve.limit}' for k, curve in enumerate(row.curves, 1))}")
 
 
 def _curve_columns(curves: list[Fragility]) -> Columns:
