@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TextIO
 import click
 
 from rocking_cli.cli.layout import grid, stacked, wrapped
-from rocking_cli.errors import KeptWarning, KernelWarning, PluginWarning
+from rocking_cli.errors import DoubtWarning, KeptWarning, KernelWarning, PluginWarning
 from rocking_cli.io.json_text import json_text
 from rocking_cli.text import printable
 
@@ -134,7 +134,7 @@ def plugins_apart() -> Iterator[None]:
         def show(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
             if issubclass(category, KeptWarning):
                 detail(str(message))
-            elif issubclass(category, (PluginWarning, KernelWarning)):
+            elif issubclass(category, (PluginWarning, KernelWarning, DoubtWarning)):
                 warning(str(message))
                 debug_traceback(message.__cause__ if isinstance(message, Warning) else None)
             else:

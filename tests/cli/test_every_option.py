@@ -379,6 +379,7 @@ def test_arguments_of_a_store_have_an_effect():
         "rank_measures": True,
         "curves": "c.csv",
         "nrml": "n.xml",
+        "pelicun": "q",
         "out": "o.csv",
         "plot": "p",
     }

@@ -145,7 +145,7 @@ class OfStudy(AskedModel):
     confidence: float = confidence()
     hazard: Mapping[str, Any] | None = in_file(
         "How often intensities are exceeded at the site, per year: `measure`, and `file` (CSV of intensity and annual "
-        "rate) or `points`."
+        "rate, or hazard curve of OpenQuake) or `points`."
     )
     name: str | None = in_file("Name of the study.", usual="that of its file")
 

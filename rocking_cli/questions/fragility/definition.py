@@ -220,7 +220,9 @@ class HazardEntry(Part):
     """Annual rates at which intensities are exceeded at the site."""
 
     measure: Measure = Field("PGA", description="of the intensities")
-    file: str | None = Field(None, description="CSV of two columns: intensity, annual rate of exceedance")
+    file: str | None = Field(
+        None, description="CSV of intensity and annual rate of exceedance, or OpenQuake's hazard curve"
+    )
     points: list[Annotated[list[Positive], Field(min_length=2, max_length=2)]] | None = Field(
         None, min_length=2, description="[intensity, annual rate] of each point"
     )

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import csv
 import math
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -11,14 +13,19 @@ from pathlib import Path
 import numpy as np
 
 from rocking_cli.arrays import Reals
+from rocking_cli.errors import DoubtWarning, InputError, Problem, warn
+from rocking_cli.excitation.records.text import numbers_in
+from rocking_cli.io.files import read_bytes
 from rocking_cli.questions.fragility.curves import FragilityCurve
 from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE
 from rocking_cli.short_repr import short_repr
-from rocking_cli.studies.points_file import read_points
+from rocking_cli.studies.points_file import MAX_BYTES, read_points
 
 NODES_PER_PIECE = 16  # nodes of Gauss's rule in a piece
 PIECE_WIDTH = 0.05  # width of a piece in ln x: a curve of dispersion 0.02 is still smooth within it
 REFERENCE_LIFE = 50.0  # years
+WHAT = "hazard curve"
+OF_OPENQUAKE = "poe-"  # begins each heading of a probability of exceedance, before the intensity
 
 
 @short_repr
@@ -58,14 +65,17 @@ def wrong_points(intensity: Reals, rate: Reals) -> list[tuple[int, str]]:
     return problems or ([(intensity.size, "at least two are needed")] if intensity.size < 2 else [])
 
 
-def read_hazard(path: Path) -> HazardCurve:
-    """Read a hazard curve from a file of two columns.
+def read_hazard(path: Path, measure: str = "") -> HazardCurve:
+    """Read a hazard curve from a file of two columns, or from an export of OpenQuake.
 
     Parameters
     ----------
     path : Path
         A file whose lines each have an intensity and an annual rate, separated by a comma. One heading, blank lines,
-        and lines that begin with # are skipped.
+        and lines that begin with # are skipped. Or the hazard curve of one site as OpenQuake exports it: a comment, a
+        heading with the intensities, and a line with the probabilities of exceedance in the investigation time.
+    measure : str
+        Measure of the intensities; that of OpenQuake must be the same, and is converted to the unit of this one.
 
     Returns
     -------
@@ -76,9 +86,46 @@ def read_hazard(path: Path) -> HazardCurve:
     InputError
         With file and line.
     """
+    lines = read_bytes(path, WHAT, MAX_BYTES).decode("utf-8-sig", "replace").splitlines()
+    rows = [(k, line) for k, line in enumerate(lines, 1) if line.strip() and not line.startswith("#")]
+    if rows and OF_OPENQUAKE in rows[0][1]:
+        return _of_openquake(str(path), lines[0], rows, measure)
     columns = "two are needed with a comma between: intensity, annual rate"
-    intensity, rate, _ = read_points(path, "hazard curve", columns, wrong_points)
+    intensity, rate, _ = read_points(path, WHAT, columns, wrong_points)
     return HazardCurve(intensity, rate)
+
+
+def _of_openquake(file: str, comment: str, rows: Sequence[tuple[int, str]], measure: str) -> HazardCurve:
+    """Return the annual rates of the probabilities of exceedance that OpenQuake exports for a site."""
+    from rocking_cli.questions.fragility.nrml import intensity_type
+
+    years, there = (re.search(rf"{key}=['\"]*([^'\",]+)", comment) for key in ("investigation_time", "imt"))
+    if years is None or there is None:
+        hint = "keep the line that OpenQuake writes above the heading"
+        raise InputError(Problem("investigation_time or imt is missing", file, 1, hint=hint))
+    name, factor = intensity_type(measure) or (measure, 1.0)
+    if (intensity_type(there[1]) or (there[1],))[0] != name:  # SA(1.0) is SA(1) as well
+        hint = f"export the curve of {name}, or set the measure of the hazard"
+        raise InputError(Problem(f"the intensities are {there[1]}, but the hazard is in {measure}", file, 1, hint=hint))
+    if len(rows) != 2:
+        hint = "keep the two lines above the sites, and the line of yours"
+        raise InputError(Problem(f"{len(rows) - 1} sites, one is needed", file, hint=hint))
+    (above, line), (number, site) = rows
+    heads, cells = csv.reader([line, site])
+    if len(cells) != len(heads):
+        raise InputError(Problem(f"{len(cells)} columns, but the heading has {len(heads)}", file, number))
+    levels = {k: head.removeprefix(OF_OPENQUAKE) for k, head in enumerate(heads) if head.startswith(OF_OPENQUAKE)}
+    x = np.array(numbers_in(file, above, line, list(levels.values())))
+    poe = np.array(numbers_in(file, number, site, [cells[k] for k in levels]))
+    finite = (poe != 0) & (poe != 1)
+    if not finite.all():
+        cut = ", ".join(f"{each:g}" for each in x[~finite])
+        warn(DoubtWarning(f"{file}: probabilities of 0 or 1 have no annual rate: left out at {there[1]} = {cut}"))
+    with np.errstate(invalid="ignore"):
+        curve = HazardCurve(x[finite] / factor, -np.log1p(-poe[finite]) / float(years[1]))
+    if wrong := wrong_points(curve.intensity, curve.annual_rate):
+        raise InputError(*(Problem(message, file, number) for _, message in wrong))
+    return curve
 
 
 @dataclass(frozen=True)

@@ -72,7 +72,7 @@ class Function:
 
         The lowest is where all curves are below 1e-4, or that of the data if lower; the highest is that of the data.
         """
-        medians, spreads = zip(*map(_median_and_spread, self.curves), strict=True)
+        medians, spreads = zip(*map(median_and_spread, self.curves), strict=True)
         low = min(m * np.exp(-NEGLIGIBLE_DEVIATIONS * b) for m, b in zip(medians, spreads, strict=True))
         x = np.concatenate([each.seen.x for each in self.curves])
         return float(self.factor * min(low, x.min())), float(self.factor * x.max())
@@ -111,13 +111,14 @@ class OpenQuakeModel:
 
 def moments(found: Fragility) -> tuple[float, float]:
     """Return mean m exp(beta^2/2) and standard deviation mean sqrt(exp(beta^2) - 1) of a lognormal capacity."""
-    median, beta = _median_and_spread(found)
+    median, beta = median_and_spread(found)
     with np.errstate(over="ignore"):
         mean = median * np.exp(beta**2 / 2)
         return float(mean), float(mean * np.sqrt(np.expm1(beta**2)))
 
 
-def _median_and_spread(found: Fragility) -> tuple[float, float]:
+def median_and_spread(found: Fragility) -> tuple[float, float]:
+    """Return median and dispersion of a lognormal curve."""
     median, dispersion = found.curve.own.median, found.curve.dispersion
     assert median is not None and dispersion is not None
     return median.value, dispersion.value
@@ -143,7 +144,7 @@ def chosen(curves: Sequence[Fragility]) -> OpenQuakeModel:
     InputError
         If no curve can be written; the message has the reasons.
     """
-    reasons = [_why_not(each) for each in curves]
+    reasons = [why_not(each) for each in curves]
     fit: dict[tuple[str, str], dict[Limit, Fragility]] = {}
     for each, reason in zip(curves, reasons, strict=True):
         if not reason:
@@ -155,12 +156,12 @@ def chosen(curves: Sequence[Fragility]) -> OpenQuakeModel:
     ))))  # fmt: skip
     if not held:
         raise InputError("OpenQuake accepts none of the curves: " + "; ".join(left_out or ["the study has no curves"]))
-    order = _by_severity(limits, next(iter(held.values())))
+    order = by_severity(limits, next(iter(held.values())))
     functions = _functions(held, order)
-    return OpenQuakeModel([limit_id(each) for each in order], functions, left_out, list(_doubts(functions)))
+    return OpenQuakeModel([limit_id(each) for each in order], functions, left_out, list(doubts(functions)))
 
 
-def _why_not(found: Fragility) -> str:
+def why_not(found: Fragility) -> str:
     """Return the reason why OpenQuake cannot hold a curve; empty if it can."""
     of = _name(found)
     if intensity_type(found.measure) is None:
@@ -213,7 +214,7 @@ def _most_curves(sets: Sequence[frozenset[Limit]]) -> frozenset[Limit]:
     return max(candidates, key=score, default=frozenset())
 
 
-def _by_severity(limits: Iterable[Limit], curves: Mapping[Limit, Fragility]) -> list[Limit]:
+def by_severity(limits: Iterable[Limit], curves: Mapping[Limit, Fragility]) -> list[Limit]:
     """Sort limit states: uplift, then ratios and displacements merged by their medians, then overturning."""
     between = [limit for limit in limits if limit not in (UPLIFT, OVERTURNING)]
     ratios = sorted((each for each in between if isinstance(each, float)), reverse=True)
@@ -228,7 +229,7 @@ def _by_severity(limits: Iterable[Limit], curves: Mapping[Limit, Fragility]) -> 
 
 
 def _median(found: Fragility) -> float:
-    return _median_and_spread(found)[0]
+    return median_and_spread(found)[0]
 
 
 def _functions(held: Mapping[tuple[str, str], Mapping[Limit, Fragility]], order: Sequence[Limit]) -> list[Function]:
@@ -245,7 +246,7 @@ def _functions(held: Mapping[tuple[str, str], Mapping[Limit, Fragility]], order:
     return functions
 
 
-def _doubts(functions: Sequence[Function]) -> Iterable[str]:
+def doubts(functions: Sequence[Function]) -> Iterable[str]:
     """Yield warnings about the curves that are written, and about names that differ from those of the study."""
     for function in functions:
         first = function.curves[0]

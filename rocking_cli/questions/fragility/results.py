@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     import pandas
     from matplotlib.figure import Figure
 
+    from rocking_cli.arrays import Reals
     from rocking_cli.io.tables import Columns
     from rocking_cli.questions.fragility.tally import Tally
 
@@ -86,6 +87,56 @@ class StudyAnswer(Answer[list[Fragility]]):
     def run_blocks(self) -> Iterator[Columns]:
         """Yield the runs as columns, read from the store in blocks of rows, as there may be very many."""
         yield from _blocks(self.store)  # which holds on to the answer, and with it to a store in memory
+
+    def to_cloud(
+        self, measure: str = "PGA", edp: str = "peak_ratio", censored: float = 1.5, structure: str | None = None
+    ) -> tuple[Reals, Reals, Reals, float, float]:
+        """Return what a censored cloud analysis takes, in the order of `do_cloud_analysis` of oq-vmtk.
+
+        Runs of unknown outcome, those that failed, and those without a positive intensity are left out with a warning.
+        Weights of records are not included.
+
+        Parameters
+        ----------
+        measure : str
+            Intensity measure: PGA, PGV, or one that the study names.
+        edp : {"peak_ratio"}
+            The demand parameter: the peak rotation over the critical rotation [-].
+        censored : float
+            Value of runs that overturn, above every damage threshold: they count as collapse [-].
+        structure : str, optional
+            Name of the structure; needed if the study has several.
+
+        Returns
+        -------
+        imls : ndarray, shape (n,)
+            Intensity of each run, in the unit of the measure.
+        edps : ndarray, shape (n,)
+            Peak of each run: 0 if it does not uplift, `censored` if it overturns [-].
+        damage_thresholds : ndarray, shape (m,)
+            The ratios among the limit states, and 1 for overturning, increasing [-].
+        lower_limit : float
+            A tenth of the lowest threshold: runs below it are left out of the regression [-].
+        censored_limit : float
+            `censored` [-].
+
+        Raises
+        ------
+        InputError
+            If the study does not have the measure, the structure or the parameter, or if `censored` is too low.
+
+        Examples
+        --------
+        >>> import rocking_cli as rk
+        >>> pulses = [f"ricker:1g:{period}s" for period in (0.4, 0.6, 0.9)]
+        >>> answer = rk.fragility(rk.Block(width=0.7, height=2.8), pulses, method="cloud", limit_states=[0.5])
+        >>> imls, edps, thresholds, lower, censored = answer.to_cloud("PGA")
+        >>> edps.round(2).tolist(), thresholds.tolist(), lower
+        ([0.32, 1.5, 1.5], [0.5, 1.0], 0.05)
+        """
+        from rocking_cli.questions.fragility.cloud import cloud
+
+        return cloud(self, measure, edp, censored, structure)
 
 
 class UnknownCurve(InputError, KeyError):
@@ -204,7 +255,7 @@ def results(asked: ResultsAsked, watch: Watcher) -> StudyAnswer:
 
 
 def _write(answer: StudyAnswer, asked: ResultsAsked, watch: Watcher) -> None:
-    """Write the files that are requested; curves that OpenQuake cannot read are no error of the others."""
+    """Write the files that are requested; curves that another program cannot read are no error of the others."""
     if asked.out is not None:
         write_rows(asked.out, answer.run_blocks(), watch)
     if asked.curves is not None:
@@ -213,9 +264,10 @@ def _write(answer: StudyAnswer, asked: ResultsAsked, watch: Watcher) -> None:
         from rocking_cli.questions.fragility.pictures import draw_all
 
         draw_all(asked.plot, answer, watch)
-    if asked.nrml is not None:
+    for place, write in ((asked.nrml, write_nrml), (asked.pelicun, write_pelicun)):
         try:
-            write_nrml(answer, asked.nrml, watch)
+            if place is not None:
+                write(answer, place, watch)
         except InputError as error:
             watch.unwritten(error)
 
@@ -247,6 +299,22 @@ def write_nrml(answer: StudyAnswer, file: Path, watch: Watcher = SILENT) -> None
     document = nrml(model, name, f"{answer.sentences[0]}; rocking-cli {version}, study {study[:12]}")
     write_whole(file, lambda stream: stream.write(document))
     watch.note(f"wrote {file}")
+
+
+def write_pelicun(answer: StudyAnswer, place: Path, watch: Watcher = SILENT) -> None:
+    """Write the curves that pelicun can read, and name the others. Raises `InputError` if there are none."""
+    from rocking_cli.questions.fragility.nrml import doubts
+    from rocking_cli.questions.fragility.pelicun import components, table
+
+    rows, left_out = components(answer.result)
+    file = folder(str(place)) / "fragility.csv"
+    for each in left_out:
+        watch.warn(f"not in {file}: {each}")
+    for each in doubts(rows):
+        watch.warn(each.replace("a share below zero", "and pelicun uses the graver"))
+    write_rows(file, [table(rows)], watch)
+    for row in rows:
+        watch.note(f"{row.name}: {', '.join(f'LS{k} {curve.limit}' for k, curve in enumerate(row.curves, 1))}")
 
 
 def _curve_columns(curves: list[Fragility]) -> Columns:

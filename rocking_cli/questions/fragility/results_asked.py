@@ -6,7 +6,7 @@ from pathlib import Path
 
 from rocking_cli.ask.asked import option
 from rocking_cli.ask.groups import table_file
-from rocking_cli.ask.kinds import FILE
+from rocking_cli.ask.kinds import FILE, FOLDER
 from rocking_cli.questions.fragility.asked import OfCurves
 
 
@@ -19,7 +19,7 @@ class ResultsAsked(OfCurves):
     Example:
       rocking results study.runs
       rocking results study.runs --out runs.parquet --plot pictures
-      rocking results study.runs --curves curves.csv --nrml fragility.xml
+      rocking results study.runs --curves curves.csv --nrml fragility.xml --pelicun components
       rocking results study.runs --rank-measures
     """
 
@@ -29,3 +29,4 @@ class ResultsAsked(OfCurves):
     )  # fmt: skip
     out: Path | None = table_file("Write all runs (.csv or .parquet).", ".csv", ".parquet")
     curves: Path | None = table_file("Write the curves, one line per intensity (.csv or .parquet).", ".csv", ".parquet")
+    pelicun: Path | None = option("Write the lognormal curves for pelicun, as fragility.csv in this folder.", FOLDER)

@@ -150,7 +150,7 @@ def test_a_dispersion_without_sense_is_not_shown():
         assert ("Its dispersion is above 5" in view_of(found)) == (not told)
         assert (data_of(fit_columns(), ("", found))["dispersion"] is None) == (not told)
     flat = replace(found, curve=replace(curve, fit=replace(fit, coefficients=np.array([0.0, 0.1]))))
-    assert "its dispersion is above 5" in openquake._why_not(flat)
+    assert "its dispersion is above 5" in openquake.why_not(flat)
 
 
 def view_of(found):

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.stats import norm
 
-from rocking_cli.errors import InputError
+from rocking_cli.errors import DoubtWarning, InputError
 from rocking_cli.questions.fragility.curves import FragilityCurve
 from rocking_cli.questions.fragility.hazard_curve import HazardCurve, annual_rate, read_hazard, wrong_points
 from rocking_cli.studies.fit import Estimate, Fit
@@ -156,3 +156,62 @@ class TestFile:
         (tmp_path / "binary").write_bytes(b"\xff\xfe\x00\x81")
         with pytest.raises(InputError, match="UTF-8"):
             read_hazard(tmp_path / "binary")
+
+
+COMMENT = (
+    """#,,,,"generated_by='OpenQuake engine 3.20.0', checksum=1, kind='mean', investigation_time=50.0, imt='{}'"\n"""
+)
+SITE = "1.5,42.0,0.0,9.5E-01,2.0E-01,1.0E-02\n"
+
+
+class TestFileOfOpenQuake:
+    def written(self, folder, imt="PGA", site=SITE, heading="lon,lat,depth,poe-0.0100000,poe-1.00000e-01,poe-0.5\n"):
+        (folder / "curve.csv").write_text(COMMENT.format(imt) + heading + site, encoding="utf-8")
+        return folder / "curve.csv"
+
+    def test_probabilities_in_the_investigation_time_become_annual_rates(self, tmp_path):
+        found = read_hazard(self.written(tmp_path), "PGA")
+        np.testing.assert_allclose(found.intensity, [0.01, 0.1, 0.5])
+        np.testing.assert_allclose(1 - np.exp(-50 * found.annual_rate), [0.95, 0.2, 0.01])
+
+    @pytest.mark.parametrize(
+        ("imt", "measure", "factor"),
+        [("SA(1.0)", "Sa(1 s)", 1), ("PGV", "PGV", 100), ("IA", "Arias", 1), ("CAV", "CAV", 1 / 9.80665)],
+    )
+    def test_intensities_are_in_the_unit_of_the_measure(self, tmp_path, imt, measure, factor):
+        found = read_hazard(self.written(tmp_path, imt), measure)
+        np.testing.assert_allclose(factor * found.intensity, [0.01, 0.1, 0.5])
+
+    def test_probabilities_of_zero_and_one_are_cut_and_named(self, tmp_path):
+        heading = "custom_site_id,lon,lat,depth,poe-0.01,poe-0.1,poe-0.5,poe-1,poe-2\n"
+        path = self.written(tmp_path, "PGV", "A1,0,0,0,1.000000E+00,2E-01,1E-02,0.000000E+00,0.000000E+00\n", heading)
+        with pytest.warns(DoubtWarning, match=r"no annual rate: left out at PGV = 0.01, 1, 2$"):
+            found = read_hazard(path, "PGV")
+        np.testing.assert_allclose(found.intensity, [0.001, 0.005])
+
+    @pytest.mark.parametrize(
+        ("given", "place", "words"),
+        [
+            (
+                {"imt": "SA(0.2)"},
+                ":1",
+                r"intensities are SA\(0.2\), but the hazard is in PGA\n  export the curve of PGA",
+            ),
+            ({"site": SITE * 3}, "", "3 sites, one is needed"),
+            ({"site": SITE[:-9]}, ":3", "5 columns, but the heading has 6"),
+            ({"site": SITE.replace("2.0E-01", "x")}, ":3", "'x' is not a number"),
+            ({"site": SITE.replace("2.0E-01", "1.2")}, ":3", "rate is nan"),
+            ({"site": SITE.replace("2.0E-01", "9.9E-01")}, ":3", "above the"),
+            ({"site": "0,0,0,0,0,0\n"}, ":3", "at least two"),
+        ],
+    )
+    def test_what_is_wrong_is_placed(self, tmp_path, given, place, words):
+        with pytest.raises(InputError, match=words) as caught:
+            read_hazard(self.written(tmp_path, **given), "PGA")
+        assert f"curve.csv{place}: " in str(caught.value)
+
+    def test_without_its_comment_nothing_is_known_of_it(self, tmp_path):
+        path = self.written(tmp_path)
+        path.write_text("".join(path.read_text(encoding="utf-8").splitlines(keepends=True)[1:]), encoding="utf-8")
+        with pytest.raises(InputError, match=":1: investigation_time or imt is missing"):
+            read_hazard(path, "PGA")
