@@ -65,7 +65,7 @@ def wrong_points(intensity: Reals, rate: Reals) -> list[tuple[int, str]]:
     return problems or ([(intensity.size, "at least two are needed")] if intensity.size < 2 else [])
 
 
-def read_hazard(path: Path, measure: str = "") -> HazardCurve:
+def read_hazard(path: Path, measure: str) -> HazardCurve:
     """Read a hazard curve from a file of two columns, or from an export of OpenQuake.
 
     Parameters

@@ -496,7 +496,7 @@ def _hazard(document: Document, folder: Path) -> HazardCurve | None:
     assert hazard.file is not None
     file = folder / hazard.file
     try:
-        return read_hazard(file)
+        return read_hazard(file, hazard.measure)
     except InputError as error:
         document.problems += _of_file(document, ("hazard", "file"), hazard.file, file, error)
         return None

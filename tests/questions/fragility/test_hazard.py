@@ -10,7 +10,9 @@ from scipy.stats import norm
 from rocking_cli.errors import DoubtWarning, InputError
 from rocking_cli.questions.fragility.curves import FragilityCurve
 from rocking_cli.questions.fragility.hazard_curve import HazardCurve, annual_rate, read_hazard, wrong_points
+from rocking_cli.questions.fragility.study import load_study
 from rocking_cli.studies.fit import Estimate, Fit
+from tests.conftest import EXAMPLES
 
 COVARIANCE = np.array([[0.02, 0.015], [0.015, 0.03]])
 
@@ -126,7 +128,7 @@ class TestFile:
     def test_heading_comments_blanks_and_line_ends(self, tmp_path):
         path = tmp_path / "hazard.csv"
         path.write_bytes("\ufeff# site A\r\nPGA [g], rate [1/year]\r\n\r\n0.05, 2e-2\r\n0.1,9e-3 \r\n".encode())
-        found = read_hazard(path)
+        found = read_hazard(path, "PGA")
         np.testing.assert_array_equal(found.intensity, [0.05, 0.1])
         np.testing.assert_array_equal(found.annual_rate, [2e-2, 9e-3])
 
@@ -147,15 +149,15 @@ class TestFile:
         path = tmp_path / "hazard.csv"
         path.write_text(text, encoding="utf-8")
         with pytest.raises(InputError) as caught:
-            read_hazard(path)
+            read_hazard(path, "PGA")
         assert f"hazard.csv{place}: " in str(caught.value) and words in str(caught.value)
 
     def test_no_file_and_no_text(self, tmp_path):
         with pytest.raises(InputError, match="no such file"):
-            read_hazard(tmp_path / "nowhere.csv")
+            read_hazard(tmp_path / "nowhere.csv", "PGA")
         (tmp_path / "binary").write_bytes(b"\xff\xfe\x00\x81")
         with pytest.raises(InputError, match="UTF-8"):
-            read_hazard(tmp_path / "binary")
+            read_hazard(tmp_path / "binary", "PGA")
 
 
 COMMENT = (
@@ -215,3 +217,15 @@ class TestFileOfOpenQuake:
         path.write_text("".join(path.read_text(encoding="utf-8").splitlines(keepends=True)[1:]), encoding="utf-8")
         with pytest.raises(InputError, match=":1: investigation_time or imt is missing"):
             read_hazard(path, "PGA")
+
+    def test_a_study_reads_it_in_its_measure(self, tmp_path):
+        self.written(tmp_path, "PGV", heading="lon,lat,depth,poe-1,poe-10,poe-50\n")
+        text = (EXAMPLES / "study" / "pedestal.yaml").read_text(encoding="utf-8").replace("../", f"{EXAMPLES}/")
+        for measure in ("PGV", "PGA"):
+            (tmp_path / "study.yaml").write_text(f"{text}hazard: {{measure: {measure}, file: curve.csv}}\n")
+            if measure == "PGV":
+                found = load_study(tmp_path / "study.yaml").hazard
+                np.testing.assert_allclose(found.intensity, [0.01, 0.1, 0.5])
+            else:
+                with pytest.raises(InputError, match="intensities are PGV, but the hazard is in PGA"):
+                    load_study(tmp_path / "study.yaml")
