@@ -8,6 +8,7 @@ followed: the fits do not know. Each part prints a table in Markdown.
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -54,13 +55,12 @@ def beside_runs(folder: Path) -> None:
             f"structures: [{files}]\nrecords: ['records/*.csv']\npolarity: both\n{asked}{ASKED}", encoding="utf-8"
         )
         in_process(path)  # loads the kernel
-        place = folder / f"{method}.db"
-        with Store.writing(place) as store:
-            prepared = prepare(load_study(path), store)
-            with threads() as hands:
-                start = time.perf_counter()
-                run(prepared, store, hands)
-                runs = time.perf_counter() - start
+        place = folder / f"{method}.runs"
+        prepared = prepare(load_study(path), Store.writing(place))
+        with threads() as hands:
+            start = time.perf_counter()
+            run(prepared, hands, "exact", prepared.store.chunks, lambda finished, failed: None)
+            runs = time.perf_counter() - start
         fits = min(_fits(place) for _ in range(3))
         count = 3 * 3 * len(prepared.study.definition.fitted_measures)
         print(f"| {method} | {count} | {runs:.2f} | {fits:.2f} | {fits / runs:.2f} | 0.5 |", flush=True)
@@ -91,19 +91,18 @@ def memory(folder: Path) -> None:
 
 
 def _large(folder: Path, name: str, samples: int, asked: str, goal: float) -> None:
-    path, place = folder / "large.yaml", folder / "large.db"
+    path, place = folder / "large.yaml", folder / "large.runs"
     text = VARIED.format(block=EXAMPLES / "block.yaml", samples=samples)
     path.write_text(text + "polarity: both\n" + asked, encoding="utf-8")
-    place.unlink(missing_ok=True)
-    with Store.writing(place) as store:
-        plan = prepare(load_study(path), store).plan
-        random = np.random.default_rng(1)
-        for first in range(0, plan.size, 100_000):
-            store.add(_drawn(plan, np.arange(first, min(first + 100_000, plan.size)), random))
+    shutil.rmtree(place, ignore_errors=True)
+    store = Store.writing(place)
+    plan, random = prepare(load_study(path), store).plan, np.random.default_rng(1)
+    for k in store.chunks:
+        store.add(_drawn(plan, np.arange(*store.ends(k)), random))
     done = subprocess.run([sys.executable, "-c", PEAK, str(place)], check=True, capture_output=True, text=True)
     seconds, peak = map(float, done.stderr.split()[-2:])
     micro = 1e6 * seconds / plan.size
-    size = place.stat().st_size / plan.size
+    size = sum(each.stat().st_size for each in place.iterdir()) / plan.size
     print(f"| {name} | {plan.size:,} | {size:.0f} | {seconds:.1f} | {micro:.1f} | {peak:.0f} | {goal:g} |", flush=True)
 
 
@@ -117,8 +116,8 @@ def _drawn(plan, runs, random):  # type: ignore[no-untyped-def]
     peak = np.where(fell, np.nan, x / (1.2 * scatter))
     nothing = np.full(runs.size, np.nan)
     uplift = np.where(x > 0.3 * scatter, 1.0, np.nan)
-    ended, known = np.where(fell, 2.0, np.nan), (nothing, nothing, nothing, nothing)
-    return RunRows(runs, scale, nothing, fell.astype(np.int64), peak, peak, peak, uplift, ended, *known)
+    ended, known = np.where(fell, 2.0, np.nan), [nothing] * 5
+    return RunRows(runs, scale, nothing, fell.astype(np.int64), peak, peak, peak, uplift, ended, *known, fell & False)
 
 
 def main() -> None:

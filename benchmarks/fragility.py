@@ -19,9 +19,9 @@ import numpy as np
 
 from rocking_cli.questions.fragility import workers as places
 from rocking_cli.questions.fragility.campaign import prepare, run
-from rocking_cli.questions.fragility.store import Store
+from rocking_cli.questions.fragility.store import RunRows, Store
 from rocking_cli.questions.fragility.study import load_study
-from rocking_cli.questions.fragility.work_units import carry_out, unit_size, units
+from rocking_cli.questions.fragility.work_units import carry_out, unit_of
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 RECORDS, LEVELS = 100, 20
@@ -64,21 +64,22 @@ def write_study(folder: Path, levels: int = LEVELS) -> Path:
 
 def in_process(path: Path, jobs: int | None = None, address: str | None = None) -> tuple[int, float]:
     """Runs of a study, and how long they took without what comes before and after them."""
-    with tempfile.TemporaryDirectory() as folder, Store.writing(Path(folder) / "study.db") as store:
-        prepared = prepare(load_study(path), store)
+    with tempfile.TemporaryDirectory() as folder:
+        prepared = prepare(load_study(path), Store.writing(Path(folder) / "study.runs"))
         made = places.cluster(address) if address is not None else places.threads(jobs)
         with made as hands:
             start = time.perf_counter()
-            run(prepared, store, hands)
+            run(prepared, hands, "exact", prepared.store.chunks, lambda finished, failed: None)
             return prepared.plan.total, time.perf_counter() - start
 
 
 def kernel_alone(path: Path) -> float:
     """Seconds that the runs take without a store or workers: units made before, on one thread."""
-    with tempfile.TemporaryDirectory() as folder, Store.writing(Path(folder) / "study.db") as store:
-        prepared = prepare(load_study(path), store)
-        study, plan = prepared.study, prepared.plan
-        made = list(units(plan, study.samples, prepared.motions, "nonlinear", store.finished, unit_size(plan.total, 1)))
+    with tempfile.TemporaryDirectory() as folder:
+        prepared = prepare(load_study(path), store := Store.writing(Path(folder) / "study.runs"))
+        study, plan, motions = prepared.study, prepared.plan, prepared.motions
+        numbers = (plan.numbers(*store.ends(k)) for k in store.chunks)
+        made = [unit_of(each, plan, study, store.fact("hash"), motions, "exact") for each in numbers]
     seconds = []
     for _ in range(3):
         start = time.perf_counter()
@@ -150,29 +151,26 @@ def large(kernel: float, overhead: float) -> None:
     print(f"- x {1 + overhead:.3f} for handing out and collecting = {core_hours:.1f} core hours")
     print(f"- / {CORES} cores = {60 * core_hours / CORES:.1f} minutes, if the process that collects keeps up:")
     per_second = collecting()
-    print(f"- it stores {per_second:,.0f} runs a second, so {LARGE:,} take it {LARGE / per_second / 60:.0f} minutes:")
+    print(f"- it writes {per_second:,.0f} runs a second, so {LARGE:,} take it {LARGE / per_second / 60:.0f} minutes:")
     enough = per_second * kernel
-    print(f"  beyond {enough:,.0f} cores the store is the limit, and more of them bring nothing")
+    print(f"  beyond {enough:,.0f} cores with one process that writes; the jobs of `--share` write each for itself")
 
 
 def collecting() -> float:
-    """Runs a second that the store takes."""
-    from rocking_cli.questions.fragility.store import COLUMNS, RunRows
-
+    """Runs a second that one process writes."""
     with tempfile.TemporaryDirectory() as folder:
-        path = write_study(Path(folder), 2)
+        path = write_study(Path(folder), 2000)
         (Path(folder) / "records").mkdir()
         (Path(folder) / "records" / "one.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
-        with Store.writing(Path(folder) / "study.db") as store:
-            prepare(load_study(path), store)
-            n = 4096
-            columns = [np.linspace(0.1, 0.9, n) for _ in COLUMNS]
-            start = time.perf_counter()
-            for k in range(50):
-                whole = np.arange(1_000_000 + n * k, 1_000_000 + n * (k + 1))
-                store.add(RunRows(whole, columns[1], columns[2], np.zeros(n, dtype=np.int64), *columns[4:]))
-            store.commit()
-            return 50 * n / (time.perf_counter() - start)
+        store = prepare(load_study(path), Store.writing(Path(folder) / "study.runs")).store
+        random = np.random.default_rng(1)
+        start, runs = time.perf_counter(), 0
+        for k in store.chunks:
+            numbers = np.arange(*store.ends(k))
+            columns = random.uniform(0.1, 0.9, (13, numbers.size))
+            store.add(RunRows(numbers, *columns[:2], np.zeros(numbers.size), *columns[2:], numbers < 0))
+            runs += numbers.size
+        return runs / (time.perf_counter() - start)
 
 
 def memory(folder: Path) -> None:
