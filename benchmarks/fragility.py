@@ -159,7 +159,7 @@ def large(kernel: float, overhead: float) -> None:
 def collecting() -> float:
     """Runs a second that one process writes."""
     with tempfile.TemporaryDirectory() as folder:
-        path = write_study(Path(folder), 2000)
+        path = write_study(Path(folder), 50_000)
         (Path(folder) / "records").mkdir()
         (Path(folder) / "records" / "one.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
         store = prepare(load_study(path), Store.writing(Path(folder) / "study.runs")).store
@@ -167,7 +167,7 @@ def collecting() -> float:
         start, runs = time.perf_counter(), 0
         for k in store.chunks:
             numbers = np.arange(*store.ends(k))
-            columns = random.uniform(0.1, 0.9, (13, numbers.size))
+            columns = random.uniform(0.1, 0.9, (12, numbers.size))
             store.add(RunRows(numbers, *columns[:2], np.zeros(numbers.size), *columns[2:], numbers < 0))
             runs += numbers.size
         return runs / (time.perf_counter() - start)

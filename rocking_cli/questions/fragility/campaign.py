@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields, replace
 from importlib.metadata import version
 from math import isclose, isnan, nan
@@ -21,7 +21,7 @@ from rocking_cli.errors import InputError, Problem, RockingError, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.intensity import all_measures, parse_measure
 from rocking_cli.questions.fragility.definition import Definition
-from rocking_cli.questions.fragility.plan import Plan, Trial, complete, weaker
+from rocking_cli.questions.fragility.plan import Plan, Trial, complete, described, weaker
 from rocking_cli.questions.fragility.sources import KeptMotions
 from rocking_cli.questions.fragility.store import NO_RUNS, DamagedFile, RunRows, Store
 from rocking_cli.questions.fragility.study import Sample, Study, digest
@@ -100,8 +100,8 @@ def prepare(
     definition, records = study.definition, plan.records
     bad = {each.name for each in known.records if each.reason is not None} if known is not None else set()
     mended = tuple(each.name for each in records if each.reason is None and each.name in bad)
-    described = study.description()
-    facts: dict[str, Any] = {"description": described, "versions": versions(study), "hash": digest(described)}
+    description = study.description()
+    facts: dict[str, Any] = {"description": description, "versions": versions(study), "hash": digest(description)}
     if known is None:
         _refuse_useless(plan)
         facts |= {"libraries": libraries(), "runs_per_chunk": runs_per_chunk(plan, definition)}
@@ -109,13 +109,13 @@ def prepare(
         _refuse_changes(store, facts, known, plan)
     every = [str(each) for each in all_measures()] if rank_measures else []
     told = examined if _measures(study, rank_measures=rank_measures) else lambda count: None
-    plan = measured(study, plan, motions, [*definition.asked_measures, *every], told, origins=rank_measures)
+    plan = complete(plan, study, motions, [*definition.asked_measures, *every], told, origins=rank_measures)
     facts |= {
         "name": study.name,
         "definition": definition.model_dump(mode="json", exclude_unset=True, by_alias=True),
         # Plain data, so that the store does not depend on the file.
         "hazard": study.hazard and [study.hazard.intensity.tolist(), study.hazard.annual_rate.tolist()],
-        "weights": [source.entry.weight for source in study.sources],
+        "weights": study.weights,
         UPLIFT_FACT: accelerations(study, plan),
     }
     if limits := displacement_limits(definition.limit_states):
@@ -138,7 +138,7 @@ def _measures(study: Study, *, rank_measures: bool) -> bool:
 
 
 def examine_study(
-    study: Study, examined: Examined | None = None, known: Plan | None = None
+    study: Study, tell: Examined = lambda count: None, known: Plan | None = None
 ) -> tuple[Plan, KeptMotions]:
     """Examine the records and structures of a study.
 
@@ -146,7 +146,7 @@ def examine_study(
     ----------
     study : Study
         The study.
-    examined : callable, optional
+    tell : callable, optional
         Called with the number of records and structures examined since the last call.
     known : Plan, optional
         The plan in the store: for records that could be used, only the checksum is computed again.
@@ -158,7 +158,6 @@ def examine_study(
     motions : KeptMotions
         The ground motions; those that were read stay in memory as far as there is room.
     """
-    tell = examined if examined is not None else lambda count: None
     before = {each.name: each for each in known.records} if known is not None else {}
     motions = KeptMotions(study.sources)
     records, trials = [], []
@@ -171,24 +170,11 @@ def examine_study(
     definition = study.definition
     etas = definition.restitution if definition.restitution is not None else [nan]
     levels = definition.levels.levels()
-    plan = Plan(trials, records, etas, definition.levels.measure, levels, definition.polarities, sets=study.sets)
+    sets = described(study.description(), study.weights)
+    plan = Plan(trials, records, etas, definition.levels.measure, levels, definition.polarities, sets=sets)
     if known is not None and _of_one_kind(known, plan):
         plan = replace(plan, measured=known.measured)
-    return measured(study, plan, motions, ()), motions
-
-
-def measured(
-    study: Study,
-    plan: Plan,
-    motions: KeptMotions,
-    measures: Sequence[str],
-    told: Examined = lambda count: None,
-    *,
-    origins: bool = False,
-) -> Plan:
-    """Return the plan with the values that its levels and some measures need, and with data of earthquakes."""
-    mechanisms = [sample.mechanism for sample in study.samples]
-    return complete(plan, mechanisms, study.definition.model, motions, measures, told, origins=origins)
+    return complete(plan, study, motions, ()), motions
 
 
 def _of_one_kind(one: Plan, other: Plan) -> bool:

@@ -14,11 +14,12 @@ from typing import Any
 import numpy as np
 
 from rocking_cli.arrays import Bools, Integers, Reals
-from rocking_cli.core import Equivalence, EquivalentBlock, Mechanism, NoEquivalentBlock, equivalent_block
+from rocking_cli.core import Equivalence, EquivalentBlock, NoEquivalentBlock, equivalent_block
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.processing.intensity import Measure, Reference, RunMeasure, parse_measure
 from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE
 from rocking_cli.questions.fragility.sources import KeptMotions, Record
+from rocking_cli.questions.fragility.study import Study
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.fragility.quantities import PGA, PGV, SCALE
 from rocking_cli.studies.under_pulses import uplift
@@ -298,8 +299,7 @@ Told = Callable[[int], None]
 
 def complete(
     plan: Plan,
-    mechanisms: Sequence[Mechanism],
-    model: ModelName,
+    study: Study,
     motions: KeptMotions,
     asked: Iterable[str],
     told: Told = lambda count: None,
@@ -312,10 +312,8 @@ def complete(
     ----------
     plan : Plan
         All runs, with what was measured for them.
-    mechanisms : sequence of Mechanism
-        The mechanisms of the plan's trials.
-    model : {"nonlinear", "linear1", "linear2"}
-        The equation of motion.
+    study : Study
+        The study.
     motions : KeptMotions
         The motions of the plan's records.
     asked : iterable of str
@@ -333,7 +331,7 @@ def complete(
         If the plugin of a measure fails.
     """
     measures = [parse_measure(each) for each in dict.fromkeys(asked) if each != SCALE]
-    plan = _with_samples(plan, mechanisms, model, measures)
+    plan = _with_samples(plan, study, measures)
     bases = {str(each.base): each.base for each in measures if each.base is not None}
     of_run = {str(each): each for each in measures if isinstance(each, RunMeasure)}
     if plan.measure != SCALE:  # the factors on records follow from this measure
@@ -368,15 +366,15 @@ def _copied(known: Mapping[str, Reals], name: str, *shape: int) -> Reals:
     return np.array(known[name]) if name in known else np.full(shape, np.nan)
 
 
-def _with_samples(plan: Plan, mechanisms: Sequence[Mechanism], model: ModelName, measures: Sequence[Measure]) -> Plan:
+def _with_samples(plan: Plan, study: Study, measures: Sequence[Measure]) -> Plan:
     """Return a plan with the velocity steps that just overturn the samples, if a measure needs them."""
     if not any(V_IMP in each.needs for each in measures):
         return plan
     values = _copied(plan.measured.of_sample, V_IMP, len(plan.trials))
-    for k, (trial, mechanism) in enumerate(zip(plan.trials, mechanisms, strict=True)):
+    for k, (trial, sample) in enumerate(zip(plan.trials, study.samples, strict=True)):
         if trial.reason is None and np.isnan(values[k]):
             try:
-                values[k] = weaker_block(equivalent_block(mechanism), model).v_imp
+                values[k] = weaker_block(equivalent_block(sample.mechanism), study.definition.model).v_imp
             except NoEquivalentBlock:
                 continue
     return replace(plan, measured=replace(plan.measured, of_sample={**plan.measured.of_sample, V_IMP: values}))

@@ -44,7 +44,6 @@ from rocking_cli.questions.fragility.definition import (
 )
 from rocking_cli.questions.fragility.distributions import draw
 from rocking_cli.questions.fragility.hazard_curve import HazardCurve, read_hazard
-from rocking_cli.questions.fragility.plan import Sets
 from rocking_cli.questions.fragility.sources import Source
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.engines.free_blocks import free_blocks
@@ -116,16 +115,9 @@ class Study:
     hazard: HazardCurve | None
 
     @property
-    def sets(self) -> Sets:
-        """The levels at which each record is run, and its weight."""
-        levels, entries = self.definition.levels, [source.entry for source in self.sources]
-        return Sets.of(
-            levels.levels(),
-            [each.level for each in entries],
-            [each.weight for each in entries],
-            [source.file for source in self.sources],
-            scaled=levels.scaled,
-        )
+    def weights(self) -> list[float]:
+        """The weight of each record."""
+        return [source.entry.weight for source in self.sources]
 
     def description(self) -> dict[str, Any]:
         """Return everything that decides the runs, except the content of the records, as plain data."""

@@ -113,6 +113,7 @@ class TestSameResults:
     def test_whatever_memory_there_is_for_records_and_models(self, whole, tmp_path, monkeypatch):
         monkeypatch.setattr(sources, "MAX_SAMPLES_IN_MEMORY", 1)
         monkeypatch.setattr(work_units, "MAX_MODELS", 1)
+        monkeypatch.setattr(work_units, "_MODELS", {})
         carry_out(whole[0], tmp_path / "other.runs", jobs=2)
         assert contents(tmp_path / "other.runs") == contents(whole[2]) and len(work_units._MODELS) == 1
 
