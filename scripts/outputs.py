@@ -80,7 +80,7 @@ ONCE = (
     f"spectrum examples/block.yaml {ACCEL} --slenderness 0.2,0.3 --json",
     f"spectrum examples/masonry/portal.yaml {ACCEL} --json",
     "fragility examples/study/pedestal.yaml --restart --json",
-    "results examples/study/pedestal.db --json",
+    "results examples/study/pedestal.runs --json",
     f"report examples/frame.yaml {ACCEL} -o report.html --json",
     "mechanisms --json",
     "measures --json",

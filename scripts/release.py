@@ -93,7 +93,7 @@ def tried(wheel: Path, version: str, folder: Path) -> int:
     python, suffix = bin_ / ("python.exe" if os.name == "nt" else "python"), ".exe" if os.name == "nt" else ""
     run([python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", wheel], folder)
     run([python, "-m", "pip", "check"], folder)
-    shutil.copytree(PROJECT / "examples", place / "examples", ignore=shutil.ignore_patterns("*.db", "__pycache__"))
+    shutil.copytree(PROJECT / "examples", place / "examples", ignore=shutil.ignore_patterns("*.runs", "__pycache__"))
     (place / "records").mkdir()
     at2(place / "examples" / "accel.csv", place / "records" / "accel.AT2")
     where = run([python, "-c", "import rocking_cli; print(rocking_cli.__file__)"], place).strip()

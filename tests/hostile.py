@@ -142,7 +142,7 @@ def _value(draw, parameter: click.Parameter, files: list[str], motions: list[str
     if isinstance(parameter.type, click.Choice):
         return str(draw(st.sampled_from([str(choice) for choice in parameter.type.choices])))
     if parameter.name in ("out", "plot", "store", "folder", "pictures"):
-        names = ["a.csv", "a.png", "a.svg", "a.html", "a.gif", "a.parquet", "a.db", "no/a.csv", "", "."]
+        names = ["a.csv", "a.png", "a.svg", "a.html", "a.gif", "a.parquet", "a.runs", "no/a.csv", "", "."]
         return f"{outputs}/{draw(st.sampled_from(names))}"
     if parameter.name in ("record", "records", "vertical"):
         return draw(st.sampled_from(motions))

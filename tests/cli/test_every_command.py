@@ -198,7 +198,7 @@ HISTORIES = {
     "fragility study.yaml --jobs 1 --quantiles --plot pictures": lambda found: (
         found["outcomes"][0]["share"] == 1 and all(each["band"] for each in found["curves"])
     ),
-    "results study.db --quantiles --out runs.csv": lambda found: found["outcomes"][0]["share"] == 1,
+    "results study.runs --quantiles --out runs.csv": lambda found: found["outcomes"][0]["share"] == 1,
     "report A --record R --neighbours 2 --out report.html": (
         lambda found: found["motions"][0]["unknown"] and found["motions"][0]["headline"].startswith("unknown after")
     ),

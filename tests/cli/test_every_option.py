@@ -221,7 +221,7 @@ CALLS = {
     "demand": ({"site": SITE}, {"site": NTC | {"soil": "D"}, "damping": 0.1} | TABLE | PLOT),
     "fragility": (
         {**{name: each for name, each in STUDY.items() if name != "records"}, "motions": STUDY["records"]},
-        {"store": "b.db", "check": True, "scheduler": "odd", "restart": True, "plot": "p",
+        {"store": "b.runs", "check": True, "scheduler": "odd", "restart": True, "plot": "p",
          "rank_measures": True, "quantiles": True, "nrml": "n.xml", "motions": RECORD,
          "structures": [STUDY["structures"][0] | {"name": "odd"}], "method": "ida",
          "levels": STUDY["levels"] | {"most": 3}, "polarity": "-1", "restitution": [0.8], "samples": 9,
@@ -279,7 +279,7 @@ IDLE = [
      {"polarity": "-1", "with_pulse": "sine", "vertical_dt": 0.1, "vertical_channel": "2", "vertical": RECORD}
      | AROUND),
     ("respond", {"structure": BLOCK, "motions": PULSE, "model": "linear2"}, {"opening": 0.1}),
-    ("fragility", {"structures": STUDY, "store": "c.db", "check": True},
+    ("fragility", {"structures": STUDY, "store": "c.runs", "check": True},
      {"jobs": 2, "scheduler": "tcp://odd:1", "restart": True, "rank_measures": True, "quantiles": True,
       "nrml": "n.xml", "plot": "p", "confidence": 0.8}),
     ("equivalent_pulses", {"structures": [BLOCK, OTHER], "pulse": PULSE},
@@ -371,7 +371,7 @@ def test_arguments_of_the_outcomes_of_tests_have_an_effect():
 
 
 def test_arguments_of_a_store_have_an_effect():
-    for store, study in (("in.db", STUDY), ("in.store", STUDY | {"seed": 3})):
+    for store, study in (("in.runs", STUDY), ("in.store", STUDY | {"seed": 3})):
         rk.fragility(study, store=store, jobs=1)
     odd = {
         "store": "in.store",
@@ -383,7 +383,7 @@ def test_arguments_of_a_store_have_an_effect():
         "out": "o.csv",
         "plot": "p",
     }
-    assert not list(without_effect(rk.results, {"store": "in.db"}, odd))
+    assert not list(without_effect(rk.results, {"store": "in.runs"}, odd))
 
 
 def test_a_quick_selfcheck_computes_less(monkeypatch):

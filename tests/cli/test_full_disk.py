@@ -40,14 +40,14 @@ LINES = {
     "spectrum": f"{BLOCK} --record {ACCEL} --slenderness 0.2",
     "equivalent_pulses": f"{BLOCK} {BLOCK} --ag 0.5g --period 0.6",
     "fragility": "study.yaml",
-    "results": "study.db",
+    "results": "study.runs",
     "report": f"{BLOCK}",
     "mechanisms": "",
     "new": "odd --plugin",
     ("survey", "--sheets"): f"survey.csv --site {SITE}",
     ("import", "--page"): "box.obj --units m --density 2000",
 }
-NO_FILE_OF_OURS = ("--record", "--store")  # what is read, and what SQLite writes
+NO_FILE_OF_OURS = ("--record",)  # what is read
 FOLDERS = {"FOLDER": "folder", "PLACE": "folder"}
 
 
@@ -98,5 +98,5 @@ def test_the_exit_code_is_that_of_the_system(command, option, name, tmp_path, mo
     done = CliRunner().invoke(main, shlex.split(line))
     assert done.exit_code == 1 and "cannot be written: no room" in done.stderr, (line, done.output, done.exception)
     assert not [
-        each for each in {*tmp_path.rglob("*")} - before if each.is_file() and each.suffix not in (".db", files.LISTING)
+        each for each in {*tmp_path.rglob("*")} - before if each.is_file() and each.suffix not in (".runs", files.LISTING)
     ]

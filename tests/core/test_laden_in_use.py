@@ -319,7 +319,7 @@ def test_a_study_of_what_rocks_to_one_side(rebound, eta, tmp_path):
     text = f"mechanism: block\nwidth: 0.6\nheight: 8\none_sided: positive\n{rebound}"
     (tmp_path / "facade.yaml").write_text(text, encoding="utf-8")
     (tmp_path / "study.yaml").write_text(STUDY + eta, encoding="utf-8")
-    data = run_json("fragility", tmp_path / "study.yaml", "--store", tmp_path / "store.sqlite")
+    data = run_json("fragility", tmp_path / "study.yaml", "--store", tmp_path / "store.runs")
     assert data["runs"] == (4 if eta else 2)
 
 

@@ -243,7 +243,7 @@ class TestMeasuresOfOthers:
         )
         run = rocking(odd_plugin, "fragility", str(study), "--json")
         assert run.returncode == 0 and json.loads(run.stdout)["curves"][0]["measure"] == "PGA squared"
-        rocking(odd_plugin, "results", str(tmp_path / "study.db"), "--out", str(tmp_path / "runs.csv"))
+        rocking(odd_plugin, "results", str(tmp_path / "study.runs"), "--out", str(tmp_path / "runs.csv"))
         rows = rows_of(tmp_path / "runs.csv")
         assert [float(row["scale"]) for row in rows] == pytest.approx([1.0, 2.0])
 

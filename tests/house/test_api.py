@@ -296,7 +296,7 @@ FRAMES["results"] = FRAMES["fragility"]
 QUESTIONS = {verb: given for verb, (given, _) in CALLS.items()} | {
     "verify": {"structure": CALLS["equiv"][0]["structures"], "site": SITE},
     "score": {"tests": EXAMPLES / "tests.csv", "neighbours": 2},
-    "results": {"store": "in.db"},
+    "results": {"store": "in.runs"},
     "selfcheck": {"quick": True},
 }  # fmt: skip
 
@@ -323,7 +323,7 @@ def test_every_frame_has_its_columns_and_the_numbers_of_its_answer(tmp_path, mon
     for verb, (heads, numbers) in FRAMES.items():
         if verb == "crosscheck" and find_spec("mujoco") is None:
             continue
-        kept = {"store": "in.db"} if verb == "fragility" else {}  # for `results`
+        kept = {"store": "in.runs"} if verb == "fragility" else {}  # for `results`
         answer = getattr(rk, verb)(**QUESTIONS[verb], **kept)
         frame, data = answer.to_frame(), answer.to_dict()
         assert list(answer.columns()) == heads.split("; "), verb
@@ -489,24 +489,24 @@ def test_a_study_given_in_python_is_that_of_its_file(tmp_path, monkeypatch):
         "levels": {"measure": "PGA", "least": 0.2, "most": 1.6, "count": 6},
         "limit_states": ["overturning"],
     }
-    first = rk.fragility(study, store="pillar.db")
+    first = rk.fragility(study, store="pillar.runs")
     (tmp_path / "pillar.yaml").write_text("mechanism: block\nname: pillar\nwidth: 0.6\nheight: 2.6\nrestitution: 0.9\n")
     file = json.dumps({**study, "structures": ["pillar.yaml", str(EXAMPLES / "wall.yaml")]})
     (tmp_path / "study.yaml").write_text(file)
-    again = rk.fragility("study.yaml", store="other.db")
+    again = rk.fragility("study.yaml", store="other.runs")
     assert first.result[0].structure == "pillar" and len(first.result) == 2
     assert first.to_frame().equals(again.to_frame())
     assert first.sentences[0].startswith("pillar: stripes") and again.sentences[0].startswith("study: stripes")
     told, noted = Watcher(), []
     told.note = noted.append
-    assert rk.fragility("study.yaml", store="pillar.db", watch=told).result  # whichever started it, both go on
-    rk.fragility(study, store="other.db", watch=told)
+    assert rk.fragility("study.yaml", store="pillar.runs", watch=told).result  # whichever started it, both go on
+    rk.fragility(study, store="other.runs", watch=told)
     assert noted.count("24 of 24 runs are in the store already") == 2
-    assert rk.results("pillar.db").to_frame().equals(first.to_frame())
+    assert rk.results("pillar.runs").to_frame().equals(first.to_frame())
     with pytest.raises(rk.InputError, match=r"study: levels"):
-        rk.fragility({**study, "levels": 3}, store="bad.db")
+        rk.fragility({**study, "levels": 3}, store="bad.runs")
     with pytest.raises(rk.InputError, match=r"study: structures must be a list"):
-        rk.fragility({**study, "structures": study["structures"][0]}, store="bad.db")
+        rk.fragility({**study, "structures": study["structures"][0]}, store="bad.runs")
 
 
 def test_a_mechanism_stands_for_the_file_of_an_entry(tmp_path):
@@ -520,7 +520,7 @@ def test_a_mechanism_stands_for_the_file_of_an_entry(tmp_path):
         "method": "cloud",
         "samples": 2,
     }
-    plan = rk.fragility(study, store=tmp_path / "a.db", check=True).result
+    plan = rk.fragility(study, store=tmp_path / "a.runs", check=True).result
     assert [each.structure for each in plan.trials] == ["pillar", "pillar", "other"]
     assert len({each.lambda_ for each in plan.trials}) == 3
 

@@ -160,13 +160,13 @@ class TestFloor:
         for name, more in floors.items():
             (tmp_path / f"{name}.yaml").write_text(base + more)
             run("fragility", tmp_path / f"{name}.yaml", "--jobs", 1)
-            run("results", tmp_path / f"{name}.db", "--out", tmp_path / f"{name}.csv")
+            run("results", tmp_path / f"{name}.runs", "--out", tmp_path / f"{name}.csv")
             table = np.genfromtxt(tmp_path / f"{name}.csv", delimiter=",", names=True, dtype=None, encoding="utf-8")
             peaks[name] = table["peak_ratio"]
             assert table["PGA_g"] == pytest.approx([0.2, 0.3, 0.5])  # of the ground
         assert peaks["stiff"] == pytest.approx(peaks["ground"], rel=1e-3)
         assert (peaks["floor"] > peaks["ground"]).any()
-        record = json.loads(run("results", tmp_path / "floor.db", "--json").stdout)["records"][0]
+        record = json.loads(run("results", tmp_path / "floor.runs", "--json").stdout)["records"][0]
         assert record["pga_g"] == pytest.approx(read_record(ACCEL).pga_g)
 
 

@@ -419,11 +419,11 @@ limit_states: [uplift, 0.0005, overturning]
 
     def test_a_study_follows_what_has_no_block_by_itself(self, tied, tmp_path):
         (tmp_path / "study.yaml").write_text(self.STUDY)
-        found = run_json("fragility", tmp_path / "study.yaml", "--store", "s.db")
+        found = run_json("fragility", tmp_path / "study.yaml", "--store", "s.runs")
         assert found["runs"] == found["finished"] == 6 and found["failed"] == 0 and found["left_out"] == []
         (said,) = found["without_block"]
         assert said.startswith("tied: no equivalent single block exists") and "kinematic limit" in said
-        run("results", "s.db", "--out", "runs.csv")
+        run("results", "s.runs", "--out", "runs.csv")
         rows = rows_of("runs.csv")
         assert {row["p PGV/(g lambda)"] for row in rows} == {""} and rows[0]["PGA/(g lambda)"] != ""
         one = next(row for row in rows if row["motion"] == "sine:1g:0.6s" and float(row["level"]) == 0.6)
@@ -438,7 +438,7 @@ limit_states: [uplift, 0.0005, overturning]
     )  # fmt: skip
     def test_a_study_that_asks_for_a_block_is_refused_with_the_reason(self, change, what, tied, tmp_path):
         (tmp_path / "study.yaml").write_text(self.STUDY.replace(*change))
-        said = run("fragility", tmp_path / "study.yaml", "--store", "s.db", code=2).stderr
+        said = run("fragility", tmp_path / "study.yaml", "--store", "s.runs", code=2).stderr
         assert what in said and "does not vanish before the kinematic limit" in said
 
     def test_a_spectrum_refuses_what_has_no_block(self, tied):
