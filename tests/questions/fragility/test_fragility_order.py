@@ -119,8 +119,8 @@ def test_the_rate_is_that_of_the_curve_that_is_cut(answer):
 def test_openquake_knows_up_to_where_there_is_no_damage(answer):
     block = next(each.structure for each in answer.result)
     model = chosen([each for each in answer.result if each.structure == block and each.limit in (0.1, "overturning")])
-    (function,) = [each for each in model.functions if each.intensity_type == "PGA"]
-    assert function.without_damage == pytest.approx(0.25)
+    (function,) = [each for each in model.functions if each.measure == "PGA"]
+    assert function.undamaged == pytest.approx(0.25)
     assert function.ends[0] < 0.25
 
 
