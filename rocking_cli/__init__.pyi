@@ -76,7 +76,7 @@ from rocking_cli.questions.equivalent_pulses.study import EquivalentResponses as
 from rocking_cli.questions.error.study import Linearisation as Linearisation
 from rocking_cli.questions.fragility.asked import Shaken as Shaken
 from rocking_cli.questions.fragility.asked import Shaking as Shaking
-from rocking_cli.questions.fragility.own_fit import FittedFragility as FittedFragility
+from rocking_cli.questions.fragility.own_data import FittedFragility as FittedFragility
 from rocking_cli.questions.fragility.results import StudyAnswer as StudyAnswer
 from rocking_cli.questions.import_drawing.study import Imported as Imported
 from rocking_cli.questions.import_mesh.study import ImportedMesh as ImportedMesh

@@ -23,10 +23,10 @@ from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.plotting.structure import draw_structure
-from rocking_cli.questions.fragility.assess import Bivariate
+from rocking_cli.questions.fragility.assess import Bivariate, Fragility
 from rocking_cli.questions.fragility.curves import fit_curve, fit_surface
 from rocking_cli.questions.fragility.observed import Observations
-from rocking_cli.questions.fragility.picture import LabelledCurve, draw_curves, draw_surface
+from rocking_cli.questions.fragility.picture import draw_curves, draw_surface
 from rocking_cli.questions.margin.picture import draw_margins
 from rocking_cli.questions.margin.study import FACTORS, Margin
 from rocking_cli.questions.overturning.picture import draw_map
@@ -89,7 +89,7 @@ def _seen(median: float, dispersion: float) -> Observations:
 
 def _curves(*medians: float) -> Figure:
     seen = [_seen(each, 0.3 + 0.1 * k) for k, each in enumerate(medians)]
-    curves = [LabelledCurve(f"{k}", fit_curve(each), each) for k, each in enumerate(seen)]
+    curves = {f"{k}": Fragility("", "uplift", "PGA", each, fit_curve(each), None) for k, each in enumerate(seen)}
     return _of_one_height(draw_curves(curves, "PGA [g]", "curves"))
 
 

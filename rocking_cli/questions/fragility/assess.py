@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TypeVar
@@ -12,6 +12,7 @@ import numpy as np
 from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.questions.fragility.curves import (
+    FittedToRuns,
     FragilityCurve,
     Surface,
     exact_step,
@@ -24,7 +25,7 @@ from rocking_cli.questions.fragility.hazard_curve import HazardCurve, Rate, annu
 from rocking_cli.questions.fragility.observed import Observations
 from rocking_cli.questions.fragility.plan import Plan
 from rocking_cli.questions.fragility.store import Store
-from rocking_cli.questions.fragility.tally import Cells, Counted, Onset, Tally, count, intensities
+from rocking_cli.questions.fragility.tally import Cells, Counted, Ladders, Onset, Tally, count, intensities
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.fit import Estimate
 
@@ -72,9 +73,14 @@ class _FittedTwice:
     unknown: int | None = field(default=0, kw_only=True)
 
     @property
+    def fitted(self) -> FittedToRuns:
+        """The fit, of either kind."""
+        raise NotImplementedError
+
+    @property
     def total(self) -> int:
         """Number of runs, or of capacities, that were fitted."""
-        raise NotImplementedError
+        return self.fitted.runs
 
     @property
     def share(self) -> float | None:
@@ -120,9 +126,9 @@ class Fragility(_FittedTwice):
     lower: Fragility | None = None
 
     @property
-    def total(self) -> int:
-        """Number of runs, or of capacities, that were fitted."""
-        return self.curve.runs
+    def fitted(self) -> FittedToRuns:
+        """The curve."""
+        return self.curve
 
     @property
     def median(self) -> Estimate | None:
@@ -153,9 +159,9 @@ class Bivariate(_FittedTwice):
     lower: Bivariate | None = None
 
     @property
-    def total(self) -> int:
-        """Number of runs that were fitted."""
-        return self.surface.runs
+    def fitted(self) -> FittedToRuns:
+        """The surface."""
+        return self.surface
 
 
 Fitted = TypeVar("Fitted", Fragility, Bivariate)
@@ -221,9 +227,7 @@ def unknown_runs(found: Mapping[str, Tally]) -> list[UnknownRuns]:
     ]
 
 
-def curves(
-    tally: Tally, structure: str, definition: Definition, hazard: HazardCurve | None
-) -> Iterator[Fragility]:  # fmt: skip
+def curves(tally: Tally, structure: str, definition: Definition, hazard: HazardCurve | None) -> Iterator[Fragility]:
     """Yield the fragility curves of a structure: each limit state over each measure that is positive in some run."""
     over = definition.hazard.measure if definition.hazard is not None else None
     for measure in definition.fitted_measures:
@@ -231,21 +235,47 @@ def curves(
         x = cells.intensities(measure)
         if not (x > 0).any():  # all intensities are zero, or none is known
             continue
-        runs, fragilities = tally.ladders is None, []
-        for limit in definition.limit_states:
-            unknown = _undecided_runs(cells, limit, x > 0) if runs else _undecided_ladders(tally, limit)
-            fit = partial(_curve, x=x, structure=structure, measure=measure, limit=limit, definition=definition)
-            fragilities.append(_twice(fit, cells, unknown))
-        for each in _consistent(fragilities, cells.onset(measure), slides=tally.slides):
+        fits = _curves_over(cells, x, structure, measure, definition)
+        for each in _consistent(list(fits), cells.onset(measure), slides=tally.slides):
             yield _with_rate(each, hazard) if hazard is not None and measure == over else each
 
 
-def _twice(fit: Callable[[Cells], Fitted], cells: Cells, unknown: int) -> Fitted:
+def _curves_over(
+    cells: Cells, x: Reals, structure: str, measure: str, definition: Definition
+) -> Iterator[Fragility]:  # fmt: skip
+    """Yield the curve of each limit state over one measure as it is fitted; `x` holds the intensities of the cells."""
+    tally, confidence, there = cells.tally, definition.confidence, x > 0
+    x, runs, left_out = x[there], cells.runs[there], int(cells.runs[~there].sum())
+    level = cells.level[there] if tally.decided_by_level(measure) else None
+    record, weight = tally.one(cells.record[there]), tally.weight(cells.record[there])
+
+    def fit(tally: Tally, limit: Limit) -> Fragility:
+        ladders = tally.ladders
+        exceeding = cells.of(tally.exceeding[limit] if ladders is None else ladders.above(limit))[there]
+        seen = Observations.of(x, exceeding, record, level=level, runs=runs, weight=weight)
+        if ladders is None:
+            curve = fit_curve(seen, confidence=confidence)
+        elif parse_measure(measure).power == 0:
+            why = f"{measure} is the same at every level, so that no record has a capacity in it"
+            curve = FragilityCurve("none", why, confidence, seen.runs, seen.exceedances, records=seen.records)
+        else:
+            tried = np.unique(x) if level is not None else None
+            lower, upper, of = _capacities(tally, ladders, measure, limit, together=cells.together)
+            one, each = tally.one(of), tally.weight(of)
+            curve = fit_capacities(lower, upper, one, levels=tried, confidence=confidence, weight=each)
+        return Fragility(structure, limit, measure, seen, curve, None, left_out=left_out)
+
+    for limit in definition.limit_states:
+        unknown = _undecided_runs(cells, limit, there) if tally.ladders is None else _undecided_ladders(tally, limit)
+        yield _twice(partial(fit, limit=limit), tally, unknown)
+
+
+def _twice(fit: Callable[[Tally], Fitted], tally: Tally, unknown: int) -> Fitted:
     """Return a fit with undecided runs counted as exceeding, and as its `lower` the one in which they do not."""
-    upper, tally = fit(cells), cells.tally
+    upper = fit(tally)
     if unknown:
         assert tally.lower is not None
-        upper = replace(upper, unknown=unknown, lower=fit(replace(cells, tally=tally.lower)))
+        upper = replace(upper, unknown=unknown, lower=fit(tally.lower))
     return upper if tally.unknown_if_checked is not None else replace(upper, unknown=None)
 
 
@@ -265,18 +295,14 @@ def _consistent(fits: Sequence[Fragility], onset: Onset | None, *, slides: bool)
     elif onset is not None:
         floor = {UPLIFT_MEASURE: exact_step(FragilityCurve("none", "", 1.0, 0, 0), onset.at, "")}
 
-    def below(curve: FragilityCurve, weaker: Mapping[Limit, FragilityCurve]) -> FragilityCurve:
-        known = floor | {limit: each for limit, each in weaker.items() if each.kind != "none"}
-        return curve if curve.kind == "none" else replace(curve, implied=known)
+    def below(found: Fragility, weaker: Iterable[Fragility]) -> Fragility:
+        known = floor | {other.limit: other.curve for other in weaker if other.curve.kind != "none"}
+        return found if found.curve.kind == "none" else replace(found, curve=replace(found.curve, implied=known))
 
     for each in fits:
         weaker = [other for other in fits if implies(each.limit, other.limit, slides=slides)]
-        lower = each.lower
-        if lower is not None:
-            under = {other.limit: (other.lower or other).curve for other in weaker}
-            lower = replace(lower, curve=below(lower.curve, under))
-        curve = below(each.curve, {other.limit: other.curve for other in weaker})
-        yield replace(each, curve=curve, lower=lower)
+        lower = None if each.lower is None else below(each.lower, (other.lower or other for other in weaker))
+        yield replace(below(each, weaker), lower=lower)
 
 
 def _exact(found: Fragility, at: float) -> Fragility:
@@ -293,35 +319,10 @@ def _with_rate(found: Fragility, hazard: HazardCurve) -> Fragility:
     return replace(found, rate=rate, lower=lower)
 
 
-def _curve(
-    cells: Cells, x: Reals, structure: str, measure: str, limit: Limit, definition: Definition
-) -> Fragility:  # fmt: skip
-    """Fit the curve of one limit state over one measure; `x` holds the intensities of the cells."""
-    tally, confidence, there = cells.tally, definition.confidence, x > 0
-    level = cells.level[there] if tally.decided_by_level(measure) else None
-    record, weight = tally.one(cells.record[there]), tally.weight(cells.record[there])
-    exceeding = cells.exceeding(limit) if tally.ladders is None else cells.of(tally.ladders.above(limit))
-    seen = Observations.of(x[there], exceeding[there], record, level=level, runs=cells.runs[there], weight=weight)
-    if tally.ladders is None:
-        curve = fit_curve(seen, confidence=confidence)
-    elif parse_measure(measure).power == 0:
-        why = f"{measure} is the same at every level, so that no record has a capacity in it"
-        curve = FragilityCurve("none", why, confidence, seen.runs, seen.exceedances, records=seen.records)
-    else:
-        tried = np.unique(x[there]) if level is not None else None
-        lower, upper, of = _capacities(tally, measure, limit, cells)
-        curve = fit_capacities(
-            lower, upper, tally.one(of), levels=tried, confidence=confidence, weight=tally.weight(of)
-        )
-    return Fragility(structure, limit, measure, seen, curve, None, left_out=int(cells.runs[~there].sum()))
-
-
 def _undecided_runs(cells: Cells, limit: Limit, there: Bools) -> int:
     """Return the number of runs in some cells that are not known to exceed a limit state or not."""
-    if cells.tally.lower is None:
-        return 0
-    known = replace(cells, tally=cells.tally.lower)
-    return int((cells.exceeding(limit) - known.exceeding(limit))[there].sum())
+    upper, lower = cells.tally, cells.tally.lower
+    return 0 if lower is None else int(cells.of(upper.exceeding[limit] - lower.exceeding[limit])[there].sum())
 
 
 def _undecided_ladders(tally: Tally, limit: Limit) -> int:
@@ -332,15 +333,16 @@ def _undecided_ladders(tally: Tally, limit: Limit) -> int:
     return int((tally.ladders.first[limit] != tally.lower.ladders.first[limit]).sum())
 
 
-def _capacities(tally: Tally, measure: str, limit: Limit, cells: Cells) -> tuple[Reals, Reals, Integers]:
+def _capacities(
+    tally: Tally, ladders: Ladders, measure: str, limit: Limit, *, together: bool
+) -> tuple[Reals, Reals, Integers]:
     """Return the bounds of the capacity of each ladder, 0 or infinity if no level bounds it, and its record."""
-    assert tally.ladders is not None
-    first, last = tally.ladders.first[limit], tally.ladders.below(limit)
+    first, last = ladders.first[limit], ladders.below(limit)
     levels = len(tally.plan.levels)
     known = (first < levels) | (last >= 0)  # a ladder without a simulated run gives no information
     sample, record, _, _ = np.nonzero(known)
     began, last = first[known].astype(np.int64), last[known]
-    if cells.together:
+    if together:
         sample = np.zeros_like(sample)
 
     def at(level: Integers) -> Reals:
@@ -353,24 +355,24 @@ def _capacities(tally: Tally, measure: str, limit: Limit, cells: Cells) -> tuple
 
 def surfaces(tally: Tally, structure: str, definition: Definition) -> Iterator[Bivariate]:
     """Yield the fragility surfaces of a structure."""
-    for measures in definition.bivariate:
-        cells = tally.over(*measures)
-        one, other = (cells.intensities(measure) for measure in measures)
-        there = (one > 0) & (other > 0)
-        for limit in definition.limit_states if there.any() else []:
-            fit = partial(_surface, x1=one, x2=other, structure=structure, measures=(measures[0], measures[1]),
-                          limit=limit, definition=definition)  # fmt: skip
-            yield _twice(fit, cells, _undecided_runs(cells, limit, there))
+    for one, other in definition.bivariate:
+        yield from _surfaces_over(tally, structure, (one, other), definition)
 
 
-def _surface(
-    cells: Cells, x1: Reals, x2: Reals, structure: str, measures: tuple[str, str], limit: Limit, definition: Definition
-) -> Bivariate:  # fmt: skip
-    """Fit the surface of one limit state over two measures; `x1` and `x2` hold the intensities of the cells."""
+def _surfaces_over(
+    tally: Tally, structure: str, measures: tuple[str, str], definition: Definition
+) -> Iterator[Bivariate]:
+    """Yield the surface of each limit state over two measures that are both positive in some run."""
+    cells = tally.over(*measures)
+    x1, x2 = (cells.intensities(measure) for measure in measures)
     there = (x1 > 0) & (x2 > 0)
-    x1, x2, runs, exceeding = x1[there], x2[there], cells.runs[there], cells.exceeding(limit)[there]
-    record, weight = cells.tally.one(cells.record[there]), cells.tally.weight(cells.record[there])
-    surface = fit_surface(x1, x2, exceeding, record, runs=runs, confidence=definition.confidence, weight=weight)
-    return Bivariate(
-        structure, limit, measures, x1, x2, runs, exceeding, surface, left_out=int(cells.runs[~there].sum())
-    )
+    x1, x2, runs, left_out = x1[there], x2[there], cells.runs[there], int(cells.runs[~there].sum())
+    record, weight = tally.one(cells.record[there]), tally.weight(cells.record[there])
+
+    def fit(tally: Tally, limit: Limit) -> Bivariate:
+        exceeding = cells.of(tally.exceeding[limit])[there]
+        surface = fit_surface(x1, x2, exceeding, record, runs=runs, confidence=definition.confidence, weight=weight)
+        return Bivariate(structure, limit, measures, x1, x2, runs, exceeding, surface, left_out=left_out)
+
+    for limit in definition.limit_states if there.any() else []:
+        yield _twice(partial(fit, limit=limit), tally, _undecided_runs(cells, limit, there))

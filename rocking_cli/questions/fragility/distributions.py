@@ -19,20 +19,18 @@ Positive = Annotated[float, Field(gt=0)]
 MIN_RANDOM = 2.0**-54  # a random number may be zero, where a normal distribution has no quantile
 
 
-def _bounds_in_order(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
-    low, high = given.get("low"), given.get("high")
-    if low is not None and high is not None and sound("low") and sound("high") and low >= high:
-        yield ("high",), f"must be more than low ({low:g}), got {high:g}"
-
-
-class _Bounded(Part):
-    low: float | None = Field(None, description="smallest value: what lies below is not drawn")
-    high: float | None = Field(None, description="largest value: what lies above is not drawn")
-
+class _Ordered(Part):
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
-        """Check that the bounds are in order."""
-        return _bounds_in_order(given, sound)
+        """Check that the ends are in order."""
+        low, high = given.get("low"), given.get("high")
+        if low is not None and high is not None and sound("low") and sound("high") and low >= high:
+            yield ("high",), f"must be more than low ({low:g}), got {high:g}"
+
+
+class _Bounded(_Ordered):
+    low: float | None = Field(None, description="smallest value: what lies below is not drawn")
+    high: float | None = Field(None, description="largest value: what lies above is not drawn")
 
 
 class Normal(_Bounded):
@@ -49,16 +47,11 @@ class Lognormal(_Bounded):
     dispersion: Positive = Field(description="standard deviation of the logarithm, before truncation")
 
 
-class Uniform(Part):
+class Uniform(_Ordered):
     """A uniform distribution."""
 
     low: float = Field(description="smallest value")
     high: float = Field(description="largest value")
-
-    @classmethod
-    def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
-        """Check that the ends are in order."""
-        return _bounds_in_order(given, sound)
 
 
 class Triangular(Part):
@@ -95,13 +88,13 @@ class Distribution(Part):
     def quantile(self, probability: Reals) -> Reals:
         """Return the values that are not exceeded with some probabilities, each in (0, 1)."""
         if self.normal is not None:
-            mean, deviation = self.normal.mean, self.normal.deviation
-            within = _standard(self.normal, mean, deviation, None)
-            return np.asarray(mean + deviation * _standard_normal(probability, *within))
+            ends = _or_infinite(self.normal)
+            return _truncated_normal(probability, self.normal.mean, self.normal.deviation, ends)
         if self.lognormal is not None:
-            mean, deviation = float(np.log(self.lognormal.median)), self.lognormal.dispersion
-            within = _standard(self.lognormal, mean, deviation, np.log)
-            return np.asarray(np.exp(mean + deviation * _standard_normal(probability, *within)))
+            with np.errstate(divide="ignore"):
+                ends = np.log(np.maximum(_or_infinite(self.lognormal), 0.0))
+            mean = float(np.log(self.lognormal.median))
+            return np.exp(_truncated_normal(probability, mean, self.lognormal.dispersion, ends))
         if self.uniform is not None:
             width = self.uniform.high - self.uniform.low
             return np.asarray(self.uniform.low + width * probability)
@@ -115,21 +108,15 @@ class Distribution(Part):
         return np.asarray(np.array(self.values)[place])
 
 
-def _standard(
-    bounds: _Bounded, mean: float, deviation: float, transform: Callable[[float], float] | None
-) -> tuple[float, float]:
-    """Return the bounds as numbers of standard deviations from the mean; infinite where there is none."""
+def _or_infinite(bounds: _Bounded) -> Reals:
+    """Return the two bounds of a distribution; infinite where there is none."""
+    low, high = bounds.low, bounds.high
+    return np.array([-np.inf if low is None else low, np.inf if high is None else high])
 
-    def one(bound: float | None, absent: float) -> float:
-        if bound is None:
-            return absent
-        if transform is not None:
-            if bound <= 0:
-                return -np.inf
-            bound = transform(bound)
-        return (bound - mean) / deviation
 
-    return one(bounds.low, -np.inf), one(bounds.high, np.inf)
+def _truncated_normal(probability: Reals, mean: float, deviation: float, ends: Reals) -> Reals:
+    low, high = ((ends - mean) / deviation).tolist()
+    return np.asarray(mean + deviation * _standard_normal(probability, low, high))
 
 
 def _standard_normal(probability: Reals, low: float, high: float) -> Reals:

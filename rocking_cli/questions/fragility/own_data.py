@@ -1,22 +1,38 @@
-"""`rk.fit_fragility`: fit a fragility curve to your own data."""
+"""`rk.fit_fragility`: fit a fragility curve to your own data, with an interval by the likelihood and a robust one."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from functools import partial
+from math import nan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking_cli.arrays import Integers, Reals
+from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.ask.answer import Answer, parted
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, Problem, named
+from rocking_cli.names import UNKNOWN
 from rocking_cli.questions.fragility.asked import FitFragilityAsked
-from rocking_cli.questions.fragility.own_fit import EXCEEDANCE, FittedFragility, fit_known
+from rocking_cli.questions.fragility.assess import Fragility
+from rocking_cli.questions.fragility.curves import FragilityCurve, fit_curve
+from rocking_cli.questions.fragility.observed import Observations
+from rocking_cli.questions.fragility.table import points
+from rocking_cli.questions.fragility.view import (
+    Named,
+    fit_columns,
+    senseless,
+    undecided,
+    warnings_of,
+    without_logarithm,
+)
+from rocking_cli.short_repr import short_repr
 from rocking_cli.text import one_line
+from rocking_cli.views.column import data_of, only_shown, table_of
+from rocking_cli.views.view import Table, View
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,6 +43,50 @@ if TYPE_CHECKING:
 MISSING = ("NAType", "NaTType")  # of pandas, which has no truth value for its own comparison
 COLUMNS = ("probability", "low", "high", "robust_low", "robust_high")
 """Columns of the frame, for the curve and, after `lower_`, for its lower edge."""
+EXCEEDANCE = "exceedance"  # name of the limit state, which only the data's owner knows
+MIN_OUTCOMES = 10  # runs of the rarer outcome below which, in trials, medians are easily off by half
+Ends = tuple[float, float]
+
+
+@short_repr
+@dataclass(frozen=True, eq=False)
+class FittedFragility(Fragility):
+    """A fragility curve of your own data; other fields as in `Fragility`.
+
+    Its `curve` has the intervals of the likelihood, which are right if the curve is, and if runs are independent.
+
+    Parameters
+    ----------
+    robust : FragilityCurve
+        The same curve with intervals that require only independent clusters: each is left out in turn (the
+        jackknife). Of kind `none`, with the reason, if there are too few clusters.
+    lower : FittedFragility or None
+        The fit in which unknown runs count as not exceeding; None if there are none.
+    """
+
+    robust: FragilityCurve = field(kw_only=True)
+    lower: FittedFragility | None = None
+
+    @property
+    def interval(self) -> dict[str, Ends]:
+        """Intervals of the `median` and the `dispersion` by the likelihood; NaN where there is no such number."""
+        return _intervals(self.curve)
+
+    @property
+    def robust_interval(self) -> dict[str, Ends]:
+        """Robust intervals of the `median` and the `dispersion`; NaN where there is no such number."""
+        return _intervals(self.robust)
+
+    @property
+    def robustly(self) -> FittedFragility:
+        """The fit and its lower edge with the robust interval, where there is one."""
+        lower = None if self.lower is None else self.lower.robustly
+        return replace(self, curve=self.curve if self.robust.fit is None else self.robust, lower=lower)
+
+
+def _intervals(curve: FragilityCurve) -> dict[str, Ends]:
+    both = {"median": curve.median, "dispersion": curve.dispersion}
+    return {name: (nan, nan) if each is None else (each.low, each.high) for name, each in both.items()}
 
 
 @verb(FitFragilityAsked)
@@ -72,8 +132,9 @@ def fit_fragility(asked: FitFragilityAsked, watch: Watcher) -> Answer[FittedFrag
     there = x > 0
     if not there.any():
         raise InputError(Problem("has no value above zero, so that none has a logarithm", field=named("intensity")))
-    fitted = fit_known(x[there], known[there], record[there], asked.curve, asked.confidence, label)
-    return _answer(replace(fitted, left_out=int((~there).sum())), label)
+    fitted = _fit(x[there], known[there], record[there], asked, label)
+    fitted = replace(fitted, left_out=int((~there).sum()))
+    return Answer("fit_fragility", fitted, _view(fitted), partial(_columns, fitted, label), partial(_figure, fitted))
 
 
 def _check_index(*given: Any) -> None:
@@ -140,27 +201,127 @@ def _codes(clusters: Any, count: int) -> Integers:
     return np.array([numbers[name] for name in names], dtype=np.int64)
 
 
-def _answer(found: FittedFragility, label: str) -> Answer[FittedFragility]:
-    from rocking_cli.questions.fragility.own_view import view
+def _fit(x: Reals, known: Reals, record: Integers, asked: FitFragilityAsked, label: str) -> FittedFragility:
+    """Fit the curve of runs with positive intensities, and if runs are unknown also its lower edge."""
+    unknown = np.isnan(known)
+    upper = _fit_edge(x, (known == 1) | unknown, record, asked, label)
+    if not unknown.any():
+        return upper
+    return replace(upper, unknown=int(unknown.sum()), lower=_fit_edge(x, known == 1, record, asked, label))
 
-    return Answer("fit_fragility", found, view(found), partial(_columns, found, label), partial(_figure, found))
+
+def _fit_edge(x: Reals, exceeds: Bools, record: Integers, asked: FitFragilityAsked, label: str) -> FittedFragility:
+    """Fit one curve with both of its intervals: as if all runs were independent, and leaving out each cluster.
+
+    A study takes the second if records repeat, and the first otherwise. Its choice tests the curve here.
+    """
+    seen = Observations.of(x, exceeds, record)
+    if seen.repeated:
+        other = Observations.of(x, exceeds, np.arange(x.size))
+    else:  # equal weights change no estimate, but have each run left out
+        other = Observations.of(x, exceeds, record, weight=np.ones(x.size))
+    study, beside = (fit_curve(each, confidence=asked.confidence, only=asked.curve) for each in (seen, other))
+    beside = replace(beside, records=seen.records)
+    if study.fit is not None and beside.fit is not None:
+        beside = replace(beside, why=study.why, goodness=study.goodness)
+    plain, robust = (beside, study) if seen.repeated else (study, beside)
+    return FittedFragility("", EXCEEDANCE, label, seen, plain, None, robust=robust)
 
 
 def _figure(
     found: FittedFragility, *, name: str = EXCEEDANCE, beside: Mapping[str, Answer[FittedFragility]] | None = None
 ) -> Figure:
-    from rocking_cli.questions.fragility.picture import draw_own
+    from rocking_cli.plotting.style import plain
+    from rocking_cli.questions.fragility.picture import draw_curves
 
-    return draw_own({name: found} | {name: each.result for name, each in (beside or {}).items()})
+    every = {name: found} | {other: each.result for other, each in (beside or {}).items()}
+    robust = {plain(each): fitted.robustly for each, fitted in every.items()}
+    return draw_curves(robust, plain(found.measure), "", of="clusters")
 
 
 def _columns(found: FittedFragility, label: str) -> Columns:
     """Return the points of the curve, with both bands; columns of the lower edge are those of the curve without one."""
-    from rocking_cli.questions.fragility.table import points
-
     x = points(found)
     columns: dict[str, Reals] = {}
     for prefix, each in (("", found), ("lower_", found.lower or found)):
         numbers = each.curve.probability(x), *each.curve.band(x), *each.robust.band(x)
         columns |= {f"{prefix}{name}": values for name, values in zip(COLUMNS, numbers, strict=True)}
     return {label: x, **columns}
+
+
+def _view(found: FittedFragility) -> View:
+    """Show a fitted curve: its numbers with both intervals, and what there is to doubt."""
+    percent = f"{100 * found.curve.confidence:g} %"
+    fits = [("", found)] if found.lower is None or not found.is_band else [("upper", found), ("lower", found.lower)]
+    rows = [row for edge, each in fits for row in _rows(edge, each)]
+    parts: list[Table | str] = [f"{_in_short(found)}."]
+    if any(each.curve.kind != "none" for _, each in fits):
+        columns = [only_shown("interval", lambda row: row[0], text=True), *fit_columns(percent, "dispersion")[1:]]
+        parts.append(table_of(f"{EXCEEDANCE} against {found.measure}", columns, rows))
+    for edge, each in fits:
+        sentences = (f"{edge}: {sentence}" if edge else sentence for sentence in _doubts(each))
+        parts += [sentence[0].upper() + sentence[1:] for sentence in sentences]
+    parts += undecided([found], capacities=False)
+    parts += without_logarithm(found.measure, found.left_out)
+    parts += warnings_of([found.curve])
+    # What a study has in common is a record; here it may be anything.
+    return View(_data(found), [each.replace("record", "cluster") if isinstance(each, str) else each for each in parts])
+
+
+def _rows(edge: str, each: FittedFragility) -> Iterator[Named]:
+    """Yield the rows of a curve, or an edge of a band: with the interval by the likelihood, and with the robust one."""
+    before = f"{edge}, " if edge else ""
+    yield f"{before}by the likelihood", each
+    if each.robust.fit is not None:
+        yield f"{before}robust", each.robustly
+
+
+def _in_short(found: FittedFragility) -> str:
+    """Return the curve in one line, with its robust interval if there is one."""
+    best, unknown = found.robustly.curve, found.unknown or 0
+    counts = f"{best.exceedances - unknown} of {best.runs} runs exceed"
+    counts += f"; the outcome of {unknown} is {UNKNOWN}" if unknown else ""
+    if best.fit is None or best.median is None:
+        return f"no curve; {counts}" if best.kind == "none" else f"step at {_number(best, 'median')}; {counts}"
+    spread = f", dispersion {_number(best, 'dispersion')}" if best.dispersion is not None else ""
+    intervals = f"{100 * best.confidence:g} % {'likelihood' if found.robust.fit is None else 'robust'} intervals"
+    return f"{best.kind}, median {_number(best, 'median')}{spread}, {intervals}; {counts}"
+
+
+def _number(curve: FragilityCurve, name: str) -> str:
+    each = getattr(curve, name)
+    return f"{each.value:.3g} ({each.low:.3g} to {each.high:.3g})"
+
+
+def _doubts(each: FittedFragility) -> Iterator[str]:
+    """Yield sentences on how a curve was found, and why it may not be relied upon."""
+    curve = each.curve
+    yield f"{curve.why}.{senseless(curve)}"
+    if curve.fit is not None and each.robust.fit is None:
+        yield f"there is no robust interval: {each.robust.why}."
+    rarer = min(curve.exceedances, curve.runs - curve.exceedances)
+    if curve.fit is not None and rarer < MIN_OUTCOMES:
+        counted = "count as exceeding" if each.unknown else "exceed"
+        verb = counted if rarer == curve.exceedances else "do not exceed"
+        yield (
+            f"only {rarer} of {curve.runs} runs {verb}: with fewer than {MIN_OUTCOMES} the median may be wrong by "
+            "half or more; use its interval."
+        )
+
+
+def _data(found: FittedFragility) -> dict[str, object]:
+    """Return a fitted curve as plain data, with its lower edge."""
+    columns = fit_columns()
+
+    def one(each: FittedFragility) -> dict[str, object]:
+        return {**data_of(columns, ("", each)), "robust": each.robust_interval}
+
+    return {
+        "measure": found.measure,
+        **one(found),
+        "left_out": found.left_out,
+        "unknown": found.unknown,
+        "unknown_share": found.share,
+        "band": found.is_band,
+        "lower": None if found.lower is None else one(found.lower),
+    }

@@ -1,10 +1,9 @@
-"""Plots of fragility curves with observations, of incremental dynamic analyses, and of fragility surfaces."""
+"""Plots of fragility curves with the observed shares, and of fragility surfaces."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -15,22 +14,17 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.transforms import ScaledTranslation
-from numpy.typing import NDArray
 
 from rocking_cli import names
+from rocking_cli.arrays import Integers, Reals
 from rocking_cli.plotting import style
 from rocking_cli.plotting.curve_names import name_curves
 from rocking_cli.questions.fragility.assess import Bivariate, Fragility
 from rocking_cli.questions.fragility.curves import FragilityCurve, Surface
 from rocking_cli.questions.fragility.definition import Limit
 from rocking_cli.questions.fragility.observed import MIN_RELIABLE_RECORDS, Observations
-from rocking_cli.questions.fragility.own_fit import FittedFragility
-from rocking_cli.questions.fragility.quantiles import not_exceeded
-from rocking_cli.questions.fragility.quantiles_picture import draw_fractiles
 from rocking_cli.questions.fragility.view import limit_name
 
-Reals = NDArray[np.float64]
-Integers = NDArray[np.int64]
 MIN_LOG_RATIO = 30.0  # ratio of the ends of an axis from which it is logarithmic
 CURVE_POINTS = 400
 PANEL_HEIGHT = 3.6  # inches of a panel with its axes, without the legend
@@ -39,62 +33,27 @@ BAND_OPACITY = 0.18  # opacity of the band of a single curve; the bands of sever
 EDGE_OPACITY = 0.6
 HATCH_OPACITY = 0.4
 HATCHES = ("////", "\\\\\\\\", "||||", "----")
-MAX_DRAWN_RUNS = 3000  # runs and records that are drawn one by one
-MAX_DRAWN_LADDERS = 300
-MAX_NAMED_RECORDS = 11  # more are not told apart by colour and dash
+MAX_DRAWN_RUNS = 3000  # runs that are drawn one by one
 CONTOUR_LEVELS = (0.1, 0.25, 0.5, 0.75, 0.9)  # probabilities of the contours
 EDGE_LABELS = (f"if {names.UNKNOWN} runs exceed", f"if {names.UNKNOWN} runs do not")
 LABEL_FREE_MARGIN = 0.08  # share of the plane at its edges without names of contours
-MAX_COUNTED_LEVELS = 15  # with more levels of shaking, not every one is labelled with its counts
 
 
-@dataclass(frozen=True, eq=False)
-class LabelledCurve:
-    """One curve of a plot, or a band between two curves.
-
-    Parameters
-    ----------
-    name : str
-        The limit state, or the structure, with mathematics between dollars and other dollars escaped.
-    curve : FragilityCurve
-        The fitted curve.
-    observations : Observations
-        The runs.
-    lower : LabelledCurve, optional
-        The lower edge of a band: undecided runs count as exceeding in `curve`, and as not exceeding in `lower`.
-    share : float
-        Share of the runs that are of unknown outcome.
-    """
-
-    name: str
-    curve: FragilityCurve
-    observations: Observations
-    lower: LabelledCurve | None = None
-    share: float = 0.0
-
-    @classmethod
-    def of(cls, name: str, found: Fragility) -> LabelledCurve:
-        """Return the curve of a result, or its band if many runs are of unknown outcome."""
-        if not found.is_band or found.lower is None:
-            return cls(name, found.curve, found.seen)
-        return cls(name, found.curve, found.seen, cls.of(name, found.lower), found.share or 0.0)
-
-    @property
-    def edges(self) -> dict[str, LabelledCurve]:
-        """The curve, or both edges of the band, by their names."""
-        if self.lower is None:
-            return {self.name: self}
-        return {f"{self.name}, {word}": edge for word, edge in zip(EDGE_LABELS, (self, self.lower), strict=True)}
+def edges(name: str, found: Fragility) -> dict[str, Fragility]:
+    """Return a curve, or both edges of a band, by their names."""
+    if not found.is_band or found.lower is None:
+        return {name: found}
+    return {f"{name}, {word}": edge for word, edge in zip(EDGE_LABELS, (found, found.lower), strict=True)}
 
 
-def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str, *, of: str = "records") -> Figure:
+def draw_curves(drawn: Mapping[str, Fragility], label: str, title: str, *, of: str = "records") -> Figure:
     """Plot fragility curves over their bands, and the observed shares of runs that exceed, with their intervals.
 
     Parameters
     ----------
-    drawn : sequence of LabelledCurve
-        Several limit states of one structure, or several structures for one limit state. Bands between two curves are
-        hatched.
+    drawn : mapping of str to Fragility
+        Several limit states of one structure, or several structures for one limit state, by their names, with
+        mathematics between dollars and other dollars escaped. Bands between two curves are hatched.
     label : str
         The measure of intensity, with its unit in brackets.
     title : str
@@ -109,7 +68,7 @@ def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str, *, of: s
         a mark. A curve that is known exactly has no marks.
     """
     figure, axes = style.one_panel(PANEL_HEIGHT, title)
-    reach = np.concatenate([each.observations.x for each in drawn])
+    reach = np.concatenate([each.seen.x for each in drawn.values()])
     start, stop = float(reach.min()), float(reach.max())
     if stop > MIN_LOG_RATIO * start:
         fine = np.geomspace(start / 1.1, stop * 1.1, CURVE_POINTS)
@@ -123,36 +82,34 @@ def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str, *, of: s
     unit = "".join(re.findall(r"(?<= \[)[^\]]+(?=\]$)", label))
     named: list[Line2D] = []
     handles: list[Any] = []
-    for k, each in enumerate(drawn):
-        look = style.distinct(k)
-        _draw_band(axes, each, look, fine, HATCHES[k % len(HATCHES)], BAND_OPACITY / len(drawn) ** 0.5)
-        for (name, edge), weight in zip(each.edges.items(), (style.BOLD, style.MEDIUM), strict=False):
-            look |= {"linewidth": weight}
-            if edge.curve.kind != "none":
-                x = _with_steps(fine, [edge.curve])
-                (line,) = axes.plot(x, edge.curve.probability(x), **look | {"marker": "none", "zorder": 3})
-                line.set_label(each.name)
+    for k, (name, each) in enumerate(drawn.items()):
+        look, both = style.distinct(k), edges(name, each)
+        hatch, opacity = HATCHES[k % len(HATCHES)], BAND_OPACITY / len(drawn) ** 0.5
+        _draw_band(axes, [edge.curve for edge in both.values()], look, fine, hatch, opacity)
+        for (words, edge), weight in zip(both.items(), (style.BOLD, style.MEDIUM), strict=False):
+            curve, look = edge.curve, look | {"linewidth": weight}
+            if curve.kind != "none":
+                x = _with_steps(fine, [curve])
+                (line,) = axes.plot(x, curve.probability(x), **look | {"marker": "none", "zorder": 3})
+                line.set_label(name)
                 named += [line] if edge is each or each.curve.kind == "none" else []
-            handles.append(_key(f"{name}: {_in_words(edge.curve, unit, stop)}", edge.curve, look))
-    observed = [k for k, each in enumerate(drawn) if not each.curve.is_exact]
+            without = {"linestyle": "none"} if curve.kind == "none" else {"marker": "none"} if curve.is_exact else {}
+            words = _unbroken(f"{words}: {_in_words(curve, unit, stop)}")
+            handles.append(Line2D([], [], label=words, **look | without | {"markerfacecolor": style.PAPER}))
+    observed = {k: each for k, each in enumerate(drawn.values()) if not each.curve.is_exact}
     merged = [
-        _draw_observed(axes, drawn[k], style.distinct(k), place, len(observed)) for place, k in enumerate(observed)
+        _draw_observed(axes, each, style.distinct(k), place, len(observed))
+        for place, (k, each) in enumerate(observed.items())
     ]
     if len(named) > 1:
         name_curves(axes, named)
-    if doubtful := [each for each in drawn if each.lower is not None]:
-        shares = ", ".join(f"{each.name} {names.percent(each.share)}" for each in doubtful)
-        handles.append(Patch(**style.UNKNOWN, label=_unbroken(f"runs of {names.UNKNOWN} outcome: {shares}")))
+    if shares := [f"{name} {names.percent(each.share or 0.0)}" for name, each in drawn.items() if each.is_band]:
+        words = _unbroken(f"runs of {names.UNKNOWN} outcome: {', '.join(shares)}")
+        handles.append(Patch(**style.UNKNOWN, label=words))
     if remark := _remark(drawn, of, len(observed), merged=any(merged)):
-        handles.append(_words(remark))
+        handles.append(legend_words(remark))
     style.legend_below(figure, handles, 1, handlelength=4 if len(handles) > 1 else 0, alignment="left", grows=True)
     return figure
-
-
-def draw_own(found: Mapping[str, FittedFragility]) -> Figure:
-    """Plot curves of data of one's own, by their names, with their robust bands and the observed shares."""
-    curves = [LabelledCurve.of(style.plain(name), each.robustly) for name, each in found.items()]
-    return draw_curves(curves, style.plain(next(iter(found.values())).measure), "", of="clusters")
 
 
 def limit_in_picture(limit: Limit, *, math: bool) -> str:
@@ -186,12 +143,13 @@ def _in_words(curve: FragilityCurve, unit: str, most: float) -> str:
     return words + (", no confidence band" if curve.unbounded else "")
 
 
-def _remark(drawn: Sequence[LabelledCurve], of: str, observed: int, *, merged: bool) -> str:
+def _remark(drawn: Mapping[str, Fragility], of: str, observed: int, *, merged: bool) -> str:
     """Return the line that explains bands, bars and marks, and says if there are few records."""
-    fits = [edge.curve for each in drawn for edge in each.edges.values() if edge.curve.fit is not None]
+    every = [edge.curve for name, each in drawn.items() for edge in edges(name, each).values()]
+    fits = [curve for curve in every if curve.fit is not None]
     parts = []
     if observed:
-        parts.append(f"{'bands and ' if fits else ''}bars: {100 * drawn[0].curve.confidence:.3g} % confidence")
+        parts.append(f"{'bands and ' if fits else ''}bars: {100 * every[0].confidence:.3g} % confidence")
         beside = ", side by side" if observed > 1 else ""
         parts.append(f"marks: observed shares{beside}{', of neighbouring intensities together' if merged else ''}")
     return "; ".join([*parts, *_few(fits, of)])
@@ -208,24 +166,25 @@ def _unbroken(text: str) -> str:
     return text.replace(" %", "\u00a0%")
 
 
-def _words(text: str) -> Line2D:
+def legend_words(text: str) -> Line2D:
     """Return an entry of a legend without a handle."""
     return Line2D([], [], linestyle="none", label=_unbroken(text))
 
 
-def _draw_observed(axes: Axes, each: LabelledCurve, look: dict[str, Any], place: int, beside: int) -> bool:
+def _draw_observed(axes: Axes, each: Fragility, look: dict[str, Any], place: int, beside: int) -> bool:
     """Mark observed shares with their intervals, beside those of other curves; return whether intensities share a mark.
 
     For a band, both edges are marked, and the interval covers both.
     """
-    marks, gap = _marks(axes, each.observations, ASIDE * (beside - 1) + MARK_ROOM)
-    seen, least = (edge.observations.parts(each.curve.confidence, marks) for edge in (each, each.lower or each))
+    marks, gap = _marks(axes, each.seen, ASIDE * (beside - 1) + MARK_ROOM)
+    both = [edge.seen.parts(each.curve.confidence, marks) for edge in edges("", each).values()]
+    seen, least = both[0], both[-1]
     sure = [other.probability(seen.x) for other in each.curve.implied.values() if other.is_exact]
     low, high = np.minimum(least.low, seen.low), np.min([np.maximum(least.high, seen.high), *sure], axis=0)
     aside = ASIDE * (place - (beside - 1) / 2) / style.POINTS_PER_INCH
     moved = axes.transData + ScaledTranslation(aside, 0, axes.figure.dpi_scale_trans)
     axes.vlines(seen.x, low, high, color=look["color"], linewidth=style.CURVE, alpha=0.6, transform=moved)
-    for parts in (seen, least) if each.lower is not None else (seen,):
+    for parts in both:
         axes.plot(
             seen.x, parts.part, linestyle="none", marker=look["marker"], color=look["color"], markersize=4,
             markerfacecolor=style.PAPER, zorder=4, transform=moved,
@@ -240,7 +199,7 @@ def _draw_observed(axes: Axes, each: LabelledCurve, look: dict[str, Any], place:
             count, (x, top), xytext=(0, 2), textcoords="offset points", ha="center", fontsize=style.SMALL,
             color=style.INK,
         )  # fmt: skip
-    return bool(marks.max() < each.observations.group.max())
+    return bool(marks.max() < each.seen.group.max())
 
 
 def _marks(axes: Axes, seen: Observations, least: float) -> tuple[Integers, float]:
@@ -259,29 +218,27 @@ def _marks(axes: Axes, seen: Observations, least: float) -> tuple[Integers, floa
         marks[marks > gaps.argmin()] -= 1
 
 
-def _with_steps(fine: Reals, curves: Sequence[FragilityCurve]) -> Reals:
+def _with_steps(fine: Reals, curves: Collection[FragilityCurve]) -> Reals:
     """Add both sides of every step of some curves to the intensities at which they are drawn."""
     ends = [end for curve in curves for step in curve.steps for end in (step.low, step.value, step.high)]
     return np.sort(np.concatenate([fine, *([np.nextafter(at, 0), np.nextafter(at, np.inf)] for at in ends)]))
 
 
 def _draw_band(
-    axes: Axes, each: LabelledCurve, look: dict[str, Any], fine: Reals, hatch: str, opacity: float
-) -> None:  # fmt: skip
+    axes: Axes, curves: Collection[FragilityCurve], look: dict[str, Any], fine: Reals, hatch: str, opacity: float
+) -> None:
     """Shade the confidence band of a curve, or of both edges of a band; hatch the area between the edges.
 
     Where an edge does not exist, the area reaches to 1 or 0.
     """
-    fine = _with_steps(fine, [edge.curve for edge in each.edges.values()])
+    fine = _with_steps(fine, curves)
     values: list[Reals] = []
     limits: list[Reals] = []
-    for edge, without in zip(each.edges.values(), (1.0, 0.0), strict=False):
-        if edge.curve.kind == "none":
-            values.append(np.full(fine.size, without))
-            continue
-        values.append(edge.curve.probability(fine))
-        limits += [] if edge.curve.unbounded else edge.curve.band(fine)
-    if each.lower is not None:
+    for curve, without in zip(curves, (1.0, 0.0), strict=False):
+        exists = curve.kind != "none"
+        values.append(curve.probability(fine) if exists else np.full(fine.size, without))
+        limits += curve.band(fine) if exists and not curve.unbounded else []
+    if len(curves) > 1:
         hatched = style.UNKNOWN | {"edgecolor": look["color"], "hatch": hatch, "alpha": HATCH_OPACITY}
         axes.fill_between(fine, np.minimum(*values), np.maximum(*values), **hatched)
         limits += values
@@ -290,95 +247,6 @@ def _draw_band(
         axes.fill_between(fine, *ends, color=look["color"], alpha=opacity, linewidth=0.0)
         rim = {"color": look["color"], "alpha": EDGE_OPACITY, "linewidth": style.HAIR}
         axes.add_collection(LineCollection([np.column_stack([fine, end]) for end in ends], **rim), autolim=False)
-
-
-def _key(words: str, curve: FragilityCurve, look: dict[str, Any]) -> Line2D:
-    """Return the legend entry of a curve, without a mark if it has none."""
-    if curve.kind == "none":
-        look = look | {"linestyle": "none"}
-    if curve.is_exact:
-        look = look | {"marker": "none"}
-    return Line2D([], [], label=_unbroken(words), **look | {"markerfacecolor": style.PAPER})
-
-
-def draw_ida(
-    intensity: Reals, peaks: Reals, label: str, title: str, records: int | None = None, named: Sequence[str] = ()
-) -> Figure:  # fmt: skip
-    """Plot the peak rotation of each record against the intensity, with quantiles over the records.
-
-    Parameters
-    ----------
-    intensity : ndarray, shape (m,)
-        Levels of shaking, ascending.
-    peaks : ndarray, shape (n, m)
-        Peak phi/phi_cr of each record at each level; NaN for overturning, infinite for an unknown outcome.
-    label : str
-        The measure of intensity, with its unit in brackets.
-    title : str
-        Heading.
-    records : int, optional
-        Number of distinct records, which decides which quantiles are drawn; by default that of the rows.
-    named : sequence of str
-        Names of the rows, if each is a record; a few records have colours and names of their own.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Runs that overturn are shown in a band above the rotations, with their number at each level; so are unknown
-        outcomes, which rank below overturning.
-    """
-    figure, axes = style.one_panel(PANEL_HEIGHT, title)
-    fallen, doubtful = np.isnan(peaks), np.isposinf(peaks)
-    floor = 1.05 * max(1.0, float(np.max(peaks, initial=0.0, where=np.isfinite(peaks))))  # lower edge of the bands
-    high = 0.15 * floor
-    places = {names.UNKNOWN: floor + 0.4 * high} if doubtful.any() else {}
-    floor += high * len(places)
-    top = floor + high
-    places[names.OVERTURNS] = middle = floor + 0.4 * high
-    axes.axhspan(floor, top, color=style.SHADE, linewidth=0)
-    if doubtful.any():
-        axes.axhspan(floor - high, floor, **style.UNKNOWN, alpha=0.5)
-    peaks = np.where(fallen, middle, np.where(doubtful, places.get(names.UNKNOWN, middle), peaks))
-    axes.axhline(1.0, color=style.FAINT, linewidth=style.CURVE)
-    some = np.linspace(0, len(peaks) - 1, min(len(peaks), MAX_DRAWN_LADDERS)).round().astype(int)
-    ladders = [np.column_stack([intensity, each]) for each in peaks[some]]
-    what = "record" if len(peaks) == records else "run of a record"
-    name = f"one {what}" if some.size == len(peaks) else f"one {what}, {some.size} drawn"
-    looks: list[dict[str, Any]] = [{"colors": style.FAINT, "linewidths": style.THIN, "alpha": 0.8, "label": name}]
-    if len(named) == len(peaks) <= MAX_NAMED_RECORDS:
-        looks = [
-            {
-                "colors": each["color"],
-                "linestyles": each["linestyle"],
-                "linewidths": style.MEDIUM,
-                "label": style.plain(name),
-            }
-            for each, name in zip(map(style.distinct, range(1, len(named) + 1)), named, strict=True)
-        ]
-    parts = np.array_split(np.array(ladders), len(looks))
-    handles: list[Any] = [
-        axes.add_collection(LineCollection(list(part), **look)) for part, look in zip(parts, looks, strict=True)
-    ]
-    records = len(peaks) if records is None else records
-    ranked = np.array([not_exceeded(each, records) for each in np.sort(peaks, axis=0).T]).T
-    every = max(1, int(np.ceil(intensity.size / MAX_COUNTED_LEVELS)))
-    for which, edge in ((fallen, top), (doubtful, floor)):
-        for x, count in list(zip(intensity, which.sum(axis=0), strict=True))[::every]:
-            if count:
-                axes.annotate(f"{count}", (x, edge), xytext=(0, -2), textcoords="offset points", ha="center", va="top",
-                              fontsize=style.SMALL)  # fmt: skip
-    if intensity[-1] > MIN_LOG_RATIO * intensity[0]:
-        style.logarithmic(axes.xaxis)
-    axes.set_xlim(float(intensity[0]), float(intensity[-1]))
-    axes.set_ylim(0.0, top)
-    ticks = np.arange(0.0, 1.1, 0.2)
-    axes.set_yticks([*ticks, *places.values()], [*(f"{y:.1f}" for y in ticks), *places])
-    style.tidy(axes, label, r"peak rotation $\phi/\phi_{cr}$")
-    handles += draw_fractiles(axes, intensity, ranked, ranked >= min(places.values()) * (1 - 1e-9))
-    also = f" or are of {names.UNKNOWN} outcome" if doubtful.any() else ""
-    handles.append(_words(f"numbers: those that overturn{also}, of {len(peaks)}"))
-    style.legend_below(figure, handles, 2, grows=True)
-    return figure
 
 
 def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figure:
@@ -400,31 +268,27 @@ def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figur
         these count as not exceeding.
     """
     figure, axes = style.one_panel(1.1 * PANEL_HEIGHT, title)
-    surface, spared, exceeding = found.surface, found.runs - found.exceeding, (found.lower or found).exceeding
-    doubtful = found.exceeding - exceeding
-    share = max(sum(int(np.count_nonzero(each)) for each in (spared, exceeding, doubtful)), 1)
-    every = int(np.ceil(share / MAX_DRAWN_RUNS))
-    handles: list[Any] = [
-        axes.scatter(*_some(found, spared, every), s=14, facecolors="none", edgecolors=style.SPARED,
-                     linewidths=style.CURVE, label=f"does not exceed ({spared.sum()})"),
-        axes.scatter(*_some(found, exceeding, every), s=16, marker="x", color=style.EXCEEDED,
-                     linewidths=style.MEDIUM, label=f"exceeds ({exceeding.sum()})"),
+    least = found.lower or found
+    circles: dict[str, Any] = {"s": 14, "facecolors": "none", "linewidths": style.CURVE}
+    kinds: list[tuple[Integers, str, dict[str, Any]]] = [
+        (found.runs - found.exceeding, "does not exceed", circles | {"edgecolors": style.SPARED}),
+        (least.exceeding, "exceeds", {"s": 16, "marker": "x", "color": style.EXCEEDED, "linewidths": style.MEDIUM}),
+        (found.exceeding - least.exceeding, f"{names.UNKNOWN} outcome",
+         circles | {"marker": "D", "edgecolors": style.FAINT}),
     ]  # fmt: skip
-    if doubtful.any():
-        handles.append(
-            axes.scatter(*_some(found, doubtful, every), s=14, marker="D", facecolors="none", edgecolors=style.FAINT,
-                         linewidths=style.CURVE, label=f"{names.UNKNOWN} outcome ({doubtful.sum()})")
-        )  # fmt: skip
+    every = max(1, int(np.ceil(sum(np.count_nonzero(runs) for runs, _, _ in kinds) / MAX_DRAWN_RUNS)))
+    handles: list[Any] = []
+    for runs, words, look in kinds[: 2 + bool(kinds[2][0].any())]:
+        there = np.flatnonzero(runs)[::every]
+        handles.append(axes.scatter(found.x1[there], found.x2[there], label=f"{words} ({runs.sum()})", **look))
     for axis in (axes.xaxis, axes.yaxis):
         style.logarithmic(axis)
     across, up = (np.geomspace(x.min() / 1.15, x.max() * 1.15, CURVE_POINTS) for x in (found.x1, found.x2))
-    band = found.is_band and found.lower is not None
-    if band and found.lower is not None:
-        handles.append(_contours(axes, found.lower.surface, across, up, style.RECORD_COLOUR, EDGE_LABELS[1]))
-    handles.append(_contours(axes, surface, across, up, style.INK, EDGE_LABELS[0] if band else ""))
+    if found.is_band:
+        handles.append(_contours(axes, least.surface, across, up, style.RECORD_COLOUR, EDGE_LABELS[1]))
+    handles.append(_contours(axes, found.surface, across, up, style.INK, EDGE_LABELS[0] if found.is_band else ""))
     notes = [f"one of every {every} runs is drawn"] if every > 1 else []
-    notes += _few([surface], "records")
-    handles += [_words(each) for each in notes]
+    handles += [legend_words(each) for each in [*notes, *_few([found.surface], "records")]]
     axes.set_xlim(across[0], across[-1])
     axes.set_ylim(up[0], up[-1])
     style.tidy(axes, labels[0], labels[1])
@@ -462,9 +326,3 @@ def _label_places(drawn: QuadContourSet, across: Reals, up: Reals) -> list[tuple
             x, y = inside[int((k + 0.5) / len(CONTOUR_LEVELS) * len(inside))].tolist()
             places.append((x, y))
     return places
-
-
-def _some(found: Bivariate, number: Integers, every: int) -> tuple[Reals, Reals]:
-    """Return the two intensities of every n-th of some runs, n being `every`."""
-    there = np.flatnonzero(number)[::every]
-    return found.x1[there], found.x2[there]

@@ -1,4 +1,4 @@
-"""Quantiles of the peak rotation over the runs at an intensity.
+"""Quantiles of the peak rotation over the runs at an intensity, as numbers, tables and data.
 
 Runs that do not uplift and runs that overturn are counted apart, as they have no peak of rocking. A second set of
 quantiles ranks all runs: without uplift as zero, overturned or of unknown outcome as beyond every number.
@@ -6,24 +6,30 @@ quantiles ranks all runs: without uplift as zero, overturned or of unknown outco
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from math import isinf
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli import names
 from rocking_cli.arrays import Integers, Reals
+from rocking_cli.names import MIN_MOTIONS, MIN_MOTIONS_OF_MEDIAN, OVERTURNS, UNKNOWN, percent
+from rocking_cli.processing.intensity import parse_measure
+from rocking_cli.questions.fragility.assess import UnknownRuns
 from rocking_cli.questions.fragility.definition import Definition
 from rocking_cli.questions.fragility.observed import Observations
 from rocking_cli.questions.fragility.plan import Plan
 from rocking_cli.questions.fragility.store import Store
 from rocking_cli.questions.fragility.tally import UNKNOWN_PEAK, Tally, endings_of, samples_of
 from rocking_cli.short_repr import short_repr
+from rocking_cli.studies.fragility.quantities import label
+from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
+from rocking_cli.views.view import ABSENT, Table, View, number
 
 QUANTILES = (0.16, 0.5, 0.84)
-MIN_RECORDS = (names.MIN_MOTIONS, names.MIN_MOTIONS_OF_MEDIAN, names.MIN_MOTIONS)
+MIN_RECORDS = (MIN_MOTIONS, MIN_MOTIONS_OF_MEDIAN, MIN_MOTIONS)
 """Smallest number of records with which each quantile is given: their lowest and highest peak enclose it with 95 %."""
 COUNT_TOLERANCE = 1e-9  # difference of numbers of runs that counts as rounding
 
@@ -67,6 +73,12 @@ class Group:
     unknown: int = 0
     doubtful: tuple[bool, ...] = (False,) * len(QUANTILES)
 
+    @property
+    def ranks(self) -> list[float | str]:
+        """The quantiles of all runs, in words if a run overturns or is unknown."""
+        pairs = zip(self.every, self.doubtful, strict=True)
+        return [UNKNOWN if doubtful else OVERTURNS if isinf(value) else value for value, doubtful in pairs]
+
 
 @short_repr
 @dataclass(frozen=True)
@@ -95,73 +107,51 @@ class Quantiles:
 
 
 def all_quantiles(store: Store, plan: Plan, definition: Definition) -> Iterator[Quantiles]:
-    """Yield the quantiles of every structure of a study over every measure of its curves."""
-    for structure in plan.structures:
-        yield from quantiles(store, plan, structure, definition.fitted_measures)
+    """Yield the quantiles of every structure that has runs, over every measure of the curves of a study.
 
-
-def quantiles(store: Store, plan: Plan, structure: str, measures: Sequence[str]) -> Iterator[Quantiles]:
-    """Yield the quantiles of a structure over several measures, in the groups in which observed shares are counted.
-
-    Parameters
-    ----------
-    store : Store
-        Open to read.
-    plan : Plan
-        The plan of its runs.
-    structure : str
-        Name of the structure.
-    measures : sequence of str
-        Names of the measures.
-
-    Yields
-    ------
-    Quantiles
-        One for each measure; none if no run is finished.
+    They are those of the groups in which observed shares are counted.
     """
-    table = np.moveaxis(endings_of(store, plan, structure), 2, 3)  # sample, record, level; restitution and polarity
-    runs: NDArray[Any] = (~np.isnan(table)).sum(axis=(3, 4), dtype=np.int32)  # the table of many samples is large
-    counted = Tally(plan, samples_of(plan, structure), runs, {}, None)
-    for measure in measures if runs.any() else ():
-        cells = counted.over(measure)
-        x = cells.intensities(measure)
-        there = x > 0  # False for unknown values, too
-        if not there.any():
-            continue
-        x, record = x[there], cells.record[there]
-        level = cells.level[there] if counted.decided_by_level(measure) else None
-        seen = Observations.of(x, np.zeros(x.size), record, level=level, runs=cells.runs[there])
-        of_cell = seen.group_of(x, record, level)
-        groups = np.full((1, *runs.shape[1:]) if cells.together else runs.shape, -1, dtype=np.int16)
-        groups[tuple(each[there] for each in cells.place)] = of_cell
-        whole = np.broadcast_to(groups, runs.shape)
-        parts = seen.parts(0.95)
-        yield Quantiles(structure, measure, seen.stripes, [
-            _group(
-                table[whole == k], np.nonzero(whole == k)[1], x[of_cell == k], float(parts.x[k]), int(parts.records[k])
-            )
-            for k in range(parts.x.size)
-        ])  # fmt: skip
+    for structure in plan.structures:
+        table = np.moveaxis(endings_of(store, plan, structure), 2, 3)  # sample, record, level; restitution and polarity
+        runs: NDArray[Any] = (~np.isnan(table)).sum(axis=(3, 4), dtype=np.int32)  # the table of many samples is large
+        counted = Tally(plan, samples_of(plan, structure), runs, {}, None)
+        for measure in definition.fitted_measures if runs.any() else ():
+            cells = counted.over(measure)
+            x = cells.intensities(measure)
+            there = x > 0  # False for unknown values, too
+            if not there.any():
+                continue
+            x, record = x[there], cells.record[there]
+            level = cells.level[there] if counted.decided_by_level(measure) else None
+            seen = Observations.of(x, np.zeros(x.size), record, level=level, runs=cells.runs[there])
+            of_cell = seen.group_of(x, record, level)
+            groups = np.full((1, *runs.shape[1:]) if cells.together else runs.shape, -1, dtype=np.int16)
+            groups[tuple(each[there] for each in cells.place)] = of_cell
+            whole, parts = np.broadcast_to(groups, runs.shape), seen.parts(0.95)
+            of_groups = [
+                _group(table[whole == k], np.nonzero(whole == k)[1], x[of_cell == k], float(mean), int(records))
+                for k, (mean, records) in enumerate(zip(parts.x, parts.records, strict=True))
+            ]
+            yield Quantiles(structure, measure, seen.stripes, of_groups)
 
 
 def _group(peaks: Reals, record: Integers, x: Reals, mean: float, records: int) -> Group:
     ranked = np.sort(peaks[~np.isnan(peaks)])
     rocks = (peaks > 0) & (peaks < UNKNOWN_PEAK)
-    rocking = np.sort(peaks[rocks])
     every = not_exceeded(ranked, records)
     low, high = float(x.min()), float(x.max())
     return Group(
-        min(max(mean, low), high),  # the mean lies between them, except for rounding
-        low,
-        high,
-        ranked.size,
-        records,
-        int((ranked == 0).sum()),
-        int(np.isinf(ranked).sum()),
-        not_exceeded(rocking, np.unique(record[rocks.any(axis=(1, 2))]).size),
-        tuple(np.inf if value == UNKNOWN_PEAK else value for value in every),
-        int((ranked == UNKNOWN_PEAK).sum()),
-        tuple(value == UNKNOWN_PEAK for value in every),
+        x=min(max(mean, low), high),  # the mean lies between them, except for rounding
+        low=low,
+        high=high,
+        runs=ranked.size,
+        records=records,
+        no_uplift=int((ranked == 0).sum()),
+        overturned=int(np.isinf(ranked).sum()),
+        rocking=not_exceeded(np.sort(peaks[rocks]), np.unique(record[rocks.any(axis=(1, 2))]).size),
+        every=tuple(np.inf if value == UNKNOWN_PEAK else value for value in every),
+        unknown=int((ranked == UNKNOWN_PEAK).sum()),
+        doubtful=tuple(value == UNKNOWN_PEAK for value in every),
     )
 
 
@@ -173,3 +163,77 @@ def not_exceeded(ranked: Reals, records: int) -> tuple[float, ...]:
         else np.nan
         for share, fewest in zip(QUANTILES, MIN_RECORDS, strict=True)
     )
+
+
+def with_quantiles(shown: View, found: Sequence[Quantiles], outcomes: Sequence[UnknownRuns], *, in_words: bool) -> View:
+    """Add quantiles to the view of a study: always as data, as tables only if `in_words`."""
+    assert isinstance(shown.data, Mapping)
+    checked = {each.structure: each.unknown is not None for each in outcomes}
+    data = [
+        {
+            "structure": each.structure,
+            "measure": each.measure,
+            "unit": parse_measure(each.measure).unit,
+            "groups": "stripes" if each.stripes else "tenths",
+            "shares": list(QUANTILES),
+            "intensities": [data_of(_columns(each, checked=checked[each.structure]), group) for group in each.groups],
+        }
+        for each in found
+    ]
+    parts = [part for each in found for part in _tables(each)] if in_words else []
+    if parts:
+        note = (
+            "Quantiles of the peak phi/phi_cr. For all runs, a run without uplift counts as 0 and an overturning run "
+            f"ranks above every finite peak; '{OVERTURNS}' marks quantiles that are such runs. The median needs "
+            f"{min(MIN_RECORDS)} distinct records, the others {max(MIN_RECORDS)}: then the lowest and the highest peak "
+            f"enclose the quantile with a confidence of 95 %. Of fewer records, they are '{ABSENT}'."
+        )
+        if any(each.unknown for each in found):
+            note += (
+                f" Runs of {UNKNOWN} outcome have no peak: they are left out of the runs that rock, and rank above "
+                f"every finite peak among all runs; '{UNKNOWN}' marks quantiles that are such runs."
+            )
+        parts.append(note)
+    return View({**shown.data, "quantiles": data}, [*shown.parts, *parts])
+
+
+def _tables(found: Quantiles) -> Iterator[Table | str]:
+    """Yield two tables: runs that rock without overturning, with the shares of the others; and all runs."""
+    over = f"against {label(found.measure)}{'' if found.stripes else ', in tenths'}"
+    columns = _columns(found, checked=True)
+    rocking = [_quantile("rocking", k, "rocking\n") for k in range(len(QUANTILES))]
+    every = [_quantile("ranks", k) for k in range(len(QUANTILES))]
+    yield ""
+    yield table_of(f"{found.structure}: peaks of the runs that rock, {over}", [*columns, *rocking], found.groups)
+    yield ""
+    yield table_of(f"{found.structure}: all runs, {over}", [columns[0], *every], found.groups)
+
+
+def _quantile(name: str, k: int, head: str = "") -> Column[Group]:
+    """Return the column of one of the quantiles that groups have under a name."""
+
+    def form(value: float | str) -> str:
+        return value if isinstance(value, str) else number(value, 3)
+
+    return only_shown(f"{head}{100 * QUANTILES[k]:g} %", lambda group: getattr(group, name)[k], form)
+
+
+def _columns(found: Quantiles, *, checked: bool) -> list[Column[Group]]:
+    """Return the columns of an intensity; the share of unknown outcomes does not exist if nothing was checked."""
+
+    def share(name: str) -> Callable[[Group], float]:
+        return lambda group: getattr(group, name) / group.runs
+
+    head = "un-\nknown" if found.unknown else None
+    return [
+        Column("x", of("x"), head=label(found.measure)),
+        Column("from", of("low")),
+        Column("to", of("high")),
+        Column("runs", of("runs"), head="runs"),
+        Column("distinct_records", of("records")),
+        Column("no_uplift", share("no_uplift"), head="no\nuplift", form=percent),
+        Column("overturned", share("overturned"), head="over-\nturned", form=percent),
+        Column("unknown", share("unknown") if checked else lambda group: None, head=head, form=percent),
+        Column("rocking", lambda group: list(group.rocking)),
+        Column("all", of("ranks")),
+    ]

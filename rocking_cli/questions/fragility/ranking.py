@@ -1,4 +1,4 @@
-"""Ranking of intensity measures: how well each predicts the peak rotation, and whether it is sufficient.
+"""Ranking of intensity measures, in numbers, tables and data: how well each predicts the peak rotation.
 
 Terms are those of Luco and Cornell (2007) and Padgett, Nielson and DesRoches (2008). Over the runs that rock without
 overturning, ln(peak phi/phi_cr) = a + b ln(measure) is fitted by least squares.
@@ -6,21 +6,26 @@ overturning, ln(peak phi/phi_cr) = a + b ln(measure) is fitted by least squares.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from math import nan, sqrt
+from textwrap import wrap
 
 import numpy as np
 
 from rocking_cli.arrays import Integers, Reals
+from rocking_cli.names import UNKNOWN
 from rocking_cli.processing.intensity import RunMeasure, all_measures, parse_measure
 from rocking_cli.questions.fragility.assess import Fragility, counted, curves
 from rocking_cli.questions.fragility.definition import Definition, Limit
 from rocking_cli.questions.fragility.plan import ORIGIN, V_IMP, Plan
 from rocking_cli.questions.fragility.store import STANDS, Store
-from rocking_cli.questions.fragility.tally import samples_of
+from rocking_cli.questions.fragility.tally import Tally, samples_of
+from rocking_cli.questions.fragility.view import limit_name
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.fragility.quantities import PGA, PGV
+from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_of
+from rocking_cli.views.view import Table, View
 
 MIN_P_VALUE = 0.05  # least p-value of residuals without a trend
 OF_MOTION = ("Tm", "D5-95")
@@ -28,6 +33,7 @@ OF_MOTION = ("Tm", "D5-95")
 LOGARITHMIC = ("magnitude",)  # quantities that are logarithms already
 MIN_RUNS = 3  # least number of runs, and of records
 RATIO_TOLERANCE = 1e-9  # variation of ln of a ratio: measures whose ratio varies less count as one
+MAX_HEADING_WIDTH = 12  # characters
 
 
 @short_repr
@@ -150,17 +156,12 @@ def _known(plan: Plan, name: str) -> bool:
 def covariates(plan: Plan) -> dict[str, Reals]:
     """Return, by name, the data of each record against which residuals are tested; empty if the data have gaps."""
     usable = np.array([record.reason is None for record in plan.records])
-
-    def of(names: Iterable[str]) -> dict[str, Reals]:
-        by_key = {}
-        for name in names:
-            values = plan.of_records(name)
-            if not (np.isfinite(values[usable]).all() and (values[usable] > 0).all()):
-                return {}
-            by_key[name] = values if name in LOGARITHMIC else np.log(np.where(usable, values, 1.0))
-        return by_key
-
-    return of(ORIGIN) or of(OF_MOTION)
+    for names in (ORIGIN, OF_MOTION):
+        known = {name: plan.of_records(name) for name in names}
+        if all(np.isfinite(values[usable]).all() and (values[usable] > 0).all() for values in known.values()):
+            logs = {name: np.log(np.where(usable, values, 1.0)) for name, values in known.items()}
+            return logs | {name: known[name] for name in LOGARITHMIC if name in known}
+    return {}
 
 
 def rank(
@@ -191,21 +192,20 @@ def rank(
     rankings = []
     for structure, tally in counted(store, plan, widened, progress).items():
         if tally.runs.any():
-            fitted = {(curve.measure, curve.limit): curve for curve in curves(tally, structure, widened, None)}
-            ranking = _rank(store, plan, structure, names, fitted, against)
-            rankings.append(replace(ranking, unknown=tally.unknown_if_checked))
+            fitted = list(curves(tally, structure, widened, None))
+            rankings.append(_rank(store, plan, tally, structure, names, fitted, against))
     return rankings
 
 
 def _rank(
     store: Store,
     plan: Plan,
+    tally: Tally,
     structure: str,
     names: Sequence[str],
-    fitted: Mapping[tuple[str, Limit], Fragility],
+    fitted: Sequence[Fragility],
     against: Mapping[str, Reals],
 ) -> Ranking:
-    """Rank the measures of one structure."""
     runs, y = rocking(store, plan, structure)
     sample, record, _, level, _ = plan.places(runs)
     factors, one = plan.factors(sample, record, level), plan.of_sets.one[record]  # one: the same record in any set
@@ -220,22 +220,20 @@ def _rank(
             left_out[name] = "not known of it, or nowhere above zero"
             continue
         log = np.log(np.where(there, x, 1.0))
-        twin = next(
-            (other for other, its in logs.items() if there.all() and its.size and np.ptp(log - its) <= RATIO_TOLERANCE),
-            None,
-        )
-        if twin is not None:
-            alike[name] = twin
+        twins = [other for other, its in logs.items() if there.all() and np.ptp(log - its) <= RATIO_TOLERANCE]
+        if twins:
+            alike[name] = twins[0]
             continue
         served = serves(name, log[there], y[there], one[there], against)
         if served is None:
             left_out[name] = "the same in all runs that rock and stand, or these are fewer than three"
             continue
-        logs[name] = log if there.all() else np.zeros(0)
-        limits = {limit: _dispersion(each) for (measure, limit), each in fitted.items() if measure == name}
-        ranked.append(Ranked(name, *served, limits))
-    order = sorted(ranked, key=lambda each: each.efficiency)
-    return Ranking(structure, tuple(order), tuple(against), alike, left_out)
+        if there.all():
+            logs[name] = log
+        dispersions = {each.limit: _dispersion(each) for each in fitted if each.measure == name}
+        ranked.append(Ranked(name, *served, dispersions))
+    ranked.sort(key=lambda each: each.efficiency)
+    return Ranking(structure, tuple(ranked), tuple(against), alike, left_out, tally.unknown_if_checked)
 
 
 def serves(
@@ -283,3 +281,91 @@ def rocking(store: Store, plan: Plan, structure: str) -> tuple[Integers, Reals]:
 def _dispersion(found: Fragility) -> float:
     spread = None if found.is_band else found.curve.dispersion
     return spread.value if spread is not None else nan
+
+
+COLUMNS: tuple[Column[Ranked], ...] = (
+    Column("measure", of("measure"), head="measure", text=True),
+    Column("efficiency", of("efficiency"), head="efficiency", form=rounded(3)),
+    Column("practicality", of("practicality"), head="practicality", form=rounded(3)),
+    Column("proficiency", of("proficiency"), head="proficiency", form=rounded(3)),
+    Column("sufficient", of("sufficient")),
+    Column("p_values", lambda each: dict(each.trends)),
+    Column(
+        "dispersions",
+        lambda each: [{"limit_state": limit, "dispersion": value} for limit, value in each.dispersions.items()],
+    ),
+    Column("runs", of("runs")),
+    Column("records", of("records")),
+)
+
+
+def added(shown: View, rankings: Sequence[Ranking]) -> View:
+    """Add the rankings of the measures to the view of a study."""
+    assert isinstance(shown.data, Mapping)
+    data = [
+        {
+            "structure": each.structure,
+            "against": list(each.against),
+            "measures": [data_of(COLUMNS, measure) for measure in each.measures],
+            "alike": dict(each.alike),
+            "left_out": dict(each.left_out),
+            "unknown": each.unknown,
+            "verdict": judge(each),
+        }
+        for each in rankings
+    ]
+    return View({**shown.data, "ranking": data}, [*shown.parts, *(part for each in rankings for part in _parts(each))])
+
+
+def _parts(ranking: Ranking) -> Iterator[Table | str]:
+    """Yield a table of the measures of a structure, and sentences on it."""
+    yield ""
+    if ranking.measures:
+        columns = [*COLUMNS, *(_entry("trends", name, f"p\n{name}", 2) for name in ranking.against)]
+        for limit in ranking.measures[0].dispersions:
+            head = "\n".join(["dispersion", *wrap(limit_name(limit), MAX_HEADING_WIDTH)])
+            columns.append(_entry("dispersions", limit, head, 3))
+        yield table_of(f"{ranking.structure}: which measure predicts best", columns, ranking.measures)
+    yield " ".join(judge(ranking))
+    if ranking.alike:
+        yield "; ".join(f"{name} ranks equal to {other}" for name, other in ranking.alike.items()) + "."
+    for name, why in ranking.left_out.items():
+        yield f"{name} is left out: {why}."
+
+
+def _entry(field: str, key: Limit, head: str, digits: int) -> Column[Ranked]:
+    """Return the column of one entry of a mapping of each measure."""
+    return only_shown(head, lambda each: getattr(each, field)[key], rounded(digits))
+
+
+def judge(ranking: Ranking) -> list[str]:
+    """Return sentences on a ranking: the most efficient measure, the runs left out, and trends of the residuals."""
+    count, best = ranking.unknown or 0, next(iter(ranking.measures), None)
+    runs = f"{count:,} run{'s' * (count != 1)} of {UNKNOWN} outcome {'are' if count != 1 else 'is'} left out."
+    left_out = [runs] if count else []
+    if best is None:
+        return [f"{ranking.structure}: no measure can be ranked: fewer than three runs rock and stand.", *left_out]
+    over = f"{best.runs:,} runs of {best.records} record{'s' * (best.records != 1)} that rock and stand"
+    first = (
+        f"Of {len(ranking.measures)} measures {best.measure} is the most efficient over the {over}: "
+        f"ln(phi/phi_cr) scatters by {best.efficiency:.2g} about its line."
+    )
+    return [first, *left_out, _of_trends(ranking), "Other records may give another order."]
+
+
+def _of_trends(ranking: Ranking) -> str:
+    """Return a sentence on the most efficient measure among those whose residuals have no trend."""
+    over = " or ".join(ranking.against)
+    if not over:
+        return "What its residuals depend on is not tested: the store has no data to test them against."
+    if all(each.sufficient is None for each in ranking.measures):
+        return f"With fewer than {MIN_RUNS} records no trend with {' and '.join(ranking.against)} can be told."
+    free = [each for each in ranking.measures if each.sufficient]
+    if not free:
+        return f"The residuals of each have a trend with {over}: none is sufficient."
+    best = free[0]
+    which = "It" if best is ranking.measures[0] else f"{best.measure}, with {best.efficiency:.2g},"
+    return (
+        f"{which} is the most efficient of the {len(free)} whose residuals show no trend with {over} "
+        f"(p of {MIN_P_VALUE:g} or more); the absence of a detected trend does not prove that there is none."
+    )

@@ -200,10 +200,8 @@ def results(asked: ResultsAsked, watch: Watcher) -> StudyAnswer:
         If the folder is not a store of this version, or is damaged.
     """
     from rocking_cli.questions.fragility.assess import counted, unknown_runs
-    from rocking_cli.questions.fragility.quantiles import all_quantiles
-    from rocking_cli.questions.fragility.quantiles_view import with_quantiles
-    from rocking_cli.questions.fragility.ranking import rank
-    from rocking_cli.questions.fragility.ranking_view import added
+    from rocking_cli.questions.fragility.quantiles import all_quantiles, with_quantiles
+    from rocking_cli.questions.fragility.ranking import added, rank
     from rocking_cli.questions.fragility.view import left_out, view
 
     if asked.plot is not None:
@@ -364,13 +362,13 @@ def _columns(place: Path) -> Columns:
 
 def _figure(definition: Definition, curves: list[Fragility]) -> Figure:
     from rocking_cli.plotting.style import plain
-    from rocking_cli.questions.fragility.picture import LabelledCurve, draw_curves, limit_in_picture
+    from rocking_cli.questions.fragility.picture import draw_curves, limit_in_picture
     from rocking_cli.studies.fragility.quantities import label
 
     measure = definition.fitted_measures[0]
-    lines = [
-        LabelledCurve.of(f"{plain(curve.structure)}, {limit_in_picture(curve.limit, math=True)}", curve)
-        for curve in curves
-        if curve.measure == measure
-    ]
+    lines = {
+        f"{plain(each.structure)}, {limit_in_picture(each.limit, math=True)}": each
+        for each in curves
+        if each.measure == measure
+    }
     return draw_curves(lines, label(measure), "")

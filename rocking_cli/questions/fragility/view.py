@@ -23,14 +23,12 @@ if TYPE_CHECKING:  # avoids importing scipy, which only fits need
 
     from rocking_cli.questions.fragility.assess import Bivariate, Fragility, UnknownRuns
     from rocking_cli.questions.fragility.campaign import Left
-    from rocking_cli.questions.fragility.curves import Cut, FragilityCurve, Surface
+    from rocking_cli.questions.fragility.curves import Cut, FittedToRuns, FragilityCurve
     from rocking_cli.questions.fragility.definition import Definition, Limit
-    from rocking_cli.questions.fragility.hazard_curve import Rate
     from rocking_cli.questions.fragility.plan import Plan
     from rocking_cli.questions.fragility.store import Store
     from rocking_cli.questions.fragility.study import Study
     from rocking_cli.studies.engines import EngineName
-    from rocking_cli.studies.fit import Estimate
 
 Fitted = TypeVar("Fitted", "Fragility", "Bivariate")
 PLANNED: tuple[Column[tuple[str, str]], ...] = (
@@ -141,7 +139,7 @@ def view(
     outcomes : sequence of UnknownRuns
         Number of runs of unknown outcome of each structure.
     """
-    name, confidence = store.fact("name"), definition.confidence
+    name = store.fact("name")
     bad = sum(each.reason is not None for each in plan.records)
     good = len(plan.records) - bad
     records = f"{good} record{'s' * (good != 1)}" + (f" ({bad} more cannot be used)" if bad else "")
@@ -153,16 +151,19 @@ def view(
     counts = f"{finished:,} runs{so_far}" + (f" ({', '.join(of_them)})" if of_them else "")
     parts: list[Table | str] = [f"{name}: {definition.method}, {records}, {counts}, seed {definition.seed}"]
     parts += sets_in_words(plan)
-    for structure, measure in dict.fromkeys((each.structure, each.measure) for each in curves):
-        these = [each for each in curves if (each.structure, each.measure) == (structure, measure)]
-        parts += _curves(structure, measure, these, definition)
-    for structure, measures in dict.fromkeys((each.structure, each.measures) for each in surfaces):
-        those = [each for each in surfaces if (each.structure, each.measures) == (structure, measures)]
-        parts += _surfaces(structure, measures, those, confidence)
+    interval = f"{100 * definition.confidence:g} %"
+    for (structure, measure), these in _grouped(curves, "measure").items():
+        over, capacities = f"{structure}, over {label(measure)}", definition.method == "ida"
+        every = [each for _, each in edges(these)]
+        width = "dispersion" if all(each.curve.scale is None for each in every) else "dispersion\nor scale"
+        columns = fit_columns(interval, width, rated=any(each.rate is not None for each in every))
+        parts += fits_in_words(over, columns, measure, these, capacities=capacities)
+    for (structure, (one, other)), those in _grouped(surfaces, "measures").items():
+        title = f"{structure}: P = Phi(c0 + c1 ln({one}) + c2 ln({other}))"
+        parts += fits_in_words(title, plane_columns(interval), f"{one} or {other}", those)
     blockless = without_block(plan, definition.engine)
     parts += [*blockless, *out_of_reach(store, plan, definition)]
-    notes = [*_unknown_in_words(outcomes, definition.engine), *_unchecked_in_words(outcomes)]
-    parts += (notes := [*notes, *_engines_in_words(outcomes, definition.engine)])
+    parts += (notes := list(_notes(outcomes, definition.engine)))
     parts += (nowhere := _nowhere(plan, definition, curves) if finished else [])
     data = {
         "study": name,
@@ -187,6 +188,14 @@ def view(
         "surfaces": [_data(each, plane_columns(), {"measures": list(each.measures)}) for each in surfaces],
     }
     return View(data, parts)
+
+
+def _grouped(fits: Sequence[Fitted], over: str) -> dict[tuple[str, Any], list[Fitted]]:
+    """Return fits by their structure and their measures."""
+    groups: dict[tuple[str, Any], list[Fitted]] = {}
+    for each in fits:
+        groups.setdefault((each.structure, getattr(each, over)), []).append(each)
+    return groups
 
 
 def sets_in_words(plan: Plan) -> list[str]:
@@ -229,35 +238,18 @@ def _nowhere(plan: Plan, definition: Definition, curves: Sequence[Fragility]) ->
     ]
 
 
-def _curves(structure: str, measure: str, curves: Sequence[Fragility], definition: Definition) -> Iterator[Table | str]:
-    """Yield the table and remarks of the curves of a structure over one measure."""
-    shown = list(edges(curves))
-    width = "dispersion" if all(each.curve.scale is None for _, each in shown) else "dispersion\nor scale"
-    rated = any(each.rate is not None for _, each in shown)
-    columns = fit_columns(f"{100 * definition.confidence:g} %", width, rated=rated)
-    yield ""
-    yield table_of(f"{structure}, over {label(measure)}", columns, shown)
-    for name, each in shown:
-        yield f"{name}: {each.curve.why}.{senseless(each.curve)}{_cut_in_words(each)}{_in_years(each.rate)}"
-    yield from undecided(curves, capacities=definition.method == "ida")
-    yield from without_logarithm(measure, curves[0].left_out)
-    yield from warnings_of([each.curve for _, each in shown])
-
-
-def _surfaces(
-    structure: str, measures: tuple[str, str], surfaces: Sequence[Bivariate], confidence: float
+def fits_in_words(
+    title: str, columns: Sequence[Column[Named]], over: str, found: Sequence[Fitted], *, capacities: bool = False
 ) -> Iterator[Table | str]:
-    """Yield the table and remarks of the surfaces of a structure over two measures."""
-    one, other = measures
-    shown = list(edges(surfaces))
-    columns = plane_columns(f"{100 * confidence:g} %")
+    """Yield the table of the fits of a structure over the same measures, and remarks on them."""
+    shown = list(edges(found))
     yield ""
-    yield table_of(f"{structure}: P = Phi(c0 + c1 ln({one}) + c2 ln({other}))", columns, shown)
+    yield table_of(title, columns, shown)
     for name, each in shown:
-        yield f"{name}: {each.surface.why}."
-    yield from undecided(surfaces, capacities=False)
-    yield from without_logarithm(" or ".join(measures), surfaces[0].left_out)
-    yield from warnings_of([each.surface for _, each in shown])
+        yield f"{name}: {each.fitted.why}.{_remarks(each)}"
+    yield from undecided(found, capacities=capacities)
+    yield from without_logarithm(over, found[0].left_out)
+    yield from warnings_of([each.fitted for _, each in shown])
 
 
 def edges(found: Sequence[Fitted]) -> Iterator[tuple[str, Fitted]]:
@@ -276,18 +268,15 @@ def undecided(found: Sequence[Fragility | Bivariate], *, capacities: bool) -> It
     for each in found:
         if not each.unknown:
             continue
+        one, count = each.unknown == 1, f"{each.unknown:,} of {each.total:,}"
         share = f"({percent(each.share or 0.0)})"
-        many = each.unknown != 1
         if capacities:
-            sentence = f"{each.unknown:,} of {each.total:,} capacities {share} {'are' if many else 'is'} {UNKNOWN}"
+            sentence = f"{count} capacities {share} {'is' if one else 'are'} {UNKNOWN}"
         else:
-            does = "exceed" if many else "exceeds"
-            sentence = f"whether {each.unknown:,} of {each.total:,} runs {share} {does} the limit is {UNKNOWN}"
-        counted = f"{'these count' if many else 'this one counts'} as exceeding"
-        how = (
-            "the result is the band between the two curves, down to 0 without a lower one" if each.is_band else counted
-        )
-        yield f"{limit_name(each.limit)}: {sentence}; {how}."
+            sentence = f"whether {count} runs {share} {'exceeds' if one else 'exceed'} the limit is {UNKNOWN}"
+        counted = f"{'this one counts' if one else 'these count'} as exceeding"
+        how = "the result is the band between the two curves, down to 0 without a lower one"
+        yield f"{limit_name(each.limit)}: {sentence}; {how if each.is_band else counted}."
     if any(each.is_band for each in found):
         yield (
             f"An upper curve counts runs of {UNKNOWN} outcome as exceeding the limit, a lower one as not exceeding it. "
@@ -296,40 +285,33 @@ def undecided(found: Sequence[Fragility | Bivariate], *, capacities: bool) -> It
         )
 
 
-def _unknown_in_words(outcomes: Sequence[UnknownRuns], engine: EngineName) -> list[str]:
-    """Return a sentence on each structure with runs of unknown outcome."""
+def _notes(outcomes: Sequence[UnknownRuns], engine: EngineName) -> Iterator[str]:
+    """Yield sentences on runs of unknown outcome, on joints that were not checked, and on runs with free blocks."""
     why, when = "a joint opens or slides that the model keeps closed", "the first joint opens or slides"
     if engine != "exact":  # free blocks have simulated all runs with such a joint
         why, when = BLOCKS_FAILED, "the failure"
-    return [
-        f"{each.structure}: {each.unknown:,} of {each.runs:,} runs ({percent(each.share or 0.0)}) "
-        f"{'are' if each.unknown != 1 else 'is'} of {UNKNOWN} outcome, because {why}. They are known to exceed a limit "
-        f"only if they exceed it before {when}; until more is known, use the upper curves."
-        for each in outcomes
-        if each.unknown
-    ]
-
-
-def _unchecked_in_words(outcomes: Sequence[UnknownRuns]) -> list[str]:
-    """Return a sentence on the structures whose joints were not checked; empty without any."""
-    unchecked = [each.structure for each in outcomes if not each.checked]
-    if not unchecked:
-        return []
-    return [
-        f"Caution: the joints of {' and '.join(unchecked)} are not checked: the mechanism does not say which of them "
-        "stay closed."
-    ]
-
-
-def _engines_in_words(outcomes: Sequence[UnknownRuns], engine: EngineName) -> list[str]:
-    """Return a sentence on the runs that were simulated with free blocks; empty if the study did not allow any."""
-    counts = {each.structure: f"{each.by_blocks:,} of {each.runs:,}" for each in outcomes if each.by_blocks}
-    if not counts:
-        return [ALL_EXACT] if engine == "auto" else []
-    several = len(outcomes) > 1
-    named = [f"{count}{f' runs of {structure}' if several else ' runs'}" for structure, count in counts.items()]
-    friction = f"that of the structure's file, or {MASONRY_FRICTION:g}, as usual for masonry, if it gives none"
-    return [blocks_in_words(engine, " and ".join(named), friction, sum(each.off_edge for each in outcomes))]
+    for each in outcomes:
+        if each.unknown:
+            yield (
+                f"{each.structure}: {each.unknown:,} of {each.runs:,} runs ({percent(each.share or 0.0)}) "
+                f"{'are' if each.unknown != 1 else 'is'} of {UNKNOWN} outcome, because {why}. They are known to exceed "
+                f"a limit only if they exceed it before {when}; until more is known, use the upper curves."
+            )
+    if unchecked := [each.structure for each in outcomes if not each.checked]:
+        yield (
+            f"Caution: the joints of {' and '.join(unchecked)} are not checked: the mechanism does not say which of "
+            "them stay closed."
+        )
+    if by_blocks := [each for each in outcomes if each.by_blocks]:
+        several = len(outcomes) > 1
+        runs = [
+            f"{each.by_blocks:,} of {each.runs:,} runs{f' of {each.structure}' if several else ''}"
+            for each in by_blocks
+        ]
+        friction = f"that of the structure's file, or {MASONRY_FRICTION:g}, as usual for masonry, if it gives none"
+        yield blocks_in_words(engine, " and ".join(runs), friction, sum(each.off_edge for each in outcomes))
+    elif engine == "auto":
+        yield ALL_EXACT
 
 
 def without_logarithm(measure: str, runs: int) -> Iterator[str]:
@@ -341,7 +323,7 @@ def without_logarithm(measure: str, runs: int) -> Iterator[str]:
         )
 
 
-def warnings_of(fitted: Sequence[FragilityCurve | Surface]) -> Iterator[str]:
+def warnings_of(fitted: Sequence[FittedToRuns]) -> Iterator[str]:
     """Yield each warning of some fits once; they are shown with the numbers that they concern."""
     for warning in dict.fromkeys(each.warning for each in fitted if each.warning):
         yield f"Warning: {warning}."
@@ -362,26 +344,23 @@ def cut_of(found: Fragility) -> Cut | None:
     return found.curve.cut(np.geomspace(least, most, CUT_POINTS))
 
 
-def _cut_in_words(found: Fragility) -> str:
-    """Say by which limit state a curve is cut; empty if it is not."""
-    cut = cut_of(found)
-    if cut is None:
-        return ""
-    by = (
-        "lambda, up to which nothing uplifts"
-        if cut.by == UPLIFT_MEASURE
-        else f"that of {limit_name(cut.by)}, which it implies"
-    )
-    return f" Curve and band are cut by {by}: by up to {cut.most:.2g} at {cut.at:.3g}."
+def _remarks(found: Fragility | Bivariate) -> str:
+    """Say that a dispersion makes no sense, by which limit state a curve is cut, and how often it is exceeded."""
+    from rocking_cli.questions.fragility.assess import Fragility
 
-
-def _in_years(rate: Rate | None) -> str:
-    if rate is None or rate.rate == 0:
+    if not isinstance(found, Fragility):
         return ""
-    return (
-        f" Exceeded once in {rate.return_period:,.0f} years (annual rate {rate.low:.3g} to {rate.high:.3g}), "
-        f"{100 * rate.in_50_years:.2g} % in 50 years."
-    )
+    words, rate = senseless(found.curve), found.rate
+    if (cut := cut_of(found)) is not None:
+        of = f"that of {limit_name(cut.by)}, which it implies"
+        by = "lambda, up to which nothing uplifts" if cut.by == UPLIFT_MEASURE else of
+        words += f" Curve and band are cut by {by}: by up to {cut.most:.2g} at {cut.at:.3g}."
+    if rate is not None and rate.rate > 0:
+        words += (
+            f" Exceeded once in {rate.return_period:,.0f} years (annual rate {rate.low:.3g} to {rate.high:.3g}), "
+            f"{100 * rate.in_50_years:.2g} % in 50 years."
+        )
+    return words
 
 
 def limit_name(limit: Limit) -> str:
@@ -391,14 +370,21 @@ def limit_name(limit: Limit) -> str:
     return limit if metres(limit) is None else f"top > {limit}"
 
 
-def _estimate(estimate: Estimate | None) -> dict[str, float] | None:
-    return None if estimate is None else asdict(estimate)
-
-
 def _with_interval(estimate: Mapping[str, float]) -> str:
     """Format a number above its confidence interval."""
     value, low, high = estimate.values()
     return f"{value:.4g}\n{'exact' if low == high else f'{low:.3g} - {high:.3g}'}"
+
+
+def _of(name: str) -> Callable[[Named], Any]:
+    """Return a function that reads an attribute of a named fit."""
+    read = of(name)
+    return lambda row: read(row[1])
+
+
+def _data_of(read: Callable[[Named], Any]) -> Callable[[Named], dict[str, Any] | None]:
+    """Return a function that reads numbers of a named fit as plain data; None if there are none."""
+    return lambda row: None if (value := read(row)) is None else asdict(value)
 
 
 def fit_columns(interval: str = "", width: str = "", *, rated: bool = False) -> list[Column[Named]]:
@@ -406,54 +392,49 @@ def fit_columns(interval: str = "", width: str = "", *, rated: bool = False) -> 
 
     Some columns of a table stand for several of the data.
     """
+    spread, scale = _data_of(_of("curve.dispersion")), _data_of(_of("curve.scale"))
     return [
         only_shown("limit state", lambda row: row[0], text=True),
-        Column("kind", of_fit("curve.kind"), head="curve", text=True),
-        Column("why", of_fit("curve.why")),
-        Column("median", lambda row: _estimate(row[1].curve.median), head=f"median\n{interval}", form=_with_interval),
-        Column("dispersion", lambda row: _estimate(row[1].curve.dispersion)),
-        Column("scale", lambda row: _estimate(row[1].curve.scale)),
-        only_shown(f"{width}\n{interval}", lambda row: _estimate(row[1].curve.dispersion or row[1].curve.scale),
-                   _with_interval),
-        Column("confidence", of_fit("curve.confidence")),
-        Column("goodness", lambda row: None if (goodness := row[1].curve.goodness) is None else asdict(goodness),
-               head="fit p", form=lambda goodness: number(goodness["p_value"], 2)),
-        Column("aic", of_fit("curve.aic")),
-        Column("runs", of_fit("curve.runs")),
-        Column("exceedances", of_fit("curve.exceedances")),
-        Column("distinct_records", of_fit("curve.records")),
-        Column("warning", lambda row: row[1].curve.warning or None),
-        Column("cut", lambda row: None if (cut := cut_of(row[1])) is None else asdict(cut)),
-        Column("annual_rate", lambda row: None if row[1].rate is None else asdict(row[1].rate),
-               head="rate\n[1/year]" if rated else None, form=lambda rate: number(rate["rate"], 3)),
+        Column("kind", _of("curve.kind"), head="curve", text=True),
+        Column("why", _of("curve.why")),
+        Column("median", _data_of(_of("curve.median")), head=f"median\n{interval}", form=_with_interval),
+        Column("dispersion", spread),
+        Column("scale", scale),
+        only_shown(f"{width}\n{interval}", lambda row: spread(row) or scale(row), _with_interval),
+        Column("confidence", _of("curve.confidence")),
+        Column("goodness", _data_of(_of("curve.goodness")), head="fit p", form=lambda test: number(test["p_value"], 2)),
+        *_counts("curve.aic"),
+        Column("cut", _data_of(lambda row: cut_of(row[1]))),
+        Column("annual_rate", _data_of(_of("rate")), head="rate\n[1/year]" if rated else None,
+               form=lambda rate: number(rate["rate"], 3)),
     ]  # fmt: skip
-
-
-def _coefficient(k: int) -> Callable[[Named], Any]:
-    return lambda row: _estimate((row[1].surface.coefficients or [None] * 3)[k])
 
 
 def plane_columns(interval: str = "") -> list[Column[Named]]:
     """Return the columns of named surfaces, with the headings of their intervals."""
+
+    def coefficient(k: int) -> Callable[[Named], Any]:
+        return _data_of(lambda row: (row[1].surface.coefficients or [None] * 3)[k])
+
     return [
         only_shown("limit state", lambda row: row[0], text=True),
-        *(only_shown(f"c{k}\n{interval}", _coefficient(k), _with_interval) for k in range(3)),
-        Column("kind", of_fit("surface.kind")),
-        Column("why", of_fit("surface.why")),
+        *(only_shown(f"c{k}\n{interval}", coefficient(k), _with_interval) for k in range(3)),
+        Column("kind", _of("surface.kind")),
+        Column("why", _of("surface.why")),
         Column("coefficients", lambda row: [asdict(each) for each in row[1].surface.coefficients or []]),
-        Column("aic", of_fit("surface.aic")),
-        Column("p_values", of_fit("surface.p_values")),
-        Column("runs", of_fit("surface.runs")),
-        Column("exceedances", of_fit("surface.exceedances")),
-        Column("distinct_records", of_fit("surface.records")),
-        Column("warning", lambda row: row[1].surface.warning or None),
-    ]  # fmt: skip
+        *_counts("surface.aic", "surface.p_values"),
+    ]
 
 
-def of_fit(name: str) -> Callable[[Named], Any]:
-    """Return a function that reads an attribute of a named fit."""
-    read = of(name)
-    return lambda row: read(row[1])
+def _counts(*criteria: str) -> list[Column[Named]]:
+    """Return the columns that all fits have, after those of their criteria."""
+    return [
+        *(Column(name.split(".")[1], _of(name)) for name in criteria),
+        Column("runs", _of("fitted.runs")),
+        Column("exceedances", _of("fitted.exceedances")),
+        Column("distinct_records", _of("fitted.records")),
+        Column("warning", lambda row: row[1].fitted.warning or None),
+    ]
 
 
 def _data(found: Fragility | Bivariate, columns: Sequence[Column[Named]], over: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,7 +1,6 @@
 """Curves of limit states that imply each other never cross, and that of uplift is a step where it is known."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,7 +17,7 @@ from rocking_cli.questions.fragility.observed import Observations
 from rocking_cli.questions.fragility.store import Store
 from rocking_cli.questions.fragility.study import load_study
 from rocking_cli.questions.fragility.tally import accelerations
-from rocking_cli.questions.fragility.view import _curves, fit_columns
+from rocking_cli.questions.fragility.view import fit_columns, fits_in_words
 from rocking_cli.studies.fit import Fit
 from rocking_cli.views.column import data_of
 from tests.conftest import EXAMPLES
@@ -119,8 +118,8 @@ def test_the_rate_is_that_of_the_curve_that_is_cut(answer):
 def test_openquake_knows_up_to_where_there_is_no_damage(answer):
     block = next(each.structure for each in answer.result)
     model = chosen([each for each in answer.result if each.structure == block and each.limit in (0.1, "overturning")])
-    (function,) = [each for each in model.functions if each.intensity_type == "PGA"]
-    assert function.without_damage == pytest.approx(0.25)
+    (function,) = [each for each in model.functions if each.measure == "PGA"]
+    assert function.undamaged == pytest.approx(0.25)
     assert function.ends[0] < 0.25
 
 
@@ -155,5 +154,4 @@ def test_a_dispersion_without_sense_is_not_shown():
 
 def view_of(found):
     """Return the sentences on one curve."""
-    definition = SimpleNamespace(confidence=0.95, method="stripes")
-    return " ".join(part for part in _curves("a", "PGV", [found], definition) if isinstance(part, str))
+    return " ".join(each for each in fits_in_words("a", fit_columns(), "PGV", [found]) if isinstance(each, str))

@@ -14,16 +14,11 @@ from matplotlib.legend import Legend
 from scipy.stats import binomtest
 
 from rocking_cli.plotting import style
-from rocking_cli.questions.fragility.assess import Bivariate
+from rocking_cli.questions.fragility.assess import Bivariate, Fragility
 from rocking_cli.questions.fragility.curves import exact_step, fit_curve, fit_surface
 from rocking_cli.questions.fragility.observed import Observations
-from rocking_cli.questions.fragility.picture import (
-    LabelledCurve,
-    draw_curves,
-    draw_ida,
-    draw_surface,
-    limit_in_picture,
-)
+from rocking_cli.questions.fragility.picture import draw_curves, draw_surface, limit_in_picture
+from rocking_cli.questions.fragility.pictures import draw_ida
 
 LEVELS = np.array([0.2, 0.4, 0.6, 0.8])
 
@@ -38,8 +33,8 @@ def bivariate(x1, x2, exceeded):
     return Bivariate("a", "uplift", ("PGA", "PGV"), x1, x2, np.ones(x1.size, int), exceeded.astype(int), surface)
 
 
-def drawn(name, seen):
-    return LabelledCurve(name, fit_curve(seen), seen)
+def fitted(seen, curve=None):
+    return Fragility("a", "uplift", "PGA", seen, curve or fit_curve(seen), None)
 
 
 def marks(axes):
@@ -76,8 +71,8 @@ def rendered(figure):
 
 
 def test_stripes_are_marked_with_counts_and_wilsons_intervals_under_the_curve():
-    each = drawn("overturning", stripes([1, 5, 12, 19]))
-    figure = rendered(draw_curves([each], "PGA [g]", "a block"))
+    each = fitted(stripes([1, 5, 12, 19]))
+    figure = rendered(draw_curves({"overturning": each}, "PGA [g]", "a block"))
     (axes,) = figure.axes
     assert axes.get_xlabel() == "PGA [g]" and axes.get_title(loc="left") == "a block"
     assert [text.get_text() for text in axes.texts] == ["1/20", "5/20", "12/20", "19/20"]
@@ -99,7 +94,7 @@ def test_bars_and_bands_count_records():
     x = np.tile(np.repeat(LEVELS, 60), 8)
     record = np.repeat(np.arange(8), 240)
     seen = Observations.of(x, x > capacity[record] * np.exp(0.02 * random.normal(size=x.size)), record)
-    figure = rendered(draw_curves([drawn("overturning", seen)], "PGA [g]", "a block"))
+    figure = rendered(draw_curves({"overturning": fitted(seen)}, "PGA [g]", "a block"))
     (axes,) = figure.axes
     _, ends = marks(axes)
     parts = seen.parts(0.95)
@@ -112,7 +107,7 @@ def test_a_cloud_of_many_runs_is_a_few_marks():
     x = np.outer(np.geomspace(0.1, 0.9, 12), np.geomspace(0.5, 4, 10)).ravel().repeat(60)
     record = np.repeat(np.arange(12), 600)
     seen = Observations.of(x, x > np.exp(0.3 * np.random.default_rng(4).normal(size=x.size)), record)
-    (axes,) = rendered(draw_curves([drawn("overturning", seen)], "PGA [g]", "a cloud")).axes
+    (axes,) = rendered(draw_curves({"overturning": fitted(seen)}, "PGA [g]", "a cloud")).axes
     assert len(marks(axes)[0]) == 10
 
 
@@ -120,7 +115,7 @@ def test_marks_of_several_curves_lie_beside_one_another_and_none_is_left_out():
     random = np.random.default_rng(5)
     x, record = np.tile(np.linspace(0.1, 2, 50), 20), np.repeat(np.arange(20), 50)
     seen = [Observations.of(x, x > k * np.exp(0.4 * random.normal(size=x.size)), record) for k in (0.8, 1, 1.2)]
-    figure = rendered(draw_curves([drawn(f"{k}", each) for k, each in enumerate(seen)], "PGA [g]", "a block"))
+    figure = rendered(draw_curves({f"{k}": fitted(each) for k, each in enumerate(seen)}, "PGA [g]", "a block"))
     (axes,) = figure.axes
     places = []
     for line, each in zip(observed(axes), seen, strict=True):
@@ -130,7 +125,7 @@ def test_marks_of_several_curves_lie_beside_one_another_and_none_is_left_out():
     np.testing.assert_allclose(np.diff(places, axis=0), 4.0)  # points
     assert np.diff(np.sort(np.concatenate(places))).min() > 3.9
     assert words(figure)[-1].endswith("marks: observed shares, side by side, of neighbouring intensities together")
-    alone = rendered(draw_curves([drawn("all", seen[0])], "PGA [g]", "a block")).axes[0]
+    alone = rendered(draw_curves({"all": fitted(seen[0])}, "PGA [g]", "a block")).axes[0]
     np.testing.assert_allclose(marks(alone)[0][:, 1], seen[0].parts(0.95).part)
 
 
@@ -138,7 +133,7 @@ def test_what_is_known_exactly_has_no_marks_and_bounds_the_others():
     seen = stripes([0, 5, 12, 19])
     step = exact_step(fit_curve(stripes([0, 20, 20, 20])), 0.25, "")
     cut = replace(fit_curve(seen), implied={"uplift": step})
-    curves = [LabelledCurve("uplift", step, seen), LabelledCurve("overturning", cut, seen)]
+    curves = {"uplift": fitted(seen, step), "overturning": fitted(seen, cut)}
     figure = rendered(draw_curves(curves, "PGA [g]", "a block"))
     (axes,) = figure.axes
     assert words(figure)[0] == "uplift: 0.25 g, exact" and len(observed(axes)) == 1
@@ -163,30 +158,30 @@ def test_a_surface_of_few_records_carries_the_warning():
 
 
 def test_a_step_a_curve_and_nothing_share_a_picture():
-    entries = [
-        drawn(r"uplift \$1", stripes([0, 20, 20, 20])),
-        drawn("phi/phi_cr > 0.5", stripes([1, 5, 12, 19])),
-        drawn("overturning", stripes([0, 0, 0, 0])),
-    ]
+    entries = {
+        r"uplift \$1": fitted(stripes([0, 20, 20, 20])),
+        "phi/phi_cr > 0.5": fitted(stripes([1, 5, 12, 19])),
+        "overturning": fitted(stripes([0, 0, 0, 0])),
+    }
+    step, *_ = entries.values()
     figure = rendered(draw_curves(entries, "PGA [g]", "$ of a block"))
     (axes,) = figure.axes
     said = words(figure)
     assert said[0] == r"uplift \$1: step in the shade, 0.2 to 0.4 g" and "median" in said[1]
     assert said[2] == "overturning: no curve, none of the 80 runs exceed"
-    assert bands(axes)[0] == {0, 1} and band_of(entries[0].curve, axes) == {0, 1}
+    assert bands(axes)[0] == {0, 1} and band_of(step.curve, axes) == {0, 1}
     curves = [line for line in axes.get_lines() if len(line.get_xdata()) > 10 and line.get_linewidth() > 1]
     assert len(curves) == 2
-    assert [text.get_text() for text in axes.texts] == [each.name for each in entries[:2]]
-    step = curves[0]
-    jump = step.get_xdata()[np.flatnonzero(np.diff(step.get_ydata()))]
-    np.testing.assert_allclose(jump, entries[0].curve.step.value)
+    assert [text.get_text() for text in axes.texts] == [*entries][:2]
+    jump = curves[0].get_xdata()[np.flatnonzero(np.diff(curves[0].get_ydata()))]
+    np.testing.assert_allclose(jump, step.curve.step.value)
 
 
 def test_a_wide_cloud_is_drawn_in_tenths_over_logarithms():
     random = np.random.default_rng(1)
     x = np.exp(1.2 * random.normal(size=200))
-    figure = rendered(draw_curves([drawn("a", Observations.of(x, x > np.exp(random.normal(size=200)), np.arange(200)))],
-                                  "PGV [m/s]", "a cloud"))  # fmt: skip
+    seen = Observations.of(x, x > np.exp(random.normal(size=200)), np.arange(200))
+    figure = rendered(draw_curves({"a": fitted(seen)}, "PGV [m/s]", "a cloud"))
     (axes,) = figure.axes
     assert axes.get_xscale() == "log"
     np.testing.assert_allclose(marks(axes)[0][:, 0], np.sort(x).reshape(10, 20).mean(axis=1))
@@ -278,22 +273,23 @@ def test_a_band_that_the_data_leave_open_is_not_painted_and_said():
     random = np.random.default_rng(23)
     x = np.exp(random.normal(size=40))
     seen = Observations.of(x, random.random(40) < 0.4 + 0.1 * (x > 1), np.arange(40))
-    figure = rendered(draw_curves([drawn("uplift", seen)], "PGA [g]", "a block"))
+    figure = rendered(draw_curves({"uplift": fitted(seen)}, "PGA [g]", "a block"))
     assert not bands(figure.axes[0]) and words(figure)[0].endswith(", no confidence band")
 
 
 @pytest.mark.parametrize("narrow", [False, True])
 def test_bands_of_several_are_shades_and_a_legend_takes_its_own_room(narrow):
     counts = ([1, 5, 12, 19], [0, 4, 10, 20], [2, 7, 13, 20], [0, 0, 0, 0])
-    entries = [drawn(f"{'a long name of a structure ' * 3}{k}", stripes(each)) for k, each in enumerate(counts)]
+    entries = {f"{'a long name of a structure ' * 3}{k}": fitted(stripes(each)) for k, each in enumerate(counts)}
+    first = dict(list(entries.items())[:1])
     with style.on_phone() if narrow else nullcontext():
-        figure, other = (draw_curves(each, "PGA [g]", "overturning") for each in (entries, entries[:1]))
+        figure, other = (draw_curves(each, "PGA [g]", "overturning") for each in (entries, first))
     figure.draw_without_rendering()
     other.draw_without_rendering()
     (axes,), (few,) = figure.axes, other.axes
-    assert bands(axes) == [band_of(each.curve, axes) for each in entries[:3]]
-    for said, each in zip(words(figure), entries, strict=False):
-        assert said.startswith(f"{each.name}: ")
+    assert bands(axes) == [band_of(each.curve, axes) for each in [*entries.values()][:3]]
+    for said, name in zip(words(figure), entries, strict=False):
+        assert said.startswith(f"{name}: ")
     texts = figure.legends[0].get_texts()
     assert not any(line.startswith("%") for text in texts for line in text.get_text().split("\n"))
     assert all(text.get_window_extent().x1 <= figure.bbox.width for text in texts)
@@ -305,7 +301,7 @@ def test_a_legend_below_twin_axes_is_below_the_words_of_both():
     below = figure.subplots()
     below.set_xlabel("of the axes below")
     with style.drawing_in(below.twinx()):
-        draw_curves([drawn("overturning", stripes([1, 5, 12, 19]))], "PGA [g]", "")
+        draw_curves({"overturning": fitted(stripes([1, 5, 12, 19]))}, "PGA [g]", "")
     figure.draw_without_rendering()
     (key,) = figure.findobj(Legend)
     assert key.get_window_extent().y1 <= below.xaxis.get_tightbbox().y0

@@ -10,8 +10,7 @@ import statsmodels.api as sm
 from rocking_cli.excitation.base import Origin
 from rocking_cli.questions.fragility import ranking, sources
 from rocking_cli.questions.fragility.campaign import count_steps, prepare
-from rocking_cli.questions.fragility.ranking import Ranked, Ranking, line, serves
-from rocking_cli.questions.fragility.ranking_view import judge
+from rocking_cli.questions.fragility.ranking import Ranked, Ranking, judge, line, serves
 from rocking_cli.questions.fragility.store import Store
 from rocking_cli.questions.fragility.study import load_study
 from tests.conftest import EXAMPLES, rows_of

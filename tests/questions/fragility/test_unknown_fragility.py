@@ -18,11 +18,10 @@ from rocking_cli.questions.fragility import nrml as openquake
 from rocking_cli.questions.fragility.assess import Fragility
 from rocking_cli.questions.fragility.curves import fit_curve
 from rocking_cli.questions.fragility.observed import Observations
-from rocking_cli.questions.fragility.picture import LabelledCurve, draw_curves, draw_ida, draw_surface
+from rocking_cli.questions.fragility.picture import draw_curves, draw_surface, edges
+from rocking_cli.questions.fragility.pictures import draw_ida, draw_quantiles
 from rocking_cli.questions.fragility.quantiles import all_quantiles
-from rocking_cli.questions.fragility.quantiles_picture import draw_quantiles
-from rocking_cli.questions.fragility.ranking import rank
-from rocking_cli.questions.fragility.ranking_view import judge
+from rocking_cli.questions.fragility.ranking import judge, rank
 from rocking_cli.questions.fragility.store import UNKNOWN, Endings, Store
 from rocking_cli.questions.fragility.study import load_study
 from rocking_cli.studies.contact import Contacts
@@ -224,7 +223,7 @@ def test_few_runs_of_unknown_outcome_leave_one_curve(whole, monkeypatch):
     overturning = json.loads(command("results", whole.place, "--json").stdout)["curves"][-1]
     assert not overturning["band"] and overturning["lower"]["exceedances"] < overturning["exceedances"]
     found = {each.limit: each for each in assess.curves(counted(whole), "portal", whole.definition, None)}
-    assert LabelledCurve.of("a", found["overturning"]).lower is None
+    assert list(edges("a", found["overturning"])) == ["a"]
 
 
 def test_words_and_json_state_a_band_and_how_many_runs_are_unknown(whole):
@@ -318,8 +317,8 @@ def test_tables_have_both_curves_and_the_lower_bound(whole, tmp_path):
 
 def test_pictures_hatch_what_is_not_known(whole, tmp_path):
     found = list(assess.curves(counted(whole), "portal", whole.definition, None))
-    each = LabelledCurve.of("overturning", next(each for each in found if each.limit == "overturning"))
-    figure = draw_curves([each], "PGA [g]", "a portal")
+    each = next(each for each in found if each.limit == "overturning")
+    figure = draw_curves({"overturning": each}, "PGA [g]", "a portal")
     (axes,) = figure.axes
     (band,) = [collection for collection in axes.collections if collection.get_hatch()]
     x, y = band.get_paths()[0].vertices.T
@@ -332,7 +331,7 @@ def test_pictures_hatch_what_is_not_known(whole, tmp_path):
     assert said[1].startswith("overturning, if unknown runs do not:")
     assert said[2].startswith("runs of unknown outcome: overturning ")
     none = replace(each.lower, curve=replace(each.curve, kind="none", fit=None))
-    (axes,) = draw_curves([replace(each, lower=none)], "PGA [g]", "").axes
+    (axes,) = draw_curves({"overturning": replace(each, lower=none)}, "PGA [g]", "").axes
     (band,) = [collection for collection in axes.collections if collection.get_hatch()]
     x, y = band.get_paths()[0].vertices.T
     assert y[x > 1].min() == 0  # nothing bounds it from below
