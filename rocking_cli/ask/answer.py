@@ -92,10 +92,9 @@ class Answer(Generic[R]):
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a pickle keeps: everything, with data and columns computed."""
-        data = self.view.data() if callable(self.view.data) else self.view.data
         columns = partial(_kept, self.columns())
         tables = {name: partial(_kept, each()) for name, each in self.tables.items()}
-        view = View(data, self.view.parts)
+        view = View(self.view.plain(), self.view.parts)
         tables_of_dims = {table: partial(_kept, table()) for each in self.dims if (table := each.table)}
         dims = [replace(each, table=each.table and tables_of_dims[each.table]) for each in self.dims]
         return {**vars(self), "view": view, "columns": columns, "blocks": None, "tables": tables, "dims": dims}
@@ -114,8 +113,7 @@ class Answer(Generic[R]):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the result as plain data, equal to the JSON of the command line."""
-        data = self.view.data() if callable(self.view.data) else self.view.data
-        plain: dict[str, Any] = json.loads(json_text(data))
+        plain: dict[str, Any] = json.loads(json_text(self.view.plain()))
         return plain
 
     def to_frame(self) -> pandas.DataFrame:

@@ -96,7 +96,7 @@ def verb(model: type[M]) -> Callable[[Callable[[M, Watcher], A_co]], Verb[A_co]]
 def _with_given(answer: Answer[Any], given: Mapping[str, Any]) -> Any:
     """Return an answer with what was given in its data; those of several answers are those of each, by its name."""
     if not isinstance(answer, Answers):
-        return replace(answer, view=answer.view.with_given(given))
+        return replace(answer, view=answer.view.plus(lambda: {"given": given}))
     each: Any = {name: _with_given(one, given) for name, one in answer.items()}
     view = View(lambda: {name: one.to_dict() for name, one in each.items()}, answer.view.parts)
     return replace(answer, result=each, view=view)

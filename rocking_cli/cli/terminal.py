@@ -347,7 +347,7 @@ def table(
 def show(view: View, *, as_json: bool) -> None:
     """Print a result: as one line of JSON, or as its tables and sentences, with options as they are typed."""
     if as_json:
-        data = view.data() if callable(view.data) else view.data
+        data = view.plain()
         print_json(data)
         return
     for part in view.parts:

@@ -53,7 +53,7 @@ class OnTerminal(Watcher):
     def take(self, answer: Answer[Any]) -> bool:
         """Print one of several answers as JSON, if requested: a line each, as soon as it is ready."""
         if self.as_json:
-            terminal.show(answer.view.with_given(self._given), as_json=True)
+            terminal.show(answer.view.plus(lambda: {"given": self._given}), as_json=True)
             self.taken = True
         return True
 

@@ -119,7 +119,7 @@ class CodeContract:
             all(isinstance(text, str) and text.strip() for text in texts), f"remarks that are no sentences: {texts}"
         )
         result_view = view(verification)
-        json_text(result_view.data() if callable(result_view.data) else result_view.data)
+        json_text(result_view.plain())
         _demand(result_view.parts and table(verification), "nothing is shown")
 
 

@@ -54,9 +54,13 @@ class View:
     data: Mapping[str, Any] | Callable[[], Mapping[str, Any]]
     parts: Sequence[Table | str]
 
-    def with_given(self, given: Mapping[str, Any]) -> View:
-        """Return the view with what was given in its data, under `given`."""
-        return View(lambda: {**(self.data() if callable(self.data) else self.data), "given": given}, self.parts)
+    def plain(self) -> Mapping[str, Any]:
+        """Return the data."""
+        return self.data() if callable(self.data) else self.data
+
+    def plus(self, more: Callable[[], Mapping[str, Any]], parts: Sequence[Table | str] = ()) -> View:
+        """Return the view with more data, which are computed if the data are shown, and more parts."""
+        return View(lambda: {**self.plain(), **more()}, [*self.parts, *parts])
 
 
 def heading(mechanism: Mechanism) -> str:

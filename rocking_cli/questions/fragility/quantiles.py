@@ -6,7 +6,7 @@ quantiles ranks all runs: without uplift as zero, overturned or of unknown outco
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from math import isinf
 from typing import Any
@@ -26,7 +26,7 @@ from rocking_cli.questions.fragility.tally import UNKNOWN_PEAK, Tally, endings_o
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.fragility.quantities import label
 from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
-from rocking_cli.views.view import ABSENT, Table, View, number
+from rocking_cli.views.view import ABSENT, Table, number
 
 QUANTILES = (0.16, 0.5, 0.84)
 MIN_RECORDS = (MIN_MOTIONS, MIN_MOTIONS_OF_MEDIAN, MIN_MOTIONS)
@@ -165,11 +165,10 @@ def not_exceeded(ranked: Reals, records: int) -> tuple[float, ...]:
     )
 
 
-def with_quantiles(shown: View, found: Sequence[Quantiles], outcomes: Sequence[UnknownRuns], *, in_words: bool) -> View:
-    """Add quantiles to the view of a study: always as data, as tables only if `in_words`."""
-    assert isinstance(shown.data, Mapping)
+def data_of_quantiles(found: Sequence[Quantiles], outcomes: Sequence[UnknownRuns]) -> list[dict[str, Any]]:
+    """Return quantiles as plain data."""
     checked = {each.structure: each.unknown is not None for each in outcomes}
-    data = [
+    return [
         {
             "structure": each.structure,
             "measure": each.measure,
@@ -180,7 +179,11 @@ def with_quantiles(shown: View, found: Sequence[Quantiles], outcomes: Sequence[U
         }
         for each in found
     ]
-    parts = [part for each in found for part in _tables(each)] if in_words else []
+
+
+def tables_of_quantiles(found: Sequence[Quantiles]) -> list[Table | str]:
+    """Return tables of quantiles, and what they mean."""
+    parts = [part for each in found for part in _tables(each)]
     if parts:
         note = (
             "Quantiles of the peak phi/phi_cr. For all runs, a run without uplift counts as 0 and an overturning run "
@@ -194,7 +197,7 @@ def with_quantiles(shown: View, found: Sequence[Quantiles], outcomes: Sequence[U
                 f"every finite peak among all runs; '{UNKNOWN}' marks quantiles that are such runs."
             )
         parts.append(note)
-    return View({**shown.data, "quantiles": data}, [*shown.parts, *parts])
+    return parts
 
 
 def _tables(found: Quantiles) -> Iterator[Table | str]:

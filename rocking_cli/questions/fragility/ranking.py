@@ -299,9 +299,8 @@ COLUMNS: tuple[Column[Ranked], ...] = (
 )
 
 
-def added(shown: View, rankings: Sequence[Ranking]) -> View:
+def with_rankings(shown: View, rankings: Sequence[Ranking]) -> View:
     """Add the rankings of the measures to the view of a study."""
-    assert isinstance(shown.data, Mapping)
     data = [
         {
             "structure": each.structure,
@@ -314,7 +313,7 @@ def added(shown: View, rankings: Sequence[Ranking]) -> View:
         }
         for each in rankings
     ]
-    return View({**shown.data, "ranking": data}, [*shown.parts, *(part for each in rankings for part in _parts(each))])
+    return shown.plus(lambda: {"ranking": data}, [part for each in rankings for part in _parts(each)])
 
 
 def _parts(ranking: Ranking) -> Iterator[Table | str]:

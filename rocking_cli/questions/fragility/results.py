@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cache, cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -53,8 +53,6 @@ class StudyAnswer(Answer[list[Fragility]]):
         The study.
     surfaces : sequence of Bivariate
         Fits to two measures.
-    quantiles : sequence of Quantiles
-        Quantiles of the peak rotation at each intensity.
     rankings : sequence of Ranking
         Rankings of the intensity measures, if requested.
     failed : int
@@ -67,10 +65,20 @@ class StudyAnswer(Answer[list[Fragility]]):
     plan: Plan = field(kw_only=True)
     definition: Definition = field(kw_only=True)
     surfaces: list[Bivariate] = field(kw_only=True)
-    quantiles: list[Quantiles] = field(kw_only=True)
     rankings: list[Ranking] = field(kw_only=True)
     failed: int = field(kw_only=True)
     complete: bool = field(kw_only=True)
+
+    @cached_property
+    def quantiles(self) -> list[Quantiles]:
+        """Quantiles of the peak rotation at each intensity."""
+        from rocking_cli.questions.fragility.quantiles import all_quantiles
+
+        return list(all_quantiles(Store.reading(self.store), self.plan, self.definition))
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what a pickle keeps."""
+        return {**super().__getstate__(), "quantiles": self.quantiles}
 
     @property
     def curves(self) -> Curves:
@@ -200,8 +208,8 @@ def results(asked: ResultsAsked, watch: Watcher) -> StudyAnswer:
         If the folder is not a store of this version, or is damaged.
     """
     from rocking_cli.questions.fragility.assess import counted, unknown_runs
-    from rocking_cli.questions.fragility.quantiles import all_quantiles, with_quantiles
-    from rocking_cli.questions.fragility.ranking import added, rank
+    from rocking_cli.questions.fragility.quantiles import all_quantiles, data_of_quantiles, tables_of_quantiles
+    from rocking_cli.questions.fragility.ranking import rank, with_rankings
     from rocking_cli.questions.fragility.view import left_out, view
 
     if asked.plot is not None:
@@ -213,14 +221,15 @@ def results(asked: ResultsAsked, watch: Watcher) -> StudyAnswer:
         tallies = counted(kept, plan, definition, advance)
     finished, failed = (sum(getattr(each, name) for each in tallies.values()) for name in ("finished", "failed"))
     fits, surfaces = _fitted(kept, tallies, definition, watch)
-    outcomes, spread = unknown_runs(tallies), list(all_quantiles(kept, plan, definition))
+    outcomes, spread = unknown_runs(tallies), cache(lambda: list(all_quantiles(kept, plan, definition)))
     shown = view(kept, plan, definition, finished, failed, fits, surfaces, outcomes)
-    shown = with_quantiles(shown, spread, outcomes, in_words=asked.quantiles)
+    tables = tables_of_quantiles(spread()) if asked.quantiles else []
+    shown = shown.plus(lambda: {"quantiles": data_of_quantiles(spread(), outcomes)}, tables)
     rankings: list[Ranking] = []
     if asked.rank_measures:
         with watch.progress(plan.size, "runs ranked") as advance:
             rankings = rank(kept, plan, definition, advance)
-        shown = added(shown, rankings)
+        shown = with_rankings(shown, rankings)
     lacking = [f"{failed} runs could not be simulated and are left out of the curves"] if failed else []
     lacking += [f"{finished:,} of {plan.total:,} runs are finished so far"] if finished < plan.total else []
     lacking += [f"{len(bad)} records or samples cannot be used"] if (bad := left_out(plan)) else []
@@ -241,7 +250,6 @@ def results(asked: ResultsAsked, watch: Watcher) -> StudyAnswer:
         plan=plan,
         definition=definition,
         surfaces=surfaces,
-        quantiles=spread,
         rankings=rankings,
         failed=failed,
         complete=not lacking,

@@ -19,7 +19,6 @@ from rocking_cli.io.files import folder, keep_apart
 from rocking_cli.questions.fragility.asked import FragilityAsked, OfCurves
 from rocking_cli.studies.engines import engine_of
 from rocking_cli.views.engines import cost_in_words
-from rocking_cli.views.view import View
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -109,7 +108,7 @@ def fragility(asked: FragilityAsked, watch: Watcher) -> Answer[Any]:
             return _share(prepared, asked.share)
         answer = results(place, **asked.part(OfCurves), watch=watch)
         if asked.place is None:
-            answer = replace(answer, view=View(answer.to_dict() | {"store": None}, answer.view.parts))
+            answer = replace(answer, view=answer.view.plus(lambda: {"store": None}))
         finalize(answer.plan, stack.pop_all().close)  # a temporary store lasts as long as the answer and its copies
     return answer
 
