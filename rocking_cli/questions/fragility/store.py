@@ -254,10 +254,14 @@ class Store:
     def plan(self) -> Plan:
         """The plan of the runs."""
         facts = self.facts
-        of_run = {}
-        if (self.path / MEASURED).exists():
-            arrays = self._arrays(MEASURED)
-            of_run = {name: values for name, values in arrays.items() if name != "study"}
+        try:
+            of_run = self._arrays(MEASURED)
+            del of_run["study"]
+        except FileNotFoundError:
+            of_run = {}
+        except DamagedFile as error:
+            hint = "delete this file: running the study again computes its values"
+            raise InputError(Problem(f"the store is damaged: {error}", str(self.path), hint=hint)) from None
 
         def of(kind: str) -> dict[str, Reals]:
             return {name: _reals(values) for name, values in facts["measured"][kind].items()}

@@ -40,7 +40,7 @@ X = np.geomspace(0.02, 10, 500)
 
 @pytest.fixture(scope="module")
 def answer(tmp_path_factory):
-    return rk.fragility(STUDY, store=tmp_path_factory.mktemp("order") / "order.db")
+    return rk.fragility(STUDY, store=tmp_path_factory.mktemp("order") / "order.runs")
 
 
 def of(answer, structure, measure):
@@ -125,8 +125,8 @@ def test_openquake_knows_up_to_where_there_is_no_damage(answer):
 
 def test_what_is_not_exact_or_contradicted_is_from_the_runs(answer):
     block = next(each.structure for each in answer.result)
-    with Store.reading(answer.store) as kept:
-        found = tally.count(kept, answer.plan, block, LIMITS, ["PGA"])
+    kept = Store.reading(answer.store)
+    found = tally.count(kept, answer.plan, block, LIMITS, ["PGA"])
     assert found.over("PGA").onset("PGA") == (pytest.approx(0.25), True)
     assert found.over("PGV").onset("PGV") is None
     for wrong in (found.runs, 0 * found.runs):

@@ -195,7 +195,7 @@ def test_curves_that_cross_are_said_and_others_are_not():
 
 @pytest.fixture(scope="module")
 def store(tmp_path_factory):
-    place = tmp_path_factory.mktemp("nrml") / "pedestal.db"
+    place = tmp_path_factory.mktemp("nrml") / "pedestal.runs"
     command("fragility", EXAMPLES / "study" / "pedestal.yaml", "--store", place, code=0)
     return place
 
@@ -261,13 +261,13 @@ def test_a_curve_that_is_not_there_is_named_and_a_table_of_none_has_its_heading(
     text = (EXAMPLES / "study" / "pedestal.yaml").read_text(encoding="utf-8").replace("../", f"{EXAMPLES}/")
     study.write_text(re.sub("limit_states:.*", "limit_states: [30.0]", text), encoding="utf-8")
     command("fragility", study, code=0)
-    found = command("results", study.with_suffix(".db"), "--curves", "-")
+    found = command("results", study.with_suffix(".runs"), "--curves", "-")
     # A run overturned exceeds every limit: the curve is that of overturning.
     assert found.exit_code == 0 and found.stdout.splitlines()[1].startswith("pedestal,30.0,PGA,g,lognormal")
     study.write_text(re.sub("levels:.*", "levels: {measure: PGA, values: [0.01, 0.02]}", text), encoding="utf-8")
     assert command("fragility", study, "--restart").exit_code == 0
     out = tmp_path / "none.csv"
-    found = command("results", study.with_suffix(".db"), "--curves", out)
+    found = command("results", study.with_suffix(".runs"), "--curves", out)
     assert "pedestal, overturning against PGA: no curve: none of the 22 runs exceed" in found.stderr
     rows = rows_of(out)
     assert {each["limit_state"] for each in rows} == {"uplift"}  # which is known without a run

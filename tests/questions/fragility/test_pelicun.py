@@ -56,7 +56,7 @@ def test_without_a_curve_the_rest_is_written(tmp_path):
     study = (EXAMPLES / "study" / "pedestal.yaml").read_text(encoding="utf-8").replace("../", f"{EXAMPLES}/")
     (tmp_path / "study.yaml").write_text(study + "measures: [PGA/(g lambda)]\n", encoding="utf-8")
     command("fragility", tmp_path / "study.yaml", code=0)
-    found = command("results", tmp_path / "study.db", "--nrml", tmp_path / "f.xml", "--pelicun", tmp_path / "new")
+    found = command("results", tmp_path / "study.runs", "--nrml", tmp_path / "f.xml", "--pelicun", tmp_path / "new")
     assert found.exit_code == 5 and "OpenQuake accepts none" in found.stderr and "pelicun accepts none" in found.stderr
     assert not (tmp_path / "new").exists()
 

@@ -2,6 +2,7 @@
 
 import io
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from rocking_cli.questions.fragility.store import Store
 from rocking_cli.questions.fragility.study import load_study
 from tests.conftest import EXAMPLES
 from tests.questions.fragility.test_study_runs import carry_out
-from tests.stores import command
+from tests.stores import command, every_run
 
 BLOCK = {
     "file": str(EXAMPLES / "block.yaml"),
@@ -50,18 +51,17 @@ def study(folder, method, measures=MEASURES):
 def whole(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp(request.param)
     path = study(folder, request.param)
-    prepared = carry_out(path, folder / "study.db", jobs=1)
-    with Store.reading(folder / "study.db") as store:
-        return prepared.plan, load_study(path).definition, folder / "study.db", list(
-            all_quantiles(store, prepared.plan, load_study(path).definition)
-        )  # fmt: skip
+    prepared = carry_out(path, folder / "study.runs", jobs=1)
+    store = Store.reading(folder / "study.runs")
+    return prepared.plan, load_study(path).definition, folder / "study.runs", list(
+        all_quantiles(store, prepared.plan, load_study(path).definition)
+    )  # fmt: skip
 
 
 def ranked(place, plan, structure, measure):
     """Intensity and peak of every run of a structure, one by one."""
-    with Store.reading(place) as store:
-        rows = store.runs(0, plan.size)
-    sample, record, _, level, _ = plan.places(rows.id)
+    rows = every_run(place)
+    sample, record, _, level, _ = plan.places(rows.run)
     own = np.array([plan.trials[k].structure == structure for k in sample])
     x = plan.intensities(measure, sample, record, level, rows.scale)
     peak = np.where(rows.outcome != 0, np.inf, np.where(np.isnan(rows.uplift_time), 0.0, rows.peak_ratio))
@@ -120,8 +120,8 @@ def test_groups_are_those_of_the_observed_parts(whole):
     plan, definition, place, found = whole
     if definition.method == "ida":  # there all runs above the first that exceeds count as exceeding
         definition = definition.model_copy(update={"method": "stripes"})
-    with Store.reading(place) as store:
-        counted = assess.counted(store, plan, definition, lambda numbers: None)
+    store = Store.reading(place)
+    counted = assess.counted(store, plan, definition, lambda numbers: None)
     curves, _ = assess.fitted(counted, definition, None, lambda numbers: None)
     by_name = {(each.structure, each.measure): each for each in found}
     for curve in curves:
@@ -156,17 +156,19 @@ def test_json_has_them_always_and_the_terminal_where_they_are_asked_for(whole):
     assert ("in tenths" in shown) == any(not each.stripes for each in found)
 
 
-def test_runs_that_are_not_there_count_for_nothing(tmp_path):
+def test_runs_that_are_not_there_count_for_nothing(tmp_path, monkeypatch):
     path = study(tmp_path, "stripes")
-    prepared = carry_out(path, tmp_path / "study.db", jobs=1)
-    with Store.reading(tmp_path / "study.db") as store:
-        gone = prepared.plan.size // 4  # all of the first structure, and none of the other
-        store._connection.execute("PRAGMA query_only = 0")
-        store._connection.execute("BEGIN")
-        store._connection.execute("DELETE FROM run WHERE id < ?", (gone,))
-        store._connection.execute("UPDATE run SET outcome = 2 WHERE id >= ? AND id % 2 = 1", (gone,))
-        found, *_ = every = list(all_quantiles(store, prepared.plan, load_study(path).definition))
-        store._connection.execute("ROLLBACK")
+    prepared = carry_out(path, tmp_path / "study.runs", jobs=1)
+    store = Store.reading(tmp_path / "study.runs")
+    gone = prepared.plan.size // 4  # all of the first structure, and none of the other
+    rows = store.rows
+
+    def some(first, stop):
+        for each in rows(max(first, gone), stop) if stop > gone else ():
+            yield replace(each, outcome=np.where(each.run % 2 == 1, 2, each.outcome))
+
+    monkeypatch.setattr(store, "rows", some)
+    found, *_ = every = list(all_quantiles(store, prepared.plan, load_study(path).definition))
     assert {each.structure for each in every} == {"uncertain"}
     assert sum(each.runs for each in found.groups) == (prepared.plan.size - gone) / 2
 

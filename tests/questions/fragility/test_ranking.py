@@ -98,7 +98,7 @@ class TestStudy:
     @pytest.mark.rest
     def test_the_numbers_are_those_of_its_runs(self, study):
         folder, shown = study
-        assert command("results", folder / "study.db", "--out", folder / "runs.csv").exit_code == 0
+        assert command("results", folder / "study.runs", "--out", folder / "runs.csv").exit_code == 0
         found = rows_of(folder / "runs.csv")
         rows = [row for row in found if row["outcome"] == "rocks" and row["structure"] == "pedestal"]
         of = {each["measure"]: each for each in shown["ranking"][0]["measures"]}
@@ -138,10 +138,10 @@ class TestStudy:
 
     def test_results_ranks_what_the_store_knows_and_has_a_picture(self, study):
         folder, shown = study
-        again = json.loads(command("results", folder / "study.db", "--rank-measures", "--json").stdout)
+        again = json.loads(command("results", folder / "study.runs", "--rank-measures", "--json").stdout)
         assert again["ranking"] == shown["ranking"]
         assert len(list((folder / "pictures").glob("*which-measure-serves.png"))) == 2
-        said = command("results", folder / "study.db", "--rank-measures").stdout
+        said = command("results", folder / "study.runs", "--rank-measures").stdout
         for each in shown["ranking"]:
             assert all(sentence in " ".join(said.split()) for sentence in each["verdict"])
 
@@ -158,9 +158,9 @@ class TestStudy:
         found = json.loads(command("fragility", path, "--rank-measures", "--json").stdout)["ranking"][0]
         assert found["against"] == ["magnitude", "distance"]
         assert "with magnitude or distance" in found["verdict"][1]
-        with Store.reading(tmp_path / "study.db") as kept:
-            plan = kept.plan()
-            values = {name: plan.of_records(name).tolist() for name in ("magnitude", "distance")}
+        kept = Store.reading(tmp_path / "study.runs")
+        plan = kept.plan
+        values = {name: plan.of_records(name).tolist() for name in ("magnitude", "distance")}
         k = [len(each.name) % 7 for each in plan.records]
         assert values == {"magnitude": [5.0 + each for each in k], "distance": [10.0 + 3 * each for each in k]}
 
@@ -178,8 +178,8 @@ class TestStudy:
         path.write_text(STUDY, encoding="utf-8")
         asked, told = load_study(path), []
         for k, rank_measures in enumerate((False, True)):
-            with Store.writing(tmp_path / f"{k}.db") as kept:
-                prepare(asked, kept, told.append, rank_measures=rank_measures)
+            kept = Store.writing(tmp_path / f"{k}.runs")
+            prepare(asked, kept, told.append, rank_measures=rank_measures)
             assert sum(told) == count_steps(asked, rank_measures=rank_measures) == 3 + 6 * (1 + k)
             told.clear()
 
@@ -187,22 +187,22 @@ class TestStudy:
         path = tmp_path / "bare.yaml"
         path.write_text(STUDY, encoding="utf-8")
         assert command("fragility", path).exit_code == 0
-        found = json.loads(command("results", tmp_path / "bare.db", "--rank-measures", "--json").stdout)["ranking"][0]
+        found = json.loads(command("results", tmp_path / "bare.runs", "--rank-measures", "--json").stdout)["ranking"][0]
         assert {each["measure"] for each in found["measures"]} == {"PGA", "PGV"} and found["against"] == []
         assert "not tested" in " ".join(found["verdict"])
 
     def test_what_residuals_are_held_against_can_be_given(self, study):
-        with Store.reading(study[0] / "study.db") as kept:
-            plan = kept.plan()
-            from rocking_cli.questions.fragility.definition import Definition
+        kept = Store.reading(study[0] / "study.runs")
+        plan = kept.plan
+        from rocking_cli.questions.fragility.definition import Definition
 
-            definition = Definition.model_validate(kept.fact("definition"))
-            found = ranking.rank(kept, plan, definition, against={"depth": np.arange(6.0)})
-            assert {name for each in found for of in each.measures for name in of.trends} == {"depth"}
-            stated = {"magnitude": np.full(6, 6.5), "distance": np.arange(1.0, 7.0)}
-            object.__setattr__(plan.measured, "of_record", {**plan.measured.of_record, **stated})
-            assert list(ranking.covariates(plan)) == ["magnitude", "distance"]
-            assert ranking.covariates(plan)["distance"].tolist() == np.log(np.arange(1.0, 7.0)).tolist()
+        definition = Definition.model_validate(kept.fact("definition"))
+        found = ranking.rank(kept, plan, definition, against={"depth": np.arange(6.0)})
+        assert {name for each in found for of in each.measures for name in of.trends} == {"depth"}
+        stated = {"magnitude": np.full(6, 6.5), "distance": np.arange(1.0, 7.0)}
+        object.__setattr__(plan.measured, "of_record", {**plan.measured.of_record, **stated})
+        assert list(ranking.covariates(plan)) == ["magnitude", "distance"]
+        assert ranking.covariates(plan)["distance"].tolist() == np.log(np.arange(1.0, 7.0)).tolist()
 
 
 def ranked(name, efficiency, *p_values, slope=2.0, against=("Tm", "D5-95")):

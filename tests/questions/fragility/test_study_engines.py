@@ -2,11 +2,9 @@
 
 import json
 import os
-import sqlite3
 import subprocess
 import sys
 import time
-from contextlib import closing
 
 import numpy as np
 import pytest
@@ -21,8 +19,8 @@ from rocking_cli.questions.fragility.study import load_study
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import engine_of, scene
 from tests.conftest import rows_of
-from tests.questions.fragility.test_study_runs import dump, finished
-from tests.stores import command
+from tests.questions.fragility.test_study_runs import finished
+from tests.stores import command, contents, every_run
 
 NEEDS_BLOCKS = pytest.mark.skipif(scene.find_spec("mujoco") is None, reason="free blocks need mujoco")
 BLOCK = "mechanism: block\nname: pillar\nwidth: 0.7\nheight: 2.8\nrestitution: 0.9\nfriction: 0.3\n"
@@ -54,26 +52,21 @@ def write(folder, text=STUDY, block=BLOCK, name="study"):
     return path
 
 
-def rows_in(place):
-    with Store.reading(place) as kept:
-        return kept.runs(0, kept.plan().size)
-
-
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
     """A study by both engines, and what it told."""
     folder, heard = tmp_path_factory.mktemp("engines"), Heard()
     path = write(folder)
     rk.fragility(path, jobs=1, watch=heard)
-    return path, path.with_suffix(".db"), heard.notes
+    return path, path.with_suffix(".runs"), heard.notes
 
 
 @NEEDS_BLOCKS
 def test_free_blocks_give_the_runs_that_one_degree_of_freedom_does_not_tell(whole, tmp_path):
     path, place, notes = whole
     rk.fragility(write(tmp_path, STUDY.replace("engine: auto\n", "")), jobs=1)
-    both, exact = rows_in(place), rows_in(tmp_path / "study.db")
-    assert both.by_blocks.tolist() == [0, 1] and exact.by_blocks is None
+    both, exact = every_run(place), every_run(tmp_path / "study.runs")
+    assert both.by_blocks.tolist() == [False, True] and not exact.by_blocks.any()
     assert exact.outcome.tolist() == [0, UNKNOWN]
     study = load_study(path)
     motion = study.sources[0].read().scaled(-float(both.scale[1]))
@@ -124,8 +117,8 @@ def test_free_blocks_that_fail_are_of_unknown_outcome(tmp_path, monkeypatch):
     monkeypatch.setattr("rocking_cli.studies.engines.blocks.BlockModel._fault", lambda *state: "a step diverged")
     monkeypatch.setattr("rocking_cli.studies.engines.free.FINER", (1.0,))
     answer = rk.fragility(write(tmp_path), jobs=1)
-    assert rows_in(tmp_path / "study.db").outcome.tolist() == [0, UNKNOWN]
-    told = command("results", tmp_path / "study.db").stdout
+    assert every_run(tmp_path / "study.runs").outcome.tolist() == [0, UNKNOWN]
+    told = command("results", tmp_path / "study.runs").stdout
     assert "1 of 2 runs (50 %) is of unknown outcome, because free blocks failed: a step diverged, or a body" in told
     assert answer.curves["overturning"].is_band
 
@@ -140,20 +133,26 @@ def test_runs_that_slide_and_runs_that_fall_off_an_edge_are_told_apart(tmp_path,
     text = text.replace("[0.1, 1.5]", "[0.1, 0.35, 1.0]").replace("-1", "1").replace("0.5,", "100 mm,")
     path = write(tmp_path, text, f"{structure}ground: {{{podium}}}\n")
     answer = rk.fragility(path, jobs=1)
-    rows = rows_in(tmp_path / "study.db")
+    rows = every_run(tmp_path / "study.runs")
     assert rows.outcome.tolist() == [0, 0, -OFF_EDGE]
     assert (rows.slip > 0.1).tolist() == [False, True, False]
     counts = {each.limit: each.curve.exceedances for each in answer.result}
     assert np.isinf(answer.runs()["peak_ratio"]).tolist() == [False, False, True]
     assert counts == {"uplift": 1, "100 mm": 2, "overturning": 1}
-    shown = command("results", tmp_path / "study.db", "--json", "--out", tmp_path / "runs.csv")
+    shown = command("results", tmp_path / "study.runs", "--json", "--out", tmp_path / "runs.csv")
     assert json.loads(shown.stdout)["outcomes"][0]["off_edge"] == 1
     assert "In 1 of them, a block falls off an edge that the file draws: they count as overturned." in shown.stdout
     told = [(row["outcome"], row["fell_to"]) for row in rows_of(tmp_path / "runs.csv")]
     assert told == [("does not uplift", "0"), ("does not overturn; slides", "0"), ("falls off an edge", "-1")]
-    with closing(sqlite3.connect(tmp_path / "study.db")) as connection:
-        seen = connection.execute("SELECT outcome, fell_to FROM runs").fetchall()
-    assert [(outcome, str(fell_to)) for outcome, fell_to in seen] == told
+
+
+def units_of_blocks(tmp_path, text):
+    """The work of each chunk of a study, simulated with free blocks."""
+    path = write(tmp_path, text)
+    prepared = prepare(load_study(path), store := Store.writing(tmp_path / "study.runs"))
+    plan, study, motions = prepared.plan, prepared.study, prepared.motions
+    numbers = (plan.numbers(*store.ends(k)) for k in store.chunks)
+    return [work_units.unit_of(each, plan, study, store.fact("hash"), motions, "blocks") for each in numbers]
 
 
 def test_runs_of_blocks_that_do_not_stand_fail(tmp_path, monkeypatch):
@@ -161,32 +160,33 @@ def test_runs_of_blocks_that_do_not_stand_fail(tmp_path, monkeypatch):
         def outcomes(self, *_, **__):
             raise SolverError("it does not stand")
 
-    path = write(tmp_path, STUDY.replace("engine: auto\n", ""))
-    with Store.writing(tmp_path / "study.db") as kept:
-        prepared = prepare(load_study(path), kept)
-        (unit,) = work_units.units(
-            prepared.plan, prepared.study.samples, prepared.motions, "nonlinear", kept.finished, 64, engine="blocks"
-        )
-        monkeypatch.setattr(work_units, "engine_of", lambda *_: Falls())
-        rows = work_units.carry_out(unit)
-    assert (rows.outcome.tolist(), rows.by_blocks.tolist(), rows.failed) == ([FAILED] * 2, [1, 1], 2)
+    (unit,) = units_of_blocks(tmp_path, STUDY.replace("engine: auto\n", ""))
+    monkeypatch.setattr(work_units, "engine_of", lambda *_: Falls())
+    rows = work_units.carry_out(unit)
+    assert (rows.outcome.tolist(), rows.by_blocks.tolist(), rows.failed) == ([FAILED] * 2, [True] * 2, 2)
 
 
-def test_units_of_free_blocks_have_few_runs_of_one_structure(tmp_path):
+@pytest.mark.parametrize(("engine", "most"), [("blocks", 2), ("auto", 16), ("exact", 64)])
+def test_chunks_have_few_runs_if_free_blocks_may_be_simulated(tmp_path, engine, most):
+    text = STUDY.replace("engine: auto", f"engine: {engine}").replace("opening: 0\n", "")
+    text = text.replace("values: [0.1, 1.5]", "least: 0.1, most: 1, count: 200")
+    store = Store.writing(tmp_path / "study.runs")
+    assert prepare(load_study(write(tmp_path, text)), store).store.size == most
+
+
+def test_structures_are_simulated_with_free_blocks_one_by_one(tmp_path, monkeypatch):
     text = STUDY.replace("[block.yaml]", "[{file: block.yaml, vary: {height: {uniform: {low: 2.6, high: 3}}}}]")
-    text = text.replace("[0.1, 1.5]", "[0.1]").replace("engine: auto", "samples: 2")
-    text = text.replace("0.8s", '0.8s"}, {pulse: "sine:1g:0.9s"}, {pulse: "sine:1g:1s')
-    with Store.writing(tmp_path / "study.db") as kept:
-        prepared = prepare(load_study(write(tmp_path, text)), kept)
-        made = list(
-            work_units.units(
-                prepared.plan, prepared.study.samples, prepared.motions, "nonlinear", kept.finished, 64, engine="blocks"
-            )
-        )
-    assert [each.id.tolist() for each in made] == [[0, 1], [2], [3, 4], [5]]
-    assert [[each.height for each in unit.mechanisms] for unit in made] == [
-        [prepared.study.samples[k].mechanism.height] for k in (0, 0, 1, 1)
-    ]
+    text = text.replace("[0.1, 1.5]", "[0.1]").replace("engine: auto", "samples: 3")
+    units, seen = units_of_blocks(tmp_path, text), []
+
+    class Counts:
+        def outcomes(self, models, motions, runs, **options):
+            seen.append((len(models), len(runs)))
+            raise SolverError("enough")
+
+    monkeypatch.setattr(work_units, "engine_of", lambda *_: Counts())
+    assert np.concatenate([work_units.carry_out(each).run for each in units]).tolist() == [0, 1, 2]
+    assert seen == [(1, 1)] * 3
 
 
 @pytest.mark.parametrize(
@@ -237,7 +237,7 @@ def test_without_mujoco_one_sentence_says_what_to_install(tmp_path, monkeypatch)
 def test_a_study_that_is_killed_ends_with_the_same_bits_in_more_processes(tmp_path):
     text = STUDY.replace("[0.1, 1.5]", "[0.3, 0.5, 0.7, 0.9, 1.2, 1.5]").replace("opening: 0\n", "")
     path = write(tmp_path, text.replace("auto", "blocks"))
-    whole, place = tmp_path / "whole.db", tmp_path / "study.db"
+    whole, place = tmp_path / "whole.runs", tmp_path / "study.runs"
     rk.fragility(path, store=whole, jobs=1)
     given = [sys.executable, "-m", "rocking_cli", "fragility", str(path), "--jobs", "2"]
     alone = {**os.environ, "XDG_CACHE_HOME": str(tmp_path / "cache")}
@@ -252,4 +252,4 @@ def test_a_study_that_is_killed_ends_with_the_same_bits_in_more_processes(tmp_pa
     assert 0 < finished(place) < 6
     again = subprocess.run(given, env=alone, capture_output=True, text=True, encoding="utf-8", check=True)
     assert "of 6 runs are in the store already" in again.stderr and "2 at a time" in again.stderr
-    assert dump(place) == dump(whole)
+    assert contents(place) == contents(whole)

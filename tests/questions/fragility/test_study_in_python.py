@@ -73,21 +73,21 @@ class TestTheRuns:
         assert not list(folder.iterdir())
 
     def test_a_store_keeps_them(self):
-        first = study([shaken(), *PULSES[:1]], store="kept.db")
-        assert rk.results("kept.db").runs().equals(first.runs()) and first.to_dict()["store"].endswith("kept.db")
-        assert study([shaken(), *PULSES[:1]], store="kept.db", limit_states=[0.3]).result[0].limit == 0.3
+        first = study([shaken(), *PULSES[:1]], store="kept.runs")
+        assert rk.results("kept.runs").runs().equals(first.runs()) and first.to_dict()["store"].endswith("kept.runs")
+        assert study([shaken(), *PULSES[:1]], store="kept.runs", limit_states=[0.3]).result[0].limit == 0.3
         with pytest.raises(rk.InputError, match="the record mine has changed"):
-            study([shaken(size=3.01), *PULSES[:1]], store="kept.db")
+            study([shaken(size=3.01), *PULSES[:1]], store="kept.runs")
         with pytest.raises(rk.InputError, match="the record mine has changed"):
-            study([shaken(vertical=shaken("up")), *PULSES[:1]], store="kept.db")
+            study([shaken(vertical=shaken("up")), *PULSES[:1]], store="kept.runs")
 
     def test_a_study_file_keeps_its_store_beside_it(self):
         Path("pulses.yaml").write_text(
             f"structures: [{EXAMPLES / 'block.yaml'}]\nrecords: [{{pulse: 'sine:1g:0.8s'}}]\nmethod: cloud\n",
             encoding="utf-8",
         )
-        assert rk.fragility("pulses.yaml").store == Path("pulses.db")
-        assert Path("pulses.db").exists()
+        assert rk.fragility("pulses.yaml").store == Path("pulses.runs")
+        assert Path("pulses.runs").exists()
 
     def test_those_of_a_motion_are_its_responses(self):
         runs = study(shaken()).runs()

@@ -1,8 +1,7 @@
 """Measures in fragility studies: levels of them, curves over them, and what a store keeps of them."""
 
 import json
-import sqlite3
-from contextlib import closing
+import shutil
 
 import numpy as np
 import pytest
@@ -44,7 +43,7 @@ def motions():
 
 
 def runs_of(folder):
-    assert command("results", folder / "study.db", "--out", folder / "runs.csv").exit_code == 0
+    assert command("results", folder / "study.runs", "--out", folder / "runs.csv").exit_code == 0
     return rows_of(folder / "runs.csv")
 
 
@@ -96,7 +95,7 @@ class TestIntensities:
         none = sum(float(row["Du [s]"]) == 0 for row in rows)
         du = [each for each in measured[1]["curves"] if each["measure"] == "Du"]
         assert {(each["left_out"], each["runs"]) for each in du} == {(none, len(rows) - none)} and none
-        said = command("results", measured[0] / "study.db").stdout
+        said = command("results", measured[0] / "study.runs").stdout
         assert f"{none} runs have no Du above zero and are left out of this fit." in said
         assert all(each["left_out"] == 0 for each in measured[1]["curves"] if each["measure"] != "Du")
 
@@ -146,7 +145,7 @@ class TestStudyFile:
                 shown = command("fragility", write(tmp_path), *more, "--json")
                 (said,) = json.loads(shown.stdout)["left_out"]
                 assert shown.exit_code == 5 and "its Sa(1.0) is not above zero" in said
-        assert command("results", tmp_path / "study.db").exit_code == 5
+        assert command("results", tmp_path / "study.runs").exit_code == 5
         assert "could not be used when the study was started" in command("fragility", write(tmp_path), code=0).stderr
 
     def test_a_structure_without_a_block_has_no_v_imp(self, tmp_path):
@@ -159,21 +158,19 @@ class TestStudyFile:
 
 class TestStore:
     def test_a_store_goes_on_and_learns_what_is_asked(self, tmp_path):
-        path, place = write(tmp_path, "PGA"), tmp_path / "study.db"
+        path, place = write(tmp_path, "PGA"), tmp_path / "study.runs"
         assert command("fragility", path).exit_code == 0
-        with closing(sqlite3.connect(place)) as connection:
-            assert not connection.execute("SELECT * FROM measured").fetchall()
-            before = connection.execute("SELECT * FROM run").fetchall()
+        assert not Store.reading(place).plan.measured.of_record and not (place / "measured.npz").exists()
+        before = (place / "runs-000000.npz").read_bytes()
         more = write(tmp_path, "PGA", "measures: [Sa(0.5), Du]\n")
         shown = command("fragility", more)
         assert shown.exit_code == 0 and "24 of 24 runs are in the store already" in shown.stderr
-        with closing(sqlite3.connect(place)) as connection:
-            assert connection.execute("SELECT * FROM run").fetchall() == before
+        assert (place / "runs-000000.npz").read_bytes() == before
         assert "over Sa(0.5) [g]" in shown.stdout and "over Du [s]" in shown.stdout
 
     def test_nothing_is_measured_twice(self, measured, tmp_path, monkeypatch):
         path = write(tmp_path, more="measures: [sa(1), Du, d5-95, arias, PGV/v_imp]\n")
-        (tmp_path / "study.db").write_bytes((measured[0] / "study.db").read_bytes())
+        shutil.copytree(measured[0] / "study.runs", tmp_path / "study.runs")
 
         def never(*given):
             raise AssertionError("measured again")
@@ -184,43 +181,32 @@ class TestStore:
         monkeypatch.undo()
 
     def test_results_needs_no_record(self, measured):
-        found = json.loads(command("results", measured[0] / "study.db", "--json").stdout)
+        found = json.loads(command("results", measured[0] / "study.runs", "--json").stdout)
         assert {key: found[key] for key in ("curves", "surfaces")} == {
             key: measured[1][key] for key in ("curves", "surfaces")
         }
         assert {each["measure"] for each in found["curves"]} == {"Sa(1.0)", "Du", "D5-95", "Arias", "PGV/v_imp"}
 
     def test_values_can_be_read_by_any_program(self, measured):
-        with closing(sqlite3.connect(measured[0] / "study.db")) as connection:
-            rows = connection.execute("SELECT * FROM measured WHERE measure = 'Sa(1.0)' ORDER BY record").fetchall()
-            levels = connection.execute("SELECT count(*) FROM measured WHERE measure = 'Du'").fetchone()
-        assert [row[2:5] for row in rows] == [(None, k, None) for k in range(3)]
-        expected = [response_spectrum(motion, 1.0).sa[0] for motion in motions()]
-        assert [row[5] for row in rows] == pytest.approx(expected) and levels == (2 * 3 * 4,)
+        place = measured[0] / "study.runs"
+        values = json.loads((place / "study.json").read_text("utf-8"))["measured"]["records"]["Sa(1.0)"]
+        assert values == pytest.approx([response_spectrum(motion, 1.0).sa[0] for motion in motions()])
+        assert np.load(place / "measured.npz")["Du"].shape == (2, 3, 4)
 
-    @pytest.mark.parametrize(
-        "statement",
-        [
-            "UPDATE measured SET value = 1.01 * value WHERE measure = 'Sa(1.0)' AND record = 1",
-            "DELETE FROM measured WHERE id = 3",
-            "DROP TABLE measured",
-            "UPDATE measured SET record = 77 WHERE id = 1",
-            "UPDATE measured SET measure = 'Du' WHERE measure = 'Sa(1.0)'",
-        ],
-    )
-    def test_damage_is_found(self, measured, tmp_path, statement):
-        place = tmp_path / "study.db"
-        place.write_bytes((measured[0] / "study.db").read_bytes())
-        with closing(sqlite3.connect(place, isolation_level=None)) as connection:
-            connection.executescript(statement)
+    def test_damage_is_found(self, measured, tmp_path):
+        place = tmp_path / "study.runs"
+        shutil.copytree(measured[0] / "study.runs", place)
+        content = bytearray((place / "measured.npz").read_bytes())
+        content[200] ^= 1
+        (place / "measured.npz").write_bytes(content)
         for arguments in (("results", place), ("fragility", write(tmp_path), "--store", place)):
-            assert "the store is damaged" in command(*arguments, code=2).stderr
+            assert "measured.npz" in command(*arguments, code=2).stderr
 
     def test_a_measure_that_is_not_installed_any_more_is_said_and_keeps_the_runs(self, measured, tmp_path):
-        place = tmp_path / "study.db"
-        place.write_bytes((measured[0] / "study.db").read_bytes())
-        with Store.writing(place) as kept:
-            kept.note({"definition": {**kept.fact("definition"), "measures": ["Gone(1.0)"]}})
+        place = tmp_path / "study.runs"
+        shutil.copytree(measured[0] / "study.runs", place)
+        kept = Store.writing(place)
+        kept.keep(kept.plan, {"definition": {**kept.fact("definition"), "measures": ["Gone(1.0)"]}})
         assert "the definition of its study is not valid in this version" in command("results", place, code=2).stderr
         again = command("fragility", write(tmp_path, more="measures: [Sa(1.0)]\n"), "--store", place)
         assert again.exit_code == 0 and "24 of 24 runs are in the store already" in again.stderr

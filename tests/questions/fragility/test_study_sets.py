@@ -1,6 +1,7 @@
 """Stripes with a set of records at each level, and weights of records: against statsmodels and by hand."""
 
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -52,7 +53,7 @@ class TestSets:
         data = json.loads(run("fragility", study(folder, SETS), "--jobs", 1, "--json").stdout)
         assert (data["runs"], data["finished"]) == (8, 8)
         assert [each["level"] for each in data["records"]] == [0.2, 0.2, 0.35, 0.35, 0.5, 0.5, 0.8, 0.8]
-        run("results", folder / "study.db", "--out", folder / "runs.csv")
+        run("results", folder / "study.runs", "--out", folder / "runs.csv")
         table = np.genfromtxt(folder / "runs.csv", delimiter=",", names=True, dtype=None, encoding="utf-8")
         assert table["PGA_g"] == pytest.approx(table["level"])
         assert table["motion"].tolist() == [
@@ -60,15 +61,15 @@ class TestSets:
             "b.csv at 0.8", "c.csv at 0.8",
         ]  # fmt: skip
         assert data["curves"][0]["distinct_records"] == 5  # three of them are in two sets
-        said = run("results", folder / "study.db").stdout
+        said = run("results", folder / "study.runs").stdout
         assert "Each level has its own set of records: 2 per level, scaled to the level." in said
 
     def test_the_runs_are_those_of_a_study_of_all(self, folder):
         run("fragility", study(folder, SETS), "--jobs", 1)
-        run("results", folder / "study.db", "--out", folder / "sets.csv")
-        (folder / "study.db").unlink()
+        run("results", folder / "study.runs", "--out", folder / "sets.csv")
+        shutil.rmtree(folder / "study.runs")
         run("fragility", study(folder, "".join(f"  - {x}.csv\n" for x in "abcde")), "--jobs", 1)
-        run("results", folder / "study.db", "--out", folder / "all.csv")
+        run("results", folder / "study.runs", "--out", folder / "all.csv")
 
         def outcomes(name):
             table = np.genfromtxt(folder / name, delimiter=",", names=True, dtype=None, encoding="utf-8")
@@ -88,12 +89,12 @@ class TestSets:
         records = "".join(f"  - {{file: set{k}.yaml, level: {level}}}\n" for k, level in ((1, 0.3), (2, 0.5), (3, 0.9)))
         levels = "{measure: Sa(1.0), values: [0.3, 0.5, 0.9], scaled: false}"
         data = json.loads(run("fragility", study(folder, records, levels=levels), "--jobs", 1, "--json").stdout)
-        run("results", folder / "study.db", "--out", folder / "runs.csv")
+        run("results", folder / "study.runs", "--out", folder / "runs.csv")
         table = np.genfromtxt(folder / "runs.csv", delimiter=",", names=True, dtype=None, encoding="utf-8")
         assert table["scale"].tolist() == [1, 1, 1]
         assert table["PGA_g"] == pytest.approx([0.4 * 0.55, 0.7 * 0.4, 1.1 * 0.55])
         assert data["curves"][0]["measure"] == "Sa(1.0)"
-        assert "1 per level, not scaled to the level." in run("results", folder / "study.db").stdout
+        assert "1 per level, not scaled to the level." in run("results", folder / "study.runs").stdout
 
     def test_a_set_goes_on_where_it_stopped_and_changes_are_named(self, folder):
         path = study(folder, SETS)
@@ -186,7 +187,7 @@ class TestWeights:
         assert medians[0] != pytest.approx(medians[1], rel=1e-3)
         path.write_text(path.read_text().replace("a.csv, weight: 2", "a.csv, weight: 5"))
         run("fragility", path, "--jobs", 1)
-        assert "Records have weights from 2 to 5." in run("results", folder / "study.db").stdout
+        assert "Records have weights from 2 to 5." in run("results", folder / "study.runs").stdout
 
 
 def test_a_channel_may_be_a_number_as_messages_list_it():

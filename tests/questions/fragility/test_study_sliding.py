@@ -2,8 +2,6 @@
 
 import json
 import pickle
-import sqlite3
-from contextlib import closing
 
 import numpy as np
 import pytest
@@ -11,15 +9,15 @@ from click.testing import CliRunner
 
 from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError, SolverError
-from rocking_cli.questions.fragility import store, tally, work_units
+from rocking_cli.questions.fragility import tally, work_units
 from rocking_cli.questions.fragility.campaign import prepare
 from rocking_cli.questions.fragility.store import COLUMNS, Store
 from rocking_cli.questions.fragility.study import load_study
 from rocking_cli.studies.contact import Contacts
 from tests.conftest import EXAMPLES
 from tests.following import respond
-from tests.questions.fragility.test_study_runs import carry_out, dump
-from tests.stores import command, version_of
+from tests.questions.fragility.test_study_runs import carry_out
+from tests.stores import command, contents, every_run
 from tests.studies.test_contact import of_a_block
 
 STRUCTURES = {
@@ -65,11 +63,6 @@ def write(folder, text=STUDY, count=4, **structures):
     return path
 
 
-def rows_of(place):
-    with Store.reading(place) as kept:
-        return kept.runs(0, kept.plan().size)
-
-
 def slides_as_responded(path, prepared):
     """When each run slides by the check that `respond` makes, of a structure and a motion made anew."""
     study, plan = load_study(path), prepared.plan
@@ -91,12 +84,12 @@ def whole(tmp_path_factory):
     """A study that asks for sliding, and its store."""
     folder = tmp_path_factory.mktemp("whole")
     path = write(folder)
-    return path, carry_out(path, folder / "study.db", jobs=1), folder / "study.db"
+    return path, carry_out(path, folder / "study.runs", jobs=1), folder / "study.runs"
 
 
 def test_each_run_slides_when_respond_says_so(whole):
     path, prepared, place = whole
-    found, expected = rows_of(place).slide_time, slides_as_responded(path, prepared)
+    found, expected = every_run(place).slide_time, slides_as_responded(path, prepared)
     assert found == pytest.approx(expected, rel=1e-9, nan_ok=True)
     sample = prepared.plan.places(np.arange(prepared.plan.size))[0]
     shares = [np.isfinite(found[sample == k]).mean() for k in range(len(prepared.plan.trials))]
@@ -105,10 +98,10 @@ def test_each_run_slides_when_respond_says_so(whole):
 
 def test_the_shares_of_a_curve_are_those_of_the_runs(whole):
     _, prepared, place = whole
-    slides = np.isfinite(rows_of(place).slide_time)
+    slides = np.isfinite(every_run(place).slide_time)
     sample, _, _, level, _ = prepared.plan.places(np.arange(prepared.plan.size))
-    with Store.reading(place) as kept:
-        counted = tally.count(kept, prepared.plan, "uncertain", ["sliding"], ["PGA/(g lambda)"])
+    kept = Store.reading(place)
+    counted = tally.count(kept, prepared.plan, "uncertain", ["sliding"], ["PGA/(g lambda)"])
     mine = np.isin(sample, counted.samples)
     expected = [slides[mine & (level == k)].sum() for k in range(4)]
     assert counted.exceeding["sliding"].sum(axis=(0, 1)).tolist() == expected
@@ -119,8 +112,8 @@ def test_restitutions_of_the_study_are_those_of_the_check(tmp_path):
     path = write(
         tmp_path, ETAS, block=STRUCTURES["block"].replace("restitution: 0.9\nfriction: 0.27", "friction: 0.31")
     )
-    prepared = carry_out(path, tmp_path / "study.db", jobs=2)
-    found = rows_of(tmp_path / "study.db").slide_time
+    prepared = carry_out(path, tmp_path / "study.runs", jobs=2)
+    found = every_run(tmp_path / "study.runs").slide_time
     assert found == pytest.approx(slides_as_responded(path, prepared), rel=1e-9, nan_ok=True)
     by_eta = found.reshape(prepared.plan.shape)[..., 0]
     assert not np.array_equal(by_eta[:, :, 0], by_eta[:, :, 1], equal_nan=True)
@@ -131,7 +124,7 @@ def test_the_block_by_itself_needs_the_friction_that_is_written_out(tmp_path):
     text = "structures: [block.yaml]\nrecords: [{pulse: sine:0.6g:0.8s}, {pulse: ricker:0.6g:1.2s}]\nmethod: stripes\n"
     text += "levels: {measure: PGA, least: 0.26, most: 0.5, count: 9}\nlimit_states: [sliding]\n"
     path = write(tmp_path, text)
-    prepared = carry_out(path, tmp_path / "study.db")
+    prepared = carry_out(path, tmp_path / "study.runs")
     plan, study = prepared.plan, prepared.study
     block, motions = study.samples[0].mechanism, [source.read() for source in study.sources]
     foot, expected = 1e-15, []
@@ -151,32 +144,29 @@ def test_the_block_by_itself_needs_the_friction_that_is_written_out(tmp_path):
         states.append((history.uplift_time, -np.sign(ground(history.uplift_time)) * foot, 0.0))
         needs = [t for t, phi, rate in states if of_a_block(phi, rate, ground(t), 0, width=0.7, height=2.8)[0] > 0.27]
         expected.append(min(needs, default=np.nan))
-    found = rows_of(tmp_path / "study.db").slide_time
+    found = every_run(tmp_path / "study.runs").slide_time
     assert found == pytest.approx(expected, abs=0.01, nan_ok=True)  # it comes to slide between two samples
     assert 0 < np.isfinite(found).sum() < plan.size
 
 
 def test_all_else_is_as_without_it(whole, tmp_path):
     path = write(tmp_path, STUDY.replace("sliding, ", ""))
-    carry_out(path, tmp_path / "without.db", jobs=1)
-    with_it, without = rows_of(whole[2]), rows_of(tmp_path / "without.db")
-    assert without.slide_time is None and without.columns == COLUMNS
-    for name in COLUMNS:
+    carry_out(path, tmp_path / "without.runs", jobs=1)
+    with_it, without = every_run(whole[2]), every_run(tmp_path / "without.runs")
+    assert np.isnan(without.slide_time).all()
+    for name in set(COLUMNS) - {"slide_time"}:
         assert np.array_equal(getattr(with_it, name), getattr(without, name), equal_nan=True), name
-    said = "\n".join(dump(tmp_path / "without.db"))
-    assert "slide_time" not in said and "sliding" not in said.replace(str(EXAMPLES), "")
-    versions = [version_of(place) for place in (whole[2], tmp_path / "without.db")]
-    assert versions == [store.SCHEMA_VERSION] * 2
 
 
 def test_a_unit_can_be_sent_elsewhere(whole, tmp_path):
-    with Store.writing(tmp_path / "study.db") as kept:
-        prepared = prepare(load_study(whole[0]), kept)
-        plan, samples = prepared.plan, prepared.study.samples
-        made = list(work_units.units(plan, samples, prepared.motions, "nonlinear", kept.finished, 4096, checked=True))
-    assert max(len(each.id) for each in made) <= work_units.MAX_CHECKED_RUNS
-    found = np.concatenate([work_units.carry_out(pickle.loads(pickle.dumps(each))).slide_time for each in made])
-    assert np.array_equal(found, rows_of(whole[2]).slide_time, equal_nan=True)
+    prepared = prepare(load_study(whole[0]), store := Store.writing(tmp_path / "study.runs"))
+    assert store.size <= work_units.MOST_CHECKED_RUNS
+    found = []
+    for k in store.chunks:
+        numbers = prepared.plan.numbers(*store.ends(k))
+        unit = work_units.unit_of(numbers, prepared.plan, prepared.study, store.fact("hash"), prepared.motions, "exact")
+        found.append(work_units.carry_out(pickle.loads(pickle.dumps(unit))).slide_time)
+    assert np.array_equal(np.concatenate(found), every_run(whole[2]).slide_time, equal_nan=True)
 
 
 def test_a_run_that_cannot_be_followed_to_its_rest_has_failed(whole, tmp_path, monkeypatch):
@@ -184,8 +174,8 @@ def test_a_run_that_cannot_be_followed_to_its_rest_has_failed(whole, tmp_path, m
         raise SolverError("too small steps")
 
     monkeypatch.setattr(work_units, "follow", fails)
-    carry_out(whole[0], tmp_path / "other.db", jobs=1)
-    failed, rows = rows_of(tmp_path / "other.db"), rows_of(whole[2])
+    carry_out(whole[0], tmp_path / "other.runs", jobs=1)
+    failed, rows = every_run(tmp_path / "other.runs"), every_run(whole[2])
     assert np.array_equal(failed.outcome == 2, np.isfinite(rows.uplift_time))
     assert not np.isfinite(failed.slide_time[failed.outcome == 2]).any()  # what only slides is not followed again
 
@@ -200,18 +190,18 @@ class TestTheStore:
     )
     def test_it_is_not_continued_as_if_it_were_another(self, tmp_path, before, now, said):
         text = STUDY.replace("uplift, sliding, ", "uplift, ")
-        carry_out(write(tmp_path, text.replace("uplift, ", before), count=2), tmp_path / "study.db")
-        kept = dump(tmp_path / "study.db")
+        carry_out(write(tmp_path, text.replace("uplift, ", before), count=2), tmp_path / "study.runs")
+        kept = contents(tmp_path / "study.runs")
         with pytest.raises(InputError) as caught:
-            carry_out(write(tmp_path, text.replace("uplift, ", now), count=2), tmp_path / "study.db")
+            carry_out(write(tmp_path, text.replace("uplift, ", now), count=2), tmp_path / "study.runs")
         assert [said in str(each) for each in caught.value.problems] == [True] and "`restart`" in str(caught.value)
-        assert dump(tmp_path / "study.db") == kept
+        assert contents(tmp_path / "study.runs") == kept
 
     @pytest.mark.rest
     def test_results_show_it_with_tables_and_pictures(self, whole, tmp_path):
         shown = command("results", whole[2], "--json", "--out", tmp_path / "runs.csv", "--plot", tmp_path / "pictures")
         assert shown.exit_code == 0, shown.stderr
-        rows = rows_of(whole[2])
+        rows = every_run(whole[2])
         sliding = [each for each in json.loads(shown.stdout)["curves"] if each["limit_state"] == "sliding"]
         assert sum(each["exceedances"] for each in sliding) == np.isfinite(rows.slide_time).sum() > 0
         header, *lines = (tmp_path / "runs.csv").read_text(encoding="utf-8").splitlines()
@@ -220,22 +210,6 @@ class TestTheStore:
         assert found == pytest.approx(rows.slide_time.tolist(), nan_ok=True)
         assert any(each.name.startswith("sliding") for each in (tmp_path / "pictures").iterdir())
         assert "sliding  " in command("results", whole[2]).stdout
-
-    def test_any_program_reads_it(self, whole):
-        with closing(sqlite3.connect(whole[2])) as connection:
-            (count,) = connection.execute(
-                "SELECT count(*) FROM runs WHERE slide_time >= ifnull(uplift_time, 0)"
-            ).fetchone()
-            names = [row[1] for row in connection.execute("PRAGMA table_info(run)")]
-        rows = rows_of(whole[2])
-        assert count == np.isfinite(rows.slide_time).sum() and tuple(names) == (*rows.columns, "checksum")
-
-    def test_damage_is_found(self, whole, tmp_path):
-        place = tmp_path / "study.db"
-        place.write_bytes(whole[2].read_bytes())
-        with closing(sqlite3.connect(place, isolation_level=None)) as connection:
-            connection.execute("UPDATE run SET slide_time = 1.5 WHERE id = 40")
-        assert "run 40 (" in command("results", place, code=2).stderr
 
 
 class TestWhatIsRefused:

@@ -2,8 +2,6 @@
 
 import io
 import json
-import sqlite3
-from contextlib import closing
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -13,7 +11,7 @@ import yaml
 
 from rocking_cli.dynamics.history import follow
 from rocking_cli.errors import InputError
-from rocking_cli.questions.fragility import assess, quantiles, store, tally
+from rocking_cli.questions.fragility import assess, quantiles, tally
 from rocking_cli.questions.fragility import nrml as openquake
 from rocking_cli.questions.fragility.assess import Fragility
 from rocking_cli.questions.fragility.curves import fit_curve
@@ -22,14 +20,14 @@ from rocking_cli.questions.fragility.picture import draw_curves, draw_surface, e
 from rocking_cli.questions.fragility.pictures import draw_ida, draw_quantiles
 from rocking_cli.questions.fragility.quantiles import all_quantiles
 from rocking_cli.questions.fragility.ranking import judge, rank
-from rocking_cli.questions.fragility.store import UNKNOWN, Endings, Store
+from rocking_cli.questions.fragility.store import COLUMNS, UNKNOWN, RunRows, Store
 from rocking_cli.questions.fragility.study import load_study
 from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.fragility.quantities import kept
 from tests.conftest import EXAMPLES, rows_of
 from tests.following import build_model
 from tests.questions.fragility.test_study_runs import carry_out
-from tests.stores import command
+from tests.stores import command, every_run
 
 LIMITS = ["uplift", 0.1, "40 mm", "sliding", "overturning"]
 GIVEN = {
@@ -52,11 +50,11 @@ def whole(tmp_path_factory):
     """A study in which many runs are of unknown outcome, its runs, and the histories they are of."""
     folder = tmp_path_factory.mktemp("unknown")
     path = write(folder)
-    prepared = carry_out(path, folder / "study.db", jobs=2)
+    prepared = carry_out(path, folder / "study.runs", jobs=2)
     plan, study = prepared.plan, load_study(path)
-    with Store.reading(folder / "study.db") as held:
-        rows, reach = held.runs(0, plan.size), kept(held.fact, LIMITS)["40 mm"]
-    _, record, _, level, polarity = plan.places(rows.id)
+    held = Store.reading(folder / "study.runs")
+    rows, reach = every_run(folder / "study.runs"), kept(held.fact, LIMITS)["40 mm"]
+    _, record, _, level, polarity = plan.places(rows.run)
     (sample,) = study.samples
     motions = [source.read() for source in study.sources]
     shaken = [
@@ -68,7 +66,7 @@ def whole(tmp_path_factory):
     contacts = Contacts(sample.mechanism)
     slides = [contacts.check(*each).slides for each in zip(histories, shaken, strict=True)]
     return SimpleNamespace(
-        path=path, place=folder / "study.db", plan=plan, rows=rows, level=level, record=record, polarity=polarity,
+        path=path, place=folder / "study.runs", plan=plan, rows=rows, level=level, record=record, polarity=polarity,
         histories=histories, slides=slides, reach=reach[0], phi_cr=model.phi_cr, definition=study.definition,
     )  # fmt: skip
 
@@ -96,8 +94,8 @@ def both(whole, limit):
 
 
 def counted(whole, *, ladders=False):
-    with Store.reading(whole.place) as held:
-        return tally.count(held, whole.plan, "portal", LIMITS, ["PGA"], ladders=ladders)
+    held = Store.reading(whole.place)
+    return tally.count(held, whole.plan, "portal", LIMITS, ["PGA"], ladders=ladders)
 
 
 def test_each_run_keeps_what_respond_says_of_it(whole):
@@ -114,16 +112,6 @@ def test_each_run_keeps_what_respond_says_of_it(whole):
     assert not (rows.slide_time[unknown] > rows.known_to[unknown]).any()
 
 
-def test_the_store_says_it_in_words(whole):
-    with closing(sqlite3.connect(whole.place)) as connection:
-        (version,) = connection.execute("PRAGMA user_version").fetchone()
-        words = connection.execute("SELECT outcome, known_to, fell_to FROM runs").fetchall()
-    assert version == store.SCHEMA_VERSION
-    assert [each[0] == "unknown" for each in words] == [each.unknown for each in whole.histories]
-    assert all((word == "unknown") == (known_to is not None) for word, known_to, _ in words)
-    assert not any(fell_to for word, _, fell_to in words if word == "unknown")
-
-
 @pytest.mark.parametrize("limit", LIMITS)
 def test_exceedances_are_counted_twice(whole, limit):
     found, (surely, maybe) = counted(whole), both(whole, limit)
@@ -138,14 +126,23 @@ def test_exceedances_are_counted_twice(whole, limit):
         assert 0 < surely.sum() < maybe.sum()
 
 
+def runs(*, outcome, peaks, uplifts, slides, **more):
+    """Runs with these columns; what else there is of a run is not read."""
+    nothing = dict.fromkeys(COLUMNS, np.full(outcome.size, np.nan)) | {"slip": np.zeros(outcome.size)}
+    times = {"uplift_time": np.where(uplifts, 1.0, np.nan), "slide_time": np.where(slides, 1.0, np.nan)}
+    return RunRows(
+        **nothing | times | more | {"outcome": outcome, "peak_positive": peaks[:, 0], "peak_negative": peaks[:, 1]}
+    )
+
+
 def test_what_is_known_of_a_run_is_known_of_the_side_on_which_it_was_seen():
     # Of unknown outcome, with a bound of 0.5 of the critical rotations .2 and .1; which side it is of tell the peaks.
     peaks = np.array([[0.15, 0.02], [0.04, 0.06], [0.15, 0.06], [0.15, 0.06]])
     outcome, flags = np.array([UNKNOWN, UNKNOWN, UNKNOWN, 0]), np.array([True, True, False, True])
     bound = np.array([0.5, 0.5, 0.5, np.nan])
-    found = Endings(
-        np.arange(4), outcome, np.full(4, 0.75), peaks, flags, flags & (np.arange(4) != 1), bound, np.zeros(4), flags,
-        ~flags,
+    found = runs(
+        outcome=outcome, peak_ratio=np.full(4, 0.75), peaks=peaks, uplifts=flags, slides=flags & (np.arange(4) != 1),
+        lower_bound=bound,
     )  # fmt: skip
     phi_cr, reach = np.tile([0.2, 0.1], (4, 1)), np.tile([0.09, 0.055], (4, 1))
     known = {limit: tally.known_to_exceed(found, limit, None, phi_cr).tolist() for limit in (*LIMITS[:2], 0.6)}
@@ -161,9 +158,9 @@ def test_what_is_known_of_a_run_is_known_of_the_side_on_which_it_was_seen():
 def test_a_bound_that_is_the_peak_itself_is_known_of_its_side():
     """Nothing larger came after the first warning: .5 of the critical rotation .2 is the peak of .1 that way."""
     peaks, flags = np.array([[0.1, 0.04]]), np.ones(1, bool)
-    found = Endings(
-        np.arange(1), np.array([UNKNOWN]), np.full(1, 0.5), peaks, flags, flags, np.array([0.5]), np.zeros(1), flags,
-        ~flags,
+    found = runs(
+        outcome=np.array([UNKNOWN]), peak_ratio=np.full(1, 0.5), peaks=peaks, uplifts=flags, slides=flags,
+        lower_bound=np.array([0.5]),
     )  # fmt: skip
     phi_cr = np.array([[0.2, 0.1]])
     for reach, known in (([0.09, 0.01], True), ([0.09, 0.045], True), ([0.11, 0.01], False)):
@@ -172,11 +169,11 @@ def test_a_bound_that_is_the_peak_itself_is_known_of_its_side():
 
 def test_a_slip_counts_where_the_outcome_is_known_and_where_it_was_before_it_ended():
     """Two bodies slide by 30 mm, one of them up to what it then meets; the third rocks."""
-    outcome, never, slip = np.array([0, UNKNOWN, 0]), np.zeros(3, bool), np.array([0.03, 0.03, 0.0])
+    outcome, slip = np.array([0, UNKNOWN, 0]), np.array([0.03, 0.03, 0.0])
     peaks = np.array([[0.0, 0.0], [0.0, 0.0], [0.1, 0.0]])
-    found = Endings(
-        np.arange(3), outcome, peaks[:, 0] / 0.2, peaks, peaks[:, 0] > 0, slip > 0, np.array([np.nan, 0.0, np.nan]),
-        slip, ~never, never,
+    found = runs(
+        outcome=outcome, peak_ratio=peaks[:, 0] / 0.2, peaks=peaks, uplifts=peaks[:, 0] > 0, slides=slip > 0,
+        lower_bound=np.array([np.nan, 0.0, np.nan]), slip=slip,
     )  # fmt: skip
     phi_cr, reach = np.full((3, 2), 0.2), np.full((3, 2), 0.05)
     for limit, known, maybe in (
@@ -253,8 +250,8 @@ def test_words_and_json_state_a_band_and_how_many_runs_are_unknown(whole):
 def test_quantiles_count_unknown_as_overturned_and_say_so(whole, monkeypatch):
     monkeypatch.setattr(quantiles, "MIN_RECORDS", (1, 1, 1))
     peaks = np.where(whole.rows.outcome == 0, whole.rows.peak_ratio, np.inf)
-    with Store.reading(whole.place) as held:
-        (found,) = all_quantiles(held, whole.plan, whole.definition)
+    held = Store.reading(whole.place)
+    (found,) = all_quantiles(held, whole.plan, whole.definition)
     data = json.loads(command("results", whole.place, "--json").stdout)["quantiles"][0]["intensities"]
     doubtful = []
     for k, (group, said) in enumerate(zip(found.groups, data, strict=True)):
@@ -279,8 +276,8 @@ def test_quantiles_count_unknown_as_overturned_and_say_so(whole, monkeypatch):
 
 
 def test_a_ranking_leaves_them_out_and_counts_them(whole):
-    with Store.reading(whole.place) as held:
-        (ranking,) = rank(held, whole.plan, whole.definition)
+    held = Store.reading(whole.place)
+    (ranking,) = rank(held, whole.plan, whole.definition)
     stands = (whole.rows.outcome == 0) & (whole.rows.peak_ratio > 0)
     assert {each.runs for each in ranking.measures} == {int(stands.sum())}
     assert ranking.unknown == (whole.rows.outcome == UNKNOWN).sum()
@@ -335,9 +332,9 @@ def test_pictures_hatch_what_is_not_known(whole, tmp_path):
     (band,) = [collection for collection in axes.collections if collection.get_hatch()]
     x, y = band.get_paths()[0].vertices.T
     assert y[x > 1].min() == 0  # nothing bounds it from below
-    with Store.reading(whole.place) as held:
-        peaks = tally.peaks(held, whole.plan, "portal")
-        (found,) = all_quantiles(held, whole.plan, whole.definition)
+    held = Store.reading(whole.place)
+    peaks = tally.peaks(held, whole.plan, "portal")
+    (found,) = all_quantiles(held, whole.plan, whole.definition)
     assert np.isinf(peaks).sum() == (whole.rows.outcome == UNKNOWN).sum()
     assert np.isnan(peaks).sum() == (np.abs(whole.rows.outcome) == 1).sum()
     figure = draw_ida(np.array(whole.plan.levels), peaks, "PGA [g]", "a portal")
@@ -362,7 +359,7 @@ def test_joints_that_are_not_known_are_a_caution_and_null(tmp_path):
         assert not curve["band"] and curve["lower"] is None
     linear = json.loads(
         command("fragility", write(tmp_path, structures=structures[1:], model="linear2", limit_states=["uplift"]),
-                "--store", tmp_path / "linear.db", "--json").stdout
+                "--store", tmp_path / "linear.runs", "--json").stdout
     )  # fmt: skip
     assert linear["outcomes"][0]["unknown"] == 0 and not linear["notes"]
 
