@@ -112,7 +112,7 @@ properties: setup  ## New examples for every property test, random ones; EXAMPLE
 bounds: setup  ## Random structures with every bound of the code as it is and doubled, ten minutes; CASES, FREE: how many, by free blocks
 	$(BIN)/python -m tests.bounds
 
-soak: setup  ## What takes too long for the tests, an hour: damaged stores, races, spoilt records; READERS=20 is how often
+soak: setup  ## What takes too long for the tests, an hour: damaged stores, races, kills, spoilt records; READERS=20 is how often
 	$(BIN)/python -m tests.soak
 
 crash: setup  ## A quarter of an hour: every command that writes, ended and made to fail at each call on its folder; NAMES: which of them

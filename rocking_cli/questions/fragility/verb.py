@@ -178,7 +178,7 @@ def _bring_up_to_date(
             hands = hands or stack.enter_context(workers)
             if engine == "blocks":
                 for name, structure, motion, runs in left_of_each(prepared, there.chunks):
-                    cost = cost_in_words(engine_of("blocks"), structure, motion, runs, hands.count)
+                    cost = cost_in_words(engine_of("blocks"), structure, motion, runs, hands.count())
                     watch.note(f"{name}: {cost}" if len(plan.structures) > 1 else cost)
             with watch.progress(there.total, "runs", done=there.finished, failed=there.failed) as advance:
                 run(prepared, hands, engine, there.chunks, advance)

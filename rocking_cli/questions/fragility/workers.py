@@ -45,14 +45,14 @@ class Workers:
     ----------
     executor : concurrent.futures.Executor
         The executor.
-    count : int
-        Number of calls that it runs at a time.
+    count : callable
+        Returns the number of calls that it runs at a time, which may change: workers of a cluster come and go.
     still_there : callable
         Called if no call has finished for a while; raises if none ever will.
     """
 
     executor: Executor
-    count: int
+    count: Callable[[], int]
     still_there: Callable[[], None] = lambda: None
 
     def map(self, function: Callable[[A], B], items: Iterable[A]) -> Iterator[B]:
@@ -61,7 +61,7 @@ class Workers:
         try:
             for item in items:
                 on_the_way.add(self.executor.submit(function, item))
-                while len(on_the_way) >= UNITS_PER_WORKER * self.count:
+                while len(on_the_way) >= UNITS_PER_WORKER * self.count():
                     on_the_way = yield from self._finished(on_the_way)
             while on_the_way:
                 on_the_way = yield from self._finished(on_the_way)
@@ -89,7 +89,7 @@ def threads(jobs: int | None = None) -> Iterator[Workers]:
     """
     workers = jobs or os.cpu_count() or 1
     with ThreadPoolExecutor(workers) as executor:
-        yield Workers(executor, workers)
+        yield Workers(executor, lambda: workers)
 
 
 @contextmanager
@@ -109,7 +109,7 @@ def processes(jobs: int | None = None) -> Iterator[Workers]:
     workers = jobs or min(os.cpu_count() or 1, MAX_PROCESSES)
     pool = ProcessPoolExecutor(workers, get_context("spawn"), begin)
     try:
-        yield Workers(pool, workers)
+        yield Workers(pool, lambda: workers)
     except BrokenProcessPool:
         raise Refused(ENDED) from None
     finally:
@@ -151,13 +151,16 @@ def cluster(scheduler: str | distributed.Client) -> Iterator[Workers]:
         with _quiet(), warnings.catch_warnings():
             warnings.filterwarnings("ignore", "Sending large graph")  # large units are intended
             with _client(address) if given is None else nullcontext(given) as client:
-                workers = _threads(client, address)
+                _check_workers(client, address)
+
+                def count() -> int:
+                    return sum(client.nthreads().values())
 
                 def still_there() -> None:
-                    if not client.nthreads():
+                    if not count():
                         raise ClusterError(f"the cluster at {address} has no workers left: {CONTINUE_HINT}")
 
-                yield Workers(client.get_executor(pure=False, retries=MAX_LOST_WORKERS), workers, still_there)
+                yield Workers(client.get_executor(pure=False, retries=MAX_LOST_WORKERS), count, still_there)
     except (CancelledError, OSError, distributed.KilledWorker) as error:
         reason = str(error) or "its scheduler does not answer any more"
         raise ClusterError(f"the cluster at {address} was lost ({reason}): {CONTINUE_HINT}") from error
@@ -186,8 +189,8 @@ def _client(address: str) -> distributed.Client:
         raise ClusterError(f"no scheduler answers at {address}: {error}") from None
 
 
-def _threads(client: distributed.Client, address: str) -> int:
-    """Check the workers of a cluster, and return how many units they run at a time."""
+def _check_workers(client: distributed.Client, address: str) -> None:
+    """Raise `ClusterError` if a cluster has no workers, or some with another version."""
     try:
         client.wait_for_workers(1, timeout=SCHEDULER_TIMEOUT)
     except TimeoutError:
@@ -198,7 +201,6 @@ def _threads(client: distributed.Client, address: str) -> int:
         if version != __version__:
             sentence = f"has rocking-cli {version}" if isinstance(version, str) else f"cannot run it ({version})"
             raise ClusterError(f"the worker {worker} {sentence}; this is {__version__}: install the same on all")
-    return sum(client.nthreads().values())
 
 
 def _version() -> str:

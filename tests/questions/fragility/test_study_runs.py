@@ -7,8 +7,9 @@ import signal
 import subprocess
 import sys
 import time
-from concurrent.futures import Executor
+from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import replace
+from threading import Barrier
 
 import numpy as np
 import pytest
@@ -239,6 +240,13 @@ def test_a_cluster_gives_the_same_though_a_worker_is_killed(long_study, tmp_path
             each.kill()
             each.wait()
     assert contents(place) == contents(whole)
+
+
+def test_workers_that_come_later_get_work_too():
+    together, counts = Barrier(6), iter([1, *[3] * 20])
+    with ThreadPoolExecutor(6) as executor:
+        hands = workers.Workers(executor, lambda: next(counts))
+        assert sorted(hands.map(lambda item: together.wait(10), range(6))) == [*range(6)]
 
 
 def test_a_scheduler_that_is_not_there_is_said_so(whole, tmp_path, monkeypatch):
