@@ -114,8 +114,8 @@ def _simulated(unit: WorkUnit) -> RunRows:
         slides, lost = _slide_times(unit, models, outcomes)
     fell = outcomes.fell_to * np.where(outcomes.off_edge, OFF_EDGE, 1)
     bound = np.where(outcomes.unknown, outcomes.lower_bound, np.nan)
-    found = {name: getattr(outcomes, name) for name in COLUMNS if hasattr(outcomes, name)}
-    known = {name: np.where(lost, np.nan, each) for name, each in {**found, "lower_bound": bound}.items()}
+    as_simulated = {name: getattr(outcomes, name) for name in COLUMNS if hasattr(outcomes, name)}
+    known = {name: np.where(lost, np.nan, each) for name, each in {**as_simulated, "lower_bound": bound}.items()}
     outcome = np.where(lost, FAILED, np.where(outcomes.unknown, UNKNOWN, fell))
     return RunRows(**{**known, **start, "outcome": outcome, "slide_time": slides, "by_blocks": outcomes.by_blocks})
 
