@@ -21,7 +21,7 @@ from rocking_cli.errors import InputError, Problem, RockingError, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.intensity import all_measures, parse_measure
 from rocking_cli.questions.fragility.definition import Definition
-from rocking_cli.questions.fragility.plan import Plan, Trial, complete, described, weaker
+from rocking_cli.questions.fragility.plan import Measured, Plan, Trial, complete, described, weaker
 from rocking_cli.questions.fragility.sources import KeptMotions
 from rocking_cli.questions.fragility.store import NO_RUNS, DamagedFile, RunRows, Store
 from rocking_cli.questions.fragility.study import Sample, Study, digest
@@ -32,6 +32,7 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import EngineName
 from rocking_cli.studies.engines.scene import engine_version
 from rocking_cli.studies.fragility.quantities import PGA, PGV, ROTATIONS_FACT, displacement_limits
+from rocking_cli.text import in_short
 
 Progress = Callable[[int, int], None]
 """Called with the numbers of runs that have finished and failed since the last call."""
@@ -167,24 +168,13 @@ def examine_study(
     for sample in study.samples:
         trials.append(_trial(study, sample))
         tell(1)
-    definition = study.definition
-    etas = definition.restitution if definition.restitution is not None else [nan]
-    levels = definition.levels.levels()
-    sets = described(study.description(), study.weights)
-    plan = Plan(trials, records, etas, definition.levels.measure, levels, definition.polarities, sets=sets)
-    if known is not None and _of_one_kind(known, plan):
+    asked, sets = study.definition, described(study.description(), study.weights)
+    etas = asked.restitution if asked.restitution is not None else [nan]
+    levels = asked.levels.levels()
+    plan = Plan(trials, records, etas, asked.levels.measure, levels, asked.polarities, Measured(), sets)
+    if known is not None and known.axes == plan.axes:
         plan = replace(plan, measured=known.measured)
     return complete(plan, study, motions, ()), motions
-
-
-def _of_one_kind(one: Plan, other: Plan) -> bool:
-    """Return whether two plans have the same records, samples and levels in order, so that values carry over."""
-    return (
-        [each.name for each in one.records] == [each.name for each in other.records]
-        and [(each.structure, each.number) for each in one.trials]
-        == [(each.structure, each.number) for each in other.trials]
-        and (one.measure, list(one.levels)) == (other.measure, list(other.levels))
-    )
 
 
 @dataclass(frozen=True)
@@ -318,31 +308,24 @@ def libraries() -> dict[str, str]:
 
 def _trial(study: Study, sample: Sample) -> Trial:
     structure = study.structures[sample.structure]
-    start = Trial(structure.name or structure.mechanism, sample.number, sample.drawn)
+    start = (structure.name or structure.mechanism, sample.number, sample.drawn)
     mechanism = sample.mechanism
     try:
         if study.definition.model == "nonlinear":
             check_elements(mechanism)
-        p, lambda_, rotations = _mechanics(mechanism, study.definition)
+        mechanics = _mechanics(mechanism, study.definition)
         least = min(mechanism.eta(side) for side in mechanism.directions)
         if study.definition.restitution is None and isnan(least):
             raise InputError(NO_REBOUND)
         if study.definition.restitution is None and mechanism.rocks_both_ways and least <= 0:
             raise InputError(f"its kinematics give a restitution of {least:.4g}: {why_none(least)}")
     except RockingError as error:
-        return replace(start, reason=str(error))
-    return replace(
-        start,
-        p=p,
-        lambda_=lambda_,
-        gravity=mechanism.gravity,
-        phi_cr_positive=rotations[0],
-        phi_cr_negative=rotations[1],
-    )
+        return Trial(*start, str(error))
+    return Trial(*start, None, *mechanics)
 
 
-def _mechanics(mechanism: Mechanism, asked: Definition) -> tuple[float, float, tuple[float, float]]:
-    """Return p, lambda and the reference rotations of a structure, with or without an equivalent block.
+def _mechanics(mechanism: Mechanism, asked: Definition) -> tuple[float, float, float, float, float]:
+    """Return p, lambda, gravity and the reference rotations of a structure, with or without an equivalent block.
 
     Raises `NoEquivalentBlock` if there is none and the study needs one.
     """
@@ -354,8 +337,8 @@ def _mechanics(mechanism: Mechanism, asked: Definition) -> tuple[float, float, t
         if needs:
             raise NoEquivalentBlock(f"{' and '.join(needs)} cannot be had of it: {error}") from error
         sides = both_statics(mechanism)
-        return 0.0, min(side.lambda_ for side in sides), (sides[0].reference, sides[1].reference)
-    return *weaker(block, asked.model), (block.positive.phi_cr, block.negative.phi_cr)
+        return 0.0, min(side.lambda_ for side in sides), mechanism.gravity, sides[0].reference, sides[1].reference
+    return *weaker(block, asked.model), mechanism.gravity, block.positive.phi_cr, block.negative.phi_cr
 
 
 def _refuse_useless(plan: Plan) -> None:
@@ -401,42 +384,28 @@ def _other_mechanics(before: Trial, now: Trial) -> list[str]:
 def differences(before: Any, now: Any, where: str = "") -> list[str]:
     """Return sentences on the places where two pieces of plain data differ, with both values."""
     if isinstance(before, dict) and isinstance(now, dict):
-        return [
-            difference
-            for key in [*before, *(key for key in now if key not in before)]
-            for difference in differences(before.get(key), now.get(key), f"{where}.{key}".lstrip("."))
-        ]
-    if isinstance(before, list) and isinstance(now, list) and len(before) == len(now):
-        inside = [
-            difference
-            for k, (one, other) in enumerate(zip(before, now, strict=True))
-            for difference in differences(one, other, f"{where}[{k + 1}]")
-        ]
-        if len(inside) > 1 and all(isinstance(entry, int | float) for entry in (*before, *now)):
-            return [f"{where} was {_ends(before)}, is now {_ends(now)}"]
-        return inside
-    if isinstance(before, list) and isinstance(now, list):
-        gone = [entry for entry in before if entry not in now]
-        new = [entry for entry in now if entry not in before]
-        parts = [f"without {_told(gone)}"] if gone else []
-        parts += [f"with {_told(new)}"] if new else []
-        return [f"{where} is now {' and '.join(parts) or 'another number of the same'}"]
-    if isinstance(before, float) and isinstance(now, float) and isclose(before, now, rel_tol=PARAMETER_TOLERANCE):
+        pairs = [(f"{where}.{key}".lstrip("."), before.get(key), now.get(key)) for key in {**before, **now}]
+    elif isinstance(before, list) and isinstance(now, list):
+        if len(before) != len(now):
+            gone, new = (
+                [_one(each) for each in one if each not in other] for one, other in ((before, now), (now, before))
+            )
+            parts = [f"{word} {in_short(those, most=3)}" for word, those in (("without", gone), ("with", new)) if those]
+            return [f"{where} is now {' and '.join(parts) or 'another number of the same'}"]
+        pairs = [(f"{where}[{k}]", *pair) for k, pair in enumerate(zip(before, now, strict=True), 1)]
+    elif isinstance(before, float) and isinstance(now, float) and isclose(before, now, rel_tol=PARAMETER_TOLERANCE):
         return []
-    return [] if before == now else [f"{where} was {_one(before)}, is now {_one(now)}"]
-
-
-def _ends(values: list[Any]) -> str:
-    """Describe a list of numbers by its length and its smallest and largest value."""
-    return f"{len(values)} numbers from {min(values)} to {max(values)}"
-
-
-def _told(values: list[Any]) -> str:
-    named = ", ".join(_one(each) for each in values[:3])
-    return named + (f" and {len(values) - 3} more" if len(values) > 3 else "")
+    else:
+        return [] if before == now else [f"{where} was {_one(before)}, is now {_one(now)}"]
+    inside = [difference for place, one, other in pairs for difference in differences(one, other, place)]
+    if len(inside) > 1 and all(isinstance(each, int | float) for each in (*before, *now)):
+        ends = [f"{len(values)} numbers from {min(values)} to {max(values)}" for values in (before, now)]
+        return [f"{where} was {ends[0]}, is now {ends[1]}"]
+    return inside
 
 
 def _one(value: Any) -> str:
+    """Return a value in words, an entry with a name by it."""
     if isinstance(value, dict):
         return str(value.get("name", value))
     return "absent" if value is None else str(value)

@@ -271,7 +271,7 @@ class Store:
             facts["polarities"],
             Measured(of("records"), of("samples"), of_run),
             described(facts["description"], facts["weights"]),
-        )  # fmt: skip
+        )
 
     def keep(self, plan: Plan, facts: Mapping[str, Any]) -> None:
         """Write the plan and what else is known of the study; start the store with them if it is empty.
