@@ -277,9 +277,8 @@ def _is_final(prepared: Prepared, rows: RunRows) -> Bools:
 def left_of_each(prepared: Prepared, chunks: Iterable[int]) -> Iterator[tuple[str, Structure, GroundMotion, int]]:
     """Yield each structure, one of its samples, a motion of usual length, and how many runs are left to free blocks."""
     plan = prepared.plan
-    records = [k for k, record in enumerate(plan.records) if record.reason is None]
-    records.sort(key=lambda k: plan.records[k].dt * plan.records[k].npts)
-    motion = prepared.motions[records[len(records) // 2]]
+    durations = sorted((each.dt * each.npts, k) for k, each in enumerate(plan.records) if each.reason is None)
+    motion = prepared.motions[durations[len(durations) // 2][1]]
     each = np.zeros(len(plan.trials), dtype=np.int64)
     for k in chunks:
         each += np.bincount(plan.places(_lacking(prepared, k, "blocks")[1])[0], minlength=each.size)
@@ -300,10 +299,7 @@ def versions(study: Study) -> dict[str, str]:
 
 def libraries() -> dict[str, str]:
     """Return the versions of Python and libraries that may affect the last bits of results, to compare two stores."""
-    return {
-        "python": platform.python_version(),
-        **{name: version(name) for name in ("numpy", "scipy")},
-    }
+    return {"python": platform.python_version(), **{name: version(name) for name in ("numpy", "scipy")}}
 
 
 def _trial(study: Study, sample: Sample) -> Trial:

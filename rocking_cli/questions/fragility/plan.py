@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
 from math import nan, prod
 from typing import Any
 
@@ -378,17 +378,15 @@ def _without_unscalable(plan: Plan) -> Plan:
 
 def _of_runs(plan: Plan, measure: RunMeasure, motions: KeptMotions, k: int) -> Reals:
     """Return a measure of the runs of a record, shape (samples, levels); equal samples are computed once."""
-    samples, _, _, levels, _ = plan.shape
-    values = np.full((samples, levels), np.nan)
-    known: dict[tuple[float, ...], float] = {}
-    for sample in np.flatnonzero(plan.usable_samples).tolist():
-        place = np.full(levels, sample)
-        factors = plan.factors(place, np.full(levels, k), np.arange(levels))
-        of = plan.reference(np.array([sample]))
-        structure = [float(np.asarray(number)[0]) for number in (of.p, of.lambda_, of.gravity, of.v_imp)]
-        for level, factor in enumerate(factors.tolist()):
-            key = (factor, *structure)
-            if key not in known:
-                known[key] = measure.value(motions[k].of_ground.scaled(factor), Reference(*structure))
-            values[sample, level] = known[key]
+
+    @cache
+    def value(factor: float, *structure: float) -> float:
+        return measure.value(motions[k].of_ground.scaled(factor), Reference(*structure))
+
+    values = np.full((len(plan.trials), len(plan.levels)), nan)
+    usable = np.broadcast_to(plan.usable_samples[:, None], values.shape)
+    sample, level = np.nonzero(usable)
+    factors, of = plan.factors(sample, np.full_like(sample, k), level), plan.reference(sample)
+    numbers = np.column_stack([factors, of.p, of.lambda_, of.gravity, of.v_imp])
+    values[usable] = [value(*each) for each in numbers.tolist()]
     return values

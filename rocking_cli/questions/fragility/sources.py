@@ -64,8 +64,7 @@ class Source:
         digest = hashlib.sha256()
         for path in (Path(each) for each in (self.path, self.vertical, self.reading.other) if each is not None):
             try:
-                with path.open("rb") as file:
-                    digest.update(hashlib.file_digest(file, "sha256").digest())
+                digest.update(hashlib.sha256(path.read_bytes()).digest())
             except OSError as error:
                 raise InputError(Problem(f"cannot be read: {error.strerror or error}", str(path))) from None
         if self.motion is not None:
@@ -140,7 +139,6 @@ class KeptMotions:
         self._sources = list(sources)
         self._checksums: dict[int, str] = {}
         self._kept: OrderedDict[int, GroundMotion] = OrderedDict()
-        self._size = 0
 
     def examine(self, k: int, known: Record | None) -> Record:
         """Return the record of a motion; if it is known and usable, only its checksum is computed again."""
@@ -177,8 +175,6 @@ class KeptMotions:
 
     def _keep(self, k: int, motion: GroundMotion) -> GroundMotion:
         self._kept[k] = motion
-        self._size += motion.npts
-        while self._size > MAX_SAMPLES_IN_MEMORY and len(self._kept) > 1:
-            _, dropped = self._kept.popitem(last=False)
-            self._size -= dropped.npts
+        while len(self._kept) > 1 and sum(each.npts for each in self._kept.values()) > MAX_SAMPLES_IN_MEMORY:
+            self._kept.popitem(last=False)
         return motion

@@ -17,7 +17,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass
 from functools import cached_property
-from itertools import count
 from pathlib import Path
 from typing import Annotated, Any, get_type_hints
 
@@ -29,6 +28,7 @@ from rocking_cli.io.files import folder, write_whole
 from rocking_cli.io.json_text import json_text
 from rocking_cli.questions.fragility.plan import Measured, Plan, Trial, described
 from rocking_cli.questions.fragility.sources import Record
+from rocking_cli.text import numbered
 
 LAYOUT = 9
 STUDY, MEASURED = "study.json", "measured.npz"
@@ -458,11 +458,8 @@ class Store:
     def _make_folder(self) -> None:
         """Put the old folder aside if the study starts anew, and make an empty one."""
         if self._anew:
-            names = (
-                self.path.with_name(f"{self.path.stem}.before{f'-{k}' if k > 1 else ''}{self.path.suffix}")
-                for k in count(1)
-            )
-            aside = next(each for each in names if not os.path.lexists(each))
+            taken = [each.name for each in self.path.parent.iterdir()]
+            aside = self.path.with_name(numbered(f"{self.path.stem}.before", self.path.suffix, taken))
             try:
                 self.path.rename(aside)
                 self._say(f"the store as it was is kept as {aside}")
