@@ -168,10 +168,9 @@ def examine_study(
     for sample in study.samples:
         trials.append(_trial(study, sample))
         tell(1)
-    asked, sets = study.definition, described(study.description(), study.weights)
-    etas = asked.restitution if asked.restitution is not None else [nan]
-    levels = asked.levels.levels()
-    plan = Plan(trials, records, etas, asked.levels.measure, levels, asked.polarities, Measured(), sets)
+    asked, levels, sets = study.definition, study.definition.levels, described(study.description(), study.weights)
+    etas = asked.restitution or [nan]
+    plan = Plan(trials, records, etas, levels.measure, levels.levels(), asked.polarities, Measured(), sets)
     if known is not None and known.axes == plan.axes:
         plan = replace(plan, measured=known.measured)
     return complete(plan, study, motions, ()), motions
@@ -303,17 +302,16 @@ def libraries() -> dict[str, str]:
 
 
 def _trial(study: Study, sample: Sample) -> Trial:
-    structure = study.structures[sample.structure]
-    start = (structure.name or structure.mechanism, sample.number, sample.drawn)
-    mechanism = sample.mechanism
+    mechanism, asked = sample.mechanism, study.definition
+    start = (mechanism.name or mechanism.mechanism, sample.number, sample.drawn)
     try:
-        if study.definition.model == "nonlinear":
+        if asked.model == "nonlinear":
             check_elements(mechanism)
-        mechanics = _mechanics(mechanism, study.definition)
+        mechanics = _mechanics(mechanism, asked)
         least = min(mechanism.eta(side) for side in mechanism.directions)
-        if study.definition.restitution is None and isnan(least):
+        if asked.restitution is None and isnan(least):
             raise InputError(NO_REBOUND)
-        if study.definition.restitution is None and mechanism.rocks_both_ways and least <= 0:
+        if asked.restitution is None and mechanism.rocks_both_ways and least <= 0:
             raise InputError(f"its kinematics give a restitution of {least:.4g}: {why_none(least)}")
     except RockingError as error:
         return Trial(*start, str(error))

@@ -86,7 +86,7 @@ def _right(given: dict[str, Any], name: str, sound: Sound) -> list[Any]:
     return [each for k, each in enumerate(_listed(given, name)) if sound(name, k)]
 
 
-def _pair(values: list[str]) -> list[str]:
+def _different(values: list[str]) -> list[str]:
     """Refuse a measure paired with itself: a surface over the two is a curve."""
     if values[0] == values[1]:
         raise ValueError(f"{values[0]} is paired with itself")
@@ -107,6 +107,8 @@ Intensity = Annotated[float, Field(ge=1e-6, le=1e6)]
 Measure = Annotated[str, AfterValidator(_measure)]
 LevelMeasure = Annotated[str, AfterValidator(_level_measure)]
 Limit = Annotated[str | float, BeforeValidator(_limit)]
+Item = TypeVar("Item")
+Pair = Annotated[list[Item], Field(min_length=2, max_length=2)]
 
 
 def implies(limit: Limit, other: Limit, *, slides: bool = False) -> bool:
@@ -204,7 +206,7 @@ class HazardEntry(Part):
     file: str | None = Field(
         None, description="CSV of intensity and annual rate of exceedance, or OpenQuake's hazard curve"
     )
-    points: list[Annotated[list[Positive], Field(min_length=2, max_length=2)]] | None = Field(
+    points: list[Pair[Positive]] | None = Field(
         None, min_length=2, description="[intensity, annual rate] of each point"
     )
 
@@ -255,9 +257,7 @@ class Definition(Sampling, Common, extra="forbid"):
     opening: float = as_asked("opening")
     limit_states: list[Limit] = as_asked("limit_states")
     measures: list[Measure] | None = as_asked("measures")
-    bivariate: list[Annotated[list[Measure], Field(min_length=2, max_length=2), AfterValidator(_pair)]] = as_asked(
-        "bivariate"
-    )
+    bivariate: list[Annotated[Pair[Measure], AfterValidator(_different)]] = as_asked("bivariate")
     confidence: float = as_asked("confidence")
     hazard: HazardEntry | None = as_asked("hazard")
 

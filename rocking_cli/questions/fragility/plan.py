@@ -215,8 +215,7 @@ class Plan:
     @property
     def total(self) -> int:
         """Number of runs that can be simulated: without samples and records that cannot be used."""
-        _, _, etas, _, polarities = self.shape
-        return int(self.usable_samples.sum() * self.usable_records.sum()) * etas * polarities
+        return int(self.usable_samples.sum() * self.usable_records.sum()) * len(self.etas) * len(self.polarities)
 
     def numbers(self, first: int, stop: int) -> Integers:
         """Return the numbers of the runs from `first` to before `stop` that can be simulated."""
@@ -278,8 +277,6 @@ class Plan:
 V_IMP = "v_imp"
 ORIGIN = ("magnitude", "distance")
 """Fields of a record's earthquake that are stored beside its measures, for the test of residuals."""
-Told = Callable[[int], None]
-"""Called with the number of records processed since the last call."""
 
 
 def complete(
@@ -287,7 +284,7 @@ def complete(
     study: Study,
     motions: KeptMotions,
     asked: Iterable[str],
-    told: Told = lambda count: None,
+    told: Callable[[int], None] = lambda count: None,
     *,
     origins: bool = False,
 ) -> Plan:
@@ -304,7 +301,7 @@ def complete(
     asked : iterable of str
         Names of the measures; the factor on the records is ignored.
     told : callable, optional
-        Called with the number of records measured since the last call; see `Told`.
+        Called with the number of records measured since the last call.
     origins : bool
         Whether to keep what the records state of their earthquake, too.
 

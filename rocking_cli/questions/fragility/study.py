@@ -399,8 +399,9 @@ class _Files:
         assert entry.file is not None
         if (motion := self.made_motions.get(entry.file)) is not None:
             if as_written(entry).keys() - OF_MOTIONS:
-                what = "units, dt, channel, vertical and the like describe a file, and this is a ground motion"
-                self.wrong(place, what)
+                self.wrong(
+                    place, "units, dt, channel, vertical and the like describe a file, and this is a ground motion"
+                )
                 return []
             return [Source("", entry, entry.reading(self.folder, common), motion.name, motion=motion)]
         files = self.select(self.within(*place, "file"), entry.file)
