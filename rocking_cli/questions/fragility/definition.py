@@ -172,18 +172,16 @@ class Levels(Part):
         least, most, count = ranged = [given.get(name) for name in ("least", "most", "count")]
         if any((each is None) == (given.get("values") is None) for each in ranged):
             yield (), "give values, or least, most and count"
-        for one, other in pairwise(sorted(_right(given, "values", sound))):
-            if not _apart(one, other):
-                same = f"{one} is given twice" if one == other else f"{one} and {other} differ by rounding alone"
-                yield ("values",), same
+        for one, other in _alike(sorted(_right(given, "values", sound))):
+            same = f"{one} is given twice" if one == other else f"{one} and {other} differ by rounding alone"
+            yield ("values",), same
         if least is None or most is None or not (sound("least") and sound("most")):
             return
+        complete = count is not None and sound("count") and sound("spacing")
         if least >= most:
             yield ("most",), f"must be more than least ({least:g}), got {most:g}"
-        elif count is not None and sound("count") and sound("spacing"):
-            levels = cls.model_construct(**{**given, "values": None}).levels()
-            if not all(_apart(one, other) for one, other in pairwise(levels)):
-                yield ("most",), f"is too close to least for {count} distinct levels"
+        elif complete and _alike(cls.model_construct(**{**given, "values": None}).levels()):
+            yield ("most",), f"is too close to least for {count} distinct levels"
 
     def levels(self) -> list[float]:
         """Return the levels, increasing."""
@@ -194,9 +192,9 @@ class Levels(Part):
         return [float(each) for each in between(self.least, self.most, self.count)]
 
 
-def _apart(one: float, other: float) -> bool:
-    """Return whether `other` is above `one` by more than rounding."""
-    return other > one * (1 + INTENSITY_TOLERANCE)
+def _alike(levels: list[float]) -> list[tuple[float, float]]:
+    """Return the neighbours among increasing levels that differ by no more than rounding."""
+    return [(one, other) for one, other in pairwise(levels) if other <= one * (1 + INTENSITY_TOLERANCE)]
 
 
 class HazardEntry(Part):
@@ -264,18 +262,18 @@ class Definition(Sampling, Common, extra="forbid"):
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
         """Check that the levels suit the method, the samples what varies, and the model the requested measures."""
-        method, levels, varied = given.get("method"), given.get("levels"), {name for _, name in _varied(given)}
+        method, levels, vary = given.get("method"), given.get("levels"), {name for _, name in varied(given)}
         scaled = isinstance(levels, dict) and sound("levels", "measure") and levels["measure"].strip().lower() != SCALE
         if method == "cloud" and scaled:
             yield ("levels",), f"a cloud scales records by factors: `measure: {SCALE}`"
         yield from _wrong_sets(given, sound)
         if method in ("stripes", "ida") and "levels" not in given:
             yield ("levels",), "is missing: every record is scaled to levels of intensity"
-        if varied and "samples" not in given:
+        if vary and "samples" not in given:
             yield ("samples",), "is missing: how many structures are drawn from the distributions"
-        if not varied and sound("structures") and sound("samples") and given.get("samples", 1) > 1:
+        if not vary and sound("structures") and sound("samples") and given.get("samples", 1) > 1:
             yield ("samples",), f"nothing varies: add {named('vary')} to at least one structure"
-        if given.get(RESTITUTION) is not None and RESTITUTION in varied:
+        if given.get(RESTITUTION) is not None and RESTITUTION in vary:
             yield (RESTITUTION,), "cannot be combined with a structure that varies its restitution: give one of the two"
         if checks_sliding(given) and sound("model") and given.get("model", "nonlinear") != "nonlinear":
             yield ("limit_states",), "sliding requires `model: nonlinear`: linear models do not give the joint forces"
@@ -310,7 +308,7 @@ class Definition(Sampling, Common, extra="forbid"):
         return [name for name in dict.fromkeys(asked) if name != SCALE]
 
 
-def _varied(given: dict[str, Any]) -> list[tuple[int, str]]:
+def varied(given: dict[str, Any]) -> list[tuple[int, str]]:
     """Return the index of the structure and the name of each field that varies, in the data of a study file."""
     vary = [each.get("vary") if isinstance(each, dict) else None for each in _listed(given, "structures")]
     return [(k, name) for k, each in enumerate(vary) if isinstance(each, dict) for name in each]
@@ -351,7 +349,7 @@ def _wrong_with_free_blocks(given: dict[str, Any], sound: Sound, engine: str) ->
         yield (RESTITUTION,), restitution
     if given.get("opening") is not None:
         yield ("opening",), "has no effect with `engine: blocks`, which simulates every joint: leave it out"
-    for k, name in _varied(given):
+    for k, name in varied(given):
         if name in (RESTITUTION, "rebound"):
             yield ("structures", k, "vary", name), restitution
 

@@ -43,6 +43,7 @@ from rocking_cli.questions.fragility.definition import (
     definition_of,
     usable_entries,
     usable_part,
+    varied,
 )
 from rocking_cli.questions.fragility.distributions import draw
 from rocking_cli.questions.fragility.hazard_curve import HazardCurve, read_hazard
@@ -327,10 +328,8 @@ class _Files:
         infos = type(structure).model_fields.items()
         fields = {name: info for name, info in infos if info.annotation in (float, float | None)}
         known = [*fields, RESTITUTION]
-        written = self.document.data["structures"][k]  # as written, with invalid distributions too
-        varied = written.get("vary") if isinstance(written, dict) else None
-        for name in varied if isinstance(varied, dict) else []:
-            if name not in known:
+        for at, name in varied(self.document.data):  # as written, with invalid distributions too
+            if at == k and name not in known:
                 what = f"is not a number among the fields of {structure.mechanism}"
                 hint = by_meaning(name, fields) or did_you_mean(name, known)
                 self.wrong(("structures", k, "vary", name), what, hint, key=True)
