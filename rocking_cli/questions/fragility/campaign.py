@@ -6,6 +6,7 @@ import platform
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields, replace
 from importlib.metadata import version
+from itertools import chain
 from math import isclose, isnan, nan
 from typing import Any
 
@@ -346,15 +347,11 @@ def _refuse_changes(store: Store, facts: dict[str, Any], known: Plan, now: Plan)
     """Raise `InputError` with every difference between the study in the store and the present one."""
     changes = [*differences(store.fact("description"), facts["description"])]
     changes += [f"version of {package}" for package in differences(store.fact("versions"), facts["versions"])]
-    before = {record.name: record for record in known.records}
-    for record in now.records:
-        old = before.get(record.name)
-        if old is not None and old.reason is None and old.checksum != record.checksum:
-            changes.append(f"the record {record.name} has changed, or cannot be read any more")
+    checksums = {each.name: each.checksum for each in known.records if each.reason is None}
+    changed = [each.name for each in now.records if checksums.get(each.name, each.checksum) != each.checksum]
+    changes += [f"the record {name} has changed, or cannot be read any more" for name in changed]
     if not changes:  # fields are equal, but the mechanism may derive other parameters from them
-        changes = [change for pair in zip(known.trials, now.trials, strict=True) for change in _other_mechanics(*pair)][
-            :MAX_NAMED_CHANGES
-        ]
+        changes = [*chain.from_iterable(map(_other_mechanics, known.trials, now.trials))][:MAX_NAMED_CHANGES]
     if changes:
         hint = f"give {named('restart')} to run everything again, or {named('store')} OTHER to keep both"
         *others, last = [Problem(change, field="changed since the store was created") for change in changes]
