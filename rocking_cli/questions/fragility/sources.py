@@ -139,15 +139,16 @@ class KeptMotions:
         self._sources = list(sources)
         self._checksums: dict[int, str] = {}
         self._kept: OrderedDict[int, GroundMotion] = OrderedDict()
+        self._size = 0
 
     def examine(self, k: int, known: Record | None) -> Record:
         """Return the record of a motion; if it is known and usable, only its checksum is computed again."""
         source = self._sources[k]
-        is_usable = known is not None and known.reason is None
-        record = replace(known, checksum="") if known is not None and is_usable else Record(source.name, "")
+        record = replace(known, checksum="") if known is not None and known.reason is None else Record(source.name, "")
+        is_measured = record.npts > 0
         try:
             record = replace(record, checksum=source.checksum())
-            if not is_usable:
+            if not is_measured:
                 motion = source.read()
                 measured = measure(motion.of_ground)
                 if measured.pga_g == 0:
@@ -158,7 +159,7 @@ class KeptMotions:
                 record = Record(source.name, record.checksum, None, *numbers)
                 self._keep(k, motion)
         except InputError as error:
-            if not is_usable:
+            if not is_measured:
                 record = replace(record, reason=str(error).splitlines()[0])
         self._checksums[k] = record.checksum
         return record
@@ -175,6 +176,8 @@ class KeptMotions:
 
     def _keep(self, k: int, motion: GroundMotion) -> GroundMotion:
         self._kept[k] = motion
-        while len(self._kept) > 1 and sum(each.npts for each in self._kept.values()) > MAX_SAMPLES_IN_MEMORY:
-            self._kept.popitem(last=False)
+        self._size += motion.npts
+        while self._size > MAX_SAMPLES_IN_MEMORY and len(self._kept) > 1:
+            _, dropped = self._kept.popitem(last=False)
+            self._size -= dropped.npts
         return motion
