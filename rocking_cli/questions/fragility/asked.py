@@ -165,6 +165,9 @@ class OfCurves(AskedModel):
     nrml: Path | None = option("Write the lognormal curves for OpenQuake (NRML 0.5).", output(".xml"))
 
 
+SHOWN = (*OfCurves.model_fields,)
+
+
 class FragilityAsked(OfStudy, OfCurves):
     """Run a fragility study and fit its curves.
 
@@ -201,15 +204,11 @@ class FragilityAsked(OfStudy, OfCurves):
     )  # fmt: skip
     restart: bool = option("Start from scratch; the existing store is kept under another name.", default=False)
     idle = (
-        Idle(
-            "if only the plan is shown",
-            lambda asked: asked.check,
-            ("jobs", "scheduler", "share", "restart", *OfCurves.model_fields),
-        ),
+        Idle("if only the plan is shown", lambda asked: asked.check, ("jobs", "scheduler", "share", "restart", *SHOWN)),
         Idle(
             "with a part of the runs: start again or fit curves once, without it",
             lambda asked: asked.share is not None,
-            ("restart", *OfCurves.model_fields),
+            ("restart", *SHOWN),
         ),
         Idle("on a cluster, which has its own number of workers", lambda asked: asked.scheduler is not None, ("jobs",)),
         Idle(

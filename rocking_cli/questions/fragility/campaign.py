@@ -6,6 +6,7 @@ import platform
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields, replace
 from importlib.metadata import version
+from itertools import chain
 from math import isclose, isnan, nan
 from typing import Any
 
@@ -21,7 +22,7 @@ from rocking_cli.errors import InputError, Problem, RockingError, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.intensity import all_measures, parse_measure
 from rocking_cli.questions.fragility.definition import Definition
-from rocking_cli.questions.fragility.plan import Plan, Trial, complete, described, weaker
+from rocking_cli.questions.fragility.plan import Measured, Plan, Trial, complete, described, weaker
 from rocking_cli.questions.fragility.sources import KeptMotions
 from rocking_cli.questions.fragility.store import NO_RUNS, DamagedFile, RunRows, Store
 from rocking_cli.questions.fragility.study import Sample, Study, digest
@@ -32,6 +33,7 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import EngineName
 from rocking_cli.studies.engines.scene import engine_version
 from rocking_cli.studies.fragility.quantities import PGA, PGV, ROTATIONS_FACT, displacement_limits
+from rocking_cli.text import in_short
 
 Progress = Callable[[int, int], None]
 """Called with the numbers of runs that have finished and failed since the last call."""
@@ -167,24 +169,12 @@ def examine_study(
     for sample in study.samples:
         trials.append(_trial(study, sample))
         tell(1)
-    definition = study.definition
-    etas = definition.restitution if definition.restitution is not None else [nan]
-    levels = definition.levels.levels()
-    sets = described(study.description(), study.weights)
-    plan = Plan(trials, records, etas, definition.levels.measure, levels, definition.polarities, sets=sets)
-    if known is not None and _of_one_kind(known, plan):
+    asked, levels, sets = study.definition, study.definition.levels, described(study.description(), study.weights)
+    etas = asked.restitution or [nan]
+    plan = Plan(trials, records, etas, levels.measure, levels.levels(), asked.polarities, Measured(), sets)
+    if known is not None and known.axes == plan.axes:
         plan = replace(plan, measured=known.measured)
     return complete(plan, study, motions, ()), motions
-
-
-def _of_one_kind(one: Plan, other: Plan) -> bool:
-    """Return whether two plans have the same records, samples and levels in order, so that values carry over."""
-    return (
-        [each.name for each in one.records] == [each.name for each in other.records]
-        and [(each.structure, each.number) for each in one.trials]
-        == [(each.structure, each.number) for each in other.trials]
-        and (one.measure, list(one.levels)) == (other.measure, list(other.levels))
-    )
 
 
 @dataclass(frozen=True)
@@ -287,9 +277,8 @@ def _is_final(prepared: Prepared, rows: RunRows) -> Bools:
 def left_of_each(prepared: Prepared, chunks: Iterable[int]) -> Iterator[tuple[str, Structure, GroundMotion, int]]:
     """Yield each structure, one of its samples, a motion of usual length, and how many runs are left to free blocks."""
     plan = prepared.plan
-    records = [k for k, record in enumerate(plan.records) if record.reason is None]
-    records.sort(key=lambda k: plan.records[k].dt * plan.records[k].npts)
-    motion = prepared.motions[records[len(records) // 2]]
+    durations = sorted((each.dt * each.npts, k) for k, each in enumerate(plan.records) if each.reason is None)
+    motion = prepared.motions[durations[len(durations) // 2][1]]
     each = np.zeros(len(plan.trials), dtype=np.int64)
     for k in chunks:
         each += np.bincount(plan.places(_lacking(prepared, k, "blocks")[1])[0], minlength=each.size)
@@ -310,39 +299,28 @@ def versions(study: Study) -> dict[str, str]:
 
 def libraries() -> dict[str, str]:
     """Return the versions of Python and libraries that may affect the last bits of results, to compare two stores."""
-    return {
-        "python": platform.python_version(),
-        **{name: version(name) for name in ("numpy", "scipy")},
-    }
+    return {"python": platform.python_version(), **{name: version(name) for name in ("numpy", "scipy")}}
 
 
 def _trial(study: Study, sample: Sample) -> Trial:
-    structure = study.structures[sample.structure]
-    start = Trial(structure.name or structure.mechanism, sample.number, sample.drawn)
-    mechanism = sample.mechanism
+    mechanism, asked = sample.mechanism, study.definition
+    start = (mechanism.name or mechanism.mechanism, sample.number, sample.drawn)
     try:
-        if study.definition.model == "nonlinear":
+        if asked.model == "nonlinear":
             check_elements(mechanism)
-        p, lambda_, rotations = _mechanics(mechanism, study.definition)
+        mechanics = _mechanics(mechanism, asked)
         least = min(mechanism.eta(side) for side in mechanism.directions)
-        if study.definition.restitution is None and isnan(least):
+        if asked.restitution is None and isnan(least):
             raise InputError(NO_REBOUND)
-        if study.definition.restitution is None and mechanism.rocks_both_ways and least <= 0:
+        if asked.restitution is None and mechanism.rocks_both_ways and least <= 0:
             raise InputError(f"its kinematics give a restitution of {least:.4g}: {why_none(least)}")
     except RockingError as error:
-        return replace(start, reason=str(error))
-    return replace(
-        start,
-        p=p,
-        lambda_=lambda_,
-        gravity=mechanism.gravity,
-        phi_cr_positive=rotations[0],
-        phi_cr_negative=rotations[1],
-    )
+        return Trial(*start, str(error))
+    return Trial(*start, None, *mechanics)
 
 
-def _mechanics(mechanism: Mechanism, asked: Definition) -> tuple[float, float, tuple[float, float]]:
-    """Return p, lambda and the reference rotations of a structure, with or without an equivalent block.
+def _mechanics(mechanism: Mechanism, asked: Definition) -> tuple[float, float, float, float, float]:
+    """Return p, lambda, gravity and the reference rotations of a structure, with or without an equivalent block.
 
     Raises `NoEquivalentBlock` if there is none and the study needs one.
     """
@@ -354,8 +332,8 @@ def _mechanics(mechanism: Mechanism, asked: Definition) -> tuple[float, float, t
         if needs:
             raise NoEquivalentBlock(f"{' and '.join(needs)} cannot be had of it: {error}") from error
         sides = both_statics(mechanism)
-        return 0.0, min(side.lambda_ for side in sides), (sides[0].reference, sides[1].reference)
-    return *weaker(block, asked.model), (block.positive.phi_cr, block.negative.phi_cr)
+        return 0.0, min(side.lambda_ for side in sides), mechanism.gravity, sides[0].reference, sides[1].reference
+    return *weaker(block, asked.model), mechanism.gravity, block.positive.phi_cr, block.negative.phi_cr
 
 
 def _refuse_useless(plan: Plan) -> None:
@@ -369,15 +347,11 @@ def _refuse_changes(store: Store, facts: dict[str, Any], known: Plan, now: Plan)
     """Raise `InputError` with every difference between the study in the store and the present one."""
     changes = [*differences(store.fact("description"), facts["description"])]
     changes += [f"version of {package}" for package in differences(store.fact("versions"), facts["versions"])]
-    before = {record.name: record for record in known.records}
-    for record in now.records:
-        old = before.get(record.name)
-        if old is not None and old.reason is None and old.checksum != record.checksum:
-            changes.append(f"the record {record.name} has changed, or cannot be read any more")
+    checksums = {each.name: each.checksum for each in known.records if each.reason is None}
+    changed = [each.name for each in now.records if checksums.get(each.name, each.checksum) != each.checksum]
+    changes += [f"the record {name} has changed, or cannot be read any more" for name in changed]
     if not changes:  # fields are equal, but the mechanism may derive other parameters from them
-        changes = [change for pair in zip(known.trials, now.trials, strict=True) for change in _other_mechanics(*pair)][
-            :MAX_NAMED_CHANGES
-        ]
+        changes = [*chain.from_iterable(map(_other_mechanics, known.trials, now.trials))][:MAX_NAMED_CHANGES]
     if changes:
         hint = f"give {named('restart')} to run everything again, or {named('store')} OTHER to keep both"
         *others, last = [Problem(change, field="changed since the store was created") for change in changes]
@@ -401,42 +375,28 @@ def _other_mechanics(before: Trial, now: Trial) -> list[str]:
 def differences(before: Any, now: Any, where: str = "") -> list[str]:
     """Return sentences on the places where two pieces of plain data differ, with both values."""
     if isinstance(before, dict) and isinstance(now, dict):
-        return [
-            difference
-            for key in [*before, *(key for key in now if key not in before)]
-            for difference in differences(before.get(key), now.get(key), f"{where}.{key}".lstrip("."))
-        ]
-    if isinstance(before, list) and isinstance(now, list) and len(before) == len(now):
-        inside = [
-            difference
-            for k, (one, other) in enumerate(zip(before, now, strict=True))
-            for difference in differences(one, other, f"{where}[{k + 1}]")
-        ]
-        if len(inside) > 1 and all(isinstance(entry, int | float) for entry in (*before, *now)):
-            return [f"{where} was {_ends(before)}, is now {_ends(now)}"]
-        return inside
-    if isinstance(before, list) and isinstance(now, list):
-        gone = [entry for entry in before if entry not in now]
-        new = [entry for entry in now if entry not in before]
-        parts = [f"without {_told(gone)}"] if gone else []
-        parts += [f"with {_told(new)}"] if new else []
-        return [f"{where} is now {' and '.join(parts) or 'another number of the same'}"]
-    if isinstance(before, float) and isinstance(now, float) and isclose(before, now, rel_tol=PARAMETER_TOLERANCE):
+        pairs = [(f"{where}.{key}".lstrip("."), before.get(key), now.get(key)) for key in {**before, **now}]
+    elif isinstance(before, list) and isinstance(now, list):
+        if len(before) != len(now):
+            gone, new = (
+                [_one(each) for each in one if each not in other] for one, other in ((before, now), (now, before))
+            )
+            parts = [f"{word} {in_short(those, most=3)}" for word, those in (("without", gone), ("with", new)) if those]
+            return [f"{where} is now {' and '.join(parts) or 'another number of the same'}"]
+        pairs = [(f"{where}[{k}]", *pair) for k, pair in enumerate(zip(before, now, strict=True), 1)]
+    elif isinstance(before, float) and isinstance(now, float) and isclose(before, now, rel_tol=PARAMETER_TOLERANCE):
         return []
-    return [] if before == now else [f"{where} was {_one(before)}, is now {_one(now)}"]
-
-
-def _ends(values: list[Any]) -> str:
-    """Describe a list of numbers by its length and its smallest and largest value."""
-    return f"{len(values)} numbers from {min(values)} to {max(values)}"
-
-
-def _told(values: list[Any]) -> str:
-    named = ", ".join(_one(each) for each in values[:3])
-    return named + (f" and {len(values) - 3} more" if len(values) > 3 else "")
+    else:
+        return [] if before == now else [f"{where} was {_one(before)}, is now {_one(now)}"]
+    inside = [difference for place, one, other in pairs for difference in differences(one, other, place)]
+    if len(inside) > 1 and all(isinstance(each, int | float) for each in (*before, *now)):
+        ends = [f"{len(values)} numbers from {min(values)} to {max(values)}" for values in (before, now)]
+        return [f"{where} was {ends[0]}, is now {ends[1]}"]
+    return inside
 
 
 def _one(value: Any) -> str:
+    """Return a value in words, an entry with a name by it."""
     if isinstance(value, dict):
         return str(value.get("name", value))
     return "absent" if value is None else str(value)

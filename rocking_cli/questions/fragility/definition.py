@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from itertools import pairwise
+from itertools import islice, pairwise
 from typing import Annotated, Any, Literal, TypeVar
 
 import numpy as np
@@ -44,38 +44,23 @@ UPLIFT_MEASURE = "lambda"  # the measure that a motion must exceed to uplift a s
 as_asked = partial(as_in, OfStudy)
 
 
-def _measure(value: object) -> object:
+def _measure(text: str) -> str:
     """Return the standard spelling of a measure given in any case and spacing."""
-    if not isinstance(value, str):
-        return value
     try:
-        return standard_measure(value)
+        return standard_measure(text)
     except InputError as error:
         (problem,) = error.problems
         values = {"reason": problem.message, "hint": problem.hint}
         raise PydanticCustomError("unit", "{reason}", values) from None
 
 
-def _level_measure(value: object) -> object:
+def _level_measure(text: str) -> str:
     """Return the measure of levels: the factor on the records, or a measure proportional to a power of this factor."""
-    if isinstance(value, str) and value.strip().lower() == SCALE:
+    if text.strip().lower() == SCALE:
         return SCALE
-    measure = _measure(value)
-    if isinstance(measure, str) and (why := no_levels(measure)):
+    if why := no_levels(measure := _measure(text)):
         raise ValueError(why)
     return measure
-
-
-def _spelled(value: object) -> object:
-    """Return an entry of a list with measures in their standard spelling; other entries unchanged."""
-    if isinstance(value, list):
-        return [_spelled(each) for each in value]
-    if isinstance(value, str) and value.strip().lower() == SCALE:
-        return SCALE
-    try:
-        return _measure(value)
-    except ValueError:
-        return value
 
 
 def _limit(value: object) -> object:
@@ -90,24 +75,27 @@ def _limit(value: object) -> object:
     raise ValueError(f"must be {known}, got {value!r}")
 
 
+def _listed(given: dict[str, Any], name: str) -> list[Any]:
+    """Return the entries of a list in the data of a file; none if there is none, or if it is no list."""
+    entries = given.get(name)
+    return entries if isinstance(entries, list) else []
+
+
 def _right(given: dict[str, Any], name: str, sound: Sound) -> list[Any]:
-    """Return the valid entries of a list, with measures and limit states in their standard spelling."""
-    values = given.get(name)
-    entries = enumerate(values if isinstance(values, list) else [])
-    validate = _limit if name == "limit_states" else _spelled
-    return [validate(each) for k, each in entries if sound(name, k)]
+    """Return the valid entries of a list."""
+    return [each for k, each in enumerate(_listed(given, name)) if sound(name, k)]
 
 
-def _pair(values: list[str]) -> list[str]:
+def _different(values: list[str]) -> list[str]:
     """Refuse a measure paired with itself: a surface over the two is a curve."""
     if values[0] == values[1]:
         raise ValueError(f"{values[0]} is paired with itself")
     return values
 
 
-def _polarity(value: object) -> object:
-    """Return a polarity as text: YAML reads 1 as a number."""
-    return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
+def _as_text(value: object) -> object:
+    """Return a whole number as text: YAML reads the polarity 1 as a number."""
+    return str(value) if type(value) is int else value
 
 
 def _file(value: object) -> object:
@@ -116,9 +104,11 @@ def _file(value: object) -> object:
 
 
 Intensity = Annotated[float, Field(ge=1e-6, le=1e6)]
-Measure = Annotated[str, BeforeValidator(_measure)]
-LevelMeasure = Annotated[str, BeforeValidator(_level_measure)]
+Measure = Annotated[str, AfterValidator(_measure)]
+LevelMeasure = Annotated[str, AfterValidator(_level_measure)]
 Limit = Annotated[str | float, BeforeValidator(_limit)]
+Item = TypeVar("Item")
+Pair = Annotated[list[Item], Field(min_length=2, max_length=2)]
 
 
 def implies(limit: Limit, other: Limit, *, slides: bool = False) -> bool:
@@ -179,41 +169,32 @@ class Levels(Part):
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
         """Check that levels are either listed or given as a range, and differ by more than rounding."""
-        values: Any = given.get("values")
         least, most, count = ranged = [given.get(name) for name in ("least", "most", "count")]
-        listed = values is not None
-        if any((each is None) != listed for each in ranged):
+        if any((each is None) == (given.get("values") is None) for each in ranged):
             yield (), "give values, or least, most and count"
-        if listed:
-            for one, other in pairwise(sorted(_right(given, "values", sound))):
-                if not _apart(one, other):
-                    same = f"{one} is given twice" if one == other else f"{one} and {other} differ by rounding alone"
-                    yield ("values",), same
+        for one, other in _alike(sorted(_right(given, "values", sound))):
+            same = f"{one} is given twice" if one == other else f"{one} and {other} differ by rounding alone"
+            yield ("values",), same
         if least is None or most is None or not (sound("least") and sound("most")):
             return
+        complete = count is not None and sound("count") and sound("spacing")
         if least >= most:
             yield ("most",), f"must be more than least ({least:g}), got {most:g}"
-        elif count is not None and sound("count") and sound("spacing"):
-            levels = _spaced(least, most, count, given.get("spacing", "even"))
-            if not all(_apart(one, other) for one, other in pairwise(levels)):
-                yield ("most",), f"is too close to least for {count} distinct levels"
+        elif complete and _alike(cls.model_construct(**{**given, "values": None}).levels()):
+            yield ("most",), f"is too close to least for {count} distinct levels"
 
     def levels(self) -> list[float]:
         """Return the levels, increasing."""
         if self.values is not None:
             return sorted(self.values)
         assert self.least is not None and self.most is not None and self.count is not None
-        return _spaced(self.least, self.most, self.count, self.spacing)
+        between = np.geomspace if self.spacing == "log" else np.linspace
+        return [float(each) for each in between(self.least, self.most, self.count)]
 
 
-def _spaced(least: float, most: float, count: int, spacing: str) -> list[float]:
-    between = np.geomspace if spacing == "log" else np.linspace
-    return [float(each) for each in between(least, most, count)]
-
-
-def _apart(one: float, other: float) -> bool:
-    """Return whether `other` is above `one` by more than rounding."""
-    return other > one * (1 + INTENSITY_TOLERANCE)
+def _alike(levels: list[float]) -> list[tuple[float, float]]:
+    """Return the neighbours among increasing levels that differ by no more than rounding."""
+    return [(one, other) for one, other in pairwise(levels) if other <= one * (1 + INTENSITY_TOLERANCE)]
 
 
 class HazardEntry(Part):
@@ -223,23 +204,23 @@ class HazardEntry(Part):
     file: str | None = Field(
         None, description="CSV of intensity and annual rate of exceedance, or OpenQuake's hazard curve"
     )
-    points: list[Annotated[list[Positive], Field(min_length=2, max_length=2)]] | None = Field(
+    points: list[Pair[Positive]] | None = Field(
         None, min_length=2, description="[intensity, annual rate] of each point"
     )
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
         """Check that the hazard has exactly one source, and that its points are in order."""
-        points = given.get("points")
+        points: Any = given.get("points")
         if (given.get("file") is None) == (points is None):
             yield (), "give a file or points"
-        right = [k for k in range(len(points) if isinstance(points, list) else 0) if sound("points", k)]
-        if points is not None and len(right) > 1:
+        right = [k for k in range(len(_listed(given, "points"))) if sound("points", k)]
+        if len(right) > 1:
             for k, message in wrong_points(*np.array([points[k] for k in right], dtype=np.float64).T):
                 yield ("points", right[k]), message
 
 
-class Sampling(Part):
+class Sampling(Part, extra="ignore"):
     """Method by which samples of the structures are drawn."""
 
     samples: int = as_asked("samples")
@@ -247,7 +228,7 @@ class Sampling(Part):
     seed: int = as_asked("seed")
 
 
-class Common(Part):
+class Common(Part, extra="ignore"):
     """Processing and floor of all records."""
 
     processing: Steps = as_asked("processing")
@@ -259,7 +240,7 @@ class Common(Part):
         return Reading(reading_of({"floor": self.floor}).options, parse_steps(self.processing))
 
 
-class Definition(Sampling, Common):
+class Definition(Sampling, Common, extra="forbid"):
     """The content of a study file: the fields of `OfStudy`, and what each may hold in a file."""
 
     name: Name | None = as_asked("name")
@@ -267,46 +248,46 @@ class Definition(Sampling, Common):
     records: list[Annotated[RecordEntry, BeforeValidator(_file)]] = as_asked("motions", default=..., min_length=1)
     method: Literal["cloud", "stripes", "ida"] = as_asked("method", default=...)
     levels: Levels = as_asked("levels", default=Levels(measure="scale", values=[1.0]))
-    polarity: Annotated[Literal["1", "-1", "both"], BeforeValidator(_polarity)] = as_asked("polarity")
+    polarity: Annotated[Literal["1", "-1", "both"], BeforeValidator(_as_text)] = as_asked("polarity")
     restitution: list[Restitution] | None = as_asked("restitution")
     model: ModelName = as_asked("model")
     engine: EngineName = as_asked("engine")
     opening: float = as_asked("opening")
     limit_states: list[Limit] = as_asked("limit_states")
     measures: list[Measure] | None = as_asked("measures")
-    bivariate: list[Annotated[list[Measure], Field(min_length=2, max_length=2), AfterValidator(_pair)]] = as_asked(
-        "bivariate"
-    )
+    bivariate: list[Annotated[Pair[Measure], AfterValidator(_different)]] = as_asked("bivariate")
     confidence: float = as_asked("confidence")
     hazard: HazardEntry | None = as_asked("hazard")
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
         """Check that the levels suit the method, the samples what varies, and the model the requested measures."""
-        method, levels, structures = (given.get(name) for name in ("method", "levels", "structures"))
-        scaled = isinstance(levels, dict) and sound("levels", "measure") and _spelled(levels["measure"]) != SCALE
+        method, levels, vary = given.get("method"), given.get("levels"), {name for _, name in varied(given)}
+        scaled = isinstance(levels, dict) and sound("levels", "measure") and levels["measure"].strip().lower() != SCALE
         if method == "cloud" and scaled:
             yield ("levels",), f"a cloud scales records by factors: `measure: {SCALE}`"
         yield from _wrong_sets(given, sound)
         if method in ("stripes", "ida") and "levels" not in given:
             yield ("levels",), "is missing: every record is scaled to levels of intensity"
-        entries = structures if isinstance(structures, list) else []
-        vary = [entry.get("vary") for entry in entries if isinstance(entry, dict)]
-        varied = {name for each in vary if isinstance(each, dict) for name in each}
-        if varied and "samples" not in given:
+        if vary and "samples" not in given:
             yield ("samples",), "is missing: how many structures are drawn from the distributions"
-        if not varied and sound("structures") and sound("samples") and given.get("samples", 1) > 1:
+        if not vary and sound("structures") and sound("samples") and given.get("samples", 1) > 1:
             yield ("samples",), f"nothing varies: add {named('vary')} to at least one structure"
-        if given.get(RESTITUTION) is not None and RESTITUTION in varied:
+        if given.get(RESTITUTION) is not None and RESTITUTION in vary:
             yield (RESTITUTION,), "cannot be combined with a structure that varies its restitution: give one of the two"
         if checks_sliding(given) and sound("model") and given.get("model", "nonlinear") != "nonlinear":
             yield ("limit_states",), "sliding requires `model: nonlinear`: linear models do not give the joint forces"
-        yield from _wrong_with_free_blocks(given, sound)
-        for name in (RESTITUTION, "limit_states", "measures", "bivariate"):
-            values = _right(given, name, sound)
+        if sound("engine") and (engine := given.get("engine", "exact")) != "exact":
+            yield from _wrong_with_free_blocks(given, sound, engine)
+        for name, values in (
+            (RESTITUTION, _right(given, RESTITUTION, sound)),
+            ("limit_states", [_limit(each) for each in _right(given, "limit_states", sound)]),
+            ("measures", [_measure(each) for each in _right(given, "measures", sound)]),
+            ("bivariate", [" and ".join(map(_measure, pair)) for pair in _right(given, "bivariate", sound)]),
+        ):
             for k, value in enumerate(values):
                 if value in values[:k] and value not in values[k + 1 :]:
-                    yield (name,), f"{' and '.join(value) if isinstance(value, list) else value} is given twice"
+                    yield (name,), f"{value} is given twice"
 
     @property
     def polarities(self) -> list[int]:
@@ -316,10 +297,9 @@ class Definition(Sampling, Common):
     @property
     def fitted_measures(self) -> list[str]:
         """Measures of the curves: those requested, otherwise that of the levels; and that of the hazard."""
-        measures: list[str] = list(self.measures or [])
-        if not measures:
-            measures = [PGA if self.levels.measure == SCALE else self.levels.measure]
-        return list(dict.fromkeys([*measures, *([self.hazard.measure] if self.hazard is not None else [])]))
+        usual = PGA if self.levels.measure == SCALE else self.levels.measure
+        of_hazard = [] if self.hazard is None else [self.hazard.measure]
+        return list(dict.fromkeys([*(self.measures or [usual]), *of_hazard]))
 
     @property
     def asked_measures(self) -> list[str]:
@@ -328,38 +308,35 @@ class Definition(Sampling, Common):
         return [name for name in dict.fromkeys(asked) if name != SCALE]
 
 
+def varied(given: dict[str, Any]) -> list[tuple[int, str]]:
+    """Return the index of the structure and the name of each field that varies, in the data of a study file."""
+    vary = [each.get("vary") if isinstance(each, dict) else None for each in _listed(given, "structures")]
+    return [(k, name) for k, each in enumerate(vary) if isinstance(each, dict) for name in each]
+
+
 def _wrong_sets(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
     """Yield an error for each record whose set or level does not suit the levels and the method of the study."""
-    entries, levels = given.get("records"), given.get("levels")
-    entries = entries if isinstance(entries, list) else []
+    entries, levels = _listed(given, "records"), given.get("levels")
     of_sets = [k for k, each in enumerate(entries) if isinstance(each, dict) and each.get("level") is not None]
     if isinstance(levels, dict) and levels.get("scaled") is False:
+        place = ("levels", "scaled")
         if levels.get("measure") == SCALE:
-            yield ("levels", "scaled"), f"levels of the measure {SCALE} are factors: leave scaled out"
+            yield place, f"levels of the measure {SCALE} are factors: leave scaled out"
         if sound("records") and len(of_sets) < len(entries):
-            yield (
-                ("levels", "scaled"),
-                f"records are used as they are, so each needs the {named('level')} whose set it is of",
-            )
-    if not of_sets:
-        return
-    if given.get("method") != "stripes" and sound("method"):
+            yield place, f"records are used as they are, so each needs the {named('level')} whose set it is of"
+    if of_sets and given.get("method") != "stripes" and sound("method"):
         yield ("records", of_sets[0], "level"), "sets of records for levels are of `method: stripes`"
-    if not (isinstance(levels, dict) and sound("levels")):
+    if not of_sets or (right := usable_part(Levels, levels)) is None:
         return
-    known = Levels.model_validate(levels).levels()
+    known = right.levels()
     for k in of_sets:
-        level = entries[k]["level"] if sound("records", k) else None
-        if level is not None and not any(abs(level - each) <= INTENSITY_TOLERANCE * abs(each) for each in known):
-            shown = ", ".join(f"{level:g}" for level in known[:10]) + (", ..." if len(known) > 10 else "")
+        if sound("records", k) and not np.isclose(level := entries[k]["level"], known, INTENSITY_TOLERANCE, 0).any():
+            shown = ", ".join(f"{each:g}" for each in known[:10]) + (", ..." if len(known) > 10 else "")
             yield ("records", k, "level"), f"{level:g} is not one of the levels {shown}"
 
 
-def _wrong_with_free_blocks(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+def _wrong_with_free_blocks(given: dict[str, Any], sound: Sound, engine: str) -> Iterator[tuple[Place, str]]:
     """Yield an error for each field that has no meaning, or no effect, if free blocks are simulated."""
-    engine = given.get("engine", "exact")
-    if not sound("engine") or engine == "exact":
-        return
     if sound("model") and (model := given.get("model", "nonlinear")) != "nonlinear":
         yield ("model",), f"{model} cannot be combined with `engine: {engine}`: leave it out"
     if checks_sliding(given):
@@ -372,18 +349,14 @@ def _wrong_with_free_blocks(given: dict[str, Any], sound: Sound) -> Iterator[tup
         yield (RESTITUTION,), restitution
     if given.get("opening") is not None:
         yield ("opening",), "has no effect with `engine: blocks`, which simulates every joint: leave it out"
-    entries = given.get("structures")
-    for k, entry in enumerate(entries if isinstance(entries, list) else []):
-        varied = entry.get("vary") if isinstance(entry, dict) else None
-        for name in (RESTITUTION, "rebound"):
-            if isinstance(varied, dict) and name in varied:
-                yield ("structures", k, "vary", name), restitution
+    for k, name in varied(given):
+        if name in (RESTITUTION, "rebound"):
+            yield ("structures", k, "vary", name), restitution
 
 
 def checks_sliding(given: dict[str, Any]) -> bool:
     """Return whether the data of a study file names sliding as a limit state, so that every run is checked."""
-    asked = given.get("limit_states")
-    return isinstance(asked, list) and SLIDING in asked
+    return SLIDING in _listed(given, "limit_states")
 
 
 HINT = "see the example in docs/fragility.md"
@@ -411,18 +384,13 @@ def definition_of(document: Document, load: Callable[[str], Mechanism]) -> Defin
     return None
 
 
-def usable_entries(document: Document, field: str, model: type[Piece]) -> list[tuple[int, Piece]]:
-    """Return the entries of a list with their places; of an invalid entry one part that is valid by itself, if any."""
-    entries_with_places = []
-    entries = document.data.get(field)
-    for k, entry in enumerate(entries if isinstance(entries, list) else []):
-        given = _file(entry)
-        if not isinstance(given, dict):
-            continue
-        parts = [given, *({name: given.get(name) for name in names} for names in ENTRY_PARTS)]
-        usable = [each for each in (usable_part(model, part) for part in parts) if each is not None]
-        entries_with_places += [(k, each) for each in usable[:1]]
-    return entries_with_places
+def usable_entries(document: Document, field: str, model: type[Piece]) -> Iterator[tuple[int, Piece]]:
+    """Yield the entries of a list with their places; of an invalid entry one part that is valid by itself, if any."""
+    for k, entry in enumerate(_listed(document.data, field)):
+        if isinstance(given := _file(entry), dict):
+            parts = (given, *({name: given.get(name) for name in names} for names in ENTRY_PARTS))
+            usable = (each for each in (usable_part(model, part) for part in parts) if each is not None)
+            yield from ((k, each) for each in islice(usable, 1))
 
 
 def usable_part(model: type[Piece], data: Any) -> Piece | None:

@@ -6,8 +6,9 @@ What a study requests and its store does not hold yet is measured: values of rec
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
 from math import nan, prod
 from typing import Any
 
@@ -16,7 +17,7 @@ import numpy as np
 from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.core import Equivalence, EquivalentBlock, NoEquivalentBlock, equivalent_block
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.processing.intensity import Measure, Reference, RunMeasure, parse_measure
+from rocking_cli.processing.intensity import Measure, MotionMeasure, Reference, RunMeasure, parse_measure
 from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE
 from rocking_cli.questions.fragility.sources import KeptMotions, Record
 from rocking_cli.questions.fragility.study import Study
@@ -47,33 +48,7 @@ class Sets:
     level: Integers
     weight: Reals
     one: Integers
-    scaled: bool = True
-
-    @classmethod
-    def of(
-        cls,
-        levels: Sequence[float],
-        at: Sequence[float | None],
-        weights: Sequence[float],
-        files: Sequence[str],
-        *,
-        scaled: bool = True,
-    ) -> Sets:
-        """Build sets from the level (if any), the weight and the file of each record."""
-        values = np.array(levels)
-        places = [EVERY_LEVEL if each is None else int(np.argmin(np.abs(values - each))) for each in at]
-        first = {file: len(files) - 1 - k for k, file in enumerate(reversed(files))}
-        return cls(
-            np.array(places, dtype=np.int64),
-            np.array(weights, dtype=np.float64),
-            np.array([first[file] for file in files], dtype=np.int64),
-            scaled,
-        )
-
-    @classmethod
-    def plain(cls, records: int) -> Sets:
-        """Build sets in which every record is run at every level with equal weight."""
-        return cls.of([0.0], [None] * records, [1.0] * records, [str(k) for k in range(records)])
+    scaled: bool
 
     @property
     def weighted(self) -> bool:
@@ -83,14 +58,13 @@ class Sets:
 
 def described(description: dict[str, Any], weights: Sequence[float]) -> Sets:
     """Build the sets of a store from the description of its study and the weights last requested."""
-    records, levels = description["records"], description["levels"]
-    return Sets.of(
-        levels["values"],
-        [each.get("level") for each in records],
-        weights,
-        [each.get("file", each["name"]) for each in records],
-        scaled=levels.get("scaled", True),
-    )
+    records, values = description["records"], np.array(description["levels"]["values"])
+    at = [each.get("level") for each in records]
+    level = [EVERY_LEVEL if each is None else np.argmin(np.abs(values - each)) for each in at]
+    files = [each.get("file", each["name"]) for each in records]
+    _, first, which = np.unique(files, return_index=True, return_inverse=True)
+    scaled = description["levels"].get("scaled", True)
+    return Sets(np.array(level, dtype=np.int64), np.array(weights, dtype=np.float64), first[which], scaled)
 
 
 @short_repr
@@ -182,8 +156,8 @@ class Plan:
         The polarities: 1, -1 or both.
     measured : Measured
         Values measured beyond the peaks of the records.
-    sets : Sets, optional
-        The levels and the weight of each record; without it every record is run at all levels, with equal weight.
+    sets : Sets
+        The levels and the weight of each record.
     """
 
     trials: Sequence[Trial]
@@ -192,18 +166,24 @@ class Plan:
     measure: str
     levels: Sequence[float]
     polarities: Sequence[int]
-    measured: Measured = field(default_factory=Measured)
-    sets: Sets | None = None
+    measured: Measured
+    sets: Sets
 
     @property
     def of_sets(self) -> Sets:
         """The levels at which each record is run, and its weight."""
-        return self.sets if self.sets is not None else Sets.plain(len(self.records))
+        return self.sets
 
     @property
     def structures(self) -> list[str]:
         """Names of the structures, in the order of the study."""
         return list(dict.fromkeys(trial.structure for trial in self.trials))
+
+    @property
+    def axes(self) -> tuple[object, ...]:
+        """What its samples, records and levels are: plans in which this is equal share what was measured."""
+        samples = [(each.structure, each.number) for each in self.trials]
+        return samples, [each.name for each in self.records], self.measure, list(self.levels)
 
     @property
     def shape(self) -> tuple[int, int, int, int, int]:
@@ -215,6 +195,11 @@ class Plan:
         """Number of runs of one sample under one record; their numbers are consecutive."""
         return prod(self.shape[2:])
 
+    @property
+    def base(self) -> MotionMeasure | None:
+        """The measure of a record from which the factors on it follow; None if levels are factors."""
+        return None if self.measure == SCALE else parse_measure(self.measure).base
+
     @cached_property
     def usable_samples(self) -> Bools:
         """Whether each sample can be simulated."""
@@ -223,15 +208,14 @@ class Plan:
     @cached_property
     def usable_records(self) -> Bools:
         """Whether each record can be used at each level, shape (records, levels)."""
-        at, levels = self.of_sets.level[:, None], np.arange(len(self.levels))
+        at, levels = self.sets.level[:, None], np.arange(len(self.levels))
         usable = np.array([[each.reason is None] for each in self.records])
         return np.asarray(usable & ((at == EVERY_LEVEL) | (at == levels)))
 
     @property
     def total(self) -> int:
         """Number of runs that can be simulated: without samples and records that cannot be used."""
-        _, _, etas, _, polarities = self.shape
-        return int(self.usable_samples.sum() * self.usable_records.sum()) * etas * polarities
+        return int(self.usable_samples.sum() * self.usable_records.sum()) * len(self.etas) * len(self.polarities)
 
     def numbers(self, first: int, stop: int) -> Integers:
         """Return the numbers of the runs from `first` to before `stop` that can be simulated."""
@@ -280,7 +264,7 @@ class Plan:
     def factors(self, sample: Integers, record: Integers, level: Integers) -> Reals:
         """Return the factors that scale records to intensity levels, for arrays of indices of equal shape."""
         wanted = np.array(self.levels)[level]
-        if self.sets is not None and not self.sets.scaled:
+        if not self.sets.scaled:
             return np.ones(wanted.shape)
         if self.measure == SCALE:
             return wanted
@@ -293,8 +277,6 @@ class Plan:
 V_IMP = "v_imp"
 ORIGIN = ("magnitude", "distance")
 """Fields of a record's earthquake that are stored beside its measures, for the test of residuals."""
-Told = Callable[[int], None]
-"""Called with the number of records processed since the last call."""
 
 
 def complete(
@@ -302,7 +284,7 @@ def complete(
     study: Study,
     motions: KeptMotions,
     asked: Iterable[str],
-    told: Told = lambda count: None,
+    told: Callable[[int], None] = lambda count: None,
     *,
     origins: bool = False,
 ) -> Plan:
@@ -319,7 +301,7 @@ def complete(
     asked : iterable of str
         Names of the measures; the factor on the records is ignored.
     told : callable, optional
-        Called with the number of records measured since the last call; see `Told`.
+        Called with the number of records measured since the last call.
     origins : bool
         Whether to keep what the records state of their earthquake, too.
 
@@ -334,15 +316,12 @@ def complete(
     plan = _with_samples(plan, study, measures)
     bases = {str(each.base): each.base for each in measures if each.base is not None}
     of_run = {str(each): each for each in measures if isinstance(each, RunMeasure)}
-    if plan.measure != SCALE:  # the factors on records follow from this measure
-        base = parse_measure(plan.measure).base
-        assert base is not None
+    if (base := plan.base) is not None:
         bases[str(base)] = base
     names = [name for name in bases if name not in (PGA, PGV)] + list(ORIGIN if origins else ())
     new = {name: _copied(plan.measured.of_record, name, len(plan.records)) for name in names}
     samples, records, _, levels, _ = plan.shape
     runs = {name: _copied(plan.measured.of_run, name, samples, records, levels) for name in of_run}
-    usable = np.array([trial.reason is None for trial in plan.trials])
     for k, record in enumerate(plan.records):
         told(1)
         if record.reason is not None:
@@ -356,8 +335,8 @@ def complete(
     for k, record in enumerate(plan.records):
         if record.reason is None:
             for name, values in runs.items():
-                if np.isnan(values[usable, k]).any():
-                    values[:, k] = _of_runs(plan, of_run[name], motions, k, usable)
+                if np.isnan(values[plan.usable_samples, k]).any():
+                    values[:, k] = _of_runs(plan, of_run[name], motions, k)
     return replace(plan, measured=replace(plan.measured, of_run={**plan.measured.of_run, **runs}))
 
 
@@ -373,18 +352,15 @@ def _with_samples(plan: Plan, study: Study, measures: Sequence[Measure]) -> Plan
     values = _copied(plan.measured.of_sample, V_IMP, len(plan.trials))
     for k, (trial, sample) in enumerate(zip(plan.trials, study.samples, strict=True)):
         if trial.reason is None and np.isnan(values[k]):
-            try:
+            with suppress(NoEquivalentBlock):
                 values[k] = weaker_block(equivalent_block(sample.mechanism), study.definition.model).v_imp
-            except NoEquivalentBlock:
-                continue
     return replace(plan, measured=replace(plan.measured, of_sample={**plan.measured.of_sample, V_IMP: values}))
 
 
 def _without_unscalable(plan: Plan) -> Plan:
     """Return a plan with a reason at each record that no factor scales to the levels."""
-    if plan.measure == SCALE:
+    if (base := plan.base) is None:
         return plan
-    base = parse_measure(plan.measure).base
     values = plan.of_records(str(base))
     why = f"its {base} is not above zero: it cannot be scaled to levels of {plan.measure}"
     records = [
@@ -397,19 +373,17 @@ def _without_unscalable(plan: Plan) -> Plan:
     return replace(plan, records=records, measured=replace(plan.measured, of_record=known))
 
 
-def _of_runs(plan: Plan, measure: RunMeasure, motions: KeptMotions, k: int, usable: Bools) -> Reals:
+def _of_runs(plan: Plan, measure: RunMeasure, motions: KeptMotions, k: int) -> Reals:
     """Return a measure of the runs of a record, shape (samples, levels); equal samples are computed once."""
-    samples, _, _, levels, _ = plan.shape
-    values = np.full((samples, levels), np.nan)
-    known: dict[tuple[float, ...], float] = {}
-    for sample in np.flatnonzero(usable).tolist():
-        place = np.full(levels, sample)
-        factors = plan.factors(place, np.full(levels, k), np.arange(levels))
-        of = plan.reference(np.array([sample]))
-        structure = [float(np.asarray(number)[0]) for number in (of.p, of.lambda_, of.gravity, of.v_imp)]
-        for level, factor in enumerate(factors.tolist()):
-            key = (factor, *structure)
-            if key not in known:
-                known[key] = measure.value(motions[k].of_ground.scaled(factor), Reference(*structure))
-            values[sample, level] = known[key]
+
+    @cache
+    def value(factor: float, *structure: float) -> float:
+        return measure.value(motions[k].of_ground.scaled(factor), Reference(*structure))
+
+    values = np.full((len(plan.trials), len(plan.levels)), nan)
+    usable = np.broadcast_to(plan.usable_samples[:, None], values.shape)
+    sample, level = np.nonzero(usable)
+    factors, of = plan.factors(sample, np.full_like(sample, k), level), plan.reference(sample)
+    numbers = np.column_stack([factors, of.p, of.lambda_, of.gravity, of.v_imp])
+    values[usable] = [value(*each) for each in numbers.tolist()]
     return values

@@ -62,21 +62,16 @@ class Source:
         Raises `InputError` without a file.
         """
         digest = hashlib.sha256()
-        other = Path(self.reading.other) if self.reading.other is not None else None
-        for path in (self.path, self.vertical, other):
-            if path is None:
-                continue
+        for path in (Path(each) for each in (self.path, self.vertical, self.reading.other) if each is not None):
             try:
-                with path.open("rb") as file:
-                    digest.update(hashlib.file_digest(file, "sha256").digest())
+                digest.update(hashlib.sha256(path.read_bytes()).digest())
             except OSError as error:
                 raise InputError(Problem(f"cannot be read: {error.strerror or error}", str(path))) from None
         if self.motion is not None:
             for each in _parts(self.motion):
                 digest.update(f"{each.dt!r} {each.npts} ".encode())
                 digest.update(each.acceleration.astype("<f8").tobytes())
-        elif self.path is None:
-            assert self.entry.pulse is not None
+        elif self.entry.pulse is not None:
             pulse = parse_pulse(self.entry.pulse).specification
             digest.update(f"{pulse}, {COARSE_POINTS_PER_PERIOD} a period: {SAMPLING}".encode())
         return digest.hexdigest()
@@ -85,9 +80,9 @@ class Source:
         """Read the motion, unscaled. Raises `InputError` if it cannot be read."""
         if self.motion is not None:
             return self.reading.on_floor(process(self.motion, self.reading.steps))
-        if self.path is None:
-            assert self.entry.pulse is not None
+        if self.entry.pulse is not None:
             return self.reading.on_floor(parse_pulse(self.entry.pulse).sampled(COARSE_POINTS_PER_PERIOD))
+        assert self.path is not None
         motion = self.reading.read(self.path)
         if self.vertical is not None:
             motion = replace(motion, vertical=self.reading.vertical(self.vertical))
@@ -131,23 +126,6 @@ class Record:
     doubts: int = 0
 
 
-def examine(source: Source) -> tuple[Record, GroundMotion | None]:
-    """Read a ground motion and measure it; if it cannot be used, return None for it, and a record with the reason."""
-    checksum = ""
-    try:
-        checksum = source.checksum()
-        motion = source.read()
-        measured = measure(motion.of_ground)
-    except InputError as error:
-        return Record(source.name, checksum, reason=str(error).splitlines()[0]), None
-    if measured.pga_g == 0:
-        return Record(source.name, checksum, reason=f"{source.name}: zero throughout: there is nothing to scale"), None
-    # Only records are checked: a pulse is exactly what its formula gives.
-    doubtful = len(doubts(motion.of_ground, measured)) if source.entry.pulse is None else 0
-    record = Record(source.name, checksum, None, motion.dt, motion.npts, measured.pga_g, measured.pgv, doubtful)
-    return record, motion
-
-
 class KeptMotions:
     """The ground motions of a study, of which the ones used last are kept in memory.
 
@@ -166,16 +144,23 @@ class KeptMotions:
     def examine(self, k: int, known: Record | None) -> Record:
         """Return the record of a motion; if it is known and usable, only its checksum is computed again."""
         source = self._sources[k]
-        if known is not None and known.reason is None:
-            try:
-                checksum = source.checksum()
-            except InputError:  # the record cannot be read any more
-                checksum = ""
-            record = replace(known, checksum=checksum)
-        else:
-            record, motion = examine(source)
-            if motion is not None:
+        record = replace(known, checksum="") if known is not None and known.reason is None else Record(source.name, "")
+        is_measured = record.npts > 0
+        try:
+            record = replace(record, checksum=source.checksum())
+            if not is_measured:
+                motion = source.read()
+                measured = measure(motion.of_ground)
+                if measured.pga_g == 0:
+                    raise InputError(f"{source.name}: zero throughout: there is nothing to scale")
+                # Only records are checked: a pulse is exactly what its formula gives.
+                doubtful = len(doubts(motion.of_ground, measured)) if source.entry.pulse is None else 0
+                numbers = (motion.dt, motion.npts, measured.pga_g, measured.pgv, doubtful)
+                record = Record(source.name, record.checksum, None, *numbers)
                 self._keep(k, motion)
+        except InputError as error:
+            if not is_measured:
+                record = replace(record, reason=str(error).splitlines()[0])
         self._checksums[k] = record.checksum
         return record
 

@@ -15,11 +15,10 @@ import zipfile
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from functools import cached_property
-from itertools import count
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, get_type_hints
 
 import numpy as np
 
@@ -29,29 +28,12 @@ from rocking_cli.io.files import folder, write_whole
 from rocking_cli.io.json_text import json_text
 from rocking_cli.questions.fragility.plan import Measured, Plan, Trial, described
 from rocking_cli.questions.fragility.sources import Record
+from rocking_cli.text import numbered
 
 LAYOUT = 9
 STUDY, MEASURED = "study.json", "measured.npz"
 OURS = re.compile(r"\..*|study\.json|measured\.npz|runs-\d+\.npz")  # what may be in the folder as it is started
 STANDS, FAILED, UNKNOWN, OFF_EDGE = 0, 2, 3, 4  # outcomes; 1 and -1: overturns to a side; 4 and -4: off an edge
-COLUMNS = {
-    "run": "number of the run: polarity changes fastest, then level, restitution, record and sample",
-    "scale": "factor on the record",
-    "eta": "coefficient of restitution, NaN for that of the structure",
-    "outcome": "0 does not overturn, 1 or -1 overturns to that side, 4 or -4 falls off an edge, 2 failed, 3 unknown",
-    "peak_ratio": "peak rotation over the critical rotation",
-    "peak_positive": "rad",
-    "peak_negative": "rad",
-    "uplift_time": "s",
-    "overturning_time": "s",
-    "known_to": "s",
-    "lower_bound": "peak rotation over the critical rotation before the first joint would fail",
-    "opening": "largest opening or slip of a joint over D_cr",
-    "slip": "m",
-    "slide_time": "s",
-    "by_blocks": "whether free blocks were simulated",
-}
-"""Columns of a chunk, with their unit or their meaning."""
 TYPES = {"run": np.int64, "outcome": np.int8, "by_blocks": np.bool_}  # of the columns that are not of float64
 COMPRESSION = 1  # of zip: higher levels take three times as long to save a tenth
 ROWS_PER_READ = 65_536
@@ -100,21 +82,23 @@ class RunRows:
         Whether free blocks were simulated.
     """
 
-    run: Integers
-    scale: Reals
-    eta: Reals
-    outcome: Integers
-    peak_ratio: Reals
-    peak_positive: Reals
-    peak_negative: Reals
-    uplift_time: Reals
-    overturning_time: Reals
-    known_to: Reals
-    lower_bound: Reals
-    opening: Reals
-    slip: Reals
-    slide_time: Reals
-    by_blocks: Bools
+    run: Annotated[Integers, "number of the run: polarity changes fastest, then level, restitution, record and sample"]
+    scale: Annotated[Reals, "factor on the record"]
+    eta: Annotated[Reals, "coefficient of restitution, NaN for that of the structure"]
+    outcome: Annotated[
+        Integers, "0 does not overturn, 1 or -1 overturns to that side, 4 or -4 falls off an edge, 2 failed, 3 unknown"
+    ]
+    peak_ratio: Annotated[Reals, "peak rotation over the critical rotation"]
+    peak_positive: Annotated[Reals, "rad"]
+    peak_negative: Annotated[Reals, "rad"]
+    uplift_time: Annotated[Reals, "s"]
+    overturning_time: Annotated[Reals, "s"]
+    known_to: Annotated[Reals, "s"]
+    lower_bound: Annotated[Reals, "peak rotation over the critical rotation before the first joint would fail"]
+    opening: Annotated[Reals, "largest opening or slip of a joint over D_cr"]
+    slip: Annotated[Reals, "m"]
+    slide_time: Annotated[Reals, "s"]
+    by_blocks: Annotated[Bools, "whether free blocks were simulated"]
 
     def __len__(self) -> int:
         return len(self.run)
@@ -161,7 +145,7 @@ class RunRows:
 
     def select(self, which: Bools | Integers) -> RunRows:
         """Return the runs that a mask or indices select."""
-        return RunRows(**{each.name: getattr(self, each.name)[which] for each in fields(self)})
+        return RunRows(**{name: getattr(self, name)[which] for name in COLUMNS})
 
     @classmethod
     def joined(cls, parts: Sequence[RunRows]) -> RunRows:
@@ -169,6 +153,8 @@ class RunRows:
         return cls(**{name: np.concatenate([getattr(each, name) for each in parts]) for name in COLUMNS})
 
 
+COLUMNS = {name: hint.__metadata__[0] for name, hint in get_type_hints(RunRows, include_extras=True).items()}
+"""Columns of a chunk, with their unit or their meaning."""
 NO_RUNS = RunRows(**{name: np.zeros(0, TYPES.get(name, np.float64)) for name in COLUMNS})
 
 
@@ -275,7 +261,7 @@ class Store:
             facts["polarities"],
             Measured(of("records"), of("samples"), of_run),
             described(facts["description"], facts["weights"]),
-        )  # fmt: skip
+        )
 
     def keep(self, plan: Plan, facts: Mapping[str, Any]) -> None:
         """Write the plan and what else is known of the study; start the store with them if it is empty.
@@ -476,11 +462,8 @@ class Store:
     def _make_folder(self) -> None:
         """Put the old folder aside if the study starts anew, and make an empty one."""
         if self._anew:
-            names = (
-                self.path.with_name(f"{self.path.stem}.before{f'-{k}' if k > 1 else ''}{self.path.suffix}")
-                for k in count(1)
-            )
-            aside = next(each for each in names if not os.path.lexists(each))
+            taken = [each.name for each in self.path.parent.iterdir()]
+            aside = self.path.with_name(numbered(f"{self.path.stem}.before", self.path.suffix, taken))
             try:
                 self.path.rename(aside)
                 self._say(f"the store as it was is kept as {aside}")

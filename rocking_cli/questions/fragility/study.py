@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from math import nan
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from pydantic import ValidationError
@@ -26,6 +27,7 @@ from rocking_cli.io.yaml_file import Document, Place, parse, read_text
 from rocking_cli.processing.entry import Entry, as_written
 from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.listed import is_list
+from rocking_cli.processing.reading import Reading
 from rocking_cli.processing.record_list import read_list
 from rocking_cli.questions.fragility.definition import (
     HINT,
@@ -41,6 +43,7 @@ from rocking_cli.questions.fragility.definition import (
     definition_of,
     usable_entries,
     usable_part,
+    varied,
 )
 from rocking_cli.questions.fragility.distributions import draw
 from rocking_cli.questions.fragility.hazard_curve import HazardCurve, read_hazard
@@ -121,7 +124,8 @@ class Study:
 
     def description(self) -> dict[str, Any]:
         """Return everything that decides the runs, except the content of the records, as plain data."""
-        definition = self.definition
+        asked = self.definition
+        floor = {} if asked.floor is None else {"floor": str(Floor.parse(asked.floor))}
         return {
             "structures": {
                 structure.name: {
@@ -129,26 +133,21 @@ class Study:
                     **structure.model_dump(exclude_none=True, exclude={"name"}),
                     "vary": entry.model_dump(exclude_none=True)["vary"],
                 }
-                for structure, entry in zip(self.structures, definition.structures, strict=True)
+                for structure, entry in zip(self.structures, asked.structures, strict=True)
             },
             "order of structures": [structure.name for structure in self.structures],
             "records": [_described(source) for source in self.sources],
-            **({"processing": definition.processing} if definition.processing else {}),
-            **({"floor": str(Floor.parse(definition.floor))} if definition.floor is not None else {}),
+            **({"processing": asked.processing} if asked.processing else {}),
+            **floor,
             "levels": {
-                "measure": definition.levels.measure,
-                "values": definition.levels.levels(),
-                **({} if definition.levels.scaled else {"scaled": False}),
+                "measure": asked.levels.measure,
+                "values": asked.levels.levels(),
+                **({} if asked.levels.scaled else {"scaled": False}),
             },
-            "polarity": definition.polarity,
-            "restitution": definition.restitution,
-            "model": definition.model,
-            **({"engine": definition.engine} if definition.engine != "exact" else {}),
-            "opening": definition.opening,
-            "samples": definition.samples,
-            "sampling": definition.sampling,
-            "seed": definition.seed,
-            **({SLIDING: "checked in every run"} if SLIDING in definition.limit_states else {}),
+            **{name: getattr(asked, name) for name in ("polarity", "restitution", "model")},
+            **({"engine": asked.engine} if asked.engine != "exact" else {}),
+            **{name: getattr(asked, name) for name in ("opening", "samples", "sampling", "seed")},
+            **({SLIDING: "checked in every run"} if SLIDING in asked.limit_states else {}),
         }
 
 
@@ -181,86 +180,25 @@ def load_study(given: str | Path | Mapping[str, Any], name: str = "study") -> St
     MechanismError
         If a mechanism's plugin cannot be used.
     """
-    made = InMemory()
+    structures: dict[str, Mechanism] = {}
+    motions: dict[str, GroundMotion] = {}
     if isinstance(given, Mapping):
-        path = Path("study")
-        document = Document("study", "study", [], _plain(given, made))
+        folder, document = Path(), Document("study", "study", [], _plain(given, structures, motions))
     else:
         path = Path(given)
-        name = path.stem
+        folder, name = path.parent, path.stem
         document = parse(read_text(path, "study"), str(path), "study", HINT)
-
-    def load(file: str) -> Mechanism:
-        return made.structures[file] if file in made.structures else load_structure(path.parent / file)
-
-    definition = definition_of(document, load)
-    entries = usable_entries(document, "structures", StructureEntry)
-    structures = [_structure(document, ("structures", k), path.parent, entry, load) for k, entry in entries]
-    common = usable_part(Common, {key: document.data[key] for key in Common.model_fields if key in document.data})
-    motions = made.named_motions()
-    sources = [
-        source
-        for k, entry in usable_entries(document, "records", RecordEntry)
-        for source in (
-            _made_source(document, ("records", k), entry, common or Common(), motions[entry.file])
-            if entry.file in motions
-            else _sources(document, ("records", k), path.parent, entry, common or Common())
-        )
-    ]
-    sources = _apart(sources)
-    read = [source for source in sources if source.motion is None]
-    places = [source.path.resolve().as_posix() if source.path else source.file for source in read]
-    unlike = [_in_words(place, source.entry) for place, source in zip(places, read, strict=True)]
-    _refuse_repeated(document, "records", unlike)
-    in_memory = {source.name for source in sources if source.motion is not None}  # as a file may be called, too
-    _refuse_repeated(document, "records", [source.name for source in sources if source.name in in_memory])
-    _refuse_repeated(document, "structures", [each.name or "" for each in structures if each is not None])
-    if checks_sliding(document.data):
-        for (_, entry), structure in zip(entries, structures, strict=True):
-            if structure is not None and structure.friction is None and "friction" not in entry.vary:
-                what = "is missing: the limit state sliding is whether joints need more friction than there is"
-                hint = "give that of its joints, such as `friction: 0.6`"
-                document.problems.append(Problem(what, str(path.parent / entry.file), field="friction", hint=hint))
-    if document.data.get("engine") in ("blocks", "auto"):
-        files = [path.parent / entry.file for _, entry in entries]
-        document.problems += _wrong_as_free_blocks(document, files, structures)
-    hazard = _hazard(document, path.parent)
-    sampling = usable_part(Sampling, {key: document.data[key] for key in Sampling.model_fields if key in document.data})
-    samples: list[Sample] = []
-    for (k, entry), structure in zip(entries, structures, strict=True):
-        if sampling is not None and structure is not None:
-            samples += _samples(document, sampling, k, entry, structure)
-    document.check()
-    assert definition is not None
-    known = tuple(each for each in structures if each is not None)
-    return Study(definition.name or one_line(name), definition, known, tuple(samples), tuple(sources), hazard)
+    return _Files(document, folder, structures, motions).study(name)
 
 
-@dataclass(frozen=True)
-class InMemory:
-    """Mechanisms and ground motions of a study made in Python, by the names that stand for their files."""
-
-    structures: dict[str, Mechanism] = field(default_factory=dict)
-    motions: dict[str, GroundMotion] = field(default_factory=dict)
-
-    def named_motions(self) -> dict[str, GroundMotion]:
-        """Return the motions, with a number in the names of those that are called as others before them."""
-        named: dict[str, GroundMotion] = {}
-        for motion in self.motions.values():
-            name = one_line(motion.name)
-            name = name if name not in named else numbered(name, "", named)
-            named[name] = replace(motion, name=name)
-        return dict(zip(self.motions, named.values(), strict=True))
-
-
-def _plain(given: Mapping[str, Any], made: InMemory) -> dict[str, Any]:
-    """Return a study made in Python as plain data, and put aside its mechanisms and motions."""
+def _plain(given: Mapping[str, Any], structures: dict[str, Mechanism], motions: dict[str, GroundMotion]) -> Any:
+    """Return a study made in Python as plain data, with names that stand for its mechanisms and motions."""
 
     def plain(each: Any) -> Any:
         if isinstance(each, Mechanism):
-            return _stand_in(made.structures, "structure", each)
+            return stand_in(structures, "structure", each)
         if isinstance(each, GroundMotion):
-            return _stand_in(made.motions, "motion", each)
+            return stand_in(motions, "motion", each)
         if isinstance(each, Pulse):
             return each.specification
         if isinstance(each, Mapping):
@@ -273,6 +211,11 @@ def _plain(given: Mapping[str, Any], made: InMemory) -> dict[str, Any]:
             return each
         raise InputError(Problem(f"cannot hold {type_in_words(each)}", "study", hint=HINT))
 
+    def stand_in(made: dict[str, Any], kind: str, each: Any) -> str:
+        name = next((name for name, known in made.items() if known is each), f"<{kind} {len(made) + 1}>")
+        made[name] = each
+        return name
+
     def named(each: Any) -> Any:
         entry = {"file": each} if isinstance(each, Mechanism) else each
         of = entry.get("file") if isinstance(entry, Mapping) else None
@@ -282,130 +225,237 @@ def _plain(given: Mapping[str, Any], made: InMemory) -> dict[str, Any]:
         is_pulse = isinstance(each, Pulse) or (isinstance(each, str) and pulse_in(each) is not None)
         return {"pulse": each} if is_pulse else each
 
-    for field_, entry in (("structures", named), ("records", shaking)):
-        if isinstance(entries := given.get(field_), list | tuple):
-            given = {**given, field_: [entry(each) for each in entries]}
-    data: dict[str, Any] = json.loads(json_text(plain(given)))
+    for field, entry in (("structures", named), ("records", shaking)):
+        if isinstance(entries := given.get(field), list | tuple):
+            given = {**given, field: [entry(each) for each in entries]}
+    data = json.loads(json_text(plain(given)))
+    names: list[str] = []
+    for key, motion in motions.items():
+        name = one_line(motion.name)
+        names.append(name if name not in names else numbered(name, "", names))
+        motions[key] = replace(motion, name=names[-1])
     return data
 
 
-T = TypeVar("T")
+@dataclass(frozen=True)
+class _Files:
+    """What the document of a study names; what is wrong with it is added to the problems of the document.
 
+    Parameters
+    ----------
+    document : Document
+        The document.
+    folder : Path
+        The folder to which file names are relative.
+    made_structures, made_motions : dict
+        Mechanisms and motions of a study made in Python, by the names that stand for their files.
+    """
 
-def _stand_in(made: dict[str, T], kind: str, each: T) -> str:
-    """Return the name that stands for the file of an object, the same for the same object."""
-    name = next((name for name, known in made.items() if known is each), f"<{kind} {len(made) + 1}>")
-    made[name] = each
-    return name
+    document: Document
+    folder: Path
+    made_structures: dict[str, Mechanism]
+    made_motions: dict[str, GroundMotion]
 
+    def study(self, name: str) -> Study:
+        """Return the study. Raises `InputError` with every problem of its document and files."""
+        document = self.document
+        definition = definition_of(document, self.load)
+        entries = [*usable_entries(document, "structures", StructureEntry)]
+        structures = [self.structure(k, entry) for k, entry in entries]
+        common = (usable_part(Common, document.data) or Common()).reading
+        records = usable_entries(document, "records", RecordEntry)
+        sources = _named_apart([source for k, entry in records for source in self.sources(k, entry, common)])
+        files = [source for source in sources if source.motion is None]
+        places = [source.path.resolve().as_posix() if source.path else source.file for source in files]
+        self.refuse_repeated("records", map(_in_words, places, (source.entry for source in files)))
+        in_memory = {source.name for source in sources if source.motion is not None}  # as a file may be called, too
+        self.refuse_repeated("records", (source.name for source in sources if source.name in in_memory))
+        self.refuse_repeated("structures", (each.name or "" for each in structures if each is not None))
+        known = [(k, entry, each) for (k, entry), each in zip(entries, structures, strict=True) if each is not None]
+        if checks_sliding(document.data):
+            for _, entry, structure in known:
+                if structure.friction is None and "friction" not in entry.vary:
+                    what = "is missing: the limit state sliding is whether joints need more friction than there is"
+                    hint = "give that of its joints, such as `friction: 0.6`"
+                    file = str(self.folder / entry.file)
+                    document.problems.append(Problem(what, file, field="friction", hint=hint))
+        if document.data.get("engine") in ("blocks", "auto"):
+            self.refuse_without_free_blocks([(entry.file, structure) for _, entry, structure in known])
+        hazard = self.hazard()
+        sampling = usable_part(Sampling, document.data)
+        samples = [each for one in known for each in self.samples(*one, sampling)] if sampling is not None else []
+        document.check()
+        assert definition is not None
+        found = tuple(structure for *_, structure in known)
+        return Study(definition.name or one_line(name), definition, found, tuple(samples), tuple(sources), hazard)
 
-def _made_source(
-    document: Document, place: Place, entry: RecordEntry, common: Common, motion: GroundMotion
-) -> list[Source]:  # fmt: skip
-    """Return a ground motion of Python, whose entry can have everything but what describes a file."""
-    if set(as_written(entry)) - OF_MOTIONS:
-        what = "units, dt, channel, vertical and the like describe a file, and this is a ground motion"
-        document.problems.append(document.at(place, what))
-        return []
-    reading = entry.reading(Path(), common.reading)
-    return [Source(_at_level(motion.name, entry), entry, reading, motion.name, motion=motion)]
+    def wrong(self, place: Place, what: str, hint: str | None = None, *, key: bool = False) -> None:
+        """Add a problem with the value at a place, or with its key."""
+        self.document.problems.append(self.document.at(place, what, hint, key=key))
 
+    def wrong_file(self, place: Place, name: str, error: InputError) -> None:
+        """Add the problems of a file that the study names; those without a line get the line in the study."""
+        for each in error.problems:
+            if each.line is not None or each.file != str(self.folder / name):
+                self.document.problems.append(each)
+            else:
+                self.wrong(place, f"{name}: {each.field + ' ' if each.field else ''}{each.message}", each.hint)
 
-def _structure(
-    document: Document, place: Place, folder: Path, entry: StructureEntry, load: Callable[[str], Mechanism]
-) -> Mechanism | None:  # fmt: skip
-    file = folder / entry.file
-    try:
-        structure = load(entry.file)
-    except InputError as error:
-        document.problems += _of_file(document, _within(document, place, "file"), entry.file, file, error)
-        return None
-    except MechanismError as error:
-        raise of_structure(error, entry.file) from error
-    infos = type(structure).model_fields.items()
-    fields = {name: info for name, info in infos if info.annotation in (float, float | None)}
-    known = [*fields, RESTITUTION]
-    written = document.data["structures"][place[1]]  # as written, with invalid distributions too
-    varied = written.get("vary") if isinstance(written, dict) else None
-    for name in varied if isinstance(varied, dict) else []:
-        if name not in known:
-            what = f"is not a number among the fields of {structure.mechanism}"
-            hint = by_meaning(name, fields) or did_you_mean(name, known)
-            document.problems.append(document.at((*place, "vary", name), what, hint, key=True))
-    return structure.model_copy(update={"name": entry.name}) if entry.name is not None else structure
+    def within(self, *place: str | int) -> Place:
+        """Return the place of a key of an entry; the place of the entry itself if this is plain text."""
+        return place if place in self.document.values else place[:-1]
 
+    def refuse_repeated(self, field: str, names: Iterable[str]) -> None:
+        """Add a problem for each name that is there twice."""
+        for name, count in Counter(names).items():
+            if count > 1:
+                hint = "give one of them a `name`" if field == "structures" else None
+                self.wrong((field,), f"two of them are called {name}", hint, key=True)
 
-def _of_file(document: Document, place: Place, name: str, file: Path, error: InputError) -> list[Problem]:
-    """Return the problems of a file that the study names; those without a line get the line in the study file."""
-    return [
-        each
-        if each.line is not None or each.file != str(file)
-        else document.at(place, f"{name}: {each.field + ' ' if each.field else ''}{each.message}", each.hint)
-        for each in error.problems
-    ]
+    def load(self, file: str) -> Mechanism:
+        """Return the structure of a file that the study names."""
+        return self.made_structures[file] if file in self.made_structures else load_structure(self.folder / file)
 
-
-def _sources(document: Document, place: Place, folder: Path, entry: RecordEntry, common: Common) -> list[Source]:
-    if entry.pulse is not None:
+    def structure(self, k: int, entry: StructureEntry) -> Mechanism | None:
+        """Return a structure by its name in the study; None if its file is wrong."""
         try:
-            parse_pulse(entry.pulse)
-        except (InputError, MechanismError) as error:
-            document.problems.append(document.at(_within(document, place, "pulse"), str(error)))
-            return []
-        return [Source(_at_level(entry.pulse, entry), entry, entry.reading(folder, common.reading), entry.pulse)]
-    assert entry.file is not None
-    files = _select(document, _within(document, place, "file"), entry.file, folder)
-    other = _select(document, (*place, "with"), entry.other, folder) if entry.other is not None else []
-    vertical = None
-    if entry.vertical is not None:
-        verticals = _select(document, (*place, "vertical"), entry.vertical, folder)
-        if max(len(files), len(verticals)) > 1:
+            structure = self.load(entry.file)
+        except InputError as error:
+            self.wrong_file(self.within("structures", k, "file"), entry.file, error)
+            return None
+        except MechanismError as error:
+            raise of_structure(error, entry.file) from error
+        infos = type(structure).model_fields.items()
+        fields = {name: info for name, info in infos if info.annotation in (float, float | None)}
+        known = [*fields, RESTITUTION]
+        for at, name in varied(self.document.data):  # as written, with invalid distributions too
+            if at == k and name not in known:
+                what = f"is not a number among the fields of {structure.mechanism}"
+                hint = by_meaning(name, fields) or did_you_mean(name, known)
+                self.wrong(("structures", k, "vary", name), what, hint, key=True)
+        return structure.model_copy(update={"name": entry.name}) if entry.name is not None else structure
+
+    def refuse_without_free_blocks(self, structures: Iterable[tuple[str, Mechanism]]) -> None:
+        """Add why free blocks cannot be simulated at all, or what of a structure they cannot have."""
+        try:
+            engine_version()
+        except InputError as error:
+            for each in error.problems:
+                self.wrong(("engine",), each.message, each.hint)
+        for file, structure in structures:
+            try:
+                free_blocks(structure)
+            except InputError as error:
+                self.document.problems += [replace(each, file=str(self.folder / file)) for each in error.problems]
+
+    def samples(self, k: int, entry: StructureEntry, structure: Mechanism, sampling: Sampling) -> list[Sample]:
+        """Return the samples of a structure; samples that cannot be built are reported as problems of its `vary`."""
+        if not entry.vary or any(name not in type(structure).model_fields for name in entry.vary):
+            return [Sample(k, 0, {}, structure)]
+        seed, method = sampling.seed, sampling.sampling
+        columns = [
+            draw(each, sampling.samples, seed=seed, stream=f"{structure.name}.{name}", method=method).tolist()
+            for name, each in entry.vary.items()
+        ]
+        samples, wrong = [], []
+        for number, values in enumerate(zip(*columns, strict=True)):
+            drawn = dict(zip(entry.vary, values, strict=True))
+            try:
+                samples.append(Sample(k, number, drawn, structure.model_copy(update=drawn)))
+            except ValidationError as error:
+                first = error.errors(include_url=False)[0]
+                message, _ = say(type(structure), first["loc"], first, structure.mechanism, "")
+                wrong.append(f"{first['loc'][0]} {message}" if first["loc"] else message)
+        if wrong:
+            what = f"{len(wrong)} of {sampling.samples} samples cannot be built; the first: {wrong[0]}"
+            self.wrong(("structures", k, "vary"), what, "bound the distributions with `low` and `high`")
+        return samples
+
+    def hazard(self) -> HazardCurve | None:
+        """Return the hazard of the study; None if there is none, or if it is wrong."""
+        hazard = usable_part(HazardEntry, self.document.data.get("hazard"))
+        if hazard is None:
+            return None
+        if hazard.points is not None:
+            return HazardCurve(*np.array(hazard.points).T)
+        assert hazard.file is not None
+        try:
+            return read_hazard(self.folder / hazard.file, hazard.measure)
+        except InputError as error:
+            self.wrong_file(("hazard", "file"), hazard.file, error)
+            return None
+
+    def sources(self, k: int, entry: RecordEntry, common: Reading) -> list[Source]:
+        """Return the ground motions of an entry, of which none has a name yet."""
+        place = ("records", k)
+        if entry.pulse is not None:
+            try:
+                parse_pulse(entry.pulse)
+            except (InputError, MechanismError) as error:
+                self.wrong(self.within(*place, "pulse"), str(error))
+                return []
+            return [Source("", entry, entry.reading(self.folder, common), entry.pulse)]
+        assert entry.file is not None
+        if (motion := self.made_motions.get(entry.file)) is not None:
+            if as_written(entry).keys() - OF_MOTIONS:
+                self.wrong(
+                    place, "units, dt, channel, vertical and the like describe a file, and this is a ground motion"
+                )
+                return []
+            return [Source("", entry, entry.reading(self.folder, common), motion.name, motion=motion)]
+        files = self.select(self.within(*place, "file"), entry.file)
+        others = self.select((*place, "with"), entry.other)
+        verticals = self.select((*place, "vertical"), entry.vertical)
+        if entry.vertical is not None and max(len(files), len(verticals)) > 1:
             what = "a vertical component belongs to a single record: give each record its own entry"
-            document.problems.append(document.at((*place, "vertical"), what))
+            self.wrong((*place, "vertical"), what)
             return []
-        vertical = verticals[0] if verticals else None
-    if other and max(len(files), len(other)) > 1:
-        what = "a second component belongs to one record: give each record an entry of its own"
-        document.problems.append(document.at((*place, "with"), what))
-        return []
-    if other:  # a pattern is replaced by the only file that it matches
-        entry = entry.model_copy(update={"other": _shown(other[0], folder)})
-    return [one for file in files for one in _of_file_or_list(document, place, folder, entry, common, file, vertical)]
+        if others and max(len(files), len(others)) > 1:
+            what = "a second component belongs to one record: give each record an entry of its own"
+            self.wrong((*place, "with"), what)
+            return []
+        if others:  # a pattern is replaced by the only file that it matches
+            entry = entry.model_copy(update={"other": self.shown(others[0])})
+        reading, vertical = entry.reading(self.folder, common), next(iter(verticals), None)
+        sources = []
+        for file in files:
+            if not is_list(file):
+                sources.append(Source("", entry, reading, self.shown(file), file, vertical))
+            elif vertical is not None:
+                what = "a vertical component belongs to one record, and this is a list of them"
+                self.wrong((*place, "vertical"), f"{what}: give each an entry of its own")
+            else:
+                sources += self.listed(k, entry, file, reading)
+        return sources
+
+    def listed(self, k: int, entry: RecordEntry, file: Path, reading: Reading) -> list[Source]:
+        """Return the records of a list of records, whose options take precedence over those of the study's entry."""
+        try:
+            items = read_list(file)
+        except InputError as error:
+            self.wrong_file(self.within("records", k, "file"), str(entry.file), error)
+            return []
+        return [
+            Source("", _together(entry, item.entry), item.reading(reading), self.shown(item.path), item.path)
+            for item in items
+            if item.entry is not None
+        ]
+
+    def select(self, place: Place, pattern: str | None) -> list[Path]:
+        """Return the files that match a pattern."""
+        try:
+            return [] if pattern is None else matching_files(pattern, self.folder)
+        except InputError as error:
+            for each in error.problems:
+                self.wrong(place, f"{each.file}: {each.message}", each.hint)
+            return []
+
+    def shown(self, path: Path) -> str:
+        """Return the name of a file relative to the study's folder, the same on every system."""
+        return one_line((path.relative_to(self.folder) if path.is_relative_to(self.folder) else path).as_posix())
 
 
-def _of_file_or_list(
-    document: Document,
-    place: Place,
-    folder: Path,
-    entry: RecordEntry,
-    common: Common,
-    file: Path,
-    vertical: Path | None,
-) -> list[Source]:
-    """Return the records of a file, or of a list of records; the options of a list's entry take precedence."""
-    reading = entry.reading(folder, common.reading)
-    if not is_list(file):
-        shown = _shown(file, folder)
-        return [Source(_at_level(shown, entry), entry, reading, shown, file, vertical)]
-    if vertical is not None:
-        what = "a vertical component belongs to one record, and this is a list of them: give each an entry of its own"
-        document.problems.append(document.at((*place, "vertical"), what))
-        return []
-    try:
-        listed = read_list(file)
-    except InputError as error:
-        document.problems += _of_file(document, _within(document, place, "file"), str(entry.file), file, error)
-        return []
-    sources = []
-    for item in listed:
-        assert item.entry is not None
-        record = RecordEntry.model_validate(_together(entry, item.entry))
-        shown = _shown(item.path, folder)
-        sources.append(Source(_at_level(shown, record), record, item.reading(reading), shown, item.path))
-    return sources
-
-
-def _together(entry: RecordEntry, listed: Entry) -> dict[str, Any]:
+def _together(entry: RecordEntry, listed: Entry) -> RecordEntry:
     """Merge the entry of a study that names a list of records with the entry of one record in that list.
 
     Values of the list entry take precedence. Processing steps of both apply: first those of the list, then those of the
@@ -416,107 +466,23 @@ def _together(entry: RecordEntry, listed: Entry) -> dict[str, Any]:
     if listed.factor is not None and (entry.processing or entry.factor is not None):
         steps.insert(len(listed.processing or []), {"factor": listed.factor})
         fields["factor"] = entry.factor
-    return {**fields, "processing": steps or None}
+    return RecordEntry.model_validate({**fields, "processing": steps or None})
 
 
-def _at_level(name: str, entry: RecordEntry) -> str:
-    """Return the name of a record; with its level if it is in a set, as it may be in several."""
+def _in_words(name: str, entry: RecordEntry, *, fully: bool = True) -> str:
+    """Return the name of a record with the level whose set it is in, and fully with its channel and azimuth."""
+    if fully and entry.channel is not None:
+        name += f" channel {entry.channel}"
+    if fully and entry.azimuth is not None and entry.other is not None:
+        name += f" azimuth {entry.azimuth:g}"
     return name if entry.level is None else f"{name} at {entry.level:g}"
 
 
-def _in_words(name: str, entry: RecordEntry) -> str:
-    """Return the name of a record with its channel, azimuth and level, if given."""
-    channel = "" if entry.channel is None else f" channel {entry.channel}"
-    towards = "" if entry.azimuth is None or entry.other is None else f" azimuth {entry.azimuth:g}"
-    return _at_level(f"{name}{channel}{towards}", entry)
-
-
-def _apart(sources: Sequence[Source]) -> list[Source]:
-    """Return the records with different names: channel and azimuth are added to names that several records share."""
-    names = [source.name for source in sources]
+def _named_apart(sources: Sequence[Source]) -> list[Source]:
+    """Return the records with names: channel and azimuth are in those that several records would share."""
+    names = [_in_words(source.file, source.entry, fully=False) for source in sources]
+    count = Counter(names)
     return [
-        replace(each, name=_in_words(each.file, each.entry)) if names.count(each.name) > 1 else each for each in sources
+        replace(each, name=_in_words(each.file, each.entry) if count[name] > 1 else name)
+        for each, name in zip(sources, names, strict=True)
     ]
-
-
-def _select(document: Document, place: Place, pattern: str, folder: Path) -> list[Path]:
-    try:
-        return matching_files(pattern, folder)
-    except InputError as error:
-        document.problems += [document.at(place, f"{each.file}: {each.message}", each.hint) for each in error.problems]
-        return []
-
-
-def _within(document: Document, place: Place, key: str) -> Place:
-    """Return the place of a key of an entry; the place of the entry itself if this is plain text."""
-    return (*place, key) if (*place, key) in document.values else place
-
-
-def _shown(path: Path, folder: Path) -> str:
-    """Return the name of a file relative to the study's folder, the same on every system."""
-    return one_line((path.relative_to(folder) if path.is_relative_to(folder) else path).as_posix())
-
-
-def _refuse_repeated(document: Document, field: str, names: Sequence[str]) -> None:
-    for name in dict.fromkeys(name for name in names if names.count(name) > 1):
-        hint = "give one of them a `name`" if field == "structures" else None
-        document.problems.append(document.at((field,), f"two of them are called {name}", hint, key=True))
-
-
-def _wrong_as_free_blocks(
-    document: Document, files: Sequence[Path], structures: Sequence[Mechanism | None]
-) -> Iterator[Problem]:
-    """Yield why free blocks cannot be simulated at all, or what of a structure they cannot have."""
-    try:
-        engine_version()
-    except InputError as error:
-        yield from (document.at(("engine",), each.message, each.hint) for each in error.problems)
-    for file, structure in zip(files, structures, strict=True):
-        try:
-            if structure is not None:
-                free_blocks(structure)
-        except InputError as error:
-            yield from (replace(each, file=str(file)) for each in error.problems)
-
-
-def _hazard(document: Document, folder: Path) -> HazardCurve | None:
-    hazard = usable_part(HazardEntry, document.data.get("hazard"))
-    if hazard is None:
-        return None
-    if hazard.points is not None:
-        return HazardCurve(*np.array(hazard.points).T)
-    assert hazard.file is not None
-    file = folder / hazard.file
-    try:
-        return read_hazard(file, hazard.measure)
-    except InputError as error:
-        document.problems += _of_file(document, ("hazard", "file"), hazard.file, file, error)
-        return None
-
-
-def _samples(
-    document: Document, sampling: Sampling, k: int, entry: StructureEntry, structure: Mechanism
-) -> list[Sample]:  # fmt: skip
-    """Return the samples of a structure; samples that cannot be built are reported as problems of its `vary`."""
-    if not entry.vary or any(name not in type(structure).model_fields for name in entry.vary):
-        return [Sample(k, 0, {}, structure)]
-    columns: dict[str, list[float]] = {}
-    for name, distribution in entry.vary.items():
-        stream = f"{structure.name}.{name}"
-        columns[name] = draw(
-            distribution, sampling.samples, seed=sampling.seed, stream=stream, method=sampling.sampling
-        ).tolist()
-    samples, wrong = [], []
-    for number in range(sampling.samples):
-        drawn = {name: values[number] for name, values in columns.items()}
-        try:
-            samples.append(Sample(k, number, drawn, structure.model_copy(update=drawn)))
-        except ValidationError as error:
-            first = error.errors(include_url=False)[0]
-            message, _ = say(type(structure), first["loc"], first, structure.mechanism, "")
-            wrong.append(f"{first['loc'][0]} {message}" if first["loc"] else message)
-    if wrong:
-        what = f"{len(wrong)} of {sampling.samples} samples cannot be built; the first: {wrong[0]}"
-        hint = "bound the distributions with `low` and `high`"
-        document.problems.append(document.at(("structures", k, "vary"), what, hint))
-    return samples

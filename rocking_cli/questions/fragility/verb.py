@@ -142,25 +142,21 @@ def _bring_up_to_date(
     study: Study, place: Path, workers: AbstractContextManager[Workers], watch: Watcher, asked: FragilityAsked
 ) -> Prepared:  # fmt: skip
     """Simulate the runs that the store lacks; on a restart simulate all, and keep the old store."""
-    from rocking_cli.questions.fragility.campaign import (
-        SIMULATED_BY,
-        WHOLE,
-        count_steps,
-        left,
-        left_of_each,
-        prepare,
-        run,
-    )
+    from rocking_cli.questions.fragility import campaign
     from rocking_cli.questions.fragility.store import Store
 
-    share = asked.share or WHOLE
+    def damaged(file: str) -> None:
+        watch.warn(f"damaged, and computed again: {file}")
+
+    share = asked.share or campaign.WHOLE
     with ExitStack() as stack:
         # The old store is replaced only when workers are available to run the study again.
         hands = stack.enter_context(workers) if asked.restart else None
         store = Store.writing(place, anew=asked.restart, say=watch.note)
-        with watch.progress(count_steps(study, rank_measures=asked.rank_measures), "records and structures") as advance:
-            prepared = prepare(study, store, advance, rank_measures=asked.rank_measures)
-        plan, engines = prepared.plan, SIMULATED_BY[study.definition.engine]
+        steps = campaign.count_steps(study, rank_measures=asked.rank_measures)
+        with watch.progress(steps, "records and structures") as advance:
+            prepared = campaign.prepare(study, store, advance, rank_measures=asked.rank_measures)
+        plan, engines = prepared.plan, campaign.SIMULATED_BY[study.definition.engine]
         _leave_out(plan, watch)
         doubtful = [record.name for record in plan.records if record.doubts]
         if doubtful:
@@ -170,18 +166,18 @@ def _bring_up_to_date(
         for name in prepared.mended:
             watch.note(f"{name}: could not be used when the study was started; it is run now")
         for engine in engines:
-            there = left(prepared, engine, share, lambda file: watch.warn(f"damaged, and computed again: {file}"))
+            there = campaign.left(prepared, engine, share, damaged)
             if there.finished and engine == engines[0]:
                 watch.note(f"{there.finished} of {there.total} runs are in the store already")
             if not there.chunks:
                 continue
             hands = hands or stack.enter_context(workers)
             if engine == "blocks":
-                for name, structure, motion, runs in left_of_each(prepared, there.chunks):
+                for name, structure, motion, runs in campaign.left_of_each(prepared, there.chunks):
                     cost = cost_in_words(engine_of("blocks"), structure, motion, runs, hands.count())
                     watch.note(f"{name}: {cost}" if len(plan.structures) > 1 else cost)
             with watch.progress(there.total, "runs", done=there.finished, failed=there.failed) as advance:
-                run(prepared, hands, engine, there.chunks, advance)
+                campaign.run(prepared, hands, engine, there.chunks, advance)
         return prepared
 
 
@@ -201,9 +197,7 @@ def _leave_out(plan: Plan, watch: Watcher) -> None:
     from rocking_cli.questions.fragility.view import left_out
 
     bad = left_out(plan)
-    for sentence in bad[:MAX_NAMED_PROBLEMS]:
+    more = len(bad) - MAX_NAMED_PROBLEMS
+    others = [f"and {more} more: the JSON of `rocking results` names all"] if more > 0 else []
+    for sentence in bad[:MAX_NAMED_PROBLEMS] + others:
         watch.leave_out(InputError(sentence))
-    if len(bad) > MAX_NAMED_PROBLEMS:
-        watch.leave_out(
-            InputError(f"and {len(bad) - MAX_NAMED_PROBLEMS} more: the JSON of `rocking results` names all")
-        )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from math import ceil, isnan
 from threading import Lock
 
@@ -89,12 +90,11 @@ def carry_out(unit: WorkUnit) -> RunRows:
     most = 1 if unit.engine == "blocks" else MAX_MODELS
     parts = []
     for first in range(0, len(unit.samples), most):
-        those = (unit.runs.model >= first) & (unit.runs.model < first + most)
-        each = {name: values[those] for name, values in vars(unit.runs).items()}
-        runs = replace(unit.runs, **each | {"model": each["model"] - first})
-        parts.append(
-            _simulated(replace(unit, id=unit.id[those], runs=runs, samples=unit.samples[first : first + most]))
-        )
+        model = unit.runs.model - first
+        those = (model >= 0) & (model < most)
+        runs = Runs(**{name: values[those] for name, values in {**vars(unit.runs), "model": model}.items()})
+        samples = unit.samples[first : first + most]
+        parts.append(_simulated(replace(unit, id=unit.id[those], runs=runs, samples=samples)))
     return RunRows.joined(parts)
 
 
@@ -124,22 +124,21 @@ def _slide_times(unit: WorkUnit, models: Sequence[Model], found: Outcomes) -> tu
     """Simulate runs again with samples; return when each first slides [s], and which have no complete history."""
     runs = unit.runs
     times, lost = np.where(found.slip > 0, found.warned, np.nan), found.failed.copy()
-    checks: dict[tuple[int, float | None], Contacts] = {}
+
+    @cache
+    def contacts(model: int, eta: float | None) -> Contacts:
+        mechanism = unit.samples[model].mechanism
+        return Contacts(mechanism if eta is None else with_restitution(mechanism, eta))
+
     for k in np.flatnonzero(np.isfinite(found.uplift_time) & ~found.failed):  # a structure at rest has nothing to check
         model, eta = int(runs.model[k]), float(runs.eta[k])
-        restitution = None if isnan(eta) else eta
-        if (model, restitution) not in checks:
-            mechanism = unit.samples[model].mechanism
-            checks[model, restitution] = Contacts(
-                mechanism if restitution is None else with_restitution(mechanism, restitution)
-            )
         motion = unit.motions[runs.record[k]].scaled(float(runs.scale[k] * runs.polarity[k]))
         try:
             history = follow(models[model], motion, eta=eta)
         except SolverError:
             lost[k] = True
         else:
-            times[k] = checks[model, restitution].check(history, motion).slides
+            times[k] = contacts(model, None if isnan(eta) else eta).check(history, motion).slides
     return times, lost
 
 
