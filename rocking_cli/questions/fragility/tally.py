@@ -5,11 +5,11 @@ Thresholds of a structure are the PGA at which it uplifts, and the rotations at 
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from copy import deepcopy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isclose
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,6 +85,11 @@ class Tally:
     uplift: Pair | None = None
 
     @property
+    def least(self) -> Tally:
+        """The counts with undecided runs as not exceeding; these ones if no outcome is unknown."""
+        return self.lower or self
+
+    @property
     def unknown_if_checked(self) -> int | None:
         """Number of runs of unknown outcome; None if there are none because joints were not checked."""
         return self.unknown if self.unknown or self.checked else None
@@ -104,6 +109,12 @@ class Tally:
         runs = self.runs.sum(axis=0, keepdims=True) if together else self.runs
         there = np.nonzero(runs)
         return Cells(self, there, runs[there], together)
+
+    def add(self, limit: Limit, beyond: Bools, cell: Integers, ladder: Integers, level: Integers) -> None:
+        """Count the runs of a block that exceed a limit state, given the cell, the ladder and the level of each run."""
+        _add(self.exceeding[limit], cell[beyond])
+        if self.ladders is not None:
+            np.minimum.at(self.ladders.first[limit].ravel(), ladder[beyond], level[beyond].astype(np.int32))
 
     def decided_by_level(self, measure: str) -> bool:
         """Return whether all runs of a level have the same intensity in a measure."""
@@ -139,6 +150,13 @@ class Ladders:
         return np.asarray((self.there & (levels >= self.first[limit][..., None, :])).sum(axis=(2, 4)))
 
 
+class Onset(NamedTuple):
+    """Intensity up to which no motion uplifts a structure, and whether every motion uplifts it beyond."""
+
+    at: float
+    exact: bool
+
+
 @dataclass(frozen=True, eq=False)
 class Cells:
     """Cells of equal runs: those of one record, one level and, if samples differ, one sample.
@@ -170,6 +188,10 @@ class Cells:
         """Index of the level of each cell."""
         return self.place[2]
 
+    def only(self, which: Bools) -> Cells:
+        """Return some of the cells."""
+        return replace(self, place=tuple(each[which] for each in self.place), runs=self.runs[which])
+
     def of(self, table: Integers) -> Integers:
         """Look up the entries of the cells in a table indexed by sample, record and level."""
         summed = table.sum(axis=0, keepdims=True) if self.together else table
@@ -184,14 +206,29 @@ class Cells:
         return intensities(self.tally.plan, measure, self.place[0] + self.tally.samples.start, self.record, self.level)
 
     def onset(self, measure: str) -> Onset | None:
-        """Return the intensity at which the structure uplifts; None if it is not known, or runs contradict it."""
-        known = onset(self.tally.plan, self.tally.samples, self.tally.uplift, measure)
-        if known is None or UPLIFT not in self.tally.exceeding:
-            return known
-        x, uplifted = self.intensities(measure), self.exceeding(UPLIFT)
-        early = (x < known.at * (1 - INTENSITY_TOLERANCE)) & (uplifted > 0)
-        late = (x > known.at * (1 + INTENSITY_TOLERANCE)) & (uplifted < self.runs)
-        return None if early.any() or (known.exact and late.any()) else known
+        """Return the intensity at which the structure uplifts: PGA, or PGA over the uplift acceleration.
+
+        None if that is not known over this measure, or if runs contradict it.
+        """
+        plan, pair, parsed = self.tally.plan, self.tally.uplift, parse_measure(measure)
+        if pair is None or str(parsed.base) != PGA or parsed.power != 1:
+            return None
+        usable = [k for k in self.tally.samples if plan.trials[k].reason is None]
+        accelerations = np.array([plan.trials[k].lambda_ * plan.trials[k].gravity for k in usable])
+        # If the accelerations differ, the uplift depends on a property that varies, and there is no single onset.
+        if np.ptp(accelerations) > INTENSITY_TOLERANCE * accelerations.max():
+            return None
+        pga = accelerations[:1] / STANDARD_GRAVITY
+        at = float(parsed.relative(pga, plan.reference(np.array(usable[:1])))[0])
+        one, other = pair
+        exact = one is not None and other is not None and isclose(one, other, rel_tol=INTENSITY_TOLERANCE)
+        if UPLIFT in self.tally.exceeding:
+            x, uplifted = self.intensities(measure), self.exceeding(UPLIFT)
+            early = (x < at * (1 - INTENSITY_TOLERANCE)) & (uplifted > 0)
+            late = (x > at * (1 + INTENSITY_TOLERANCE)) & (uplifted < self.runs)
+            if early.any() or (exact and late.any()):
+                return None
+        return Onset(at, exact)
 
 
 def intensities(plan: Plan, measure: str, sample: Integers, record: Integers, level: Integers) -> Reals:
@@ -243,16 +280,19 @@ def count(
     _, records, etas, levels, polarities = plan.shape
     apart = any(_differs_between_samples(plan, samples, measure) for measure in measures)
     shape = (len(samples) if apart else 1, records, levels)
-    runs, unknown = np.zeros(shape, dtype=np.int64), 0
-    there = np.zeros((len(samples), records, etas, levels, polarities) if ladders else 0, dtype=bool)
     rungs = (len(samples), records, etas, polarities)
-    upper, lower = _Counts(limits, shape, rungs if ladders else None, levels), None
-    checked, slides, by_blocks, off_edge, finished, failed = True, False, 0, 0, 0, 0
-    each = records * plan.block
-    start = samples.start * each
-    for rows in store.rows(start, samples.stop * each, counted):
+    runs = np.zeros(shape, dtype=np.int64)
+    there = np.zeros((len(samples), records, etas, levels, polarities) if ladders else 0, dtype=bool)
+
+    def empty() -> Tally:
+        first = {limit: np.full(rungs, levels, dtype=np.int32) for limit in (limits if ladders else ())}
+        exceeding = {limit: np.zeros(shape, dtype=np.int64) for limit in limits}
+        return Tally(plan, samples, runs, exceeding, Ladders(first, there) if ladders else None)
+
+    upper, lower, many, checked, slides = empty(), empty(), Counter[str](), True, False
+    start = samples.start * records * plan.block
+    for rows in store.rows(start, samples.stop * records * plan.block, counted):
         endings = rows.select(rows.outcome != FAILED)
-        finished, failed = finished + len(rows), failed + rows.failed
         sample, record, eta, level, polarity = plan.places(endings.run)
         sample = sample - samples.start
         cell = np.ravel_multi_index((sample if apart else np.zeros_like(sample), record, level), shape)
@@ -262,44 +302,21 @@ def count(
             there.ravel()[endings.run - start] = True
         checked &= bool(endings.checked.all())
         slides |= bool((endings.slip > 0).any())
-        by_blocks, off_edge = by_blocks + int(endings.by_blocks.sum()), off_edge + int(endings.off_edge.sum())
-        doubtful = int(endings.unknown.sum())
-        unknown += doubtful
-        if doubtful and lower is None:  # up to the first unknown outcome, both counts are equal
-            lower = deepcopy(upper)
+        many.update({name: int(getattr(endings, name).sum()) for name in ("unknown", "by_blocks", "off_edge")})
+        many.update(finished=len(rows), failed=rows.failed)
         for limit in limits:
             rotations = reach[limit][sample] if limit in reach else None
-            upper.add(limit, exceeds(endings, limit, rotations), cell, ladder, level)
-            if lower is not None:
-                known = known_to_exceed(endings, limit, rotations, phi_cr[sample])
-                lower.add(limit, known, cell, ladder, level)
-
+            beyond = surely = exceeds(endings, limit, rotations)
+            if endings.unknown.any():
+                surely = known_to_exceed(endings, limit, rotations, phi_cr[sample])
+            upper.add(limit, beyond, cell, ladder, level)
+            lower.add(limit, surely, cell, ladder, level)
     # Free blocks may move in other ways than the mechanism, from other accelerations; a body that slides never uplifts.
-    uplifts = store.facts.get(UPLIFT_FACT, {}).get(structure) if not (by_blocks or slides) else None
-
-    def tally(counts: _Counts, of_known: Tally | None) -> Tally:
-        of_ladders = Ladders(counts.first, there) if ladders else None
-        many = unknown, checked, by_blocks, off_edge, slides, finished, failed
-        return Tally(plan, samples, runs, counts.exceeding, of_ladders, *many, of_known, uplifts)
-
+    uplifts = store.facts.get(UPLIFT_FACT, {}).get(structure) if not (many["by_blocks"] or slides) else None
     checked |= store.fact("description")["model"] != "nonlinear"  # equivalent blocks have no joints
-    return tally(upper, tally(lower, None) if lower is not None else None)
-
-
-class _Counts:
-    """Numbers of exceeding runs and first levels of ladders, while they are counted; see `Tally` and `Ladders`."""
-
-    def __init__(
-        self, limits: Sequence[Limit], shape: tuple[int, ...], rungs: tuple[int, ...] | None, levels: int
-    ) -> None:
-        self.exceeding = {limit: np.zeros(shape, dtype=np.int64) for limit in limits}
-        self.first = {limit: np.full(rungs, levels, dtype=np.int32) for limit in limits if rungs is not None}
-
-    def add(self, limit: Limit, beyond: Bools, cell: Integers, ladder: Integers, level: Integers) -> None:
-        """Count the runs of a block that exceed a limit state."""
-        _add(self.exceeding[limit], cell[beyond])
-        if self.first:
-            np.minimum.at(self.first[limit].ravel(), ladder[beyond], level[beyond].astype(np.int32))
+    known = lower if many["unknown"] else None
+    told: dict[str, Any] = {**many, "checked": checked, "slides": slides, "lower": known, "uplift": uplifts}
+    return replace(upper, **told)
 
 
 def exceeds(found: RunRows, limit: Limit, reach: Reals | None = None) -> Bools:
@@ -490,47 +507,28 @@ def first_reached(moved: Callable[[Reals], Reals], phi: Reals, at: Reals, wanted
         The displacement [m].
     """
     for k in range(1, len(phi)):
-        if at[k] >= wanted:
-            return _crossing(moved, phi[k - 1], phi[k], wanted)
         turns_back = k + 1 < len(phi) and at[k - 1] <= at[k] > at[k + 1]
-        if turns_back and (peak := _peak(moved, phi[k - 1], phi[k + 1], wanted)) is not None:
-            return _crossing(moved, phi[k - 1], peak, wanted)
+        if at[k] >= wanted or turns_back:
+            found = _refined(moved, phi[k - 1], phi[k if at[k] >= wanted else k + 1], wanted)
+            if found is not None:
+                return found
     return None
 
 
-def _crossing(moved: Callable[[Reals], Reals], low: float, high: float, wanted: float) -> float:
-    """Find by successive refinement where between two rotations a displacement is first reached."""
-    for _ in range(MAX_REFINEMENTS):
-        fine = np.linspace(low, high, REFINEMENT + 1)
-        k = max(int(np.argmax(moved(fine) >= wanted)), 1)
-        low, high = float(fine[k - 1]), float(fine[k])
-    return high
-
-
-def _peak(moved: Callable[[Reals], Reals], low: float, high: float, wanted: float) -> float | None:
-    """Return a rotation between two others at which a displacement is reached, although at neither of these.
-
-    None if there is no such rotation.
-    """
+def _refined(moved: Callable[[Reals], Reals], low: float, high: float, wanted: float) -> float | None:
+    """Return where between two rotations a displacement is first reached, which may be at a peak; None if nowhere."""
+    there = False
     for _ in range(MAX_REFINEMENTS):
         fine = np.linspace(low, high, REFINEMENT + 1)
         at = moved(fine)
-        k = int(np.argmax(at))
-        if at[k] >= wanted:
-            return float(fine[k])
-        low, high = float(fine[max(k - 1, 0)]), float(fine[min(k + 1, REFINEMENT)])
-    return None
+        there = there or bool((at >= wanted).any())
+        k = max(int(np.argmax(at >= wanted if there else at)), 1)  # the first that reaches it, or else the highest
+        low, high = float(fine[k - 1]), float(fine[k if there else min(k + 1, REFINEMENT)])
+    return high if there else None
 
 
 UPLIFT_FACT = "uplift"
 """Name under which a store keeps the uplift accelerations of its structures."""
-
-
-class Onset(NamedTuple):
-    """Intensity up to which no motion uplifts a structure, and whether every motion uplifts it beyond."""
-
-    at: float
-    exact: bool
 
 
 def accelerations(study: Study, plan: Plan) -> dict[str, Pair]:
@@ -554,31 +552,3 @@ def _of_both(mechanism: Mechanism, model: ModelName) -> Pair:
         block = equivalent_block(mechanism)
         one, other = uplift(block.positive, model), uplift(block.negative, model)
     return (one, other) if mechanism.rocks_both_ways else (max(one, other), None)
-
-
-def onset(plan: Plan, samples: range, pair: Pair | None, measure: str) -> Onset | None:
-    """Return at which intensity a structure uplifts; None if that is not known over a measure.
-
-    Parameters
-    ----------
-    plan : Plan
-        The plan of the study's runs.
-    samples : range
-        Indices of the structure's samples.
-    pair : (float or None, float or None), optional
-        Its uplift accelerations over g, as the store keeps them.
-    measure : str
-        The measure: PGA, or PGA over the uplift acceleration.
-    """
-    parsed = parse_measure(measure)
-    if pair is None or str(parsed.base) != PGA or parsed.power != 1:
-        return None
-    usable = [k for k in samples if plan.trials[k].reason is None]
-    accelerations = np.array([plan.trials[k].lambda_ * plan.trials[k].gravity for k in usable])
-    # If the accelerations differ, the uplift depends on a property that varies, and there is no single onset.
-    if np.ptp(accelerations) > INTENSITY_TOLERANCE * accelerations.max():
-        return None
-    pga = accelerations[:1] / STANDARD_GRAVITY
-    at = float(parsed.relative(pga, plan.reference(np.array(usable[:1])))[0])
-    one, other = pair
-    return Onset(at, one is not None and other is not None and isclose(one, other, rel_tol=INTENSITY_TOLERANCE))
