@@ -194,7 +194,8 @@ def annual_rate(curve: FragilityCurve, hazard: HazardCurve) -> Rate:
         _integral(hazard, probability, jumps) + float(probability(end)[0]) * last
         for probability in (lambda x: curve.band(x)[0], curve.probability, lambda x: curve.band(x)[1])
     )
-    return Rate(rate, low, high, (1 - float(curve.probability(end)[0])) * last, _below(curve, hazard))
+    above = (1 - float(curve.probability(end)[0])) * last
+    return Rate(rate, low, high, above, min(_below(each, hazard) for each in (curve.own, *curve.implied.values())))
 
 
 def _integral(hazard: HazardCurve, probability: Callable[[Reals], Reals], jumps: Sequence[float]) -> float:
@@ -232,15 +233,10 @@ def _beyond(hazard: HazardCurve, at: float) -> float:
 
 
 def _below(curve: FragilityCurve, hazard: HazardCurve) -> float:
-    """Return the rate that intensities below the first point add, if the first power law continues [1/year].
+    """Return the rate that intensities below the first point add to a curve without its cuts [1/year].
 
-    Of curves that cut each other, it is that of the smallest.
+    The first power law continues there.
     """
-    return min(_below_alone(each, hazard) for each in (curve.own, *curve.implied.values()))
-
-
-def _below_alone(curve: FragilityCurve, hazard: HazardCurve) -> float:
-    """Return the rate that intensities below the first point add to a single curve [1/year]."""
     if curve.step is not None:
         return _beyond(hazard, curve.step.value)
     from scipy.special import log_ndtr, ndtr
