@@ -23,7 +23,7 @@ from rocking_cli.questions.fragility.hazard_curve import HazardCurve, Rate, annu
 from rocking_cli.questions.fragility.observed import Observations
 from rocking_cli.questions.fragility.plan import Plan
 from rocking_cli.questions.fragility.store import Store
-from rocking_cli.questions.fragility.tally import Cells, Counted, Ladders, Tally, count, intensities
+from rocking_cli.questions.fragility.tally import Cells, Counted, Ladders, Tally, count
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.fit import Estimate
 
@@ -252,7 +252,7 @@ def _curves_over(
             curve = FragilityCurve("none", why, confidence, seen.runs, seen.exceedances, records=seen.records)
         else:
             tried = np.unique(x) if level is not None else None
-            lower, upper, of = _capacities(counts, ladders, measure, limit, together=cells.together)
+            lower, upper, of = cells.capacities(ladders, limit, measure)
             one, each = tally.one(of), tally.weight(of)
             curve = fit_capacities(lower, upper, one, levels=tried, confidence=confidence, weight=each)
         return Fragility(structure, limit, measure, seen, curve, None, left_out=left_out)
@@ -288,26 +288,6 @@ def _undecided(tally: Tally, limit: Limit, cells: Cells, ladders: Ladders | None
     if ladders is None or tally.least.ladders is None:
         return int(cells.of(tally.exceeding[limit] - tally.least.exceeding[limit]).sum())
     return int((ladders.first[limit] != tally.least.ladders.first[limit]).sum())
-
-
-def _capacities(
-    tally: Tally, ladders: Ladders, measure: str, limit: Limit, *, together: bool
-) -> tuple[Reals, Reals, Integers]:
-    """Return the bounds of the capacity of each ladder, 0 or infinity if no level bounds it, and its record."""
-    first, last = ladders.first[limit], ladders.below(limit)
-    levels = len(tally.plan.levels)
-    known = (first < levels) | (last >= 0)  # a ladder without a simulated run gives no information
-    sample, record, _, _ = np.nonzero(known)
-    began, last = first[known].astype(np.int64), last[known]
-    if together:
-        sample = np.zeros_like(sample)
-
-    def at(level: Integers) -> Reals:
-        return intensities(tally.plan, measure, sample + tally.samples.start, record, np.clip(level, 0, levels - 1))
-
-    lower, upper = np.where(last >= 0, at(last), 0.0), np.where(began < levels, at(began), np.inf)
-    sound = lower < upper  # otherwise the peak decreases with the level, or is unknown
-    return lower[sound], upper[sound], record[sound]
 
 
 def surfaces(tally: Tally, structure: str, definition: Definition) -> Iterator[Bivariate]:

@@ -139,24 +139,17 @@ class FragilityCurve(FittedToRuns):
     @property
     def median(self) -> Estimate | None:
         """Intensity of probability one half, in the unit of x; its interval is where the band crosses one half."""
-        medians = [each._median for each in (self, *self.implied.values())]
-        known = [each for each in medians if each is not None]
-        if medians[0] is None:
+        median = self.step
+        if self.fit is not None:
+            a, b = self.fit.coefficients
+            with np.errstate(over="ignore"):  # the data may hardly bound an end
+                ends = [float(u if self.kind == "logistic" else np.exp(u)) for u in (-a / b, *_root_interval(self.fit))]
+            median = Estimate(*ends)
+        if median is None:
             return None
+        known = [median, *filter(None, (each.median for each in self.implied.values()))]
         # The minimum of increasing curves crosses one half at the largest of their medians.
         return Estimate(*(max(getattr(each, end) for each in known) for end in ("value", "low", "high")))
-
-    @property
-    def _median(self) -> Estimate | None:
-        """Median of the fit itself."""
-        if self.fit is None:
-            return self.step
-        a, b = self.fit.coefficients
-        low, high = _root_interval(self.fit)
-        if self.kind == "logistic":
-            return Estimate(float(-a / b), low, high)
-        with np.errstate(over="ignore"):  # the data may hardly bound an end
-            return Estimate(float(np.exp(-a / b)), float(np.exp(low)), float(np.exp(high)))
 
     @property
     def dispersion(self) -> Estimate | None:
@@ -172,7 +165,8 @@ class FragilityCurve(FittedToRuns):
     @property
     def unbounded(self) -> bool:
         """Whether the upper confidence limit of the median is infinite: the band then covers nearly everything."""
-        return self.fit is not None and self._median is not None and not np.isfinite(self._median.high)
+        median = self.own.median
+        return self.fit is not None and median is not None and not np.isfinite(median.high)
 
     def _inverse_slope(self, times: float = 1.0) -> Estimate:
         assert self.fit is not None
@@ -181,27 +175,25 @@ class FragilityCurve(FittedToRuns):
 
     def probability(self, x: Reals) -> Reals:
         """Return the probability of exceedance at intensities of any shape; NaN if there is no curve."""
-        x = np.asarray(x, dtype=np.float64)
-        if self.fit is not None:
-            probability = self.fit.probability(_design(self.kind, x)).reshape(x.shape)
-        elif self.step is not None:
-            probability = np.heaviside(x - self.step.value, 0.0 if self.is_exact else 0.5)
-        else:
-            return np.full(x.shape, np.nan)
-        return np.asarray(np.min([probability, *(each.probability(x) for each in self.implied.values())], axis=0))
+        return np.asarray(self.lines(x)[0])
 
     def band(self, x: Reals) -> tuple[Reals, Reals]:
         """Return pointwise confidence limits of the probability at intensities; 0 and 1 within a step's interval."""
-        x = np.asarray(x, dtype=np.float64)
-        if self.fit is not None:
-            bounds = [each.reshape(x.shape) for each in self.fit.band(_design(self.kind, x))]
-        elif self.step is not None:
-            below = x <= self.step.low
-            bounds = [((x >= self.step.high) & ~below).astype(np.float64), (~below).astype(np.float64)]
-        else:
-            return np.full(x.shape, np.nan), np.full(x.shape, np.nan)
-        low, high = np.min([bounds, *(each.band(x) for each in self.implied.values())], axis=0)
+        _, low, high = self.lines(x)
         return low, high
+
+    def lines(self, x: Reals) -> Reals:
+        """Return the probability at intensities of any shape and the limits of its band, shape (3, ...)."""
+        x = np.asarray(x, dtype=np.float64)
+        own = np.full((3, *x.shape), np.nan)
+        if self.fit is not None:
+            design = _design(self.kind, x)
+            own = np.reshape([self.fit.probability(design), *self.fit.band(design)], own.shape)
+        elif self.step is not None:
+            step = np.heaviside(x - self.step.value, 0.0 if self.is_exact else 0.5)
+            within = x > self.step.low
+            own = np.array([step, (x >= self.step.high) & within, within], dtype=np.float64)
+        return np.asarray(np.min([own, *(each.lines(x) for each in self.implied.values())], axis=0))
 
     def cut(self, x: Reals) -> Cut | None:
         """Return the largest cut of the curve or its band at some intensities (n,); None if it is nowhere noticeable.
@@ -213,13 +205,11 @@ class FragilityCurve(FittedToRuns):
         """
         if not self.implied:
             return None
-        uncut, others = self.own, list(self.implied)
-        lines = np.array([[each.probability(x), *each.band(x)] for each in (uncut, *self.implied.values())])
-        above = lines[0] - lines[1:]
+        above = self.own.lines(x) - np.array([each.lines(x) for each in self.implied.values()])
         if above.max() <= MIN_CUT:
             return None
         k, line, place = (int(each) for each in np.unravel_index(above.argmax(), above.shape))
-        return Cut(others[k], float(above[k, line, place]), float(x[place]))
+        return Cut(list(self.implied)[k], float(above[k, line, place]), float(x[place]))
 
 
 def fit_curve(observations: Observations, *, confidence: float = 0.95, only: Kind | None = None) -> FragilityCurve:

@@ -203,7 +203,29 @@ class Cells:
 
     def intensities(self, measure: str) -> Reals:
         """Return the intensity of each cell in a measure."""
-        return intensities(self.tally.plan, measure, self.place[0] + self.tally.samples.start, self.record, self.level)
+        return self._intensities(measure, *self.place)
+
+    def _intensities(self, measure: str, sample: Integers, record: Integers, level: Integers) -> Reals:
+        """Return the intensity of runs; exactly the level if the levels are of this measure."""
+        plan = self.tally.plan
+        if measure == plan.measure:
+            return np.asarray(np.array(plan.levels)[level])
+        sample = sample + self.tally.samples.start
+        return plan.intensities(measure, sample, record, level, plan.factors(sample, record, level))
+
+    def capacities(self, ladders: Ladders, limit: Limit, measure: str) -> tuple[Reals, Reals, Integers]:
+        """Return the bounds of the capacity of each ladder, 0 or infinity if no level bounds it, and its record."""
+        first, last, levels = ladders.first[limit], ladders.below(limit), len(self.tally.plan.levels)
+        known = (first < levels) | (last >= 0)  # a ladder without a simulated run gives no information
+        sample, record, _, _ = np.nonzero(known)
+        sample = np.zeros_like(sample) if self.together else sample
+        last, first = last[known], first[known].astype(np.int64)
+        at_last, at_first = (
+            self._intensities(measure, sample, record, np.clip(level, 0, levels - 1)) for level in (last, first)
+        )
+        lower, upper = np.where(last >= 0, at_last, 0.0), np.where(first < levels, at_first, np.inf)
+        sound = lower < upper  # otherwise the peak decreases with the level, or is unknown
+        return lower[sound], upper[sound], record[sound]
 
     def onset(self, measure: str) -> Onset | None:
         """Return the intensity at which the structure uplifts: PGA, or PGA over the uplift acceleration.
@@ -229,13 +251,6 @@ class Cells:
             if early.any() or (exact and late.any()):
                 return None
         return Onset(at, exact)
-
-
-def intensities(plan: Plan, measure: str, sample: Integers, record: Integers, level: Integers) -> Reals:
-    """Return the intensity of runs; exactly the level if the levels are of this measure."""
-    if measure == plan.measure:
-        return np.asarray(np.array(plan.levels)[level])
-    return plan.intensities(measure, sample, record, level, plan.factors(sample, record, level))
 
 
 def samples_of(plan: Plan, structure: str) -> range:
