@@ -148,7 +148,8 @@ class StudyAnswer(Answer[list[Fragility]]):
         >>> edps.round(2).tolist(), thresholds.tolist(), lower
         ([0.32, 1.5, 1.5], [0.5, 1.0], 0.05)
         """
-        return cloud(self, measure, edp, censored, structure)
+        runs, limits = stacked(self.run_blocks()), self.definition.limit_states
+        return cloud(runs, self.plan.structures, limits, measure, edp, censored, structure)
 
 
 class UnknownCurve(InputError, KeyError):
