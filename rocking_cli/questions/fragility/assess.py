@@ -238,7 +238,7 @@ def _curves_over(
     if not there.any():
         return
     onset, left_out, cells = cells.onset(measure), int(cells.runs[~there].sum()), cells.only(there)
-    x, record, weight = cells.intensities(measure), tally.one(cells.record), tally.weight(cells.record)
+    x, (record, weight) = cells.intensities(measure), tally.clusters(cells.record)
     level = cells.level if tally.decided_by_level(measure) else None
 
     def fit(counts: Tally, limit: Limit) -> Fragility:
@@ -253,8 +253,8 @@ def _curves_over(
         else:
             tried = np.unique(x) if level is not None else None
             lower, upper, of = cells.capacities(ladders, limit, measure)
-            one, each = tally.one(of), tally.weight(of)
-            curve = fit_capacities(lower, upper, one, levels=tried, confidence=confidence, weight=each)
+            which, each = tally.clusters(of)
+            curve = fit_capacities(lower, upper, which, levels=tried, confidence=confidence, weight=each)
         return Fragility(structure, limit, measure, seen, curve, None, left_out=left_out)
 
     unknown = {limit: _undecided(tally, limit, cells, tally.ladders) for limit in definition.limit_states}
@@ -304,7 +304,7 @@ def _surfaces_over(
     there = np.all([cells.intensities(measure) > 0 for measure in measures], axis=0)
     left_out, cells = int(cells.runs[~there].sum()), cells.only(there)
     x1, x2 = (cells.intensities(measure) for measure in measures)
-    record, weight, confidence = tally.one(cells.record), tally.weight(cells.record), definition.confidence
+    (record, weight), confidence = tally.clusters(cells.record), definition.confidence
 
     def fit(counts: Tally, limit: Limit) -> Bivariate:
         exceeding = cells.of(counts.exceeding[limit])

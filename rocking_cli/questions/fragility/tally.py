@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.core import Direction, Mechanism, both_statics, equivalent_block
-from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.questions.fragility.definition import OVERTURNING, RESTITUTION, SLIDING, UPLIFT, Limit
@@ -94,14 +93,13 @@ class Tally:
         """Number of runs of unknown outcome; None if there are none because joints were not checked."""
         return self.unknown if self.unknown or self.checked else None
 
-    def one(self, record: Integers) -> Integers:
-        """Return the index of the first entry that is the same record, as sets of several levels may share a record."""
-        return np.asarray(self.plan.of_sets.one[record])
+    def clusters(self, record: Integers) -> tuple[Integers, Reals | None]:
+        """Return the cluster and the weight of each run, from its record; no weights if all are equal.
 
-    def weight(self, record: Integers) -> Reals | None:
-        """Weight of each run; None if all weights are equal."""
+        Sets of several levels may share a record: the cluster is the first entry that is the same record.
+        """
         sets = self.plan.of_sets
-        return np.asarray(sets.weight[record]) if sets.weighted else None
+        return np.asarray(sets.one[record]), np.asarray(sets.weight[record]) if sets.weighted else None
 
     def over(self, *measures: str) -> Cells:
         """Return the non-empty cells of runs that have the same intensity in some measures."""
@@ -493,20 +491,19 @@ def held(study: Study) -> list[str]:
 def of_a_structure(mechanism: Mechanism, displacements: Sequence[float]) -> list[Pair]:
     """Return, for each displacement [m], the rotations of either sign at which the top first reaches it."""
     _, spot = top(mechanism)
-    sides: dict[Direction, list[float | None]] = {}
-    for direction in Direction:
+    sides: list[list[float | None]] = []
+    for direction in (Direction.POSITIVE, Direction.NEGATIVE):
         if direction not in mechanism.directions:  # the mechanism does not rotate in this direction
-            sides[direction] = [None] * len(displacements)
+            sides.append([None] * len(displacements))
             continue
 
         def moved(phi: Reals, side: Direction = direction) -> Reals:
             return np.abs((mechanism.followed(phi, side)(spot).z - spot.at).real)
 
-        end = float(np.nextafter(mechanism.limit(direction), 0.0))
-        phi = np.linspace(0.0, end, TOP_POINTS + 1)
+        phi = np.linspace(0.0, float(np.nextafter(mechanism.limit(direction), 0.0)), TOP_POINTS + 1)
         at = moved(phi)
-        sides[direction] = [first_reached(moved, phi, at, each) for each in displacements]
-    return list(zip(sides[Direction.POSITIVE], sides[Direction.NEGATIVE], strict=True))
+        sides.append([first_reached(moved, phi, at, each) for each in displacements])
+    return list(zip(*sides, strict=True))
 
 
 def first_reached(moved: Callable[[Reals], Reals], phi: Reals, at: Reals, wanted: float) -> float | None:
@@ -522,22 +519,27 @@ def first_reached(moved: Callable[[Reals], Reals], phi: Reals, at: Reals, wanted
         The displacement [m].
     """
     for k in range(1, len(phi)):
+        there = bool(at[k] >= wanted)
         turns_back = k + 1 < len(phi) and at[k - 1] <= at[k] > at[k + 1]
-        if at[k] >= wanted or turns_back:
-            found = _refined(moved, phi[k - 1], phi[k if at[k] >= wanted else k + 1], wanted)
+        if there or turns_back:
+            found = _refined(moved, phi[k - 1], phi[k if there else k + 1], wanted, there=there)
             if found is not None:
                 return found
     return None
 
 
-def _refined(moved: Callable[[Reals], Reals], low: float, high: float, wanted: float) -> float | None:
-    """Return where between two rotations a displacement is first reached, which may be at a peak; None if nowhere."""
-    there = False
+def _refined(moved: Callable[[Reals], Reals], low: float, high: float, wanted: float, *, there: bool) -> float | None:
+    """Return where between two rotations a displacement is first reached; None if it is not.
+
+    It is reached `there`, at the higher rotation; otherwise it may be at a peak between the two.
+    """
+    start = low
     for _ in range(MAX_REFINEMENTS):
         fine = np.linspace(low, high, REFINEMENT + 1)
         at = moved(fine)
-        there = there or bool((at >= wanted).any())
-        k = max(int(np.argmax(at >= wanted if there else at)), 1)  # the first that reaches it, or else the highest
+        k = max(int(np.argmax(at >= wanted if there else at)), 1)
+        if at[k] >= wanted and not there:
+            return _refined(moved, start, float(fine[k]), wanted, there=True)
         low, high = float(fine[k - 1]), float(fine[k if there else min(k + 1, REFINEMENT)])
     return high if there else None
 
@@ -555,15 +557,13 @@ def accelerations(study: Study, plan: Plan) -> dict[str, Pair]:
         return {}
     ranges: dict[str, Pair] = {}
     for sample, trial in zip(study.samples, plan.trials, strict=True):
-        if trial.reason is None and trial.structure not in ranges:
-            ranges[trial.structure] = _of_both(sample.mechanism, study.definition.model)
+        if trial.reason is not None or trial.structure in ranges:
+            continue
+        mechanism, model = sample.mechanism, study.definition.model
+        if model == "nonlinear":
+            one, other = (side.lambda_ for side in both_statics(mechanism))
+        else:
+            block = equivalent_block(mechanism)
+            one, other = uplift(block.positive, model), uplift(block.negative, model)
+        ranges[trial.structure] = (one, other) if mechanism.rocks_both_ways else (max(one, other), None)
     return ranges
-
-
-def _of_both(mechanism: Mechanism, model: ModelName) -> Pair:
-    if model == "nonlinear":
-        one, other = (side.lambda_ for side in both_statics(mechanism))
-    else:
-        block = equivalent_block(mechanism)
-        one, other = uplift(block.positive, model), uplift(block.negative, model)
-    return (one, other) if mechanism.rocks_both_ways else (max(one, other), None)
