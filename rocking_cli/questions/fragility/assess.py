@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
-from typing import TypeVar
 
 import numpy as np
 
-from rocking_cli.arrays import Bools, Integers, Reals
+from rocking_cli.arrays import Integers, Reals
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.questions.fragility.curves import (
     FittedToRuns,
@@ -25,7 +23,7 @@ from rocking_cli.questions.fragility.hazard_curve import HazardCurve, Rate, annu
 from rocking_cli.questions.fragility.observed import Observations
 from rocking_cli.questions.fragility.plan import Plan
 from rocking_cli.questions.fragility.store import Store
-from rocking_cli.questions.fragility.tally import Cells, Counted, Ladders, Onset, Tally, count, intensities
+from rocking_cli.questions.fragility.tally import Cells, Counted, Ladders, Tally, count
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.fit import Estimate
 
@@ -164,9 +162,6 @@ class Bivariate(_FittedTwice):
         return self.surface
 
 
-Fitted = TypeVar("Fitted", Fragility, Bivariate)
-
-
 def counted(store: Store, plan: Plan, definition: Definition, progress: Counted) -> dict[str, Tally]:
     """Count the finished runs of each structure of a store, for the limit states and measures of its study.
 
@@ -229,30 +224,27 @@ def unknown_runs(found: Mapping[str, Tally]) -> list[UnknownRuns]:
 
 def curves(tally: Tally, structure: str, definition: Definition, hazard: HazardCurve | None) -> Iterator[Fragility]:
     """Yield the fragility curves of a structure: each limit state over each measure that is positive in some run."""
-    over = definition.hazard.measure if definition.hazard is not None else None
     for measure in definition.fitted_measures:
-        cells = tally.over(measure)
-        x = cells.intensities(measure)
-        if not (x > 0).any():  # all intensities are zero, or none is known
-            continue
-        fits = _curves_over(cells, x, structure, measure, definition)
-        for each in _consistent(list(fits), cells.onset(measure), slides=tally.slides):
-            yield _with_rate(each, hazard) if hazard is not None and measure == over else each
+        of_measure = definition.hazard is not None and definition.hazard.measure == measure
+        yield from _curves_over(measure, tally, structure, definition, hazard if of_measure else None)
 
 
 def _curves_over(
-    cells: Cells, x: Reals, structure: str, measure: str, definition: Definition
-) -> Iterator[Fragility]:  # fmt: skip
-    """Yield the curve of each limit state over one measure as it is fitted; `x` holds the intensities of the cells."""
-    tally, confidence, there = cells.tally, definition.confidence, x > 0
-    x, runs, left_out = x[there], cells.runs[there], int(cells.runs[~there].sum())
-    level = cells.level[there] if tally.decided_by_level(measure) else None
-    record, weight = tally.one(cells.record[there]), tally.weight(cells.record[there])
+    measure: str, tally: Tally, structure: str, definition: Definition, hazard: HazardCurve | None
+) -> Iterator[Fragility]:
+    """Yield the curve of each limit state over one measure, corrected so that none lies above one that it implies."""
+    cells, confidence, unit = tally.over(measure), definition.confidence, parse_measure(measure).unit
+    there = cells.intensities(measure) > 0  # False for unknown values, too
+    if not there.any():
+        return
+    onset, left_out, cells = cells.onset(measure), int(cells.runs[~there].sum()), cells.only(there)
+    x, (record, weight) = cells.intensities(measure), tally.clusters(cells.record)
+    level = cells.level if tally.decided_by_level(measure) else None
 
-    def fit(tally: Tally, limit: Limit) -> Fragility:
-        ladders = tally.ladders
-        exceeding = cells.of(tally.exceeding[limit] if ladders is None else ladders.above(limit))[there]
-        seen = Observations.of(x, exceeding, record, level=level, runs=runs, weight=weight)
+    def fit(counts: Tally, limit: Limit) -> Fragility:
+        ladders = counts.ladders
+        exceeding = cells.of(counts.exceeding[limit] if ladders is None else ladders.above(limit))
+        seen = Observations.of(x, exceeding, record, level=level, runs=cells.runs, weight=weight)
         if ladders is None:
             curve = fit_curve(seen, confidence=confidence)
         elif parse_measure(measure).power == 0:
@@ -260,119 +252,65 @@ def _curves_over(
             curve = FragilityCurve("none", why, confidence, seen.runs, seen.exceedances, records=seen.records)
         else:
             tried = np.unique(x) if level is not None else None
-            lower, upper, of = _capacities(tally, ladders, measure, limit, together=cells.together)
-            one, each = tally.one(of), tally.weight(of)
-            curve = fit_capacities(lower, upper, one, levels=tried, confidence=confidence, weight=each)
+            lower, upper, of = cells.capacities(ladders, limit, measure)
+            which, each = tally.clusters(of)
+            curve = fit_capacities(lower, upper, which, levels=tried, confidence=confidence, weight=each)
         return Fragility(structure, limit, measure, seen, curve, None, left_out=left_out)
 
-    for limit in definition.limit_states:
-        unknown = _undecided_runs(cells, limit, there) if tally.ladders is None else _undecided_ladders(tally, limit)
-        yield _twice(partial(fit, limit=limit), tally, unknown)
-
-
-def _twice(fit: Callable[[Tally], Fitted], tally: Tally, unknown: int) -> Fitted:
-    """Return a fit with undecided runs counted as exceeding, and as its `lower` the one in which they do not."""
-    upper = fit(tally)
-    if unknown:
-        assert tally.lower is not None
-        upper = replace(upper, unknown=unknown, lower=fit(tally.lower))
-    return upper if tally.unknown_if_checked is not None else replace(upper, unknown=None)
-
-
-def _consistent(fits: Sequence[Fragility], onset: Onset | None, *, slides: bool) -> Iterator[Fragility]:
-    """Yield the curves of one structure over one measure, corrected so that none lies above a curve that it implies.
-
-    Parameters
-    ----------
-    fits : sequence of Fragility
-        The curves as fitted, one for each limit state.
-    onset : Onset, optional
-        The intensity at which the structure uplifts, if it is known.
-    """
+    unknown = {limit: _undecided(tally, limit, cells, tally.ladders) for limit in definition.limit_states}
+    upper = {limit: fit(tally, limit) for limit in unknown}
     floor: dict[Limit, FragilityCurve] = {}
-    if onset is not None and onset.exact and any(each.limit == UPLIFT for each in fits):
-        fits = [_exact(each, onset.at) if each.limit == UPLIFT else each for each in fits]
+    if onset is not None and onset.exact and UPLIFT in upper:
+        place = f"{onset.at:.4g} {unit}".strip()
+        why = f"a motion uplifts the structure exactly if its {measure} exceeds {place}, so no curve is fitted"
+        upper[UPLIFT] = replace(upper[UPLIFT], curve=exact_step(upper[UPLIFT].curve, onset.at, why))
     elif onset is not None:
         floor = {UPLIFT_MEASURE: exact_step(FragilityCurve("none", "", 1.0, 0, 0), onset.at, "")}
+    lower = upper | {limit: fit(tally.least, limit) for limit, runs in unknown.items() if runs}
 
-    def below(found: Fragility, weaker: Iterable[Fragility]) -> Fragility:
-        known = floor | {other.limit: other.curve for other in weaker if other.curve.kind != "none"}
-        return found if found.curve.kind == "none" else replace(found, curve=replace(found.curve, implied=known))
+    def below(limit: Limit, fits: Mapping[Limit, Fragility]) -> Fragility:
+        found = fits[limit]
+        if found.curve.kind == "none":
+            return found
+        weaker = {other: fits[other].curve for other in fits if implies(limit, other, slides=tally.slides)}
+        known = floor | {other: curve for other, curve in weaker.items() if curve.kind != "none"}
+        curve = replace(found.curve, implied=known)
+        return replace(found, curve=curve, rate=None if hazard is None else annual_rate(curve, hazard))
 
-    for each in fits:
-        weaker = [other for other in fits if implies(each.limit, other.limit, slides=slides)]
-        lower = None if each.lower is None else below(each.lower, (other.lower or other for other in weaker))
-        yield replace(below(each, weaker), lower=lower)
-
-
-def _exact(found: Fragility, at: float) -> Fragility:
-    """Return the uplift curve as a step at the exactly known intensity."""
-    place = f"{at:.4g} {parse_measure(found.measure).unit}".strip()
-    why = f"a motion uplifts the structure exactly if its {found.measure} exceeds {place}, so no curve is fitted"
-    return replace(found, curve=exact_step(found.curve, at, why))
+    for limit, runs in unknown.items():
+        yield replace(below(limit, upper), unknown=runs, lower=below(limit, lower) if runs else None)
 
 
-def _with_rate(found: Fragility, hazard: HazardCurve) -> Fragility:
-    """Return a result and its lower fit with their annual rates."""
-    lower = None if found.lower is None else _with_rate(found.lower, hazard)
-    rate = annual_rate(found.curve, hazard) if found.curve.kind != "none" else None
-    return replace(found, rate=rate, lower=lower)
-
-
-def _undecided_runs(cells: Cells, limit: Limit, there: Bools) -> int:
-    """Return the number of runs in some cells that are not known to exceed a limit state or not."""
-    upper, lower = cells.tally, cells.tally.lower
-    return 0 if lower is None else int(cells.of(upper.exceeding[limit] - lower.exceeding[limit])[there].sum())
-
-
-def _undecided_ladders(tally: Tally, limit: Limit) -> int:
-    """Return the number of ladders (levels of one record) whose first exceeding level is not known."""
-    if tally.lower is None:
-        return 0
-    assert tally.ladders is not None and tally.lower.ladders is not None
-    return int((tally.ladders.first[limit] != tally.lower.ladders.first[limit]).sum())
-
-
-def _capacities(
-    tally: Tally, ladders: Ladders, measure: str, limit: Limit, *, together: bool
-) -> tuple[Reals, Reals, Integers]:
-    """Return the bounds of the capacity of each ladder, 0 or infinity if no level bounds it, and its record."""
-    first, last = ladders.first[limit], ladders.below(limit)
-    levels = len(tally.plan.levels)
-    known = (first < levels) | (last >= 0)  # a ladder without a simulated run gives no information
-    sample, record, _, _ = np.nonzero(known)
-    began, last = first[known].astype(np.int64), last[known]
-    if together:
-        sample = np.zeros_like(sample)
-
-    def at(level: Integers) -> Reals:
-        return intensities(tally.plan, measure, sample + tally.samples.start, record, np.clip(level, 0, levels - 1))
-
-    lower, upper = np.where(last >= 0, at(last), 0.0), np.where(began < levels, at(began), np.inf)
-    sound = lower < upper  # otherwise the peak decreases with the level, or is unknown
-    return lower[sound], upper[sound], record[sound]
+def _undecided(tally: Tally, limit: Limit, cells: Cells, ladders: Ladders | None = None) -> int | None:
+    """Return how many runs, or ladders, may or may not exceed a limit state; None if nothing was checked."""
+    if tally.unknown_if_checked is None:
+        return None
+    if ladders is None or tally.least.ladders is None:
+        return int(cells.of(tally.exceeding[limit] - tally.least.exceeding[limit]).sum())
+    return int((ladders.first[limit] != tally.least.ladders.first[limit]).sum())
 
 
 def surfaces(tally: Tally, structure: str, definition: Definition) -> Iterator[Bivariate]:
-    """Yield the fragility surfaces of a structure."""
+    """Yield the surfaces of a structure: each limit state over each two measures that are both positive in some run."""
     for one, other in definition.bivariate:
-        yield from _surfaces_over(tally, structure, (one, other), definition)
+        yield from _surfaces_over((one, other), tally, structure, definition)
 
 
 def _surfaces_over(
-    tally: Tally, structure: str, measures: tuple[str, str], definition: Definition
+    measures: tuple[str, str], tally: Tally, structure: str, definition: Definition
 ) -> Iterator[Bivariate]:
-    """Yield the surface of each limit state over two measures that are both positive in some run."""
+    """Yield the surface of each limit state over two measures."""
     cells = tally.over(*measures)
+    there = np.all([cells.intensities(measure) > 0 for measure in measures], axis=0)
+    left_out, cells = int(cells.runs[~there].sum()), cells.only(there)
     x1, x2 = (cells.intensities(measure) for measure in measures)
-    there = (x1 > 0) & (x2 > 0)
-    x1, x2, runs, left_out = x1[there], x2[there], cells.runs[there], int(cells.runs[~there].sum())
-    record, weight = tally.one(cells.record[there]), tally.weight(cells.record[there])
+    (record, weight), confidence = tally.clusters(cells.record), definition.confidence
 
-    def fit(tally: Tally, limit: Limit) -> Bivariate:
-        exceeding = cells.of(tally.exceeding[limit])[there]
-        surface = fit_surface(x1, x2, exceeding, record, runs=runs, confidence=definition.confidence, weight=weight)
-        return Bivariate(structure, limit, measures, x1, x2, runs, exceeding, surface, left_out=left_out)
+    def fit(counts: Tally, limit: Limit) -> Bivariate:
+        exceeding = cells.of(counts.exceeding[limit])
+        surface = fit_surface(x1, x2, exceeding, record, runs=cells.runs, confidence=confidence, weight=weight)
+        return Bivariate(structure, limit, measures, x1, x2, cells.runs, exceeding, surface, left_out=left_out)
 
     for limit in definition.limit_states if there.any() else []:
-        yield _twice(partial(fit, limit=limit), tally, _undecided_runs(cells, limit, there))
+        unknown = _undecided(tally, limit, cells)
+        yield replace(fit(tally, limit), unknown=unknown, lower=fit(tally.least, limit) if unknown else None)

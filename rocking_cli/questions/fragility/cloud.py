@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import DoubtWarning, InputError, Problem, named, warn
-from rocking_cli.io.tables import stacked
 from rocking_cli.names import UNKNOWN
+from rocking_cli.questions.fragility.definition import Limit
 from rocking_cli.studies.fragility.quantities import label, standard_measure
-
-if TYPE_CHECKING:
-    from rocking_cli.questions.fragility.results import StudyAnswer
 
 PEAK = "peak_ratio"
 OVERTURNED = 1.0  # peak rotation over the critical rotation
@@ -21,10 +19,15 @@ LOWER_SHARE = 0.1  # of the lowest threshold: below it runs say little of damage
 
 
 def cloud(
-    answer: StudyAnswer, measure: str, edp: str, censored: float, structure: str | None
+    runs: Mapping[str, Any],
+    names: Sequence[str],
+    limits: Sequence[Limit],
+    measure: str,
+    edp: str,
+    censored: float,
+    structure: str | None,
 ) -> tuple[Reals, Reals, Reals, float, float]:
-    """Return the runs of a structure as a cloud; see `StudyAnswer.to_cloud`."""
-    runs, names, limits = stacked(answer.run_blocks()), answer.plan.structures, answer.definition.limit_states
+    """Return the runs of one of several structures as a cloud; see `StudyAnswer.to_cloud`."""
     thresholds = np.array(sorted({*(limit for limit in limits if isinstance(limit, float)), OVERTURNED}))
     heading, structure = label(standard_measure(measure)), structure or (names[0] if len(names) == 1 else None)
     for field, given, suits, hint in (

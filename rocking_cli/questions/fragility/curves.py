@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.questions.fragility.goodness import Goodness, goodness_of_brackets, goodness_of_runs
-from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE, Observations, few_records, one_of_each
+from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE, Observations, even, few_records, one_of_each
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.fit import (
     Counts,
@@ -127,26 +127,29 @@ class FragilityCurve(FittedToRuns):
         return [each.step for each in (self, *self.implied.values()) if each.step is not None]
 
     @property
-    def median(self) -> Estimate | None:
-        """Intensity of probability one half, in the unit of x; its interval is where the band crosses one half."""
-        medians = [each._median for each in (self, *self.implied.values())]
-        known = [each for each in medians if each is not None]
-        if medians[0] is None:
-            return None
-        # The minimum of increasing curves crosses one half at the largest of their medians.
-        return Estimate(*(max(getattr(each, end) for each in known) for end in ("value", "low", "high")))
+    def p_value(self) -> float | None:
+        """P-value of the goodness-of-fit test; None if there is no curve or test."""
+        return None if self.goodness is None else self.goodness.p_value
 
     @property
-    def _median(self) -> Estimate | None:
-        """Median of the fit itself."""
-        if self.fit is None:
-            return self.step
-        a, b = self.fit.coefficients
-        low, high = _root_interval(self.fit)
-        if self.kind == "logistic":
-            return Estimate(float(-a / b), low, high)
-        with np.errstate(over="ignore"):  # the data may hardly bound an end
-            return Estimate(float(np.exp(-a / b)), float(np.exp(low)), float(np.exp(high)))
+    def rejected(self) -> bool:
+        """Whether the goodness-of-fit test rejects this kind of curve at 5 %."""
+        return self.p_value is not None and self.p_value < MIN_P_VALUE
+
+    @property
+    def median(self) -> Estimate | None:
+        """Intensity of probability one half, in the unit of x; its interval is where the band crosses one half."""
+        median = self.step
+        if self.fit is not None:
+            a, b = self.fit.coefficients
+            with np.errstate(over="ignore"):  # the data may hardly bound an end
+                ends = [float(u if self.kind == "logistic" else np.exp(u)) for u in (-a / b, *_root_interval(self.fit))]
+            median = Estimate(*ends)
+        if median is None:
+            return None
+        known = [median, *filter(None, (each.median for each in self.implied.values()))]
+        # The minimum of increasing curves crosses one half at the largest of their medians.
+        return Estimate(*(max(getattr(each, end) for each in known) for end in ("value", "low", "high")))
 
     @property
     def dispersion(self) -> Estimate | None:
@@ -162,7 +165,8 @@ class FragilityCurve(FittedToRuns):
     @property
     def unbounded(self) -> bool:
         """Whether the upper confidence limit of the median is infinite: the band then covers nearly everything."""
-        return self.fit is not None and self._median is not None and not np.isfinite(self._median.high)
+        median = self.own.median
+        return self.fit is not None and median is not None and not np.isfinite(median.high)
 
     def _inverse_slope(self, times: float = 1.0) -> Estimate:
         assert self.fit is not None
@@ -171,27 +175,25 @@ class FragilityCurve(FittedToRuns):
 
     def probability(self, x: Reals) -> Reals:
         """Return the probability of exceedance at intensities of any shape; NaN if there is no curve."""
-        x = np.asarray(x, dtype=np.float64)
-        if self.fit is not None:
-            probability = self.fit.probability(self._design(x)).reshape(x.shape)
-        elif self.step is not None:
-            probability = np.heaviside(x - self.step.value, 0.0 if self.is_exact else 0.5)
-        else:
-            return np.full(x.shape, np.nan)
-        return np.asarray(np.min([probability, *(each.probability(x) for each in self.implied.values())], axis=0))
+        return np.asarray(self.lines(x)[0])
 
     def band(self, x: Reals) -> tuple[Reals, Reals]:
         """Return pointwise confidence limits of the probability at intensities; 0 and 1 within a step's interval."""
-        x = np.asarray(x, dtype=np.float64)
-        if self.fit is not None:
-            bounds = [each.reshape(x.shape) for each in self.fit.band(self._design(x))]
-        elif self.step is not None:
-            below = x <= self.step.low
-            bounds = [((x >= self.step.high) & ~below).astype(np.float64), (~below).astype(np.float64)]
-        else:
-            return np.full(x.shape, np.nan), np.full(x.shape, np.nan)
-        low, high = np.min([bounds, *(each.band(x) for each in self.implied.values())], axis=0)
+        _, low, high = self.lines(x)
         return low, high
+
+    def lines(self, x: Reals) -> Reals:
+        """Return the probability at intensities of any shape and the limits of its band, shape (3, ...)."""
+        x = np.asarray(x, dtype=np.float64)
+        own = np.full((3, *x.shape), np.nan)
+        if self.fit is not None:
+            design = _design(self.kind, x)
+            own = np.reshape([self.fit.probability(design), *self.fit.band(design)], own.shape)
+        elif self.step is not None:
+            step = np.heaviside(x - self.step.value, 0.0 if self.is_exact else 0.5)
+            within = x > self.step.low
+            own = np.array([step, (x >= self.step.high) & within, within], dtype=np.float64)
+        return np.asarray(np.min([own, *(each.lines(x) for each in self.implied.values())], axis=0))
 
     def cut(self, x: Reals) -> Cut | None:
         """Return the largest cut of the curve or its band at some intensities (n,); None if it is nowhere noticeable.
@@ -203,16 +205,11 @@ class FragilityCurve(FittedToRuns):
         """
         if not self.implied:
             return None
-        uncut, others = self.own, list(self.implied)
-        lines = np.array([[each.probability(x), *each.band(x)] for each in (uncut, *self.implied.values())])
-        above = lines[0] - lines[1:]
+        above = self.own.lines(x) - np.array([each.lines(x) for each in self.implied.values()])
         if above.max() <= MIN_CUT:
             return None
         k, line, place = (int(each) for each in np.unravel_index(above.argmax(), above.shape))
-        return Cut(others[k], float(above[k, line, place]), float(x[place]))
-
-    def _design(self, x: Reals) -> Reals:
-        return _design(self.kind, x.ravel())
+        return Cut(list(self.implied)[k], float(above[k, line, place]), float(x[place]))
 
 
 def fit_curve(observations: Observations, *, confidence: float = 0.95, only: Kind | None = None) -> FragilityCurve:
@@ -238,30 +235,37 @@ def fit_curve(observations: Observations, *, confidence: float = 0.95, only: Kin
     """
     seen = observations
     bare = FragilityCurve("none", "", confidence, seen.runs, seen.exceedances, records=seen.records)
-    if not 0 < bare.exceedances < bare.runs:
-        return replace(bare, why=f"{'none' if not bare.exceedances else 'all'} of the {bare.runs} runs exceed")
-    special = _step_or_none(bare, *seen.sides)
-    if special is not None:
+    if why := _all_alike(bare):
+        return replace(bare, why=why)
+    if (special := _step_or_none(bare, *seen.sides, too_few(seen.counts, 2))) is not None:
         return special
-    if few := too_few(seen.counts, 2):
-        return replace(bare, why=few)
-    curves: dict[Kind, FragilityCurve] = {}
-    refused: dict[Kind, str] = {}
     kinds = CHOICE if only is None else (only,)
-    for kind in kinds:
-        design = _design(kind, seen.x)
-        fit = fit_outcomes(LINKS[kind], design, seen.counts, seen.exceeding, confidence)
-        if isinstance(fit, str):
-            refused[kind] = fit
-        else:
-            goodness = goodness_of_runs(fit, design, seen)
-            curves[kind] = replace(bare, kind=kind, fit=fit, goodness=goodness)
-    if kinds[0] in refused:
-        kind, why = "none", refused[kinds[0]]
-    else:
-        kind, why = _choice(curves) if only is None else _alone(curves[only])
-    aic = {kind: curve.fit.aic for kind, curve in curves.items() if curve.fit is not None}
-    return replace(curves.get(kind, bare), why=why, aic=aic)
+    designs = {kind: _design(kind, seen.x) for kind in kinds}
+    tried = {kind: fit_outcomes(LINKS[kind], designs[kind], seen.counts, seen.exceeding, confidence) for kind in kinds}
+    fits = {kind: fit for kind, fit in tried.items() if isinstance(fit, Fit)}
+    bare = replace(bare, aic={kind: fit.aic for kind, fit in fits.items()})
+    first = tried[kinds[0]]
+    if isinstance(first, str):
+        return replace(bare, why=first)
+    rising = {
+        kind: replace(bare, kind=kind, fit=fit, goodness=goodness_of_runs(fit, designs[kind], seen))
+        for kind, fit in fits.items()
+        if fit.coefficients[1] > 0
+    }
+    if not rising:
+        return replace(bare, why=_DECREASING)
+    kind: Kind = "lognormal"
+    reason = "lognormal is the default; "
+    if only is not None:
+        kind, reason = only, ""
+    elif "lognormal" not in rising:
+        kind, reason = "logistic", "the lognormal does not increase; "
+    elif rising["lognormal"].rejected:
+        reason = "lognormal is the default, and logistic is no likelier; "
+        if "logistic" in rising and fits["logistic"].log_likelihood >= first.log_likelihood + LIKELIHOOD_TOLERANCE:
+            p = rising["lognormal"].p_value
+            kind, reason = "logistic", f"the lognormal is rejected (p = {p:.2g}) and logistic is likelier; "
+    return replace(rising[kind], why=reason + _tested(rising[kind]))
 
 
 def fit_capacities(
@@ -297,34 +301,37 @@ def fit_capacities(
     """
     ends = one_of_each(np.concatenate([lower, upper, np.zeros(0) if levels is None else levels]))
     lower, upper, tried = np.split(ends, [lower.size, 2 * lower.size])
-    ends = ends[: 2 * lower.size]
     who = np.unique(np.arange(lower.size) if record is None else record, return_inverse=True)[1]
-    bounds, place = np.unique(ends, return_inverse=True)
-    pairs, place = np.unique(place[: lower.size] * bounds.size + place[lower.size :], return_inverse=True)
-    cells, cell = np.unique(who * pairs.size + place, return_inverse=True)
-    each = np.ones(lower.size) if weight is None else weight * lower.size / weight.sum()
-    seen = Counts(cells // pairs.size, cells % pairs.size, totals(cell, each), weight is not None)
-    above = np.isfinite(upper)
-    bare = FragilityCurve("none", "", confidence, lower.size, int(above.sum()), records=seen.records)
-    if not bare.exceedances:
+    pairs, place = np.unique(np.column_stack([lower, upper]), axis=0, return_inverse=True)
+    cells, cell = np.unique(who * len(pairs) + place.ravel(), return_inverse=True)
+    number = totals(cell, even(np.ones(lower.size), weight))
+    seen = Counts(cells // len(pairs), cells % len(pairs), number, weight is not None)
+    below, above = lower[lower > 0], upper[np.isfinite(upper)]
+    bare = FragilityCurve("none", "", confidence, lower.size, above.size, records=seen.records)
+    if not above.size:
         return replace(bare, why=f"none of the {_capacities(bare)} exceeds at any level")
-    if not (lower > 0).any():
+    if not below.size:
         return replace(bare, why=f"all of the {_capacities(bare)} exceed at their first level: take lower ones")
-    highest, lowest = upper[above].max(), lower[lower > 0].min()
-    if highest <= lowest:  # no capacity is known to lie between two levels
-        why = f"every capacity lies below {highest:.4g} or above {lowest:.4g}: levels beyond these are needed"
+    if above.max() <= below.min():  # no capacity is known to lie between two levels
+        why = f"every capacity lies below {above.max():.4g} or above {below.min():.4g}: levels beyond these are needed"
         return replace(bare, why=why)
-    special = _step_or_none(bare, lower[lower > 0], upper[above])
-    if special is not None:
+    if (special := _step_or_none(bare, below, above, too_few(seen, 2, "capacities"))) is not None:
         return special
     with np.errstate(divide="ignore"):
-        logs = np.log(bounds[pairs // bounds.size]), np.log(bounds[pairs % bounds.size])
-    fit = too_few(seen, 2, "capacities") or fit_brackets(*logs, seen, confidence)
+        low, high = np.log(pairs.T)
+    fit = fit_brackets(low, high, seen, confidence)
     if isinstance(fit, str):
         return replace(bare, why=fit)
-    goodness = goodness_of_brackets(fit, *logs, seen, None if levels is None else np.log(np.unique(tried)))
+    goodness = goodness_of_brackets(fit, low, high, seen, None if levels is None else np.log(np.unique(tried)))
     curve = replace(bare, kind="lognormal", fit=fit, goodness=goodness, aic={"lognormal": fit.aic})
     return replace(curve, why=f"capacities are taken as lognormal; {_tested(curve)}")
+
+
+def _all_alike(bare: FittedToRuns) -> str:
+    """Return a sentence if all runs exceed the limit state, or none does; else empty."""
+    if 0 < bare.exceedances < bare.runs:
+        return ""
+    return f"{'none' if not bare.exceedances else 'all'} of the {bare.runs} runs exceed"
 
 
 def _capacities(bare: FragilityCurve) -> str:
@@ -333,17 +340,18 @@ def _capacities(bare: FragilityCurve) -> str:
 
 
 def _design(kind: Kind, x: Reals) -> Reals:
+    x = x.ravel()
     return np.column_stack([np.ones(x.size), x if kind == "logistic" else np.log(np.maximum(x, ZERO_INTENSITY))])
 
 
-def _step_or_none(bare: FragilityCurve, below: Reals, above: Reals) -> FragilityCurve | None:
-    """Return a step, or kind `none`, if runs that exceed and others share at most one intensity; else None."""
+def _step_or_none(bare: FragilityCurve, below: Reals, above: Reals, few: str) -> FragilityCurve | None:
+    """Return a step, or kind `none`, if runs that exceed and others share at most one intensity, or records are few."""
     if below.min() == above.max() == below.max() == above.min():
         return replace(bare, why=f"all runs have the intensity {above[0]:.4g}: other levels are needed")
     if above.max() <= below.min():
         return replace(bare, why=_DECREASING)
     if below.max() > above.min():
-        return None
+        return replace(bare, why=few) if few else None
     low, high = float(below.max()), float(above.min())
     if low < high:
         step = Estimate(float(np.sqrt(low * high)), low, high)
@@ -362,53 +370,13 @@ def _step_or_none(bare: FragilityCurve, below: Reals, above: Reals) -> Fragility
     return replace(bare, kind="step", step=step, why=f"{why}: estimating the dispersion needs levels between them")
 
 
-def _choice(curves: dict[Kind, FragilityCurve]) -> tuple[Kind, str]:
-    """Choose the kind of curve, and say why."""
-    lognormal, logistic = curves["lognormal"], curves.get("logistic")
-    if _slope(lognormal) <= 0:
-        if logistic is None or _slope(logistic) <= 0:
-            return "none", _DECREASING
-        return "logistic", f"the lognormal does not increase; {_tested(logistic)}"
-    if not _rejected(lognormal):
-        return "lognormal", f"lognormal is the default; {_tested(lognormal)}"
-    if (
-        logistic is None
-        or _slope(logistic) <= 0
-        or _likelihood(logistic) < _likelihood(lognormal) + LIKELIHOOD_TOLERANCE
-    ):
-        return "lognormal", f"lognormal is the default, and logistic is no likelier; {_tested(lognormal)}"
-    assert lognormal.goodness is not None
-    why = f"the lognormal is rejected (p = {lognormal.goodness.p_value:.2g}) and logistic is likelier"
-    return "logistic", f"{why}; {_tested(logistic)}"
-
-
-def _alone(curve: FragilityCurve) -> tuple[Kind, str]:
-    """Return the kind of the only curve that was fitted, or `none`, and a sentence on it."""
-    return (curve.kind, _tested(curve)) if _slope(curve) > 0 else ("none", _DECREASING)
-
-
-def _slope(curve: FragilityCurve) -> float:
-    assert curve.fit is not None
-    return float(curve.fit.coefficients[1])
-
-
-def _likelihood(curve: FragilityCurve) -> float:
-    assert curve.fit is not None
-    return curve.fit.log_likelihood
-
-
-def _rejected(curve: FragilityCurve) -> bool:
-    goodness = curve.goodness
-    return goodness is not None and goodness.p_value is not None and goodness.p_value < MIN_P_VALUE
-
-
 def _tested(curve: FragilityCurve) -> str:
     """Describe the result of the goodness-of-fit test of a curve."""
     assert curve.goodness is not None and curve.fit is not None
-    p = curve.goodness.p_value
+    p = curve.p_value
     if p is None:
         sentence = f"whether the data fit a {curve.kind} curve is not tested: {curve.goodness.why}"
-    elif _rejected(curve):
+    elif curve.rejected:
         sentence = f"do not rely on this curve: the goodness-of-fit test rejects a {curve.kind} curve (p = {p:.2g})"
     else:
         sentence = f"the goodness-of-fit test does not reject a {curve.kind} curve (p = {p:.2g})"
@@ -521,12 +489,11 @@ def fit_surface(
     number = np.ones(x1.size) if runs is None else runs.astype(np.float64)
     seen, beyond = Counts(who, np.arange(x1.size), number), np.asarray(exceeding, dtype=np.float64)
     bare = Surface("none", "", confidence, int(number.sum()), int(beyond.sum()), records=seen.records)
-    if not 0 < bare.exceedances < bare.runs:
-        return replace(bare, why=f"{'none' if not bare.exceedances else 'all'} of the {bare.runs} runs exceed")
-    if weight is not None:
-        each = weight * number.sum() / (weight * number).sum()
-        number, beyond = number * each, beyond * each
-        seen = Counts(seen.record, seen.term, number, weighted=True)
+    if why := _all_alike(bare):
+        return replace(bare, why=why)
+    each = even(number, weight)
+    number, beyond = number * each, beyond * each
+    seen = Counts(who, seen.term, number, weight is not None)
     design = _plane(x1, x2)
     if (np.ptp(design[:, 1:], axis=0) < INTENSITY_TOLERANCE).any():
         return replace(bare, why="one of the measures is the same in all runs: take a curve over the other one")
@@ -547,9 +514,8 @@ def fit_surface(
     fits = [
         fit_outcomes("probit", design[:, columns], seen, beyond, confidence) for columns in ([0, 1, 2], [0, 1], [0, 2])
     ]
-    for fit in fits:
-        if isinstance(fit, str):
-            return replace(bare, why=fit)
+    if refused := [fit for fit in fits if isinstance(fit, str)]:
+        return replace(bare, why=refused[0])
     both, first, second = (fit for fit in fits if isinstance(fit, Fit))
     if (both.coefficients[1:] <= 0).all():
         return replace(bare, why="no surface increases: fewer runs exceed the limit as either measure increases")

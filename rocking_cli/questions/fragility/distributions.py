@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import cache, partial
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -13,7 +14,8 @@ from rocking_cli.core import Mechanism
 from rocking_cli.errors import Problem, RockingError
 from rocking_cli.io.yaml_file import Document, Place
 from rocking_cli.studies.file_part import Part, Sound
-from rocking_cli.units import UnitError, read, split
+from rocking_cli.studies.fragility.quantities import is_quantity
+from rocking_cli.units import UnitError, read
 
 Positive = Annotated[float, Field(gt=0)]
 MIN_RANDOM = 2.0**-54  # a random number may be zero, where a normal distribution has no quantile
@@ -31,6 +33,11 @@ class _Ordered(Part):
 class _Bounded(_Ordered):
     low: float | None = Field(None, description="smallest value: what lies below is not drawn")
     high: float | None = Field(None, description="largest value: what lies above is not drawn")
+
+    @property
+    def ends(self) -> Reals:
+        """The two bounds; infinite where there is none."""
+        return np.array([-np.inf if self.low is None else self.low, np.inf if self.high is None else self.high])
 
 
 class Normal(_Bounded):
@@ -88,11 +95,10 @@ class Distribution(Part):
     def quantile(self, probability: Reals) -> Reals:
         """Return the values that are not exceeded with some probabilities, each in (0, 1)."""
         if self.normal is not None:
-            ends = _or_infinite(self.normal)
-            return _truncated_normal(probability, self.normal.mean, self.normal.deviation, ends)
+            return _truncated_normal(probability, self.normal.mean, self.normal.deviation, self.normal.ends)
         if self.lognormal is not None:
             with np.errstate(divide="ignore"):
-                ends = np.log(np.maximum(_or_infinite(self.lognormal), 0.0))
+                ends = np.log(np.maximum(self.lognormal.ends, 0.0))
             mean = float(np.log(self.lognormal.median))
             return np.exp(_truncated_normal(probability, mean, self.lognormal.dispersion, ends))
         if self.uniform is not None:
@@ -106,12 +112,6 @@ class Distribution(Part):
         assert self.values is not None
         place = np.minimum(probability * len(self.values), len(self.values) - 1).astype(int)
         return np.asarray(np.array(self.values)[place])
-
-
-def _or_infinite(bounds: _Bounded) -> Reals:
-    """Return the two bounds of a distribution; infinite where there is none."""
-    low, high = bounds.low, bounds.high
-    return np.array([-np.inf if low is None else low, np.inf if high is None else high])
 
 
 def _truncated_normal(probability: Reals, mean: float, deviation: float, ends: Reals) -> Reals:
@@ -178,41 +178,37 @@ def in_units_of_fields(document: Document, load: Callable[[str], Mechanism]) -> 
     """
     entries = document.data.get("structures")
     problems: list[Problem] = []
+    of_file = cache(load)
     for k, entry in enumerate(entries if isinstance(entries, list) else []):
         varied = entry.get("vary") if isinstance(entry, dict) else None
         if not isinstance(varied, dict) or not isinstance(entry.get("file"), str):
             continue
-        structure: Mechanism | None = None
         for name, distribution in varied.items():
-            if not _has_units(distribution):
-                continue
+            unit = partial(_unit, name, of_file, entry["file"])
             try:
-                structure = structure or load(entry["file"])
+                varied[name] = _numbers(document, distribution, unit, ("structures", k, "vary", name), problems)
             except RockingError:  # the problem is reported when the study itself is read
                 break
-            info = type(structure).model_fields.get(name)
-            extra = info.json_schema_extra if info is not None else None
-            unit = str(extra.get("unit", "")) if isinstance(extra, dict) else ""
-            varied[name] = _numbers(document, distribution, unit, ("structures", k, "vary", name), problems)
     return problems
 
 
-def _has_units(value: Any) -> bool:
-    if isinstance(value, dict | list):
-        return any(_has_units(each) for each in (value.values() if isinstance(value, dict) else value))
-    parts = split(value) if isinstance(value, str) else None
-    return parts is not None and bool(parts[1])
+def _unit(name: str, load: Callable[[str], Mechanism], file: str) -> str:
+    """Return the unit of a field of the structure of a file; empty if it has none."""
+    info = type(load(file)).model_fields.get(name)
+    extra = info.json_schema_extra if info is not None else None
+    return str(extra.get("unit", "")) if isinstance(extra, dict) else ""
 
 
-def _numbers(document: Document, value: Any, unit: str, place: Place, problems: list[Problem]) -> Any:
+def _numbers(document: Document, value: Any, unit: Callable[[], str], place: Place, problems: list[Problem]) -> Any:
     if isinstance(value, dict):
         return {key: _numbers(document, each, unit, (*place, key), problems) for key, each in value.items()}
     if isinstance(value, list):
         return [_numbers(document, each, unit, (*place, k), problems) for k, each in enumerate(value)]
-    if not _has_units(value):
+    if not is_quantity(value):
         return value
+    wanted = unit()
     try:
-        return read(value, "" if place[-1] in DIMENSIONLESS else unit)
+        return read(value, "" if place[-1] in DIMENSIONLESS else wanted)
     except UnitError as error:
         problems.append(document.at(place, error.message, error.hint))
         return value

@@ -69,11 +69,8 @@ def goodness_of_runs(fit: Fit, design: Reals, seen: Observations) -> Goodness:
     part = totals(seen.group, number * p) / totals(seen.group, number)
     groups, count = _merged(table, part)
     if count < 3:
-        why = (
-            "that takes three groups of runs, each with two or more records expected to exceed the limit and two or "
-            f"more not, and there {'is' if count == 1 else 'are'} {count}"
-        )
-        return Goodness(name, why=why)
+        of = "two or more records expected to exceed the limit and two or more not"
+        return _untested(name, f"three groups of runs, each with {of}", count)
     group = groups[seen.group]
     rest, weight = seen.exceeding - number * p, slope / (p * q)
     variance = totals(group, number * p * q)
@@ -130,11 +127,7 @@ def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals, seen: Counts, lev
     of_records = totals(seen.record, seen.number)
     cell, count = _merged(np.outer(expected / total, of_records))
     if count < 4:
-        why = (
-            "that takes four ranges of levels, each with the capacities of two or more records expected, and "
-            f"there {'is' if count == 1 else 'are'} {count}"
-        )
-        return Goodness(name, why=why)
+        return _untested(name, "four ranges of levels, each with the capacities of two or more records expected", count)
     by_coefficients = _sums(cell, np.full(cell.size, total), np.diff(slopes, axis=0), count)
     expected = totals(cell, expected)
     among = cell[np.searchsorted(whole, lower, side="right")][seen.term]
@@ -153,6 +146,10 @@ def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals, seen: Counts, lev
         covariance = np.diag(expected) - np.outer(expected, expected) / total
         covariance -= by_coefficients @ fit.covariance @ by_coefficients.T
     return _weighted(name, rest, expected, covariance)
+
+
+def _untested(name: str, takes: str, count: int) -> Goodness:
+    return Goodness(name, why=f"that takes {takes}, and there {'is' if count == 1 else 'are'} {count}")
 
 
 def _sums(group: Integers, weights: Reals, rows: Reals, count: int) -> Reals:

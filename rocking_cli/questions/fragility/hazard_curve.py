@@ -188,17 +188,16 @@ def annual_rate(curve: FragilityCurve, hazard: HazardCurve) -> Rate:
         )
         above = last if curve.step.value > hazard.intensity[-1] * (1 + INTENSITY_TOLERANCE) else 0.0
         return Rate(at, low, high, above, _beyond(hazard, curve.step.value))
-    end = hazard.intensity[-1:]
     jumps = [x for step in curve.steps for x in (step.low, step.value, step.high)]
-    low, rate, high = (
-        _integral(hazard, probability, jumps) + float(probability(end)[0]) * last
-        for probability in (lambda x: curve.band(x)[0], curve.probability, lambda x: curve.band(x)[1])
-    )
-    return Rate(rate, low, high, (1 - float(curve.probability(end)[0])) * last, _below(curve, hazard))
+    at_end = [float(p) for p in curve.lines(hazard.intensity[-1])]
+    within = _integrals(hazard, curve.lines, jumps)
+    rate, low, high = (integral + p * last for integral, p in zip(within, at_end, strict=True))
+    below = min(_below(each, hazard) for each in (curve.own, *curve.implied.values()))
+    return Rate(rate, low, high, (1 - at_end[0]) * last, below)
 
 
-def _integral(hazard: HazardCurve, probability: Callable[[Reals], Reals], jumps: Sequence[float]) -> float:
-    """Return the integral of P |d rate| between the first and the last point of the hazard curve [1/year]."""
+def _integrals(hazard: HazardCurve, lines: Callable[[Reals], Reals], jumps: Sequence[float]) -> list[float]:
+    """Return the integral of P |d rate| between the ends of the hazard curve, for each of several P [1/year]."""
     nodes, weights = np.polynomial.legendre.leggauss(NODES_PER_PIECE)
     logs = np.log(hazard.intensity)
     ends = np.concatenate(
@@ -214,7 +213,7 @@ def _integral(hazard: HazardCurve, probability: Callable[[Reals], Reals], jumps:
     slope = -np.diff(np.log(hazard.annual_rate)) / np.diff(logs)  # k of each power law
     k = slope[np.searchsorted(logs, middle, side="right") - 1]
     x = np.exp(at)
-    return float((half * weights * probability(x) * k * hazard.rate(x)).sum())
+    return [float((half * weights * p * k * hazard.rate(x)).sum()) for p in lines(x)]
 
 
 def _first_slope(hazard: HazardCurve) -> float:
@@ -232,15 +231,10 @@ def _beyond(hazard: HazardCurve, at: float) -> float:
 
 
 def _below(curve: FragilityCurve, hazard: HazardCurve) -> float:
-    """Return the rate that intensities below the first point add, if the first power law continues [1/year].
+    """Return the rate that intensities below the first point add to a curve without its cuts [1/year].
 
-    Of curves that cut each other, it is that of the smallest.
+    The first power law continues there.
     """
-    return min(_below_alone(each, hazard) for each in (curve.own, *curve.implied.values()))
-
-
-def _below_alone(curve: FragilityCurve, hazard: HazardCurve) -> float:
-    """Return the rate that intensities below the first point add to a single curve [1/year]."""
     if curve.step is not None:
         return _beyond(hazard, curve.step.value)
     from scipy.special import log_ndtr, ndtr

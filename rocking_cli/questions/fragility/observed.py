@@ -77,12 +77,10 @@ class Observations:
         cells, cell = np.unique(place * names.size + who, return_inverse=True)
         alike = np.ones(x.size) if runs is None else runs.astype(np.float64)
         beyond = exceeding.astype(np.float64)
-        if weight is None:
-            counts = Counts(cells % names.size, cells // names.size, totals(cell, alike))
-            return cls(levels, counts, totals(cell, beyond))
-        each = weight * alike.sum() / (weight * alike).sum()
-        counts = Counts(cells % names.size, cells // names.size, totals(cell, alike * each), weighted=True)
-        return cls(levels, counts, totals(cell, beyond * each), (int(alike.sum()), int(beyond.sum())))
+        each = even(alike, weight)
+        counts = Counts(cells % names.size, cells // names.size, totals(cell, alike * each), weight is not None)
+        whole = None if weight is None else (int(alike.sum()), int(beyond.sum()))
+        return cls(levels, counts, totals(cell, beyond * each), whole)
 
     @property
     def runs(self) -> int:
@@ -108,9 +106,8 @@ class Observations:
     def sides(self) -> tuple[Reals, Reals]:
         """The intensities of runs that do not exceed the limit state, and those of runs that do."""
         place = self.counts.term
-        return self.x[np.unique(place[self.exceeding < self.counts.number])], self.x[
-            np.unique(place[self.exceeding > 0])
-        ]
+        below, above = self.exceeding < self.counts.number, self.exceeding > 0
+        return self.x[np.unique(place[below])], self.x[np.unique(place[above])]
 
     @property
     def stripes(self) -> bool:
@@ -201,6 +198,11 @@ class ObservedParts:
     runs: Integers
     exceeding: Integers
     records: Integers
+
+
+def even(runs: Reals, weight: Reals | None) -> Reals:
+    """Return the weights of numbers of runs with an average of one; ones if they are equal."""
+    return np.ones(runs.size) if weight is None else weight * runs.sum() / (weight * runs).sum()
 
 
 def one_of_each(x: Reals) -> Reals:

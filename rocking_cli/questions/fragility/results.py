@@ -9,20 +9,29 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from pydantic import ValidationError
 
 from rocking_cli.ask.answer import Answer, Dimensions
 from rocking_cli.ask.verbs import verb, write_rows
-from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.io.files import folder
+from rocking_cli.io.files import folder, write_whole
 from rocking_cli.io.tables import stacked
+from rocking_cli.questions.fragility import assess
 from rocking_cli.questions.fragility.assess import Bivariate, Fragility
+from rocking_cli.questions.fragility.cloud import cloud
 from rocking_cli.questions.fragility.definition import Definition, Limit
+from rocking_cli.questions.fragility.hazard_curve import HazardCurve
+from rocking_cli.questions.fragility.nrml import chosen, doubts, nrml
+from rocking_cli.questions.fragility.pelicun import components, table
 from rocking_cli.questions.fragility.plan import Plan
-from rocking_cli.questions.fragility.quantiles import Quantiles
-from rocking_cli.questions.fragility.ranking import Ranking
+from rocking_cli.questions.fragility.quantiles import Quantiles, all_quantiles, data_of_quantiles, tables_of_quantiles
+from rocking_cli.questions.fragility.ranking import Ranking, rank, with_rankings
 from rocking_cli.questions.fragility.results_asked import ResultsAsked
 from rocking_cli.questions.fragility.store import Store
+from rocking_cli.questions.fragility.table import curve_blocks, run_blocks
+from rocking_cli.questions.fragility.view import edges, left_out, view
+from rocking_cli.studies.fragility.quantities import label
 
 if TYPE_CHECKING:
     import pandas
@@ -30,7 +39,6 @@ if TYPE_CHECKING:
 
     from rocking_cli.arrays import Reals
     from rocking_cli.io.tables import Columns
-    from rocking_cli.questions.fragility.tally import Tally
 
 CurveKey = tuple[str, Limit, str]
 """Structure, limit state and measure of a curve."""
@@ -72,8 +80,6 @@ class StudyAnswer(Answer[list[Fragility]]):
     @cached_property
     def quantiles(self) -> list[Quantiles]:
         """Quantiles of the peak rotation at each intensity."""
-        from rocking_cli.questions.fragility.quantiles import all_quantiles
-
         return list(all_quantiles(Store.reading(self.store), self.plan, self.definition))
 
     def __getstate__(self) -> dict[str, Any]:
@@ -142,9 +148,8 @@ class StudyAnswer(Answer[list[Fragility]]):
         >>> edps.round(2).tolist(), thresholds.tolist(), lower
         ([0.32, 1.5, 1.5], [0.5, 1.0], 0.05)
         """
-        from rocking_cli.questions.fragility.cloud import cloud
-
-        return cloud(self, measure, edp, censored, structure)
+        runs, limits = stacked(self.run_blocks()), self.definition.limit_states
+        return cloud(runs, self.plan.structures, limits, measure, edp, censored, structure)
 
 
 class UnknownCurve(InputError, KeyError):
@@ -207,21 +212,19 @@ def results(asked: ResultsAsked, watch: Watcher) -> StudyAnswer:
     InputError
         If the folder is not a store of this version, or is damaged.
     """
-    from rocking_cli.questions.fragility.assess import counted, unknown_runs
-    from rocking_cli.questions.fragility.quantiles import all_quantiles, data_of_quantiles, tables_of_quantiles
-    from rocking_cli.questions.fragility.ranking import rank, with_rankings
-    from rocking_cli.questions.fragility.view import left_out, view
-
     if asked.plot is not None:
         folder(str(asked.plot))
     place = Path(asked.store)
     kept = Store.reading(place)
-    plan, definition = kept.plan, _definition(kept)
+    plan, definition, points = kept.plan, _definition(kept), kept.fact("hazard")
     with watch.progress(plan.size, "runs counted") as advance:
-        tallies = counted(kept, plan, definition, advance)
+        tallies = assess.counted(kept, plan, definition, advance)
     finished, failed = (sum(getattr(each, name) for each in tallies.values()) for name in ("finished", "failed"))
-    fits, surfaces = _fitted(kept, tallies, definition, watch)
-    outcomes, spread = unknown_runs(tallies), cache(lambda: list(all_quantiles(kept, plan, definition)))
+    hazard = HazardCurve(*np.array(points)) if points is not None else None
+    count = len(definition.limit_states) * (len(definition.fitted_measures) + len(definition.bivariate))
+    with watch.progress(count * len(tallies), "fits") as advance:
+        fits, surfaces = assess.fitted(tallies, definition, hazard, advance)
+    outcomes, spread = assess.unknown_runs(tallies), cache(lambda: list(all_quantiles(kept, plan, definition)))
     shown = view(kept, plan, definition, finished, failed, fits, surfaces, outcomes)
     tables = tables_of_quantiles(spread()) if asked.quantiles else []
     shown = shown.plus(lambda: {"quantiles": data_of_quantiles(spread(), outcomes)}, tables)
@@ -233,16 +236,14 @@ def results(asked: ResultsAsked, watch: Watcher) -> StudyAnswer:
     lacking = [f"{failed} runs could not be simulated and are left out of the curves"] if failed else []
     lacking += [f"{finished:,} of {plan.total:,} runs are finished so far"] if finished < plan.total else []
     lacking += [f"{len(bad)} records or samples cannot be used"] if (bad := left_out(plan)) else []
-    runs, several = (
-        partial(_columns, place),
-        dict(zip(("restitution", "level", "polarity"), plan.shape[2:], strict=True)),
-    )
-    along = ("structure", "sample", "motion", *(name for name, count in several.items() if count > 1))
+    several = zip(("restitution", "level", "polarity"), plan.shape[2:], strict=True)
+    along = ("structure", "sample", "motion", *(name for name, count in several if count > 1))
+    runs = partial(_columns, place)
     answer = StudyAnswer(
         "fragility",
         fits,
         shown,
-        partial(_curve_columns, fits),
+        lambda: stacked(curve_blocks(fits)),
         partial(_figure, definition, fits),
         tables={"runs": runs},
         dims=[Dimensions(along, table=runs)],
@@ -265,7 +266,10 @@ def _write(answer: StudyAnswer, asked: ResultsAsked, watch: Watcher) -> None:
     if asked.out is not None:
         write_rows(asked.out, answer.run_blocks(), watch)
     if asked.curves is not None:
-        write_rows(asked.curves, curve_blocks(answer, watch), watch)
+        for name, each in edges(answer.result):
+            if each.curve.kind == "none":
+                watch.warn(f"{each.structure}, {name} against {each.measure}: no curve: {each.curve.why}")
+        write_rows(asked.curves, curve_blocks(answer.result), watch)
     if asked.plot is not None:
         from rocking_cli.questions.fragility.pictures import draw_all
 
@@ -278,27 +282,10 @@ def _write(answer: StudyAnswer, asked: ResultsAsked, watch: Watcher) -> None:
             watch.unwritten(error)
 
 
-def curve_blocks(answer: StudyAnswer, watch: Watcher = SILENT) -> Iterator[Columns]:
-    """Return the curves of a study as columns, in blocks of rows, with a warning of each fit that has none."""
-    from rocking_cli.questions.fragility.table import curve_blocks as blocks
-    from rocking_cli.questions.fragility.view import edges
-
-    for each in answer.result:
-        for name, fit in edges([each]):
-            if fit.curve.kind == "none":
-                watch.warn(f"{each.structure}, {name} against {each.measure}: no curve: {fit.curve.why}")
-    return blocks(answer.result)
-
-
-def write_nrml(answer: StudyAnswer, file: Path, watch: Watcher = SILENT) -> None:
+def write_nrml(answer: StudyAnswer, file: Path, watch: Watcher) -> None:
     """Write the curves that OpenQuake can read, and name the others. Raises `InputError` if there are none."""
-    from rocking_cli.io.files import write_whole
-    from rocking_cli.questions.fragility.nrml import chosen, nrml
-
     model = chosen(answer.result)
-    for each in model.left_out:
-        watch.warn(f"not in {file}: {each}")
-    for each in model.doubts:
+    for each in [*(f"not in {file}: {each}" for each in model.left_out), *model.doubts]:
         watch.warn(each)
     store = Store.reading(answer.store)
     version, study, name = store.fact("versions")["rocking-cli"], store.fact("hash"), store.fact("name")
@@ -307,14 +294,11 @@ def write_nrml(answer: StudyAnswer, file: Path, watch: Watcher = SILENT) -> None
     watch.note(f"wrote {file}")
 
 
-def write_pelicun(answer: StudyAnswer, place: Path, watch: Watcher = SILENT) -> None:
+def write_pelicun(answer: StudyAnswer, place: Path, watch: Watcher) -> None:
     """Write the curves that pelicun can read, and name the others. Raises `InputError` if there are none."""
-    from rocking_cli.questions.fragility.nrml import doubts
-    from rocking_cli.questions.fragility.pelicun import components, table
-
-    rows, left_out = components(answer.result)
+    rows, without = components(answer.result)
     file = folder(str(place)) / "fragility.csv"
-    for each in left_out:
+    for each in without:
         watch.warn(f"not in {file}: {each}")
     for each in doubts(rows):
         watch.warn(each.replace("a share below zero", "and pelicun uses the graver"))
@@ -323,43 +307,18 @@ def write_pelicun(answer: StudyAnswer, place: Path, watch: Watcher = SILENT) -> 
         watch.note(f"{row.name}: {', '.join(f'LS{k} {curve.limit}' for k, curve in enumerate(row.curves, 1))}")
 
 
-def _curve_columns(curves: list[Fragility]) -> Columns:
-    from rocking_cli.questions.fragility.table import curve_blocks as blocks
-
-    return stacked(blocks(curves))
-
-
 def _definition(store: Store) -> Definition:
     """Return the definition of the study of a store."""
-    from pydantic import ValidationError
-
     try:
         return Definition.model_validate(store.fact("definition"))
     except ValidationError:
         hint = "run `rocking fragility STUDY.yaml`: it names the problem and keeps the runs"
-        raise InputError(
-            Problem("the definition of its study is not valid in this version", str(store.path), hint=hint)
-        ) from None
-
-
-def _fitted(
-    store: Store, tallies: Mapping[str, Tally], definition: Definition, watch: Watcher
-) -> tuple[list[Fragility], list[Bivariate]]:  # fmt: skip
-    """Fit the curves of a study to its counted runs."""
-    from rocking_cli.questions.fragility.assess import fitted
-    from rocking_cli.questions.fragility.hazard_curve import HazardCurve
-
-    points = store.fact("hazard")
-    hazard = HazardCurve(*np.array(points)) if points is not None else None
-    fits = len(definition.limit_states) * (len(definition.fitted_measures) + len(definition.bivariate))
-    with watch.progress(fits * len(tallies), "fits") as advance:
-        return fitted(tallies, definition, hazard, advance)
+        what = "the definition of its study is not valid in this version"
+        raise InputError(Problem(what, str(store.path), hint=hint)) from None
 
 
 def _blocks(place: Path) -> Iterator[Columns]:
     """Yield the runs of a store as columns, in blocks of rows."""
-    from rocking_cli.questions.fragility.table import run_blocks
-
     store = Store.reading(place)
     yield from run_blocks(store, store.plan, _definition(store).asked_measures)
 
@@ -371,7 +330,6 @@ def _columns(place: Path) -> Columns:
 def _figure(definition: Definition, curves: list[Fragility]) -> Figure:
     from rocking_cli.plotting.style import plain
     from rocking_cli.questions.fragility.picture import draw_curves, limit_in_picture
-    from rocking_cli.studies.fragility.quantities import label
 
     measure = definition.fitted_measures[0]
     lines = {

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli import names
+from rocking_cli.io.tables import stacked
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.questions.fragility.assess import Fragility
 from rocking_cli.questions.fragility.curves import FragilityCurve
@@ -40,19 +41,17 @@ def curve_blocks(curves: Sequence[Fragility]) -> Iterator[Mapping[str, Sequence[
     if not drawn:
         yield {**{name: np.array([], dtype=str) for name in TEXT_COLUMNS}, **{name: np.array([]) for name in COLUMNS}}
     for each in drawn:
-        x, share = points(each), each.share
+        x = points(each)
         words = (each.structure, f"{each.limit}", each.measure, parse_measure(each.measure).unit, each.curve.kind)
-        unknown = np.full(x.size, np.nan if share is None else share)
-        one, other = (_fit(estimate.curve, x) for estimate in (each, each.lower or each))
-        numbers = [*one[:3], x, *one[3:], unknown, *other]
-        columns = zip(COLUMNS, numbers, strict=True)
-        yield {**{name: [word] * x.size for name, word in zip(TEXT_COLUMNS, words, strict=True)}, **dict(columns)}
+        one, other = (_fit(fit.curve, x) for fit in (each, each.lower or each))
+        values = [*words, *one[:3], x, *one[3:], np.nan if each.share is None else each.share, *other]
+        yield stacked([dict(zip((*TEXT_COLUMNS, *COLUMNS), values, strict=True))])
 
 
-def _fit(curve: FragilityCurve, x: NDArray[np.float64]) -> list[NDArray[np.float64]]:
-    """Return median, dispersion, scale, probability and confidence band at intensities; NaN where missing."""
-    same = [np.nan if one is None else one.value for one in (curve.median, curve.dispersion, curve.scale)]
-    return [*(np.full(x.size, value) for value in same), curve.probability(x), *curve.band(x)]
+def _fit(curve: FragilityCurve, x: NDArray[np.float64]) -> list[Any]:
+    """Return median, dispersion, scale, and the lines at intensities; NaN where missing."""
+    numbers = (curve.median, curve.dispersion, curve.scale)
+    return [*(np.nan if each is None else each.value for each in numbers), *curve.lines(x)]
 
 
 def points(found: Fragility) -> NDArray[np.float64]:
@@ -81,17 +80,15 @@ def run_blocks(store: Store, plan: Plan, measures: Sequence[str] = ()) -> Iterat
     mapping of str to sequence
         The columns by heading, with units; the first block is yielded even if it is empty.
     """
-    asked, none = tuple(dict.fromkeys([*USUAL_MEASURES, *measures])), True
+    asked, study = tuple(dict.fromkeys([*USUAL_MEASURES, *measures])), store.fact("description")
+    rows = None
     for rows in store.rows(0, plan.size):
-        yield _of_runs(plan, rows, asked, store.fact("description"))
-        none = False
-    if none:
-        yield _of_runs(plan, NO_RUNS, asked, store.fact("description"))
+        yield _of_runs(plan, rows, asked, study)
+    if rows is None:
+        yield _of_runs(plan, NO_RUNS, asked, study)
 
 
-def _of_runs(
-    plan: Plan, rows: RunRows, measures: Sequence[str], study: Mapping[str, Any]
-) -> dict[str, Sequence[object]]:  # fmt: skip
+def _of_runs(plan: Plan, rows: RunRows, measures: Sequence[str], study: Mapping[str, Any]) -> dict[str, list[Any]]:
     sample, record, _, level, polarity = plan.places(rows.run)
     trials, records = [plan.trials[k] for k in sample], [plan.records[k] for k in record]
     fell_to = np.where(np.isin(rows.outcome, (FAILED, UNKNOWN)), 0, np.sign(rows.outcome))

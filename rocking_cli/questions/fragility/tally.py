@@ -5,18 +5,17 @@ Thresholds of a structure are the PGA at which it uplifts, and the rotations at 
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from copy import deepcopy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isclose
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.core import Direction, Mechanism, both_statics, equivalent_block
-from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.questions.fragility.definition import OVERTURNING, RESTITUTION, SLIDING, UPLIFT, Limit
@@ -85,18 +84,22 @@ class Tally:
     uplift: Pair | None = None
 
     @property
+    def least(self) -> Tally:
+        """The counts with undecided runs as not exceeding; these ones if no outcome is unknown."""
+        return self.lower or self
+
+    @property
     def unknown_if_checked(self) -> int | None:
         """Number of runs of unknown outcome; None if there are none because joints were not checked."""
         return self.unknown if self.unknown or self.checked else None
 
-    def one(self, record: Integers) -> Integers:
-        """Return the index of the first entry that is the same record, as sets of several levels may share a record."""
-        return np.asarray(self.plan.of_sets.one[record])
+    def clusters(self, record: Integers) -> tuple[Integers, Reals | None]:
+        """Return the cluster and the weight of each run, from its record; no weights if all are equal.
 
-    def weight(self, record: Integers) -> Reals | None:
-        """Weight of each run; None if all weights are equal."""
+        Sets of several levels may share a record: the cluster is the first entry that is the same record.
+        """
         sets = self.plan.of_sets
-        return np.asarray(sets.weight[record]) if sets.weighted else None
+        return np.asarray(sets.one[record]), np.asarray(sets.weight[record]) if sets.weighted else None
 
     def over(self, *measures: str) -> Cells:
         """Return the non-empty cells of runs that have the same intensity in some measures."""
@@ -104,6 +107,12 @@ class Tally:
         runs = self.runs.sum(axis=0, keepdims=True) if together else self.runs
         there = np.nonzero(runs)
         return Cells(self, there, runs[there], together)
+
+    def add(self, limit: Limit, beyond: Bools, cell: Integers, ladder: Integers, level: Integers) -> None:
+        """Count the runs of a block that exceed a limit state, given the cell, the ladder and the level of each run."""
+        _add(self.exceeding[limit], cell[beyond])
+        if self.ladders is not None:
+            np.minimum.at(self.ladders.first[limit].ravel(), ladder[beyond], level[beyond].astype(np.int32))
 
     def decided_by_level(self, measure: str) -> bool:
         """Return whether all runs of a level have the same intensity in a measure."""
@@ -139,6 +148,13 @@ class Ladders:
         return np.asarray((self.there & (levels >= self.first[limit][..., None, :])).sum(axis=(2, 4)))
 
 
+class Onset(NamedTuple):
+    """Intensity up to which no motion uplifts a structure, and whether every motion uplifts it beyond."""
+
+    at: float
+    exact: bool
+
+
 @dataclass(frozen=True, eq=False)
 class Cells:
     """Cells of equal runs: those of one record, one level and, if samples differ, one sample.
@@ -170,6 +186,10 @@ class Cells:
         """Index of the level of each cell."""
         return self.place[2]
 
+    def only(self, which: Bools) -> Cells:
+        """Return some of the cells."""
+        return replace(self, place=tuple(each[which] for each in self.place), runs=self.runs[which])
+
     def of(self, table: Integers) -> Integers:
         """Look up the entries of the cells in a table indexed by sample, record and level."""
         summed = table.sum(axis=0, keepdims=True) if self.together else table
@@ -181,24 +201,54 @@ class Cells:
 
     def intensities(self, measure: str) -> Reals:
         """Return the intensity of each cell in a measure."""
-        return intensities(self.tally.plan, measure, self.place[0] + self.tally.samples.start, self.record, self.level)
+        return self._intensities(measure, *self.place)
+
+    def _intensities(self, measure: str, sample: Integers, record: Integers, level: Integers) -> Reals:
+        """Return the intensity of runs; exactly the level if the levels are of this measure."""
+        plan = self.tally.plan
+        if measure == plan.measure:
+            return np.asarray(np.array(plan.levels)[level])
+        sample = sample + self.tally.samples.start
+        return plan.intensities(measure, sample, record, level, plan.factors(sample, record, level))
+
+    def capacities(self, ladders: Ladders, limit: Limit, measure: str) -> tuple[Reals, Reals, Integers]:
+        """Return the bounds of the capacity of each ladder, 0 or infinity if no level bounds it, and its record."""
+        first, last, levels = ladders.first[limit], ladders.below(limit), len(self.tally.plan.levels)
+        known = (first < levels) | (last >= 0)  # a ladder without a simulated run gives no information
+        sample, record, _, _ = np.nonzero(known)
+        sample = np.zeros_like(sample) if self.together else sample
+        last, first = last[known], first[known].astype(np.int64)
+        at_last, at_first = (
+            self._intensities(measure, sample, record, np.clip(level, 0, levels - 1)) for level in (last, first)
+        )
+        lower, upper = np.where(last >= 0, at_last, 0.0), np.where(first < levels, at_first, np.inf)
+        sound = lower < upper  # otherwise the peak decreases with the level, or is unknown
+        return lower[sound], upper[sound], record[sound]
 
     def onset(self, measure: str) -> Onset | None:
-        """Return the intensity at which the structure uplifts; None if it is not known, or runs contradict it."""
-        known = onset(self.tally.plan, self.tally.samples, self.tally.uplift, measure)
-        if known is None or UPLIFT not in self.tally.exceeding:
-            return known
-        x, uplifted = self.intensities(measure), self.exceeding(UPLIFT)
-        early = (x < known.at * (1 - INTENSITY_TOLERANCE)) & (uplifted > 0)
-        late = (x > known.at * (1 + INTENSITY_TOLERANCE)) & (uplifted < self.runs)
-        return None if early.any() or (known.exact and late.any()) else known
+        """Return the intensity at which the structure uplifts: PGA, or PGA over the uplift acceleration.
 
-
-def intensities(plan: Plan, measure: str, sample: Integers, record: Integers, level: Integers) -> Reals:
-    """Return the intensity of runs; exactly the level if the levels are of this measure."""
-    if measure == plan.measure:
-        return np.asarray(np.array(plan.levels)[level])
-    return plan.intensities(measure, sample, record, level, plan.factors(sample, record, level))
+        None if that is not known over this measure, or if runs contradict it.
+        """
+        plan, pair, parsed = self.tally.plan, self.tally.uplift, parse_measure(measure)
+        if pair is None or str(parsed.base) != PGA or parsed.power != 1:
+            return None
+        usable = [k for k in self.tally.samples if plan.trials[k].reason is None]
+        accelerations = np.array([plan.trials[k].lambda_ * plan.trials[k].gravity for k in usable])
+        # If the accelerations differ, the uplift depends on a property that varies, and there is no single onset.
+        if np.ptp(accelerations) > INTENSITY_TOLERANCE * accelerations.max():
+            return None
+        pga = accelerations[:1] / STANDARD_GRAVITY
+        at = float(parsed.relative(pga, plan.reference(np.array(usable[:1])))[0])
+        one, other = pair
+        exact = one is not None and other is not None and isclose(one, other, rel_tol=INTENSITY_TOLERANCE)
+        if UPLIFT in self.tally.exceeding:
+            x, uplifted = self.intensities(measure), self.exceeding(UPLIFT)
+            early = (x < at * (1 - INTENSITY_TOLERANCE)) & (uplifted > 0)
+            late = (x > at * (1 + INTENSITY_TOLERANCE)) & (uplifted < self.runs)
+            if early.any() or (exact and late.any()):
+                return None
+        return Onset(at, exact)
 
 
 def samples_of(plan: Plan, structure: str) -> range:
@@ -243,16 +293,19 @@ def count(
     _, records, etas, levels, polarities = plan.shape
     apart = any(_differs_between_samples(plan, samples, measure) for measure in measures)
     shape = (len(samples) if apart else 1, records, levels)
-    runs, unknown = np.zeros(shape, dtype=np.int64), 0
-    there = np.zeros((len(samples), records, etas, levels, polarities) if ladders else 0, dtype=bool)
     rungs = (len(samples), records, etas, polarities)
-    upper, lower = _Counts(limits, shape, rungs if ladders else None, levels), None
-    checked, slides, by_blocks, off_edge, finished, failed = True, False, 0, 0, 0, 0
-    each = records * plan.block
-    start = samples.start * each
-    for rows in store.rows(start, samples.stop * each, counted):
+    runs = np.zeros(shape, dtype=np.int64)
+    there = np.zeros((len(samples), records, etas, levels, polarities) if ladders else 0, dtype=bool)
+
+    def empty() -> Tally:
+        first = {limit: np.full(rungs, levels, dtype=np.int32) for limit in (limits if ladders else ())}
+        exceeding = {limit: np.zeros(shape, dtype=np.int64) for limit in limits}
+        return Tally(plan, samples, runs, exceeding, Ladders(first, there) if ladders else None)
+
+    upper, lower, many, checked, slides = empty(), empty(), Counter[str](), True, False
+    start = samples.start * records * plan.block
+    for rows in store.rows(start, samples.stop * records * plan.block, counted):
         endings = rows.select(rows.outcome != FAILED)
-        finished, failed = finished + len(rows), failed + rows.failed
         sample, record, eta, level, polarity = plan.places(endings.run)
         sample = sample - samples.start
         cell = np.ravel_multi_index((sample if apart else np.zeros_like(sample), record, level), shape)
@@ -262,44 +315,21 @@ def count(
             there.ravel()[endings.run - start] = True
         checked &= bool(endings.checked.all())
         slides |= bool((endings.slip > 0).any())
-        by_blocks, off_edge = by_blocks + int(endings.by_blocks.sum()), off_edge + int(endings.off_edge.sum())
-        doubtful = int(endings.unknown.sum())
-        unknown += doubtful
-        if doubtful and lower is None:  # up to the first unknown outcome, both counts are equal
-            lower = deepcopy(upper)
+        many.update({name: int(getattr(endings, name).sum()) for name in ("unknown", "by_blocks", "off_edge")})
+        many.update(finished=len(rows), failed=rows.failed)
         for limit in limits:
             rotations = reach[limit][sample] if limit in reach else None
-            upper.add(limit, exceeds(endings, limit, rotations), cell, ladder, level)
-            if lower is not None:
-                known = known_to_exceed(endings, limit, rotations, phi_cr[sample])
-                lower.add(limit, known, cell, ladder, level)
-
+            beyond = surely = exceeds(endings, limit, rotations)
+            if endings.unknown.any():
+                surely = known_to_exceed(endings, limit, rotations, phi_cr[sample])
+            upper.add(limit, beyond, cell, ladder, level)
+            lower.add(limit, surely, cell, ladder, level)
     # Free blocks may move in other ways than the mechanism, from other accelerations; a body that slides never uplifts.
-    uplifts = store.facts.get(UPLIFT_FACT, {}).get(structure) if not (by_blocks or slides) else None
-
-    def tally(counts: _Counts, of_known: Tally | None) -> Tally:
-        of_ladders = Ladders(counts.first, there) if ladders else None
-        many = unknown, checked, by_blocks, off_edge, slides, finished, failed
-        return Tally(plan, samples, runs, counts.exceeding, of_ladders, *many, of_known, uplifts)
-
+    uplifts = store.facts.get(UPLIFT_FACT, {}).get(structure) if not (many["by_blocks"] or slides) else None
     checked |= store.fact("description")["model"] != "nonlinear"  # equivalent blocks have no joints
-    return tally(upper, tally(lower, None) if lower is not None else None)
-
-
-class _Counts:
-    """Numbers of exceeding runs and first levels of ladders, while they are counted; see `Tally` and `Ladders`."""
-
-    def __init__(
-        self, limits: Sequence[Limit], shape: tuple[int, ...], rungs: tuple[int, ...] | None, levels: int
-    ) -> None:
-        self.exceeding = {limit: np.zeros(shape, dtype=np.int64) for limit in limits}
-        self.first = {limit: np.full(rungs, levels, dtype=np.int32) for limit in limits if rungs is not None}
-
-    def add(self, limit: Limit, beyond: Bools, cell: Integers, ladder: Integers, level: Integers) -> None:
-        """Count the runs of a block that exceed a limit state."""
-        _add(self.exceeding[limit], cell[beyond])
-        if self.first:
-            np.minimum.at(self.first[limit].ravel(), ladder[beyond], level[beyond].astype(np.int32))
+    known = lower if many["unknown"] else None
+    told: dict[str, Any] = {**many, "checked": checked, "slides": slides, "lower": known, "uplift": uplifts}
+    return replace(upper, **told)
 
 
 def exceeds(found: RunRows, limit: Limit, reach: Reals | None = None) -> Bools:
@@ -461,20 +491,19 @@ def held(study: Study) -> list[str]:
 def of_a_structure(mechanism: Mechanism, displacements: Sequence[float]) -> list[Pair]:
     """Return, for each displacement [m], the rotations of either sign at which the top first reaches it."""
     _, spot = top(mechanism)
-    sides: dict[Direction, list[float | None]] = {}
-    for direction in Direction:
+    sides: list[list[float | None]] = []
+    for direction in (Direction.POSITIVE, Direction.NEGATIVE):
         if direction not in mechanism.directions:  # the mechanism does not rotate in this direction
-            sides[direction] = [None] * len(displacements)
+            sides.append([None] * len(displacements))
             continue
 
         def moved(phi: Reals, side: Direction = direction) -> Reals:
             return np.abs((mechanism.followed(phi, side)(spot).z - spot.at).real)
 
-        end = float(np.nextafter(mechanism.limit(direction), 0.0))
-        phi = np.linspace(0.0, end, TOP_POINTS + 1)
+        phi = np.linspace(0.0, float(np.nextafter(mechanism.limit(direction), 0.0)), TOP_POINTS + 1)
         at = moved(phi)
-        sides[direction] = [first_reached(moved, phi, at, each) for each in displacements]
-    return list(zip(sides[Direction.POSITIVE], sides[Direction.NEGATIVE], strict=True))
+        sides.append([first_reached(moved, phi, at, each) for each in displacements])
+    return list(zip(*sides, strict=True))
 
 
 def first_reached(moved: Callable[[Reals], Reals], phi: Reals, at: Reals, wanted: float) -> float | None:
@@ -490,47 +519,33 @@ def first_reached(moved: Callable[[Reals], Reals], phi: Reals, at: Reals, wanted
         The displacement [m].
     """
     for k in range(1, len(phi)):
-        if at[k] >= wanted:
-            return _crossing(moved, phi[k - 1], phi[k], wanted)
+        there = bool(at[k] >= wanted)
         turns_back = k + 1 < len(phi) and at[k - 1] <= at[k] > at[k + 1]
-        if turns_back and (peak := _peak(moved, phi[k - 1], phi[k + 1], wanted)) is not None:
-            return _crossing(moved, phi[k - 1], peak, wanted)
+        if there or turns_back:
+            found = _refined(moved, phi[k - 1], phi[k if there else k + 1], wanted, there=there)
+            if found is not None:
+                return found
     return None
 
 
-def _crossing(moved: Callable[[Reals], Reals], low: float, high: float, wanted: float) -> float:
-    """Find by successive refinement where between two rotations a displacement is first reached."""
-    for _ in range(MAX_REFINEMENTS):
-        fine = np.linspace(low, high, REFINEMENT + 1)
-        k = max(int(np.argmax(moved(fine) >= wanted)), 1)
-        low, high = float(fine[k - 1]), float(fine[k])
-    return high
+def _refined(moved: Callable[[Reals], Reals], low: float, high: float, wanted: float, *, there: bool) -> float | None:
+    """Return where between two rotations a displacement is first reached; None if it is not.
 
-
-def _peak(moved: Callable[[Reals], Reals], low: float, high: float, wanted: float) -> float | None:
-    """Return a rotation between two others at which a displacement is reached, although at neither of these.
-
-    None if there is no such rotation.
+    It is reached `there`, at the higher rotation; otherwise it may be at a peak between the two.
     """
+    start = low
     for _ in range(MAX_REFINEMENTS):
         fine = np.linspace(low, high, REFINEMENT + 1)
         at = moved(fine)
-        k = int(np.argmax(at))
-        if at[k] >= wanted:
-            return float(fine[k])
-        low, high = float(fine[max(k - 1, 0)]), float(fine[min(k + 1, REFINEMENT)])
-    return None
+        k = max(int(np.argmax(at >= wanted if there else at)), 1)
+        if at[k] >= wanted and not there:
+            return _refined(moved, start, float(fine[k]), wanted, there=True)
+        low, high = float(fine[k - 1]), float(fine[k if there else min(k + 1, REFINEMENT)])
+    return high if there else None
 
 
 UPLIFT_FACT = "uplift"
 """Name under which a store keeps the uplift accelerations of its structures."""
-
-
-class Onset(NamedTuple):
-    """Intensity up to which no motion uplifts a structure, and whether every motion uplifts it beyond."""
-
-    at: float
-    exact: bool
 
 
 def accelerations(study: Study, plan: Plan) -> dict[str, Pair]:
@@ -542,43 +557,13 @@ def accelerations(study: Study, plan: Plan) -> dict[str, Pair]:
         return {}
     ranges: dict[str, Pair] = {}
     for sample, trial in zip(study.samples, plan.trials, strict=True):
-        if trial.reason is None and trial.structure not in ranges:
-            ranges[trial.structure] = _of_both(sample.mechanism, study.definition.model)
+        if trial.reason is not None or trial.structure in ranges:
+            continue
+        mechanism, model = sample.mechanism, study.definition.model
+        if model == "nonlinear":
+            one, other = (side.lambda_ for side in both_statics(mechanism))
+        else:
+            block = equivalent_block(mechanism)
+            one, other = uplift(block.positive, model), uplift(block.negative, model)
+        ranges[trial.structure] = (one, other) if mechanism.rocks_both_ways else (max(one, other), None)
     return ranges
-
-
-def _of_both(mechanism: Mechanism, model: ModelName) -> Pair:
-    if model == "nonlinear":
-        one, other = (side.lambda_ for side in both_statics(mechanism))
-    else:
-        block = equivalent_block(mechanism)
-        one, other = uplift(block.positive, model), uplift(block.negative, model)
-    return (one, other) if mechanism.rocks_both_ways else (max(one, other), None)
-
-
-def onset(plan: Plan, samples: range, pair: Pair | None, measure: str) -> Onset | None:
-    """Return at which intensity a structure uplifts; None if that is not known over a measure.
-
-    Parameters
-    ----------
-    plan : Plan
-        The plan of the study's runs.
-    samples : range
-        Indices of the structure's samples.
-    pair : (float or None, float or None), optional
-        Its uplift accelerations over g, as the store keeps them.
-    measure : str
-        The measure: PGA, or PGA over the uplift acceleration.
-    """
-    parsed = parse_measure(measure)
-    if pair is None or str(parsed.base) != PGA or parsed.power != 1:
-        return None
-    usable = [k for k in samples if plan.trials[k].reason is None]
-    accelerations = np.array([plan.trials[k].lambda_ * plan.trials[k].gravity for k in usable])
-    # If the accelerations differ, the uplift depends on a property that varies, and there is no single onset.
-    if np.ptp(accelerations) > INTENSITY_TOLERANCE * accelerations.max():
-        return None
-    pga = accelerations[:1] / STANDARD_GRAVITY
-    at = float(parsed.relative(pga, plan.reference(np.array(usable[:1])))[0])
-    one, other = pair
-    return Onset(at, one is not None and other is not None and isclose(one, other, rel_tol=INTENSITY_TOLERANCE))
