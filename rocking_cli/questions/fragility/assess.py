@@ -124,7 +124,7 @@ class Fragility(_FittedTwice):
     lower: Fragility | None = None
 
     @property
-    def fitted(self) -> FittedToRuns:
+    def fitted(self) -> FragilityCurve:
         """The curve."""
         return self.curve
 
@@ -157,7 +157,7 @@ class Bivariate(_FittedTwice):
     lower: Bivariate | None = None
 
     @property
-    def fitted(self) -> FittedToRuns:
+    def fitted(self) -> Surface:
         """The surface."""
         return self.surface
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -14,6 +14,7 @@ import numpy as np
 
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import DoubtWarning, InputError, Problem, warn
+from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.records.text import numbers_in
 from rocking_cli.io.files import read_bytes
 from rocking_cli.questions.fragility.curves import FragilityCurve
@@ -26,6 +27,22 @@ PIECE_WIDTH = 0.05  # width of a piece in ln x: a curve of dispersion 0.02 is st
 REFERENCE_LIFE = 50.0  # years
 WHAT = "hazard curve"
 OF_OPENQUAKE = "poe-"  # begins each heading of a probability of exceedance, before the intensity
+# Intensity measure types of OpenQuake, and their units in one unit of here: PGV is in m/s here, there in cm/s.
+TYPES: Mapping[str, tuple[str, float]] = {
+    "PGA": ("PGA", 1.0),
+    "PGV": ("PGV", 100.0),
+    "PGD": ("PGD", 100.0),
+    "Arias": ("IA", 1.0),
+    "CAV": ("CAV", 1 / STANDARD_GRAVITY),
+}
+SPECTRAL_MEASURE = re.compile(r"SA\(\s*([0-9.]+)\s*s?\s*\)", re.IGNORECASE)  # values in g, here as in OpenQuake
+
+
+def intensity_type(measure: str) -> tuple[str, float] | None:
+    """Return the name of a measure in OpenQuake, and the factor to its unit; None if OpenQuake lacks the measure."""
+    if spectral := SPECTRAL_MEASURE.fullmatch(measure):
+        return f"SA({float(spectral[1]):g})", 1.0
+    return TYPES.get(measure)
 
 
 @short_repr
@@ -97,8 +114,6 @@ def read_hazard(path: Path, measure: str) -> HazardCurve:
 
 def _of_openquake(file: str, comment: str, rows: Sequence[tuple[int, str]], measure: str) -> HazardCurve:
     """Return the annual rates of the probabilities of exceedance that OpenQuake exports for a site."""
-    from rocking_cli.questions.fragility.nrml import intensity_type
-
     years, there = (re.search(rf"{key}=['\"]*([^'\",]+)", comment) for key in ("investigation_time", "imt"))
     if years is None or there is None:
         hint = "keep the line that OpenQuake writes above the heading"

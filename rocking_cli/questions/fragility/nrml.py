@@ -17,24 +17,15 @@ from itertools import chain, count, pairwise
 import numpy as np
 
 from rocking_cli.errors import InputError
-from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import UNKNOWN, percent
 from rocking_cli.questions.fragility.assess import Fragility
 from rocking_cli.questions.fragility.curves import MAX_DISPERSION, MIN_P_VALUE
 from rocking_cli.questions.fragility.definition import OVERTURNING, SLIDING, UPLIFT, Limit
+from rocking_cli.questions.fragility.hazard_curve import intensity_type
 from rocking_cli.studies.fragility.quantities import metres
 from rocking_cli.text import one_line
 
 MAX_NAME_LENGTH = 60  # characters
-# Intensity measure types of OpenQuake, and their units in one unit of here: PGV is in m/s here, there in cm/s.
-TYPES: Mapping[str, tuple[str, float]] = {
-    "PGA": ("PGA", 1.0),
-    "PGV": ("PGV", 100.0),
-    "PGD": ("PGD", 100.0),
-    "Arias": ("IA", 1.0),
-    "CAV": ("CAV", 1 / STANDARD_GRAVITY),
-}
-SPECTRAL_MEASURE = re.compile(r"SA\(\s*([0-9.]+)\s*s?\s*\)", re.IGNORECASE)  # values in g, here as in OpenQuake
 NEGLIGIBLE_DEVIATIONS = 3.719  # standard deviations below the median: a probability of 1e-4
 MIN_CROSSING = 0.001  # difference of probability up to which crossing curves are written with the same value
 CROSSING_POINTS = 400  # intensities at which curves are checked for crossing
@@ -118,13 +109,6 @@ def moments(found: Fragility) -> tuple[float, float]:
     with np.errstate(over="ignore"):
         mean = median * np.exp(beta**2 / 2)
         return float(mean), float(mean * np.sqrt(np.expm1(beta**2)))
-
-
-def intensity_type(measure: str) -> tuple[str, float] | None:
-    """Return the name of a measure in OpenQuake, and the factor to its unit; None if OpenQuake lacks the measure."""
-    if spectral := SPECTRAL_MEASURE.fullmatch(measure):
-        return f"SA({float(spectral[1]):g})", 1.0
-    return TYPES.get(measure)
 
 
 def chosen(curves: Sequence[Fragility]) -> OpenQuakeModel:

@@ -14,6 +14,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.questions.fragility import nrml as openquake
 from rocking_cli.questions.fragility.assess import Fragility
 from rocking_cli.questions.fragility.definition import Limit
+from rocking_cli.questions.fragility.hazard_curve import SPECTRAL_MEASURE, intensity_type
 
 if TYPE_CHECKING:
     from rocking_cli.io.tables import Columns
@@ -28,7 +29,7 @@ def demand(measure: str) -> tuple[str, str] | None:
 
     The PGD of pelicun is a permanent deformation of the ground, and its spectral displacement has no damping.
     """
-    spectral = openquake.SPECTRAL_MEASURE.fullmatch(measure)
+    spectral = SPECTRAL_MEASURE.fullmatch(measure)
     return (f"Spectral Acceleration|{float(spectral[1])}", "g") if spectral else DEMANDS.get(measure)
 
 
@@ -55,7 +56,7 @@ def components(curves: Sequence[Fragility]) -> tuple[list[openquake.Function], l
     several = len({measure for _, measure in held}) > 1
     rows: list[openquake.Function] = []
     for (structure, measure), by_limit in held.items():
-        kind, factor = openquake.intensity_type(measure) or (measure, 1.0)
+        kind, factor = intensity_type(measure) or (measure, 1.0)
         taken = [row.name.replace(".", "-") for row in rows]  # pelicun splits names at -
         name = f"{structure}_{kind}" if several else structure
         name = openquake.identifier(name.replace("-", "_"), taken).replace("-", ".")

@@ -12,7 +12,8 @@ from scipy.stats import lognorm, norm
 from rocking_cli.errors import InputError
 from rocking_cli.questions.fragility.assess import Fragility
 from rocking_cli.questions.fragility.curves import fit_curve
-from rocking_cli.questions.fragility.nrml import chosen, identifier, intensity_type, limit_id, nrml
+from rocking_cli.questions.fragility.hazard_curve import intensity_type
+from rocking_cli.questions.fragility.nrml import chosen, identifier, limit_id, nrml
 from rocking_cli.questions.fragility.observed import Observations
 from rocking_cli.questions.fragility.table import curve_blocks
 from tests.conftest import EXAMPLES, rows_of
