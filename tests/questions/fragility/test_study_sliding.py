@@ -11,7 +11,7 @@ from click.testing import CliRunner
 
 from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError, SolverError
-from rocking_cli.questions.fragility import store, tally, work_units
+from rocking_cli.questions.fragility import store, work_units
 from rocking_cli.questions.fragility.campaign import prepare
 from rocking_cli.questions.fragility.store import COLUMNS, Store
 from rocking_cli.questions.fragility.study import load_study
@@ -101,17 +101,6 @@ def test_each_run_slides_when_respond_says_so(whole):
     sample = prepared.plan.places(np.arange(prepared.plan.size))[0]
     shares = [np.isfinite(found[sample == k]).mean() for k in range(len(prepared.plan.trials))]
     assert all(0 < each < 1 for each in shares) and len(set(shares)) > 1
-
-
-def test_the_shares_of_a_curve_are_those_of_the_runs(whole):
-    _, prepared, place = whole
-    slides = np.isfinite(rows_of(place).slide_time)
-    sample, _, _, level, _ = prepared.plan.places(np.arange(prepared.plan.size))
-    with Store.reading(place) as kept:
-        counted = tally.count(kept, prepared.plan, "uncertain", ["sliding"], ["PGA/(g lambda)"])
-    mine = np.isin(sample, counted.samples)
-    expected = [slides[mine & (level == k)].sum() for k in range(4)]
-    assert counted.exceeding["sliding"].sum(axis=(0, 1)).tolist() == expected
 
 
 @pytest.mark.rest
