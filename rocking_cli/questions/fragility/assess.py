@@ -12,7 +12,6 @@ import numpy as np
 from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.questions.fragility.curves import (
-    FittedToRuns,
     FragilityCurve,
     Surface,
     exact_step,
@@ -73,7 +72,7 @@ class _FittedTwice:
     unknown: int | None = field(default=0, kw_only=True)
 
     @property
-    def fitted(self) -> FittedToRuns:
+    def fitted(self) -> FragilityCurve | Surface:
         """The fit, of either kind."""
         raise NotImplementedError
 
@@ -126,7 +125,7 @@ class Fragility(_FittedTwice):
     lower: Fragility | None = None
 
     @property
-    def fitted(self) -> FittedToRuns:
+    def fitted(self) -> FragilityCurve:
         """The curve."""
         return self.curve
 
@@ -159,7 +158,7 @@ class Bivariate(_FittedTwice):
     lower: Bivariate | None = None
 
     @property
-    def fitted(self) -> FittedToRuns:
+    def fitted(self) -> Surface:
         """The surface."""
         return self.surface
 

@@ -75,6 +75,7 @@ def test_the_hash_is_of_what_decides_the_runs(tmp_path):
         GOOD.replace("0.6g", "0.7g"),
         GOOD.replace("0.05", "0.06"),
         GOOD + "model: linear2\n",
+        GOOD + "opening: 0.02\n",
     ]
     assert len({hashed(each) for each in [GOOD, *others]}) == 1 + len(others)
 
@@ -102,6 +103,7 @@ def test_a_plain_study_may_be_short(tmp_path):
         (("name: uncertain", "name: valley bridge"), "structures", "two of them are called valley bridge"),
         (("pulse: sine:0.6g:0.8s", f"file: {EXAMPLES / 'accel.csv'}"), "records", "two of them"),
         (("count: 8", "count: 1"), "levels.count", "at least 2"),
+        (("samples: 5", "samples: 5\nopening: 2"), "opening", "at most 1"),
         ((RANGE, "least: 4, most: 4.000000000000002, count: 8"), "levels.most", "too close to least for 8 distinct"),
         (("csv\n", f"csv\n  - {{file: '{EXAMPLES}/*.yaml', vertical: '{EXAMPLES}/*.csv'}}\n"),
          "records[2].vertical", "one"),
