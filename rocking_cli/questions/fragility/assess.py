@@ -10,7 +10,6 @@ import numpy as np
 from rocking_cli.arrays import Integers, Reals
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.questions.fragility.curves import (
-    FittedToRuns,
     FragilityCurve,
     Surface,
     exact_step,
@@ -71,7 +70,7 @@ class _FittedTwice:
     unknown: int | None = field(default=0, kw_only=True)
 
     @property
-    def fitted(self) -> FittedToRuns:
+    def fitted(self) -> FragilityCurve | Surface:
         """The fit, of either kind."""
         raise NotImplementedError
 

@@ -19,7 +19,7 @@ import numpy as np
 from rocking_cli.errors import InputError
 from rocking_cli.names import UNKNOWN, percent
 from rocking_cli.questions.fragility.assess import Fragility
-from rocking_cli.questions.fragility.curves import MAX_DISPERSION, MIN_P_VALUE
+from rocking_cli.questions.fragility.curves import MAX_DISPERSION
 from rocking_cli.questions.fragility.definition import OVERTURNING, SLIDING, UPLIFT, Limit
 from rocking_cli.questions.fragility.hazard_curve import intensity_type
 from rocking_cli.studies.fragility.quantities import metres
@@ -198,33 +198,21 @@ def _functions(held: Mapping[Key, Mapping[Limit, Fragility]], order: Sequence[Li
 
 
 def doubts(functions: Sequence[Function]) -> Iterator[str]:
-    """Yield warnings about the curves that are written, and about names that differ from those of the study."""
+    """Yield names that differ from those of the study, and curves that cross; the summary has other doubts."""
     for function in functions:
         first = function.curves[0]
+        of = f"{first.structure} over {first.measure}"
         if function.name != first.structure:
-            yield f"{first.structure} over {first.measure} is called {function.name} there"
-        if first.unknown is None:
-            yield f"{first.structure}: its joints are not checked"
-        for each in function.curves:
-            goodness = each.curve.goodness
-            if each.unknown:
-                runs = f"{each.unknown} of {each.total} runs ({percent(each.share or 0.0)})"
-                yield f"{_name(each)}: {runs} of {UNKNOWN} outcome are counted as exceeding"
-            if each.curve.unbounded:
-                yield f"{_name(each)}: the data do not bound its median"
-            if goodness is not None and goodness.p_value is not None and goodness.p_value < MIN_P_VALUE:
-                yield f"{_name(each)}: the data reject a lognormal curve (p = {goodness.p_value:.2g})"
+            yield f"{of} is called {function.name} there"
         x = np.geomspace(function.undamaged, function.ends[1], CROSSING_POINTS) / function.factor
         for milder, graver in pairwise(function.curves):
             above = graver.curve.own.probability(x) - milder.curve.own.probability(x)
             k = int(above.argmax())
             if above[k] > MIN_CROSSING:
                 yield (
-                    f"{first.structure} over {first.measure}: the curves of {milder.limit} and {graver.limit} cross: "
-                    f"at {x[k]:.3g} the probability of the graver is larger by {above[k]:.2g}, a share below zero"
+                    f"{of}: the curves of {milder.limit} and {graver.limit} cross: at {x[k]:.3g} the probability of "
+                    f"the graver is larger by {above[k]:.2g}, a share below zero"
                 )
-    warnings = (each.curve.warning for function in functions for each in function.curves)
-    yield from dict.fromkeys(filter(None, warnings))
 
 
 def _name(found: Fragility) -> str:

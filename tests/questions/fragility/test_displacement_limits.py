@@ -13,7 +13,7 @@ from rocking_cli.questions.fragility import tally
 from rocking_cli.questions.fragility.campaign import left, prepare
 from rocking_cli.questions.fragility.store import Store
 from rocking_cli.questions.fragility.study import load_study
-from rocking_cli.questions.fragility.tally import count, exceeds, first_reached, of_a_structure
+from rocking_cli.questions.fragility.tally import exceeds, first_reached, of_a_structure
 from rocking_cli.studies.fragility.quantities import ROTATIONS_FACT, displacement_in_mm, is_quantity, kept, metres
 from rocking_cli.studies.movements import Watched
 from tests.conftest import EXAMPLES, rows_of
@@ -195,14 +195,6 @@ def test_samples_of_another_geometry_have_rotations_of_their_own(whole):
         for phi in pair:
             assert b * (1 - np.cos(phi)) + h * np.sin(phi) == pytest.approx(0.025, rel=1e-9)
     assert len(set(table[1:, 0].tolist())) == 3
-
-
-def test_a_larger_displacement_is_exceeded_by_fewer_and_both_by_all_that_overturn(whole):
-    _, prepared, place = whole
-    store = Store.reading(place)
-    tally = count(store, prepared.plan, "uncertain", ["overturning", *LIMITS], ["PGA"])
-    numbers = [int(tally.exceeding[limit].sum()) for limit in ("25 mm", "200 mm", "overturning")]
-    assert numbers[0] > numbers[1] > numbers[2] > 0
 
 
 def test_a_store_without_them_opens_and_a_study_that_asks_adds_them_and_runs_nothing(whole, tmp_path, monkeypatch):

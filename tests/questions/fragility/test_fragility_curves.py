@@ -74,26 +74,7 @@ def design(x):
     return np.column_stack([np.ones(x.size), np.log(x)])
 
 
-def slow_logs(seen, a, b):
-    """Log-likelihood of each run, written by scipy.stats."""
-    eta = a + b * np.log(seen.x)
-    return np.where(seen.exceeded, log_ndtr(eta), log_ndtr(-eta))
-
-
 class TestAgainstAnIndependentOptimum:
-    def test_lognormal(self):
-        seen = cloud(np.random.default_rng(1), 150)
-        curve = fit_curve(seen)
-
-        def cost(z):
-            return -slow_logs(seen, -z[0] / np.exp(z[1]), 1 / np.exp(z[1])).sum()
-
-        best = minimize(cost, [-1.0, -1.0], method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-12})
-        assert curve.kind == "lognormal"
-        np.testing.assert_allclose([curve.median.value, curve.dispersion.value], np.exp(best.x), rtol=1e-6)
-        assert curve.aic["lognormal"] == pytest.approx(4 + 2 * best.fun, abs=1e-8)
-        assert (curve.runs, curve.exceedances) == (150, seen.exceeded.sum())
-
     def test_logistic_in_the_intensity_itself(self):
         random = np.random.default_rng(2)
         x = random.uniform(0.02, 3.0, 3000)  # wide below: there the lognormal has no tail
@@ -115,17 +96,6 @@ class TestAgainstAnIndependentOptimum:
         assert curve.aic["logistic"] == pytest.approx(4 + 2 * best.fun, abs=1e-7)
         assert curve.median.low < 0.8 < curve.median.high and curve.scale.low < 0.4 < curve.scale.high
         assert curve.probability(np.array([0.8]))[0] == pytest.approx(0.5, abs=0.05)
-
-    @pytest.mark.parametrize("link", ["probit", "logit"])
-    def test_refitted_by_statsmodels(self, link):
-        raw = cloud(np.random.default_rng(3), 150)
-        seen, (X, y) = raw.seen, (design(raw.x), raw.exceeded.astype(float))
-        found = fit_outcomes(link, design(seen.x), seen.counts, seen.exceeding, 0.95)
-        other = {"probit": Probit, "logit": Logit}[link](y, X).fit(disp=0)
-        np.testing.assert_allclose(found.coefficients, other.params, rtol=1e-6)
-        np.testing.assert_allclose(found.covariance, other.cov_params(), rtol=1e-5)
-        assert found.log_likelihood == pytest.approx(other.llf, rel=1e-10)
-        assert np.isinf(found.degrees)
 
     @pytest.mark.parametrize("link", ["probit", "logit"])
     @pytest.mark.parametrize("at_once", [7, 1 << 16])
@@ -311,20 +281,6 @@ class TestKinds:
         np.testing.assert_array_equal(curve.probability(x), [0, 0, 1, 1])
         np.testing.assert_array_equal(curve.band(x), [[0, 0, 0, 1], [0, 1, 1, 1]])
 
-    def test_a_single_level_with_both_outcomes_has_no_likeliest_slope(self):
-        curve = fit_curve(one_each([1, 1, 2, 2, 3, 3], [0, 0, 0, 1, 1, 1]))
-        assert (curve.kind, curve.step.value, curve.step.low, curve.step.high) == ("step", 2, 1, 3)
-
-    def test_two_levels_with_both_outcomes_have_one(self):
-        curve = fit_curve(one_each(np.repeat([1, 2, 3, 4], 4), [0] * 4 + [0, 0, 0, 1] + [0, 1, 1, 1] + [1] * 4))
-        assert curve.kind == "lognormal" and curve.goodness.p_value is None and curve.goodness.why
-
-    def test_a_plateau_is_told_as_a_curve_not_to_rely_on(self):
-        x = np.repeat(np.geomspace(0.1, 10, 12), 100)
-        random = np.random.default_rng(31)
-        curve = fit_curve(one_each(x, random.random(x.size) < 0.6 * norm.cdf(np.log(x) / 0.3)))
-        assert curve.goodness.p_value < 1e-6 and "do not rely on this curve" in curve.why
-
     def test_runs_of_two_records_tell_no_scatter(self):
         x = np.array([1, 2, 3, 4, 1, 2, 3, 4.0])
         seen = Runs(x, np.array([0, 1, 0, 1, 0, 0, 1, 1], dtype=bool), np.repeat([7, 9], 4))
@@ -436,20 +392,6 @@ class TestUnits:
             assert [after.value, after.low, after.high] == pytest.approx(expected, rel=1e-8)
         assert other.goodness.p_value == pytest.approx(one.goodness.p_value, rel=1e-7)
 
-    @pytest.mark.parametrize("c", [1e-3, 3.7, 1e3])
-    def test_nor_do_those_of_surfaces(self, c):
-        random = np.random.default_rng(66)
-        x1, x2 = np.exp(random.normal(size=(2, 300)))
-        exceeded = np.log(x1) + 0.5 * np.log(x2) > random.normal(size=300)
-        one, other = (fit_surface(factor * x1, x2, exceeded, np.arange(300) // 3) for factor in (1.0, c))
-        for before, after in zip(one.coefficients[1:], other.coefficients[1:], strict=True):
-            assert [after.value, after.low, after.high] == pytest.approx(
-                [before.value, before.low, before.high], rel=1e-7
-            )
-        assert other.p_values == pytest.approx(one.p_values, rel=1e-6)
-        flat = fit_surface(x1, rounded(np.full(300, c), 67), exceeded, np.arange(300))
-        assert "the same in all runs" in flat.why
-
     def test_a_level_that_is_rounded_otherwise_for_each_record_is_one(self):
         # None exceeds at 0.1, one half at 0.2, all at 0.3: over each float of 0.2 by itself these are two steps.
         x, record = np.tile([0.1, 0.2, 0.3], 12), np.repeat(np.arange(12), 3)
@@ -457,13 +399,6 @@ class TestUnits:
         curve = fit_curve(seen)
         assert curve.kind == "step" and "both outcomes occur at 0.2 only" in curve.why
         assert (curve.step.low, curve.step.value, curve.step.high) == pytest.approx((0.1, 0.2, 0.3))
-
-    def test_brackets_that_share_an_end_share_it_however_it_is_rounded(self):
-        lower, upper = brackets(np.random.default_rng(69), 200)
-        exact = fit_capacities(lower, upper, levels=LEVELS)
-        found = fit_capacities(rounded(lower, 70), rounded(upper, 71), levels=rounded(LEVELS, 72))
-        assert exact.goodness.p_value is not None
-        assert found.goodness.p_value == pytest.approx(exact.goodness.p_value, rel=1e-8)
 
 
 class TestCovariance:
@@ -527,20 +462,6 @@ class TestWords:
         assert words in fit_capacities(lower, np.full(6, upper), np.arange(6) // 2).why
         two = fit_capacities(np.array([1.0, 2, 1, 3]), np.array([2.0, 3, 3, 4]), np.array([0, 0, 1, 1]))
         assert "the 4 capacities are of 2 records" in two.why
-
-    @pytest.mark.every(2)
-    def test_of_the_measure_that_serves_alone(self):
-        random, seen = np.random.default_rng(58), 0
-        for _ in range(200):
-            record = np.repeat(np.arange(9), 6)
-            x1, x2 = np.exp(random.normal(size=(2, 54)))
-            exceeded = np.log(x1) + 0.4 * np.log(x2) > random.normal(size=54) + random.normal(size=9)[record]
-            found = fit_surface(x1, x2, exceeded, record)
-            if found.p_values is not None and (min(found.p_values) < 0.05) != (max(found.p_values) < 0.05):
-                seen += 1
-                adds = "first" if found.p_values[0] < 0.05 else "second"
-                assert f"a curve over the {adds} measure alone is sufficient" in found.why
-        assert seen > 20
 
 
 class TestGoodness:
@@ -674,7 +595,7 @@ class TestSurface:
         x = np.exp(random.normal(size=60))
         exceeded = np.log(x) > random.normal(size=60)
         assert "proportion" in fit_surface(x, 3 * x**0.7, exceeded, np.arange(60)).why
-        assert "the same in all runs" in fit_surface(x, np.full(60, 2.0), exceeded, np.arange(60)).why
+        assert "the same in all runs" in fit_surface(x, rounded(np.full(60, 2.0), 67), exceeded, np.arange(60)).why
         y = np.exp(random.normal(size=60))
         falls = -np.log(x) - np.log(y) > random.normal(size=60)
         assert "no surface increases" in fit_surface(x, y, falls, np.arange(60)).why
@@ -692,6 +613,8 @@ class TestSurface:
             and "adds nothing" in alone.why
             and "the first measure alone is sufficient" in alone.why
         )
+        other = fit_surface(x1, x2, np.log(x2) > random.normal(size=400), record)
+        assert other.p_values[0] > 0.05 and "the second measure alone is sufficient" in other.why
         falls = fit_surface(x1, x2, np.log(x1) - np.log(x2) > random.normal(size=400), record)
         assert "fewer runs exceed the limit as the second one increases" in falls.why
 

@@ -211,9 +211,7 @@ def test_the_command_writes_what_openquake_takes_and_names_the_rest(store, tmp_p
     assert command("fragility", EXAMPLES / "study" / "pedestal.yaml", "--store", store, "--nrml", out).exit_code == 0
 
 
-def test_the_command_refuses_places_and_says_when_nothing_is_left(store, tmp_path):
-    assert "does not exist" in command("results", store, "--nrml", tmp_path / "no" / "f.xml").stderr
-    assert "does not end in .xml" in command("results", store, "--nrml", tmp_path / "f.txt").stderr
+def test_the_command_says_when_nothing_is_left(tmp_path):
     study = tmp_path / "study.yaml"
     text = (EXAMPLES / "study" / "pedestal.yaml").read_text(encoding="utf-8").replace("../", f"{EXAMPLES}/")
     study.write_text(text + "measures: [PGA/(g lambda)]\n", encoding="utf-8")
@@ -237,23 +235,9 @@ def test_curves_as_a_table(store, tmp_path, ending):
     assert {(each["limit_state"], each["kind"]) for each in rows} == {
         ("uplift", "step"), ("0.5", "lognormal"), ("overturning", "lognormal"),
     }  # fmt: skip
-    weaker = np.inf  # the curve of a limit state that the next one implies
-    for limit in ("0.5", "overturning"):
-        own = [each for each in rows if each["limit_state"] == limit]
-        x, p, low, high = (
-            np.array([float(each[name]) for each in own]) for name in ("x", "probability", "low", "high")
-        )
-        median, beta = float(own[0]["median"]), float(own[0]["dispersion"])
-        below = x <= 0.25  # no structure overturns that does not uplift
-        assert not p[below].any()
-        fitted = np.minimum(norm.cdf(np.log(x / median) / beta), weaker)
-        np.testing.assert_allclose(p[~below], fitted[~below], atol=1e-7)
-        weaker = p
-        assert x.size > 100 and (x[0], x[-1]) == pytest.approx((0.1, 1.5)) and (np.diff(x) > 0).all()
-        assert (low <= p).all() and (p <= high).all() and (high - low).max() > 0.1
     step = [(float(each["x"]), float(each["probability"])) for each in rows if each["kind"] == "step"]
     assert {p for x, p in step if x <= 0.25} == {0.0} and {p for x, p in step if x > 0.25} == {1.0}
-    assert own[0]["unit"] == "g" and not own[0]["scale"]
+    assert rows[0]["unit"] == "g" and not rows[0]["scale"]
 
 
 def test_a_curve_that_is_not_there_is_named_and_a_table_of_none_has_its_heading(store, tmp_path):

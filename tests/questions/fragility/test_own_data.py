@@ -157,7 +157,6 @@ GOOD = [0.1, 0.2, 0.3, 0.4], [0, 1, 0, 1]
     "given, options, message",
     [
         (([], []), {}, "`intensity` has no value above zero"),
-        (([0, -1], [1, 0]), {}, "`intensity` has no value above zero"),
         (([1, 2], [1]), {}, "`exceeded` must have one value for each intensity: there are 1 and 2"),
         (([1, np.inf], [1, 0]), {}, r"`intensity\[1\]` must be finite"),
         (([[1, 2]], [1, 0]), {}, "`intensity` must have one dimension, has 2"),

@@ -10,7 +10,7 @@ import yaml
 from scipy.stats import binom
 
 from rocking_cli.names import MIN_MOTIONS, MIN_MOTIONS_OF_MEDIAN
-from rocking_cli.questions.fragility import assess, quantiles
+from rocking_cli.questions.fragility import quantiles
 from rocking_cli.questions.fragility.pictures import draw_quantiles
 from rocking_cli.questions.fragility.quantiles import Group, Quantiles, all_quantiles
 from rocking_cli.questions.fragility.store import Store
@@ -116,25 +116,6 @@ def test_the_fewest_records_are_those_whose_range_encloses_the_quantile(share, f
     assert enclosed(fewest - 1) < 0.95 <= enclosed(fewest)
 
 
-def test_groups_are_those_of_the_observed_parts(whole):
-    plan, definition, place, found = whole
-    if definition.method == "ida":  # there all runs above the first that exceeds count as exceeding
-        definition = definition.model_copy(update={"method": "stripes"})
-    store = Store.reading(place)
-    counted = assess.counted(store, plan, definition, lambda numbers: None)
-    curves, _ = assess.fitted(counted, definition, None, lambda numbers: None)
-    by_name = {(each.structure, each.measure): each for each in found}
-    for curve in curves:
-        parts, own = curve.seen.parts(0.95), by_name[curve.structure, curve.measure]
-        assert own.stripes == curve.seen.stripes
-        np.testing.assert_array_equal(parts.runs, [each.runs for each in own.groups])
-        np.testing.assert_allclose(parts.x, [each.x for each in own.groups])
-        beyond = [
-            each.overturned if curve.limit == "overturning" else each.runs - each.no_uplift for each in own.groups
-        ]  # fmt: skip
-        np.testing.assert_array_equal(parts.exceeding, beyond)
-
-
 def test_json_has_them_always_and_the_terminal_where_they_are_asked_for(whole):
     _, _, place, found = whole
     data = json.loads(command("results", place, "--json").stdout)["quantiles"]
@@ -234,11 +215,3 @@ def test_a_picture_of_little_is_drawn_too(some):
     assert "tenths" in below.get_xlabel()
     falls = any(np.isinf(value) for each in some for value in each.every)
     assert any(each.get_text() == "overturns" for each in above.get_yticklabels()) == falls
-
-
-@pytest.mark.rest
-def test_the_command_draws_one_for_each_structure_and_measure(tmp_path):
-    path = study(tmp_path, "stripes", ["PGA"])
-    assert command("fragility", path, "--plot", tmp_path / "pictures").exit_code == 0
-    drawn = sorted(each.name for each in (tmp_path / "pictures").glob("*quantiles*"))
-    assert len(drawn) == 2 and "uncertain-PGA-quantiles.png" in drawn

@@ -9,7 +9,7 @@ from click.testing import CliRunner
 
 from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError, SolverError
-from rocking_cli.questions.fragility import tally, work_units
+from rocking_cli.questions.fragility import work_units
 from rocking_cli.questions.fragility.campaign import prepare
 from rocking_cli.questions.fragility.store import COLUMNS, Store
 from rocking_cli.questions.fragility.study import load_study
@@ -94,17 +94,6 @@ def test_each_run_slides_when_respond_says_so(whole):
     sample = prepared.plan.places(np.arange(prepared.plan.size))[0]
     shares = [np.isfinite(found[sample == k]).mean() for k in range(len(prepared.plan.trials))]
     assert all(0 < each < 1 for each in shares) and len(set(shares)) > 1
-
-
-def test_the_shares_of_a_curve_are_those_of_the_runs(whole):
-    _, prepared, place = whole
-    slides = np.isfinite(every_run(place).slide_time)
-    sample, _, _, level, _ = prepared.plan.places(np.arange(prepared.plan.size))
-    kept = Store.reading(place)
-    counted = tally.count(kept, prepared.plan, "uncertain", ["sliding"], ["PGA/(g lambda)"])
-    mine = np.isin(sample, counted.samples)
-    expected = [slides[mine & (level == k)].sum() for k in range(4)]
-    assert counted.exceeding["sliding"].sum(axis=(0, 1)).tolist() == expected
 
 
 @pytest.mark.rest

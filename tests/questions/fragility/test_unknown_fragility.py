@@ -292,9 +292,7 @@ def test_openquake_gets_no_band(whole, tmp_path):
     x, records = np.repeat([0.2, 0.4, 0.6, 0.8], 20), np.arange(80)
     seen = Observations.of(x, np.concatenate([np.arange(20) < k for k in (1, 5, 12, 19)]), records)
     curve = Fragility("a", "overturning", "PGA", seen, fit_curve(seen), None, unknown=1)
-    (doubt,) = openquake.chosen([curve]).doubts
-    assert doubt == "a, overturning over PGA: 1 of 80 runs (1.2 %) of unknown outcome are counted as exceeding"
-    assert openquake.chosen([replace(curve, unknown=None)]).doubts == ["a: its joints are not checked"]
+    assert len(openquake.chosen([curve]).functions) == 1  # up to 2 % count as exceeding
     with pytest.raises(InputError, match=r"2\.5 % of the runs are of unknown outcome"):
         openquake.chosen([replace(curve, unknown=2)])
 
@@ -362,9 +360,3 @@ def test_joints_that_are_not_known_are_a_caution_and_null(tmp_path):
                 "--store", tmp_path / "linear.runs", "--json").stdout
     )  # fmt: skip
     assert linear["outcomes"][0]["unknown"] == 0 and not linear["notes"]
-
-
-def test_the_study_may_set_the_limit_of_openings(whole, tmp_path):
-    path = write(tmp_path, opening=0.02)
-    assert "opening was 0.005, is now 0.02" in command("fragility", path, "--store", whole.place, code=2).stderr
-    assert "opening must be at most 1" in command("fragility", write(tmp_path, opening=2), "--check", code=2).stderr
