@@ -1093,6 +1093,7 @@ def fragility(
     check: bool = ...,
     jobs: int | None = ...,
     scheduler: str | Client | None = ...,
+    share: str | None = ...,
     store: str | Path | None = ...,
     restart: bool = ...,
     processing: Sequence[str | Mapping[str, Any]] = ...,
@@ -1137,9 +1138,11 @@ def fragility(
         Number of processor cores to use. By default one for each processor.
     scheduler : str | Client | None, optional
         Address of a dask.distributed scheduler, or in Python a client of it, to run there.
+    share : str | None, optional
+        Run only this part of the runs, such as 3/40, into the store that all parts share, and fit no curves.
     store : str | Path | None, optional
-        File in which the runs are stored. Without one and a study file, the runs last as long as the answer. By default
-        next to the study file.
+        Folder in which the runs are stored. Without one and a study file, the runs last as long as the answer. By
+        default next to the study file, such as study.runs.
     restart : bool, optional
         Start from scratch; the existing store is kept under another name.
     processing : Sequence[str | Mapping[str, Any]], optional
@@ -1182,7 +1185,7 @@ def fragility(
         Confidence level of intervals and bands. By default 0.95.
     hazard : Mapping[str, Any] | None, optional
         How often intensities are exceeded at the site, per year: `measure`, and `file` (CSV of intensity and annual
-        rate) or `points`.
+        rate, or hazard curve of OpenQuake) or `points`.
     name : str | None, optional
         Name of the study. By default that of its file.
     quantiles : bool, optional
@@ -1298,6 +1301,7 @@ def results(
     *,
     out: str | Path | None = ...,
     curves: str | Path | None = ...,
+    pelicun: str | Path | None = ...,
     quantiles: bool = ...,
     rank_measures: bool = ...,
     plot: str | Path | None = ...,
@@ -1314,6 +1318,8 @@ def results(
         Write all runs (.csv or .parquet).  - is standard output.
     curves : str | Path | None, optional
         Write the curves, one line per intensity (.csv or .parquet).  - is standard output.
+    pelicun : str | Path | None, optional
+        Write the lognormal curves for pelicun, as fragility.csv in this folder.
     quantiles : bool, optional
         Show quantiles of the peak rotation at each intensity: 16, 50 and 84 % of the runs.
     rank_measures : bool, optional
@@ -1336,7 +1342,7 @@ def results(
     Raises
     ------
     InputError
-        If the file is not a store of this version, or is damaged.
+        If the folder is not a store of this version, or is damaged.
     """
 
 def import_drawing(

@@ -86,7 +86,7 @@ def _increments(answer: Any, structure: str) -> Figure:
     across = "factor on the records" if measure == SCALE else label(measure)
     usable = [k for k, each in enumerate(plan.records) if each.reason is None]
     table = peaks(Store.reading(answer.store), plan, structure)
-    records, ladders = np.unique(plan.of_sets.one[usable]).size, len(samples_of(plan, structure)) * plan.block
+    records, ladders = np.unique(plan.sets.one[usable]).size, len(samples_of(plan, structure)) * plan.block
     named = [plan.records[k].name for k in usable] if ladders == len(plan.levels) else []
     return draw_ida(np.array(plan.levels), table, across, structure, records, named)
 

@@ -170,11 +170,6 @@ class Plan:
     sets: Sets
 
     @property
-    def of_sets(self) -> Sets:
-        """The levels at which each record is run, and its weight."""
-        return self.sets
-
-    @property
     def structures(self) -> list[str]:
         """Names of the structures, in the order of the study."""
         return list(dict.fromkeys(trial.structure for trial in self.trials))

@@ -208,7 +208,7 @@ def _rank(
 ) -> Ranking:
     runs, y = rocking(store, plan, structure)
     sample, record, _, level, _ = plan.places(runs)
-    factors, one = plan.factors(sample, record, level), plan.of_sets.one[record]  # one: the same record in any set
+    factors, one = plan.factors(sample, record, level), plan.sets.one[record]  # one: the same record in any set
     ranked: list[Ranked] = []
     alike: dict[str, str] = {}
     left_out: dict[str, str] = {}

@@ -474,7 +474,7 @@ def _in_words(name: str, entry: RecordEntry, *, fully: bool = True) -> str:
     if fully and entry.channel is not None:
         name += f" channel {entry.channel}"
     if fully and entry.azimuth is not None and entry.other is not None:
-        name += f" azimuth {entry.azimuth:g}"
+        name += f" azimuth {entry.azimuth}".removesuffix(".0")
     return name if entry.level is None else f"{name} at {entry.level:g}"
 
 

@@ -98,7 +98,7 @@ class Tally:
 
         Sets of several levels may share a record: the cluster is the first entry that is the same record.
         """
-        sets = self.plan.of_sets
+        sets = self.plan.sets
         return np.asarray(sets.one[record]), np.asarray(sets.weight[record]) if sets.weighted else None
 
     def over(self, *measures: str) -> Cells:

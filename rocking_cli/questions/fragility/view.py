@@ -200,7 +200,7 @@ def _grouped(fits: Sequence[Fitted], over: str) -> dict[tuple[str, Any], list[Fi
 
 def sets_in_words(plan: Plan) -> list[str]:
     """Return sentences on sets of records for levels and on weights, if there are any."""
-    sets, sentences = plan.of_sets, []
+    sets, sentences = plan.sets, []
     usable = np.array([each.reason is None for each in plan.records])
     if (sets.level >= 0).any():
         counts = [int((usable & ((sets.level == k) | (sets.level < 0))).sum()) for k in range(len(plan.levels))]
@@ -219,7 +219,7 @@ def sets_in_words(plan: Plan) -> list[str]:
 
 def _records(plan: Plan) -> list[dict[str, Any]]:
     """Return each record as plain data, with the level of its set, if any, and its weight."""
-    sets = plan.of_sets
+    sets = plan.sets
     return [
         {**{"pga_g" if key == "pga" else key: value for key, value in asdict(each).items()},
          "level": plan.levels[sets.level[k]] if sets.level[k] >= 0 else None, "weight": weight}

@@ -135,7 +135,7 @@ class TestTheArguments:
         records = [{"file": motion, "level": 0.2}, {"file": motion, "level": 1.6, "weight": 3.0}, {"file": shaken("b")}]
         found = study(records)
         assert dict(found.runs()["motion"].value_counts()) == {"b": 6, "mine at 0.2": 1, "mine at 1.6": 1}
-        assert len(set(found.plan.of_sets.one)) == 2  # both sets have the same record
+        assert len(set(found.plan.sets.one)) == 2  # both sets have the same record
 
     @pytest.mark.parametrize(
         ("given", "message"),
