@@ -1336,7 +1336,8 @@ def results(
     StudyAnswer
         One curve per structure, limit state and measure. `curves` has them by limit state, such as
         `curves["overturning"].median`, or if there are several structures or measures by structure, limit state and
-        measure. `to_frame()` has their points and `runs()` the runs. If the outcome of some runs is unknown, as a joint
+        measure. `to_frame()` has their points, `runs()` the runs, `frames["fits"]` a row for each curve, and
+        `frames["quantiles"]` a row for each intensity. If the outcome of some runs is unknown, as a joint
         opens that the model keeps closed, these exceed the limit in the fit and do not in its `lower`.
 
     Raises

@@ -29,7 +29,7 @@ from rocking_cli.questions.fragility.quantiles import Quantiles, all_quantiles, 
 from rocking_cli.questions.fragility.ranking import Ranking, rank, with_rankings
 from rocking_cli.questions.fragility.results_asked import ResultsAsked
 from rocking_cli.questions.fragility.store import Store
-from rocking_cli.questions.fragility.table import curve_blocks, run_blocks
+from rocking_cli.questions.fragility.table import curve_blocks, fit_rows, quantile_rows, run_blocks
 from rocking_cli.questions.fragility.view import edges, left_out, view
 from rocking_cli.studies.fragility.quantities import label
 
@@ -204,7 +204,8 @@ def results(asked: ResultsAsked, watch: Watcher) -> StudyAnswer:
     StudyAnswer
         One curve per structure, limit state and measure. `curves` has them by limit state, such as
         `curves["overturning"].median`, or if there are several structures or measures by structure, limit state and
-        measure. `to_frame()` has their points and `runs()` the runs. If the outcome of some runs is unknown, as a joint
+        measure. `to_frame()` has their points, `runs()` the runs, `frames["fits"]` a row for each curve, and
+        `frames["quantiles"]` a row for each intensity. If the outcome of some runs is unknown, as a joint
         opens that the model keeps closed, these exceed the limit in the fit and do not in its `lower`.
 
     Raises
@@ -245,7 +246,11 @@ def results(asked: ResultsAsked, watch: Watcher) -> StudyAnswer:
         shown,
         lambda: stacked(curve_blocks(fits)),
         partial(_figure, definition, fits),
-        tables={"runs": runs},
+        tables={
+            "runs": runs,
+            "fits": lambda: fit_rows(fits, rankings),
+            "quantiles": lambda: quantile_rows(spread(), outcomes),
+        },
         dims=[Dimensions(along, table=runs)],
         store=place,
         plan=plan,

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from math import nan
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,12 +12,17 @@ from numpy.typing import NDArray
 from rocking_cli import names
 from rocking_cli.io.tables import stacked
 from rocking_cli.processing.intensity import parse_measure
-from rocking_cli.questions.fragility.assess import Fragility
+from rocking_cli.questions.fragility.assess import Fragility, UnknownRuns
 from rocking_cli.questions.fragility.curves import FragilityCurve
 from rocking_cli.questions.fragility.definition import SLIDING
 from rocking_cli.questions.fragility.plan import Plan
+from rocking_cli.questions.fragility.quantiles import QUANTILES, Quantiles
+from rocking_cli.questions.fragility.ranking import Ranking
 from rocking_cli.questions.fragility.store import FAILED, NO_RUNS, OFF_EDGE, STANDS, UNKNOWN, RunRows, Store
 from rocking_cli.studies.fragility.quantities import USUAL_MEASURES, label
+
+if TYPE_CHECKING:
+    from rocking_cli.io.tables import Columns
 
 CURVE_POINTS = 101
 MIN_LOG_RATIO = 30.0  # ratio of largest to least intensity, from which intensities are spaced by a factor
@@ -61,6 +67,46 @@ def points(found: Fragility) -> NDArray[np.float64]:
     x: NDArray[np.float64] = between(least, most, CURVE_POINTS)
     steps = [step for curve in (found.curve, (found.lower or found).curve) for step in curve.steps]
     return np.union1d(x, [end for step in steps for end in (step.low, step.value, step.high)])
+
+
+def fit_rows(curves: Sequence[Fragility], rankings: Sequence[Ranking]) -> Columns:
+    """Return a row for each curve: its numbers and their intervals, the test of its fit, and the rank of its measure.
+
+    Values that do not exist are NaN; those of the rank exist if measures were ranked.
+    """
+    ranked = {(each.structure, measure.measure): measure for each in rankings for measure in each.measures}
+    rows = []
+    for each in curves:
+        words = each.structure, f"{each.limit}", each.measure, each.curve.kind
+        row: dict[str, object] = dict(zip(("structure", "limit_state", "measure", "kind"), words, strict=True))
+        for name in ("median", "dispersion", "scale"):
+            number = getattr(each.curve, name)
+            row |= {f"{name}{end and '_'}{end}": getattr(number, end or "value", nan) for end in ("", "low", "high")}
+        row |= {name: getattr(each.curve, name) for name in ("runs", "exceedances", "records")}
+        row["unknown"] = nan if each.share is None else each.share
+        row["annual_rate"] = getattr(each.rate, "rate", nan)
+        tested, rank = each.curve.goodness, ranked.get((each.structure, each.measure))
+        row |= {name: nan if (of := getattr(tested, name, None)) is None else of for name in ("statistic", "p_value")}
+        row |= {name: getattr(rank, name, nan) for name in ("efficiency", "practicality", "proficiency")}
+        rows.append(row)
+    return {name: [row[name] for row in rows] for name in rows[0]} if rows else {}
+
+
+def quantile_rows(found: Sequence[Quantiles], outcomes: Sequence[UnknownRuns]) -> Columns:
+    """Return a row for each group of intensities, with the shares of its runs and the quantiles of their peaks."""
+    checked = {each.structure for each in outcomes if each.unknown is not None}
+    rows = [
+        {
+            "structure": each.structure, "measure": each.measure, "x": group.x, "from": group.low, "to": group.high,
+            "runs": group.runs, "records": group.records, "no_uplift": group.no_uplift / group.runs,
+            "overturned": group.overturned / group.runs, "unknown": group.unknown / group.runs if each.structure in checked else nan,
+            **{f"rocking_{100 * share:g}": value for share, value in zip(QUANTILES, group.rocking, strict=True)},
+            **{f"all_{100 * share:g}": value for share, value in zip(QUANTILES, group.every, strict=True)},
+        }
+        for each in found
+        for group in each.groups
+    ]  # fmt: skip
+    return {name: [row[name] for row in rows] for name in rows[0]} if rows else {}
 
 
 def run_blocks(store: Store, plan: Plan, measures: Sequence[str] = ()) -> Iterator[Mapping[str, Sequence[object]]]:

@@ -227,3 +227,20 @@ class TestTheCurves:
         assert again.median.value == pytest.approx(own.median.value)
         assert again.robust_interval["median"] == pytest.approx((own.median.low, own.median.high))
         assert again.robust_interval["dispersion"] == pytest.approx((own.dispersion.low, own.dispersion.high))
+
+
+def test_frames_have_each_fit_and_each_quantile_once():
+    answer = study(PULSES, limit_states=["uplift", 0.3, "overturning"], rank_measures=True)
+    fits, quantiles = answer.frames["fits"], answer.frames["quantiles"]
+    assert fits["limit_state"].tolist() == ["uplift", "0.3", "overturning"]
+    for row, curve in zip(fits.itertuples(), answer.result, strict=True):
+        assert (row.kind, row.exceedances, row.median) == (
+            curve.curve.kind,
+            curve.curve.exceedances,
+            curve.median.value,
+        )
+    rank = {each.measure: each for each in answer.rankings[0].measures}
+    assert fits["efficiency"].tolist() == [rank["PGA"].efficiency] * 3
+    groups = answer.quantiles[0].groups
+    assert quantiles["all_50"].tolist() == pytest.approx([each.every[1] for each in groups], nan_ok=True)
+    assert (quantiles["unknown"] == 0).all() and quantiles["x"].tolist() == [each.x for each in groups]
