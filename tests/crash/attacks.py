@@ -54,7 +54,7 @@ LINES = {
     "fragility": f"fragility {STUDY} --store s.runs --jobs 1 --plot folder --nrml n.xml",
     "restart": f"fragility {STUDY} --store s.runs --jobs 1 --restart",
     "free_blocks": "fragility INPUTS/free.yaml --store s.runs --jobs 1",
-    "results": "results INPUTS/study.runs --out o.csv --curves c.csv --nrml n.xml --plot folder",
+    "results": "results INPUTS/study.runs --out o.csv --curves c.csv --nrml n.xml --plot folder --pelicun parts",
     "report": f"report {BLOCK} {UNDER} -o r.html",
     "mechanisms": "mechanisms --plot p.png",
     "new": "new odd --plugin -o folder",

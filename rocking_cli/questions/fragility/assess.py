@@ -268,13 +268,13 @@ def _curves_over(
     lower = upper | {limit: fit(tally.least, limit) for limit, runs in unknown.items() if runs}
 
     def below(limit: Limit, fits: Mapping[Limit, Fragility]) -> Fragility:
-        found = fits[limit]
-        if found.curve.kind == "none":
-            return found
+        uncut = fits[limit]
+        if uncut.curve.kind == "none":
+            return uncut
         weaker = {other: fits[other].curve for other in fits if implies(limit, other, slides=tally.slides)}
         known = floor | {other: curve for other, curve in weaker.items() if curve.kind != "none"}
-        curve = replace(found.curve, implied=known)
-        return replace(found, curve=curve, rate=None if hazard is None else annual_rate(curve, hazard))
+        curve = replace(uncut.curve, implied=known)
+        return replace(uncut, curve=curve, rate=None if hazard is None else annual_rate(curve, hazard))
 
     for limit, runs in unknown.items():
         yield replace(below(limit, upper), unknown=runs, lower=below(limit, lower) if runs else None)

@@ -185,15 +185,15 @@ class FragilityCurve(FittedToRuns):
     def lines(self, x: Reals) -> Reals:
         """Return the probability at intensities of any shape and the limits of its band, shape (3, ...)."""
         x = np.asarray(x, dtype=np.float64)
-        own = np.full((3, *x.shape), np.nan)
+        uncut = np.full((3, *x.shape), np.nan)
         if self.fit is not None:
             design = _design(self.kind, x)
-            own = np.reshape([self.fit.probability(design), *self.fit.band(design)], own.shape)
+            uncut = np.reshape([self.fit.probability(design), *self.fit.band(design)], uncut.shape)
         elif self.step is not None:
             step = np.heaviside(x - self.step.value, 0.0 if self.is_exact else 0.5)
             within = x > self.step.low
-            own = np.array([step, (x >= self.step.high) & within, within], dtype=np.float64)
-        return np.asarray(np.min([own, *(each.lines(x) for each in self.implied.values())], axis=0))
+            uncut = np.array([step, (x >= self.step.high) & within, within], dtype=np.float64)
+        return np.asarray(np.min([uncut, *(each.lines(x) for each in self.implied.values())], axis=0))
 
     def cut(self, x: Reals) -> Cut | None:
         """Return the largest cut of the curve or its band at some intensities (n,); None if it is nowhere noticeable.

@@ -286,8 +286,8 @@ class _Files:
         samples = [each for one in known for each in self.samples(*one, sampling)] if sampling is not None else []
         document.check()
         assert definition is not None
-        found = tuple(structure for *_, structure in known)
-        return Study(definition.name or one_line(name), definition, found, tuple(samples), tuple(sources), hazard)
+        mechanisms = tuple(structure for *_, structure in known)
+        return Study(definition.name or one_line(name), definition, mechanisms, tuple(samples), tuple(sources), hazard)
 
     def wrong(self, place: Place, what: str, hint: str | None = None, *, key: bool = False) -> None:
         """Add a problem with the value at a place, or with its key."""

@@ -522,9 +522,9 @@ def first_reached(moved: Callable[[Reals], Reals], phi: Reals, at: Reals, wanted
         there = bool(at[k] >= wanted)
         turns_back = k + 1 < len(phi) and at[k - 1] <= at[k] > at[k + 1]
         if there or turns_back:
-            found = _refined(moved, phi[k - 1], phi[k if there else k + 1], wanted, there=there)
-            if found is not None:
-                return found
+            reached = _refined(moved, phi[k - 1], phi[k if there else k + 1], wanted, there=there)
+            if reached is not None:
+                return reached
     return None
 
 
