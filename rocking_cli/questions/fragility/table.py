@@ -99,7 +99,8 @@ def quantile_rows(found: Sequence[Quantiles], outcomes: Sequence[UnknownRuns]) -
         {
             "structure": each.structure, "measure": each.measure, "x": group.x, "from": group.low, "to": group.high,
             "runs": group.runs, "records": group.records, "no_uplift": group.no_uplift / group.runs,
-            "overturned": group.overturned / group.runs, "unknown": group.unknown / group.runs if each.structure in checked else nan,
+            "overturned": group.overturned / group.runs,
+            "unknown": group.unknown / group.runs if each.structure in checked else nan,
             **{f"rocking_{100 * share:g}": value for share, value in zip(QUANTILES, group.rocking, strict=True)},
             **{f"all_{100 * share:g}": value for share, value in zip(QUANTILES, group.every, strict=True)},
         }

@@ -128,7 +128,7 @@ def test_each_run_exceeds_when_its_own_history_says_so(whole):
     (found,) = store.rows(0, plan.size)
     table = kept(store.fact, ["uplift", "overturning", *LIMITS])
     assert set(table) == set(LIMITS)
-    sample, record, _, _, polarity = plan.places(found.id)
+    sample, record, _, _, polarity = plan.places(found.run)
     flags = {limit: exceeds(found, limit, table[limit][sample]) for limit in LIMITS}
     seen = set()
     watched = [Watched(each.mechanism) for each in study.samples]
