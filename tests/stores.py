@@ -207,7 +207,9 @@ def race(sound: Sound, folder: Path, *more: str) -> list[int]:
         if code == 0:
             assert shown(out) == sound.shown, said
         else:  # another one has restarted the study, too
-            assert any(each in said for each in ("another process", "still empty", "finished so far")), said
+            assert any(
+                each in said for each in ("another process", "moved or deleted", "still empty", "finished so far")
+            ), said
     codes = sorted(code for *_, code in ended)
     assert codes[0] == 0, ended
     assert contents(place) == contents(sound.store)

@@ -36,13 +36,13 @@ in_file = partial(option, where="Python")
 
 
 def _part(value: Any) -> tuple[int, int]:
-    """Return the part and the number of parts of a text such as 3/40."""
+    """Return the part and the number of parts of a text such as 3/40, or of two numbers."""
     try:
-        k, parts = (int(each) for each in value.split("/"))
-    except (AttributeError, ValueError):
+        k, parts = (int(each) for each in (value.split("/") if isinstance(value, str) else value))
+    except (TypeError, ValueError):
         raise ValueError(f"{value!r} is not a part of the runs: give a text such as 3/40") from None
     if not 1 <= k <= parts:
-        raise ValueError(f"{value!r} is not a part of the runs: parts are counted from 1/{parts} to {parts}/{parts}")
+        raise ValueError(f"{value!r} is not a part of the runs: 1/40 is the first of 40, and 40/40 the last")
     return k, parts
 
 
@@ -200,13 +200,13 @@ class FragilityAsked(OfStudy, OfCurves):
     )  # fmt: skip
     store: Path | None = option(
         "Folder in which the runs are stored. Without one and a study file, the runs last as long as the answer.",
-        Kind(Path, "FOLDER", words="output"), usual="next to the study file, such as study.runs",
+        FOLDER, usual="next to the study file, such as study.runs",
     )  # fmt: skip
     restart: bool = option("Start from scratch; the existing store is kept under another name.", default=False)
     idle = (
         Idle("if only the plan is shown", lambda asked: asked.check, ("jobs", "scheduler", "share", "restart", *SHOWN)),
         Idle(
-            "with a part of the runs: start again or fit curves once, without it",
+            "with a part of the runs: give it in a command without a part, before or after all parts",
             lambda asked: asked.share is not None,
             ("restart", *SHOWN),
         ),

@@ -115,9 +115,9 @@ def read_hazard(path: Path, measure: str) -> HazardCurve:
 def _of_openquake(file: str, comment: str, rows: Sequence[tuple[int, str]], measure: str) -> HazardCurve:
     """Return the annual rates of the probabilities of exceedance that OpenQuake exports for a site."""
     years, there = (re.search(rf"{key}=['\"]*([^'\",]+)", comment) for key in ("investigation_time", "imt"))
-    if years is None or there is None:
+    if years is None or there is None or not float(years[1]) > 0:
         hint = "keep the line that OpenQuake writes above the heading"
-        raise InputError(Problem("investigation_time or imt is missing", file, 1, hint=hint))
+        raise InputError(Problem("investigation_time or imt is missing, or is not positive", file, 1, hint=hint))
     name, factor = intensity_type(measure) or (measure, 1.0)
     if (intensity_type(there[1]) or (there[1],))[0] != name:  # SA(1.0) is SA(1) as well
         hint = f"export the curve of {name}, or set the measure of the hazard"

@@ -100,7 +100,10 @@ class StudyAnswer(Answer[list[Fragility]]):
 
     def run_blocks(self) -> Iterator[Columns]:
         """Yield the runs as columns, read from the store in blocks of rows, as there may be very many."""
-        yield from _blocks(self.store)  # which holds on to the answer, and with it to a store in memory
+        if self.store.exists():  # the generator holds on to the answer, and with it to a temporary store
+            yield from _blocks(self.store, self.plan)
+        else:  # of a pickled answer
+            yield self.tables["runs"]()
 
     def to_cloud(
         self, measure: str = "PGA", edp: str = "peak_ratio", censored: float = 1.5, structure: str | None = None
@@ -239,7 +242,7 @@ def results(asked: ResultsAsked, watch: Watcher) -> StudyAnswer:
     lacking += [f"{len(bad)} records or samples cannot be used"] if (bad := left_out(plan)) else []
     several = zip(("restitution", "level", "polarity"), plan.shape[2:], strict=True)
     along = ("structure", "sample", "motion", *(name for name, count in several if count > 1))
-    runs = partial(_columns, place)
+    runs = partial(_columns, place, plan)
     answer = StudyAnswer(
         "fragility",
         fits,
@@ -322,14 +325,17 @@ def _definition(store: Store) -> Definition:
         raise InputError(Problem(what, str(store.path), hint=hint)) from None
 
 
-def _blocks(place: Path) -> Iterator[Columns]:
+def _blocks(place: Path, plan: Plan) -> Iterator[Columns]:
     """Yield the runs of a store as columns, in blocks of rows."""
     store = Store.reading(place)
-    yield from run_blocks(store, store.plan, _definition(store).asked_measures)
+    if store.plan.records != plan.records:
+        what, hint = "the study has been run again since these results were read", "read them again"
+        raise InputError(Problem(what, str(place), hint=hint))
+    yield from run_blocks(store, plan, _definition(store).asked_measures)
 
 
-def _columns(place: Path) -> Columns:
-    return stacked(_blocks(place))
+def _columns(place: Path, plan: Plan) -> Columns:
+    return stacked(_blocks(place, plan))
 
 
 def _figure(definition: Definition, curves: list[Fragility]) -> Figure:

@@ -23,7 +23,7 @@ from typing import Annotated, Any, get_type_hints
 import numpy as np
 
 from rocking_cli.arrays import Bools, Integers, Reals
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.io.files import folder, write_whole
 from rocking_cli.io.json_text import json_text
 from rocking_cli.questions.fragility.plan import Measured, Plan, Trial, described
@@ -182,6 +182,7 @@ class Store:
         self.facts: dict[str, Any] = {}
         self._anew = False
         self._say: Say = lambda text: None
+        self._mends = False  # what is damaged, beside its description
         self._state: tuple[int, int] | None = None
         self._text = b""
 
@@ -213,8 +214,9 @@ class Store:
             raise InputError(
                 Problem(f"the folder {store.path.parent} does not exist", str(path), hint="create it first")
             )
-        store._say, store._state = say, _state(store.path / STUDY)
-        store._anew = anew and store._state is not None
+        store._say, store._state, store._mends = say, _state(store.path / STUDY), True
+        store._refuse_foreign()
+        store._anew = anew and store.path.is_dir() and any(store.path.iterdir())
         if not store._anew:
             store._load()
         return store
@@ -241,13 +243,13 @@ class Store:
         """The plan of the runs."""
         facts = self.facts
         try:
-            of_run = self._arrays(MEASURED)
-            del of_run["study"]
-        except FileNotFoundError:
-            of_run = {}
+            of_run = self._of_runs()
         except DamagedFile as error:
-            hint = "delete this file: running the study again computes its values"
-            raise InputError(Problem(f"the store is damaged: {error}", str(self.path), hint=hint)) from None
+            if not self._mends:
+                hint = "run the study again: it computes the values of this file again"
+                raise InputError(Problem(f"the store is damaged: {error}", str(self.path), hint=hint)) from None
+            self._say(f"damaged, and computed again: {error}")
+            of_run = {}
 
         def of(kind: str) -> dict[str, Reals]:
             return {name: _reals(values) for name, values in facts["measured"][kind].items()}
@@ -285,7 +287,7 @@ class Store:
             "polarities": plan.polarities,
             "records": [asdict(each) for each in plan.records],
             "samples": [asdict(each) for each in plan.trials],
-            "measured": {"records": measured.of_record, "samples": measured.of_sample},
+            "measured": {"records": measured.of_record, "samples": measured.of_sample, "runs": [*measured.of_run]},
         }
         text = json_text(new).encode()
         if self.empty:
@@ -294,7 +296,7 @@ class Store:
             write_whole(self.path / STUDY, lambda stream: stream.write(_sealed(text)))
         self._text, self.facts = text, json.loads(text)
         if measured.of_run:
-            self._write(MEASURED, measured.of_run)
+            self._write(MEASURED, measured.of_run, self._usable())
         self.__dict__.pop("plan", None)
         self._state = _state(self.path / STUDY)
 
@@ -317,20 +319,31 @@ class Store:
         return k * self.size, min((k + 1) * self.size, self.facts["runs"])
 
     def chunk(self, k: int) -> RunRows:
-        """Return the runs of a chunk, none if it is not there yet. Raises `DamagedFile`."""
+        """Return the runs of a chunk, none if it is not there yet.
+
+        Raises
+        ------
+        DamagedFile
+            If the file is not whole.
+        InputError
+            If its runs are of another study, or under other records.
+        """
         name = self.file(k).name
         try:
             columns = self._arrays(name)
         except FileNotFoundError:
             return NO_RUNS
         try:
-            rows = RunRows(**{name: columns[name] for name in COLUMNS})
+            study, rows = str(columns["study"]), RunRows(**{name: columns[name] for name in COLUMNS})
             first, stop = self.ends(k)
             sizes = {each.shape for each in columns.values() if each.ndim}
             if sizes != {rows.run.shape} or (np.diff(rows.run, prepend=first - 1, append=stop) < 1).any():
                 raise ValueError(f"its runs are not those from {first} to {stop - 1}")
         except DAMAGE as error:
             raise DamagedFile(name, error) from error
+        if study != self._key(self._records_of(rows)):
+            what = "its runs are of another study, of other records, or of another version"
+            raise InputError(Problem(what, str(self.path / name), hint="move it away"))
         return rows
 
     def add(self, rows: RunRows) -> None:
@@ -351,10 +364,10 @@ class Store:
             rows = rows.select(np.argsort(rows.run))
         columns = {name: getattr(rows, name).astype(TYPES.get(name, np.float64)) for name in COLUMNS}
         try:
-            self._write(self.file(k).name, columns)
+            self._write(self.file(k).name, columns, self._records_of(rows))
         except InputError:  # while it was written, the folder was moved, and another one may have taken its place
             self._refuse_moved()
-            self._write(self.file(k).name, columns)
+            self._write(self.file(k).name, columns, self._records_of(rows))
 
     def rows(self, first: int, stop: int, counted: Callable[[int], None] = lambda numbers: None) -> Iterator[RunRows]:
         """Yield the finished runs with numbers from `first` to before `stop`, many at a time.
@@ -405,27 +418,47 @@ class Store:
         return InputError(Problem(what, str(self.path), hint=hint))
 
     def _arrays(self, name: str) -> dict[str, Any]:
-        """Return the arrays of a file. Raises `DamagedFile`, `FileNotFoundError`, and `InputError` of another study."""
+        """Return the arrays of a file. Raises `DamagedFile` and `FileNotFoundError`."""
         try:
             content = (self.path / name).read_bytes()
             with np.load(io.BytesIO(content)) as file:
-                arrays = {each: file[each] for each in file.files}
-            study = str(arrays["study"])
+                return {each: file[each] for each in file.files}
         except FileNotFoundError:
             raise
         except DAMAGE as error:
             raise DamagedFile(name, error) from error
-        if study != self.facts["hash"]:
-            what = f"is of another study, {study[:12]}, and this store is of {self.facts['hash'][:12]}"
-            raise InputError(Problem(what, str(self.path / name), hint="move it away"))
-        return arrays
 
-    def _write(self, name: str, arrays: Mapping[str, Reals]) -> None:
-        """Write arrays with the digest of the study."""
+    def _of_runs(self) -> dict[str, Reals]:
+        """Return the measures that differ from run to run. Raises `DamagedFile`."""
+        names = self.facts["measured"]["runs"]
+        try:
+            arrays = self._arrays(MEASURED) if names else {}
+            if names and str(arrays["study"]) != self._key(self._usable()):
+                raise ValueError("it is of another study")
+            return {name: arrays[name] for name in names}
+        except (OSError, KeyError, ValueError) as error:
+            raise DamagedFile(MEASURED, error) from error
+
+    def _usable(self) -> Sequence[int]:
+        return [k for k, each in enumerate(self.facts["records"]) if each["reason"] is None]
+
+    def _records_of(self, rows: RunRows) -> Sequence[int]:
+        """Return the indices of the records of some runs."""
+        facts = self.facts
+        block = len(facts["restitutions"]) * len(facts["levels"]) * len(facts["polarities"])
+        return [int(k) for k in np.unique(rows.run // block % len(facts["records"]))]
+
+    def _key(self, records: Sequence[int]) -> str:
+        """Return the digest of all that decides runs under some records: study, versions and content of the records."""
+        parts = [self.facts["hash"], self.facts["versions"], [self.facts["records"][k]["checksum"] for k in records]]
+        return hashlib.sha256(json_text(parts, sort_keys=True).encode()).hexdigest()
+
+    def _write(self, name: str, arrays: Mapping[str, Reals], records: Sequence[int]) -> None:
+        """Write arrays with the digest of the study and of the records that they are of."""
 
         def write(stream: Any) -> None:
             with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED, compresslevel=COMPRESSION) as file:
-                for each, values in {**arrays, "study": np.array(self.facts["hash"])}.items():
+                for each, values in {**arrays, "study": np.array(self._key(records))}.items():
                     with file.open(f"{each}.npy", "w") as member:
                         np.lib.format.write_array(member, values)
 
@@ -445,11 +478,11 @@ class Store:
         text = b"{" + content[len(_sealed(b"")) :]
         if content != _sealed(text):
             what = f"the store is damaged: {STUDY} does not match its checksum"
-            raise InputError(Problem(what, str(self.path), hint=f"restore a copy of it, or {RESTART_HINT}"))
+            raise InputError(Problem(what, str(self.path), hint=f"restore a copy of it, or {_restart()}"))
         facts = json.loads(text)
         if facts["layout"] != LAYOUT:
             what = f"this store has the layout {facts['layout']}, and this version of rocking reads {LAYOUT} only"
-            raise InputError(Problem(what, str(self.path), hint=RESTART_HINT))
+            raise InputError(Problem(what, str(self.path), hint=_restart()))
         self._text, self.facts = text, facts
 
     def _refuse_foreign(self) -> None:
@@ -478,12 +511,16 @@ class Store:
         """Raise `InputError` if another process has put this store aside."""
         if self._state == _state(self.path / STUDY):
             return
-        now = Store(self.path)
+        now, used = Store(self.path), self._usable()
         now._load()
-        if now.facts.get("hash") != self.facts["hash"] or now.size != self.size:
-            what = "another process has moved this store: it has just started the study from scratch"
-            raise InputError(Problem(what, str(self.path), hint="run the same command again to continue"))
-        self._state = now._state
+        if now.empty:
+            what = "this store has been moved or deleted"
+        elif (now.fact("hash"), now.size) != (self.fact("hash"), self.size) or now._key(used) != self._key(used):
+            what = "another process has started this study from scratch, with other fields, records or versions"
+        else:
+            self._state = now._state
+            return
+        raise InputError(Problem(what, str(self.path), hint="run the same command again to continue"))
 
 
 class DamagedFile(Exception):
@@ -493,7 +530,8 @@ class DamagedFile(Exception):
         super().__init__(f"{name} ({error or type(error).__name__})")
 
 
-RESTART_HINT = "run the study again with `restart`, which keeps this folder under another name"
+def _restart() -> str:
+    return f"run the study again with {named('restart')}, which keeps this folder under another name"
 
 
 def _sealed(text: bytes) -> bytes:

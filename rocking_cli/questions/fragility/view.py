@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from math import isinf
 from operator import itemgetter
+from shlex import quote
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -72,7 +73,9 @@ def shared(place: Path, share: tuple[int, int], done: Left) -> View:
     }
     failed = f", {done.failed:,} of them could not be simulated" if done.failed else ""
     sentence = f"Part {data['share']}: {done.finished:,} of {done.total:,} runs are in {place}{failed}."
-    return View(data, [sentence, f"When all parts are finished, `rocking results {place}` fits the curves."])
+    return View(
+        data, [sentence, f"When all parts are finished, `rocking results {quote(str(place))}` fits the curves."]
+    )
 
 
 def left_out(plan: Plan) -> list[str]:

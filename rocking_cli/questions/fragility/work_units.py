@@ -30,15 +30,14 @@ LEAST_RUNS = 64  # runs of a chunk: some 10 ms of work, against 3 ms for handing
 MOST_RUNS: dict[EngineName, int] = {"exact": 4096, "auto": 16, "blocks": 2}  # free blocks take seconds a run
 MOST_CHECKED_RUNS = 256  # runs of a chunk that is checked for sliding: each run takes some ms
 CHUNKS = 256  # chunks of a study of usual size, so that all workers end together
-MAX_SAMPLES = 4_000_000  # samples of the records of a chunk: 64 megabytes
+MOST_RECORDS = 100  # of a chunk: some 4 million samples, 64 megabytes
 MAX_MODELS = 16  # models in memory at a time: some 30 megabytes, 120 for arches
 
 
 def runs_per_chunk(plan: Plan, definition: Definition) -> int:
     """Return the number of runs of a chunk, which depends on nothing but the study."""
     most = MOST_CHECKED_RUNS if SLIDING in definition.limit_states else MOST_RUNS[definition.engine]
-    records = max(1, MAX_SAMPLES // max(each.npts for each in plan.records))
-    return min(most, max(LEAST_RUNS, ceil(plan.size / CHUNKS)), records * plan.block)
+    return min(most, max(LEAST_RUNS, ceil(plan.size / CHUNKS)), MOST_RECORDS * plan.block)
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,12 +8,14 @@ import sys
 import numpy as np
 import pytest
 
+import rocking_cli as rk
 from rocking_cli.errors import InputError
 from rocking_cli.io import files
 from rocking_cli.questions.fragility import store
 from rocking_cli.questions.fragility.campaign import prepare
 from rocking_cli.questions.fragility.store import COLUMNS, Store
 from rocking_cli.questions.fragility.study import load_study
+from tests.conftest import EXAMPLES
 from tests.stores import RUNS, Sound, command, contents, shown
 
 
@@ -112,13 +114,50 @@ def test_damaged_files_are_named_and_computed_again(sound, place):
     assert shown(result.stdout) == sound.shown and contents(place) == contents(sound.store)
 
 
+def test_runs_under_another_record_of_the_same_name_are_not_taken_for_those_of_this_one(tmp_path):
+    """Two folders with one study and a record each: a chunk, or all of them, of the other are refused."""
+    text = f"structures: ['{EXAMPLES / 'block.yaml'}']\nrecords: [r.csv]\nmethod: stripes\n"
+    text += "levels: {measure: scale, least: 0.5, most: 3, count: 6}\n"
+    for name, record in (("a", "accel.csv"), ("b", "accel_transverse.csv")):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "s.yaml").write_text(text, encoding="utf-8")
+        shutil.copyfile(EXAMPLES / record, tmp_path / name / "r.csv")
+        command("fragility", tmp_path / name / "s.yaml", code=0)
+    one, other = tmp_path / "a" / "s.runs", tmp_path / "b" / "s.runs"
+    own = contents(one)
+    shutil.copyfile(other / "runs-000000.npz", one / "runs-000000.npz")
+    for words in (["results", one], ["fragility", one.with_suffix(".yaml")]):
+        assert "its runs are of another study, of other records" in command(*words, code=2).stderr
+    (one / "study.json").unlink()
+    assert "its runs are of another study" in command("fragility", one.with_suffix(".yaml"), code=2).stderr
+    (one / "study.json").unlink()
+    said = command("fragility", one.with_suffix(".yaml"), "--restart", code=0).stderr
+    assert "kept as" in said and contents(one) == own
+    assert [*contents(one.with_name("s.before.runs"))] == ["runs-000000.npz"]
+
+
+def test_a_writer_stops_if_its_study_is_restarted_with_another_record(tmp_path):
+    text = f"structures: ['{EXAMPLES / 'block.yaml'}']\nrecords: [r.csv]\nmethod: cloud\n"
+    (tmp_path / "s.yaml").write_text(text, encoding="utf-8")
+    shutil.copyfile(EXAMPLES / "accel.csv", tmp_path / "r.csv")
+    answer = rk.fragility(tmp_path / "s.yaml")
+    writer = Store.writing(tmp_path / "s.runs")
+    rows = writer.chunk(0)
+    shutil.copyfile(EXAMPLES / "accel_transverse.csv", tmp_path / "r.csv")
+    command("fragility", tmp_path / "s.yaml", "--restart", code=0)
+    with pytest.raises(InputError, match="another process has started this study from scratch"):
+        writer.add(rows)
+    with pytest.raises(InputError, match="has been run again since these results were read"):
+        answer.runs()
+
+
 @pytest.mark.parametrize("name", ["study.json", "runs-000001.npz"])
 def test_files_of_another_study_are_refused(sound, place, name):
     shutil.copyfile(sound.other.with_suffix(".runs") / name, place / name)
     found = contents(place)
     for words in (["results", place], ["fragility", sound.study, "--store", place]):
         said = command(*words, code=2).stderr
-        assert "of another study" in said or "seed was 1, is now 0" in said
+        assert "are of another study" in said or "seed was 1, is now 0" in said
     assert contents(place) == found
 
 
@@ -171,8 +210,8 @@ def test_a_writer_whose_store_another_process_has_put_aside_stops(sound, place):
     writer.add(rows)  # the same study: the same runs
     assert contents(place) == contents(sound.store)
     shutil.rmtree(place)
-    with pytest.raises(InputError, match="another process has moved this store"):
+    with pytest.raises(InputError, match="this store has been moved or deleted"):
         writer.add(rows)
     shutil.copytree(sound.other.with_suffix(".runs"), place)
-    with pytest.raises(InputError, match="another process has moved this store"):
+    with pytest.raises(InputError, match="another process has started this study from scratch"):
         writer.add(rows)

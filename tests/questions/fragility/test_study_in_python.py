@@ -64,6 +64,7 @@ class TestTheRuns:
         gc.collect()
         assert list(folder.iterdir()) == [second.store.parent]
         assert copy.runs().equals(runs) and copy.to_frame().equals(points) and copy.to_dict() == data
+        assert len(copy.to_cloud()[0]) == 12 and len(next(copy.run_blocks())["run"]) == 12
         assert data["store"] is None and list(copy.curves) == ["uplift", "overturning"] and copy.plot()
 
     def test_a_study_that_fails_leaves_nothing_behind(self, folder, monkeypatch):

@@ -193,14 +193,20 @@ class TestStore:
         assert values == pytest.approx([response_spectrum(motion, 1.0).sa[0] for motion in motions()])
         assert np.load(place / "measured.npz")["Du"].shape == (2, 3, 4)
 
-    def test_damage_is_found(self, measured, tmp_path):
-        place = tmp_path / "study.runs"
-        shutil.copytree(measured[0] / "study.runs", place)
-        content = bytearray((place / "measured.npz").read_bytes())
-        content[200] ^= 1
-        (place / "measured.npz").write_bytes(content)
-        for arguments in (("results", place), ("fragility", write(tmp_path), "--store", place)):
-            assert "measured.npz" in command(*arguments, code=2).stderr
+    @pytest.mark.parametrize("damage", ["flipped", "cut", "deleted", "exchanged"])
+    def test_damage_is_named_and_mended(self, measured, tmp_path, damage):
+        place = shutil.copytree(measured[0] / "study.runs", tmp_path / "study.runs")
+        file, whole = place / "measured.npz", (place / "measured.npz").read_bytes()
+        file.write_bytes({"flipped": whole[:200] + bytes([whole[200] ^ 1]) + whole[201:], "cut": whole[:300]}.get(
+            damage, (place / "runs-000000.npz").read_bytes()
+        ))  # fmt: skip
+        if damage == "deleted":
+            file.unlink()
+        said = command("results", place, code=2).stderr
+        assert "the store is damaged: measured.npz" in said and "run the study again" in said
+        path = write(tmp_path, more="measures: [sa(1), Du, d5-95, arias, PGV/v_imp]\n")
+        said = command("fragility", path, "--store", place, code=0).stderr
+        assert "damaged, and computed again: measured.npz" in said and file.read_bytes() == whole
 
     def test_a_measure_that_is_not_installed_any_more_is_said_and_keeps_the_runs(self, measured, tmp_path):
         place = tmp_path / "study.runs"
