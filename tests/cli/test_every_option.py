@@ -221,7 +221,7 @@ CALLS = {
     "demand": ({"site": SITE}, {"site": NTC | {"soil": "D"}, "damping": 0.1} | TABLE | PLOT),
     "fragility": (
         {**{name: each for name, each in STUDY.items() if name != "records"}, "motions": STUDY["records"]},
-        {"store": "b.runs", "check": True, "scheduler": "odd", "restart": True, "plot": "p",
+        {"store": "b.runs", "check": True, "scheduler": "odd", "restart": True, "share": "1/2", "plot": "p",
          "rank_measures": True, "quantiles": True, "nrml": "n.xml", "motions": RECORD,
          "structures": [STUDY["structures"][0] | {"name": "odd"}], "method": "ida",
          "levels": STUDY["levels"] | {"most": 3}, "polarity": "-1", "restitution": [0.8], "samples": 9,
@@ -280,7 +280,7 @@ IDLE = [
      | AROUND),
     ("respond", {"structure": BLOCK, "motions": PULSE, "model": "linear2"}, {"opening": 0.1}),
     ("fragility", {"structures": STUDY, "store": "c.runs", "check": True},
-     {"jobs": 2, "scheduler": "tcp://odd:1", "restart": True, "rank_measures": True, "quantiles": True,
+     {"jobs": 2, "scheduler": "tcp://odd:1", "restart": True, "share": "1/2", "rank_measures": True, "quantiles": True,
       "nrml": "n.xml", "plot": "p", "confidence": 0.8}),
     ("equivalent_pulses", {"structures": [BLOCK, OTHER], "pulse": PULSE},
      {"ag": 0.4, "period": 0.4, "shape": "cosine"}),
