@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
-from threadpoolctl import threadpool_limits
 
 from rocking_cli.core import Equivalence, Mechanism, NoEquivalentBlock, Statics, both_statics, equivalent_block
 from rocking_cli.core.advice import uplift_error
@@ -263,6 +262,8 @@ class Structure:
     def model(self, name: ModelName) -> Model:
         """Return a model of the structure. Raises `InputError` or `MechanismError` if it cannot be built."""
         if name not in self._models:
+            from threadpoolctl import threadpool_limits
+
             statics, equivalence = self.statics, self.equivalence if name != "nonlinear" else None
             with self.named(), threadpool_limits(1, "blas"):  # threads wait for each other on busy cores
                 self._models[name] = build(

@@ -220,7 +220,7 @@ def left(
             chunks.append(k)
         final = rows.select(_is_final(prepared, rows))
         finished, failed = finished + len(final), failed + final.failed
-        total += prepared.plan.numbers(*prepared.store.ends(k)).size
+        total += numbers.size + len(rows if engine == "exact" else final)
     return Left(chunks, finished, failed, total)
 
 

@@ -144,20 +144,20 @@ def chosen(curves: Sequence[Fragility]) -> OpenQuakeModel:
     return OpenQuakeModel([limit_id(each) for each in order], functions, left_out, list(doubts(functions)))
 
 
-def why_not(found: Fragility) -> str:
-    """Return the reason why OpenQuake cannot hold a curve; empty if it can."""
+def why_not(found: Fragility, program: str = "OpenQuake") -> str:
+    """Return the reason why a program cannot hold a curve; empty if it can."""
     curve, of = found.curve, f"{_name(found)}: "
     if intensity_type(found.measure) is None:
-        return f"all curves over {found.measure}: OpenQuake has no such intensity measure"
+        return f"all curves over {found.measure}: {program} has no such intensity measure"
     if found.limit == SLIDING:
-        return f"{of}sliding is not a step on the way to overturning, and OpenQuake orders limit states by severity"
+        return f"{of}sliding is not a step on the way to overturning, and {program} orders limit states by severity"
     if found.is_band:
         share = f"{percent(found.share or 0.0)} of the runs are of {UNKNOWN} outcome"
-        return f"{of}{share}: the result is a band, and OpenQuake accepts only curves"
+        return f"{of}{share}: the result is a band, and {program} accepts only curves"
     if curve.kind == "none":
         return f"{of}no curve exists: {curve.why}"
     if curve.kind != "lognormal":
-        return f"{of}its curve is a {curve.kind} one, and OpenQuake accepts only lognormal curves"
+        return f"{of}its curve is a {curve.kind} one, and {program} accepts only lognormal curves"
     if curve.dispersion is None:
         return f"{of}its dispersion is above {MAX_DISPERSION:g}: it does not depend on this measure"
     if not np.isfinite(moments(found)).all():

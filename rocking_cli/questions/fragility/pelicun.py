@@ -74,8 +74,7 @@ def _why_not(curve: Fragility) -> str:
     """Return the reason why pelicun cannot hold a curve; empty if it can."""
     if demand(curve.measure) is None:
         return f"all curves over {curve.measure}: curves for pelicun are over PGA, PGV or Sa of 5 % damping"
-    reason = openquake.why_not(curve).replace("OpenQuake accepts only", "the table for pelicun has only")
-    return reason.replace("OpenQuake", "pelicun")
+    return openquake.why_not(curve, "the table for pelicun")
 
 
 def table(rows: Sequence[openquake.Function]) -> Columns:

@@ -23,7 +23,7 @@ def test_measures_have_the_demand_types_of_pelicun_or_are_left_out():
     (row,), (over_pgd, of_sliding, of_step) = components([*some(), *some(measure="PGD"), sliding, step])
     assert [each.limit for each in row.curves] == ["uplift", 0.1, "25 mm", 0.5, "overturning"]
     assert over_pgd.startswith("all curves over PGD: ") and "pelicun orders limit states" in of_sliding
-    assert "its curve is a step one, and the table for pelicun has only lognormal curves" in of_step
+    assert "its curve is a step one, and the table for pelicun accepts only lognormal curves" in of_step
     with pytest.raises(InputError, match="pelicun accepts none of the curves: all curves over PGD"):
         components(some(measure="PGD"))
 

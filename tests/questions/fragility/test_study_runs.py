@@ -125,6 +125,8 @@ class TestSameResults:
             told.append((shown["share"], shown["runs"], shown["finished"], shown["failed"]))
         assert told == [("3/3", 22, 22, 0), ("1/3", 64, 64, 0), ("2/3", 64, 64, 0)]
         assert contents(place) == contents(whole[2])
+        said = command("fragility", whole[0], "--store", place, "--share", "2/3").stdout
+        assert said.startswith("Part 2/3: 64 of 64 runs are in ")
 
     def test_after_an_error_in_the_middle(self, whole, tmp_path, monkeypatch):
         monkeypatch.setattr(campaign, "runs_per_chunk", lambda plan, definition: 20)
