@@ -456,13 +456,12 @@ class Store:
     def _write(self, name: str, arrays: Mapping[str, Reals], records: Sequence[int]) -> None:
         """Write arrays with the digest of the study and of the records that they are of."""
 
-        def write(stream: Any) -> None:
-            with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED, compresslevel=COMPRESSION) as file:
-                for each, values in {**arrays, "study": np.array(self._key(records))}.items():
-                    with file.open(f"{each}.npy", "w") as member:
-                        np.lib.format.write_array(member, values)
-
-        write_whole(self.path / name, write)
+        whole = io.BytesIO()  # zip takes a disk that fails for a pipe, and writes an equal file of other bytes
+        with zipfile.ZipFile(whole, "w", zipfile.ZIP_DEFLATED, compresslevel=COMPRESSION) as file:
+            for each, values in {**arrays, "study": np.array(self._key(records))}.items():
+                with file.open(f"{each}.npy", "w") as member:
+                    np.lib.format.write_array(member, values)
+        write_whole(self.path / name, lambda stream: stream.write(whole.getbuffer()))
 
     def _load(self) -> None:
         """Read the description of the study, if there is one."""
