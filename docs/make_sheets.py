@@ -17,7 +17,7 @@ from make_runs import Content
 from parts import NUMBER
 
 import rocking_cli as rk
-from rocking_cli.ask.given import site_of
+from rocking_cli.ask.inputs import site_of
 from rocking_cli.cli.made import Made
 from rocking_cli.documents.sheet_page import render
 from rocking_cli.documents.sheet_typst import page_pictures

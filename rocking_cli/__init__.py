@@ -22,9 +22,8 @@ __version__ = "0.2.0"
 # Names that other modules define, by module; `rooms` finds those of the questions. The stub beside this file,
 # `__init__.pyi`, is written from both by `make pages`.
 _HOME = {
-    "ask.answer": ["Answer", "MappingAnswer"],
+    "ask.answer": ["Answer", "Answers", "MappingAnswer"],
     "ask.read": ["read_record"],
-    "ask.several": ["Answers"],
     "core": ["Body", "Direction", "Equivalence", "EquivalentBlock", "Mechanism", "RigidMotion"],
     "core.registry": ["Registry"],
     "dynamics.exact": ["ExactResponse", "closed_form"],

@@ -18,13 +18,13 @@ from mechanisms.wall import Wall as Wall
 from numpy.typing import ArrayLike as ArrayLike
 from pathlib import Path as Path
 from rocking_cli.ask.answer import Answer as Answer
+from rocking_cli.ask.answer import Answers as Answers
 from rocking_cli.ask.answer import MappingAnswer as MappingAnswer
-from rocking_cli.ask.given import StructureLike as StructureLike
 from rocking_cli.ask.ground_motions import Motion as Motion
 from rocking_cli.ask.ground_motions import Motions as Motions
 from rocking_cli.ask.groups import ModelName as ModelName
 from rocking_cli.ask.groups import SiteLike as SiteLike
-from rocking_cli.ask.several import Answers as Answers
+from rocking_cli.ask.inputs import StructureLike as StructureLike
 from rocking_cli.ask.watcher import Watcher as Watcher
 from rocking_cli.core import Body as Body
 from rocking_cli.core import CollapseMechanism as CollapseMechanism

@@ -33,10 +33,10 @@ from rocking_cli.processing.reading_options import CORRECTIONS, PREPARING, READI
 if TYPE_CHECKING:  # the stub of verbs finds their types here
     from typing import Self
 
-    from rocking_cli.ask.given import SiteLike as SiteLike
-    from rocking_cli.ask.given import StructureLike as StructureLike
     from rocking_cli.ask.ground_motions import Motion as Motion
     from rocking_cli.ask.ground_motions import Motions as Motions
+    from rocking_cli.ask.inputs import SiteLike as SiteLike
+    from rocking_cli.ask.inputs import StructureLike as StructureLike
     from rocking_cli.excitation.records.record_units import Gain as Gain
     from rocking_cli.processing.floor import Floor as Floor
     from rocking_cli.processing.reading import Reading as RecordReading

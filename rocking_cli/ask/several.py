@@ -9,8 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from rocking_cli.ask.answer import Answer, Dimensions, no_plot
-from rocking_cli.ask.answer import Answers as Answers
+from rocking_cli.ask.answer import Answer, Answers, Dimensions, no_plot
 from rocking_cli.ask.ground_motions import Motions
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import RockingError, named

@@ -1,8 +1,5 @@
 """Mechanics of rigid bodies: positions of the bodies of a mechanism, equation of motion, equivalent block."""
 
-from rocking_cli.core.answers import CollapseHinge as CollapseHinge
-from rocking_cli.core.answers import CollapseMechanism as CollapseMechanism
-from rocking_cli.core.answers import Extra as Extra
 from rocking_cli.core.bodies import Body as Body
 from rocking_cli.core.bodies import annular_sector as annular_sector
 from rocking_cli.core.bodies import box as box
@@ -39,6 +36,9 @@ from rocking_cli.core.linkage import NoMotion as NoMotion
 from rocking_cli.core.loops import Guide as Guide
 from rocking_cli.core.loops import Pin as Pin
 from rocking_cli.core.mechanism import Mechanism as Mechanism
+from rocking_cli.core.mechanism_kinematics import CollapseHinge as CollapseHinge
+from rocking_cli.core.mechanism_kinematics import CollapseMechanism as CollapseMechanism
+from rocking_cli.core.mechanism_kinematics import Extra as Extra
 from rocking_cli.core.sketch import Angle as Angle
 from rocking_cli.core.sketch import Forces as Forces
 from rocking_cli.core.sketch import Hinge as Hinge

@@ -11,10 +11,10 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from rocking_cli.arrays import Points, Reals
-from rocking_cli.core.answers import Jointed
 from rocking_cli.core.contacts import Contact
 from rocking_cli.core.convex import convex_pieces
 from rocking_cli.core.kinematics import Direction, RigidMotion, distance, inside, rotation
+from rocking_cli.core.mechanism_kinematics import Jointed
 from rocking_cli.core.polygons import nearby
 
 NODES = 65  # rotations from rest to the end of the search at which all bodies are looked at first

@@ -16,11 +16,9 @@ import numpy as np
 from pydantic import ValidationError
 
 from rocking_cli.core import equilibrium
-from rocking_cli.core.answers import Extra, Jointed, Kinematics
 from rocking_cli.core.bodies import Body
 from rocking_cli.core.bounds import Bound, first_beyond, meeting
 from rocking_cli.core.coefficients import Coefficients, coefficients
-from rocking_cli.core.given import KINEMATIC, NEEDS_A_SIDE, DirectionalRestitution, Stop, Strength
 from rocking_cli.core.hung.attached import Attached, Follow, PointMass, Spot
 from rocking_cli.core.hung.attachments import (
     Carrier,
@@ -35,7 +33,9 @@ from rocking_cli.core.hung.element import INTERLOCK_NAME as INTERLOCK
 from rocking_cli.core.hung.element import Element, SteelBar, Stretched
 from rocking_cli.core.hung.everything import Hung
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
+from rocking_cli.core.mechanism_kinematics import Extra, Jointed, Kinematics
 from rocking_cli.core.sketch import Outline
+from rocking_cli.core.structure_fields import KINEMATIC, NEEDS_A_SIDE, DirectionalRestitution, Stop, Strength
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.plugins.errors import failed, guard
 

@@ -10,8 +10,8 @@ from typing import Any
 from pydantic import ValidationError
 
 from rocking_cli.core import Mechanism
-from rocking_cli.core.given import Given
 from rocking_cli.core.registry import Registry
+from rocking_cli.core.structure_fields import StructureFields
 from rocking_cli.io.field_problems import problems
 from rocking_cli.io.yaml_file import Document, block, parse, read_text
 from rocking_cli.text import cut, one_line
@@ -57,7 +57,7 @@ def parse_structure(
     return of_document(document, default_name, Path(file).parent, registry, **more)
 
 
-def structure_text(mechanism: Given, *comments: str) -> str:
+def structure_text(mechanism: StructureFields, *comments: str) -> str:
     """Return the YAML text of a structure with the fields that it was given, below comments of a line each."""
     given = mechanism.model_dump(mode="json", by_alias=True, exclude_unset=True, exclude_none=True)
     return fields_text(mechanism.mechanism, given, comments)
@@ -75,7 +75,7 @@ def of_document(
 ) -> Mechanism:
     """Make a structure from a parsed document whose file names are relative to `folder`. Raises as `load_structure`.
 
-    Further arguments are those of `Given.from_fields`.
+    Further arguments are those of `StructureFields.from_fields`.
     """
     cls = _mechanism(document, registry if registry is not None else Registry())
     fields = {key: value for key, value in document.data.items() if key != "mechanism"}

@@ -15,7 +15,6 @@ import numpy as np
 from rocking_cli.arrays import Integers, Reals
 from rocking_cli.core import Mechanism
 from rocking_cli.core.equivalence import Statics
-from rocking_cli.core.given import Strength
 from rocking_cli.core.released import (
     ONE,
     PUSH,
@@ -28,6 +27,7 @@ from rocking_cli.core.released import (
     stop_impulses,
     tabulated_impulses,
 )
+from rocking_cli.core.structure_fields import Strength
 from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.modes import modes
 from rocking_cli.dynamics.resting import EarlyMechanism, Rest, resting

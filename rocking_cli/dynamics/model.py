@@ -14,8 +14,8 @@ from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism,
 from rocking_cli.core.advice import uplift_error
 from rocking_cli.core.bounds import Bound
 from rocking_cli.core.equivalence import Statics
-from rocking_cli.core.given import Uncertainty
 from rocking_cli.core.mechanism import why_none
+from rocking_cli.core.structure_fields import Uncertainty
 from rocking_cli.dynamics.joints import JointTables, joints_of
 from rocking_cli.dynamics.kernels import (
     BOUND_ETA,

@@ -21,10 +21,10 @@ import numpy as np
 from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.core import Mechanism
 from rocking_cli.core.bounds import Clearance, clearances
-from rocking_cli.core.given import Strength
 from rocking_cli.core.hung.attached import PointMass
 from rocking_cli.core.hung.element import ConstantForce
 from rocking_cli.core.released import ONE, PUSH, WEIGHT
+from rocking_cli.core.structure_fields import Strength
 from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.resting import resting
 from rocking_cli.excitation.base import GroundMotion

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from rocking_cli.arrays import Bools, Reals
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.contacts import MASONRY_FRICTION, Contact
-from rocking_cli.core.given import Strength
 from rocking_cli.core.reactions import Reactions, at_uplift, impulses, parts, reactions
 from rocking_cli.core.released import Pieces, Undetermined, released
+from rocking_cli.core.structure_fields import Strength
 from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.short_repr import short_repr

@@ -519,7 +519,7 @@ class TestStart:
 
 
 def test_the_default_block_is_a_structure():
-    from rocking_cli.ask.given import DEFAULT_STRUCTURE
+    from rocking_cli.ask.inputs import DEFAULT_STRUCTURE
 
     assert parse_structure(DEFAULT_STRUCTURE, "default", "default").mechanism == "block"
 

@@ -31,10 +31,10 @@ from rocking_cli.core import (
     rectangle,
     rotation,
 )
-from rocking_cli.core.answers import Kinematics
-from rocking_cli.core.given import Given
 from rocking_cli.core.mechanism import _is_final
+from rocking_cli.core.mechanism_kinematics import Kinematics
 from rocking_cli.core.registry import Registry
+from rocking_cli.core.structure_fields import StructureFields
 from rocking_cli.core.structure_file import load_structure, parse_structure
 from rocking_cli.dynamics.tables import tabulate
 from rocking_cli.errors import MechanismError, PluginError
@@ -430,7 +430,7 @@ def test_the_class_and_the_function_make_the_same_checks():
 
 MEMBERS = {
     name: member
-    for base in (Given, *(each for each in Mechanism.__mro__ if issubclass(each, Kinematics)))
+    for base in (StructureFields, *(each for each in Mechanism.__mro__ if issubclass(each, Kinematics)))
     for name, member in vars(base).items()
     if name[0] != "_" and (isfunction(member) or isinstance(member, property | cached_property | classmethod))
 }

@@ -21,8 +21,8 @@ from mechanisms.rigid_body import RigidBody
 from mechanisms.symmetric_frame import SymmetricFrame
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
-from rocking_cli.core.given import DirectionalRestitution
 from rocking_cli.core.mechanism import why_none
+from rocking_cli.core.structure_fields import DirectionalRestitution
 from rocking_cli.core.structure_file import load_structure
 from rocking_cli.errors import InputError
 from rocking_cli.structure import Structure

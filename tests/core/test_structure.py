@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
-from rocking_cli.core.given import DirectionalRestitution
+from rocking_cli.core.structure_fields import DirectionalRestitution
 from rocking_cli.core.structure_file import load_structure, parse_structure
 from rocking_cli.errors import InputError, MechanismError, StructureError, of_structure
 

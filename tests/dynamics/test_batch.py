@@ -14,7 +14,7 @@ from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
 from rocking_cli import structure
 from rocking_cli.core import Direction
-from rocking_cli.core.given import DirectionalRestitution
+from rocking_cli.core.structure_fields import DirectionalRestitution
 from rocking_cli.dynamics import batch
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.deck import never_lifts, run_deck

@@ -14,7 +14,7 @@ from mechanisms.block import Block
 from mechanisms.rigid_body import RigidBody
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
-from rocking_cli.core.given import DirectionalRestitution
+from rocking_cli.core.structure_fields import DirectionalRestitution
 from rocking_cli.excitation.base import GroundMotion
 from tests.conftest import record
 from tests.following import respond

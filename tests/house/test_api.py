@@ -555,7 +555,7 @@ from typing import assert_type
 import rocking_cli as rk
 from rocking_cli.questions.record.verb import RecordAnswer
 from rocking_cli.questions.respond.verb import ResponseAnswer
-from rocking_cli.ask.several import Answers
+from rocking_cli.ask.answer import Answers
 block = rk.Block(width=0.7, height=2.8)
 assert_type(rk.respond(block, "sine:0.3g:0.5s", tail=3), ResponseAnswer)
 assert_type(rk.respond(structure=block, motions=["a.csv", "b.csv"]), Answers[ResponseAnswer])
@@ -588,7 +588,7 @@ MODULES = (
     *VERBS,
     ".ask.answer",
     ".ask.watcher",
-    ".core.given",
+    ".core.structure_fields",
     ".dynamics.batch",
     ".dynamics.exact",
     ".dynamics.outcome",

@@ -17,7 +17,7 @@ import pytest
 import rocking_cli
 from rocking_cli import Registry, core
 from rocking_cli.core import Angle, Length, Line, box
-from rocking_cli.core.answers import Jointed, Kinematics
+from rocking_cli.core.mechanism_kinematics import Jointed, Kinematics
 from rocking_cli.core.released import released
 from rocking_cli.dynamics.model import Model
 from rocking_cli.plugins.rooms import commands

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rocking_cli as rk
-from rocking_cli.ask.given import structure_of
+from rocking_cli.ask.inputs import structure_of
 from rocking_cli.dynamics.batch import Runs
 from rocking_cli.errors import StructureError
 from rocking_cli.studies.conditions import Conditions

@@ -27,7 +27,7 @@ from rocking_cli.questions.respond.azimuths import AzimuthResponses
 from rocking_cli.questions.respond.azimuths_picture import draw_azimuths
 from rocking_cli.questions.survey import view as survey_views
 from rocking_cli.questions.survey.picture import draw_survey
-from rocking_cli.questions.survey.study import ORDERS, Survey, Surveyed, Under
+from rocking_cli.questions.survey.study import ORDERS, Survey, Surveyed, SurveyResponse
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.studies.conditions import Conditions
@@ -97,7 +97,9 @@ class TestSeveral:
 class TestSurvey:
     def row(self, name, **under):
         given = {"overturned": 0.0, "peak_ratio": 0.3, "worst": "a", **under}
-        return Surveyed(1, 2, name, "arch", "positive", 0.2, 0.2, 2.0, 0.1, 1.0, 1.0, 0.9, under=Under(**given))
+        return Surveyed(
+            1, 2, name, "arch", "positive", 0.2, 0.2, 2.0, 0.1, 1.0, 1.0, 0.9, under=SurveyResponse(**given)
+        )
 
     def test_unknown_ranks_as_overturning_does(self):
         rows = [

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from rocking_cli.ask.answer import Answer, drawn
-from rocking_cli.ask.given import StructureLike, structure_of, structures_of
-from rocking_cli.ask.several import Answers, answers, are_several, ask_each, places_of
+from rocking_cli.ask.answer import Answer, Answers, drawn
+from rocking_cli.ask.inputs import StructureLike, structure_of, structures_of
+from rocking_cli.ask.several import answers, are_several, ask_each, places_of
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, MechanismError, Problem, RockingError, named, of_structure

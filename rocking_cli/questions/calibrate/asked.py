@@ -14,7 +14,7 @@ from rocking_cli.ask.kinds import FILE, WHOLE, output, quantity, span
 from rocking_cli.errors import InputError, named
 
 if TYPE_CHECKING:
-    from rocking_cli.ask.given import StructureLike
+    from rocking_cli.ask.inputs import StructureLike
     from rocking_cli.questions.calibrate.trace import Trace
     from rocking_cli.questions.score.table import TableOfTests
 else:  # heavy to import, and not checked by the model

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from rocking_cli.arrays import Reals
-from rocking_cli.ask.given import sheet_of
+from rocking_cli.ask.inputs import sheet_of
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Spreadsheet, unit_in
 from rocking_cli.short_repr import short_repr

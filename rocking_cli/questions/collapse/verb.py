@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 
 from rocking_cli.ask.answer import MappingAnswer
-from rocking_cli.ask.given import structure_figure, structure_of
+from rocking_cli.ask.inputs import structure_figure, structure_of
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.core import CollapseMechanism, Direction, Mechanism

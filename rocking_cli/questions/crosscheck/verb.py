@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rocking_cli.ask.answer import Answer, Dimensions, drawn
-from rocking_cli.ask.given import structure_of
+from rocking_cli.ask.inputs import structure_of
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Advance, Watcher
 from rocking_cli.excitation.base import STANDARD_GRAVITY

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from rocking_cli.ask.answer import Answer, Dimensions, drawn
-from rocking_cli.ask.given import site_of
+from rocking_cli.ask.inputs import site_of
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.questions.demand.asked import DemandAsked

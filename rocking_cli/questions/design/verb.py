@@ -6,7 +6,7 @@ from functools import partial
 from typing import cast
 
 from rocking_cli.ask.answer import Answer, drawn
-from rocking_cli.ask.given import site_of, structure_of
+from rocking_cli.ask.inputs import site_of, structure_of
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.core.plausible import doubts

@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.ask.answer import Answer, Dimensions, drawn
-from rocking_cli.ask.given import sized_pulse, structure_of, structures_of, warn_misleading
+from rocking_cli.ask.inputs import sized_pulse, structure_of, structures_of, warn_misleading
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.questions.equivalent_pulses.asked import EquivalentPulsesAsked

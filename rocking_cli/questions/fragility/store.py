@@ -455,7 +455,6 @@ class Store:
 
     def _write(self, name: str, arrays: Mapping[str, Reals], records: Sequence[int]) -> None:
         """Write arrays with the digest of the study and of the records that they are of."""
-
         whole = io.BytesIO()  # zip takes a disk that fails for a pipe, and writes an equal file of other bytes
         with zipfile.ZipFile(whole, "w", zipfile.ZIP_DEFLATED, compresslevel=COMPRESSION) as file:
             for each, values in {**arrays, "study": np.array(self._key(records))}.items():

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from weakref import finalize
 
 from rocking_cli.ask.answer import Answer, no_plot
-from rocking_cli.ask.given import note_remarks, warn_of
+from rocking_cli.ask.inputs import note_remarks, warn_of
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, Refused, named

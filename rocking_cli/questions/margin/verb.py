@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from rocking_cli.ask.answer import Answer, Dimensions, MappingAnswer, drawn, no_plot
-from rocking_cli.ask.given import structure_of
+from rocking_cli.ask.inputs import structure_of
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError

@@ -54,7 +54,7 @@ def pulse(asked: PulseAsked, watch: Watcher) -> MappingAnswer[Any, Any]:
     if asked.structure is None:
         hint = f"give one, or {named('a')} and {named('omega')} for the dimensionless block"
         raise InputError(Problem("is missing", field=named("structure"), hint=hint))
-    from rocking_cli.ask.given import sized_pulse, structure_figure, structure_of
+    from rocking_cli.ask.inputs import sized_pulse, structure_figure, structure_of
     from rocking_cli.questions.pulse.study_on_structure import closed_forms, with_conclusion
     from rocking_cli.questions.pulse.view_on_structure import view
 

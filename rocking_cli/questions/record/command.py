@@ -15,7 +15,7 @@ class RecordCommand(Made):
 
     def show(self, answer: Any, *, as_json: bool) -> None:
         """Show an answer."""
-        from rocking_cli.ask.several import Answers
+        from rocking_cli.ask.answer import Answers
         from rocking_cli.questions.record.view import parts
         from rocking_cli.views.view import View
 

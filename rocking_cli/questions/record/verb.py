@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
 
-from rocking_cli.ask.answer import Answer, Dimensions, drawn
+from rocking_cli.ask.answer import Answer, Answers, Dimensions, drawn
 from rocking_cli.ask.ground_motions import Motions, done, motion_of, unprocessed
 from rocking_cli.ask.kinds import STANDARD_OUTPUT
-from rocking_cli.ask.several import Answers, answers, are_several
+from rocking_cli.ask.several import answers, are_several
 from rocking_cli.ask.verbs import verb, write_rows
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, Problem, named
@@ -97,7 +97,7 @@ def record(asked: RecordAsked, watch: Watcher) -> RecordAnswer | Answers[RecordA
     places = _places(asked.out, motions, signs) if asked.out is not None else {}
     ready = None
     if asked.structure is not None:
-        from rocking_cli.ask.given import structure_of
+        from rocking_cli.ask.inputs import structure_of
 
         ready = structure_of(asked.structure, watch)
     several = are_several(asked.motions, motions)

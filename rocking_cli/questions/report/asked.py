@@ -23,7 +23,7 @@ from rocking_cli.ask.kinds import SITE, STANDARD_OUTPUT, WHOLE, output
 from rocking_cli.names import MAX_NEIGHBOURS
 
 if TYPE_CHECKING:
-    from rocking_cli.ask.given import SiteLike
+    from rocking_cli.ask.inputs import SiteLike
 else:  # heavy to import, and not checked by the model
     SiteLike = Any
 

@@ -7,7 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rocking_cli.ask.answer import Answer, drawn
-from rocking_cli.ask.given import language_of, site_of, structure_of
+from rocking_cli.ask.inputs import language_of, site_of, structure_of
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import RockingError
@@ -15,7 +15,7 @@ from rocking_cli.questions.report.asked import ReportAsked
 from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
-    from rocking_cli.ask.given import SiteLike
+    from rocking_cli.ask.inputs import SiteLike
     from rocking_cli.io.tables import Columns
     from rocking_cli.processing.listed import Scaled
     from rocking_cli.questions.report.document import VerifiedReport

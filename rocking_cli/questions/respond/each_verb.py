@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from rocking_cli.arrays import Reals
 from rocking_cli.ask.answer import Dimensions, MappingAnswer, framed
-from rocking_cli.ask.given import structures_of
 from rocking_cli.ask.ground_motions import MAX_PGA, Motions, each_of
 from rocking_cli.ask.groups import Reading
+from rocking_cli.ask.inputs import structures_of
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.dynamics.model import MODELS, ModelName

@@ -8,9 +8,9 @@ from functools import partial
 from typing import Any
 
 from rocking_cli.ask.answer import Answer, Dimensions, drawn
-from rocking_cli.ask.given import doubts_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, introduce, motion_of, warn_about
 from rocking_cli.ask.groups import FromTilt
+from rocking_cli.ask.inputs import doubts_of, structure_of
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, Problem, named

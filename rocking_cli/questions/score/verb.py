@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.ask.answer import Answer, drawn
-from rocking_cli.ask.given import structure_of
 from rocking_cli.ask.ground_motions import Motions, files_of, pulse_in
 from rocking_cli.ask.groups import ReadsRecords
+from rocking_cli.ask.inputs import structure_of
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, RockingError, named

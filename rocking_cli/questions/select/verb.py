@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking_cli.ask.answer import Answer, Dimensions, drawn
-from rocking_cli.ask.given import site_of
 from rocking_cli.ask.ground_motions import Motions, Source
+from rocking_cli.ask.inputs import site_of
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError

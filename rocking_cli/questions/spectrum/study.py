@@ -17,8 +17,8 @@ from rocking_cli.core import (
     Mechanism,
     equivalent_block,
 )
-from rocking_cli.core.given import Strength
 from rocking_cli.core.registry import Registry
+from rocking_cli.core.structure_fields import Strength
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes

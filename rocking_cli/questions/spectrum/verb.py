@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rocking_cli.ask.answer import Answer, Dimensions, drawn
-from rocking_cli.ask.given import structures_of
 from rocking_cli.ask.ground_motions import each_of
+from rocking_cli.ask.inputs import structures_of
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, Problem, named

@@ -27,7 +27,7 @@ from rocking_cli.errors import InputError, named
 from rocking_cli.names import MAX_NEIGHBOURS
 
 if TYPE_CHECKING:
-    from rocking_cli.ask.given import SiteLike, StructureLike
+    from rocking_cli.ask.inputs import SiteLike, StructureLike
     from rocking_cli.questions.survey.structure_table import StructureTable
 else:  # heavy to import, and not checked by the model
     SiteLike = StructureLike = StructureTable = Any

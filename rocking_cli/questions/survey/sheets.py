@@ -9,12 +9,12 @@ from hashlib import sha256
 from pathlib import Path
 from unicodedata import normalize
 
-from rocking_cli.ask.given import SiteLike, yaml_of
 from rocking_cli.ask.groups import Identity
+from rocking_cli.ask.inputs import SiteLike, yaml_of
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, Problem, Refused, RockingError
 from rocking_cli.io.files import check_writable, discard, folder, write_files
-from rocking_cli.questions.survey.study import Bad, Survey, Surveyed, SurveyEntry
+from rocking_cli.questions.survey.study import FailedEntry, Survey, Surveyed, SurveyEntry
 from rocking_cli.questions.verify import sheets
 from rocking_cli.structure import Structure
 from rocking_cli.studies.provenance import File
@@ -98,7 +98,7 @@ class SheetFolder:
             If what makes the sheets is not there, or a file cannot be written; the next survey then replaces them.
         """
         sheets.check_program(self.suffix)
-        every: list[Surveyed | Bad] = sorted([*found.rows, *found.bad], key=lambda each: each.row)
+        every: list[Surveyed | FailedEntry] = sorted([*found.rows, *found.bad], key=lambda each: each.row)
         names = {
             each.row: name for each, name in zip(every, file_names([e.name for e in every], self.suffix), strict=True)
         }

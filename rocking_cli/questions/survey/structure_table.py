@@ -13,7 +13,7 @@ from typing import Any
 
 import yaml
 
-from rocking_cli.ask.given import sheet_of
+from rocking_cli.ask.inputs import sheet_of
 from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_file import TEMPLATE_HINT, of_document

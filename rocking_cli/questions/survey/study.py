@@ -54,7 +54,7 @@ class SurveyEntry(Protocol):
 
 
 @dataclass(frozen=True)
-class Under:
+class SurveyResponse:
     """Response of a structure to ground motions, by the nonlinear model.
 
     Parameters
@@ -131,7 +131,7 @@ class Surveyed:
         A doubt about the size of the structure, if any.
     caution : str or None
         A caution about the lambda of the structure, if any.
-    under : Under, optional
+    under : SurveyResponse, optional
         Response to ground motions, if there are any.
     ratio : float, optional
         Capacity over demand by the code of the site, in the direction where it is smaller; 1 or more passes. NaN if the
@@ -161,7 +161,7 @@ class Surveyed:
     no_block: str | None = None
     doubt: str | None = None
     caution: str | None = None
-    under: Under | None = None
+    under: SurveyResponse | None = None
     ratio: float | None = None
     verified: Conclusion | None = None
     unprinted: bool = False
@@ -171,7 +171,7 @@ class Surveyed:
 
 
 @dataclass(frozen=True)
-class Bad:
+class FailedEntry:
     """A structure that could not be used.
 
     Parameters
@@ -236,7 +236,7 @@ class Survey:
     ----------
     rows : sequence of Surveyed
         The structures in the order of their rank.
-    bad : sequence of Bad
+    bad : sequence of FailedEntry
         The structures that could not be used, in their order.
     motions : sequence of str
         The names of the ground motions.
@@ -253,7 +253,7 @@ class Survey:
     """
 
     rows: Sequence[Surveyed]
-    bad: Sequence[Bad] = ()
+    bad: Sequence[FailedEntry] = ()
     motions: Sequence[str] = ()
     by: str = "lambda"
     units: Mapping[str, str] = field(default_factory=dict)
@@ -314,7 +314,7 @@ def survey(
         ratio of its code. Structures that rank equal keep their order.
     """
     check_opening(opening)
-    results: list[Surveyed | Bad | None] = [None] * len(entries)
+    results: list[Surveyed | FailedEntry | None] = [None] * len(entries)
     site = of_each(site) if site is not None else None
     samples = len(entries) * len(polarities) * sum(motion.npts for motion in motions)
     if reduced := bounded and samples * around.count > MAX_SAMPLES:
@@ -334,7 +334,7 @@ def survey(
                 progress(len(part))
     by = "ratio" if site is not None else "response" if motions else "lambda"
     good = sorted((result for result in results if isinstance(result, Surveyed)), key=ORDERS[by])
-    bad, names = [each for each in results if isinstance(each, Bad)], [each.name for each in motions]
+    bad, names = [each for each in results if isinstance(each, FailedEntry)], [each.name for each in motions]
     numbers = code_of(site).row_numbers if site is not None else {}
     units = {name: number.unit for name, number in numbers.items()}
     return Survey(good, bad, names, by, units, getattr(entries, "sheet", None), around, reduced)
@@ -355,11 +355,11 @@ def _part(
     opening: float,
     first: int,
     stop: int,
-) -> list[Surveyed | Bad | None]:
+) -> list[Surveyed | FailedEntry | None]:
     """Return the results of the structures from index `first` to before `stop`, in any process."""
     ready: dict[int, Structure] = {}
     moving: dict[int, Structure] = {}
-    rows: list[Surveyed | Bad | None] = [None] * (stop - first)
+    rows: list[Surveyed | FailedEntry | None] = [None] * (stop - first)
     for k, place in enumerate(range(first, stop)):
         entry = entries[place]
         try:
@@ -375,7 +375,7 @@ def _part(
                 moving[k] = ready[k]
         except RockingError as error:
             ready.pop(k, None)
-            rows[k] = Bad(place + 1, entry.line, entry.name, _placed(error, entry))
+            rows[k] = FailedEntry(place + 1, entry.line, entry.name, _placed(error, entry))
     if motions := shaking.motions:
         under = _under(list(moving.values()), shaking)
         answers = dict(zip(moving, under, strict=True))
@@ -385,9 +385,9 @@ def _part(
             over = "phi_cr" if all(side.phi_cr is not None for side in structure.statics) else "limit"
             of = shaking.around.count
             none = NeighbourShare(0.0, 0.0, of) if of else None
-            answer = answers.get(k, Under(0.0, 0.0, motions[0].name, over, share=none))
+            answer = answers.get(k, SurveyResponse(0.0, 0.0, motions[0].name, over, share=none))
             if isinstance(answer, SolverError):
-                rows[k] = Bad(one.row, entries[first + k].line, one.name, answer)
+                rows[k] = FailedEntry(one.row, entries[first + k].line, one.name, answer)
             else:
                 rows[k] = replace(one, under=answer)
     return rows
@@ -443,7 +443,7 @@ def _may_move(structure: Structure, shaking: Shaking) -> bool:
     return any(each.vertical is not None or each.pga_g >= least for each in shaking.motions)
 
 
-def _under(structures: Sequence[Structure], shaking: Shaking) -> list[Under | SolverError]:
+def _under(structures: Sequence[Structure], shaking: Shaking) -> list[SurveyResponse | SolverError]:
     """Return the response of each of some structures to ground motions; an error if a motion cannot be simulated."""
     if not structures:
         return []
@@ -460,7 +460,7 @@ def _under(structures: Sequence[Structure], shaking: Shaking) -> list[Under | So
     outcomes = respond_many(models, motions, runs, threads=1, only_peaks=True)
     each = [_of_one(model, which[:, 0] == i, which[:, 1], outcomes, motions) for i, model in enumerate(models)]
     for i, (structure, one) in enumerate(zip(structures, each, strict=True)):
-        if around.count and isinstance(one, Under):
+        if around.count and isinstance(one, SurveyResponse):
             try:
                 each[i] = replace(one, share=_share(structure, np.unique(which[which[:, 0] == i, 2]), shaking))
             except SolverError as error:
@@ -481,7 +481,7 @@ def _share(structure: Structure, signs: Integers, shaking: Shaking) -> Neighbour
 
 def _of_one(
     model: Model, own: np.ndarray, record: np.ndarray, outcomes: Outcomes, motions: Sequence[GroundMotion]
-) -> Under | SolverError:
+) -> SurveyResponse | SolverError:
     """Return the response of one structure to ground motions; the mask `own` selects its runs."""
     if (outcomes.failed & own).any():
         name = motions[int(record[int((outcomes.failed & own).argmax())])].name
@@ -495,7 +495,7 @@ def _of_one(
     over = "limit" if any(model.ends_at_limit) else "phi_cr"
     unknown = doubtful.size / len(motions) if doubtful.size or model.joints is not None else None
     peak, slip = float(peaks[strongest]) if stays.any() else nan, float((outcomes.slip * stays).max())
-    return Under(fell.size / len(motions), peak, worst, over, unknown, slip=slip)
+    return SurveyResponse(fell.size / len(motions), peak, worst, over, unknown, slip=slip)
 
 
 @dataclass(frozen=True)

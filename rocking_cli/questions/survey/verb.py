@@ -10,7 +10,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.ask.answer import Answer, drawn
-from rocking_cli.ask.given import language_of, site_of, structure_of
+from rocking_cli.ask.inputs import language_of, site_of, structure_of
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Advance, Watcher
 from rocking_cli.errors import InputError, MechanismError, Problem, RockingError

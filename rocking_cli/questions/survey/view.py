@@ -13,7 +13,7 @@ from rocking_cli.errors import named
 from rocking_cli.io.spreadsheet import Spreadsheet
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import digits_apart, percent
-from rocking_cli.questions.survey.study import Bad, Survey, Surveyed
+from rocking_cli.questions.survey.study import FailedEntry, Survey, Surveyed
 from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.text import cut, one_line
 from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, rounded, table_of
@@ -401,7 +401,7 @@ def _named(rows: Sequence[Surveyed], most: int = 3) -> str:
     return names if len(rows) <= most else f"{len(rows):,} structures ({names}, ...)"
 
 
-def bad_lines(found: Sequence[Bad], file: str, most: int) -> Iterator[str]:
+def bad_lines(found: Sequence[FailedEntry], file: str, most: int) -> Iterator[str]:
     """Yield the errors of structures that could not be used: of the first ones in full, then the number of others."""
     for each in found[:most]:
         message = str(each.error)

@@ -27,8 +27,8 @@ from rocking_cli.errors import InputError, named
 if TYPE_CHECKING:
     from typing import Self
 
-    from rocking_cli.ask.given import StructureLike
     from rocking_cli.ask.ground_motions import Motions
+    from rocking_cli.ask.inputs import StructureLike
 else:  # heavy to import, and not checked by the model
     StructureLike = Any
 

@@ -7,7 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
-from rocking_cli.ask.given import SiteLike, yaml_of
+from rocking_cli.ask.inputs import SiteLike, yaml_of
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.core import Mechanism
 from rocking_cli.documents import files

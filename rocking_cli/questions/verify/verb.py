@@ -7,7 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import language_of, site_of, structure_of
+from rocking_cli.ask.inputs import language_of, site_of, structure_of
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import RockingError, named

@@ -18,7 +18,7 @@ from mechanisms._assembly import programme as programmes
 from mechanisms._assembly.displaced import DisplacedAssembly
 from mechanisms._assembly.friction import friction
 from mechanisms._assembly.problem import scaled
-from rocking_cli.ask.given import structure_of
+from rocking_cli.ask.inputs import structure_of
 from rocking_cli.cli.watching import OnTerminal
 from rocking_cli.core import Direction
 from rocking_cli.errors import InputError

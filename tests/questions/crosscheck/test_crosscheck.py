@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 import rocking_cli as rk
-from rocking_cli.ask.given import structure_of
+from rocking_cli.ask.inputs import structure_of
 from rocking_cli.core import Direction
 from rocking_cli.questions.crosscheck import study
 from rocking_cli.questions.crosscheck.film import scene_of

@@ -128,7 +128,7 @@ def test_a_size_that_cannot_be_built_is_named():
 
 
 def test_the_command_says_so(tmp_path, monkeypatch):
-    monkeypatch.setattr("rocking_cli.ask.given.parse_structure", lambda *text, **checked: LADEN)
+    monkeypatch.setattr("rocking_cli.ask.inputs.parse_structure", lambda *text, **checked: LADEN)
     (tmp_path / "laden.yaml").touch()
     asked = ["spectrum", "laden.yaml", "--pulse", "sine:0.5g:0.7s", "--sizes", "1:4", "--count", "5"]
     result = CliRunner().invoke(main, [*asked, "--plot", "s.png", "--out", "s.csv"])

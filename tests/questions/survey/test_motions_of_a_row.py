@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from rocking_cli.questions.survey.study import Survey, Surveyed, Under, _of_one
+from rocking_cli.questions.survey.study import Survey, Surveyed, SurveyResponse, _of_one
 from rocking_cli.questions.survey.view import counts
 from rocking_cli.studies.conclusion import Concluded
 from tests.dynamics.test_outcomes import made
@@ -51,7 +51,7 @@ def test_without_joints_it_is_null_but_for_outcomes_that_are_unknown_all_the_sam
 
 def test_a_structure_is_counted_once_as_overturning_or_as_one_that_may():
     rows = [
-        Surveyed(1, 2, name, "arch", "positive", 0.2, 0.2, 2.0, 0.1, 1.0, 1.0, 0.9, under=Under(*under))
+        Surveyed(1, 2, name, "arch", "positive", 0.2, 0.2, 2.0, 0.1, 1.0, 1.0, 0.9, under=SurveyResponse(*under))
         for name, under in (
             ("falls or may", (0.3, 0.2, "a", "phi_cr", 0.3)), ("may", (0.0, 0.2, "a", "phi_cr", 0.3)),
             ("rocks", (0.0, 0.2, "a", "phi_cr", 0.0)), ("rests", (0.0, 0.0, "a", "phi_cr", None)),

@@ -20,7 +20,7 @@ from rocking_cli.io.dotted import HOLE, closed, put, words
 from rocking_cli.io.spreadsheet import parse_sheet
 from rocking_cli.names import percent
 from rocking_cli.questions.survey.structure_table import StructureTable
-from rocking_cli.questions.survey.study import MadeStructure, Under, survey
+from rocking_cli.questions.survey.study import MadeStructure, SurveyResponse, survey
 from rocking_cli.questions.survey.view import RankedStructure, _share, sentences
 from rocking_cli.studies.neighbours import Neighbourhood
 from tests.cli.test_cli import run, some
@@ -392,7 +392,7 @@ class TestRanking:
             survey([MadeStructure(rk.Block(width=b, height=2.0))], [motion]).rows[0].under for b in (0.499, 0.51)
         )
         assert low.overturned or low.peak_ratio > 0
-        assert high == Under(0.0, 0.0, motion.name)
+        assert high == SurveyResponse(0.0, 0.0, motion.name)
 
     @pytest.mark.parametrize(("aside", "direction"), [(0.0, "positive"), (-1e-10, "positive"), (-1e-6, "negative")])
     def test_directions_that_differ_by_rounding_are_alike_and_the_first_is_shown(self, aside, direction):
@@ -409,7 +409,7 @@ class TestRanking:
         both = dataclasses.replace(push, vertical=falling)
         block = rk.Block(width=0.5, height=2.0)
         alone, shaken = (survey([MadeStructure(block)], [motion]).rows[0].under for motion in (push, both))
-        assert alone == Under(0.0, 0.0, "push")
+        assert alone == SurveyResponse(0.0, 0.0, "push")
         with pytest.warns(rk.DoubtWarning):
             wanted = rk.respond(block, both, model="nonlinear")["nonlinear"]
         assert wanted.lifted and (shaken.overturned, shaken.over) == (float(wanted.overturned), "phi_cr")

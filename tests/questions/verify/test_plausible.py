@@ -7,7 +7,7 @@ import yaml
 
 import rocking_cli as rk
 from rocking_cli import Registry
-from rocking_cli.ask.given import site_of
+from rocking_cli.ask.inputs import site_of
 from rocking_cli.core.plausible import doubts, questions
 from rocking_cli.core.structure_file import load_structure, parse_structure
 from rocking_cli.errors import InputError

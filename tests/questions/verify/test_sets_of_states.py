@@ -10,7 +10,7 @@ import yaml
 from scipy.signal import lsim
 
 import rocking_cli as rk
-from rocking_cli.ask.given import site_of
+from rocking_cli.ask.inputs import site_of
 from rocking_cli.codes.italian import dynamic as method
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.ground import SiteGround

@@ -23,8 +23,8 @@ from rocking_cli.codes.italian.sheet.centres import ChainCentres
 from rocking_cli.codes.italian.sheet.geometry import SIZE_UNITS, Composition, ranges
 from rocking_cli.core import Direction
 from rocking_cli.core.equilibrium import NoCriticalRotation
-from rocking_cli.core.given import Given
 from rocking_cli.core.registry import Registry
+from rocking_cli.core.structure_fields import StructureFields
 from rocking_cli.core.structure_file import load_structure, parse_structure
 from rocking_cli.verification.results import Formula
 from rocking_cli.views.sheet import template
@@ -377,7 +377,11 @@ def test_templates_name_every_size_of_a_mechanism_of_this_package():
             continue
         for name, info in known[key].model_fields.items():
             extra = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
-            if name in Given.model_fields or "list" in str(info.annotation) or extra.get("unit") not in SIZE_UNITS:
+            if (
+                name in StructureFields.model_fields
+                or "list" in str(info.annotation)
+                or extra.get("unit") not in SIZE_UNITS
+            ):
                 continue
             for language in ("en", "it"):
                 text = (files("rocking_cli.codes.italian") / "texts" / language / "geometry.md").read_text("utf-8")

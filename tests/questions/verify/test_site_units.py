@@ -4,7 +4,7 @@ import pytest
 import yaml
 
 import rocking_cli as rk
-from rocking_cli.ask.given import site_of
+from rocking_cli.ask.inputs import site_of
 from rocking_cli.core.structure_file import load_structure
 from rocking_cli.errors import InputError
 

@@ -15,12 +15,12 @@ from unicodedata import lookup
 
 from rocking_cli.codes.italian import formulas as F
 from rocking_cli.core import Body, Mechanism, PointMass, Solid
-from rocking_cli.core.given import Given
 from rocking_cli.core.hung.attached import Spot
 from rocking_cli.core.hung.element import ConstantForce, SpringBed
 from rocking_cli.core.hung.steel import circle
 from rocking_cli.core.hung.ties import Tie
 from rocking_cli.core.kinematics import area_of
+from rocking_cli.core.structure_fields import StructureFields
 from rocking_cli.verification.results import Evaluated, Formula
 
 KILO = 1e3
@@ -162,7 +162,7 @@ class Composition:
             extra = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else None
             value, unit = getattr(mechanism, key), str((extra or {}).get("unit", ""))
             is_size = isinstance(value, int | float | str) and not isinstance(value, bool) and unit in SIZE_UNITS
-            if extra is None or not is_size or (key in Given.model_fields and key != "depth"):
+            if extra is None or not is_size or (key in StructureFields.model_fields and key != "depth"):
                 continue
             symbol = _in_marks(str(extra.get("symbol", "")))
             rows.append(Dimension(mechanism.mechanism, key, info.description or key, symbol, value, unit))

@@ -101,7 +101,7 @@ class Stop(Described):
 
 
 @contextmanager
-def _of_arguments(cls: type[Given]) -> Iterator[None]:
+def _of_arguments(cls: type[StructureFields]) -> Iterator[None]:
     """Raise a validation error of fields that are given in Python as `FieldError`."""
     try:
         yield
@@ -111,12 +111,13 @@ def _of_arguments(cls: type[Given]) -> Iterator[None]:
         raise FieldError(*of_arguments(cls, error.errors(include_url=False), cls.mechanism)) from None
 
 
-def _fields_by_name(cls: type[Given]) -> Problem:
+def _fields_by_name(cls: type[StructureFields]) -> Problem:
     """Return the problem of fields that are given without their names: which names there are, required ones first."""
     from rocking_cli.io.field_problems import spellings, unit_at
 
     required, others = list[str](), list[str]()
-    for key, info in sorted(cls.model_fields.items(), key=lambda each: each[0] in Given.model_fields):  # own ones first
+    own_first = sorted(cls.model_fields.items(), key=lambda item: item[0] in StructureFields.model_fields)
+    for key, info in own_first:
         name = spellings(key, info)[0]
         unit = unit_at(cls, (name,))
         (required if info.is_required() else others).append(f"{name} [{unit}]" if unit else name)
@@ -125,7 +126,7 @@ def _fields_by_name(cls: type[Given]) -> Problem:
     return Problem(f"takes its fields by name: {names}", field=cls.__name__, hint=f"such as {cls.__name__}({example})")
 
 
-class Given(Described):
+class StructureFields(Described):
     """Fields that every structure may have beside those of its mechanism, and properties that follow from them."""
 
     refused: ClassVar[Mapping[str, str]] = {

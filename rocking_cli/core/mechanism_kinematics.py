@@ -13,16 +13,16 @@ from typing import ClassVar, final
 
 from rocking_cli.core.bodies import Body, weighed
 from rocking_cli.core.contacts import Contact, Joint, Piece, of_joints
-from rocking_cli.core.given import Given
 from rocking_cli.core.hung.attached import Attached
 from rocking_cli.core.hung.attachments import RefusedFields
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion, area_of
 from rocking_cli.core.sketch import Sketch
 from rocking_cli.core.solids import Solid
+from rocking_cli.core.structure_fields import StructureFields
 from rocking_cli.short_repr import short_repr
 
 
-class Kinematics(Given, ABC):
+class Kinematics(StructureFields, ABC):
     """Bodies of a mechanism, their motion and their drawing, without loads and ties."""
 
     title: ClassVar[str]
@@ -101,7 +101,7 @@ class Kinematics(Given, ABC):
         """Return the weakest mechanism of a direction, if the structure searches for it; by default None."""
         return None
 
-    def as_linkage(self) -> Given | None:
+    def as_linkage(self) -> StructureFields | None:
         """Return the linkage that moves as the weakest mechanisms, if the structure searches for them; by default None.
 
         Raises `RockingError` if a mechanism has no rocking model, or a linkage cannot have its fields.
