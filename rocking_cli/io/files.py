@@ -89,11 +89,14 @@ def folder(name: str) -> Path:
         path.mkdir(parents=True, exist_ok=True)
         _sync_folder(path.parent)
     except (OSError, ValueError) as error:  # ValueError: a path with a null character
-        reason = getattr(error, "strerror", None) or error
-        problem = Problem(f"cannot be a folder to write into: {reason}", name)
-        refused = getattr(error, "errno", None) in WRITE_REFUSALS
-        raise Refused(str(problem)) if refused else InputError(problem) from None
+        raise refusal(error, "cannot be a folder to write into", name) from None
     return path
+
+
+def refusal(error: OSError | ValueError, what: str, place: str | Path) -> InputError | Refused:
+    """Return the error for what the system did not do: `Refused` if nobody is to blame, as with a full disk."""
+    problem = Problem(f"{what}: {getattr(error, 'strerror', None) or error}", str(place))
+    return Refused(str(problem)) if getattr(error, "errno", None) in WRITE_REFUSALS else InputError(problem)
 
 
 def write_folder(path: Path, files: Mapping[str, bytes]) -> None:
@@ -402,5 +405,4 @@ def _naming(shown_path: Path) -> Iterator[None]:
     except OSError as error:
         if error.errno == errno.ENAMETOOLONG:  # the terminal shortens it
             raise
-        problem = Problem(f"cannot be written: {error.strerror or error}", str(shown_path))
-        raise (Refused(str(problem)) if error.errno in WRITE_REFUSALS else InputError(problem)) from error
+        raise refusal(error, "cannot be written", shown_path) from error

@@ -24,7 +24,7 @@ import numpy as np
 
 from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.errors import InputError, Problem, named
-from rocking_cli.io.files import folder, write_whole
+from rocking_cli.io.files import folder, refusal, write_whole
 from rocking_cli.io.json_text import json_text
 from rocking_cli.questions.fragility.plan import Measured, Plan, Trial, described
 from rocking_cli.questions.fragility.sources import Record
@@ -501,7 +501,7 @@ class Store:
             except FileNotFoundError:  # another process was faster
                 pass
             except OSError as error:
-                raise InputError(Problem(f"cannot be renamed: {error.strerror}", str(self.path))) from None
+                raise refusal(error, "cannot be renamed", self.path) from None
             self._anew = False
         folder(str(self.path))
 
