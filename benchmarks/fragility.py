@@ -21,7 +21,7 @@ from rocking_cli.questions.fragility import workers as places
 from rocking_cli.questions.fragility.campaign import prepare, run
 from rocking_cli.questions.fragility.store import RunRows, Store
 from rocking_cli.questions.fragility.study import load_study
-from rocking_cli.questions.fragility.work_units import carry_out, unit_of
+from rocking_cli.questions.fragility.workers import carry_out, unit_of
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 RECORDS, LEVELS = 100, 20

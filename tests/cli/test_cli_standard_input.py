@@ -131,7 +131,7 @@ def test_hints_name_the_keys_of_a_study(tmp_path):
     from rocking_cli.errors import InputError
     from rocking_cli.processing.reading import Reading
     from rocking_cli.questions.fragility.definition import RecordEntry
-    from rocking_cli.questions.fragility.sources import Source
+    from rocking_cli.questions.fragility.study import Source
 
     source = Source("column", RecordEntry(file="column.txt"), Reading(), "column.txt", tmp_path / "column.txt")
     with pytest.raises(InputError, match="give it with `dt`,"):

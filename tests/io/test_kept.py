@@ -9,7 +9,7 @@ from rocking_cli.ask.ground_motions import files_of
 from rocking_cli.errors import InputError, KeptWarning
 from rocking_cli.io import files
 from rocking_cli.questions.select import set_folder
-from rocking_cli.questions.survey.sheets import LIST_HEADER, SheetFolder
+from rocking_cli.questions.survey.pages import LIST_HEADER, SheetFolder
 from rocking_cli.studies.engines import memory
 
 OUTCOME = {"overturned": False, "peak": 0.25, "slip": None}

@@ -11,9 +11,8 @@ import numpy as np
 from rocking_cli import names
 from rocking_cli.core.hung.steel import BAR_DIAMETERS
 from rocking_cli.names import percent
-from rocking_cli.questions.design.bars import Bars, SteelAnswer
 from rocking_cli.questions.design.metrics import Excitation
-from rocking_cli.questions.design.study import Design
+from rocking_cli.questions.design.study import Bars, Design, SteelAnswer
 from rocking_cli.studies.conclusion import Concluded, NextStep
 from rocking_cli.text import one_line
 from rocking_cli.views.column import Column, frame_of, only_shown, table_of

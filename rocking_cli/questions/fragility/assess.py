@@ -26,38 +26,9 @@ from rocking_cli.questions.fragility.tally import Cells, Counted, Ladders, Tally
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.fit import Estimate
 
+CURVE_POINTS = 101  # of a curve in a table
+MIN_LOG_RATIO = 30.0  # ratio of largest to least intensity, from which intensities are spaced by a factor
 MAX_UNKNOWN_SHARE = 0.02  # share of unknown runs above which a second curve counts them the other way
-
-
-@dataclass(frozen=True)
-class UnknownRuns:
-    """Number of runs of a structure with unknown outcome.
-
-    Parameters
-    ----------
-    structure : str
-        Name of the structure.
-    runs : int
-        Number of runs that can be used.
-    unknown : int or None
-        Number of those with unknown outcome; None if the joints are not known, so that nothing was checked.
-    checked : bool
-        Whether the joints are known in all runs.
-    by_blocks, off_edge : int
-        Number of runs that were simulated with free blocks, and of those in which a block falls off an edge.
-    """
-
-    structure: str
-    runs: int
-    unknown: int | None
-    checked: bool
-    by_blocks: int = 0
-    off_edge: int = 0
-
-    @property
-    def share(self) -> float | None:
-        """Share of the runs that have an unknown outcome; None if nothing was checked."""
-        return None if self.unknown is None else self.unknown / self.runs
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,6 +97,15 @@ class Fragility(_FittedTwice):
     def fitted(self) -> FragilityCurve:
         """The curve."""
         return self.curve
+
+    @property
+    def points(self) -> Reals:
+        """Intensities at which tables list the curve, with the steps and the ends of their intervals."""
+        least, most = float(self.seen.x.min()), float(self.seen.x.max())
+        between = np.geomspace if most > MIN_LOG_RATIO * least else np.linspace
+        steps = [step for curve in (self.curve, (self.lower or self).curve) for step in curve.steps]
+        ends = [end for step in steps for end in (step.low, step.value, step.high)]
+        return np.union1d(between(least, most, CURVE_POINTS), ends)
 
     @property
     def median(self) -> Estimate | None:
@@ -210,15 +190,6 @@ def fitted(
             planes.append(surface)
             progress(1)
     return lines, planes
-
-
-def unknown_runs(found: Mapping[str, Tally]) -> list[UnknownRuns]:
-    """Return the number of runs of unknown outcome of each structure that has runs."""
-    return [
-        UnknownRuns(name, int(of.runs.sum()), of.unknown_if_checked, of.checked, of.by_blocks, of.off_edge)
-        for name, of in found.items()
-        if of.runs.any()
-    ]
 
 
 def curves(tally: Tally, structure: str, definition: Definition, hazard: HazardCurve | None) -> Iterator[Fragility]:

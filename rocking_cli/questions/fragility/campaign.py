@@ -23,12 +23,10 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.intensity import all_measures, parse_measure
 from rocking_cli.questions.fragility.definition import Definition
 from rocking_cli.questions.fragility.plan import Measured, Plan, Trial, complete, described, weaker
-from rocking_cli.questions.fragility.sources import KeptMotions
 from rocking_cli.questions.fragility.store import NO_RUNS, DamagedFile, RunRows, Store
-from rocking_cli.questions.fragility.study import Sample, Study, digest
+from rocking_cli.questions.fragility.study import KeptMotions, Sample, Study, digest
 from rocking_cli.questions.fragility.tally import UPLIFT_FACT, accelerations, rotations, samples_of
-from rocking_cli.questions.fragility.work_units import WorkUnit, carry_out, runs_per_chunk, unit_of
-from rocking_cli.questions.fragility.workers import Workers
+from rocking_cli.questions.fragility.workers import Workers, WorkUnit, carry_out, runs_per_chunk, unit_of
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import EngineName
 from rocking_cli.studies.engines.scene import engine_version

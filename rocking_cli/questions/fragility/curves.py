@@ -9,8 +9,16 @@ from typing import Literal
 import numpy as np
 
 from rocking_cli.arrays import Bools, Integers, Reals
-from rocking_cli.questions.fragility.goodness import Goodness, goodness_of_brackets, goodness_of_runs
-from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE, Observations, even, few_records, one_of_each
+from rocking_cli.questions.fragility.observed import (
+    INTENSITY_TOLERANCE,
+    Goodness,
+    Observations,
+    even,
+    few_records,
+    goodness_of_brackets,
+    goodness_of_runs,
+    one_of_each,
+)
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.fit import (
     Counts,

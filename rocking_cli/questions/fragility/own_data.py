@@ -20,7 +20,6 @@ from rocking_cli.questions.fragility.asked import FitFragilityAsked
 from rocking_cli.questions.fragility.assess import Fragility
 from rocking_cli.questions.fragility.curves import FragilityCurve, fit_curve
 from rocking_cli.questions.fragility.observed import Observations
-from rocking_cli.questions.fragility.table import points
 from rocking_cli.questions.fragility.view import (
     Named,
     fit_columns,
@@ -241,7 +240,7 @@ def _figure(
 
 def _columns(found: FittedFragility, label: str) -> Columns:
     """Return the points of the curve, with both bands; columns of the lower edge are those of the curve without one."""
-    x = points(found)
+    x = found.points
     columns: dict[str, Reals] = {}
     for prefix, each in (("", found), ("lower_", found.lower or found)):
         numbers = each.curve.probability(x), *each.curve.band(x), *each.robust.band(x)

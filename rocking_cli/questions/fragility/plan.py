@@ -19,8 +19,7 @@ from rocking_cli.core import Equivalence, EquivalentBlock, NoEquivalentBlock, eq
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.processing.intensity import Measure, MotionMeasure, Reference, RunMeasure, parse_measure
 from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE
-from rocking_cli.questions.fragility.sources import KeptMotions, Record
-from rocking_cli.questions.fragility.study import Study
+from rocking_cli.questions.fragility.study import KeptMotions, Record, Study
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.fragility.quantities import PGA, PGV, SCALE
 from rocking_cli.studies.under_pulses import uplift

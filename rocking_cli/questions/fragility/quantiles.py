@@ -6,7 +6,7 @@ quantiles ranks all runs: without uplift as zero, overturned or of unknown outco
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import isinf
 from typing import Any
@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.arrays import Integers, Reals
+from rocking_cli.io.tables import Columns, stacked
 from rocking_cli.names import MIN_MOTIONS, MIN_MOTIONS_OF_MEDIAN, OVERTURNS, UNKNOWN, percent
 from rocking_cli.processing.intensity import parse_measure
-from rocking_cli.questions.fragility.assess import UnknownRuns
 from rocking_cli.questions.fragility.definition import Definition
 from rocking_cli.questions.fragility.observed import Observations
 from rocking_cli.questions.fragility.plan import Plan
@@ -25,7 +25,7 @@ from rocking_cli.questions.fragility.store import Store
 from rocking_cli.questions.fragility.tally import UNKNOWN_PEAK, Tally, endings_of, samples_of
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.fragility.quantities import label
-from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
+from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, table_of
 from rocking_cli.views.view import ABSENT, Table, number
 
 QUANTILES = (0.16, 0.5, 0.84)
@@ -165,9 +165,8 @@ def not_exceeded(ranked: Reals, records: int) -> tuple[float, ...]:
     )
 
 
-def data_of_quantiles(found: Sequence[Quantiles], outcomes: Sequence[UnknownRuns]) -> list[dict[str, Any]]:
+def data_of_quantiles(found: Sequence[Quantiles], tallies: Mapping[str, Tally]) -> list[dict[str, Any]]:
     """Return quantiles as plain data."""
-    checked = {each.structure: each.unknown is not None for each in outcomes}
     return [
         {
             "structure": each.structure,
@@ -175,10 +174,22 @@ def data_of_quantiles(found: Sequence[Quantiles], outcomes: Sequence[UnknownRuns
             "unit": parse_measure(each.measure).unit,
             "groups": "stripes" if each.stripes else "tenths",
             "shares": list(QUANTILES),
-            "intensities": [data_of(_columns(each, checked=checked[each.structure]), group) for group in each.groups],
+            "intensities": [data_of(_columns(each, tallies[each.structure]), group) for group in each.groups],
         }
         for each in found
     ]
+
+
+def quantile_rows(found: Sequence[Quantiles], tallies: Mapping[str, Tally]) -> Columns:
+    """Return a row for each group of intensities, with the shares of its runs and the quantiles of their peaks."""
+    return stacked(
+        {
+            "structure": each.structure,
+            "measure": each.measure,
+            **frame_of([*_columns(each, tallies[each.structure]), *FILED], each.groups),
+        }
+        for each in found
+    )
 
 
 def tables_of_quantiles(found: Sequence[Quantiles]) -> list[Table | str]:
@@ -203,26 +214,37 @@ def tables_of_quantiles(found: Sequence[Quantiles]) -> list[Table | str]:
 def _tables(found: Quantiles) -> Iterator[Table | str]:
     """Yield two tables: runs that rock without overturning, with the shares of the others; and all runs."""
     over = f"against {label(found.measure)}{'' if found.stripes else ', in tenths'}"
-    columns = _columns(found, checked=True)
-    rocking = [_quantile("rocking", k, "rocking\n") for k in range(len(QUANTILES))]
-    every = [_quantile("ranks", k) for k in range(len(QUANTILES))]
+    columns = _columns(found)
+    rocking, every = (
+        [only_shown(f"{head}{100 * share:g} %", _entry(name, k), _form) for k, share in enumerate(QUANTILES)]
+        for name, head in (("rocking", "rocking\n"), ("ranks", ""))
+    )
     yield ""
     yield table_of(f"{found.structure}: peaks of the runs that rock, {over}", [*columns, *rocking], found.groups)
     yield ""
     yield table_of(f"{found.structure}: all runs, {over}", [columns[0], *every], found.groups)
 
 
-def _quantile(name: str, k: int, head: str = "") -> Column[Group]:
-    """Return the column of one of the quantiles that groups have under a name."""
-
-    def form(value: float | str) -> str:
-        return value if isinstance(value, str) else number(value, 3)
-
-    return only_shown(f"{head}{100 * QUANTILES[k]:g} %", lambda group: getattr(group, name)[k], form)
+def _entry(name: str, k: int) -> Callable[[Group], Any]:
+    """Return a function that reads one of the quantiles that groups have under a name."""
+    return lambda group: getattr(group, name)[k]
 
 
-def _columns(found: Quantiles, *, checked: bool) -> list[Column[Group]]:
+def _form(value: float | str) -> str:
+    return value if isinstance(value, str) else number(value, 3)
+
+
+FILED: tuple[Column[Group], ...] = tuple(
+    Column(None, _entry(name, k), name=f"{word}_{100 * share:g}")
+    for name, word in (("rocking", "rocking"), ("every", "all"))
+    for k, share in enumerate(QUANTILES)
+)
+"""The quantiles, a column each, as files and frames have them."""
+
+
+def _columns(found: Quantiles, tally: Tally | None = None) -> list[Column[Group]]:
     """Return the columns of an intensity; the share of unknown outcomes does not exist if nothing was checked."""
+    checked = tally is None or tally.unknown_if_checked is not None
 
     def share(name: str) -> Callable[[Group], float]:
         return lambda group: getattr(group, name) / group.runs
@@ -233,10 +255,10 @@ def _columns(found: Quantiles, *, checked: bool) -> list[Column[Group]]:
         Column("from", of("low")),
         Column("to", of("high")),
         Column("runs", of("runs"), head="runs"),
-        Column("distinct_records", of("records")),
+        Column("distinct_records", of("records"), name="records"),
         Column("no_uplift", share("no_uplift"), head="no\nuplift", form=percent),
         Column("overturned", share("overturned"), head="over-\nturned", form=percent),
         Column("unknown", share("unknown") if checked else lambda group: None, head=head, form=percent),
-        Column("rocking", lambda group: list(group.rocking)),
-        Column("all", of("ranks")),
+        Column("rocking", lambda group: list(group.rocking), name=None),
+        Column("all", of("ranks"), name=None),
     ]

@@ -1,45 +1,58 @@
-"""`rk.results`: read the curves and runs of a fragility study from its store."""
+"""`rk.results`: read the curves and runs of a fragility study from its store, and its tables."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cache, cached_property, partial
+from functools import cache, cached_property
+from math import nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import ValidationError
 
-from rocking_cli.ask.answer import Answer, Dimensions
+from rocking_cli.arrays import Reals
+from rocking_cli.ask.answer import Answer, Dimensions, drawn
 from rocking_cli.ask.verbs import verb, write_rows
 from rocking_cli.ask.watcher import Watcher
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import DoubtWarning, InputError, Problem, named, warn
 from rocking_cli.io.files import folder, write_whole
-from rocking_cli.io.tables import stacked
+from rocking_cli.io.tables import Columns, stacked
+from rocking_cli.names import UNKNOWN as UNKNOWN_OUTCOME
+from rocking_cli.names import outcome
+from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.questions.fragility import assess
 from rocking_cli.questions.fragility.assess import Bivariate, Fragility
-from rocking_cli.questions.fragility.cloud import cloud
-from rocking_cli.questions.fragility.definition import Definition, Limit
+from rocking_cli.questions.fragility.curves import FragilityCurve
+from rocking_cli.questions.fragility.definition import SLIDING, Definition, Limit
+from rocking_cli.questions.fragility.exports import chosen, components, doubts, nrml, table
 from rocking_cli.questions.fragility.hazard_curve import HazardCurve
-from rocking_cli.questions.fragility.nrml import chosen, doubts, nrml
-from rocking_cli.questions.fragility.pelicun import components, table
 from rocking_cli.questions.fragility.plan import Plan
-from rocking_cli.questions.fragility.quantiles import Quantiles, all_quantiles, data_of_quantiles, tables_of_quantiles
+from rocking_cli.questions.fragility.quantiles import (
+    Quantiles,
+    all_quantiles,
+    data_of_quantiles,
+    quantile_rows,
+    tables_of_quantiles,
+)
 from rocking_cli.questions.fragility.ranking import Ranking, rank, with_rankings
 from rocking_cli.questions.fragility.results_asked import ResultsAsked
-from rocking_cli.questions.fragility.store import Store
-from rocking_cli.questions.fragility.table import curve_blocks, fit_rows, quantile_rows, run_blocks
+from rocking_cli.questions.fragility.store import FAILED, NO_RUNS, OFF_EDGE, STANDS, UNKNOWN, RunRows, Store
 from rocking_cli.questions.fragility.view import edges, left_out, view
-from rocking_cli.studies.fragility.quantities import label
+from rocking_cli.studies.fragility.quantities import USUAL_MEASURES, label, standard_measure
 
 if TYPE_CHECKING:
     import pandas
-    from matplotlib.figure import Figure
 
-    from rocking_cli.arrays import Reals
-    from rocking_cli.io.tables import Columns
-
+PEAK = "peak_ratio"
+OVERTURNED = 1.0  # peak rotation over the critical rotation
+LOWER_SHARE = 0.1  # of the lowest threshold: below it runs say little of damage
+TEXT_COLUMNS = ("structure", "limit_state", "measure", "unit", "kind")
+FIT_COLUMNS = ("median", "dispersion", "scale")
+LINE_COLUMNS = ("probability", "low", "high")
+COLUMNS = (*FIT_COLUMNS, "x", *LINE_COLUMNS, "unknown", *(f"lower_{name}" for name in (*FIT_COLUMNS, *LINE_COLUMNS)))
+"""Columns of curves: `lower_` begins those of the fit that counts runs of unknown outcome as not exceeding."""
 CurveKey = tuple[str, Limit, str]
 """Structure, limit state and measure of a curve."""
 
@@ -151,8 +164,28 @@ class StudyAnswer(Answer[list[Fragility]]):
         >>> edps.round(2).tolist(), thresholds.tolist(), lower
         ([0.32, 1.5, 1.5], [0.5, 1.0], 0.05)
         """
-        runs, limits = stacked(self.run_blocks()), self.definition.limit_states
-        return cloud(runs, self.plan.structures, limits, measure, edp, censored, structure)
+        runs, names = stacked(self.run_blocks()), self.plan.structures
+        ratios = [limit for limit in self.definition.limit_states if isinstance(limit, float)]
+        thresholds = np.array(sorted({*ratios, OVERTURNED}))
+        heading, structure = label(standard_measure(measure)), structure or (names[0] if len(names) == 1 else None)
+        for argument, value, suits, hint in (
+            ("measure", measure, heading in runs, "give one that the study names, or PGA or PGV"),
+            ("edp", edp, edp == PEAK, f"give {PEAK}"),
+            ("censored", censored, censored > thresholds[-1],
+             f"give more than the highest threshold, {thresholds[-1]:g}"),
+            ("structure", structure, structure in names, f"give one of {', '.join(names)}"),
+        ):  # fmt: skip
+            if not suits:
+                raise InputError(Problem(f"does not suit this study: {value!r}", field=named(argument), hint=hint))
+        of_structure = runs["structure"] == structure
+        intensity, peak, outcome = (runs[head][of_structure] for head in (heading, PEAK, "outcome"))
+        usable = ~np.isin(outcome, (UNKNOWN_OUTCOME, "failed")) & (intensity > 0)
+        if not usable.all():
+            unknown, failed = ((outcome == each).sum() for each in (UNKNOWN_OUTCOME, "failed"))
+            what = f"{unknown} of {UNKNOWN_OUTCOME} outcome, {failed} failed, the others without a positive {measure}"
+            warn(DoubtWarning(f"{(~usable).sum()} of {usable.size} runs are left out: {what}"))
+        peaks = np.where(np.isinf(peak), censored, peak)[usable]  # that of a run that overturns is infinite
+        return intensity[usable], peaks, thresholds, LOWER_SHARE * float(thresholds[0]), censored
 
 
 class UnknownCurve(InputError, KeyError):
@@ -228,10 +261,10 @@ def results(asked: ResultsAsked, watch: Watcher) -> StudyAnswer:
     count = len(definition.limit_states) * (len(definition.fitted_measures) + len(definition.bivariate))
     with watch.progress(count * len(tallies), "fits") as advance:
         fits, surfaces = assess.fitted(tallies, definition, hazard, advance)
-    outcomes, spread = assess.unknown_runs(tallies), cache(lambda: list(all_quantiles(kept, plan, definition)))
-    shown = view(kept, plan, definition, finished, failed, fits, surfaces, outcomes)
+    spread = cache(lambda: list(all_quantiles(kept, plan, definition)))
+    shown = view(kept, plan, definition, tallies, fits, surfaces)
     tables = tables_of_quantiles(spread()) if asked.quantiles else []
-    shown = shown.plus(lambda: {"quantiles": data_of_quantiles(spread(), outcomes)}, tables)
+    shown = shown.plus(lambda: {"quantiles": data_of_quantiles(spread(), tallies)}, tables)
     rankings: list[Ranking] = []
     if asked.rank_measures:
         with watch.progress(plan.size, "runs ranked") as advance:
@@ -242,17 +275,20 @@ def results(asked: ResultsAsked, watch: Watcher) -> StudyAnswer:
     lacking += [f"{len(bad)} records or samples cannot be used"] if (bad := left_out(plan)) else []
     several = zip(("restitution", "level", "polarity"), plan.shape[2:], strict=True)
     along = ("structure", "sample", "motion", *(name for name, count in several if count > 1))
-    runs = partial(_columns, place, plan)
+
+    def runs() -> Columns:
+        return stacked(_blocks(place, plan))
+
     answer = StudyAnswer(
         "fragility",
         fits,
         shown,
         lambda: stacked(curve_blocks(fits)),
-        partial(_figure, definition, fits),
+        drawn("questions.fragility.picture.draw_study", definition, fits),
         tables={
             "runs": runs,
             "fits": lambda: fit_rows(fits, rankings),
-            "quantiles": lambda: quantile_rows(spread(), outcomes),
+            "quantiles": lambda: quantile_rows(spread(), tallies),
         },
         dims=[Dimensions(along, table=runs)],
         store=place,
@@ -334,18 +370,110 @@ def _blocks(place: Path, plan: Plan) -> Iterator[Columns]:
     yield from run_blocks(store, plan, _definition(store).asked_measures)
 
 
-def _columns(place: Path, plan: Plan) -> Columns:
-    return stacked(_blocks(place, plan))
+def curve_blocks(curves: Sequence[Fragility]) -> Iterator[Columns]:
+    """Yield the curves as tables, one after the other, from the least intensity of the data to the largest.
+
+    Yields
+    ------
+    mapping of str to sequence
+        The columns. `dispersion` belongs to lognormal curves, `scale` to logistic ones; each is NaN for the others.
+        `unknown` is the share of undecided runs, NaN if nothing was checked: they count as exceeding in the curve
+        itself, and as not exceeding in columns whose names begin with `lower_`.
+    """
+    existing = [each for each in curves if any(fit.curve.kind != "none" for fit in (each, each.lower or each))]
+    if not existing:
+        yield {**{name: np.array([], dtype=str) for name in TEXT_COLUMNS}, **{name: np.array([]) for name in COLUMNS}}
+
+    def numbers(curve: FragilityCurve) -> list[Any]:
+        fit = (getattr(curve, name) for name in FIT_COLUMNS)
+        return [nan if estimate is None else estimate.value for estimate in fit]
+
+    for each in existing:
+        x, curve, lower = each.points, each.curve, (each.lower or each).curve
+        words = (each.structure, f"{each.limit}", each.measure, parse_measure(each.measure).unit, curve.kind)
+        values = [*words, *numbers(curve), x, *curve.lines(x), nan if each.share is None else each.share]
+        values += [*numbers(lower), *lower.lines(x)]
+        yield stacked([dict(zip((*TEXT_COLUMNS, *COLUMNS), values, strict=True))])
 
 
-def _figure(definition: Definition, curves: list[Fragility]) -> Figure:
-    from rocking_cli.plotting.style import plain
-    from rocking_cli.questions.fragility.picture import draw_curves, limit_in_picture
+def fit_rows(curves: Sequence[Fragility], rankings: Sequence[Ranking]) -> Columns:
+    """Return a row for each curve: its numbers and their intervals, the test of its fit, and the rank of its measure.
 
-    measure = definition.fitted_measures[0]
-    lines = {
-        f"{plain(each.structure)}, {limit_in_picture(each.limit, math=True)}": each
-        for each in curves
-        if each.measure == measure
-    }
-    return draw_curves(lines, label(measure), "")
+    Values that do not exist are NaN; those of the rank exist if measures were ranked.
+    """
+    ranked = {(each.structure, measure.measure): measure for each in rankings for measure in each.measures}
+    rows = []
+    for each in curves:
+        curve, measure = each.curve, ranked.get((each.structure, each.measure))
+        row: dict[str, object] = {"structure": each.structure, "limit_state": f"{each.limit}"}
+        row |= {"measure": each.measure, "kind": curve.kind}
+        for name in FIT_COLUMNS:
+            estimate = getattr(curve, name)
+            row |= {name: getattr(estimate, "value", nan)}
+            row |= {f"{name}_{end}": getattr(estimate, end, nan) for end in ("low", "high")}
+        row |= {name: getattr(curve, name) for name in ("runs", "exceedances", "records")}
+        numbers = {"unknown": each.share, "annual_rate": getattr(each.rate, "rate", None)}
+        numbers |= {name: getattr(curve.goodness, name, None) for name in ("statistic", "p_value")}
+        numbers |= {name: getattr(measure, name, None) for name in ("efficiency", "practicality", "proficiency")}
+        rows.append(row | {name: nan if number is None else number for name, number in numbers.items()})
+    return {name: [row[name] for row in rows] for name in rows[0]} if rows else {}
+
+
+def run_blocks(store: Store, plan: Plan, measures: Sequence[str] = ()) -> Iterator[Columns]:
+    """Yield the finished runs as blocks of a table, in the order of their numbers.
+
+    Parameters
+    ----------
+    store : Store
+        Open to read.
+    plan : Plan
+        The plan of its runs.
+    measures : sequence of str
+        Measures with a column, in addition to those that every table has.
+
+    Yields
+    ------
+    mapping of str to sequence
+        The columns by heading, with units; the first block is yielded even if it is empty.
+    """
+    asked, study = tuple(dict.fromkeys([*USUAL_MEASURES, *measures])), store.fact("description")
+    rows = None
+    for rows in store.rows(0, plan.size):
+        yield _of_runs(plan, rows, asked, study)
+    if rows is None:
+        yield _of_runs(plan, NO_RUNS, asked, study)
+
+
+def _of_runs(plan: Plan, rows: RunRows, measures: Sequence[str], study: Mapping[str, Any]) -> dict[str, list[Any]]:
+    sample, record, _, level, polarity = plan.places(rows.run)
+    trials, records = [plan.trials[k] for k in sample], [plan.records[k] for k in record]
+    fell_to = np.where(np.isin(rows.outcome, (FAILED, UNKNOWN)), 0, np.sign(rows.outcome))
+    return {
+        "run": rows.run.tolist(),
+        "structure": [each.structure for each in trials],
+        "sample": [each.number for each in trials],
+        "motion": [each.name for each in records],
+        "level": np.array(plan.levels)[level].tolist(),
+        "polarity": np.array(plan.polarities)[polarity].tolist(),
+        "restitution": rows.eta.tolist(),
+        "scale": rows.scale.tolist(),
+        **{label(name): plan.intensities(name, sample, record, level, rows.scale).tolist() for name in measures},
+        "outcome": [
+            "failed" if code == FAILED else "falls off an edge" if abs(code) == OFF_EDGE
+            else outcome(uplifts=rise >= 0, overturned=code != STANDS, unknown=code == UNKNOWN, slides=slip > 0)
+            for code, rise, slip in np.stack([rows.outcome, rows.uplift_time, rows.slip], axis=1).tolist()
+        ],
+        "fell_to": fell_to.tolist(),
+        # Infinite, so that no comparison or quantile of peaks takes what overturns for safe.
+        "peak_ratio": np.where(fell_to != 0, np.inf, rows.peak_ratio).tolist(),
+        "peak_positive [rad]": rows.peak_positive.tolist(),
+        "peak_negative [rad]": rows.peak_negative.tolist(),
+        "uplift_time [s]": rows.uplift_time.tolist(),
+        "overturning_time [s]": rows.overturning_time.tolist(),
+        "known_to [s]": rows.known_to.tolist(),
+        "peak_lower_bound": rows.lower_bound.tolist(),
+        "opening": rows.opening.tolist(),
+        "slip [m]": rows.slip.tolist(),
+        **({"slide_time [s]": rows.slide_time.tolist()} if SLIDING in study else {}),
+        **({"engine": np.where(rows.by_blocks, "blocks", "exact").tolist()} if "engine" in study else {}),
+    }  # fmt: skip

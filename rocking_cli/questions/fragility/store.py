@@ -27,7 +27,7 @@ from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.io.files import folder, refusal, write_whole
 from rocking_cli.io.json_text import json_text
 from rocking_cli.questions.fragility.plan import Measured, Plan, Trial, described
-from rocking_cli.questions.fragility.sources import Record
+from rocking_cli.questions.fragility.study import Record
 from rocking_cli.text import numbered
 
 LAYOUT = 9

@@ -89,9 +89,19 @@ class Tally:
         return self.lower or self
 
     @property
+    def usable(self) -> int:
+        """Number of runs that can be used."""
+        return int(self.runs.sum())
+
+    @property
     def unknown_if_checked(self) -> int | None:
         """Number of runs of unknown outcome; None if there are none because joints were not checked."""
         return self.unknown if self.unknown or self.checked else None
+
+    @property
+    def unknown_share(self) -> float | None:
+        """Share of the usable runs that have an unknown outcome; None if nothing was checked."""
+        return None if self.unknown_if_checked is None else self.unknown / self.usable
 
     def clusters(self, record: Integers) -> tuple[Integers, Reals | None]:
         """Return the cluster and the weight of each run, from its record; no weights if all are equal.

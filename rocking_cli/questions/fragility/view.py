@@ -22,13 +22,14 @@ from rocking_cli.views.view import Table, View, number
 if TYPE_CHECKING:  # avoids importing scipy, which only fits need
     from pathlib import Path
 
-    from rocking_cli.questions.fragility.assess import Bivariate, Fragility, UnknownRuns
+    from rocking_cli.questions.fragility.assess import Bivariate, Fragility
     from rocking_cli.questions.fragility.campaign import Left
     from rocking_cli.questions.fragility.curves import Cut, FittedToRuns, FragilityCurve
     from rocking_cli.questions.fragility.definition import Definition, Limit
     from rocking_cli.questions.fragility.plan import Plan
     from rocking_cli.questions.fragility.store import Store
     from rocking_cli.questions.fragility.study import Study
+    from rocking_cli.questions.fragility.tally import Tally
     from rocking_cli.studies.engines import EngineName
 
 Fitted = TypeVar("Fitted", "Fragility", "Bivariate")
@@ -119,11 +120,9 @@ def view(
     store: Store,
     plan: Plan,
     definition: Definition,
-    finished: int,
-    failed: int,
+    tallies: Mapping[str, Tally],
     curves: Sequence[Fragility],
     surfaces: Sequence[Bivariate],
-    outcomes: Sequence[UnknownRuns] = (),
 ) -> View:
     """Show the results of a study: the curves and surfaces fitted to the runs of a store.
 
@@ -135,20 +134,19 @@ def view(
         The plan of its runs.
     definition : Definition
         The definition of its study.
-    finished, failed : int
-        Number of runs in the store, and of those among them that could not be simulated.
+    tallies : mapping of str to Tally
+        The counts of the runs of each structure.
     curves, surfaces : sequence
         The curves and surfaces fitted to the runs.
-    outcomes : sequence of UnknownRuns
-        Number of runs of unknown outcome of each structure.
     """
+    finished, failed = (sum(getattr(each, count) for each in tallies.values()) for count in ("finished", "failed"))
+    used = {structure: tally for structure, tally in tallies.items() if tally.runs.any()}
     name = store.fact("name")
     bad = sum(each.reason is not None for each in plan.records)
     good = len(plan.records) - bad
     records = f"{good} record{'s' * (good != 1)}" + (f" ({bad} more cannot be used)" if bad else "")
     so_far = "" if finished == plan.total else f" of {plan.total:,}, so far"
-    doubtful = sum(each.unknown or 0 for each in outcomes)
-    by_blocks = sum(each.by_blocks for each in outcomes)
+    doubtful, by_blocks = (sum(getattr(each, count) for each in used.values()) for count in ("unknown", "by_blocks"))
     of_them = [f"{doubtful:,} of {UNKNOWN} outcome"] if doubtful else []
     of_them += [f"{by_blocks:,} with free blocks"] if by_blocks else []
     counts = f"{finished:,} runs{so_far}" + (f" ({', '.join(of_them)})" if of_them else "")
@@ -166,7 +164,7 @@ def view(
         parts += fits_in_words(title, plane_columns(interval), f"{one} or {other}", those)
     blockless = without_block(plan, definition.engine)
     parts += [*blockless, *out_of_reach(store, plan, definition)]
-    parts += (notes := list(_notes(outcomes, definition.engine)))
+    parts += (notes := list(_notes(used, definition.engine)))
     parts += (nowhere := _nowhere(plan, definition, curves) if finished else [])
     data = {
         "study": name,
@@ -180,7 +178,18 @@ def view(
         "failed": failed,
         "engine": definition.engine,
         "by_blocks": by_blocks,
-        "outcomes": [{**asdict(each), "share": each.share} for each in outcomes],
+        "outcomes": [
+            {
+                "structure": structure,
+                "runs": tally.usable,
+                "unknown": tally.unknown_if_checked,
+                "checked": tally.checked,
+                "by_blocks": tally.by_blocks,
+                "off_edge": tally.off_edge,
+                "share": tally.unknown_share,
+            }
+            for structure, tally in used.items()
+        ],
         "notes": notes,
         "left_out": left_out(plan),
         "without_block": blockless,
@@ -288,31 +297,32 @@ def undecided(found: Sequence[Fragility | Bivariate], *, capacities: bool) -> It
         )
 
 
-def _notes(outcomes: Sequence[UnknownRuns], engine: EngineName) -> Iterator[str]:
+def _notes(tallies: Mapping[str, Tally], engine: EngineName) -> Iterator[str]:
     """Yield sentences on runs of unknown outcome, on joints that were not checked, and on runs with free blocks."""
     why, when = "a joint opens or slides that the model keeps closed", "the first joint opens or slides"
     if engine != "exact":  # free blocks have simulated all runs with such a joint
         why, when = BLOCKS_FAILED, "the failure"
-    for each in outcomes:
-        if each.unknown:
+    for structure, tally in tallies.items():
+        if tally.unknown:
             yield (
-                f"{each.structure}: {each.unknown:,} of {each.runs:,} runs ({percent(each.share or 0.0)}) "
-                f"{'are' if each.unknown != 1 else 'is'} of {UNKNOWN} outcome, because {why}. They are known to exceed "
-                f"a limit only if they exceed it before {when}; until more is known, use the upper curves."
+                f"{structure}: {tally.unknown:,} of {tally.usable:,} runs ({percent(tally.unknown_share or 0.0)}) "
+                f"{'are' if tally.unknown != 1 else 'is'} of {UNKNOWN} outcome, because {why}. They are known to "
+                f"exceed a limit only if they exceed it before {when}; until more is known, use the upper curves."
             )
-    if unchecked := [each.structure for each in outcomes if not each.checked]:
+    if unchecked := [structure for structure, tally in tallies.items() if not tally.checked]:
         yield (
             f"Caution: the joints of {' and '.join(unchecked)} are not checked: the mechanism does not say which of "
             "them stay closed."
         )
-    if by_blocks := [each for each in outcomes if each.by_blocks]:
-        several = len(outcomes) > 1
-        runs = [
-            f"{each.by_blocks:,} of {each.runs:,} runs{f' of {each.structure}' if several else ''}"
-            for each in by_blocks
-        ]
+    runs = [
+        f"{tally.by_blocks:,} of {tally.usable:,} runs{f' of {structure}' if len(tallies) > 1 else ''}"
+        for structure, tally in tallies.items()
+        if tally.by_blocks
+    ]
+    if runs:
         friction = f"that of the structure's file, or {MASONRY_FRICTION:g}, as usual for masonry, if it gives none"
-        yield blocks_in_words(engine, " and ".join(runs), friction, sum(each.off_edge for each in outcomes))
+        off_edge = sum(tally.off_edge for tally in tallies.values())
+        yield blocks_in_words(engine, " and ".join(runs), friction, off_edge)
     elif engine == "auto":
         yield ALL_EXACT
 

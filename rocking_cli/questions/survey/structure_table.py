@@ -1,4 +1,4 @@
-"""A table of structures, one in each row: columns are fields, and each row becomes a structure."""
+"""A table of structures: columns are fields, and each row becomes a structure, with its coordinates."""
 
 from __future__ import annotations
 
@@ -8,22 +8,28 @@ from copy import deepcopy
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from functools import cache, partial
+from math import nan
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import yaml
 
+from rocking_cli.arrays import Reals
 from rocking_cli.ask.inputs import sheet_of
 from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_file import TEMPLATE_HINT, of_document
-from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.errors import InputError, MechanismError, Problem, named
 from rocking_cli.io.dotted import closed, put, replace_at, words
 from rocking_cli.io.field_problems import by_meaning, fields_at, lists_models, types_at
-from rocking_cli.io.spreadsheet import DECIMAL_COMMA, NUMBER, THOUSANDS, Row, Spreadsheet
+from rocking_cli.io.spreadsheet import DECIMAL_COMMA, NUMBER, THOUSANDS, Row, Spreadsheet, unit_in
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text, spell
-from rocking_cli.questions.survey.coordinates import coordinate
 from rocking_cli.text import cut, did_you_mean, one_line
+
+if TYPE_CHECKING:
+    from rocking_cli.questions.survey.study import Survey
+
 
 FILE_COLUMN, MECHANISM_COLUMN = "file", "mechanism"
 YAML_SUFFIXES = (".yaml", ".yml")
@@ -141,20 +147,20 @@ class StructureTable(Sequence["TableRow"]):
 
     def base_of(self, row: Row) -> str:
         """Return the YAML file that a row modifies; empty for none. Other files are fields of mechanisms."""
-        named = self.text(row, FILE_COLUMN)
-        return named if named.lower().endswith(YAML_SUFFIXES) else ""
+        file = self.text(row, FILE_COLUMN)
+        return file if file.lower().endswith(YAML_SUFFIXES) else ""
 
-    def base(self, named: str) -> dict[str, Any]:
+    def base(self, file: str) -> dict[str, Any]:
         """Return the data of a YAML file, read once. Raises `InputError` if it cannot be read."""
-        if named not in self._bases:
-            path = self.folder / named
+        if file not in self._bases:
+            path = self.folder / file
             try:
                 document = parse(read_text(path, "structure"), str(path), "structure", TEMPLATE_HINT)
                 document.check()
-                self._bases[named] = document.data
+                self._bases[file] = document.data
             except InputError as error:
-                self._bases[named] = error
-        base = self._bases[named]
+                self._bases[file] = error
+        base = self._bases[file]
         if isinstance(base, InputError):
             raise base
         return base
@@ -226,9 +232,9 @@ class StructureTable(Sequence["TableRow"]):
     def _mechanisms(self) -> set[str]:
         """Return the names of the mechanisms in the rows, known or not."""
         mechanisms = {self.text(row, MECHANISM_COLUMN) for row in self.sheet.rows}
-        for named in {self.base_of(row) for row in self.sheet.rows if not self.text(row, MECHANISM_COLUMN)} - {""}:
+        for file in {self.base_of(row) for row in self.sheet.rows if not self.text(row, MECHANISM_COLUMN)} - {""}:
             try:
-                mechanisms.add(str(self.base(named).get(MECHANISM_COLUMN)))
+                mechanisms.add(str(self.base(file).get(MECHANISM_COLUMN)))
             except InputError:  # the error is reported for each row of this file
                 continue
         return mechanisms - {""}
@@ -290,20 +296,20 @@ class TableRow:
             folder = (table.folder / based).parent
             default = one_line(Path(based).stem) or default
         self._fill(document, based)
-        if MECHANISM_COLUMN not in document.data and not based and (named := table.text(row, FILE_COLUMN)):
-            what = f"{cut(one_line(named))!r} is not a structure file: its name must end in .yaml or .yml"
+        if MECHANISM_COLUMN not in document.data and not based and (file := table.text(row, FILE_COLUMN)):
+            what = f"{cut(one_line(file))!r} is not a structure file: its name must end in .yaml or .yml"
             document.problems.append(document.problem(what, None, FILE_COLUMN, "or give the mechanism of the row"))
         document.check()
         document.data = closed(document.data)
         return of_document(document, default, folder, table.registry)
 
-    def _base(self, named: str, document: _RowDocument) -> dict[str, Any]:
+    def _base(self, file: str, document: _RowDocument) -> dict[str, Any]:
         try:
-            return self.table.base(named)
+            return self.table.base(file)
         except InputError as error:
             first = error.problems[0]
             line = f"{first.line}: " if first.line is not None else ""
-            message = f"{cut(one_line(named))}: {line}{first.message}"
+            message = f"{cut(one_line(file))}: {line}{first.message}"
             raise InputError(document.problem(message, None, FILE_COLUMN, first.hint)) from None
 
     def _fill(self, document: _RowDocument, based: str) -> None:
@@ -401,3 +407,97 @@ def _text(value: Any) -> str:
     if isinstance(value, list | tuple):
         return f"[{', '.join(map(_text, value))}]"
     return str(value).strip()
+
+
+LONGITUDE, LATITUDE = "longitude", "latitude"
+COORDINATES = {LONGITUDE: LONGITUDE, "lon": LONGITUDE, LATITUDE: LATITUDE, "lat": LATITUDE}
+"""Which coordinate the column of a heading holds, in degrees."""
+MAX_DEGREES = {LONGITUDE: 180.0, LATITUDE: 90.0}
+DEGREES = ("", "deg", "°")
+
+
+def coordinate(heading: str) -> str | None:
+    """Return which coordinate a column holds; None if it is another column. A `#` before its name changes nothing.
+
+    Examples
+    --------
+    >>> coordinate("longitude [deg]"), coordinate("#Lat"), coordinate("width")
+    ('longitude', 'latitude', None)
+    """
+    name, unit = unit_in(heading.lstrip("#").strip().lower(), ())
+    return COORDINATES.get(name) if unit in DEGREES else None
+
+
+@dataclass(frozen=True)
+class Coordinates:
+    """Where the ranked structures of a survey are.
+
+    Parameters
+    ----------
+    longitude, latitude : ndarray, shape (n,)
+        In degrees, by rank; NaN for a structure without coordinates. All longitudes are within 180 degrees of their
+        mean, so that structures on both sides of the date line are beside each other.
+    wrong : list of str
+        What is wrong with cells that are not coordinates, a sentence each.
+    """
+
+    longitude: Reals
+    latitude: Reals
+    wrong: list[str]
+
+    @property
+    def there(self) -> np.ndarray:
+        """Indices of the structures that have coordinates, by rank."""
+        return np.flatnonzero(np.isfinite(self.longitude))
+
+
+def columns_of(sheet: Spreadsheet | None) -> dict[str, int]:
+    """Return the places of the columns of longitude and latitude. Raises `InputError` if a table lacks one of them."""
+    headings = enumerate(sheet.headings if sheet is not None else ())
+    columns = {name: k for k, heading in headings if (name := coordinate(heading)) is not None}
+    if len(columns) < len(MAX_DEGREES):
+        lacks = " and ".join(each for each in MAX_DEGREES if each not in columns)
+        file = sheet.file if sheet is not None else None
+        hint = f"{named('map')} needs columns longitude and latitude (or lon and lat), in degrees"
+        raise InputError(Problem(f"the structures have no {lacks}", file, hint=hint))
+    return columns
+
+
+def coordinates(found: Survey) -> Coordinates:
+    """Return where the structures of a survey are.
+
+    Raises
+    ------
+    InputError
+        If the table lacks a column of coordinates, or no structure has both.
+    """
+    sheet, columns = found.sheet, columns_of(found.sheet)
+    assert sheet is not None  # columns of coordinates were found in it
+    wrong, degrees = list[str](), np.full((len(found.rows), 2), nan)
+    for k, structure in enumerate(found.rows):
+        row = sheet.rows[structure.row - 1]
+        try:
+            point = [_degrees(sheet, row, columns[each], each) for each in MAX_DEGREES]
+        except InputError as error:
+            wrong.append(str(error))
+            continue
+        degrees[k] = point if None not in point else nan
+    if np.isnan(degrees).all():
+        raise InputError(Problem("no structure has both coordinates", sheet.file, hint=wrong[0] if wrong else None))
+    x, y = degrees.T
+    turns = np.exp(1j * np.radians(x[np.isfinite(x)])).mean()
+    mean = float(np.degrees(np.angle(turns)))
+    return Coordinates((x - mean + 180.0) % 360.0 - 180.0 + mean, y, wrong)
+
+
+def _degrees(sheet: Spreadsheet, row: Row, place: int, name: str) -> float | None:
+    """Return a coordinate of a row [degrees]; None if it is not given."""
+    cell = row.cells[place]
+    if not cell:
+        return None
+    number = sheet.number(cell)
+    if number is None or abs(float(number)) > MAX_DEGREES[name]:
+        largest = MAX_DEGREES[name]
+        what = f"must be a number of degrees from -{largest:g} to {largest:g}, got {cut(one_line(cell))!r}"
+        raise InputError(Problem(what, sheet.file, row.line, field=cut(one_line(sheet.headings[place]))))
+    return float(number)

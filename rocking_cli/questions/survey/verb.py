@@ -64,14 +64,14 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
     shaken = [each.motion.scaled(each.factor) for each in requested.gather(0.0, watch)] if requested else []
     writer = None
     if asked.sheets is not None and asked.site is not None and where is not None:
-        from rocking_cli.questions.survey.sheets import SheetFolder
+        from rocking_cli.questions.survey.pages import SheetFolder
 
         call = asked.origin or "rocking_cli.survey(...)"
         writer = SheetFolder(asked.sheets, where, asked.site, f".{asked.sheet_format}", language, asked, call)
         writer.check()
     sheet = getattr(entries, "sheet", None)
     if asked.map is not None:
-        from rocking_cli.questions.survey.coordinates import columns_of
+        from rocking_cli.questions.survey.structure_table import columns_of
 
         columns_of(sheet)
     processes = _processes(len(entries), asked.jobs, shaken=bool(shaken) or where is not None)
@@ -181,8 +181,8 @@ def _note_remarks(found: Survey, watch: Watcher) -> None:
 
 def _write_map(place: Path, found: Survey, title: str, say: Language, watch: Watcher) -> None:
     from rocking_cli.plotting.style import write
-    from rocking_cli.questions.survey.coordinates import coordinates
-    from rocking_cli.questions.survey.map_picture import draw_map
+    from rocking_cli.questions.survey.picture import draw_map
+    from rocking_cli.questions.survey.structure_table import coordinates
 
     where = coordinates(found)
     for wrong in where.wrong[:MAX_LISTED_DOUBTS]:
@@ -198,7 +198,7 @@ def _write_map(place: Path, found: Survey, title: str, say: Language, watch: Wat
 def _write_page(place: Path, found: Survey, table: str, say: Language, watch: Watcher) -> None:
     from rocking_cli import __version__
     from rocking_cli.io.files import write_whole
-    from rocking_cli.questions.survey.page import render
+    from rocking_cli.questions.survey.pages import render
 
     written = say("Written on {day} with rocking-cli {version}.", day=say.today(), version=__version__)
     page = render(found, table, [written], say).encode()

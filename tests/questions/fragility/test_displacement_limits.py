@@ -7,18 +7,19 @@ import pytest
 import yaml
 from scipy.optimize import brentq
 
-from rocking_cli import load_structure, respond
+from rocking_cli import load_structure
 from rocking_cli.core import Direction
+from rocking_cli.errors import InputError
 from rocking_cli.questions.fragility import tally
 from rocking_cli.questions.fragility.campaign import left, prepare
 from rocking_cli.questions.fragility.store import Store
 from rocking_cli.questions.fragility.study import load_study
-from rocking_cli.questions.fragility.tally import exceeds, first_reached, of_a_structure
+from rocking_cli.questions.fragility.tally import first_reached, of_a_structure
 from rocking_cli.studies.fragility.quantities import ROTATIONS_FACT, displacement_in_mm, is_quantity, kept, metres
 from rocking_cli.studies.movements import Watched
 from tests.conftest import EXAMPLES, rows_of
 from tests.questions.fragility.test_study_runs import carry_out
-from tests.stores import command, every_run
+from tests.stores import command
 
 STUDY = {
     "structures": [
@@ -51,31 +52,21 @@ def whole(tmp_path_factory):
     return path, carry_out(path, folder / "study.runs", jobs=1), folder / "study.runs"
 
 
-@pytest.mark.parametrize(
-    ("text", "limit"),
-    [("25 mm", "25 mm"), ("2.5cm", "25 mm"), ("0.025 m", "25 mm"), ("1 in", "25.4 mm"), ("0.03 m", "30 mm")],
-)
+@pytest.mark.parametrize(("text", "limit"), [("2.5cm", "25 mm"), ("1 in", "25.4 mm"), ("0.03 m", "30 mm")])
 def test_a_displacement_is_written_in_mm(text, limit):
     assert displacement_in_mm(text) == limit and is_quantity(limit)
     assert metres(limit) == pytest.approx(float(limit.split()[0]) / 1000)
     assert metres("uplift") is None and metres(0.5) is None and metres("25 kg") is None
 
 
-@pytest.mark.parametrize(
-    ("limit", "said"),
-    [
-        ("25 kg", "a mass, not a length"), ("0 mm", "must be positive"), ("-3 mm", "must be positive"),
-        ("25 foo", "not a unit of length"), ("1e999 m", "must be positive"), ("far", "a displacement such as 25 mm"),
-    ],
-)  # fmt: skip
-def test_what_is_no_displacement_is_refused_with_its_line(tmp_path, limit, said):
-    found = command("fragility", write(tmp_path, limit_states=["uplift", limit]), "--check")
-    assert found.exit_code == 2 and said in found.stderr and "limit_states[2]" in found.stderr
-
-
-def test_one_displacement_in_two_units_is_given_twice(tmp_path):
-    found = command("fragility", write(tmp_path, limit_states=["25 mm", "2.5 cm"]), "--check")
-    assert found.exit_code == 2 and "25 mm is given twice" in found.stderr
+def test_what_is_no_displacement_is_refused_with_its_line(tmp_path):
+    limits = ["uplift", "25 kg", "0 mm", "1e999 m", "far", "25 mm", "2.5 cm"]
+    with pytest.raises(InputError) as caught:
+        load_study(write(tmp_path, limit_states=limits))
+    said = {each.field: each.message for each in caught.value.problems}
+    words = "a mass, not a length", "must be positive", "must be positive", "a displacement such as 25 mm"
+    assert all(word in said[f"limit_states[{k}]"] for k, word in enumerate(words, 2))
+    assert said["limit_states"] == "25 mm is given twice"
 
 
 def test_a_block_moves_as_its_closed_form_says():
@@ -89,12 +80,12 @@ def test_a_block_moves_as_its_closed_form_says():
     assert of_a_structure(block, [b + h + 0.001]) == [(None, None)]
 
 
-@pytest.mark.parametrize("name", ["frame", "symmetric_frame", "arch", "wall", "cone", "point_mass", "rigid_body"])
+@pytest.mark.parametrize("name", ["frame", "arch", "cone", "rigid_body"])
 def test_it_is_the_first_rotation_at_which_the_top_is_there(name):
     structure = load_structure(EXAMPLES / f"{name}.yaml")
     spot = next(iter(Watched(structure).points.values()))
     for side in structure.directions:
-        phi = np.linspace(0, structure.limit(side), 100_001)[:-1]
+        phi = np.linspace(0, structure.limit(side), 20_001)[:-1]
         body = [each.name for each in structure.bodies()].index(spot.body)
         moved = np.abs((structure.motion(phi, side)[body].carry(spot.at)[0] - spot.at).real)
         for share in (0.05, 0.5, 0.97):
@@ -116,35 +107,6 @@ def test_a_bump_narrower_than_the_look_is_found_and_one_that_is_too_low_is_not()
     expected = brentq(lambda x: float(moved(np.array([x]))[0]) - wanted, 0.28, 0.3, xtol=1e-14)
     assert first_reached(moved, phi, at, wanted) == pytest.approx(expected, abs=1e-9)
     assert first_reached(moved, phi, at, 1.001 * top_of_it) is None
-
-
-@pytest.mark.rest
-@pytest.mark.filterwarnings("ignore::rocking_cli.errors.DoubtWarning")  # a sine ends displaced
-def test_each_run_exceeds_when_its_own_history_says_so(whole):
-    path, prepared, place = whole
-    study, plan = load_study(path), prepared.plan
-    motions = [source.read() for source in study.sources]
-    store = Store.reading(place)
-    (found,) = store.rows(0, plan.size)
-    table = kept(store.fact, ["uplift", "overturning", *LIMITS])
-    assert set(table) == set(LIMITS)
-    sample, record, _, _, polarity = plan.places(found.run)
-    flags = {limit: exceeds(found, limit, table[limit][sample]) for limit in LIMITS}
-    seen = set()
-    watched = [Watched(each.mechanism) for each in study.samples]
-    store = Store.reading(place)
-    scale = every_run(place).scale
-    one_way = (found.peaks > table["200 mm"][sample]).sum(axis=1) == 1
-    assert ((found.peaks[one_way] > table["200 mm"][sample][one_way]).sum(axis=0) > 0).all()
-    for k in sorted({*range(0, plan.size, 7), *np.flatnonzero(one_way).tolist()}):
-        motion = motions[record[k]].scaled(float(scale[k]) * plan.polarities[polarity[k]])
-        history = respond(study.samples[sample[k]].mechanism, motion, model=("nonlinear",))["nonlinear"]
-        top = next(each for each in watched[sample[k]].peaks(history).points if each.name == "top")
-        for limit, metre in zip(LIMITS, (0.025, 0.2), strict=True):
-            expected = history.overturned or top.horizontal > metre
-            assert flags[limit][k] == expected, (k, limit)
-            seen.add((limit, bool(expected), history.overturned))
-    assert {(limit, said, False) for limit in LIMITS for said in (True, False)} < seen
 
 
 def slip_of_a_sine(amplitude, period, friction):

@@ -14,8 +14,7 @@ from statsmodels.discrete.discrete_model import Logit, Probit
 
 from rocking_cli.questions.fragility import curves
 from rocking_cli.questions.fragility.curves import fit_capacities, fit_surface
-from rocking_cli.questions.fragility.goodness import goodness_of_runs
-from rocking_cli.questions.fragility.observed import MEASURED_COVERAGE, Observations
+from rocking_cli.questions.fragility.observed import MEASURED_COVERAGE, Observations, goodness_of_runs
 from rocking_cli.studies import fit as fitting
 from rocking_cli.studies.fit import NO_ERRORS, fit_outcomes, separable
 from rocking_cli.studies.under_pulses import linear_block, outcomes, parse_shape
@@ -97,8 +96,7 @@ class TestAgainstAnIndependentOptimum:
         assert curve.median.low < 0.8 < curve.median.high and curve.scale.low < 0.4 < curve.scale.high
         assert curve.probability(np.array([0.8]))[0] == pytest.approx(0.5, abs=0.05)
 
-    @pytest.mark.parametrize("link", ["probit", "logit"])
-    @pytest.mark.parametrize("at_once", [7, 1 << 16])
+    @pytest.mark.parametrize(("link", "at_once"), [("probit", 7), ("logit", 1 << 16)])
     def test_without_each_record_by_the_slopes_of_statsmodels(self, monkeypatch, link, at_once):
         monkeypatch.setattr(fitting, "TERMS_PER_BLOCK", at_once)  # terms: there are twelve
         raw, model = stripes(np.random.default_rng(3), 30, 0.4), {"probit": Probit, "logit": Logit}[link]
@@ -141,7 +139,7 @@ class TestAgainstAnIndependentOptimum:
         information = np.array([[plain[0], mixed], [mixed, plain[1]]]) / h**2
         np.testing.assert_allclose(curve.fit.covariance, np.linalg.inv(information), rtol=1e-4)
 
-    @pytest.mark.parametrize("width", [1e-3, 1e-6, 1e-8])
+    @pytest.mark.parametrize("width", [1e-3, 1e-8])
     def test_narrow_brackets_are_capacities_known_exactly(self, width):
         u = np.random.default_rng(7).normal(np.log(MEDIAN), DISPERSION, 60)
         curve = fit_capacities(np.exp(u), np.exp(u + width))
@@ -258,13 +256,10 @@ class TestKinds:
     @pytest.mark.parametrize(
         ("x", "exceeded", "words"),
         [
-            ([1, 2, 3], [0, 0, 0], "none of the 3 runs"),
             ([1, 2, 3], [1, 1, 1], "all of the 3 runs"),
             ([2, 2, 2], [1, 0, 1], "the intensity 2"),
-            ([1, 2, 3, 4], [1, 1, 0, 0], "no increasing curve exists"),
             ([1, 2, 3, 4, 5, 6], [1, 1, 0, 1, 0, 0], "no increasing curve exists"),
             ([1, 1, 2, 2], [0, 0, 0, 1], "none exceeds below"),
-            ([1, 1, 2, 2], [0, 1, 1, 1], "all exceed above"),
         ],
     )
     def test_none(self, x, exceeded, words):
@@ -293,7 +288,6 @@ class TestKinds:
             ([1, 1, 1], [2, 2, 2], "step", "all runs do from 2"),
             ([1, 1.5, 0], [2, 3, np.inf], "step", "up to 1.5"),
             ([1, 2, 1], [2, 3, 2], "step", "both outcomes occur at 2"),
-            ([3, 3], [np.inf, np.inf], "none", "none of the 2 records"),
             ([0, 0], [1, 1], "none", "at their first level"),
             ([0, 2], [1, np.inf], "none", "below 1 or above 2: levels beyond these"),
         ],
@@ -306,7 +300,7 @@ class TestKinds:
         random = np.random.default_rng(32)
         fine = np.geomspace(1e-9, 1e9, 30)
         kinds: Counter[str] = Counter()
-        for k in range(80):
+        for k in range(40):
             n = int(random.integers(1, 25))
             x = np.exp(random.normal(size=n) * random.choice([1e-3, 0.5, 4])) * random.choice([1e-4, 1, 1e4])
             exceeded = x > np.median(x) * np.exp(random.choice([0.01, 0.5, 5]) * random.normal(size=n))
@@ -345,18 +339,13 @@ def level_with_both_outcomes(random):
 class TestUnits:
     """A measure times a constant is the same measure: whatever the constant, and however it is rounded."""
 
-    @pytest.mark.parametrize("c", [1e-3, 3.7, 1e6])
     @pytest.mark.parametrize(
-        "made",
+        ("made", "c"),
         [
-            lambda random: stripes(random, 30, 0.4),
-            lambda random: stripes(random, 6, 0.4),
-            lambda random: cloud(random, 100),
-            wide_logistic,
-            narrow,
-            level_with_both_outcomes,
+            (lambda random: stripes(random, 6, 0.4), 3.7), (lambda random: cloud(random, 100), 1e6),
+            (wide_logistic, 1e-3), (narrow, 3.7), (level_with_both_outcomes, 3.7),
         ],
-    )
+    )  # fmt: skip
     def test_curves_and_tests_do_not_depend_on_them(self, made, c):
         seen = made(np.random.default_rng(61))
         one, other = fit_curve(seen), fit_curve(seen._replace(x=rounded(c * seen.x, 62)))
@@ -377,8 +366,7 @@ class TestUnits:
         np.testing.assert_allclose(other.probability(c * fine), one.probability(fine), atol=1e-9)
         np.testing.assert_allclose(other.band(c * fine), one.band(fine), atol=1e-8)
 
-    @pytest.mark.parametrize("c", [1e-3, 3.7, 1e3])
-    @pytest.mark.parametrize("each", [1, 3])
+    @pytest.mark.parametrize(("each", "c"), [(1, 1e-3), (3, 3.7)])
     def test_nor_do_those_of_capacities(self, c, each):
         lower, upper = brackets(np.random.default_rng(63), 60)
         record = np.arange(60) // each
@@ -414,10 +402,10 @@ class TestCovariance:
         curve = fit_curve(Runs(x, exceeded, np.concatenate([np.zeros(6, dtype=int), 1 + np.arange(8)])))
         assert (curve.kind, curve.why, curve.fit) == ("none", NO_ERRORS, None)
 
-    @pytest.mark.parametrize("gap", [1e-12, 1e-9, 3e-9, 1e-8, 1e-6, 1e-3])
+    @pytest.mark.parametrize("gap", [1e-12, 3e-9, 1e-3])
     def test_no_overlap_however_narrow_gives_an_error_of_no_number(self, gap):
         random = np.random.default_rng(74)
-        for _ in range(20):
+        for _ in range(6):
             middle = 1 + gap * np.arange(6)
             x = 1e3 * np.concatenate([np.full(12, 0.5), np.repeat(middle, 2), np.full(12, 2.0)])
             exceeded = np.concatenate([np.zeros(12), random.random(12) < 0.5, np.ones(12)]).astype(bool)
@@ -446,20 +434,17 @@ class TestWords:
         why = fit_curve(one_each(x, exceeded)).why
         assert "all but separate" in why and "cannot be told from none" not in why
 
-    @pytest.mark.parametrize("records", [3, 4])
-    def test_of_few_capacities_whose_increase_nobody_doubts(self, records):
+    def test_of_few_capacities_whose_increase_nobody_doubts(self):
+        records = 3
         levels = np.geomspace(0.1, 2, 200)
         ends = np.concatenate([[0.0], levels, [np.inf]])
         place = np.searchsorted(levels, MEDIAN * np.exp(DISPERSION * np.linspace(-1, 1, records)))
         curve = fit_capacities(ends[place], ends[place + 1], levels=levels)
         assert f"at 95 % {records} records are too few to bound it" in curve.why
 
-    @pytest.mark.parametrize(
-        ("upper", "words"), [(np.inf, "none of the 6 ladders of 3 records"), (1.0, "all of the 6")]
-    )
-    def test_of_several_capacities_of_a_record(self, upper, words):
-        lower = np.full(6, 2.0 if np.isinf(upper) else 0.0)
-        assert words in fit_capacities(lower, np.full(6, upper), np.arange(6) // 2).why
+    def test_of_several_capacities_of_a_record(self):
+        never = fit_capacities(np.full(6, 2.0), np.full(6, np.inf), np.arange(6) // 2)
+        assert "none of the 6 ladders of 3 records" in never.why
         two = fit_capacities(np.array([1.0, 2, 1, 3]), np.array([2.0, 3, 3, 4]), np.array([0, 0, 1, 1]))
         assert "the 4 capacities are of 2 records" in two.why
 
@@ -494,7 +479,7 @@ class TestGoodness:
         # On average T/tr(V) is one; taken as independent the runs of a record give too good an agreement.
         random = np.random.default_rng(43)
         found, naive = [], []
-        for _ in range(200):
+        for _ in range(120):
             seen = stripes(random, 60, 0.47)
             alone = seen._replace(record=np.arange(seen.x.size))
             for kept, runs in ((found, seen.seen), (naive, alone.seen)):
@@ -577,10 +562,10 @@ class TestSurface:
 
     def test_separation_against_lines_of_every_direction(self):
         random = np.random.default_rng(52)
-        angles = np.linspace(0, 2 * np.pi, 7200, endpoint=False)
+        angles = np.linspace(0, 2 * np.pi, 3600, endpoint=False)
         across = np.column_stack([np.cos(angles), np.sin(angles)])
         seen = set()
-        for _ in range(150):
+        for _ in range(60):
             points = random.normal(size=(10, 2))
             exceeded = points @ [1, 1] + random.normal(size=10) > 0
             if 0 < exceeded.sum() < 10:
@@ -619,7 +604,7 @@ class TestSurface:
         assert "fewer runs exceed the limit as the second one increases" in falls.why
 
 
-@pytest.mark.parametrize("omega", [1.0, 3.0])
+@pytest.mark.parametrize("omega", [3.0])
 def test_the_step_of_a_linear_block_under_half_sines_is_recovered(omega):
     def margin(a):  # y at the end of the pulse, from y' = y + a sin(omega tau + asin(1/a)), y(0) = -1
         s = np.sqrt(a * a - 1)

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 import rocking_cli as rk
-from rocking_cli.questions.fragility import nrml as openquake
+from rocking_cli.questions.fragility import exports as openquake
 from rocking_cli.questions.fragility import ranking, tally
 from rocking_cli.questions.fragility.assess import Fragility, curves
 from rocking_cli.questions.fragility.curves import FragilityCurve
 from rocking_cli.questions.fragility.definition import implies
+from rocking_cli.questions.fragility.exports import chosen
 from rocking_cli.questions.fragility.hazard_curve import HazardCurve, annual_rate
-from rocking_cli.questions.fragility.nrml import chosen
 from rocking_cli.questions.fragility.observed import Observations
 from rocking_cli.questions.fragility.store import Store
 from rocking_cli.questions.fragility.study import load_study

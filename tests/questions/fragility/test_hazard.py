@@ -9,7 +9,7 @@ from scipy.stats import norm
 
 from rocking_cli.errors import DoubtWarning, InputError
 from rocking_cli.questions.fragility.curves import FragilityCurve
-from rocking_cli.questions.fragility.hazard_curve import HazardCurve, annual_rate, read_hazard, wrong_points
+from rocking_cli.questions.fragility.hazard_curve import HazardCurve, annual_rate, read_hazard
 from rocking_cli.questions.fragility.study import load_study
 from rocking_cli.studies.fit import Estimate, Fit
 from tests.conftest import EXAMPLES
@@ -35,8 +35,7 @@ BENT = HazardCurve(np.array([0.05, 0.1, 0.3, 1.0, 2.0]), np.array([2e-2, 9e-3, 9
 
 
 class TestRate:
-    @pytest.mark.parametrize("k", [1.0, 2.5])
-    @pytest.mark.parametrize("dispersion", [0.05, 0.5])
+    @pytest.mark.parametrize(("k", "dispersion"), [(1.0, 0.5), (2.5, 0.05)])
     def test_of_a_lognormal_curve_and_one_power_law_is_cornells(self, k, dispersion):
         found = annual_rate(lognormal(0.6, dispersion), power_law(k))
         expected = 1e-3 * 0.6**-k * exp((k * dispersion) ** 2 / 2)
@@ -45,8 +44,8 @@ class TestRate:
         assert found.in_50_years == pytest.approx(1 - exp(-50 * expected), rel=1e-9)
         assert found.above < 1e-12 * expected and found.below < 1e-9 * expected
 
-    @pytest.mark.parametrize("dispersion", [0.1, 0.6])
-    def test_of_a_bent_hazard_curve_is_a_plain_sum(self, dispersion):
+    def test_of_a_bent_hazard_curve_is_a_plain_sum(self):
+        dispersion = 0.6
         curve = lognormal(0.7, dispersion)
         x = np.exp(np.linspace(log(0.05), log(2.0), 400_001))
         logs = np.log(BENT.intensity), np.log(BENT.annual_rate)
@@ -90,10 +89,6 @@ class TestRate:
         found = annual_rate(step(0.2, 0.15, 0.25), power_law(2.0))
         assert (found.rate, found.low, found.high) == pytest.approx((1e-3 / 0.04, 1e-3 / 0.0625, 1e-3 / 0.0225))
 
-    def test_of_a_steep_curve_nears_that_of_the_step(self):
-        steep = annual_rate(lognormal(0.2, 0.002, 1e-9 * COVARIANCE), power_law(2.0))
-        assert steep.rate == pytest.approx(1e-3 / 0.04, rel=1e-3)
-
     def test_of_a_step_outside_the_hazard_curve(self):
         beyond = annual_rate(step(3.0, 1.5, 4.0), BENT)
         assert (beyond.rate, beyond.low, beyond.above) == (0, 0, 1e-5) and beyond.return_period == inf
@@ -102,26 +97,6 @@ class TestRate:
         k = log(2e-2 / 9e-3) / log(2)
         assert under.rate == pytest.approx(2e-2)
         assert under.rate + under.below == pytest.approx(2e-2 * 2**k)
-
-
-class TestHazardCurve:
-    def test_is_straight_in_logarithms_and_unknown_outside(self):
-        x = np.array([0.04, 0.05, np.sqrt(0.1 * 0.3), 2.0, 2.1])
-        np.testing.assert_allclose(BENT.rate(x), [np.nan, 2e-2, np.sqrt(9e-3 * 9e-4), 1e-5, np.nan])
-
-    @pytest.mark.parametrize(
-        ("x", "rate", "point"),
-        [
-            ([0.1, 0.1], [1, 0.5], 1),
-            ([0.1, 0.2], [1, 2], 1),
-            ([0, 0.2], [1, 0.5], 0),
-            ([0.1, 0.2], [1, 0], 1),
-            ([0.1, np.nan], [1, 0.5], 1),
-            ([0.1], [1], 1),
-        ],
-    )
-    def test_points_that_make_no_curve(self, x, rate, point):
-        assert [k for k, _ in wrong_points(np.array(x, dtype=float), np.array(rate, dtype=float))] == [point]
 
 
 class TestFile:
@@ -135,13 +110,12 @@ class TestFile:
     @pytest.mark.parametrize(
         ("text", "place", "words"),
         [
-            ("0.1,1e-2\n0.2\n", ":2", "1 column"),
             ("0.1,1e-2,3\n", ":1", "3 columns"),
             ("x,y\n\n0.1,1e-2\n0.2,high\n", ":4", "'high' is not a number"),
-            ("x,y\n0.1,1e-2\nx,y\n", ":3", "'x' is not a number"),
             ("x,y\n0.1,1e-2\n\n0.05,1e-3\n", ":4", "does not exceed"),
             ("0.1,1e-3\n0.2,1e-2\n", ":2", "above"),
-            ("0.1,1e-3\n", "", "1 point: at least two"),
+            ("0,1e-2\n0.2,1e-3\n", ":1", "it must be positive"),
+            ("0.1,1e-3\n0.2,0\n", ":2", "it must be positive"),
             ("", "", "0 points: at least two"),
         ],
     )
@@ -151,13 +125,6 @@ class TestFile:
         with pytest.raises(InputError) as caught:
             read_hazard(path, "PGA")
         assert f"hazard.csv{place}: " in str(caught.value) and words in str(caught.value)
-
-    def test_no_file_and_no_text(self, tmp_path):
-        with pytest.raises(InputError, match="no such file"):
-            read_hazard(tmp_path / "nowhere.csv", "PGA")
-        (tmp_path / "binary").write_bytes(b"\xff\xfe\x00\x81")
-        with pytest.raises(InputError, match="UTF-8"):
-            read_hazard(tmp_path / "binary", "PGA")
 
 
 COMMENT = (
@@ -178,7 +145,7 @@ class TestFileOfOpenQuake:
 
     @pytest.mark.parametrize(
         ("imt", "measure", "factor"),
-        [("SA(1.0)", "Sa(1 s)", 1), ("PGV", "PGV", 100), ("IA", "Arias", 1), ("CAV", "CAV", 1 / 9.80665)],
+        [("SA(1.0)", "Sa(1 s)", 1), ("PGV", "PGV", 100), ("CAV", "CAV", 1 / 9.80665)],
     )
     def test_intensities_are_in_the_unit_of_the_measure(self, tmp_path, imt, measure, factor):
         found = read_hazard(self.written(tmp_path, imt), measure)
@@ -201,9 +168,7 @@ class TestFileOfOpenQuake:
             ),
             ({"site": SITE * 3}, "", "3 sites, one is needed"),
             ({"site": SITE[:-9]}, ":3", "5 columns, but the heading has 6"),
-            ({"site": SITE.replace("2.0E-01", "x")}, ":3", "'x' is not a number"),
             ({"site": SITE.replace("2.0E-01", "1.2")}, ":3", "rate is nan"),
-            ({"site": SITE.replace("2.0E-01", "9.9E-01")}, ":3", "above the"),
             ({"site": "0,0,0,0,0,0\n"}, ":3", "at least two"),
         ],
     )

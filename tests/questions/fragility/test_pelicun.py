@@ -7,7 +7,7 @@ from scipy.stats import norm
 import rocking_cli as rk
 from rocking_cli.errors import InputError
 from rocking_cli.io.tables import write_table
-from rocking_cli.questions.fragility.pelicun import components, demand, table
+from rocking_cli.questions.fragility.exports import components, demand, table
 from tests.conftest import EXAMPLES, rows_of
 from tests.questions.fragility.test_nrml import curve, replace_name, some, store  # noqa: F401, a fixture
 from tests.stores import command

@@ -12,7 +12,7 @@ import pytest
 import rocking_cli as rk
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, SolverError
-from rocking_cli.questions.fragility import work_units
+from rocking_cli.questions.fragility import workers
 from rocking_cli.questions.fragility.campaign import prepare
 from rocking_cli.questions.fragility.store import COLUMNS, FAILED, OFF_EDGE, UNKNOWN, Store
 from rocking_cli.questions.fragility.study import load_study
@@ -152,7 +152,7 @@ def units_of_blocks(tmp_path, text):
     prepared = prepare(load_study(path), store := Store.writing(tmp_path / "study.runs"))
     plan, study, motions = prepared.plan, prepared.study, prepared.motions
     numbers = (plan.numbers(*store.ends(k)) for k in store.chunks)
-    return [work_units.unit_of(each, plan, study, store.fact("hash"), motions, "blocks") for each in numbers]
+    return [workers.unit_of(each, plan, study, store.fact("hash"), motions, "blocks") for each in numbers]
 
 
 def test_runs_of_blocks_that_do_not_stand_fail(tmp_path, monkeypatch):
@@ -161,8 +161,8 @@ def test_runs_of_blocks_that_do_not_stand_fail(tmp_path, monkeypatch):
             raise SolverError("it does not stand")
 
     (unit,) = units_of_blocks(tmp_path, STUDY.replace("engine: auto\n", ""))
-    monkeypatch.setattr(work_units, "engine_of", lambda *_: Falls())
-    rows = work_units.carry_out(unit)
+    monkeypatch.setattr(workers, "engine_of", lambda *_: Falls())
+    rows = workers.carry_out(unit)
     assert (rows.outcome.tolist(), rows.by_blocks.tolist(), rows.failed) == ([FAILED] * 2, [True] * 2, 2)
 
 
@@ -184,8 +184,8 @@ def test_structures_are_simulated_with_free_blocks_one_by_one(tmp_path, monkeypa
             seen.append((len(models), len(runs)))
             raise SolverError("enough")
 
-    monkeypatch.setattr(work_units, "engine_of", lambda *_: Counts())
-    assert np.concatenate([work_units.carry_out(each).run for each in units]).tolist() == [0, 1, 2]
+    monkeypatch.setattr(workers, "engine_of", lambda *_: Counts())
+    assert np.concatenate([workers.carry_out(each).run for each in units]).tolist() == [0, 1, 2]
     assert seen == [(1, 1)] * 3
 
 

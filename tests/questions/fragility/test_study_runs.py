@@ -22,14 +22,13 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.processing.intensity import Reference, parse_measure
 from rocking_cli.processing.reading import Reading
-from rocking_cli.questions.fragility import assess, campaign, curves, sources, store, tally, work_units, workers
+from rocking_cli.questions.fragility import assess, campaign, curves, store, study, tally, workers
 from rocking_cli.questions.fragility.campaign import differences, left, prepare, run
 from rocking_cli.questions.fragility.definition import RecordEntry
 from rocking_cli.questions.fragility.observed import few_records
 from rocking_cli.questions.fragility.plan import weaker
-from rocking_cli.questions.fragility.sources import Source
 from rocking_cli.questions.fragility.store import COLUMNS, Store
-from rocking_cli.questions.fragility.study import load_study
+from rocking_cli.questions.fragility.study import Source, load_study
 from rocking_cli.studies.fragility.quantities import USUAL_MEASURES
 from tests.cli.test_cli import run as command
 from tests.cli.test_cli import run_json
@@ -112,11 +111,11 @@ class TestSameResults:
         assert all(getattr(one, name).tobytes() == getattr(other, name).tobytes() for name in COLUMNS)
 
     def test_whatever_memory_there_is_for_records_and_models(self, whole, tmp_path, monkeypatch):
-        monkeypatch.setattr(sources, "MAX_SAMPLES_IN_MEMORY", 1)
-        monkeypatch.setattr(work_units, "MAX_MODELS", 1)
-        monkeypatch.setattr(work_units, "_MODELS", {})
+        monkeypatch.setattr(study, "MAX_SAMPLES_IN_MEMORY", 1)
+        monkeypatch.setattr(workers, "MAX_MODELS", 1)
+        monkeypatch.setattr(workers, "_MODELS", {})
         carry_out(whole[0], tmp_path / "other.runs", jobs=2)
-        assert contents(tmp_path / "other.runs") == contents(whole[2]) and len(work_units._MODELS) == 1
+        assert contents(tmp_path / "other.runs") == contents(whole[2]) and len(workers._MODELS) == 1
 
     def test_in_parts_into_one_folder(self, whole, tmp_path):
         place, told = tmp_path / "other.runs", []
@@ -136,7 +135,7 @@ class TestSameResults:
             if len(done) == 3:
                 raise OSError("the machine is on fire")
             done.append(unit)
-            return work_units.carry_out(unit)
+            return workers.carry_out(unit)
 
         place = tmp_path / "other.runs"
         monkeypatch.setattr(campaign, "carry_out", breaks)
@@ -145,7 +144,7 @@ class TestSameResults:
         before = finished(place)
         assert 0 < before < 150
         ran = []
-        monkeypatch.setattr(campaign, "carry_out", lambda unit: ran.append(unit) or work_units.carry_out(unit))
+        monkeypatch.setattr(campaign, "carry_out", lambda unit: ran.append(unit) or workers.carry_out(unit))
         carry_out(whole[0], place, jobs=2)
         assert sum(len(unit.id) for unit in ran) == 150 - before  # nothing twice
         assert finished(place) == 150
@@ -586,7 +585,7 @@ def test_one_is_the_least_pga_over_g_lambda_that_uplifts():
 
 
 def test_a_file_that_changes_before_it_is_read_again_stops_the_study(tmp_path, monkeypatch):
-    monkeypatch.setattr(sources, "MAX_SAMPLES_IN_MEMORY", 1)
+    monkeypatch.setattr(study, "MAX_SAMPLES_IN_MEMORY", 1)
     (tmp_path / "accel.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
     path = write(tmp_path, STUDY.replace(f"{EXAMPLES}/*accel.csv", "accel.csv"))
     prepared = prepare(load_study(path), Store.writing(tmp_path / "study.runs"))
@@ -721,5 +720,5 @@ def test_the_checksum_of_a_pulse_is_of_all_its_digits_and_of_how_it_is_sampled(m
 
     one = checksum("sine:0.3g:1s")
     assert one == checksum("sine:0.3g:1.0s") != checksum("sine:0.30000001g:1s")
-    monkeypatch.setattr("rocking_cli.questions.fragility.sources.SAMPLING", "otherwise")
+    monkeypatch.setattr("rocking_cli.questions.fragility.study.SAMPLING", "otherwise")
     assert checksum("sine:0.3g:1s") != one

@@ -9,7 +9,7 @@ from click.testing import CliRunner
 
 from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError, SolverError
-from rocking_cli.questions.fragility import work_units
+from rocking_cli.questions.fragility import workers
 from rocking_cli.questions.fragility.campaign import prepare
 from rocking_cli.questions.fragility.store import COLUMNS, Store
 from rocking_cli.questions.fragility.study import load_study
@@ -149,12 +149,12 @@ def test_all_else_is_as_without_it(whole, tmp_path):
 
 def test_a_unit_can_be_sent_elsewhere(whole, tmp_path):
     prepared = prepare(load_study(whole[0]), store := Store.writing(tmp_path / "study.runs"))
-    assert store.size <= work_units.MOST_CHECKED_RUNS
+    assert store.size <= workers.MOST_CHECKED_RUNS
     found = []
     for k in store.chunks:
         numbers = prepared.plan.numbers(*store.ends(k))
-        unit = work_units.unit_of(numbers, prepared.plan, prepared.study, store.fact("hash"), prepared.motions, "exact")
-        found.append(work_units.carry_out(pickle.loads(pickle.dumps(unit))).slide_time)
+        unit = workers.unit_of(numbers, prepared.plan, prepared.study, store.fact("hash"), prepared.motions, "exact")
+        found.append(workers.carry_out(pickle.loads(pickle.dumps(unit))).slide_time)
     assert np.array_equal(np.concatenate(found), every_run(whole[2]).slide_time, equal_nan=True)
 
 
@@ -162,7 +162,7 @@ def test_a_run_that_cannot_be_followed_to_its_rest_has_failed(whole, tmp_path, m
     def fails(*args, **options):
         raise SolverError("too small steps")
 
-    monkeypatch.setattr(work_units, "follow", fails)
+    monkeypatch.setattr(workers, "follow", fails)
     carry_out(whole[0], tmp_path / "other.runs", jobs=1)
     failed, rows = every_run(tmp_path / "other.runs"), every_run(whole[2])
     assert np.array_equal(failed.outcome == 2, np.isfinite(rows.uplift_time))

@@ -12,12 +12,11 @@ import yaml
 from rocking_cli.dynamics.history import follow
 from rocking_cli.errors import InputError
 from rocking_cli.questions.fragility import assess, quantiles, tally
-from rocking_cli.questions.fragility import nrml as openquake
+from rocking_cli.questions.fragility import exports as openquake
 from rocking_cli.questions.fragility.assess import Fragility
 from rocking_cli.questions.fragility.curves import fit_curve
 from rocking_cli.questions.fragility.observed import Observations
-from rocking_cli.questions.fragility.picture import draw_curves, draw_surface, edges
-from rocking_cli.questions.fragility.pictures import draw_ida, draw_quantiles
+from rocking_cli.questions.fragility.picture import draw_curves, draw_ida, draw_quantiles, draw_surface, edges
 from rocking_cli.questions.fragility.quantiles import all_quantiles
 from rocking_cli.questions.fragility.ranking import judge, rank
 from rocking_cli.questions.fragility.store import COLUMNS, UNKNOWN, RunRows, Store

@@ -19,7 +19,7 @@ import rocking_cli as rk
 from rocking_cli.ask.read import read_record
 from rocking_cli.core.structure_file import load_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.questions.survey.page import symbols
+from rocking_cli.questions.survey.pages import symbols
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.neighbours import deviations
 from tests.browser import launch

@@ -19,11 +19,10 @@ import rocking_cli as rk
 from rocking_cli.errors import InputError, Refused
 from rocking_cli.io import files
 from rocking_cli.plotting import style
-from rocking_cli.questions.survey import sheets as survey_sheets
-from rocking_cli.questions.survey.coordinates import coordinates
-from rocking_cli.questions.survey.map_picture import METRES_PER_DEGREE, draw_map, scale_length
-from rocking_cli.questions.survey.picture import draw_survey
-from rocking_cli.questions.survey.sheets import LIST_FILE, MAX_STEM_LENGTH, file_names
+from rocking_cli.questions.survey import pages as survey_sheets
+from rocking_cli.questions.survey.pages import LIST_FILE, MAX_STEM_LENGTH, file_names
+from rocking_cli.questions.survey.picture import METRES_PER_DEGREE, draw_map, draw_survey, scale_length
+from rocking_cli.questions.survey.structure_table import coordinates
 from rocking_cli.questions.survey.view import columns as written
 from rocking_cli.verification import Code
 from rocking_cli.verification.code import codes

@@ -1,8 +1,12 @@
-"""Fragility curves as NRML 0.5, the XML that OpenQuake reads.
+"""Fragility curves for other programs: NRML 0.5, the XML that OpenQuake reads, and a table for pelicun.
 
 OpenQuake's fragility model holds lognormal curves, by the mean and the standard deviation of the intensity itself. Each
 function, of one taxonomy over one measure, gives every limit state of the file, in order of severity: the share in a
 damage state is the difference of two curves.
+
+A row of pelicun's damage models is a component, one structure over one measure. pelicun takes the highest limit state
+of a row whose capacity the demand exceeds. The capacities of a row are perfectly correlated, so the share in a damage
+state is the difference of two curves there, too; where curves cross, the more severe one is used.
 """
 
 from __future__ import annotations
@@ -13,6 +17,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from heapq import merge
 from itertools import chain, count, pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,9 +26,13 @@ from rocking_cli.names import UNKNOWN, percent
 from rocking_cli.questions.fragility.assess import Fragility
 from rocking_cli.questions.fragility.curves import MAX_DISPERSION
 from rocking_cli.questions.fragility.definition import OVERTURNING, SLIDING, UPLIFT, Limit
-from rocking_cli.questions.fragility.hazard_curve import intensity_type
+from rocking_cli.questions.fragility.hazard_curve import SPECTRAL_MEASURE, intensity_type
 from rocking_cli.studies.fragility.quantities import metres
 from rocking_cli.text import one_line
+
+if TYPE_CHECKING:
+    from rocking_cli.io.tables import Columns
+
 
 MAX_NAME_LENGTH = 60  # characters
 NEGLIGIBLE_DEVIATIONS = 3.719  # standard deviations below the median: a probability of 1e-4
@@ -32,7 +41,7 @@ CROSSING_POINTS = 400  # intensities at which curves are checked for crossing
 ONE_SET = "all functions of a file must have the same limit states"
 DOCUMENT = """\
 <?xml version='1.0' encoding='utf-8'?>
-<nrml xmlns="http://openquake.org/xmlns/nrml/0.5">
+<nrml xmlns="http://org/xmlns/nrml/0.5">
   <fragilityModel id="{{ name }}" assetCategory="buildings" lossCategory="structural">
     <description>{{ description }}</description>
     <limitStates>{{ model.limits | join(" ") }}</limitStates>
@@ -246,3 +255,76 @@ def nrml(model: OpenQuakeModel, name: str, description: str) -> bytes:
     plain = one_line(description).encode("ascii", "replace").decode()
     document: str = template.render(model=model, name=identifier(name), description=plain)
     return document.encode()
+
+
+DEMANDS = {"PGA": ("Peak Ground Acceleration", "g"), "PGV": ("Peak Ground Velocity", "mps")}
+MAX_LIMITS = 9  # pelicun sorts limit states as text, LS10 before LS2
+DIRECTIONAL = 1  # a demand that is not directional is multiplied, by 1.2 unless told otherwise
+
+
+def demand(measure: str) -> tuple[str, str] | None:
+    """Return the demand type and the unit of a measure in pelicun; None if it cannot be written.
+
+    The PGD of pelicun is a permanent deformation of the ground, and its spectral displacement has no damping.
+    """
+    spectral = SPECTRAL_MEASURE.fullmatch(measure)
+    return (f"Spectral Acceleration|{float(spectral[1])}", "g") if spectral else DEMANDS.get(measure)
+
+
+def components(curves: Sequence[Fragility]) -> tuple[list[Function], list[str]]:
+    """Return the components of a study with their curves in order of severity, and why other curves are left out.
+
+    Parameters
+    ----------
+    curves : sequence of Fragility
+        All curves of a study.
+
+    Raises
+    ------
+    InputError
+        If no curve can be written; the message has the reasons.
+    """
+    held: dict[tuple[str, str], dict[Limit, Fragility]] = {}
+    left_out: dict[str, None] = {}  # in order, each once
+    for each in curves:
+        if reason := _why_not(each):
+            left_out[reason] = None
+        else:
+            held.setdefault((each.structure, each.measure), {})[each.limit] = each
+    several = len({measure for _, measure in held}) > 1
+    rows: list[Function] = []
+    for (structure, measure), by_limit in held.items():
+        kind, factor = intensity_type(measure) or (measure, 1.0)
+        taken = [row.name.replace(".", "-") for row in rows]  # pelicun splits names at -
+        name = f"{structure}_{kind}" if several else structure
+        name = identifier(name.replace("-", "_"), taken).replace("-", ".")
+        if len(by_limit) > MAX_LIMITS:
+            left_out[f"{structure} over {measure}: pelicun sorts at most {MAX_LIMITS} limit states correctly"] = None
+        else:
+            ordered = [by_limit[limit] for limit in by_severity(by_limit, by_limit)]
+            rows.append(Function(name, ordered, kind, factor))
+    if not rows:
+        raise InputError("pelicun accepts none of the curves: " + "; ".join(left_out or ["the study has no curves"]))
+    return rows, list(left_out)
+
+
+def _why_not(curve: Fragility) -> str:
+    """Return the reason why pelicun cannot hold a curve; empty if it can."""
+    if demand(curve.measure) is None:
+        return f"all curves over {curve.measure}: curves for pelicun are over PGA, PGV or Sa of 5 % damping"
+    return why_not(curve, "the table for pelicun")
+
+
+def table(rows: Sequence[Function]) -> Columns:
+    """Return the table of components by its headings."""
+    most = max(len(row.curves) for row in rows)
+    heads = ["ID", "Incomplete", "Demand-Type", "Demand-Unit", "Demand-Offset", "Demand-Directional"]
+    of_state = "Family", "Theta_0", "Theta_1", "DamageStateWeights"
+    heads += [f"LS{k}-{head}" for k in range(1, most + 1) for head in of_state]
+    cells = []
+    for row in rows:
+        line = [row.name, 0, *(demand(row.curves[0].measure) or ()), 0, DIRECTIONAL]
+        for curve in row.curves:
+            line += ["lognormal", *median_and_spread(curve), ""]
+        cells.append(line + [""] * (len(heads) - len(line)))
+    return dict(zip(heads, zip(*cells, strict=True), strict=True))
