@@ -79,7 +79,7 @@ def kernel_alone(path: Path) -> float:
         prepared = prepare(load_study(path), store := Store.writing(Path(folder) / "study.runs"))
         study, plan, motions = prepared.study, prepared.plan, prepared.motions
         numbers = (plan.numbers(*store.ends(k)) for k in store.chunks)
-        made = [unit_of(each, plan, study, store.fact("hash"), motions, "exact") for each in numbers]
+        made = [unit_of(each, plan, study, store.facts["hash"], motions, "exact") for each in numbers]
     seconds = []
     for _ in range(3):
         start = time.perf_counter()

@@ -155,11 +155,7 @@ def counted(store: Store, plan: Plan, definition: Definition, progress: Counted)
     progress : callable
         Called with the number of runs read since the last call.
     """
-    measures = [*definition.fitted_measures, *(one for pair in definition.bivariate for one in pair)]
-    limits, ladders = definition.limit_states, definition.method == "ida"
-    return {
-        name: count(store, plan, name, limits, measures, ladders=ladders, counted=progress) for name in plan.structures
-    }
+    return {name: count(store, plan, name, definition, progress) for name in plan.structures}
 
 
 def fitted(

@@ -30,7 +30,7 @@ from rocking_cli.questions.fragility.workers import Workers, WorkUnit, carry_out
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import EngineName
 from rocking_cli.studies.engines.scene import engine_version
-from rocking_cli.studies.fragility.quantities import PGA, PGV, ROTATIONS_FACT, displacement_limits
+from rocking_cli.studies.fragility.quantities import ROTATIONS_FACT, displacement_limits
 from rocking_cli.text import in_short
 
 Progress = Callable[[int, int], None]
@@ -104,12 +104,12 @@ def prepare(
     facts: dict[str, Any] = {"description": description, "versions": versions(study), "hash": digest(description)}
     if known is None:
         _refuse_useless(plan)
-        facts |= {"libraries": libraries(), "runs_per_chunk": runs_per_chunk(plan, definition)}
+        libraries = {"python": platform.python_version(), **{name: version(name) for name in ("numpy", "scipy")}}
+        facts |= {"libraries": libraries, "runs_per_chunk": runs_per_chunk(plan, definition)}
     else:
         _refuse_changes(store, facts, known, plan)
     every = [str(each) for each in all_measures()] if rank_measures else []
-    told = examined if _measures(study, rank_measures=rank_measures) else lambda count: None
-    plan = complete(plan, study, motions, [*definition.asked_measures, *every], told, origins=rank_measures)
+    plan = complete(plan, study, motions, [*definition.asked_measures, *every], examined, origins=rank_measures)
     facts |= {
         "name": study.name,
         "definition": definition.model_dump(mode="json", exclude_unset=True, by_alias=True),
@@ -124,17 +124,6 @@ def prepare(
         return prepare(study, store, rank_measures=rank_measures)
     store.keep(plan, facts)
     return Prepared(study, plan, motions, store, mended)
-
-
-def count_steps(study: Study, *, rank_measures: bool = False) -> int:
-    """Return the number of steps of which `prepare` reports the progress: structures, records and measured records."""
-    return len(study.samples) + len(study.sources) * (1 + _measures(study, rank_measures=rank_measures))
-
-
-def _measures(study: Study, *, rank_measures: bool) -> bool:
-    """Return whether intensity measures other than PGA and PGV of the records are needed."""
-    bases = (parse_measure(name).base for name in study.definition.asked_measures)
-    return rank_measures or any(base is None or str(base) not in (PGA, PGV) for base in bases)
 
 
 def examine_study(
@@ -244,7 +233,7 @@ def run(prepared: Prepared, workers: Workers, engine: EngineName, chunks: Iterab
         for k in chunks:
             rows, numbers = _lacking(prepared, k, engine)
             if numbers.size:
-                yield unit_of(numbers, plan, study, store.fact("hash"), prepared.motions, engine)
+                yield unit_of(numbers, plan, study, store.facts["hash"], prepared.motions, engine)
             else:  # another process has been faster
                 progress(len(rows), rows.failed)
 
@@ -295,11 +284,6 @@ def versions(study: Study) -> dict[str, str]:
     return {"rocking-cli": __version__, **plugins, **blocks}
 
 
-def libraries() -> dict[str, str]:
-    """Return the versions of Python and libraries that may affect the last bits of results, to compare two stores."""
-    return {"python": platform.python_version(), **{name: version(name) for name in ("numpy", "scipy")}}
-
-
 def _trial(study: Study, sample: Sample) -> Trial:
     mechanism, asked = sample.mechanism, study.definition
     start = (mechanism.name or mechanism.mechanism, sample.number, sample.drawn)
@@ -343,8 +327,8 @@ def _refuse_useless(plan: Plan) -> None:
 
 def _refuse_changes(store: Store, facts: dict[str, Any], known: Plan, now: Plan) -> None:
     """Raise `InputError` with every difference between the study in the store and the present one."""
-    changes = [*differences(store.fact("description"), facts["description"])]
-    changes += [f"version of {package}" for package in differences(store.fact("versions"), facts["versions"])]
+    changes = [*differences(store.facts["description"], facts["description"])]
+    changes += [f"version of {package}" for package in differences(store.facts["versions"], facts["versions"])]
     checksums = {each.name: each.checksum for each in known.records if each.reason is None}
     changed = [each.name for each in now.records if checksums.get(each.name, each.checksum) != each.checksum]
     changes += [f"the record {name} has changed, or cannot be read any more" for name in changed]

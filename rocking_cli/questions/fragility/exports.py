@@ -41,7 +41,7 @@ CROSSING_POINTS = 400  # intensities at which curves are checked for crossing
 ONE_SET = "all functions of a file must have the same limit states"
 DOCUMENT = """\
 <?xml version='1.0' encoding='utf-8'?>
-<nrml xmlns="http://org/xmlns/nrml/0.5">
+<nrml xmlns="http://openquake.org/xmlns/nrml/0.5">
   <fragilityModel id="{{ name }}" assetCategory="buildings" lossCategory="structural">
     <description>{{ description }}</description>
     <limitStates>{{ model.limits | join(" ") }}</limitStates>

@@ -6,6 +6,7 @@ overturning, ln(peak phi/phi_cr) = a + b ln(measure) is fitted by least squares.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import nan, sqrt
@@ -20,7 +21,7 @@ from rocking_cli.questions.fragility.assess import Fragility, counted, curves
 from rocking_cli.questions.fragility.definition import Definition, Limit
 from rocking_cli.questions.fragility.plan import ORIGIN, V_IMP, Plan
 from rocking_cli.questions.fragility.store import STANDS, Store
-from rocking_cli.questions.fragility.tally import Tally, samples_of
+from rocking_cli.questions.fragility.tally import samples_of
 from rocking_cli.questions.fragility.view import limit_name
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.fragility.quantities import PGA, PGV
@@ -140,17 +141,16 @@ def line(x: Reals, y: Reals) -> FittedLine | None:
 def candidates(plan: Plan, definition: Definition) -> list[str]:
     """Return the measures that can be ranked: those of the study and all installed ones whose values are known."""
     names = [*definition.asked_measures, *(str(each) for each in all_measures())]
-    return [each for each in dict.fromkeys(names) if _known(plan, each)]
 
+    def known(name: str) -> bool:
+        measure, measured = parse_measure(name), plan.measured
+        if isinstance(measure, RunMeasure):
+            return name in measured.of_run
+        if V_IMP in measure.needs and V_IMP not in measured.of_sample:
+            return False
+        return str(measure.base) in (PGA, PGV, *measured.of_record)
 
-def _known(plan: Plan, name: str) -> bool:
-    measure = parse_measure(name)
-    if isinstance(measure, RunMeasure):
-        return name in plan.measured.of_run
-    base = str(measure.base)
-    if V_IMP in measure.needs and V_IMP not in plan.measured.of_sample:
-        return False
-    return base in (PGA, PGV) or base in plan.measured.of_record
+    return list(filter(known, dict.fromkeys(names)))
 
 
 def covariates(plan: Plan) -> dict[str, Reals]:
@@ -165,11 +165,7 @@ def covariates(plan: Plan) -> dict[str, Reals]:
 
 
 def rank(
-    store: Store,
-    plan: Plan,
-    definition: Definition,
-    progress: Callable[[int], None] = lambda count: None,
-    against: Mapping[str, Reals] | None = None,
+    store: Store, plan: Plan, definition: Definition, progress: Callable[[int], None] = lambda count: None
 ) -> list[Ranking]:
     """Rank the measures of each structure of a store that has runs.
 
@@ -183,57 +179,45 @@ def rank(
         The definition of its study.
     progress : callable, optional
         Called with the number of runs read since the last call.
-    against : mapping of str to ndarray, shape (records,), optional
-        Quantities against which residuals are tested, a value for each record; those of `covariates` unless given.
     """
-    names = candidates(plan, definition)
-    against = covariates(plan) if against is None else against
+    names, against = candidates(plan, definition), covariates(plan)
     widened = definition.model_copy(update={"measures": names, "bivariate": [], "hazard": None})
     rankings = []
     for structure, tally in counted(store, plan, widened, progress).items():
-        if tally.runs.any():
-            fitted = list(curves(tally, structure, widened, None))
-            rankings.append(_rank(store, plan, tally, structure, names, fitted, against))
+        if not tally.runs.any():
+            continue
+        runs, y = rocking(store, plan, structure)
+        sample, record, _, level, _ = plan.places(runs)
+        factors, one = plan.factors(sample, record, level), plan.sets.one[record]  # one: the same record in any set
+        dispersions: defaultdict[str, dict[Limit, float]] = defaultdict(dict)
+        for curve in curves(tally, structure, widened, None):
+            dispersions[curve.measure][curve.limit] = _dispersion(curve)
+        ranked: list[Ranked] = []
+        alike: dict[str, str] = {}
+        left_out: dict[str, str] = {}
+        logs: dict[str, Reals] = {}
+        for name in names:
+            x = plan.intensities(name, sample, record, level, factors)
+            there = x > 0
+            if not there.any():
+                left_out[name] = "not known of it, or nowhere above zero"
+                continue
+            log = np.log(np.where(there, x, 1.0))
+            twins = [other for other, its in logs.items() if there.all() and np.ptp(log - its) <= RATIO_TOLERANCE]
+            if twins:
+                alike[name] = twins[0]
+                continue
+            served = serves(name, log[there], y[there], one[there], against)
+            if served is None:
+                left_out[name] = "the same in all runs that rock and stand, or these are fewer than three"
+                continue
+            if there.all():
+                logs[name] = log
+            ranked.append(Ranked(name, *served, dispersions[name]))
+        ranked.sort(key=lambda each: each.efficiency)
+        unknown = tally.unknown_if_checked
+        rankings.append(Ranking(structure, tuple(ranked), tuple(against), alike, left_out, unknown))
     return rankings
-
-
-def _rank(
-    store: Store,
-    plan: Plan,
-    tally: Tally,
-    structure: str,
-    names: Sequence[str],
-    fitted: Sequence[Fragility],
-    against: Mapping[str, Reals],
-) -> Ranking:
-    runs, y = rocking(store, plan, structure)
-    sample, record, _, level, _ = plan.places(runs)
-    factors, one = plan.factors(sample, record, level), plan.sets.one[record]  # one: the same record in any set
-    ranked: list[Ranked] = []
-    alike: dict[str, str] = {}
-    left_out: dict[str, str] = {}
-    logs: dict[str, Reals] = {}
-    for name in names:
-        x = plan.intensities(name, sample, record, level, factors)
-        there = x > 0
-        if not there.any():
-            left_out[name] = "not known of it, or nowhere above zero"
-            continue
-        log = np.log(np.where(there, x, 1.0))
-        twins = [other for other, its in logs.items() if there.all() and np.ptp(log - its) <= RATIO_TOLERANCE]
-        if twins:
-            alike[name] = twins[0]
-            continue
-        served = serves(name, log[there], y[there], one[there], against)
-        if served is None:
-            left_out[name] = "the same in all runs that rock and stand, or these are fewer than three"
-            continue
-        if there.all():
-            logs[name] = log
-        dispersions = {each.limit: _dispersion(each) for each in fitted if each.measure == name}
-        ranked.append(Ranked(name, *served, dispersions))
-    ranked.sort(key=lambda each: each.efficiency)
-    return Ranking(structure, tuple(ranked), tuple(against), alike, left_out, tally.unknown_if_checked)
 
 
 def serves(

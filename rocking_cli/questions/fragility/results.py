@@ -253,7 +253,7 @@ def results(asked: ResultsAsked, watch: Watcher) -> StudyAnswer:
         folder(str(asked.plot))
     place = Path(asked.store)
     kept = Store.reading(place)
-    plan, definition, points = kept.plan, _definition(kept), kept.fact("hazard")
+    plan, definition, points = kept.plan, _definition(kept), kept.facts["hazard"]
     with watch.progress(plan.size, "runs counted") as advance:
         tallies = assess.counted(kept, plan, definition, advance)
     finished, failed = (sum(getattr(each, name) for each in tallies.values()) for name in ("finished", "failed"))
@@ -315,7 +315,7 @@ def _write(answer: StudyAnswer, asked: ResultsAsked, watch: Watcher) -> None:
                 watch.warn(f"{each.structure}, {name} against {each.measure}: no curve: {each.curve.why}")
         write_rows(asked.curves, curve_blocks(answer.result), watch)
     if asked.plot is not None:
-        from rocking_cli.questions.fragility.pictures import draw_all
+        from rocking_cli.questions.fragility.picture import draw_all
 
         draw_all(asked.plot, answer, watch)
     for place, write in ((asked.nrml, write_nrml), (asked.pelicun, write_pelicun)):
@@ -332,7 +332,7 @@ def write_nrml(answer: StudyAnswer, file: Path, watch: Watcher) -> None:
     for each in [*(f"not in {file}: {each}" for each in model.left_out), *model.doubts]:
         watch.warn(each)
     store = Store.reading(answer.store)
-    version, study, name = store.fact("versions")["rocking-cli"], store.fact("hash"), store.fact("name")
+    version, study, name = store.facts["versions"]["rocking-cli"], store.facts["hash"], store.facts["name"]
     document = nrml(model, name, f"{answer.sentences[0]}; rocking-cli {version}, study {study[:12]}")
     write_whole(file, lambda stream: stream.write(document))
     watch.note(f"wrote {file}")
@@ -354,7 +354,7 @@ def write_pelicun(answer: StudyAnswer, place: Path, watch: Watcher) -> None:
 def _definition(store: Store) -> Definition:
     """Return the definition of the study of a store."""
     try:
-        return Definition.model_validate(store.fact("definition"))
+        return Definition.model_validate(store.facts["definition"])
     except ValidationError:
         hint = "run `rocking fragility STUDY.yaml`: it names the problem and keeps the runs"
         what = "the definition of its study is not valid in this version"
@@ -436,7 +436,7 @@ def run_blocks(store: Store, plan: Plan, measures: Sequence[str] = ()) -> Iterat
     mapping of str to sequence
         The columns by heading, with units; the first block is yielded even if it is empty.
     """
-    asked, study = tuple(dict.fromkeys([*USUAL_MEASURES, *measures])), store.fact("description")
+    asked, study = tuple(dict.fromkeys([*USUAL_MEASURES, *measures])), store.facts["description"]
     rows = None
     for rows in store.rows(0, plan.size):
         yield _of_runs(plan, rows, asked, study)

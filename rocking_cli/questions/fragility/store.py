@@ -234,10 +234,6 @@ class Store:
         self._load()
         return not self.empty
 
-    def fact(self, key: str) -> Any:
-        """Return the plain data stored under a name."""
-        return self.facts[key]
-
     @cached_property
     def plan(self) -> Plan:
         """The plan of the runs."""
@@ -252,12 +248,12 @@ class Store:
             of_run = {}
 
         def of(kind: str) -> dict[str, Reals]:
-            return {name: _reals(values) for name, values in facts["measured"][kind].items()}
+            return {name: np.array(values, np.float64) for name, values in facts["measured"][kind].items()}
 
         return Plan(
             [Trial(**each) for each in facts["samples"]],
             [Record(**each) for each in facts["records"]],
-            _reals(facts["restitutions"]).tolist(),
+            np.array(facts["restitutions"], np.float64).tolist(),  # null of JSON is NaN
             facts["description"]["levels"]["measure"],
             facts["levels"],
             facts["polarities"],
@@ -273,7 +269,7 @@ class Store:
         plan : Plan
             The plan of the runs.
         facts : mapping
-            Plain data by name, which `fact` returns; those of the store that are not given stay.
+            Plain data by name; those of the store that are not given stay.
         """
         measured = plan.measured
         new = {
@@ -513,7 +509,7 @@ class Store:
         now._load()
         if now.empty:
             what = "this store has been moved or deleted"
-        elif (now.fact("hash"), now.size) != (self.fact("hash"), self.size) or now._key(used) != self._key(used):
+        elif (now.facts["hash"], now.size) != (self.facts["hash"], self.size) or now._key(used) != self._key(used):
             what = "another process has started this study from scratch, with other fields, records or versions"
         else:
             self._state = now._state
@@ -544,8 +540,3 @@ def _state(path: Path) -> tuple[int, int] | None:
     except OSError:
         return None
     return status.st_ino, status.st_mtime_ns
-
-
-def _reals(values: Any) -> Reals:
-    """Return numbers as an ndarray, in which null of JSON is NaN."""
-    return np.array(values, dtype=np.float64)

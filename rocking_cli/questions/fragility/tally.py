@@ -18,7 +18,7 @@ from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.core import Direction, Mechanism, both_statics, equivalent_block
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.processing.intensity import parse_measure
-from rocking_cli.questions.fragility.definition import OVERTURNING, RESTITUTION, SLIDING, UPLIFT, Limit
+from rocking_cli.questions.fragility.definition import OVERTURNING, RESTITUTION, SLIDING, UPLIFT, Definition, Limit
 from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE
 from rocking_cli.questions.fragility.plan import Plan, Trial
 from rocking_cli.questions.fragility.store import FAILED, STANDS, RunRows, Store
@@ -268,14 +268,7 @@ def samples_of(plan: Plan, structure: str) -> range:
 
 
 def count(
-    store: Store,
-    plan: Plan,
-    structure: str,
-    limits: Sequence[Limit],
-    measures: Sequence[str],
-    *,
-    ladders: bool = False,
-    counted: Counted = lambda numbers: None,
+    store: Store, plan: Plan, structure: str, definition: Definition, counted: Counted = lambda numbers: None
 ) -> Tally:
     """Count the finished runs of a structure.
 
@@ -287,17 +280,15 @@ def count(
         The plan of its runs.
     structure : str
         Name of the structure.
-    limits : sequence of limit states
-        The limit states to count.
-    measures : sequence of str
-        Measures in which their intensities will be requested; `Tally.over` gives no others.
-    ladders : bool
-        Whether to find the level at which each ladder first exceeds.
+    definition : Definition
+        The definition of its study: the limit states to count, and the measures in which intensities will be requested,
+        as `Tally.over` gives no others; by incremental dynamic analysis, also the level at which each ladder exceeds.
     counted : callable, optional
         Called with the number of runs read since the last call.
     """
-    samples = samples_of(plan, structure)
-    reach = {limit: table[samples.start : samples.stop] for limit, table in kept(store.fact, limits).items()}
+    measures = [*definition.fitted_measures, *(one for pair in definition.bivariate for one in pair)]
+    limits, ladders, samples = definition.limit_states, definition.method == "ida", samples_of(plan, structure)
+    reach = {limit: table[samples.start : samples.stop] for limit, table in kept(store.facts, limits).items()}
     trials = plan.trials[samples.start : samples.stop]
     phi_cr = np.array([(each.phi_cr_positive, each.phi_cr_negative) for each in trials])
     _, records, etas, levels, polarities = plan.shape
@@ -336,7 +327,7 @@ def count(
             lower.add(limit, surely, cell, ladder, level)
     # Free blocks may move in other ways than the mechanism, from other accelerations; a body that slides never uplifts.
     uplifts = store.facts.get(UPLIFT_FACT, {}).get(structure) if not (many["by_blocks"] or slides) else None
-    checked |= store.fact("description")["model"] != "nonlinear"  # equivalent blocks have no joints
+    checked |= store.facts["description"]["model"] != "nonlinear"  # equivalent blocks have no joints
     known = lower if many["unknown"] else None
     told: dict[str, Any] = {**many, "checked": checked, "slides": slides, "lower": known, "uplift": uplifts}
     return replace(upper, **told)

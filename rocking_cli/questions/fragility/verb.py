@@ -153,7 +153,7 @@ def _bring_up_to_date(
         # The old store is replaced only when workers are available to run the study again.
         hands = stack.enter_context(workers) if asked.restart else None
         store = Store.writing(place, anew=asked.restart, say=watch.note)
-        steps = campaign.count_steps(study, rank_measures=asked.rank_measures)
+        steps = len(study.samples) + 2 * len(study.sources)  # a record is examined, and then measured
         with watch.progress(steps, "records and structures") as advance:
             prepared = campaign.prepare(study, store, advance, rank_measures=asked.rank_measures)
         plan, engines = prepared.plan, campaign.SIMULATED_BY[study.definition.engine]

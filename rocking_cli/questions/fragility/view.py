@@ -103,7 +103,7 @@ def without_block(plan: Plan, engine: EngineName) -> list[str]:
 def out_of_reach(store: Store, plan: Plan, definition: Definition) -> list[str]:
     """Return a sentence on each structure whose top never reaches the displacement of a limit state."""
     outcomes: dict[tuple[str, str], list[bool]] = {}
-    for limit, table in kept(store.fact, definition.limit_states).items():
+    for limit, table in kept(store.facts, definition.limit_states).items():
         for trial, pair in zip(plan.trials, table.tolist(), strict=True):
             if trial.reason is None:
                 outcomes.setdefault((trial.structure, limit), []).append(all(map(isinf, pair)))
@@ -141,7 +141,7 @@ def view(
     """
     finished, failed = (sum(getattr(each, count) for each in tallies.values()) for count in ("finished", "failed"))
     used = {structure: tally for structure, tally in tallies.items() if tally.runs.any()}
-    name = store.fact("name")
+    name = store.facts["name"]
     bad = sum(each.reason is not None for each in plan.records)
     good = len(plan.records) - bad
     records = f"{good} record{'s' * (good != 1)}" + (f" ({bad} more cannot be used)" if bad else "")
@@ -169,10 +169,10 @@ def view(
     data = {
         "study": name,
         "store": str(store.path),
-        "hash": store.fact("hash"),
-        "versions": store.fact("versions"),
-        "libraries": store.fact("libraries"),
-        "seed": store.fact("description")["seed"],
+        "hash": store.facts["hash"],
+        "versions": store.facts["versions"],
+        "libraries": store.facts["libraries"],
+        "seed": store.facts["description"]["seed"],
         "runs": plan.total,
         "finished": finished,
         "failed": failed,

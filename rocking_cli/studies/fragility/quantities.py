@@ -7,7 +7,7 @@ The intensity measures of a study are those of `processing.intensity` by name, a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -56,13 +56,13 @@ def displacement_limits(limits: Sequence[str | float]) -> list[str]:
     return [limit for limit in limits if isinstance(limit, str) and metres(limit) is not None]
 
 
-def kept(fact: Callable[[str], Any], limits: Sequence[str | float]) -> dict[str, Reals]:
+def kept(facts: Mapping[str, Any], limits: Sequence[str | float]) -> dict[str, Reals]:
     """Return the rotations of every sample [rad] that a store keeps for displacements among limit states.
 
     Parameters
     ----------
-    fact : callable
-        The method `Store.fact` of the open store.
+    facts : mapping
+        The facts of the open store.
     limits : sequence of limit states
         The requested limit states; a store keeps rotations only for displacements that its study requests.
 
@@ -72,7 +72,7 @@ def kept(fact: Callable[[str], Any], limits: Sequence[str | float]) -> dict[str,
         Positive and negative rotation of each sample, by limit state; infinite if the top never moves that far.
     """
     requested = displacement_limits(limits)
-    stored = fact(ROTATIONS_FACT) if requested else {}
+    stored = facts[ROTATIONS_FACT] if requested else {}
 
     def table(pairs: Sequence[Sequence[float | None]]) -> Reals:
         return np.array([[np.inf if phi is None else phi for phi in pair] for pair in pairs], dtype=np.float64)

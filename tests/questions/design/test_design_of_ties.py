@@ -1,6 +1,5 @@
 """Designs of ties: bars that give a force, and goals on displacements, drift and tie forces, by hand."""
 
-import json
 from math import atan, cos, pi, sin
 
 import numpy as np
@@ -9,11 +8,10 @@ import pytest
 import rocking_cli as rk
 from rocking_cli.errors import InputError
 from rocking_cli.studies.neighbours import Neighbourhood, neighbours
-from tests.cli.test_cli import run
 from tests.core.test_ties_of_steel import MASS, PLATE, SITE, G, facade
 from tests.following import conditions
 
-FURTHER = {"SLD": {"ag": 0.08, "F0": 2.5, "TC": 0.4, "S": 1.2}, "SLC": {"ag": 0.25, "F0": 2.5, "TC": 0.4, "S": 1.2}}
+FURTHER = {"SLD": {"ag": 0.08, "F0": 2.5, "TC": 0.4, "S": 1.2}}
 CONSTANT = {"stiffness": 0, "prestress": 1e4}
 PULSE = "sine:0.35g:0.6s"
 AROUND = {"neighbours": 20, "slenderness_deviation": 0.0, "points": 2}
@@ -86,11 +84,9 @@ def test_plates_of_the_tie_count():
 @pytest.mark.parametrize(
     ("tie", "vary", "until"),
     [
-        (CONSTANT, "width=0.6:1.2", "lambda >= 0.2"),  # not of a tie
         (CONSTANT, "ties.bar.prestress=1kN:300kN", "lambda <= 0.2"),  # the largest force
         ({"stiffness": 1e6}, "ties.bar.prestress=1kN:300kN", "lambda >= 0.2"),  # not constant
         (CONSTANT, "ties.bar.prestress=1kN:300kN", "lambda >= 9"),  # nowhere
-        (CONSTANT, "ties.bar.prestress=1kN:300kN", "lambda >= 0.01"),  # everywhere
         (CONSTANT, "ties.bar.to.at.1=2m:7.5m", "lambda >= 0.09"),  # the place of the tie
     ],
 )
@@ -99,18 +95,12 @@ def test_no_answer_in_steel_where_no_least_force_is_found(tie, vary, until):
     assert found.steel is None and found.to_dict()["steel"] is None and "needs" not in found.sentences[0]
 
 
-def test_what_is_no_number_is_not_varied():
-    with pytest.raises(InputError, match="is not a numeric field, so it cannot be varied"):
-        rk.design(facade(bars=2, diameter=0.01, steel="S235"), "ties.bar.steel=1:4", "lambda > 0.1")
-
-
-@pytest.mark.every(3)
-@pytest.mark.parametrize("state", ["SLD", "SLV", "SLC"])
+@pytest.mark.parametrize("state", ["SLD", "SLV"])
 def test_zeta_of_each_limit_state_is_that_of_verify(state):
     site = {**SITE, **FURTHER}
-    level = {"SLD": 1.6, "SLV": 2.0, "SLC": 2.0}[state]
+    level = {"SLD": 1.6, "SLV": 2.0}[state]
     found = rk.design(
-        facade(**CONSTANT), "ties.bar.prestress=1kN:200kN", f"zeta_{state} >= {level}", site=site, points=5
+        facade(**CONSTANT), "ties.bar.prestress=1kN:200kN", f"zeta_{state} >= {level}", site=site, points=3
     )
     just = rk.verify(facade(stiffness=0, prestress=float(found.value)), site).directions[rk.Direction.POSITIVE]
     key = "SLD" if state == "SLD" else just.governing[state]
@@ -132,8 +122,6 @@ def test_an_answer_that_relies_on_a_long_tie_says_so():
     found = rk.design(facade(**constant), "ties.bar.prestress=1kN:200kN", "zeta_SLV >= 2", site=SITE, points=5)
     said = of_wide(found.value)
     assert said in " ".join(found.sentences)
-    bare = rk.design(facade(**CONSTANT), "ties.bar.prestress=1kN:200kN", "lambda > 0.2", points=5)
-    assert "this holds only if" not in " ".join(bare.sentences)
 
 
 @pytest.mark.parametrize(("level", "at"), [(0.1, 20.0), (100.0, 50.0)])
@@ -181,16 +169,6 @@ def test_the_drift_of_a_wall_that_is_held_at_its_top_is_that_of_its_hinge():
     assert phi > 1e-3 and found.metric[0] == pytest.approx((0.3 * (1 - cos(phi)) + 1.5 * sin(phi)) / 1.5, rel=1e-9)
 
 
-def test_loads_move_the_control_point():
-    """2000 kg at 1.2 m and 500 kg at the top, of which half moves sideways."""
-    load = {"name": "a", "mass": 500.0, "at": [0.0, 2.4], "horizontal": 0.5}
-    block = rk.Block(**BLOCK, loads=[load])
-    found = rk.design(block, "gravity=9.80665:9.9", "peak_displacement < 1", PULSE, **AROUND)
-    phi = median(block) * rk.equiv(block).positive.phi_cr
-    height = (2000 * 1.2 + 250 * 2.4) / 2250
-    assert found.metric[0] == pytest.approx(0.3 * (1 - cos(phi)) + height * sin(phi), rel=1e-6)
-
-
 def test_the_force_of_a_tie():
     """One of 1 MN/m that is 2 m long, from the ground to the left edge 2 m above the foot."""
     tie = {"name": "t", "from": {"ground": [-2.3, 2.0]}, "to": {"at": [-0.3, 2.0]}, "stiffness": 1e6, "only": "tension"}
@@ -222,21 +200,3 @@ def test_what_a_structure_lacks_is_refused():
         stiff, "ties.bar.stiffness=0.001:1e6", "peak_ratio < 0.9", "sine:0.2g:0.5s", points=2, neighbours=5
     )
     assert np.isfinite(part.metric[0]) and np.isnan(part.metric[1]) and "critical rotation" in part.not_built[0].reason
-
-
-def test_on_the_command_line(tmp_path):
-    (tmp_path / "f.yaml").write_text(
-        "mechanism: block\nwidth: 0.6\nheight: 8\ndensity: 1800\ndepth: 5\none_sided: positive\nrebound: 0.4\nties:\n"
-        "  - {name: bar, from: {ground: [-6, 7.5]}, to: {at: [-0.3, 7.5]}, stiffness: 0, prestress: 1}\n",
-        encoding="utf-8",
-    )
-    asked = (
-        "design",
-        tmp_path / "f.yaml",
-        "--vary",
-        "ties.bar.prestress=1kN:300kN",
-        "--until",
-        f"lambda >= {lambda_of(137e3)}",
-    )
-    assert "two bars of 20 mm (147.7 kN)" in " ".join(run(*asked).stdout.split())
-    assert json.loads(run(*asked, "--json").stdout)["steel"]["bars"][1]["number"] == 2

@@ -479,7 +479,7 @@ class TestGoodness:
         # On average T/tr(V) is one; taken as independent the runs of a record give too good an agreement.
         random = np.random.default_rng(43)
         found, naive = [], []
-        for _ in range(120):
+        for _ in range(200):
             seen = stripes(random, 60, 0.47)
             alone = seen._replace(record=np.arange(seen.x.size))
             for kept, runs in ((found, seen.seen), (naive, alone.seen)):
@@ -515,9 +515,7 @@ class TestGoodness:
         assert curve.why.endswith(f"whether the data fit a lognormal curve is not tested: {curve.goodness.why}")
 
     @pytest.mark.rest
-    @pytest.mark.parametrize(
-        ("records", "each", "count"), [(20, 4, 12), (50, 1, 12), (50, 4, 12), (100, 1, 500), (30, 1, 40)]
-    )
+    @pytest.mark.parametrize(("records", "each", "count"), [(50, 4, 12), (30, 1, 40)])
     def test_of_brackets_rejects_what_is_right_at_its_rate(self, records, each, count):
         random, levels = np.random.default_rng([47, records, each]), np.geomspace(0.1, 2, count)
         ends = np.concatenate([[0.0], levels, [np.inf]])

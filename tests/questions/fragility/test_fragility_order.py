@@ -126,7 +126,7 @@ def test_openquake_knows_up_to_where_there_is_no_damage(answer):
 def test_what_is_not_exact_or_contradicted_is_from_the_runs(answer):
     block = next(each.structure for each in answer.result)
     kept = Store.reading(answer.store)
-    found = tally.count(kept, answer.plan, block, LIMITS, ["PGA"])
+    found = tally.count(kept, answer.plan, block, answer.definition)
     assert found.over("PGA").onset("PGA") == (pytest.approx(0.25), True)
     assert found.over("PGV").onset("PGV") is None
     for wrong in (found.runs, 0 * found.runs):

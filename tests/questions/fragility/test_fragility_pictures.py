@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.figure import Figure
-from matplotlib.legend import Legend
 from scipy.stats import binomtest
 
 from rocking_cli.plotting import style
@@ -83,17 +81,6 @@ def test_stripes_are_marked_with_counts_and_wilsons_intervals_under_the_curve():
     assert bands(axes) == [band_of(each.curve, axes)]
     assert words(figure)[0].startswith(f"overturning: median {each.curve.median.value:.3g} g (")
     assert words(figure)[1:] == ["bands and bars: 95 % confidence; marks: observed shares"]
-
-
-def test_a_cloud_of_many_runs_is_a_few_marks():
-    x = np.outer(np.geomspace(0.1, 0.9, 12), np.geomspace(0.5, 4, 10)).ravel().repeat(60)
-    record = np.repeat(np.arange(12), 600)
-    seen = Observations.of(x, x > np.exp(0.3 * np.random.default_rng(4).normal(size=x.size)), record)
-    figure = rendered(draw_curves({"overturning": fitted(seen)}, "PGA [g]", "a cloud"))
-    points, ends = marks(figure.axes[0])
-    parts = seen.parts(0.95)  # which count records, not runs
-    np.testing.assert_allclose(ends, np.column_stack([parts.low, parts.high]))
-    assert len(points) == 10 and words(figure)[1].endswith("; only 12 records: a rough guide")
 
 
 def test_marks_of_several_curves_lie_beside_one_another_and_none_is_left_out():
@@ -233,14 +220,3 @@ def test_bands_of_several_are_shades_and_a_legend_takes_its_own_room():
     assert not any(line.startswith("%") for text in texts for line in text.get_text().split("\n"))
     assert all(text.get_window_extent().x1 <= figure.bbox.width for text in texts)
     assert axes.bbox.height == pytest.approx(few.bbox.height, rel=0.05)
-
-
-def test_a_legend_below_twin_axes_is_below_the_words_of_both():
-    figure = Figure(layout="constrained")
-    below = figure.subplots()
-    below.set_xlabel("of the axes below")
-    with style.drawing_in(below.twinx()):
-        draw_curves({"overturning": fitted(stripes([1, 5, 12, 19]))}, "PGA [g]", "")
-    figure.draw_without_rendering()
-    (key,) = figure.findobj(Legend)
-    assert key.get_window_extent().y1 <= below.xaxis.get_tightbbox().y0

@@ -6,7 +6,6 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from pyarrow import parquet
 from scipy.stats import lognorm, norm
 
 from rocking_cli.errors import InputError
@@ -210,11 +209,9 @@ def test_the_command_writes_what_openquake_takes_and_names_the_rest(store, tmp_p
     assert command("fragility", EXAMPLES / "study" / "pedestal.yaml", "--store", store, "--nrml", out).exit_code == 0
 
 
-@pytest.mark.parametrize("ending", ["csv", "parquet"])
-def test_curves_as_a_table(store, tmp_path, ending):
-    out = tmp_path / f"curves.{ending}"
-    assert command("results", store, "--curves", out).exit_code == 0
-    rows = rows_of(out) if ending == "csv" else parquet.read_table(out).to_pylist()
+def test_curves_as_a_table(store, tmp_path):
+    command("results", store, "--curves", tmp_path / "curves.csv", code=0)
+    rows = rows_of(tmp_path / "curves.csv")
     names = ["structure", "limit_state", "measure", "unit", "kind", "median", "dispersion", "scale"]
     other = [f"lower_{name}" for name in ("median", "dispersion", "scale", "probability", "low", "high")]
     assert list(rows[0]) == [*names, "x", "probability", "low", "high", "unknown", *other]
@@ -233,13 +230,8 @@ def test_a_curve_that_is_not_there_is_named_and_a_table_of_none_has_its_heading(
     assert [list(each) for each in curve_blocks([])] == [list(next(iter(curve_blocks(some()))))]
     study = tmp_path / "study.yaml"
     text = (EXAMPLES / "study" / "pedestal.yaml").read_text(encoding="utf-8").replace("../", f"{EXAMPLES}/")
-    study.write_text(re.sub("limit_states:.*", "limit_states: [30.0]", text), encoding="utf-8")
-    command("fragility", study, code=0)
-    found = command("results", study.with_suffix(".runs"), "--curves", "-")
-    # A run overturned exceeds every limit: the curve is that of overturning.
-    assert found.exit_code == 0 and found.stdout.splitlines()[1].startswith("pedestal,30.0,PGA,g,lognormal")
     study.write_text(re.sub("levels:.*", "levels: {measure: PGA, values: [0.01, 0.02]}", text), encoding="utf-8")
-    assert command("fragility", study, "--restart").exit_code == 0
+    command("fragility", study, code=0)
     out = tmp_path / "none.csv"
     found = command("results", study.with_suffix(".runs"), "--curves", out)
     assert "pedestal, overturning against PGA: no curve: none of the 22 runs exceed" in found.stderr

@@ -8,7 +8,6 @@ import pytest
 import statsmodels.api as sm
 
 from rocking_cli.excitation.base import Origin
-from rocking_cli.questions.fragility import ranking
 from rocking_cli.questions.fragility import study as of_study
 from rocking_cli.questions.fragility.ranking import Ranked, Ranking, judge, line, serves
 from rocking_cli.questions.fragility.store import Store
@@ -156,19 +155,6 @@ class TestStudy:
         path.write_text(f"{text}levels: {{measure: PGA, values: [0.3, 0.4, 0.6]}}\n", encoding="utf-8")
         found = json.loads(command("fragility", path, "--rank-measures", "--json").stdout)["ranking"][0]
         assert {(each["runs"], each["records"]) for each in found["measures"]} == {(9, 3)}
-
-    def test_what_residuals_are_held_against_can_be_given(self, study):
-        kept = Store.reading(study[0] / "study.runs")
-        plan = kept.plan
-        from rocking_cli.questions.fragility.definition import Definition
-
-        definition = Definition.model_validate(kept.fact("definition"))
-        found = ranking.rank(kept, plan, definition, against={"depth": np.arange(6.0)})
-        assert {name for each in found for of in each.measures for name in of.trends} == {"depth"}
-        stated = {"magnitude": np.full(6, 6.5), "distance": np.arange(1.0, 7.0)}
-        object.__setattr__(plan.measured, "of_record", {**plan.measured.of_record, **stated})
-        assert list(ranking.covariates(plan)) == ["magnitude", "distance"]
-        assert ranking.covariates(plan)["distance"].tolist() == np.log(np.arange(1.0, 7.0)).tolist()
 
 
 def ranked(name, efficiency, *p_values, slope=2.0, against=("Tm", "D5-95")):

@@ -49,16 +49,6 @@ def test_numpy_and_pandas_read_it(place):
     assert {study["samples"][k]["structure"] for k in sample} == {"valley bridge", "uncertain"}
 
 
-def test_restart_leaves_files_of_others_alone(sound, place):
-    theirs = place.with_name("study.before.runs"), place.with_name("study.runs.before")
-    for each in theirs:
-        each.write_text("precious", encoding="utf-8")
-    result = command("fragility", sound.study, "--store", place, "--restart", code=0)
-    assert f"the store as it was is kept as {place.with_name('study.before-2.runs')}" in result.stderr
-    assert all(each.read_text(encoding="utf-8") == "precious" for each in theirs)
-    assert contents(place.with_name("study.before-2.runs")) == contents(sound.store)
-
-
 @pytest.mark.skipif(sys.platform == "win32", reason="links need rights there")
 def test_restart_goes_through_a_link(sound, place, tmp_path):
     (tmp_path / "elsewhere").mkdir()
@@ -149,16 +139,6 @@ def test_a_writer_stops_if_its_study_is_restarted_with_another_record(tmp_path):
         writer.add(rows)
     with pytest.raises(InputError, match="has been run again since these results were read"):
         answer.runs()
-
-
-@pytest.mark.parametrize("name", ["study.json", "runs-000001.npz"])
-def test_files_of_another_study_are_refused(sound, place, name):
-    shutil.copyfile(sound.other.with_suffix(".runs") / name, place / name)
-    found = contents(place)
-    for words in (["results", place], ["fragility", sound.study, "--store", place]):
-        said = command(*words, code=2).stderr
-        assert "are of another study" in said or "seed was 1, is now 0" in said
-    assert contents(place) == found
 
 
 def test_a_damaged_description_and_one_of_another_layout_are_refused_and_kept_by_restart(sound, place, monkeypatch):

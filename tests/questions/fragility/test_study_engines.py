@@ -96,21 +96,6 @@ def test_the_output_names_the_engine_of_each_run(whole, tmp_path):
 
 
 @NEEDS_BLOCKS
-def test_a_study_that_is_done_runs_nothing_again(whole):
-    heard = Heard()
-    rk.fragility(whole[0], jobs=1, watch=heard)
-    assert heard.notes == ["2 of 2 runs are in the store already"]
-
-
-@NEEDS_BLOCKS
-def test_another_engine_is_another_study(whole, tmp_path):
-    path = write(tmp_path, STUDY.replace("engine: auto", "engine: exact"))
-    assert "engine" not in load_study(path).description()
-    with pytest.raises(InputError, match="engine was auto, is now absent"):
-        rk.fragility(path, store=whole[1])
-
-
-@NEEDS_BLOCKS
 def test_free_blocks_that_fail_are_of_unknown_outcome(tmp_path, monkeypatch):
     monkeypatch.setattr("rocking_cli.studies.engines.memory.recall", lambda keys: {})
     monkeypatch.setattr("rocking_cli.studies.engines.memory.remember", lambda outcomes: None)
@@ -152,7 +137,7 @@ def units_of_blocks(tmp_path, text):
     prepared = prepare(load_study(path), store := Store.writing(tmp_path / "study.runs"))
     plan, study, motions = prepared.plan, prepared.study, prepared.motions
     numbers = (plan.numbers(*store.ends(k)) for k in store.chunks)
-    return [workers.unit_of(each, plan, study, store.fact("hash"), motions, "blocks") for each in numbers]
+    return [workers.unit_of(each, plan, study, store.facts["hash"], motions, "blocks") for each in numbers]
 
 
 def test_runs_of_blocks_that_do_not_stand_fail(tmp_path, monkeypatch):
@@ -166,7 +151,7 @@ def test_runs_of_blocks_that_do_not_stand_fail(tmp_path, monkeypatch):
     assert (rows.outcome.tolist(), rows.by_blocks.tolist(), rows.failed) == ([FAILED] * 2, [True] * 2, 2)
 
 
-@pytest.mark.parametrize(("engine", "most"), [("blocks", 2), ("auto", 16), ("exact", 64)])
+@pytest.mark.parametrize(("engine", "most"), [("blocks", 2), ("exact", 64)])
 def test_chunks_have_few_runs_if_free_blocks_may_be_simulated(tmp_path, engine, most):
     text = STUDY.replace("engine: auto", f"engine: {engine}").replace("opening: 0\n", "")
     text = text.replace("values: [0.1, 1.5]", "least: 0.1, most: 1, count: 200")
@@ -192,13 +177,11 @@ def test_structures_are_simulated_with_free_blocks_one_by_one(tmp_path, monkeypa
 @pytest.mark.parametrize(
     ("engine", "field", "said"),
     [
-        ("blocks", "model: linear1", ":9:8: model: linear1 cannot be combined with `engine: blocks`"),
         ("auto", "model: linear2", ":9:8: model: linear2 cannot be combined with `engine: auto`"),
         ("blocks", "restitution: [0.9]", ":9:14: restitution has no effect with `engine: blocks`"),
         ("blocks", "opening: 0.005", ":9:10: opening has no effect with `engine: blocks`"),
         ("auto", "", ":6:15: limit_states: sliding cannot be combined with `engine: auto`"),
         ("blocks", "samples: 2", ":1:53: structures[1].vary.restitution has no effect with `engine: blocks`"),
-        ("free", "", ":8:9: engine must be exact, blocks or auto, got the text free"),
     ],
 )
 def test_fields_without_meaning_are_refused_at_their_place(engine, field, said, tmp_path):

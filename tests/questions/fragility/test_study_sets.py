@@ -1,15 +1,11 @@
 """Stripes with a set of records at each level, and weights of records: against statsmodels and by hand."""
 
 import json
-import shutil
-from pathlib import Path
 
 import numpy as np
 import pytest
 import statsmodels.api as sm
-from pydantic import ValidationError
 
-from rocking_cli.processing.entry import Entry
 from rocking_cli.questions.fragility.curves import fit_capacities, fit_curve, fit_surface
 from rocking_cli.questions.fragility.observed import Observations
 from tests.cli.test_cli import run
@@ -64,25 +60,6 @@ class TestSets:
         said = run("results", folder / "study.runs").stdout
         assert "Each level has its own set of records: 2 per level, scaled to the level." in said
 
-    def test_the_runs_are_those_of_a_study_of_all(self, folder):
-        run("fragility", study(folder, SETS), "--jobs", 1)
-        run("results", folder / "study.runs", "--out", folder / "sets.csv")
-        shutil.rmtree(folder / "study.runs")
-        run("fragility", study(folder, "".join(f"  - {x}.csv\n" for x in "abcde")), "--jobs", 1)
-        run("results", folder / "study.runs", "--out", folder / "all.csv")
-
-        def outcomes(name):
-            table = np.genfromtxt(folder / name, delimiter=",", names=True, dtype=None, encoding="utf-8")
-            return {
-                (each["motion"].partition(" at ")[0], round(float(each["level"]), 9)): float(each["peak_ratio"])
-                for each in table
-            }
-
-        sets, every = outcomes("sets.csv"), outcomes("all.csv")
-        assert len(sets) == 8 and len(every) == 20
-        for key, peak in sets.items():
-            assert peak == pytest.approx(every[key], nan_ok=True)
-
     def test_sets_as_they_are_keep_their_own_factors(self, folder):
         for k, (name, factor) in enumerate((("a", 0.4), ("b", 0.7), ("c", 1.1)), start=1):
             (folder / f"set{k}.yaml").write_text(f"records:\n  - {{file: {name}.csv, factor: {factor}}}\n")
@@ -96,12 +73,6 @@ class TestSets:
         assert data["curves"][0]["measure"] == "Sa(1.0)"
         assert "1 per level, not scaled to the level." in run("results", folder / "study.runs").stdout
 
-    def test_a_set_goes_on_where_it_stopped_and_changes_are_named(self, folder):
-        path = study(folder, SETS)
-        run("fragility", path, "--jobs", 1)
-        path.write_text(path.read_text().replace("b.csv, level: 0.8", "b.csv, level: 0.5"))
-        assert "b.csv at 0.5" in run("fragility", path, code=2).stderr
-
     @pytest.mark.parametrize(
         ("records", "more", "words"),
         [
@@ -110,8 +81,6 @@ class TestSets:
             ("  - a.csv\n", {"levels": "{measure: PGA, values: [0.2, 0.4], scaled: false}"}, "each needs the `level`"),
             ("  - {file: a.csv, level: 0.2}\n", {"levels": "{measure: scale, values: [0.2], scaled: false}"},
              "are factors: leave scaled out"),
-            ("  - {file: a.csv, level: 0.2}\n  - {file: a.csv, level: 0.2}\n", {}, "two of them are called"),
-            ("  - {file: a.csv, weight: 0}\n", {}, "must be more than 0"),
         ],
     )  # fmt: skip
     def test_wrong_sets(self, folder, records, more, words):
@@ -188,17 +157,6 @@ class TestWeights:
         path.write_text(path.read_text().replace("a.csv, weight: 2", "a.csv, weight: 5"))
         run("fragility", path, "--jobs", 1)
         assert "Records have weights from 2 to 5." in run("results", folder / "study.runs").stdout
-
-
-def test_a_channel_may_be_a_number_as_messages_list_it():
-    for given in (1, "1"):
-        entry = Entry.model_validate(
-            {"file": "a.V2", "channel": given, "with": "b.V2", "with_channel": given, "azimuth": 0}
-        )
-        assert (entry.channel, entry.other_channel) == ("1", "1") and entry.reading(Path()).channel == "1"
-    for given in (True, 1.5):
-        with pytest.raises(ValidationError):
-            Entry.model_validate({"file": "a.V2", "channel": given})
 
 
 def test_channels_and_directions_of_one_file_are_records_of_their_own(folder):

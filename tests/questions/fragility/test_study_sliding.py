@@ -1,7 +1,7 @@
 """Sliding as a limit state of a study: found run by run as `respond` finds it, and kept only on request."""
 
-import json
 import pickle
+import shutil
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ from rocking_cli.studies.contact import Contacts
 from tests.conftest import EXAMPLES
 from tests.following import respond
 from tests.questions.fragility.test_study_runs import carry_out
-from tests.stores import command, contents, every_run
+from tests.stores import contents, every_run
 from tests.studies.test_contact import of_a_block
 
 STRUCTURES = {
@@ -45,17 +45,9 @@ polarity: both
 samples: 3
 limit_states: [uplift, sliding, overturning]
 """
-ETAS = """\
-structures: [frame.yaml, block.yaml]
-records: [{pulse: sine:0.6g:0.8s}, {pulse: ricker:0.6g:1.2s}, ACCEL]
-method: ida
-levels: {measure: PGA, least: 0.2, most: 0.6, count: 9}
-restitution: [0.8, 0.93]
-limit_states: [sliding, uplift]
-""".replace("ACCEL", str(EXAMPLES / "accel.csv"))
 
 
-def write(folder, text=STUDY, count=4, **structures):
+def write(folder, text=STUDY, count=3, **structures):
     for name, content in {**STRUCTURES, **structures}.items():
         (folder / f"{name}.yaml").write_text(content, encoding="utf-8")
     path = folder / "study.yaml"
@@ -96,22 +88,10 @@ def test_each_run_slides_when_respond_says_so(whole):
     assert all(0 < each < 1 for each in shares) and len(set(shares)) > 1
 
 
-@pytest.mark.rest
-def test_restitutions_of_the_study_are_those_of_the_check(tmp_path):
-    path = write(
-        tmp_path, ETAS, block=STRUCTURES["block"].replace("restitution: 0.9\nfriction: 0.27", "friction: 0.31")
-    )
-    prepared = carry_out(path, tmp_path / "study.runs", jobs=2)
-    found = every_run(tmp_path / "study.runs").slide_time
-    assert found == pytest.approx(slides_as_responded(path, prepared), rel=1e-9, nan_ok=True)
-    by_eta = found.reshape(prepared.plan.shape)[..., 0]
-    assert not np.array_equal(by_eta[:, :, 0], by_eta[:, :, 1], equal_nan=True)
-
-
 def test_the_block_by_itself_needs_the_friction_that_is_written_out(tmp_path):
     """Without the check of the program: |H|/N of a block at every moment, in `tests/studies/test_contact.py`."""
     text = "structures: [block.yaml]\nrecords: [{pulse: sine:0.6g:0.8s}, {pulse: ricker:0.6g:1.2s}]\nmethod: stripes\n"
-    text += "levels: {measure: PGA, least: 0.26, most: 0.5, count: 9}\nlimit_states: [sliding]\n"
+    text += "levels: {measure: PGA, least: 0.26, most: 0.5, count: 5}\nlimit_states: [sliding]\n"
     path = write(tmp_path, text)
     prepared = carry_out(path, tmp_path / "study.runs")
     plan, study = prepared.plan, prepared.study
@@ -153,7 +133,7 @@ def test_a_unit_can_be_sent_elsewhere(whole, tmp_path):
     found = []
     for k in store.chunks:
         numbers = prepared.plan.numbers(*store.ends(k))
-        unit = workers.unit_of(numbers, prepared.plan, prepared.study, store.fact("hash"), prepared.motions, "exact")
+        unit = workers.unit_of(numbers, prepared.plan, prepared.study, store.facts["hash"], prepared.motions, "exact")
         found.append(workers.carry_out(pickle.loads(pickle.dumps(unit))).slide_time)
     assert np.array_equal(np.concatenate(found), every_run(whole[2]).slide_time, equal_nan=True)
 
@@ -170,35 +150,14 @@ def test_a_run_that_cannot_be_followed_to_its_rest_has_failed(whole, tmp_path, m
 
 
 class TestTheStore:
-    @pytest.mark.parametrize(
-        ("before", "now", "said"),
-        [
-            ("uplift, ", "uplift, sliding, ", "sliding was absent, is now checked in every run"),
-            ("uplift, sliding, ", "uplift, ", "sliding was checked in every run, is now absent"),
-        ],
-    )
-    def test_it_is_not_continued_as_if_it_were_another(self, tmp_path, before, now, said):
-        text = STUDY.replace("uplift, sliding, ", "uplift, ")
-        carry_out(write(tmp_path, text.replace("uplift, ", before), count=2), tmp_path / "study.runs")
-        kept = contents(tmp_path / "study.runs")
+    def test_it_is_not_continued_as_if_it_were_another(self, whole, tmp_path):
+        path, place = write(tmp_path, STUDY.replace("uplift, sliding, ", "uplift, ")), tmp_path / "study.runs"
+        shutil.copytree(whole[2], place)
         with pytest.raises(InputError) as caught:
-            carry_out(write(tmp_path, text.replace("uplift, ", now), count=2), tmp_path / "study.runs")
-        assert [said in str(each) for each in caught.value.problems] == [True] and "`restart`" in str(caught.value)
-        assert contents(tmp_path / "study.runs") == kept
-
-    @pytest.mark.rest
-    def test_results_show_it_with_tables_and_pictures(self, whole, tmp_path):
-        shown = command("results", whole[2], "--json", "--out", tmp_path / "runs.csv", "--plot", tmp_path / "pictures")
-        assert shown.exit_code == 0, shown.stderr
-        rows = every_run(whole[2])
-        sliding = [each for each in json.loads(shown.stdout)["curves"] if each["limit_state"] == "sliding"]
-        assert sum(each["exceedances"] for each in sliding) == np.isfinite(rows.slide_time).sum() > 0
-        header, *lines = (tmp_path / "runs.csv").read_text(encoding="utf-8").splitlines()
-        last = header.split(",").index("slide_time [s]")
-        found = [float(line.split(",")[last] or "nan") for line in lines]
-        assert found == pytest.approx(rows.slide_time.tolist(), nan_ok=True)
-        assert any(each.name.startswith("sliding") for each in (tmp_path / "pictures").iterdir())
-        assert "sliding  " in command("results", whole[2]).stdout
+            carry_out(path, place)
+        (problem,) = caught.value.problems
+        assert "sliding was checked in every run, is now absent" in str(problem) and "`restart`" in str(problem)
+        assert contents(place) == contents(whole[2])
 
 
 class TestWhatIsRefused:
