@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from functools import partial
 from math import nan
@@ -18,7 +17,6 @@ from rocking_cli.plugins.errors import blame
 from rocking_cli.plugins.registry import leave_out
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
-from rocking_cli.studies.conclusion import LeftOut
 from rocking_cli.studies.conditions import Conditions
 from rocking_cli.studies.movements import centroid_moved, drifts, largest_on_the_way, largest_tie_force
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
@@ -43,7 +41,7 @@ class Excitation:
         The site of the structure, for metrics of a code.
     """
 
-    motions: Sequence[GroundMotion]
+    motions: Sequence[GroundMotion] = ()
     polarities: Sequence[int] = (1,)
     around: Neighbourhood = field(default_factory=Neighbourhood)
     site: SiteFile | None = None
@@ -85,7 +83,7 @@ class Metric:
     name: str
     unit: str
     meaning: str
-    of_structure: Callable[[Structure, Excitation | None], float] | None = None
+    of_structure: Callable[[Structure, Excitation], float] | None = None
     of_neighbours: Callable[[Neighbours, Structure], float] | None = None
     lacks: Callable[[Structure], str | None] | None = None
     sited: bool = False
@@ -104,38 +102,25 @@ class Metric:
         """Whether the metric is of a code of practice, for which ties of steel act with their strength."""
         return self.sited or bool(self.codes)
 
-    def value(self, structure: Structure, excitation: Excitation | None) -> float:
-        """Return the metric of a structure."""
-        return self.at(structure, excitation)[0]
-
-    def at(self, structure: Structure, excitation: Excitation | None) -> tuple[float, Neighbours | None]:
+    def at(self, structure: Structure, excitation: Excitation) -> tuple[float, Neighbours | None]:
         """Return the metric of a structure, and the neighbours of the motion that governs if it needs motions."""
         of = self.of_neighbours
         if self.lacks is not None and (why := self.lacks(structure)) is not None:
             raise InputError(f"{self.name} {why}")
-        if of is None:
-            assert self.of_structure is not None
+        if self.of_structure is not None:
             return self.of_structure(structure, excitation), None
-        assert excitation is not None
+        assert of is not None
         numbers = [(of(neighbours, structure), neighbours) for neighbours in excitation.each(structure)]
         return max(numbers, key=lambda each: (each[0], each[1].at_most, each[1].overturned))
 
 
-def _lambda(structure: Structure, excitation: Excitation | None) -> float:
-    return min(side.lambda_ for side in structure.statics)
+def _phi_cr(structure: Structure, excitation: Excitation) -> float:
+    critical = [nan if side.phi_cr is None else side.phi_cr for side in structure.statics]
+    return float(np.min(critical))
 
 
-def _phi_cr(structure: Structure, excitation: Excitation | None) -> float:
-    critical = [side.phi_cr for side in structure.statics]
-    return min((each for each in critical if each is not None), default=nan) if None not in critical else nan
-
-
-def _p(structure: Structure, excitation: Excitation | None) -> float:
-    return structure.p if structure.why_no_block is None else nan
-
-
-def _ratio(structure: Structure, excitation: Excitation | None) -> float:
-    assert excitation is not None and excitation.site is not None
+def _ratio(structure: Structure, excitation: Excitation) -> float:
+    assert excitation.site is not None
     end = verify(structure, excitation.site).conclusion
     if any(each.what == "mechanism" for each in end.left_out):
         raise MechanismError("another mechanism starts first, which the verification does not cover")
@@ -174,11 +159,6 @@ def _lacks_ties(structure: Structure) -> str | None:
     return None if structure.mechanism.hung.ties else "requires a tie, and the structure has none: add it to `ties`"
 
 
-def taken_otherwise(structure: Structure, site: SiteFile) -> Sequence[LeftOut]:
-    """Return the ties of a structure that a code does not count in full, such as elastic ones."""
-    return [each for each in verify(structure, site).left_out if each.what == "tie"]
-
-
 def required(structure: Structure, site: SiteFile) -> float:
     """Return the one ratio that a code requires after a change of a structure. Raises `InputError` if there is none."""
     existing = verify(structure, site)
@@ -193,9 +173,11 @@ def required(structure: Structure, site: SiteFile) -> float:
 METRICS: Mapping[str, Metric] = {
     each.name: each
     for each in (
-        Metric("lambda", "", "ground acceleration at uplift over g, in the weaker direction", _lambda),
+        Metric("lambda", "", "ground acceleration at uplift over g, in the weaker direction",
+               lambda structure, _: min(side.lambda_ for side in structure.statics)),
         Metric("phi_cr", "rad", "critical rotation, the smaller of both directions", _phi_cr),
-        Metric("p", "rad/s", "frequency parameter of the equivalent block, the larger of both directions", _p),
+        Metric("p", "rad/s", "frequency parameter of the equivalent block, the larger of both directions",
+               lambda structure, _: structure.p if structure.why_no_block is None else nan),
         Metric("peak_ratio", "", "median of the neighbours' peak rotation over phi_cr",
                of_neighbours=lambda near, _: near.peak_ratio[1], lacks=_lacks_critical_rotation),
         Metric("peak_displacement", "m", "peak displacement of the control point, the centroid of all that moves, that "
@@ -213,56 +195,46 @@ METRICS: Mapping[str, Metric] = {
 """Metrics by name, except those of codes of practice."""
 
 
-def _of_codes(name: str) -> Metric | None:
-    """Return the metric that codes of practice declare under this name among their `numbers`; None if none does."""
-    numbers: dict[str, Number] = {}
+def _numbers() -> dict[str, Mapping[str, Number]]:
+    """Return the numbers that each installed code of practice declares."""
+    numbers: dict[str, Mapping[str, Number]] = {}
     for key in codes():
         try:
-            if (number := codes()[key].numbers.get(name)) is not None:
-                numbers[key] = number
+            numbers[key] = codes()[key].numbers
         except MechanismError as error:
             leave_out(error)
+    return numbers
+
+
+def _of_codes(name: str) -> Metric | None:
+    """Return the metric that codes of practice declare under this name among their `numbers`; None if none does."""
+    numbers = {key: declared[name] for key, declared in _numbers().items() if name in declared}
     if not numbers:
         return None
 
-    def value(structure: Structure, excitation: Excitation | None) -> float:
+    def value(structure: Structure, excitation: Excitation) -> float:
         if one.of_structure is not None:
             structure.statics  # noqa: B018 - what does not stand is refused with its name
-            with _blamed(first, name):
+            with blame(f"the code {first} failed in its number {name}", type(codes()[first]).__module__):
                 mechanism = structure.mechanism.at_strength()
                 return min(one.of_structure(mechanism, direction) for direction in mechanism.directions)
-        assert excitation is not None and excitation.site is not None
+        assert excitation.site is not None
         key = excitation.site.site.code
         of = numbers[key].of
         assert of is not None  # a number without `of` is a metric of the structure alone
         verified = verify(structure, excitation.site).directions.values()
-        with _blamed(key, name):
+        with blame(f"the code {key} failed in its number {name}", type(codes()[key]).__module__):
             return min((value for direction in verified if (value := of(direction)) is not None), default=nan)
 
     first, one = next(iter(numbers.items()))
     return Metric(name, one.unit, one.meaning, value, sited=one.of_structure is None, codes=tuple(numbers))
 
 
-def _blamed(code: str, name: str) -> AbstractContextManager[None]:
-    """Turn an error that occurs while a code of practice computes a metric into an error of the code's plugin."""
-    return blame(f"the code {code} failed in its number {name}", type(codes()[code]).__module__)
-
-
-def known_metrics() -> list[str]:
-    """Return the names of all metrics, with those of the installed codes last."""
-    names = dict.fromkeys(METRICS)
-    for key in codes():
-        try:
-            names |= dict.fromkeys(codes()[key].numbers)
-        except MechanismError as error:
-            leave_out(error)
-    return list(names)
-
-
 def metric(name: str) -> Metric:
     """Return the metric of a name. Raises `InputError` if there is none."""
     metric = METRICS.get(name) or _of_codes(name)
     if metric is None:
-        hint = did_you_mean(name, known_metrics())
+        known = dict.fromkeys([*METRICS, *(number for declared in _numbers().values() for number in declared)])
+        hint = did_you_mean(name, list(known))
         raise InputError(Problem(f"{cut(repr(name))} is not a metric", hint=hint))
     return metric

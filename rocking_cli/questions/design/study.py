@@ -15,11 +15,10 @@ from rocking_cli.arrays import Bools, Reals
 from rocking_cli.core import Mechanism
 from rocking_cli.core.hung.element import Spring
 from rocking_cli.core.hung.steel import BAR_DIAMETERS, STEELS, SteelName, TieStrength, circle, tie_strength
-from rocking_cli.core.hung.ties import Tie
-from rocking_cli.errors import InputError, MechanismError, Problem, SolverError, named
+from rocking_cli.errors import InputError, MechanismError, Problem, SolverError
 from rocking_cli.io.dotted import words
 from rocking_cli.names import percent
-from rocking_cli.questions.design.metrics import Excitation, Metric, metric, required, taken_otherwise
+from rocking_cli.questions.design.metrics import Excitation, Metric, metric, required
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Concluded, Conclusion, LeftOut, Limit
@@ -27,12 +26,14 @@ from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.text import cut
 from rocking_cli.units import UnitError, read, split
 from rocking_cli.verification.check import verify
+from rocking_cli.verification.code import SiteFile
 
 OPERATORS: dict[str, Callable[[float, float], bool]] = {
     "<=": operator.le, ">=": operator.ge, "<": operator.lt, ">": operator.gt,
 }  # fmt: skip
 REQUIRED = "required"
 """The level of a requirement that is the ratio required by the code of the site."""
+NO_EXCITATION = Excitation()
 SCAN_POINTS = 41
 EDGE_TOLERANCE = 1e-12  # share of the range to which an edge is found
 EDGE_TOLERANCE_OF_SHARES = 1e-3  # shares of histories change in steps, so that more precision has no meaning
@@ -215,12 +216,6 @@ class Design:
     limits: Sequence[Limit] = ()
 
     @property
-    def has_effect(self) -> bool:
-        """Whether the metric differs anywhere over the scan."""
-        there = self.metric[~np.isnan(self.metric)]
-        return there.size < 2 or not np.allclose(there, there[0], rtol=TREND_TOLERANCE, atol=0.0)
-
-    @property
     def decisive(self) -> float:
         """The answer; without one, the value tried at which the metric is closest to its limit, of these the first."""
         return _closest(self.values, self.metric, self.aim.level) if self.value is None else self.value
@@ -257,7 +252,7 @@ def design(
     field: str,
     span: tuple[float, float],
     aim: Aim,
-    excitation: Excitation | None = None,
+    excitation: Excitation = NO_EXCITATION,
     *,
     points: int = SCAN_POINTS,
     progress: Callable[[int], None] | None = None,
@@ -274,7 +269,7 @@ def design(
         Smallest and largest value to try, in the unit of the field.
     aim : Aim
         The requirement.
-    excitation : Excitation, optional
+    excitation : Excitation
         Ground motions and site, for metrics that need them.
     points : int
         Number of values of the scan, at equal steps over the span.
@@ -284,7 +279,7 @@ def design(
     Raises
     ------
     InputError
-        If the metric needs ground motions and there are none, or there are too few points.
+        If the structure lacks what the metric requires, or the site is for another code than that of the metric.
 
     Notes
     -----
@@ -296,17 +291,15 @@ def design(
     An unknown outcome meets no requirement: it counts as overturning if the metric must be small, and the metric does
     not exist if it must be large.
     """
-    if aim.metric.sited:
-        _check_site(aim.metric, excitation)
+    site = excitation.site if aim.metric.sited else None
+    if site is not None:
+        if aim.metric.codes and site.site.code not in aim.metric.codes:
+            codes = " and ".join(aim.metric.codes)
+            message = f"{aim.metric.name} is a number of {codes}, but the site is for {site.site.code}"
+            raise InputError(Problem(message, hint="every code has a `ratio`"))
         if isnan(aim.level):
-            assert excitation is not None and excitation.site is not None  # as just checked
-            aim = replace(aim, level=required(structure, excitation.site))
-    if aim.metric.shaken and (excitation is None or not excitation.motions or not excitation.around.count):
-        message = f"{aim.metric.name} needs a ground motion with neighbouring motions"
-        raise InputError(Problem(message, hint=f"give {named('motions')}"))
+            aim = replace(aim, level=required(structure, site))
     _check_has_metric(structure, field, span, aim.metric)
-    if points < 2:
-        raise InputError(Problem(f"must be at least 2, got {points}", field="points"))
 
     def metric(value: float) -> float:
         return _at(structure, field, value, aim, excitation)[0]
@@ -336,17 +329,15 @@ def design(
 
     met = [aim.holds(number) for number in numbers.tolist()]
     holds = _ranges(values, met, edge)
-    whole = all(met)
-    value = None if whole or not holds else holds[-1][0] if met[-1] else holds[0][1] if met[0] else None
+    value = None if all(met) or not holds else holds[-1][0] if met[-1] else holds[0][1] if met[0] else None
     return Design(
         structure.name, field, structure.unit_of(field), aim, structure.value_of(field), values, numbers, holds,
         monotone, value, _not_built(values, reasons), behind, structure.mechanism.own_caution(),
-        _taken_otherwise(structure, field, span, aim, excitation),
-        [each.name for each in excitation.motions] if excitation is not None else [],
+        _taken_otherwise(structure, field, span, site), [each.name for each in excitation.motions],
         None if value is None else steel_answer(
             structure, field, value, float(values[-1] if met[-1] else values[0]), of_code=aim.metric.of_code
         ),
-        _limits(structure, field, _closest(values, numbers, aim.level) if value is None else value, aim, excitation),
+        _limits(structure, field, _closest(values, numbers, aim.level) if value is None else value, site),
     )  # fmt: skip
 
 
@@ -364,27 +355,15 @@ def _check_has_metric(structure: Structure, field: str, span: tuple[float, float
         raise InputError(f"{metric.name} {reasons[0]}")
 
 
-def _check_site(metric: Metric, excitation: Excitation | None) -> None:
-    """Raise `InputError` if a metric that requires a site has none, or if the site is for another code."""
-    if excitation is None or excitation.site is None:
-        hint = "give the file of a site: `rocking new site` prints one"
-        raise InputError(Problem(f"{metric.name} requires a site", field=named("site"), hint=hint))
-    code = excitation.site.site.code
-    if metric.codes and code not in metric.codes:
-        message = f"{metric.name} is a number of {' and '.join(metric.codes)}, but the site is for {code}"
-        raise InputError(Problem(message, hint="every code has a `ratio`"))
-
-
 def _taken_otherwise(
-    structure: Structure, field: str, span: tuple[float, float], aim: Aim, excitation: Excitation | None
+    structure: Structure, field: str, span: tuple[float, float], site: SiteFile | None
 ) -> Sequence[LeftOut]:
     """Return the ties of the structure that the code does not count in full, at either end of the range, each once."""
-    if not aim.metric.sited or excitation is None or excitation.site is None:
-        return []
     reasons: dict[LeftOut, None] = {}
-    for value in span:
+    for value in span if site is not None else ():
         try:
-            reasons |= dict.fromkeys(taken_otherwise(structure.varied(field, value), excitation.site))
+            left_out = verify(structure.varied(field, value), site).left_out
+            reasons |= dict.fromkeys(each for each in left_out if each.what == "tie")
         except (InputError, MechanismError):  # the reason is listed in `not_built`
             continue
     return list(reasons)
@@ -395,18 +374,16 @@ def _closest(values: Reals, metric: Reals, level: float) -> float:
     return float(values[np.nan_to_num(np.abs(metric - level), nan=inf).argmin()])
 
 
-def _limits(structure: Structure, field: str, value: float, aim: Aim, excitation: Excitation | None) -> Sequence[Limit]:
+def _limits(structure: Structure, field: str, value: float, site: SiteFile | None) -> Sequence[Limit]:
     """Return what limits the verification at a value; nothing without a site, or where it cannot be made."""
-    if not aim.metric.sited or excitation is None or excitation.site is None:
-        return ()
     try:
-        return verify(structure.varied(field, value), excitation.site).limits
+        return () if site is None else verify(structure.varied(field, value), site).limits
     except (InputError, MechanismError):  # the reason is listed in `not_built`
         return ()
 
 
 def _at(
-    structure: Structure, field: str, value: float, aim: Aim, excitation: Excitation | None
+    structure: Structure, field: str, value: float, aim: Aim, excitation: Excitation
 ) -> tuple[float, Neighbours | None, str | None]:
     """Return the metric at a value of the field, and the neighbours it was counted from; or NaN and the reason."""
     try:
@@ -565,7 +542,8 @@ def steel_answer(
     chosen, largest = (structure.varied(field, each).mechanism for each in (value, other))
     if of_code:
         chosen, largest = chosen.at_strength(), largest.at_strength()
-    tie = _named(chosen, path[1])
+    ties = {tie.name: tie for tie in chosen.ties or []}
+    tie = ties[path[1]] if path[1] in ties else list(ties.values())[int(path[1])]
     force, more = (_constant_force(each, tie.name) for each in (chosen, largest))
     if force is None or more is None or not 0 < force < more:
         return None
@@ -576,25 +554,15 @@ def steel_answer(
     counts = [tie.number_of_bars(chosen.depth)] if known else [float(count) for count in range(1, MAX_BARS + 1)]
     proposals: list[Bars] = []
     for count in counts:
-        bars = _thinnest(tie, stress, count, force)
+        reduced = stress / (tie.gamma or 1)
+        every = (Bars(count, d, tie_strength(circle(d), reduced, count, tie.plate, tie.wall)) for d in BAR_DIAMETERS)
+        bars = next((bars for bars in every if bars.strength.force >= force), None)  # the thinnest
         if bars is not None and (not proposals or bars.diameter < proposals[-1].diameter):
             proposals.append(bars)
     return SteelAnswer(tie.name, force, steel, stress, spacing, tie.plate is not None, proposals[:MAX_PROPOSALS])
-
-
-def _named(mechanism: Mechanism, word: str) -> Tie:
-    ties = {tie.name: tie for tie in mechanism.ties or []}
-    return ties[word] if word in ties else list(ties.values())[int(word)]
 
 
 def _constant_force(mechanism: Mechanism, name: str) -> float | None:
     """Return the force of a tie that does not depend on its elongation [N]; None if it does."""
     element = next(each for each in mechanism.hung.ties if each.name == name)
     return element.prestress if isinstance(element, Spring) and element.stiffness == 0 else None
-
-
-def _thinnest(tie: Tie, stress: float, count: float, force: float) -> Bars | None:
-    """Return the bars of the smallest diameter with at least this strength; None if none has it."""
-    stress /= tie.gamma or 1
-    every = (Bars(count, d, tie_strength(circle(d), stress, count, tie.plate, tie.wall)) for d in BAR_DIAMETERS)
-    return next((bars for bars in every if bars.strength.force >= force), None)

@@ -53,7 +53,7 @@ def design(asked: DesignAsked, watch: Watcher) -> Answer[Design]:
         watch.warn(f"{ready.name}: {each.name} {each.words}")
     shaken = [each.motion.scaled(each.factor) for each in requested.gather(ready.growth, watch)] if requested else []
     around = asked.neighbourhood(asked.neighbours)
-    excitation = Excitation(shaken, asked.signs, around, where) if requested or where is not None else None
+    excitation = Excitation(shaken, asked.signs, around, where)
     with watch.progress(asked.points, "values") as advance:
         result = study(ready, span.field, ends, aim, excitation, points=asked.points, progress=advance)
     figure = drawn("questions.design.picture.draw_design", result)

@@ -12,7 +12,7 @@ from rocking_cli import names
 from rocking_cli.core.hung.steel import BAR_DIAMETERS
 from rocking_cli.names import percent
 from rocking_cli.questions.design.metrics import Excitation
-from rocking_cli.questions.design.study import Bars, Design, SteelAnswer
+from rocking_cli.questions.design.study import TREND_TOLERANCE, Bars, Design, SteelAnswer
 from rocking_cli.studies.conclusion import Concluded, NextStep
 from rocking_cli.text import one_line
 from rocking_cli.views.column import Column, frame_of, only_shown, table_of
@@ -25,7 +25,7 @@ from rocking_cli.views.view import ABSENT, Table, View
 MAX_SCAN_ROWS = 11  # values of the scan that the table lists
 
 
-def view(found: Design, excitation: Excitation | None = None) -> View:
+def view(found: Design, excitation: Excitation) -> View:
     """Show the answer in a sentence, the scan, and remarks."""
     title = f"{found.structure}: {found.field} for {found.aim}"
     first = " ".join(filter(None, [f"{title}. {answer(found)}", *in_steel(found), *limited(found)]))
@@ -34,8 +34,8 @@ def view(found: Design, excitation: Excitation | None = None) -> View:
 
 def data(found: Design) -> dict[str, Any]:
     """Return a design as plain data."""
-    every = range(len(found.values))
-    unknown = {each.key: [each.of(k) for k in every] for each in _unknown(found) if found.aim.metric.shaken}
+    shares = [None if each is None else each.unknown for each in found.behind]
+    unknown = {"unknown": shares} if found.aim.metric.shaken else {}
     return {
         "structure": found.structure,
         "field": found.field,
@@ -69,7 +69,7 @@ def _columns(found: Design) -> list[Column[int]]:
         Column(found.field, found.values.item, found.unit, _head(found.field, found.unit), _value),
         Column(metric.name, found.metric.item, metric.unit),
         only_shown(_head(metric.name, metric.unit), partial(_metric, found)),
-        *(_unknown(found) if metric.shaken else ()),
+        *([_unknown(found)] if metric.shaken else []),
         Column("holds", lambda k: "yes" if found.met[k] else "no", head="holds", text=True),
     ]
 
@@ -78,10 +78,10 @@ def _head(name: str, unit: str) -> str:
     return f"{name}\n[{unit}]" if unit else name
 
 
-def _unknown(found: Design) -> Iterator[Column[int]]:
-    """Yield the column of the share of unknown outcome, which terminals have only if there is one."""
+def _unknown(found: Design) -> Column[int]:
+    """Return the column of the share of unknown outcome, which terminals have only if there is one."""
     shares = [None if each is None else each.unknown for each in found.behind]
-    yield Column("unknown", shares.__getitem__, head="unknown\noutcome" if any(shares) else None, form=percent)
+    return Column("unknown", shares.__getitem__, head="unknown\noutcome" if any(shares) else None, form=percent)
 
 
 def scan(found: Design) -> Table:
@@ -113,12 +113,10 @@ def answer(found: Design) -> str:
     sentence = f"Judging by the {len(found.values)} values tried, {aim} holds for {found.field} {listed}"
     if found.value is None:
         return f"{sentence}, but at neither end of the range tried, {low} to {high}."
+    if len(ranges) == 1:
+        return f"{sentence}."
     trend = "upwards" if found.is_least else "downwards"
-    return (
-        f"{sentence}."
-        if len(ranges) == 1
-        else f"{sentence}: from {_with_unit(found, found.value)} {trend} without a gap."
-    )
+    return f"{sentence}: from {_with_unit(found, found.value)} {trend} without a gap."
 
 
 COUNTS = {1: "one bar", 2: "two bars", 3: "three bars", 4: "four bars"}
@@ -174,11 +172,12 @@ def limited(found: Design) -> Iterator[str]:
     yield from (f"{where}{each}" for each in replaced_in_words(end))
 
 
-def doubts(found: Design, excitation: Excitation | None) -> list[str]:
+def doubts(found: Design, excitation: Excitation) -> list[str]:
     """Return remarks on the answer."""
     sentences = [f"{each} Next: {NEXT_STEPS[NextStep.YIELD_FORCE]}." for each in not_counted(found.taken_otherwise)]
-    count = len(found.values)
-    if not found.has_effect and not found.aim.metric.shaken:
+    count, there = len(found.values), found.metric[~np.isnan(found.metric)]
+    same = there.size > 1 and np.allclose(there, there[0], rtol=TREND_TOLERANCE, atol=0.0)
+    if same and not found.aim.metric.shaken:
         sentences.append(
             f"{found.aim.metric.name} is the same at every value tried: {found.field} has no effect on it."
         )
@@ -194,7 +193,7 @@ def doubts(found: Design, excitation: Excitation | None) -> list[str]:
         sentences.append(f"{span} {found.aim.metric.name} could not be computed: {one_line(each.reason)}.")
     if found.caution:
         sentences.append(f"Caution, of the structure as given: {found.caution}")
-    if found.aim.metric.shaken and excitation is not None:
+    if found.aim.metric.shaken:
         sentences.append(
             f"One time history is one sample: at each value, {excitation.around.count} neighbouring motions are "
             f"simulated, {deviations(excitation.around)}. The metric is based on a share of them, which changes in "
@@ -211,11 +210,8 @@ def _not_known(found: Design) -> Iterator[str]:
     shares = [neighbours.unknown for neighbours in found.behind if neighbours is not None]
     some = [share for share in shares if share]
     if some:
-        count = (
-            "so the requirement is not met there"
-            if found.aim.wants_more
-            else "they count as overturning, though they may stand"
-        )
+        count = "they count as overturning, though they may stand"
+        count = "so the requirement is not met there" if found.aim.wants_more else count
         yield (
             f"At {len(some)} of the {len(found.values)} values, up to {percent(max(some))} of the neighbouring motions "
             f"have an unknown outcome, as a joint opens or slides that the model keeps closed: {count}."
@@ -229,9 +225,10 @@ def _nearest(found: Design) -> str:
     there = np.flatnonzero(~np.isnan(found.metric))
     if not there.size:
         return f"{found.aim.metric.name} could not be computed at any of these values."
-    best = there[(found.metric[there].argmin() if found.aim.op[0] == "<" else found.metric[there].argmax())]
-    value, place = _metric(found, int(best)), _with_unit(found, found.values[best])
-    return f"the {'smallest' if found.aim.op[0] == '<' else 'largest'} {found.aim.metric.name} is {value}, at {place}."
+    which, best = ("largest", np.argmax) if found.aim.wants_more else ("smallest", np.argmin)
+    k = int(there[best(found.metric[there])])
+    place = _with_unit(found, found.values[k])
+    return f"the {which} {found.aim.metric.name} is {_metric(found, k)}, at {place}."
 
 
 def _value(value: float) -> str:

@@ -12,14 +12,14 @@ from unicodedata import normalize
 
 from markupsafe import Markup, escape
 
-from rocking_cli.ask.groups import Identity
-from rocking_cli.ask.inputs import SiteLike, yaml_of
+from rocking_cli.ask.inputs import yaml_of
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.documents.figures import dark_figures, inline_svg, template
 from rocking_cli.errors import InputError, Problem, Refused, RockingError
 from rocking_cli.io.files import check_writable, discard, folder, write_files
 from rocking_cli.plotting.language import in_language
 from rocking_cli.plotting.moving import asset
+from rocking_cli.questions.survey.asked import SurveyAsked
 from rocking_cli.questions.survey.picture import draw_map, draw_survey
 from rocking_cli.questions.survey.structure_table import coordinates
 from rocking_cli.questions.survey.study import FailedEntry, Survey, Surveyed, SurveyEntry
@@ -134,27 +134,23 @@ class SheetFolder:
     ----------
     path : Path
         The folder, created if missing.
+    asked : SurveyAsked
+        The survey: its site as it was given, format and heading of the sheets.
     site : SiteFile
-        The site, read from `given`.
-    given : mapping, str or Path
-        The site as it was given.
-    suffix : str
-        Suffix of the sheets, such as ".html".
+        The site.
     language : str
         Language of the sheets.
-    head : Identity
-        What the heading of the sheets names.
-    call : str
-        The command that writes them.
     """
 
     path: Path
+    asked: SurveyAsked
     site: SiteFile
-    given: SiteLike
-    suffix: str
     language: str
-    head: Identity
-    call: str
+
+    @property
+    def suffix(self) -> str:
+        """Suffix of the sheets."""
+        return f".{self.asked.sheet_format}"
 
     def check(self) -> None:
         """Raise `InputError`, before any work, if sheets cannot be written, or the folder has files of others."""
@@ -213,9 +209,10 @@ class SheetFolder:
         structure = Structure(made.weaker_side() or made)
         verification = verify(structure, site)
         source = f"{Path(found.sheet.file).name}, line {entry.line}" if found.sheet is not None else structure.name
-        origin = sheets.SheetOrigin(self.call, File(source, yaml_of(structure.mechanism).encode()))
-        title = self.head.title(origin.command, self.language)
-        content = sheets.sheet_for(verification, site, self.given, [], self.language, title, origin)
+        call = self.asked.origin or "rocking_cli.survey(...)"
+        origin = sheets.SheetOrigin(call, File(source, yaml_of(structure.mechanism).encode()))
+        title = self.asked.title(call, self.language)
+        content = sheets.sheet_for(verification, site, self.asked.site, [], self.language, title, origin)
         return sheets.rendered(content, self.suffix)
 
     def _listed(self) -> set[str]:

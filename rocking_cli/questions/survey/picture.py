@@ -55,15 +55,15 @@ def draw_survey(found: Survey, title: str) -> Figure:
                 markeredgewidth=edge, rasterized=len(p) > MAX_VECTOR_MARKS, **MARKS[look],
             )  # fmt: skip
     first = np.flatnonzero(there)[:MAX_RANKED_LABELS]
-    axes.plot(
-        p[first],
-        uplift[first],
-        linestyle="none",
-        marker="o",
-        color="none",
-        markeredgecolor=style.INK,
-        markersize=7 if len(p) <= MAX_VECTOR_MARKS else 4.5,
-    )
+    size = 7 if len(p) <= MAX_VECTOR_MARKS else 4.5
+    rings: dict[str, Any] = {
+        "linestyle": "none",
+        "marker": "o",
+        "color": "none",
+        "markeredgecolor": style.INK,
+        "markersize": size,
+    }
+    axes.plot(p[first], uplift[first], **rings)
     axes.margins(0.08)
     axes.set_ylim(bottom=0.0)
     x = "frequency parameter p [rad/s]: large structures left, small ones right"
@@ -116,7 +116,7 @@ def draw_map(found: Survey, where: Coordinates, title: str) -> Figure:
     title : str
         Heading.
     """
-    there = where.there
+    there = np.flatnonzero(np.isfinite(where.longitude))  # by rank
     x, y, ranks = where.longitude[there], where.latitude[there], there + 1
     (west, east), (south, north), narrower = _extent(x, y)
     shape = (north - south) / ((east - west) * narrower)
@@ -156,12 +156,10 @@ def _extent(x: Reals, y: Reals) -> tuple[tuple[float, float], tuple[float, float
     least, bordered = LEAST_EXTENT / METRES_PER_DEGREE, 1 + 2 * BORDER_SHARE
     sizes = [max(size, least) * bordered for size in (float(np.ptp(x)) * narrower, float(np.ptp(y)))]
     wide, high = (max(size, SLIMMEST * max(sizes)) for size in sizes)
-    wide /= narrower
-    return (
-        (middle[0] - wide / 2, middle[0] + wide / 2),
-        (middle[1] - high / 2, middle[1] + high / 2),
-        narrower,
+    (west, east), (south, north) = (
+        (at - size / 2, at + size / 2) for at, size in zip(middle, (wide / narrower, high), strict=True)
     )
+    return (west, east), (south, north), narrower
 
 
 def _in_places(axes: Axes, x: Reals, y: Reals, ranks: Sequence[int], narrower: float) -> list[tuple[float, float, str]]:

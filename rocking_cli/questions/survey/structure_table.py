@@ -136,11 +136,6 @@ class StructureTable(Sequence["TableRow"]):
     def __iter__(self) -> Iterator[TableRow]:
         return (TableRow(self, k) for k in range(len(self)))
 
-    @property
-    def short(self) -> list[int]:
-        """Line numbers of rows that have fewer cells than there are headings."""
-        return [row.line for row in self.sheet.rows if row.short]
-
     def text(self, row: Row, name: str) -> str:
         """Return the text of a row's cell, by the heading of its column; empty without such a column."""
         return row.cells[self._special[name]] if name in self._special else ""
@@ -200,20 +195,11 @@ class StructureTable(Sequence["TableRow"]):
         if not {MECHANISM_COLUMN, FILE_COLUMN} & {column.path[0] for column in self.columns}:
             matches = get_close_matches(MECHANISM_COLUMN, [column.path[0].lower() for column in self.columns], n=1)
             similar = [column.heading for column in self.columns if matches and column.path[0].lower() == matches[0]]
-            hint = (
-                f"write {MECHANISM_COLUMN} instead of {similar[0]}"
-                if similar
-                else "add one that names the mechanism of each row"
-            )
-            raise InputError(
-                Problem(
-                    f"the table has neither a column {MECHANISM_COLUMN} nor a column {FILE_COLUMN}",
-                    self.sheet.file,
-                    self.sheet.line,
-                    hint=hint,
-                )
-            )
-        known = {MECHANISM_COLUMN, FILE_COLUMN}.union(*(_fields(cls) for cls in classes))
+            hint = f"write {MECHANISM_COLUMN} instead of {similar[0]}" if similar else ""
+            hint = hint or "add one that names the mechanism of each row"
+            what = f"the table has neither a column {MECHANISM_COLUMN} nor a column {FILE_COLUMN}"
+            raise InputError(Problem(what, self.sheet.file, self.sheet.line, hint=hint))
+        known = {MECHANISM_COLUMN, FILE_COLUMN}.union(*(fields_at(cls, ()) for cls in classes))
         problems = []
         for column in self.columns:
             if classes and column.path[0] not in known:
@@ -283,9 +269,8 @@ class TableRow:
         table, row = self.table, self.row
         document = _RowDocument("structure", table.sheet.file, [], line=row.line, base=table.base_of(row))
         document.separator = table.sheet.separator
-        document.values[()] = document.values[(MECHANISM_COLUMN,)] = yaml.Mark(
-            document.file, 0, row.line - 1, 0, None, 0
-        )
+        mark = yaml.Mark(document.file, 0, row.line - 1, 0, None, 0)
+        document.values[()] = document.values[(MECHANISM_COLUMN,)] = mark
         if row.too_many is not None:
             what = f"has more cells than headings; the first extra cell is {cut(one_line(row.too_many))!r}"
             raise InputError(document.problem(what, None, hint="is a separator in a cell without quotes?"))
@@ -324,28 +309,18 @@ class TableRow:
             if not text or column.path == (MECHANISM_COLUMN,) or (based and column.path == (FILE_COLUMN,)):
                 continue
             try:
-                place = put(data, column.path, None, is_list=partial(_is_list, cls) if cls is not None else _none)
+                place = put(data, column.path, None, is_list=partial(_is_list, cls))
                 value = _value(text, column, _types(cls, place), decimal_comma=table.sheet.decimal_comma)
                 replace_at(data, place, value)
                 document.columns[place] = column.heading
             except InputError as error:
-                document.problems += [
-                    document.problem(one.message, None, column.heading, one.hint) for one in error.problems
-                ]
-
-
-def _none(place: Place) -> bool:
-    return False
+                problems = error.problems
+                document.problems += [document.problem(one.message, None, column.heading, one.hint) for one in problems]
 
 
 @cache
-def _fields(cls: type[Mechanism]) -> frozenset[str]:
-    return frozenset(fields_at(cls, ()))
-
-
-@cache
-def _is_list(cls: type[Mechanism], place: Place) -> bool:
-    return lists_models(cls, place)
+def _is_list(cls: type[Mechanism] | None, place: Place) -> bool:
+    return cls is not None and lists_models(cls, place)
 
 
 @cache
@@ -368,13 +343,8 @@ def _value(text: str, column: FieldColumn, types: frozenset[Any], *, decimal_com
 def _one(text: str, column: FieldColumn, *, decimal_comma: bool) -> Any:
     if decimal_comma and THOUSANDS.fullmatch(text):
         hint = "write numbers without thousands separators"
-        raise InputError(
-            Problem(
-                f"{text} is ambiguous, because other cells use decimal commas: the point may separate decimals or "
-                "thousands",
-                hint=hint,
-            )
-        )
+        what = "is ambiguous, because other cells use decimal commas: the point may separate decimals or thousands"
+        raise InputError(Problem(f"{text} {what}", hint=hint))
     if decimal_comma and DECIMAL_COMMA.fullmatch(text):
         text = text.replace(",", ".")
     if len(text.lstrip("+-")) > MAX_DIGITS and text.lstrip("+-").isdecimal():
@@ -444,11 +414,6 @@ class Coordinates:
     longitude: Reals
     latitude: Reals
     wrong: list[str]
-
-    @property
-    def there(self) -> np.ndarray:
-        """Indices of the structures that have coordinates, by rank."""
-        return np.flatnonzero(np.isfinite(self.longitude))
 
 
 def columns_of(sheet: Spreadsheet | None) -> dict[str, int]:

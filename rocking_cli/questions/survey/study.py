@@ -202,25 +202,24 @@ class FailedEntry:
 Order = Callable[[Surveyed], tuple[float, ...]]
 
 
-def _rounded(value: float) -> float:
-    """Round a number to nine digits, so that equal structures keep their order on every processor."""
-    return float(f"{value:.9g}")
+def _rounded(*values: float) -> tuple[float, ...]:
+    """Round numbers to nine digits, so that equal structures keep their order on every processor; NaN is the last."""
+    return tuple(inf if isnan(value) else float(f"{value:.9g}") for value in values)
 
 
 def _by_lambda(found: Surveyed) -> tuple[float, ...]:
-    return (_rounded(found.uplift),)
+    return _rounded(found.uplift)
 
 
 def _by_response(found: Surveyed) -> tuple[float, ...]:
     assert found.under is not None
-    peak = found.under.peak_ratio
-    moved = -(inf if isnan(peak) else _rounded(peak)), -_rounded(found.under.slip)
-    return (-found.under.at_most, *moved, _rounded(found.uplift))
+    peak, slip = _rounded(found.under.peak_ratio, found.under.slip)
+    return (-found.under.at_most, -peak, -slip, *_rounded(found.uplift))
 
 
 def _by_ratio(found: Surveyed) -> tuple[float, ...]:
     assert found.ratio is not None
-    return (inf if isnan(found.ratio) else _rounded(found.ratio), _rounded(found.uplift))
+    return _rounded(found.ratio, found.uplift)
 
 
 ORDERS: Mapping[str, Order] = {"lambda": _by_lambda, "response": _by_response, "ratio": _by_ratio}
@@ -375,31 +374,28 @@ def _part(
                 moving[k] = ready[k]
         except RockingError as error:
             ready.pop(k, None)
-            rows[k] = FailedEntry(place + 1, entry.line, entry.name, _placed(error, entry))
+            whole = error
+            if isinstance(error, InputError):  # a problem of the mechanics of a structure has no line
+                problems = error.problems
+                whole = InputError(
+                    *(each if each.line is not None else replace(each, line=entry.line) for each in problems)
+                )
+            rows[k] = FailedEntry(place + 1, entry.line, entry.name, whole)
     if motions := shaking.motions:
         under = _under(list(moving.values()), shaking)
         answers = dict(zip(moving, under, strict=True))
+        count = shaking.around.count
+        none = NeighbourShare(0.0, 0.0, count) if count else None
         for k, structure in ready.items():
             one = rows[k]
             assert isinstance(one, Surveyed)
             over = "phi_cr" if all(side.phi_cr is not None for side in structure.statics) else "limit"
-            of = shaking.around.count
-            none = NeighbourShare(0.0, 0.0, of) if of else None
             answer = answers.get(k, SurveyResponse(0.0, 0.0, motions[0].name, over, share=none))
             if isinstance(answer, SolverError):
                 rows[k] = FailedEntry(one.row, entries[first + k].line, one.name, answer)
             else:
                 rows[k] = replace(one, under=answer)
     return rows
-
-
-def _placed(error: RockingError, entry: SurveyEntry) -> RockingError:
-    """Return an error of a structure's mechanics with the line of the structure, if it has no line yet."""
-    if not isinstance(error, InputError):
-        return error
-    return InputError(
-        *(replace(each, line=each.line if each.line is not None else entry.line) for each in error.problems)
-    )
 
 
 def _alone(place: int, entry: SurveyEntry, structure: Structure, site: SiteFile | None) -> Surveyed:

@@ -63,11 +63,10 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
     entries, requested = _entries(asked.structures, watch), asked.ground_motions
     shaken = [each.motion.scaled(each.factor) for each in requested.gather(0.0, watch)] if requested else []
     writer = None
-    if asked.sheets is not None and asked.site is not None and where is not None:
+    if where is not None and asked.sheets is not None:
         from rocking_cli.questions.survey.pages import SheetFolder
 
-        call = asked.origin or "rocking_cli.survey(...)"
-        writer = SheetFolder(asked.sheets, where, asked.site, f".{asked.sheet_format}", language, asked, call)
+        writer = SheetFolder(asked.sheets, asked, where, language)
         writer.check()
     sheet = getattr(entries, "sheet", None)
     if asked.map is not None:
@@ -82,9 +81,11 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
             processes=processes if asked.in_processes else None, progress=_timed(advance, len(entries), watch),
         )  # fmt: skip
     _tell_bad(result, "structures" if sheet is None else sheet.file, watch)
-    _warn_of_sizes(result, watch)
+    doubts = [f"{one_line(each.name)}: {each.doubt}" for each in result.rows if each.doubt is not None]
+    _tell_first(watch.warn, doubts, "{:,} more structures have doubtful sizes: JSON lists them")
     if sheet is not None:  # weights of other structures were noted when they were opened
-        _note_remarks(result, watch)
+        remarks = list(dict.fromkeys(remark for each in result.rows for remark in each.remarks))
+        _tell_first(watch.note, remarks, "further remarks on how fields were read: {:,}")
     if asked.page is not None:
         _write_page(asked.page, result, "structures" if sheet is None else Path(sheet.file).name, say, watch)
     if asked.map is not None:
@@ -126,7 +127,7 @@ def _entries(given: Any, watch: Watcher) -> Sequence[SurveyEntry]:
         raise InputError(Problem("the table has no rows below its headings", table.sheet.file))
     if table.sheet.encoding == "Windows-1252":
         watch.note(f"{table.sheet.file} is not in UTF-8: read as Windows-1252")
-    if short := table.short:
+    if short := [row.line for row in table.sheet.rows if row.short]:
         lines = f"line {short[0]}" if len(short) == 1 else f"{len(short):,} lines, first in line {short[0]}"
         watch.warn(f"{table.sheet.file}: fewer cells than headings in {lines}: missing cells are read as empty")
     return table
@@ -163,34 +164,23 @@ def _timed(advance: Advance, count: int, watch: Watcher) -> Callable[[int], None
     return progress
 
 
-def _warn_of_sizes(found: Survey, watch: Watcher) -> None:
-    doubtful = [each for each in found.rows if each.doubt is not None]
-    for each in doubtful[:MAX_LISTED_DOUBTS]:
-        watch.warn(f"{one_line(each.name)}: {each.doubt}")
-    if len(doubtful) > MAX_LISTED_DOUBTS:
-        watch.warn(f"{len(doubtful) - MAX_LISTED_DOUBTS:,} more structures have doubtful sizes: JSON lists them")
-
-
-def _note_remarks(found: Survey, watch: Watcher) -> None:
-    remarks = list(dict.fromkeys(remark for each in found.rows for remark in each.remarks))
-    for remark in remarks[:MAX_LISTED_DOUBTS]:
-        watch.note(remark)
-    if len(remarks) > MAX_LISTED_DOUBTS:
-        watch.note(f"further remarks on how fields were read: {len(remarks) - MAX_LISTED_DOUBTS:,}")
+def _tell_first(tell: Callable[[str], None], sentences: Sequence[str], others: str) -> None:
+    """Tell the first of some sentences, and the number of the others."""
+    for sentence in sentences[:MAX_LISTED_DOUBTS]:
+        tell(sentence)
+    if len(sentences) > MAX_LISTED_DOUBTS:
+        tell(others.format(len(sentences) - MAX_LISTED_DOUBTS))
 
 
 def _write_map(place: Path, found: Survey, title: str, say: Language, watch: Watcher) -> None:
+    from rocking_cli.plotting.language import in_language
     from rocking_cli.plotting.style import write
     from rocking_cli.questions.survey.picture import draw_map
     from rocking_cli.questions.survey.structure_table import coordinates
 
     where = coordinates(found)
-    for wrong in where.wrong[:MAX_LISTED_DOUBTS]:
-        watch.warn(f"not on the map: {wrong}")
-    if len(where.wrong) > MAX_LISTED_DOUBTS:
-        watch.warn(f"not on the map: {len(where.wrong) - MAX_LISTED_DOUBTS:,} more structures, for the same reason")
-    from rocking_cli.plotting.language import in_language
-
+    others = "not on the map: {:,} more structures, for the same reason"
+    _tell_first(watch.warn, [f"not on the map: {wrong}" for wrong in where.wrong], others)
     write(place, in_language(say, partial(draw_map, found, where, title))())
     watch.note(f"wrote {place}")
 

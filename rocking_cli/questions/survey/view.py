@@ -220,28 +220,25 @@ def _with_decimal(sheet: Spreadsheet, cell: str, decimal: str) -> str:
     return ";".join(known) if len(known) == len(numbers) else cell
 
 
-def has_unknown(found: Survey) -> bool:
-    """Return whether the outcome of any structure is unknown under any motion."""
-    return any(each.under is not None and each.under.unknown for each in found.rows)
-
-
 def table(found: Survey, top: int, longest: int | None = MAX_NAME_LENGTH, say: Language = ENGLISH) -> Table:
     """Return a table of the first rows, with names of at most `longest` characters."""
-    empty = set(OF_MOTIONS) if found.around.count else {"unknown"} if not has_unknown(found) else set[str]()
+    under, rows = [each.under for each in found.rows if each.under is not None], _ranked(found)
+    known = not any(each.unknown for each in under)
+    empty = set(OF_MOTIONS) if found.around.count else {"unknown"} if known else set[str]()
     if all(each.side is None for each in found.rows):
         empty.add("side")
-    if not any(each.under is not None and each.under.slip for each in found.rows):
+    if not any(each.slip for each in under):
         empty.add("slip")
-    if all(_not_counted(row) is None for row in _ranked(found)):
+    if all(_not_counted(row) is None for row in rows):
         empty.add("not_counted")
     if found.by == "ratio" and longest is not None:
         empty |= LEFT_TO_PAGES
     empty |= {name for name in found.units if all(each.numbers[name] is None for each in found.rows)}
     shown = [column for column in _columns(found) if column.key not in empty]
-    if any(caution_of(row) is not None for row in _ranked(found)):
+    if any(caution_of(row) is not None for row in rows):
         mark = partial(caution_of, say=say) if longest is None else lambda row: caution_of(row) and "yes"
         shown.append(only_shown("caution", mark, text=True))
-    whole = table_of(title(found), shown, _ranked(found, stop=top))
+    whole = table_of(title(found), shown, rows[:top])
     if longest is None:
         return whole
     return replace(whole, rows=[[rank, cut(name, longest), *cells] for rank, name, *cells in whole.rows])
@@ -361,8 +358,7 @@ def sentences(found: Survey, top: int | None = None, say: Language = ENGLISH) ->
             "Caution: formulas of the code have not been checked against the printed code yet: have them checked "
             "before you rely on a verdict. `rocking verify` names them."
         )
-    without = [each for each in rows if each.no_block is not None]
-    if without:
+    if without := [each for each in rows if each.no_block is not None]:
         lines.append(
             f"{_named(without)}: no equivalent single block, so only lambda is given and not p; `rocking equiv` gives "
             "the reason."
@@ -384,15 +380,13 @@ def _of_neighbours(found: Survey) -> Iterator[str]:
 
 def _not_known(rows: Sequence[Surveyed]) -> Iterator[str]:
     """Yield sentences on the structures with unknown outcomes, and on those with unchecked joints."""
-    doubtful = [each for each in rows if each.under is not None and each.under.unknown]
-    if doubtful:
+    if doubtful := [each for each in rows if each.under is not None and each.under.unknown]:
         yield (
             f"{_named(doubtful)}: the outcome under at least one motion is unknown, as a joint opens or slides that "
             "the model keeps closed: it may overturn. The peak leaves such motions out. Next: `rocking respond` names "
             "the joint and the time."
         )
-    unchecked = [each for each in rows if each.under is not None and each.under.unknown is None]
-    if unchecked:
+    if unchecked := [each for each in rows if each.under is not None and each.under.unknown is None]:
         yield f"Caution: the joints of {_named(unchecked)} are not checked: it is not known which of them stay closed."
 
 

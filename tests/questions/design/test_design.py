@@ -146,9 +146,9 @@ class TestShares:
         found = rk.design(BLOCK, "width=0.5:1.2", "overturned <= 50%", self.SINE, neighbours=20, points=8)
         assert found.monotone
         excitation = Excitation([rk.parse_pulse(self.SINE).sampled()], (1,), Neighbourhood(20))
-        metric, block = METRICS["overturned"].value, Structure(rk.load_structure(BLOCK))
+        metric, block = METRICS["overturned"].at, Structure(rk.load_structure(BLOCK))
 
-        at, below = (metric(block.varied("width", found.value - off), excitation) for off in (0.0, 2e-3))
+        at, below = (metric(block.varied("width", found.value - off), excitation)[0] for off in (0.0, 2e-3))
         assert at <= 0.5 < below
 
     def test_the_worse_of_motions_and_polarities_counts(self):
