@@ -56,14 +56,7 @@ def draw_survey(found: Survey, title: str) -> Figure:
             )  # fmt: skip
     first = np.flatnonzero(there)[:MAX_RANKED_LABELS]
     size = 7 if len(p) <= MAX_VECTOR_MARKS else 4.5
-    rings: dict[str, Any] = {
-        "linestyle": "none",
-        "marker": "o",
-        "color": "none",
-        "markeredgecolor": style.INK,
-        "markersize": size,
-    }
-    axes.plot(p[first], uplift[first], **rings)
+    axes.plot(p[first], uplift[first], "o", color="none", markeredgecolor=style.INK, markersize=size)
     axes.margins(0.08)
     axes.set_ylim(bottom=0.0)
     x = "frequency parameter p [rad/s]: large structures left, small ones right"

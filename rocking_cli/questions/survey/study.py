@@ -374,13 +374,11 @@ def _part(
                 moving[k] = ready[k]
         except RockingError as error:
             ready.pop(k, None)
-            whole = error
+            placed: RockingError = error
             if isinstance(error, InputError):  # a problem of the mechanics of a structure has no line
-                problems = error.problems
-                whole = InputError(
-                    *(each if each.line is not None else replace(each, line=entry.line) for each in problems)
-                )
-            rows[k] = FailedEntry(place + 1, entry.line, entry.name, whole)
+                problems, line = error.problems, entry.line
+                placed = InputError(*(replace(each, line=line) if each.line is None else each for each in problems))
+            rows[k] = FailedEntry(place + 1, entry.line, entry.name, placed)
     if motions := shaking.motions:
         under = _under(list(moving.values()), shaking)
         answers = dict(zip(moving, under, strict=True))
