@@ -360,9 +360,9 @@ def _taken_otherwise(
 ) -> Sequence[LeftOut]:
     """Return the ties of the structure that the code does not count in full, at either end of the range, each once."""
     reasons: dict[LeftOut, None] = {}
-    for value in span if site is not None else ():
+    for value in span:
         try:
-            left_out = verify(structure.varied(field, value), site).left_out
+            left_out = [] if site is None else verify(structure.varied(field, value), site).left_out
             reasons |= dict.fromkeys(each for each in left_out if each.what == "tie")
         except (InputError, MechanismError):  # the reason is listed in `not_built`
             continue

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from heapq import merge
 from itertools import chain, count, pairwise
@@ -71,9 +71,9 @@ class Function:
     factor: float
 
     @property
-    def moments(self) -> list[tuple[float, float]]:
+    def moments(self) -> list[list[float]]:
         """Mean and standard deviation of the intensity of each curve, in OpenQuake's unit."""
-        return [(self.factor * mean, self.factor * deviation) for mean, deviation in map(moments, self.curves)]
+        return [[self.factor * each for each in moments(curve)] for curve in self.curves]
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -129,10 +129,7 @@ def chosen(curves: Sequence[Fragility]) -> OpenQuakeModel:
         If no curve can be written; the message has the reasons.
     """
     reasons = [why_not(each) for each in curves]
-    fit: dict[Key, dict[Limit, Fragility]] = {}
-    for each, reason in zip(curves, reasons, strict=True):
-        if not reason:
-            fit.setdefault((each.structure, each.measure), {})[each.limit] = each
+    fit = _grouped(each for each, reason in zip(curves, reasons, strict=True) if not reason)
     limits = _most_curves([frozenset(by_limit) for by_limit in fit.values()])
     held = {key: by_limit for key, by_limit in fit.items() if limits <= by_limit.keys()}
     for k, each in enumerate(curves):
@@ -151,6 +148,14 @@ def chosen(curves: Sequence[Fragility]) -> OpenQuakeModel:
     order = by_severity(limits, next(iter(held.values())))
     functions = list(_functions(held, order))
     return OpenQuakeModel([limit_id(each) for each in order], functions, left_out, list(doubts(functions)))
+
+
+def _grouped(curves: Iterable[Fragility]) -> dict[Key, dict[Limit, Fragility]]:
+    """Return curves by structure and measure, and then by limit state."""
+    groups: dict[Key, dict[Limit, Fragility]] = {}
+    for each in curves:
+        groups.setdefault((each.structure, each.measure), {})[each.limit] = each
+    return groups
 
 
 def why_not(found: Fragility, program: str = "OpenQuake") -> str:
@@ -230,13 +235,10 @@ def _name(found: Fragility) -> str:
 
 def limit_id(limit: Limit) -> str:
     """Return a limit state as an identifier of OpenQuake: letters, digits and _, starting with a letter."""
-    if isinstance(limit, float):
-        return f"ratio_{_digits(limit)}"
-    return limit if metres(limit) is None else f"top_{_digits(float(limit.split()[0]))}_mm"
-
-
-def _digits(value: float) -> str:
-    return np.format_float_positional(value, trim="-").replace(".", "_")
+    if isinstance(limit, str) and metres(limit) is None:
+        return limit
+    value, form = (limit, "ratio_{}") if isinstance(limit, float) else (float(limit.split()[0]), "top_{}_mm")
+    return form.format(np.format_float_positional(value, trim="-").replace(".", "_"))
 
 
 def identifier(text: str, taken: Collection[str] = ()) -> str:
@@ -284,13 +286,15 @@ def components(curves: Sequence[Fragility]) -> tuple[list[Function], list[str]]:
     InputError
         If no curve can be written; the message has the reasons.
     """
-    held: dict[tuple[str, str], dict[Limit, Fragility]] = {}
-    left_out: dict[str, None] = {}  # in order, each once
-    for each in curves:
-        if reason := _why_not(each):
-            left_out[reason] = None
-        else:
-            held.setdefault((each.structure, each.measure), {})[each.limit] = each
+    over = "curves for pelicun are over PGA, PGV or Sa of 5 % damping"
+    reasons = [
+        f"all curves over {each.measure}: {over}"
+        if demand(each.measure) is None
+        else why_not(each, "the table for pelicun")
+        for each in curves
+    ]
+    held = _grouped(each for each, reason in zip(curves, reasons, strict=True) if not reason)
+    left_out = dict.fromkeys(filter(None, reasons))  # in order, each once
     several = len({measure for _, measure in held}) > 1
     rows: list[Function] = []
     for (structure, measure), by_limit in held.items():
@@ -306,13 +310,6 @@ def components(curves: Sequence[Fragility]) -> tuple[list[Function], list[str]]:
     if not rows:
         raise InputError("pelicun accepts none of the curves: " + "; ".join(left_out or ["the study has no curves"]))
     return rows, list(left_out)
-
-
-def _why_not(curve: Fragility) -> str:
-    """Return the reason why pelicun cannot hold a curve; empty if it can."""
-    if demand(curve.measure) is None:
-        return f"all curves over {curve.measure}: curves for pelicun are over PGA, PGV or Sa of 5 % damping"
-    return why_not(curve, "the table for pelicun")
 
 
 def table(rows: Sequence[Function]) -> Columns:

@@ -61,6 +61,12 @@ class HazardCurve:
     intensity: Reals
     annual_rate: Reals
 
+    @property
+    def first_slope(self) -> float:
+        """The exponent k of the power law between the first two points."""
+        (x0, x1), (rate0, rate1) = self.intensity[:2], self.annual_rate[:2]
+        return float(np.log(rate0 / rate1) / np.log(x1 / x0))
+
     def rate(self, x: Reals) -> Reals:
         """Return the annual rate of exceeding the intensity x [1/year]; NaN outside the points."""
         logs = np.log(self.intensity), np.log(self.annual_rate)
@@ -215,13 +221,11 @@ def _integrals(hazard: HazardCurve, lines: Callable[[Reals], Reals], jumps: Sequ
     """Return the integral of P |d rate| between the ends of the hazard curve, for each of several P [1/year]."""
     nodes, weights = np.polynomial.legendre.leggauss(NODES_PER_PIECE)
     logs = np.log(hazard.intensity)
-    ends = np.concatenate(
-        [
-            np.linspace(start, stop, max(1, math.ceil((stop - start) / PIECE_WIDTH)), endpoint=False)
-            for start, stop in pairwise(logs)
-        ]
-        + [logs[-1:]]
-    )
+    pieces = [
+        np.linspace(start, stop, max(1, math.ceil((stop - start) / PIECE_WIDTH)), endpoint=False)
+        for start, stop in pairwise(logs)
+    ]
+    ends = np.concatenate([*pieces, logs[-1:]])
     ends = np.union1d(ends, [x for x in np.log(jumps) if logs[0] < x < logs[-1]])  # P is smooth between these ends
     half, middle = np.diff(ends)[:, None] / 2, (ends[:-1, None] + ends[1:, None]) / 2
     at = middle + half * nodes
@@ -231,18 +235,12 @@ def _integrals(hazard: HazardCurve, lines: Callable[[Reals], Reals], jumps: Sequ
     return [float((half * weights * p * k * hazard.rate(x)).sum()) for p in lines(x)]
 
 
-def _first_slope(hazard: HazardCurve) -> float:
-    """Return the exponent k of the power law between the first two points."""
-    (x0, x1), (rate0, rate1) = hazard.intensity[:2], hazard.annual_rate[:2]
-    return float(np.log(rate0 / rate1) / np.log(x1 / x0))
-
-
 def _beyond(hazard: HazardCurve, at: float) -> float:
     """Return the rate that a step below the first point adds, if the first power law continues [1/year]."""
     if at >= hazard.intensity[0]:
         return 0.0
     first = float(hazard.annual_rate[0])
-    return first * float((hazard.intensity[0] / at) ** _first_slope(hazard)) - first
+    return first * float((hazard.intensity[0] / at) ** hazard.first_slope) - first
 
 
 def _below(curve: FragilityCurve, hazard: HazardCurve) -> float:
@@ -254,7 +252,7 @@ def _below(curve: FragilityCurve, hazard: HazardCurve) -> float:
         return _beyond(hazard, curve.step.value)
     from scipy.special import log_ndtr, ndtr
 
-    k = _first_slope(hazard)
+    k = hazard.first_slope
     if k == 0:
         return 0.0
     if curve.dispersion is None or curve.median is None:

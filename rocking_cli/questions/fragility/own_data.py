@@ -131,8 +131,12 @@ def fit_fragility(asked: FitFragilityAsked, watch: Watcher) -> Answer[FittedFrag
     there = x > 0
     if not there.any():
         raise InputError(Problem("has no value above zero, so that none has a logarithm", field=named("intensity")))
-    fitted = _fit(x[there], known[there], record[there], asked, label)
-    fitted = replace(fitted, left_out=int((~there).sum()))
+    left_out, x, known, record = int((~there).sum()), x[there], known[there], record[there]
+    unknown = np.isnan(known)  # counted as exceeding, and in the lower edge as not exceeding
+    fitted = replace(_fit_edge(x, (known == 1) | unknown, record, asked, label), left_out=left_out)
+    if unknown.any():
+        lower = _fit_edge(x, known == 1, record, asked, label)
+        fitted = replace(fitted, unknown=int(unknown.sum()), lower=lower)
     return Answer("fit_fragility", fitted, _view(fitted), partial(_columns, fitted, label), partial(_figure, fitted))
 
 
@@ -141,11 +145,8 @@ def _check_index(*given: Any) -> None:
     indices = [each.index for each in given if hasattr(each, "index") and hasattr(each.index, "equals")]
     if any(not each.equals(indices[0]) for each in indices[1:]):
         hint = "take all of them from one frame, or give arrays"
-        what = (
-            f"{named('intensity')}, {named('exceeded')} and {named('clusters')} have different rows, or "
-            "rows in a different order"
-        )
-        raise InputError(Problem(what, hint=hint))
+        names = f"{named('intensity')}, {named('exceeded')} and {named('clusters')}"
+        raise InputError(Problem(f"{names} have different rows, or rows in a different order", hint=hint))
 
 
 def _numbers(name: str, values: ArrayLike) -> Reals:
@@ -175,9 +176,8 @@ def _check(x: Reals, known: Reals, label: str) -> None:
         problems.append(Problem(f"must be 1, 0 or NaN, got {known[k]:g}", field=f"`exceeded[{k}]`", hint=hint))
     (name,) = parted({label: x})[0]
     if name.removeprefix("lower_") in COLUMNS:
-        problems.append(
-            Problem(f"must not be {label!r}, the name of another column of the frame", field=named("label"))
-        )
+        what = f"must not be {label!r}, the name of another column of the frame"
+        problems.append(Problem(what, field=named("label")))
     if problems:
         raise InputError(*problems)
 
@@ -198,15 +198,6 @@ def _codes(clusters: Any, count: int) -> Integers:
         hint = "give each independent run its own name"
         raise InputError(Problem("is missing", field=f"`clusters[{missing[0]}]`", hint=hint))
     return np.array([numbers[name] for name in names], dtype=np.int64)
-
-
-def _fit(x: Reals, known: Reals, record: Integers, asked: FitFragilityAsked, label: str) -> FittedFragility:
-    """Fit the curve of runs with positive intensities, and if runs are unknown also its lower edge."""
-    unknown = np.isnan(known)
-    upper = _fit_edge(x, (known == 1) | unknown, record, asked, label)
-    if not unknown.any():
-        return upper
-    return replace(upper, unknown=int(unknown.sum()), lower=_fit_edge(x, known == 1, record, asked, label))
 
 
 def _fit_edge(x: Reals, exceeds: Bools, record: Integers, asked: FitFragilityAsked, label: str) -> FittedFragility:
@@ -252,7 +243,11 @@ def _view(found: FittedFragility) -> View:
     """Show a fitted curve: its numbers with both intervals, and what there is to doubt."""
     percent = f"{100 * found.curve.confidence:g} %"
     fits = [("", found)] if found.lower is None or not found.is_band else [("upper", found), ("lower", found.lower)]
-    rows = [row for edge, each in fits for row in _rows(edge, each)]
+    rows: list[Named] = []
+    for edge, each in fits:
+        before = f"{edge}, " if edge else ""
+        rows.append((f"{before}by the likelihood", each))
+        rows += [(f"{before}robust", each.robustly)] if each.robust.fit is not None else []
     parts: list[Table | str] = [f"{_in_short(found)}."]
     if any(each.curve.kind != "none" for _, each in fits):
         columns = [only_shown("interval", lambda row: row[0], text=True), *fit_columns(percent, "dispersion")[1:]]
@@ -265,14 +260,6 @@ def _view(found: FittedFragility) -> View:
     parts += warnings_of([found.curve])
     # What a study has in common is a record; here it may be anything.
     return View(_data(found), [each.replace("record", "cluster") if isinstance(each, str) else each for each in parts])
-
-
-def _rows(edge: str, each: FittedFragility) -> Iterator[Named]:
-    """Yield the rows of a curve, or an edge of a band: with the interval by the likelihood, and with the robust one."""
-    before = f"{edge}, " if edge else ""
-    yield f"{before}by the likelihood", each
-    if each.robust.fit is not None:
-        yield f"{before}robust", each.robustly
 
 
 def _in_short(found: FittedFragility) -> str:

@@ -206,6 +206,11 @@ class Plan:
         usable = np.array([[each.reason is None] for each in self.records])
         return np.asarray(usable & ((at == EVERY_LEVEL) | (at == levels)))
 
+    @cached_property
+    def mechanics(self) -> Reals:
+        """Parameters p, lambda and gravity of the samples."""
+        return np.array([(each.p, each.lambda_, each.gravity) for each in self.trials])
+
     @property
     def total(self) -> int:
         """Number of runs that can be simulated: without samples and records that cannot be used."""
@@ -229,14 +234,10 @@ class Plan:
 
     def reference(self, sample: Integers) -> Reference:
         """Return the reference values of dimensionless measures for samples given by their indices."""
-        columns = self._of_samples[sample]
+        columns = self.mechanics[sample]
         p = np.where(columns[:, 0] > 0, columns[:, 0], np.nan)
         steps = self.measured.of_sample.get("v_imp", np.full(len(self.trials), nan))
         return Reference(p, columns[:, 1], columns[:, 2], steps[sample])
-
-    @cached_property
-    def _of_samples(self) -> Reals:
-        return np.array([(each.p, each.lambda_, each.gravity) for each in self.trials])
 
     def of_records(self, measure: str) -> Reals:
         """Return a measure of the unscaled motions, shape (records,); NaN where it is not known."""

@@ -128,7 +128,6 @@ class Study:
     def description(self) -> dict[str, Any]:
         """Return everything that decides the runs, except the content of the records, as plain data."""
         asked = self.definition
-        floor = {} if asked.floor is None else {"floor": str(Floor.parse(asked.floor))}
         return {
             "structures": {
                 structure.name: {
@@ -141,7 +140,7 @@ class Study:
             "order of structures": [structure.name for structure in self.structures],
             "records": [_described(source) for source in self.sources],
             **({"processing": asked.processing} if asked.processing else {}),
-            **floor,
+            **({} if asked.floor is None else {"floor": str(Floor.parse(asked.floor))}),
             "levels": {
                 "measure": asked.levels.measure,
                 "values": asked.levels.levels(),
@@ -401,9 +400,8 @@ class _Files:
         assert entry.file is not None
         if (motion := self.made_motions.get(entry.file)) is not None:
             if as_written(entry).keys() - OF_MOTIONS:
-                self.wrong(
-                    place, "units, dt, channel, vertical and the like describe a file, and this is a ground motion"
-                )
+                what = "units, dt, channel, vertical and the like describe a file, and this is a ground motion"
+                self.wrong(place, what)
                 return []
             return [Source("", entry, entry.reading(self.folder, common), motion.name, motion=motion)]
         files = self.select(self.within(*place, "file"), entry.file)
@@ -414,8 +412,9 @@ class _Files:
             self.wrong((*place, "vertical"), what)
             return []
         if others and max(len(files), len(others)) > 1:
-            what = "a second component belongs to one record: give each record an entry of its own"
-            self.wrong((*place, "with"), what)
+            self.wrong(
+                (*place, "with"), "a second component belongs to one record: give each record an entry of its own"
+            )
             return []
         if others:  # a pattern is replaced by the only file that it matches
             entry = entry.model_copy(update={"other": self.shown(others[0])})

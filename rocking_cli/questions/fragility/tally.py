@@ -205,10 +205,6 @@ class Cells:
         summed = table.sum(axis=0, keepdims=True) if self.together else table
         return np.asarray(summed[self.place])
 
-    def exceeding(self, limit: Limit) -> Integers:
-        """Return the number of runs of each cell that exceed a limit state."""
-        return self.of(self.tally.exceeding[limit])
-
     def intensities(self, measure: str) -> Reals:
         """Return the intensity of each cell in a measure."""
         return self._intensities(measure, *self.place)
@@ -244,7 +240,7 @@ class Cells:
         if pair is None or str(parsed.base) != PGA or parsed.power != 1:
             return None
         usable = [k for k in self.tally.samples if plan.trials[k].reason is None]
-        accelerations = np.array([plan.trials[k].lambda_ * plan.trials[k].gravity for k in usable])
+        accelerations = plan.mechanics[usable, 1] * plan.mechanics[usable, 2]
         # If the accelerations differ, the uplift depends on a property that varies, and there is no single onset.
         if np.ptp(accelerations) > INTENSITY_TOLERANCE * accelerations.max():
             return None
@@ -253,7 +249,7 @@ class Cells:
         one, other = pair
         exact = one is not None and other is not None and isclose(one, other, rel_tol=INTENSITY_TOLERANCE)
         if UPLIFT in self.tally.exceeding:
-            x, uplifted = self.intensities(measure), self.exceeding(UPLIFT)
+            x, uplifted = self.intensities(measure), self.of(self.tally.exceeding[UPLIFT])
             early = (x < at * (1 - INTENSITY_TOLERANCE)) & (uplifted > 0)
             late = (x > at * (1 + INTENSITY_TOLERANCE)) & (uplifted < self.runs)
             if early.any() or (exact and late.any()):
@@ -368,7 +364,7 @@ def known_to_exceed(found: RunRows, limit: Limit, reach: Reals | None, phi_cr: R
     with np.errstate(invalid="ignore"):
         could = found.peaks >= bound * (1 - ROTATION_TOLERANCE)
         surely = could.any(axis=1) & ((bound > reach) | ~could).all(axis=1)
-    return np.asarray(np.where(found.unknown, surely | _slides_past(found, limit), known))
+    return np.asarray(np.where(found.unknown, surely | (found.slip > (metres(limit) or np.inf)), known))
 
 
 def _exceeds(found: RunRows, limit: Limit, reach: Reals | None, ratio: Reals) -> Bools:
@@ -378,16 +374,11 @@ def _exceeds(found: RunRows, limit: Limit, reach: Reals | None, ratio: Reals) ->
     overturned = found.overturned
     if reach is not None:
         # A NaN, of a run that overturned, exceeds nothing.
-        return np.asarray(overturned | (found.peaks > reach).any(axis=1) | _slides_past(found, limit))
+        return np.asarray(overturned | (found.peaks > reach).any(axis=1) | (found.slip > (metres(limit) or np.inf)))
     if isinstance(limit, str):
         return overturned if limit == OVERTURNING else found.uplifts
     with np.errstate(invalid="ignore"):
         return np.asarray(overturned | (ratio > limit))
-
-
-def _slides_past(found: RunRows, limit: Limit) -> Bools:
-    """Return which runs slide past a displacement without uplift; none past another limit state."""
-    return np.asarray(found.slip > (metres(limit) or np.inf))
 
 
 def peaks(store: Store, plan: Plan, structure: str) -> Reals:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from contextlib import AbstractContextManager, ExitStack
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -21,13 +21,9 @@ from rocking_cli.studies.engines import engine_of
 from rocking_cli.views.engines import cost_in_words
 
 if TYPE_CHECKING:
-    from distributed import Client
-
     from rocking_cli.questions.fragility.campaign import Left, Prepared
     from rocking_cli.questions.fragility.plan import Plan
     from rocking_cli.questions.fragility.study import Study
-    from rocking_cli.questions.fragility.workers import Workers
-    from rocking_cli.studies.engines import EngineName
 
 MAX_NAMED_PROBLEMS = 10  # bad records or samples that a message names
 
@@ -97,9 +93,8 @@ def fragility(asked: FragilityAsked, watch: Watcher) -> Answer[Any]:
         if (place := asked.place) is None:
             temporary = TemporaryDirectory(prefix="rocking-", ignore_cleanup_errors=True)
             place = Path(stack.enter_context(temporary)) / "study.runs"
-        workers = workers_of(asked.jobs, asked.scheduler, loaded.definition.engine)
         try:
-            prepared = _bring_up_to_date(loaded, place, workers, watch, asked)
+            prepared = _bring_up_to_date(loaded, place, watch, asked)
         except (KeyboardInterrupt, Refused) as stopped:
             if asked.place is not None:
                 stopped.add_note(CONTINUE_HINT)
@@ -111,17 +106,6 @@ def fragility(asked: FragilityAsked, watch: Watcher) -> Answer[Any]:
             answer = replace(answer, view=answer.view.plus(lambda: {"store": None}))
         finalize(answer.plan, stack.pop_all().close)  # a temporary store lasts as long as the answer and its copies
     return answer
-
-
-def workers_of(
-    jobs: int | None, scheduler: str | Client | None, engine: EngineName = "exact"
-) -> AbstractContextManager[Workers]:
-    """Return the workers that simulate the runs: a cluster, or threads or processes of this machine."""
-    from rocking_cli.questions.fragility import workers
-
-    if scheduler is None:
-        return workers.threads(jobs) if engine == "exact" or jobs == 1 else workers.processes(jobs)
-    return workers.cluster(scheduler)
 
 
 def _planned(study: Study, watch: Watcher) -> Answer[Plan]:
@@ -138,12 +122,16 @@ def _planned(study: Study, watch: Watcher) -> Answer[Plan]:
     return Answer("plan", plan, planned(study, plan), lambda: columns, figure)
 
 
-def _bring_up_to_date(
-    study: Study, place: Path, workers: AbstractContextManager[Workers], watch: Watcher, asked: FragilityAsked
-) -> Prepared:  # fmt: skip
+def _bring_up_to_date(study: Study, place: Path, watch: Watcher, asked: FragilityAsked) -> Prepared:
     """Simulate the runs that the store lacks; on a restart simulate all, and keep the old store."""
     from rocking_cli.questions.fragility import campaign
     from rocking_cli.questions.fragility.store import Store
+    from rocking_cli.questions.fragility.workers import cluster, processes, threads
+
+    if asked.scheduler is not None:
+        workers = cluster(asked.scheduler)
+    else:
+        workers = (threads if study.definition.engine == "exact" or asked.jobs == 1 else processes)(asked.jobs)
 
     def damaged(file: str) -> None:
         watch.warn(f"damaged, and computed again: {file}")
@@ -158,8 +146,7 @@ def _bring_up_to_date(
             prepared = campaign.prepare(study, store, advance, rank_measures=asked.rank_measures)
         plan, engines = prepared.plan, campaign.SIMULATED_BY[study.definition.engine]
         _leave_out(plan, watch)
-        doubtful = [record.name for record in plan.records if record.doubts]
-        if doubtful:
+        if doubtful := [record.name for record in plan.records if record.doubts]:
             named = ", ".join(doubtful[:3]) + (" ..." if len(doubtful) > 3 else "")
             count = "1 record is" if len(doubtful) == 1 else f"{len(doubtful)} records are"
             watch.warn(f"{count} doubtful; run `rocking record FILE` to see why: {named}")

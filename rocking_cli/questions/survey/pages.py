@@ -205,6 +205,7 @@ class SheetFolder:
         )
 
     def _sheet(self, found: Survey, entry: SurveyEntry) -> bytes:
+        assert self.asked.site is not None
         site, made = of_each(self.site), entry.make()
         structure = Structure(made.weaker_side() or made)
         verification = verify(structure, site)
