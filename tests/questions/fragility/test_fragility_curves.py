@@ -366,20 +366,6 @@ class TestUnits:
         np.testing.assert_allclose(other.probability(c * fine), one.probability(fine), atol=1e-9)
         np.testing.assert_allclose(other.band(c * fine), one.band(fine), atol=1e-8)
 
-    @pytest.mark.parametrize(("each", "c"), [(1, 1e-3), (3, 3.7)])
-    def test_nor_do_those_of_capacities(self, c, each):
-        lower, upper = brackets(np.random.default_rng(63), 60)
-        record = np.arange(60) // each
-        one = fit_capacities(lower, upper, record, levels=LEVELS)
-        other = fit_capacities(
-            rounded(c * lower, 64), rounded(c * upper, 65), record, levels=rounded(c * LEVELS, 66)
-        )  # fmt: skip
-        for name, factor in (("median", c), ("dispersion", 1.0)):
-            before, after = getattr(one, name), getattr(other, name)
-            expected = [factor * value for value in (before.value, before.low, before.high)]
-            assert [after.value, after.low, after.high] == pytest.approx(expected, rel=1e-8)
-        assert other.goodness.p_value == pytest.approx(one.goodness.p_value, rel=1e-7)
-
     def test_a_level_that_is_rounded_otherwise_for_each_record_is_one(self):
         # None exceeds at 0.1, one half at 0.2, all at 0.3: over each float of 0.2 by itself these are two steps.
         x, record = np.tile([0.1, 0.2, 0.3], 12), np.repeat(np.arange(12), 3)
@@ -401,19 +387,6 @@ class TestCovariance:
         exceeded = np.concatenate([[0, 0, 1, 0, 1, 1], np.arange(8) % 2]).astype(bool)
         curve = fit_curve(Runs(x, exceeded, np.concatenate([np.zeros(6, dtype=int), 1 + np.arange(8)])))
         assert (curve.kind, curve.why, curve.fit) == ("none", NO_ERRORS, None)
-
-    @pytest.mark.parametrize("gap", [1e-12, 3e-9, 1e-3])
-    def test_no_overlap_however_narrow_gives_an_error_of_no_number(self, gap):
-        random = np.random.default_rng(74)
-        for _ in range(6):
-            middle = 1 + gap * np.arange(6)
-            x = 1e3 * np.concatenate([np.full(12, 0.5), np.repeat(middle, 2), np.full(12, 2.0)])
-            exceeded = np.concatenate([np.zeros(12), random.random(12) < 0.5, np.ones(12)]).astype(bool)
-            curve = fit_curve(Runs(x, exceeded, np.arange(36) % 6))
-            assert curve.kind in ("lognormal", "step") or gap < 1e-6
-            assert not np.isnan(curve.band(np.array([700.0, 1000.0, 1500.0]))).any() or curve.kind == "none"
-            if curve.fit is not None:
-                assert np.linalg.eigvalsh(curve.fit.covariance)[0] >= -1e-9 * np.trace(curve.fit.covariance)
 
 
 class TestFewRecords:

@@ -3,7 +3,6 @@
 import errno
 import json
 import shutil
-import sys
 
 import numpy as np
 import pytest
@@ -47,16 +46,6 @@ def test_numpy_and_pandas_read_it(place):
     pga = np.array([each["pga"] for each in study["records"]])[record]
     assert runs["scale"].to_numpy() == pytest.approx(levels / pga)
     assert {study["samples"][k]["structure"] for k in sample} == {"valley bridge", "uncertain"}
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="links need rights there")
-def test_restart_goes_through_a_link(sound, place, tmp_path):
-    (tmp_path / "elsewhere").mkdir()
-    target = place.rename(tmp_path / "elsewhere" / "far.runs")
-    place.symlink_to(target)
-    command("fragility", sound.study, "--store", place, "--restart", code=0)
-    assert place.is_symlink() and place.resolve() == target
-    assert names(target.parent) == ["far.before.runs", "far.runs"]
 
 
 def test_ended_before_the_first_run_it_has_said_where_the_old_store_is(sound, place, monkeypatch):

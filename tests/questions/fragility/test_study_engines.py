@@ -179,7 +179,6 @@ def test_structures_are_simulated_with_free_blocks_one_by_one(tmp_path, monkeypa
     [
         ("auto", "model: linear2", ":9:8: model: linear2 cannot be combined with `engine: auto`"),
         ("blocks", "restitution: [0.9]", ":9:14: restitution has no effect with `engine: blocks`"),
-        ("blocks", "opening: 0.005", ":9:10: opening has no effect with `engine: blocks`"),
         ("auto", "", ":6:15: limit_states: sliding cannot be combined with `engine: auto`"),
         ("blocks", "samples: 2", ":1:53: structures[1].vary.restitution has no effect with `engine: blocks`"),
     ],
@@ -194,13 +193,6 @@ def test_fields_without_meaning_are_refused_at_their_place(engine, field, said, 
     with pytest.raises(InputError) as refused:
         load_study(write(tmp_path, text))
     assert f"study.yaml{said}" in str(refused.value).replace(str(tmp_path) + os.sep, "")
-
-
-def test_with_both_engines_runs_of_one_degree_of_freedom_use_restitution_and_opening(tmp_path, monkeypatch):
-    monkeypatch.setattr(scene, "find_spec", lambda name: None)
-    with pytest.raises(InputError) as refused:
-        load_study(write(tmp_path, STUDY + "restitution: [0.8, 0.9]\n"))
-    assert len(refused.value.problems) == 1  # MuJoCo
 
 
 def test_a_structure_that_free_blocks_cannot_have_is_refused_by_name(tmp_path):

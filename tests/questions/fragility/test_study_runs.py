@@ -3,16 +3,12 @@
 import json
 import shutil
 from concurrent.futures import Executor, ThreadPoolExecutor
-from dataclasses import replace
 from threading import Barrier
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
 
-from rocking_cli import load_structure, parse_pulse, respond
-from rocking_cli.core import equivalent_block
-from rocking_cli.dynamics.exact import exact_response
+from rocking_cli import respond
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.processing.reading import Reading
@@ -178,14 +174,7 @@ class TestChanges:
 
     ENTRY = "{file: a.csv, units: m, from: displacement, with: b.csv, azimuth: 30, processing: [lowpass 20]}"
 
-    @pytest.mark.parametrize(
-        ("old", "new", "said"),
-        [
-            ("lowpass 20", "lowpass 15", "processing[1] was lowpass 20, is now lowpass 15"),
-            ("units: m,", "units: mm,", "units was m, is now mm"),
-        ],
-    )
-    def test_a_changed_reading_is_named(self, tmp_path, old, new, said):
+    def test_a_changed_reading_is_named(self, tmp_path):
         """What a store has of an entry is read back, and checked against the present entry."""
         t = 0.01 * np.arange(401)
         for name in "ab":
@@ -195,10 +184,9 @@ class TestChanges:
         path, place = write(tmp_path, text), tmp_path / "study.runs"
         carry_out(path, place)
         carry_out(path, place)
-        path.write_text(text.replace(old, new), encoding="utf-8")
-        with pytest.raises(InputError) as caught:
+        path.write_text(text.replace("lowpass 20", "lowpass 15"), encoding="utf-8")
+        with pytest.raises(InputError, match=r"processing.1. was lowpass 20, is now lowpass 15"):
             carry_out(path, place)
-        assert said in str(caught.value) and "`restart`" in str(caught.value)
 
     @pytest.mark.parametrize(("old", "new"), [("lowpass: 20", "lowpass: 10"), ("factor: 2", "factor: 4")])
     def test_what_an_entry_makes_of_a_list_is_part_of_the_study(self, tmp_path, old, new):
@@ -285,50 +273,6 @@ def test_the_rate_is_there_though_other_measures_are_asked_for(tmp_path):
     assert any(rates["PGA"]) and not any(rates["PGV"])
 
 
-MORE = """\
-measures: [PGA, PGA/(g lambda), PGV, p PGV/(g lambda)]
-bivariate: [[PGA, PGV]]
-method:"""
-
-
-def both_as_text_and_json(path):
-    """A study's results, and its curves and surfaces as JSON."""
-    place, text = path.with_suffix(".runs"), command("fragility", path).stdout
-    assert command("results", place).stdout == text
-    found = run_json("results", place)
-    return text, found["curves"], found["surfaces"]
-
-
-def alike(data, factor=1.0):
-    """The same but for rounding, numbers times a factor."""
-    return {
-        key: pytest.approx(factor * each, rel=1e-6) if isinstance(each, float) else each for key, each in data.items()
-    }
-
-
-@pytest.mark.parametrize(("method", "of"), [("stripes", "PGV"), ("ida", "PGA/(g lambda)")])
-def test_measures_in_proportion_give_one_curve(tmp_path, method, of):
-    text = STUDY.replace("measure: PGA/(g lambda), least: 0.8, most: 4", f"measure: {of}, least: 0.1, most: 3.3")
-    text = text.replace("method: stripes", f"method: {method}").replace("method:", MORE)
-    _, curves, _ = both_as_text_and_json(write(tmp_path, text, count=9))
-    found = {(each["limit_state"], each["measure"]): each for each in curves if each["structure"] == "valley bridge"}
-    block = equivalent_block(load_structure(EXAMPLES / "frame.yaml"))
-    weaker = min((block.positive, block.negative), key=lambda each: each.lambda_)
-    factors = {"PGA": 1 / weaker.lambda_, "PGV": weaker.p / (STANDARD_GRAVITY * weaker.lambda_)}
-    fitted = 0
-    for limit in ("uplift", 0.25, "overturning"):
-        for one, other in (("PGA", "PGA/(g lambda)"), ("PGV", "p PGV/(g lambda)")):
-            plain, relative = found[limit, one], found[limit, other]
-            assert relative["kind"] == plain["kind"]
-            if plain["median"] is not None:
-                assert relative["median"] == alike(plain["median"], factors[one])
-            if plain["dispersion"] is not None:
-                fitted += 1
-                assert relative["dispersion"] == alike(plain["dispersion"])
-                assert relative["goodness"] == alike(plain["goodness"])
-    assert fitted
-
-
 def test_runs_are_grouped_by_level_where_it_decides_their_intensity(whole):
     kept, rows, asked = Store.reading(whole[2]), every_run(whole[2]), asking(whole, USUAL_MEASURES)
     plan = kept.plan
@@ -379,33 +323,6 @@ def test_a_file_that_changes_before_it_is_read_again_stops_the_study(tmp_path, m
         run(prepared, hands, "exact", prepared.store.chunks, print)
 
 
-def test_a_linear_block_under_one_pulse_shape_overturns_at_a_step(tmp_path):
-    block = load_structure(EXAMPLES / "block.yaml")
-    equivalence = equivalent_block(block)
-    unit = block.gravity * equivalence.positive.lambda_
-    period = 2 * np.pi / (3 * equivalence.positive.p)  # omega/p = 3: one step below a = 3.4
-    pulse = parse_pulse(f"sine:1g:{period!r}s")
-
-    def overturns(a):
-        shaking = replace(pulse, amplitude=a * unit)
-        return exact_response(equivalence, shaking, kappa=2, gravity=block.gravity).overturned
-
-    boundary = brentq(lambda a: 1.0 if overturns(a) else -1.0, 1.01, 3.0, xtol=1e-9)
-    path = tmp_path / "step.yaml"
-    for method in ("stripes", "ida"):
-        path.write_text(
-            f"structures: [{EXAMPLES / 'block.yaml'}]\nrecords: [{{pulse: 'sine:1g:{period!r}s'}}]\nmethod: {method}\n"
-            "levels: {measure: PGA/(g lambda), least: 0.805, most: 3.005, count: 1101}\nmodel: linear2\n",
-            encoding="utf-8",
-        )
-        result = command("fragility", path, "--json", "--restart")
-        uplift, overturning = json.loads(result.stdout)["curves"]
-        assert uplift["kind"] == overturning["kind"] == "step"
-        assert list(uplift["median"].values()) == pytest.approx([1.0] * 3, rel=1e-9)  # known without runs
-        step = overturning["median"]
-        assert step["low"] < boundary < step["high"] and step["high"] - step["low"] == pytest.approx(0.002)
-
-
 def test_incremental_analysis_takes_the_first_exceedance(tmp_path):
     path = write(tmp_path, STUDY.replace("method: stripes", "method: ida"), count=6)
     carry_out(path, tmp_path / "study.runs")
@@ -437,24 +354,6 @@ def test_check_counts_what_is_left_out_apart(tmp_path):
     assert (data["records"], len(data["left_out"]), data["runs"]) == (3, 1, 150)
     words = command("fragility", path, "--check", code=5).stdout.split("\n")
     assert [line.split() for line in words if "records" in line] == [["records", "3"], ["records", "left", "out", "1"]]
-
-
-def test_samples_that_differ_in_their_restitution_only(tmp_path):
-    text = STUDY.replace("      width: {normal: {mean: 0.7, deviation: 0.05}}\n", "").replace("both", "1")
-    prepared = carry_out(write(tmp_path, text, count=3), tmp_path / "study.runs")
-    study, plan = prepared.study, prepared.plan
-    rows = every_run(tmp_path / "study.runs")
-    assert len(set(rows.eta[9:].tolist())) == 4 and np.isnan(rows.eta[:9]).all()
-    motion = study.sources[1].read()
-    for k in range(9, plan.total):
-        sample, record, _, _, _ = (int(place) for place in np.unravel_index(k, plan.shape))
-        if record == 1:
-            history = respond(study.samples[sample].mechanism, motion.scaled(rows.scale[k]), model=("nonlinear",))
-            assert rows.eta[k] == study.samples[sample].mechanism.restitution
-            peak = history["nonlinear"].peak_ratio
-            assert (
-                np.isnan(rows.peak_ratio[k]) if np.isnan(peak) else rows.peak_ratio[k] == pytest.approx(peak, rel=1e-9)
-            )
 
 
 def test_the_checksum_of_a_pulse_is_of_all_its_digits_and_of_how_it_is_sampled(monkeypatch):

@@ -1,11 +1,9 @@
 """What a survey writes: tables for spreadsheets of any locale with the columns that came in, maps, and sheets."""
 
 import csv
-import errno
 import hashlib
 import json
 import re
-from dataclasses import replace
 from itertools import combinations
 from math import cos, radians
 from pathlib import Path
@@ -16,16 +14,12 @@ from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
 import rocking_cli as rk
-from rocking_cli.errors import InputError, Refused
-from rocking_cli.io import files
+from rocking_cli.errors import InputError
 from rocking_cli.plotting import style
 from rocking_cli.questions.survey import pages as survey_sheets
 from rocking_cli.questions.survey.pages import LIST_FILE, MAX_STEM_LENGTH, file_names
 from rocking_cli.questions.survey.picture import METRES_PER_DEGREE, draw_map, draw_survey, scale_length
 from rocking_cli.questions.survey.structure_table import coordinates
-from rocking_cli.questions.survey.view import columns as written
-from rocking_cli.verification import Code
-from rocking_cli.verification.code import codes
 from rocking_cli.views.conclusion import limit_in_words
 from tests.cli.test_cli import run, some
 from tests.core.test_ties_of_steel import facade
@@ -136,19 +130,6 @@ class TestTables:
         }  # fmt: skip
         assert "cells" not in rk.survey([rk.Block(width=0.5, height=2.0)]).to_dict()["rows"][0]
 
-    def test_a_column_by_the_name_of_a_result_is_told_from_it(self):
-        columns = {"mechanism": ["block"], "width": ["0.5"], "height": ["2"], "eta": ["?"], "": ["x"]}
-        answer = rk.survey({name if name != "eta" else "#eta": cell for name, cell in columns.items()})
-        assert list(answer.columns())[-4:] == ["width", "height", "#eta", "column 5"]
-        sheet = replace(answer.sheet, headings=("mechanism", "eta"))
-        frame = written(replace(answer.result, sheet=sheet))
-        assert isinstance(frame["eta"][0], float) and frame["given eta"] == ["0.5"]
-
-    def test_rows_keep_their_own_cells_among_rows_that_cannot_be_used(self):
-        Path("b.csv").write_text("mechanism,name,width,height,#id\nblock,x,-1,2,1\nblock,y,1,2,2\nblock,z,0.5,2,3\n")
-        some("survey", "b.csv", "--out", "o.csv")
-        assert [(row["name"], row["#id"]) for row in cells("o.csv")] == [("z", "3"), ("y", "2")]
-
 
 class TestNumbersOfTheCode:
     def test_zeta_of_the_onset_by_hand(self):
@@ -225,12 +206,6 @@ class TestNumbersOfTheCode:
         marks = {row[1]: row[-1] for row in table.rows}
         assert table.columns[-1] == "caution"
         assert [marks[name] for name in ("t20", "t40", "loose")] == ["yes", "yes", "-"]
-
-    def test_a_code_without_numbers_gives_none(self, monkeypatch):
-        monkeypatch.setattr(type(codes()["NTC2018"]), "row_numbers", Code.row_numbers)
-        answer = rk.survey([rk.Block(width=0.5, height=2.0)], site=SITE)
-        assert not {"zeta_E", "T0", "T0 [s]"} & (set(answer.columns()) | set(answer.to_dict()["rows"][0]))
-        assert "zeta_E" not in str(answer.view.parts)
 
 
 def places(longitude, latitude, **more):
@@ -332,12 +307,6 @@ class TestMaps:
         with pytest.raises(InputError, match="the structures have no latitude"):
             rk.survey({"mechanism": ["block"], "width": [1], "height": [2], "lon": [3]}, map="m.png")
 
-    def test_a_page_has_the_map_if_there_are_coordinates(self):
-        rk.survey(places([13.1, 13.2], [42.1, 42.2]), page="with.html")
-        rk.survey("t.csv", page="without.html")
-        has = ["Map of the structures" in Path(f"{each}.html").read_text("utf-8") for each in ("with", "without")]
-        assert has == [True, False]
-
 
 HOSTILE = {
     "../x": "x", "a/b": "a-b", "A B": "A-B-2", "..\\..\\c:": "c", "NUL": "NUL_", "com1.txt": "com1.txt_",
@@ -413,27 +382,6 @@ class TestSheets:
         said = self.sheet("--out", "o.csv", code=2).stderr
         assert "this file is in the folder of the sheets, and rocking did not write it, or not as it is now" in said
         assert {each.name: each.read_bytes() for each in Path("sh").iterdir()} == before and not Path("o.csv").exists()
-
-    @pytest.mark.rest
-    def test_after_a_full_disk_the_next_survey_goes_on(self, monkeypatch):
-        self.table("a", "b")
-        rk.survey("s.csv", site="site.yaml", sheets="sh")
-        self.table("a", "b", "c", width="0.6")
-        whole = files._put
-
-        def write(path, fill):
-            if path.name == "b.html":
-                raise OSError(errno.ENOSPC, "no room")
-            whole(path, fill)
-
-        monkeypatch.setattr(files, "_put", write)
-        with pytest.raises(Refused, match="no room"):
-            rk.survey("s.csv", site="site.yaml", sheets="sh")
-        shown = {each.name for each in Path("sh").iterdir() if each.name[0] != "."}
-        assert shown == {"a.html", "b.html", LIST_FILE}
-        monkeypatch.setattr(files, "_put", whole)
-        rk.survey("s.csv", site="site.yaml", sheets="sh")
-        assert {each.name for each in Path("sh").iterdir()} == {"a.html", "b.html", "c.html", LIST_FILE}
 
     def test_without_what_makes_sheets_the_survey_is_printed_and_it_is_said_once(self, monkeypatch):
         self.table("a", "b")
