@@ -363,11 +363,9 @@ def _step_or_none(bare: FragilityCurve, below: Reals, above: Reals, few: str) ->
     low, high = float(below.max()), float(above.min())
     if low < high:
         step = Estimate(float(np.sqrt(low * high)), low, high)
-        why = (
-            f"no run exceeds the limit up to {low:.4g} and all runs do from {high:.4g}, so the dispersion cannot be "
-            "estimated"
-        )
-        return replace(bare, kind="step", step=step, why=f"{why}; add levels between these two")
+        why = f"no run exceeds the limit up to {low:.4g} and all runs do from {high:.4g}"
+        why += ", so the dispersion cannot be estimated; add levels between these two"
+        return replace(bare, kind="step", step=step, why=why)
     under, over = below[below < low], above[above > low]
     if not (under.size and over.size):
         side = "none exceeds below" if under.size else "all exceed above"
@@ -509,9 +507,8 @@ def fit_surface(
         return replace(bare, why=f"{bare.runs} runs cannot tell {design.shape[1]} coefficients")
     correlation = float(np.corrcoef(design[:, 1], design[:, 2])[0, 1])
     if 1 - abs(correlation) < MAX_PARALLEL_DISTANCE:
-        return replace(
-            bare, why="the two measures are in proportion (of their logarithms): take a curve over either one"
-        )
+        why = "the two measures are in proportion (of their logarithms): take a curve over either one"
+        return replace(bare, why=why)
     standard, some, none = standardised(design)[0], beyond > 0, beyond < number  # cells of mixed outcomes are in both
     rows = np.concatenate([standard[some], standard[none]])
     if separable(rows, np.arange(len(rows)) < some.sum()):
@@ -519,9 +516,8 @@ def fit_surface(
         return replace(bare, why=f"{why}: the likelihood has no maximum, more runs near the line are needed")
     if few := too_few(seen, 3):
         return replace(bare, why=few)
-    fits = [
-        fit_outcomes("probit", design[:, columns], seen, beyond, confidence) for columns in ([0, 1, 2], [0, 1], [0, 2])
-    ]
+    terms = [0, 1, 2], [0, 1], [0, 2]
+    fits = [fit_outcomes("probit", design[:, columns], seen, beyond, confidence) for columns in terms]
     if refused := [fit for fit in fits if isinstance(fit, str)]:
         return replace(bare, why=refused[0])
     both, first, second = (fit for fit in fits if isinstance(fit, Fit))
@@ -529,8 +525,7 @@ def fit_surface(
         return replace(bare, why="no surface increases: fewer runs exceed the limit as either measure increases")
     p_values = (_gain(both, second, 1, seen.repeated), _gain(both, first, 2, seen.repeated))
     aic = {"both": both.aic, "first": first.aic, "second": second.aic}
-    why = _words(both, p_values, aic)
-    return replace(bare, kind="lognormal", why=why, fit=both, aic=aic, p_values=p_values)
+    return replace(bare, kind="lognormal", why=_words(both, p_values, aic), fit=both, aic=aic, p_values=p_values)
 
 
 def _plane(x1: Reals, x2: Reals) -> Reals:
@@ -558,8 +553,6 @@ def _words(both: Fit, p_values: tuple[float, float], aic: dict[str, float]) -> s
         better = "first" if (aic["first"] <= aic["second"] if alike else p_values[0] < MAX_P_VALUE_TO_ADD) else "second"
         clauses.append(f"a curve over the {better} measure alone is sufficient")
     falls = [name for name, c in zip(("first", "second"), both.coefficients[1:], strict=True) if c < 0]
-    clauses += [
-        f"at a fixed value of the other measure, fewer runs exceed the limit as the {name} one increases"
-        for name in falls
-    ]
+    fewer = "at a fixed value of the other measure, fewer runs exceed the limit as the"
+    clauses += [f"{fewer} {name} one increases" for name in falls]
     return "; ".join(clauses)

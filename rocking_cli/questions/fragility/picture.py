@@ -104,11 +104,8 @@ def draw_curves(drawn: Mapping[str, Fragility], across: str, title: str, *, of: 
             without = {"linestyle": "none"} if curve.kind == "none" else {"marker": "none"} if curve.is_exact else {}
             words = _unbroken(f"{words}: {_in_words(curve, unit, stop)}")
             handles.append(Line2D([], [], label=words, **look | without | {"markerfacecolor": style.PAPER}))
-    observed = {k: each for k, each in enumerate(drawn.values()) if not each.curve.is_exact}
-    merged = [
-        _draw_observed(axes, each, style.distinct(k), place, len(observed))
-        for place, (k, each) in enumerate(observed.items())
-    ]
+    observed = [(each, style.distinct(k)) for k, each in enumerate(drawn.values()) if not each.curve.is_exact]
+    merged = [_draw_observed(axes, *each, place, len(observed)) for place, each in enumerate(observed)]
     if len(named) > 1:
         name_curves(axes, named)
     if shares := [f"{name} {names.percent(each.share or 0.0)}" for name, each in drawn.items() if each.is_band]:
@@ -307,16 +304,13 @@ def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figur
 def _contours(axes: Axes, surface: Surface, across: Reals, up: Reals, color: str, which: str) -> Line2D:
     """Draw the contours of a surface, and return its entry in the legend."""
     if surface.kind == "none":
-        return Line2D(
-            [], [], linestyle="none", label=_unbroken(f"no surface{which and f' {which}'}: {style.plain(surface.why)}")
-        )
+        return legend_words(f"no surface{which and f' {which}'}: {style.plain(surface.why)}")
     drawn = axes.contour(
         across, up, surface.probability(*np.meshgrid(across, up)), levels=CONTOUR_LEVELS, colors=color,
         linewidths=[0.8, 0.8, 1.8, 0.8, 0.8], linestyles=["--", "--", "-", "--", "--"],
     )  # fmt: skip
-    for name in axes.clabel(
-        drawn, manual=_label_places(drawn, across, up), fmt=lambda level: f"{100 * level:g} %", fontsize=style.TICK
-    ):
+    places = _label_places(drawn, across, up)
+    for name in axes.clabel(drawn, manual=places, fmt=lambda level: f"{100 * level:g} %", fontsize=style.TICK):
         name.set_bbox({"facecolor": style.PAPER, "edgecolor": "none", "alpha": 0.8, "pad": 0.5})
         name.set_zorder(6)  # names are drawn above the marks
     return Line2D([], [], color=color, label=f"probability of exceedance{which and f', {which}'}")

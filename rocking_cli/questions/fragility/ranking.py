@@ -274,10 +274,7 @@ COLUMNS: tuple[Column[Ranked], ...] = (
     Column("proficiency", of("proficiency"), head="proficiency", form=rounded(3)),
     Column("sufficient", of("sufficient")),
     Column("p_values", lambda each: dict(each.trends)),
-    Column(
-        "dispersions",
-        lambda each: [{"limit_state": limit, "dispersion": value} for limit, value in each.dispersions.items()],
-    ),
+    Column("dispersions", lambda each: [{"limit_state": k, "dispersion": x} for k, x in each.dispersions.items()]),
     Column("runs", of("runs")),
     Column("records", of("records")),
 )

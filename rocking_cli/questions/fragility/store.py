@@ -211,9 +211,8 @@ class Store:
         """
         store = cls(path)
         if not store.path.parent.is_dir():
-            raise InputError(
-                Problem(f"the folder {store.path.parent} does not exist", str(path), hint="create it first")
-            )
+            what = f"the folder {store.path.parent} does not exist"
+            raise InputError(Problem(what, str(path), hint="create it first"))
         store._say, store._state, store._mends = say, _state(store.path / STUDY), True
         store._refuse_foreign()
         store._anew = anew and store.path.is_dir() and any(store.path.iterdir())
@@ -406,9 +405,8 @@ class Store:
                 whole += len(self.chunk(k))
             except DamagedFile as error:
                 bad.append(str(error))
-        named = "; ".join(bad[:MAX_NAMED_FILES]) + (
-            f"; and {len(bad) - MAX_NAMED_FILES} more" if bad[MAX_NAMED_FILES:] else ""
-        )
+        more = [f"and {len(bad) - MAX_NAMED_FILES} more"] if bad[MAX_NAMED_FILES:] else []
+        named = "; ".join([*bad[:MAX_NAMED_FILES], *more])
         what = f"the store is damaged: {named}; {whole:,} of {self.plan.total:,} runs are whole"
         hint = "run the study again: it computes the runs of these files again"
         return InputError(Problem(what, str(self.path), hint=hint))
@@ -427,9 +425,11 @@ class Store:
     def _of_runs(self) -> dict[str, Reals]:
         """Return the measures that differ from run to run. Raises `DamagedFile`."""
         names = self.facts["measured"]["runs"]
+        if not names:
+            return {}
         try:
-            arrays = self._arrays(MEASURED) if names else {}
-            if names and str(arrays["study"]) != self._key(self._usable()):
+            arrays = self._arrays(MEASURED)
+            if str(arrays["study"]) != self._key(self._usable()):
                 raise ValueError("it is of another study")
             return {name: arrays[name] for name in names}
         except (OSError, KeyError, ValueError) as error:

@@ -54,29 +54,22 @@ def planned(study: Study, plan: Plan) -> View:
         "levels": levels,
         "polarity": polarities,
     }
-    rows = [(name, f"{count}") for name, count in counts.items()]
-    for name, usable in (("records", records), ("samples", samples)):
-        if not all(usable):
-            place = list(counts).index(name) + 1
-            rows.insert(place, (f"{name} left out", f"{len(usable) - sum(usable)}"))
+    rows: list[tuple[str, str]] = []
+    lacking = {"records": records.count(False), "samples": samples.count(False)}
+    for name, count in counts.items():
+        rows.append((name, f"{count}"))
+        rows += [(f"{name} left out", f"{lacking[name]}")] if lacking.get(name) else []
     table = table_of(study.name, PLANNED, [*rows, ("runs", f"{plan.total:,}")])
     return View({"study": study.name, **counts, "runs": plan.total, "left_out": left_out(plan)}, [table])
 
 
 def shared(place: Path, share: tuple[int, int], done: Left) -> View:
     """Show how many runs of a part of a study are in its store."""
-    data = {
-        "store": str(place),
-        "share": f"{share[0]}/{share[1]}",
-        "runs": done.total,
-        "finished": done.finished,
-        "failed": done.failed,
-    }
+    part, counts = f"{share[0]}/{share[1]}", {"runs": done.total, "finished": done.finished, "failed": done.failed}
     failed = f", {done.failed:,} of them could not be simulated" if done.failed else ""
-    sentence = f"Part {data['share']}: {done.finished:,} of {done.total:,} runs are in {place}{failed}."
-    return View(
-        data, [sentence, f"When all parts are finished, `rocking results {quote(str(place))}` fits the curves."]
-    )
+    sentence = f"Part {part}: {done.finished:,} of {done.total:,} runs are in {place}{failed}."
+    later = f"When all parts are finished, `rocking results {quote(str(place))}` fits the curves."
+    return View({"store": str(place), "share": part, **counts}, [sentence, later])
 
 
 def left_out(plan: Plan) -> list[str]:
@@ -163,15 +156,13 @@ def view(
         title = f"{structure}: P = Phi(c0 + c1 ln({one}) + c2 ln({other}))"
         parts += fits_in_words(title, plane_columns(interval), f"{one} or {other}", those)
     blockless = without_block(plan, definition.engine)
-    parts += [*blockless, *out_of_reach(store, plan, definition)]
+    parts += [*blockless, *(unreached := out_of_reach(store, plan, definition))]
     parts += (notes := list(_notes(used, definition.engine)))
     parts += (nowhere := _nowhere(plan, definition, curves) if finished else [])
     data = {
         "study": name,
         "store": str(store.path),
-        "hash": store.facts["hash"],
-        "versions": store.facts["versions"],
-        "libraries": store.facts["libraries"],
+        **{key: store.facts[key] for key in ("hash", "versions", "libraries")},
         "seed": store.facts["description"]["seed"],
         "runs": plan.total,
         "finished": finished,
@@ -193,7 +184,7 @@ def view(
         "notes": notes,
         "left_out": left_out(plan),
         "without_block": blockless,
-        "out_of_reach": out_of_reach(store, plan, definition),
+        "out_of_reach": unreached,
         "without_curve": nowhere,
         "records": _records(plan),
         "curves": [_data(each, fit_columns(), {"measure": each.measure}) for each in curves],
@@ -222,10 +213,8 @@ def sets_in_words(plan: Plan) -> list[str]:
         sentences.append(f"Each level has its own set of records: {each} per level, {used}.")
     if sets.weighted:
         low, high = float(sets.weight.min()), float(sets.weight.max())
-        sentences.append(
-            f"Records have weights from {low:.3g} to {high:.3g}. Intervals, bands and tests treat each record as one "
-            "cluster."
-        )
+        clusters = "Intervals, bands and tests treat each record as one cluster."
+        sentences.append(f"Records have weights from {low:.3g} to {high:.3g}. {clusters}")
     return sentences
 
 

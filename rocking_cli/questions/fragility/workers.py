@@ -212,9 +212,8 @@ def _check_workers(client: distributed.Client, address: str) -> None:
     try:
         client.wait_for_workers(1, timeout=SCHEDULER_TIMEOUT)
     except TimeoutError:
-        raise ClusterError(
-            f"the scheduler at {address} has no workers: start one with `dask worker {address}`"
-        ) from None
+        what = f"the scheduler at {address} has no workers: start one with `dask worker {address}`"
+        raise ClusterError(what) from None
     for worker, version in client.run(_version, on_error="return").items():
         if version != __version__:
             sentence = f"has rocking-cli {version}" if isinstance(version, str) else f"cannot run it ({version})"
