@@ -215,7 +215,7 @@ def _curves_over(
             curve = fit_curve(seen, confidence=confidence)
         elif parse_measure(measure).power == 0:
             why = f"{measure} is the same at every level, so that no record has a capacity in it"
-            curve = FragilityCurve("none", why, confidence, seen.runs, seen.exceedances, records=seen.records)
+            curve = FragilityCurve("none", why, confidence, seen.runs, seen.exceedances, records=seen.counts.records)
         else:
             tried = np.unique(x) if level is not None else None
             lower, upper, of = cells.capacities(ladders, limit, measure)
@@ -259,24 +259,16 @@ def _undecided(tally: Tally, limit: Limit, cells: Cells, ladders: Ladders | None
 def surfaces(tally: Tally, structure: str, definition: Definition) -> Iterator[Bivariate]:
     """Yield the surfaces of a structure: each limit state over each two measures that are both positive in some run."""
     for one, other in definition.bivariate:
-        yield from _surfaces_over((one, other), tally, structure, definition)
-
-
-def _surfaces_over(
-    measures: tuple[str, str], tally: Tally, structure: str, definition: Definition
-) -> Iterator[Bivariate]:
-    """Yield the surface of each limit state over two measures."""
-    cells = tally.over(*measures)
-    there = np.all([cells.intensities(measure) > 0 for measure in measures], axis=0)
-    left_out, cells = int(cells.runs[~there].sum()), cells.only(there)
-    x1, x2 = (cells.intensities(measure) for measure in measures)
-    (record, weight), confidence = tally.clusters(cells.record), definition.confidence
-
-    def fit(counts: Tally, limit: Limit) -> Bivariate:
-        exceeding = cells.of(counts.exceeding[limit])
-        surface = fit_surface(x1, x2, exceeding, record, runs=cells.runs, confidence=confidence, weight=weight)
-        return Bivariate(structure, limit, measures, x1, x2, cells.runs, exceeding, surface, left_out=left_out)
-
-    for limit in definition.limit_states if there.any() else []:
-        unknown = _undecided(tally, limit, cells)
-        yield replace(fit(tally, limit), unknown=unknown, lower=fit(tally.least, limit) if unknown else None)
+        cells = tally.over(one, other)
+        there = np.all([cells.intensities(measure) > 0 for measure in (one, other)], axis=0)
+        left_out, cells = int(cells.runs[~there].sum()), cells.only(there)
+        x = cells.intensities(one), cells.intensities(other)
+        record, weight = tally.clusters(cells.record)
+        for limit in definition.limit_states if there.any() else []:
+            unknown, fits = _undecided(tally, limit, cells), []
+            for counts in (tally, tally.least) if unknown else (tally,):
+                beyond = cells.of(counts.exceeding[limit])
+                confidence, runs = definition.confidence, cells.runs
+                surface = fit_surface(*x, beyond, record, runs=runs, confidence=confidence, weight=weight)
+                fits.append(Bivariate(structure, limit, (one, other), *x, runs, beyond, surface, left_out=left_out))
+            yield replace(fits[0], unknown=unknown, lower=fits[1] if unknown else None)

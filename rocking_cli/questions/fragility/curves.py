@@ -242,7 +242,7 @@ def fit_curve(observations: Observations, *, confidence: float = 0.95, only: Kin
         than 0.01 from the lognormal curve and be rejected with it.
     """
     seen = observations
-    bare = FragilityCurve("none", "", confidence, seen.runs, seen.exceedances, records=seen.records)
+    bare = FragilityCurve("none", "", confidence, seen.runs, seen.exceedances, records=seen.counts.records)
     if why := _all_alike(bare):
         return replace(bare, why=why)
     if (special := _step_or_none(bare, *seen.sides, too_few(seen.counts, 2))) is not None:

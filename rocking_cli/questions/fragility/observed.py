@@ -95,16 +95,6 @@ class Observations:
         """Number of runs that exceed the limit state."""
         return self.whole[1] if self.whole is not None else int(self.exceeding.sum())
 
-    @property
-    def records(self) -> int:
-        """Number of different records."""
-        return self.counts.records
-
-    @property
-    def repeated(self) -> bool:
-        """Whether a record has several runs."""
-        return self.counts.repeated
-
     @cached_property
     def sides(self) -> tuple[Reals, Reals]:
         """The intensities of runs that do not exceed the limit state, and those of runs that do."""
@@ -130,8 +120,9 @@ class Observations:
         """Return the group of each run that `of` counted, from its intensity, record and level."""
         place = np.searchsorted(self.x, one_of_each(x if level is None else _of_levels(x, level)))
         who = np.unique(record, return_inverse=True)[1]
-        cells = self.counts.term * self.records + self.counts.record  # cells are sorted, so that they can be searched
-        return np.asarray(self.group[np.searchsorted(cells, place * self.records + who)])
+        counts = self.counts
+        cells = counts.term * counts.records + counts.record  # cells are sorted, so that they can be searched
+        return np.asarray(self.group[np.searchsorted(cells, place * counts.records + who)])
 
     def parts(self, confidence: float, joined: Integers | None = None) -> ObservedParts:
         """Return the share of the runs that exceeds, in each group.
@@ -156,19 +147,19 @@ class Observations:
         """
         from scipy.special import ndtri, stdtrit
 
-        number = self.counts.number
+        number, repeated = self.counts.number, self.counts.repeated
         group = self.group if joined is None else joined[self.group]
         runs = np.bincount(group, number)
         exceeding = np.bincount(group, self.exceeding)
-        keys, which = np.unique(group * self.records + self.counts.record, return_inverse=True)
-        records = np.bincount(keys // self.records)
-        trials = runs**2 / np.bincount(keys // self.records, weights=np.bincount(which, number) ** 2)
+        keys, which = np.unique(group * self.counts.records + self.counts.record, return_inverse=True)
+        records = np.bincount(keys // self.counts.records)
+        trials = runs**2 / np.bincount(keys // self.counts.records, weights=np.bincount(which, number) ** 2)
         level = (1 + confidence) / 2
         several = np.maximum(records - 1, 1)
-        quantile = stdtrit(several, level) if self.repeated else np.full(runs.size, ndtri(level))
+        quantile = stdtrit(several, level) if repeated else np.full(runs.size, ndtri(level))
         part = exceeding / runs
         low, high = wilson(part, trials, quantile)
-        alone = self.repeated & (records == 1)
+        alone = repeated & (records == 1)
         return ObservedParts(
             np.bincount(group, self.x[self.counts.term] * number) / runs,
             part,
@@ -285,11 +276,12 @@ def goodness_of_runs(fit: Fit, design: Reals, seen: Observations) -> Goodness:
     stripes of independent runs at m intensities, V has m - 2 eigenvalues of one, and the test is the usual one with m -
     2 degrees of freedom.
     """
-    place, record, number = seen.counts.term, seen.counts.record, seen.counts.number
+    counts = seen.counts
+    place, record, number = counts.term, counts.record, counts.number
     eta = np.clip(design @ fit.coefficients, -MAX_ETA, MAX_ETA)[place]
     p, q, slope = cumulative(fit.link, eta), cumulative(fit.link, -eta), density(fit.link, eta)
     name = "Pearson chi-square over the intensities" if seen.stripes else "Hosmer-Lemeshow"
-    table = np.zeros((int(seen.group.max()) + 1, seen.records))
+    table = np.zeros((int(seen.group.max()) + 1, counts.records))
     np.add.at(table, (seen.group, record), number)
     part = totals(seen.group, number * p) / totals(seen.group, number)
     groups, count = _merged(table, part)
@@ -303,10 +295,10 @@ def goodness_of_runs(fit: Fit, design: Reals, seen: Observations) -> Goodness:
     information = (rows * (number * slope * weight)[:, None]).T @ rows
     by_coefficients = _sums(group, number * slope, rows, count)
     through = by_coefficients @ np.linalg.inv(information)
-    if seen.repeated:
-        adds = np.zeros((seen.records, count))
+    if counts.repeated:
+        adds = np.zeros((counts.records, count))
         np.add.at(adds, (record, group), rest)
-        adds -= _sums(record, weight * rest, rows, seen.records) @ through.T
+        adds -= _sums(record, weight * rest, rows, counts.records) @ through.T
         covariance = adds.T @ adds
         name += BY_RECORD
     else:

@@ -206,15 +206,15 @@ def _fit_edge(x: Reals, exceeds: Bools, record: Integers, asked: FitFragilityAsk
     A study takes the second if records repeat, and the first otherwise. Its choice tests the curve here.
     """
     seen = Observations.of(x, exceeds, record)
-    if seen.repeated:
+    if seen.counts.repeated:
         other = Observations.of(x, exceeds, np.arange(x.size))
     else:  # equal weights change no estimate, but have each run left out
         other = Observations.of(x, exceeds, record, weight=np.ones(x.size))
     study, beside = (fit_curve(each, confidence=asked.confidence, only=asked.curve) for each in (seen, other))
-    beside = replace(beside, records=seen.records)
+    beside = replace(beside, records=seen.counts.records)
     if study.fit is not None and beside.fit is not None:
         beside = replace(beside, why=study.why, goodness=study.goodness)
-    plain, robust = (beside, study) if seen.repeated else (study, beside)
+    plain, robust = (beside, study) if seen.counts.repeated else (study, beside)
     return FittedFragility("", EXCEEDANCE, label, seen, plain, None, robust=robust)
 
 

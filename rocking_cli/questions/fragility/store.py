@@ -119,16 +119,6 @@ class RunRows:
         return np.isfinite(self.uplift_time)
 
     @property
-    def slides(self) -> Bools:
-        """Whether a joint of each run slides."""
-        return np.isfinite(self.slide_time)
-
-    @property
-    def checked(self) -> Bools:
-        """Whether the joints of each run are known; free blocks move in every joint."""
-        return np.isfinite(self.opening) | self.by_blocks
-
-    @property
     def overturned(self) -> Bools:
         """Whether each run is known to overturn."""
         return np.asarray((np.abs(self.outcome) == 1) | self.off_edge)

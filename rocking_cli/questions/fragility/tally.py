@@ -310,7 +310,7 @@ def count(
         _add(runs, cell)
         if ladders:
             there.ravel()[endings.run - start] = True
-        checked &= bool(endings.checked.all())
+        checked &= bool((np.isfinite(endings.opening) | endings.by_blocks).all())  # free blocks move in every joint
         slides |= bool((endings.slip > 0).any())
         many.update({name: int(getattr(endings, name).sum()) for name in ("unknown", "by_blocks", "off_edge")})
         many.update(finished=len(rows), failed=rows.failed)
@@ -370,7 +370,7 @@ def known_to_exceed(found: RunRows, limit: Limit, reach: Reals | None, phi_cr: R
 def _exceeds(found: RunRows, limit: Limit, reach: Reals | None, ratio: Reals) -> Bools:
     """Return which runs exceed a limit state, by their peaks over phi_cr if the limit state is a ratio."""
     if limit == SLIDING:
-        return found.slides
+        return np.isfinite(found.slide_time)
     overturned = found.overturned
     if reach is not None:
         # A NaN, of a run that overturned, exceeds nothing.
