@@ -512,14 +512,6 @@ class TestGoodness:
         tried = np.unique(np.concatenate([lower, upper]))  # and with these no cell has two
         assert "takes four ranges" in fit_capacities(lower, upper, levels=tried).goodness.why
 
-    def test_many_runs_of_few_records_are_few(self):
-        # Each group has one record, whatever it does: nothing can be told, and nothing is.
-        x, record = np.geomspace(0.5, 2, 12).repeat(100), np.arange(12).repeat(100)
-        part = np.array([0.05] * 3 + [0.95] * 3 + [0.3] * 3 + [0.95] * 3).repeat(100)
-        curve = fit_curve(Runs(x, np.random.default_rng(0).random(1200) < part, record))
-        assert curve.goodness.p_value is None and "not tested" in curve.why
-        assert "does not reject" not in curve.why
-
 
 class TestSurface:
     def test_what_a_line_separates_is_no_fit(self):

@@ -186,13 +186,3 @@ def test_the_picture_shows_the_quantiles_and_the_shares():
     assert {(0.1, 1.0), (0.2, 0.3), (0.3, 0.0)} <= top_of_still
     low_of_fallen = {tuple(each) for each in fallen.get_paths()[0].vertices.round(9).tolist()}
     assert {(0.2, 1.0), (0.3, 0.6), (0.4, 0.0)} <= low_of_fallen
-
-
-@pytest.mark.parametrize("some", [SOME[:1], SOME[3:]])
-def test_a_picture_of_little_is_drawn_too(some):
-    figure = draw_quantiles(Quantiles("a", "PGV", False, some), "PGV [m/s]")
-    figure.savefig(io.BytesIO(), format="png", dpi=40)
-    above, below = figure.axes
-    assert "tenths" in below.get_xlabel()
-    falls = any(np.isinf(value) for each in some for value in each.every)
-    assert any(each.get_text() == "overturns" for each in above.get_yticklabels()) == falls

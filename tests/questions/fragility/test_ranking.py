@@ -105,19 +105,6 @@ class TestStudy:
         assert "PGA/(g lambda)" not in bridge["alike"]  # its lambda differs from sample to sample
         assert bridge["alike"]["Sd(1.0)"] == "Sa(1.0)"
 
-    def test_dispersions_are_those_of_the_curves(self, study):
-        curves = {(each["structure"], each["measure"], each["limit_state"]): each for each in study[1]["curves"]}
-        compared = 0
-        for each in study[1]["ranking"]:
-            for of in each["measures"]:
-                for limit in of["dispersions"]:
-                    curve = curves.get((each["structure"], of["measure"], limit["limit_state"]))
-                    if curve is not None:
-                        own = curve["dispersion"] and curve["dispersion"]["value"]
-                        assert limit["dispersion"] == pytest.approx(own)
-                        compared += own is not None
-        assert compared
-
     def test_results_ranks_what_the_store_knows_and_has_a_picture(self, study):
         folder, shown = study
         again = json.loads(command("results", folder / "study.runs", "--rank-measures", "--json").stdout)

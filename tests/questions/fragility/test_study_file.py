@@ -176,16 +176,3 @@ def test_no_mistake_hides_another(tmp_path):
         ("colour", 23, "is not a field of the study"),
         ("method", 24, "given twice"),
     } | {("limit_states", 16, "0.5 is given twice")}
-
-
-@pytest.mark.parametrize(
-    ("text", "line", "begun"),
-    [
-        ("structures: [a.yaml]\nmethod: cloud\nrecords: [b.csv\n", 3, 3),
-        ("structures: [a.yaml\nmethod: cloud\nrecords: [b.csv]\n", 2, 1),
-        ("structures: [a.yaml]\nrecords: {file: 'b.csv\n", 2, 2),
-    ],
-)
-def test_what_is_never_closed_has_a_line(tmp_path, text, line, begun):
-    (found,) = problems(tmp_path, text)
-    assert found.line == line and (begun == line or found.message.endswith(f"(it begins in line {begun})"))
