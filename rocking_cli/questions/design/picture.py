@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rocking_cli.arrays import Bools, Reals
+from rocking_cli.arrays import Reals
 from rocking_cli.plotting import style
 from rocking_cli.questions.design.study import Aim, Design
 
@@ -17,14 +17,7 @@ MAX_MILLIMETRES = 0.5  # m; shorter lengths are in millimetres
 MIN_TONNES = 1e4  # kg; larger masses are in tonnes
 LARGER_UNITS = {"N": (1e-3, "kN"), "N/m": (1e-3, "kN/m"), "Pa": (1e-6, "MPa"), "m2": (1e6, "mm2")}
 SYMBOLS = {"lambda": "λ", "phi_cr": "φcr"}
-LISTS = {
-    "ties": "tie",
-    "loads": "load",
-    "masses": "mass",
-    "members": "member",
-    "joints": "joint",
-    "supports": "support",
-}
+LISTS = {"masses": "mass"} | {f"{entry}s": entry for entry in ("tie", "load", "member", "joint", "support")}
 OPERATORS = {"<=": "≤", ">=": "≥"}
 
 
@@ -55,8 +48,7 @@ def draw_design(found: Design) -> Figure:
         x, shown, color=style.INK, linewidth=style.BOLD, marker="o" if few else "", markersize=3,
         label=f"{len(found.values)} values tried",
     )  # fmt: skip
-    _mark_unknown(axes, found, x, shown)
-    _mark_missing(axes, found, x)
+    _mark_doubts(axes, found, x, shown)
     axes.set_xlim(float(x[0]), float(x[-1]))
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + HEADROOM * (high - low))
@@ -65,7 +57,7 @@ def draw_design(found: Design) -> Figure:
         height = float(np.interp(at, x[finite], shown[finite])) if metric.shaken and finite.any() else level
         axes.plot(at, height, color=style.CURSOR, clip_on=False, **style.STAR)
         end = "or more" if found.is_least else "or less"
-        _name_answer(axes, (at, height), f"{_value(at, unit)} {end}", x, shown)
+        _name_answer(axes, (at, height), f"{at:.5g} {unit}".rstrip() + f" {end}", x, shown)
     if metric.name == "overturned":
         style.in_percent(axes.yaxis)
     meaning = metric.meaning.split(",")[0]
@@ -105,10 +97,6 @@ def _unit(unit: str, largest: float) -> tuple[float, str]:
     return LARGER_UNITS.get(unit, (1.0, unit))
 
 
-def _value(value: float, unit: str) -> str:
-    return f"{value:.5g} {unit}".rstrip()
-
-
 def _aim(aim: Aim, factor: float, unit: str) -> str:
     """Return a requirement with symbols, and with its level in the unit of the axis."""
     name = SYMBOLS.get(aim.metric.name, aim.metric.name.replace("_", " "))
@@ -133,24 +121,17 @@ def _name_answer(axes: Axes, at: tuple[float, float], text: str, x: Reals, shown
     )  # fmt: skip
 
 
-def _unknown(found: Design) -> Bools:
-    """Return a mask of the values at which some neighbours have an unknown outcome."""
-    return np.array([neighbours is not None and bool(neighbours.unknown) for neighbours in found.behind], dtype=bool)
-
-
-def _mark_unknown(axes: Axes, found: Design, x: Reals, shown: Reals) -> None:
-    """Put open symbols at values at which some neighbours are of unknown outcome."""
-    here = _unknown(found) & np.isfinite(shown)
+def _mark_doubts(axes: Axes, found: Design, x: Reals, shown: Reals) -> None:
+    """Mark values at which some neighbours are of unknown outcome, most overturn, or the metric does not exist."""
+    unknown = [neighbours is not None and bool(neighbours.unknown) for neighbours in found.behind]
+    doubtful, across = np.array(unknown, dtype=bool), axes.get_xaxis_transform()
+    here = doubtful & np.isfinite(shown)
     if here.any():
         axes.plot(
             x[here], shown[here], linestyle="none", marker="D", markersize=5, color=style.PAPER,
             markeredgecolor=style.INK, label="open: some neighbours of unknown outcome, counted as overturning",
         )  # fmt: skip
 
-
-def _mark_missing(axes: Axes, found: Design, x: Reals) -> None:
-    """Mark values without a metric by crosses, and those at which most neighbours overturn by triangles."""
-    across, doubtful = axes.get_xaxis_transform(), _unknown(found)
     for values, height, marker, label in (
         (x[np.isnan(found.metric)], 0.03, "x", "could not be computed"),
         (x[np.isinf(found.metric) & ~doubtful], 0.97, "^", "at least half of the neighbours overturn"),

@@ -20,7 +20,7 @@ from rocking_cli.views.conclusion import NEXT_STEPS, conclusion_data, not_counte
 from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.sheet.language import ENGLISH
 from rocking_cli.views.verdict import unchecked
-from rocking_cli.views.view import ABSENT, Table, View
+from rocking_cli.views.view import ABSENT, View
 
 MAX_SCAN_ROWS = 11  # values of the scan that the table lists
 
@@ -29,7 +29,10 @@ def view(found: Design, excitation: Excitation) -> View:
     """Show the answer in a sentence, the scan, and remarks."""
     title = f"{found.structure}: {found.field} for {found.aim}"
     first = " ".join(filter(None, [f"{title}. {answer(found)}", *in_steel(found), *limited(found)]))
-    return View(lambda: data(found), [first, scan(found), *doubts(found, excitation)])
+    count = len(found.values)
+    some = np.unique(np.linspace(0, count - 1, min(MAX_SCAN_ROWS, count)).round().astype(int))
+    scan = table_of("", _columns(found), some.tolist())
+    return View(lambda: data(found), [first, scan, *doubts(found, excitation)])
 
 
 def data(found: Design) -> dict[str, Any]:
@@ -84,12 +87,6 @@ def _unknown(found: Design) -> Column[int]:
     return Column("unknown", shares.__getitem__, head="unknown\noutcome" if any(shares) else None, form=percent)
 
 
-def scan(found: Design) -> Table:
-    """Return the table of the scan; of many values only some."""
-    shown = np.unique(np.linspace(0, len(found.values) - 1, min(MAX_SCAN_ROWS, len(found.values))).round().astype(int))
-    return table_of("", _columns(found), shown.tolist())
-
-
 def answer(found: Design) -> str:
     """Return the answer in a sentence or two."""
     aim, low, high = found.aim, _with_unit(found, found.values[0]), _with_unit(found, found.values[-1])
@@ -128,7 +125,7 @@ def in_steel(found: Design) -> Iterator[str]:
     if steel is None:
         return
     of = steel.steel or f"a yield stress of {steel.stress / 1e6:.4g} MPa"
-    needs = f"The tie {steel.tie} needs {_kilonewtons(steel.force)}"
+    needs = f"The tie {steel.tie} needs {steel.force / 1e3:.4g} kN"
     if not steel.proposals:
         what = "the plates, or bars" if steel.anchored else "bars"
         yield f"{needs}, more than {what} of up to {1000 * BAR_DIAMETERS[-1]:g} mm of {of}, give."
@@ -143,11 +140,7 @@ def _bars(bars: Bars, spacing: float | None) -> str:
     """Return the number, the diameter and the strength of bars."""
     many = COUNTS.get(round(bars.number), f"{bars.number:g} bars") if spacing is None else "bars"
     every = "" if spacing is None else f" every {spacing:g} m"
-    return f"{many} of {1000 * bars.diameter:g} mm{every} ({_kilonewtons(bars.strength.force)})"
-
-
-def _kilonewtons(force: float) -> str:
-    return f"{force / 1e3:.4g} kN"
+    return f"{many} of {1000 * bars.diameter:g} mm{every} ({bars.strength.force / 1e3:.4g} kN)"
 
 
 def _steel_data(steel: SteelAnswer) -> dict[str, Any]:

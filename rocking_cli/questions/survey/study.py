@@ -318,19 +318,18 @@ def survey(
     samples = len(entries) * len(polarities) * sum(motion.npts for motion in motions)
     if reduced := bounded and samples * around.count > MAX_SAMPLES:
         around = replace(around, count=MAX_SAMPLES // samples)
-    shaking = Shaking(motions, polarities, around)
+    part = partial(_part, entries, Setting(motions, polarities, around, site, opening))
 
     def work(first: int, stop: int) -> None:
-        results[first:stop] = _part(entries, shaking, site, opening, first, stop)
+        results[first:stop] = part(first, stop)
 
     if processes is None:
         in_parts(work, len(entries), STRUCTURES_PER_CHUNK, threads, progress)
     else:
-        whole = partial(_part, entries, shaking, site, opening)
-        for first, part in in_processes(whole, len(entries), STRUCTURES_PER_CHUNK, processes):
-            results[first : first + len(part)] = part
+        for first, done in in_processes(part, len(entries), STRUCTURES_PER_CHUNK, processes):
+            results[first : first + len(done)] = done
             if progress is not None:
-                progress(len(part))
+                progress(len(done))
     by = "ratio" if site is not None else "response" if motions else "lambda"
     good = sorted((result for result in results if isinstance(result, Surveyed)), key=ORDERS[by])
     bad, names = [each for each in results if isinstance(each, FailedEntry)], [each.name for each in motions]
@@ -339,21 +338,18 @@ def survey(
     return Survey(good, bad, names, by, units, getattr(entries, "sheet", None), around, reduced)
 
 
-class Shaking(NamedTuple):
-    """Ground motions, their polarities, and their neighbours."""
+class Setting(NamedTuple):
+    """What all structures have in common: ground motions, polarities and neighbours; the site; and `opening`."""
 
     motions: Sequence[GroundMotion]
     polarities: Sequence[int]
     around: Neighbourhood
+    site: SiteFile | None
+    opening: float
 
 
 def _part(
-    entries: Sequence[SurveyEntry],
-    shaking: Shaking,
-    site: SiteFile | None,
-    opening: float,
-    first: int,
-    stop: int,
+    entries: Sequence[SurveyEntry], setting: Setting, first: int, stop: int
 ) -> list[Surveyed | FailedEntry | None]:
     """Return the results of the structures from index `first` to before `stop`, in any process."""
     ready: dict[int, Structure] = {}
@@ -364,12 +360,12 @@ def _part(
         try:
             made = entry.make()
             weaker = made.weaker_side()
-            ready[k] = Structure(weaker or made, opening=opening)
-            asked = questioned(Structure(made), site) if site is not None else []
+            ready[k] = Structure(weaker or made, opening=setting.opening)
+            asked = questioned(Structure(made), setting.site) if setting.site is not None else []
             odd = [*doubts(made), *(f"{each.name} {each.words}" for each in asked)]
-            alone = replace(_alone(place, entry, ready[k], site), doubt="; ".join(odd) or None)
+            alone = replace(_alone(place, entry, ready[k], setting.site), doubt="; ".join(odd) or None)
             rows[k] = replace(alone, side="depth" if weaker is not None else None, remarks=made.remarks)
-            if _may_move(ready[k], shaking):
+            if _may_move(ready[k], setting):
                 ready[k].model("nonlinear")
                 moving[k] = ready[k]
         except RockingError as error:
@@ -379,10 +375,10 @@ def _part(
                 problems, line = error.problems, entry.line
                 placed = InputError(*(replace(each, line=line) if each.line is None else each for each in problems))
             rows[k] = FailedEntry(place + 1, entry.line, entry.name, placed)
-    if motions := shaking.motions:
-        under = _under(list(moving.values()), shaking)
+    if motions := setting.motions:
+        under = _under(list(moving.values()), setting)
         answers = dict(zip(moving, under, strict=True))
-        count = shaking.around.count
+        count = setting.around.count
         none = NeighbourShare(0.0, 0.0, count) if count else None
         for k, structure in ready.items():
             one = rows[k]
@@ -426,23 +422,23 @@ def _alone(place: int, entry: SurveyEntry, structure: Structure, site: SiteFile 
     )
 
 
-def _may_move(structure: Structure, shaking: Shaking) -> bool:
+def _may_move(structure: Structure, setting: Setting) -> bool:
     """Return whether a motion or a neighbour of one may move a structure; if none can, it needs no model."""
-    if shaking.motions and sliding_of(structure.mechanism) is not None:
+    if setting.motions and sliding_of(structure.mechanism) is not None:
         return True
-    least, around = min(structure.uplift) * (1 - 1e-9), shaking.around
+    least, around = min(structure.uplift) * (1 - 1e-9), setting.around
     if around.count:
         slenderness = scatter_of(structure.mechanism).slenderness if around.slenderness is None else around.slenderness
         least *= exp(-MAX_DEVIATIONS * (around.amplitude + slenderness))
-    return any(each.vertical is not None or each.pga_g >= least for each in shaking.motions)
+    return any(each.vertical is not None or each.pga_g >= least for each in setting.motions)
 
 
-def _under(structures: Sequence[Structure], shaking: Shaking) -> list[SurveyResponse | SolverError]:
+def _under(structures: Sequence[Structure], setting: Setting) -> list[SurveyResponse | SolverError]:
     """Return the response of each of some structures to ground motions; an error if a motion cannot be simulated."""
     if not structures:
         return []
     models = [structure.model("nonlinear") for structure in structures]
-    motions, polarities, around = shaking
+    motions, polarities = setting.motions, setting.polarities
     places = [
         (i, j, sign)
         for i, model in enumerate(models)
@@ -454,23 +450,23 @@ def _under(structures: Sequence[Structure], shaking: Shaking) -> list[SurveyResp
     outcomes = respond_many(models, motions, runs, threads=1, only_peaks=True)
     each = [_of_one(model, which[:, 0] == i, which[:, 1], outcomes, motions) for i, model in enumerate(models)]
     for i, (structure, one) in enumerate(zip(structures, each, strict=True)):
-        if around.count and isinstance(one, SurveyResponse):
+        if setting.around.count and isinstance(one, SurveyResponse):
             try:
-                each[i] = replace(one, share=_share(structure, np.unique(which[which[:, 0] == i, 2]), shaking))
+                each[i] = replace(one, share=_share(structure, np.unique(which[which[:, 0] == i, 2]), setting))
             except SolverError as error:
                 each[i] = error
     return each
 
 
-def _share(structure: Structure, signs: Integers, shaking: Shaking) -> NeighbourShare:
+def _share(structure: Structure, signs: Integers, setting: Setting) -> NeighbourShare:
     """Return the share of the neighbours that overturn a structure: of the worse polarity, the mean over motions."""
-    conditions = Conditions(structure, ["nonlinear"], around=shaking.around)
+    conditions = Conditions(structure, ["nonlinear"], around=setting.around)
     low, high = [], []
-    for motion in shaking.motions:
+    for motion in setting.motions:
         by_sign = [neighbours(conditions, motion.scaled(int(sign)), threads=1) for sign in signs]
         low.append(max(each.overturned for each in by_sign))
         high.append(max(each.at_most for each in by_sign))
-    return NeighbourShare(fmean(low), fmean(high), shaking.around.count)
+    return NeighbourShare(fmean(low), fmean(high), setting.around.count)
 
 
 def _of_one(
