@@ -45,7 +45,7 @@ class TestClosedForms:
         ("until", "least"), [("lambda >= 0.2", True), ("lambda > 0.2", True), ("lambda <= 0.2", False)]
     )
     def test_the_width_of_a_block(self, until, least):
-        found = rk.design(rk.Block(width=0.5, height=2.0), "width=200mm:0.8m", until)
+        found = rk.design(rk.Block(width=0.5, height=2.0), "width=200mm:0.8m", until, points=8)
         assert isclose(found.value, 0.4, rel_tol=1e-9)  # lambda = width/height
         assert found.monotone and found.is_least is least and len(found.holds) == 1
         low, high = found.holds[0]
@@ -54,7 +54,7 @@ class TestClosedForms:
     @pytest.mark.parametrize("until", ["lambda >= 0.24", "phi_cr >= 0.23635507"])
     def test_the_force_of_a_tendon(self, until):
         """lambda = tan(alpha) (1 + N0/mg); the table of an independent program has phi_cr with N0/mg = 0.2."""
-        found = rk.design(tied(), "ties.tendon.prestress=0:100kN", until)
+        found = rk.design(tied(), "ties.tendon.prestress=0:100kN", until, points=4)
         assert isclose(found.value, 0.2 * MASS * G, rel_tol=1e-5)
         assert found.is_least and found.unit == "N"
 
@@ -65,7 +65,7 @@ class TestClosedForms:
         block = rk.Block(width=b, height=height, mass=m, loads=[load])
         wanted = m * (b - level * height) / (2 * level * h - b)
         for field in ("loads.bust.mass", "loads.0.mass"):
-            found = rk.design(block, f"{field}=0.01t:2t", f"lambda >= {level}")
+            found = rk.design(block, f"{field}=0.01t:2t", f"lambda >= {level}", points=4)
             assert isclose(found.value, wanted, rel_tol=1e-9) and not found.is_least
 
 
@@ -125,9 +125,9 @@ class TestShares:
             assert share == near.overturned and peak == near.peak_ratio[1]
 
     def test_the_answer_holds_and_just_below_it_does_not(self):
-        found = rk.design(BLOCK, "width=0.5:1.2", "overturned <= 50%", self.SINE, neighbours=20, points=8)
+        found = rk.design(BLOCK, "width=0.5:1.2", "overturned <= 50%", self.SINE, neighbours=10, points=5)
         assert found.monotone
-        excitation = Excitation([rk.parse_pulse(self.SINE).sampled()], (1,), Neighbourhood(20))
+        excitation = Excitation([rk.parse_pulse(self.SINE).sampled()], (1,), Neighbourhood(10))
         metric, block = METRICS["overturned"].at, Structure(rk.load_structure(BLOCK))
 
         at, below = (metric(block.varied("width", found.value - off), excitation)[0] for off in (0.0, 2e-3))

@@ -324,7 +324,7 @@ def test_a_file_that_changes_before_it_is_read_again_stops_the_study(tmp_path, m
 
 
 def test_incremental_analysis_takes_the_first_exceedance(tmp_path):
-    path = write(tmp_path, STUDY.replace("method: stripes", "method: ida"), count=6)
+    path = write(tmp_path, STUDY.replace("method: stripes", "method: ida").replace("most: 4", "most: 2.2"), count=6)
     carry_out(path, tmp_path / "study.runs")
     kept, definition = Store.reading(tmp_path / "study.runs"), load_study(path).definition
     plan, (rows,) = kept.plan, kept.rows(36, kept.plan.total)
@@ -342,6 +342,7 @@ def test_incremental_analysis_takes_the_first_exceedance(tmp_path):
     expected = curves.fit_capacities(
         np.array(lower), np.array(upper), np.tile(np.repeat(np.arange(3), 2), 4), levels=np.array(plan.levels)
     )
+    assert np.isinf(upper).any()
     assert (overturning.curve.runs, overturning.curve.why) == (24, expected.why)
     assert overturning.curve.own.median == expected.median
     assert overturning.seen.exceeding.tolist() == exceeding.ravel().tolist()
@@ -354,6 +355,22 @@ def test_check_counts_what_is_left_out_apart(tmp_path):
     assert (data["records"], len(data["left_out"]), data["runs"]) == (3, 1, 150)
     words = command("fragility", path, "--check", code=5).stdout.split("\n")
     assert [line.split() for line in words if "records" in line] == [["records", "3"], ["records", "left", "out", "1"]]
+
+
+def test_samples_that_differ_in_their_restitution_only(tmp_path):
+    """They share a model, whose restitution each run replaces."""
+    text = STUDY.replace("      width: {normal: {mean: 0.7, deviation: 0.05}}\n", "").replace("both", "1")
+    prepared = carry_out(write(tmp_path, text.replace("samples: 4", "samples: 2"), count=3), tmp_path / "study.runs")
+    study, rows = prepared.study, every_run(tmp_path / "study.runs")
+    sample, record, *_ = prepared.plan.places(rows.run)
+    motion, peaks = study.sources[1].read(), []
+    for k in np.flatnonzero((record == 1) & (sample > 0)):
+        mechanism = study.samples[sample[k]].mechanism
+        history = respond(mechanism, motion.scaled(rows.scale[k]), model=("nonlinear",))["nonlinear"]
+        assert rows.eta[k] == mechanism.restitution
+        peaks.append((rows.peak_ratio[k], history.peak_ratio))
+    found, expected = np.transpose(peaks)
+    assert found == pytest.approx(expected, rel=1e-9, nan_ok=True) and len(set(found.tolist())) > 3
 
 
 def test_the_checksum_of_a_pulse_is_of_all_its_digits_and_of_how_it_is_sampled(monkeypatch):
