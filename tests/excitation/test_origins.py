@@ -104,18 +104,9 @@ def test_csmip_v2_says_it_of_each_channel(tmp_path):
     event = "MADE UP EARTHQUAKE MAY 2, 1983 16:42 PDT"
     assert of(tmp_path, text, channel="1") == Origin(event, "SOME FAULT ZONE 14", 6.5, None)
     assert of(tmp_path, text, channel="2") == Origin(event, "OTHER FAULT ZONE 14", 6.5, None)
+    unnamed = text.replace("SOME FAULT ZONE 14\n", "", 1)  # the line of the channel comes next
+    assert of(tmp_path, unnamed, channel="1").station == "36456"
     assert of(tmp_path, made.csmip(), channel="2") == NOT_SAID  # an earthquake without a year
-
-
-def test_csmip_v1(tmp_path):
-    lines = made.csmip_v1().split("\n")
-    lines[2:6] = CSMIP
-    assert of(tmp_path, "\n".join(lines)).station == "SOME FAULT ZONE 14"
-    assert of(tmp_path, "\n".join(lines)).event == "MADE UP EARTHQUAKE MAY 2, 1983 16:42 PDT"
-    lines[5] = "x"
-    lines[4:6] = ["x", CSMIP[2]]  # the line of the channel comes next
-    assert of(tmp_path, "\n".join(lines)).station == "36456"
-    assert of(tmp_path, made.csmip_v1()) == NOT_SAID
 
 
 def test_cosmos(tmp_path):

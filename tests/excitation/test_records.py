@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 from rocking_cli.ask.read import read_record
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
-from rocking_cli.excitation.records.record_units import canonical
 from rocking_cli.excitation.records.text import on_grid
+from rocking_cli.units import header_unit
 from tests.conftest import NEEDS_RECORDS, PROJECT, record
 
 EXAMPLES = PROJECT / "examples"
@@ -177,7 +177,7 @@ def test_a_long_record_is_read_quickly(write):
     ],
 )
 def test_spellings(spelling, name):
-    assert canonical(spelling) == name
+    assert header_unit(spelling) == name
 
 
 @pytest.mark.parametrize(

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import fields
 from importlib.metadata import EntryPoint
 
 from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses.base import COARSE_POINTS_PER_PERIOD, Pulse, Segment
-from rocking_cli.excitation.records.record_units import UNITS
 from rocking_cli.plugins.registry import Plugins, origin
-from rocking_cli.text import regex
+from rocking_cli.units import QUANTITY, UNITS
 
 __all__ = ["COARSE_POINTS_PER_PERIOD", "Pulse", "PulseShapes", "Segment", "parse_pulse"]
 
-_QUANTITY = regex(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\d\s.+-].*)?", re.ASCII)
 _TIMES = {"": 1.0, "s": 1.0, "ms": 1e-3}
 
 
@@ -76,7 +73,7 @@ def parse_pulse(text: str) -> Pulse:
 
 
 def _quantity(text: str, word: str, what: str, form: str, units: tuple[str, ...]) -> tuple[float, str]:
-    match = _QUANTITY.fullmatch(word)
+    match = QUANTITY.fullmatch(word)
     if match is None:
         raise InputError(f"pulse '{text}': '{word}' is not a valid {what}: {form}")
     unit = next((each for each in units if each.lower() == (match[2] or "").strip().lower()), None)

@@ -65,14 +65,10 @@ cosmos = _text(
     "COSMOS", "a first line with (Format v01.20 with 13 text lines)", "cosmos",
     r"(?i)\A[^\n]{0,9999}?\(Format v\S+ with\s+\d+ text lines\)", within=11_000, wanted=True,
 )
-csmip_v1 = _text(
-    "CSMIP V1", "a first line that begins with UNCORRECTED ACCELEROGRAM DATA", "csmip_v1",
-    r"(?i)\A\s*UNCORRECTED ACCELEROGRAM DATA\b",
-)
 csmip_v2 = _text(
     "CSMIP V2", "a line such as 3251 POINTS OF ACCEL DATA EQUALLY SPACED AT .020 SEC", "csmip",
-    r"(?i)\A(?!\s*UNCORRECTED ACCELEROGRAM DATA\b)",
-    r"(?i)^\s*\d+[ \t]+POINTS OF (?:ACCEL|VELOC|DISPL)\w*[ \t]+DATA EQUALLY SPACED AT[ \t]+\S+?[ \t]*SEC\b",
+    r"(?i)\A\s*UNCORRECTED ACCELEROGRAM DATA\b|"  # V1, which is refused
+    r"^\s*\d+[ \t]+POINTS OF (?:ACCEL|VELOC|DISPL)\w*[ \t]+DATA EQUALLY SPACED AT[ \t]+\S+?[ \t]*SEC\b",
     within=100_000, wanted=True,
 )
 esm = _text(

@@ -20,7 +20,6 @@ from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.record_units import (
     GAIN_EXAMPLE,
     QUANTITIES,
-    UNITS,
     Asked,
     Quantity,
     Wanted,
@@ -34,9 +33,6 @@ from rocking_cli.text import regex
 _NO_ROW = regex(r"[^\s\d.+\-*EeDd]")
 _NOT_FINITE = regex(r"[+-]?(?:nan|inf|infinity)\b", re.IGNORECASE)
 FIRST_ROW = regex(r"\s*[+-]?\.?\d")
-TENTH_OF_G = "g/10"
-_FILM_DT = 1e-3  # s; times of digitised films are printed with three decimals
-_MAX_FILM_DURATION = 3600.0  # s; films ran for a minute or two, and each second takes a thousand samples
 _MAX_COLUMN_WIDTH = 1000  # characters
 CUT = "the file may have been cut short or edited: download it again"
 _LOST = "a character was lost or added, so that its values are wrong: download the file again"
@@ -259,17 +255,6 @@ def stated_unit(file: str, line_number: int, unit: str, asked: Asked) -> tuple[s
     return asked.unit(file, [(line_number, f"units: {unit}")])
 
 
-def old_unit(file: str, line_number: int, spelling: str, asked: Asked) -> tuple[str, float]:
-    """Return the unit as `stated_unit` does, or a tenth of g, which only digitised films have."""
-    if spelling.replace(" ", "").lower() != TENTH_OF_G:
-        return stated_unit(file, line_number, spelling, asked)
-    if asked.units is not None:
-        unit, _ = asked.unit(file, [])  # refuses an unknown one
-        message = f"the header says the unit is {TENTH_OF_G}, but {named('units')} says {unit}"
-        raise InputError(Problem(message, file, line_number, hint=f"leave {named('units')} out"))
-    return TENTH_OF_G, UNITS["g"] / 10
-
-
 def quantity_called(word: str) -> Quantity | None:
     """Return the quantity that a header calls by a word such as ACCEL or velocity; None if it is another."""
     return next((each for each in QUANTITIES if word.lower().startswith(each[:3])), None)
@@ -284,47 +269,6 @@ def lacking(file: str, wanted: Wanted, held: Sequence[str], line_number: int | N
     elif not wanted.raw:
         hint += f", or the {named('gain')} of the instrument, such as {GAIN_EXAMPLE}"
     return InputError(Problem(message, file, line_number, hint=hint))
-
-
-def straight_lines(file: str, pairs: Reals, where: str) -> tuple[float, Reals, NDArray[np.intp]]:
-    """Interpolate a digitised film, with uneven times, to a constant interval that includes all of its times.
-
-    Times are in whole milliseconds, so that such an interval exists and the interpolation is exact: the motion has more
-    samples than the film has points, but the same straight lines between these.
-
-    Parameters
-    ----------
-    file : str
-        The file, for the messages.
-    pairs : ndarray, shape (2 * points,)
-        Time [s] and value of each point.
-    where : str
-        Lines of the points in the file, for messages.
-
-    Returns
-    -------
-    dt : float
-        The largest interval that includes all times [s].
-    values : ndarray, shape (npts,)
-        Values at this interval.
-    points : ndarray of int, shape (points,)
-        Indices of the samples that are points of the film.
-    """
-    time, values = pairs.reshape(-1, 2).T
-    far = np.abs(time) > _MAX_FILM_DURATION
-    if far.any():
-        point = int(np.argmax(far))
-        message = f"point {point + 1} is at {time[point]:g} s: no film runs for more than {_MAX_FILM_DURATION:g} s"
-        raise InputError(Problem(message, file, hint=f"it is among {where}"))
-    ticks = np.rint(time / _FILM_DT).astype(np.int64)
-    steps = np.diff(ticks)
-    if (steps <= 0).any():
-        point = int(np.argmax(steps <= 0)) + 1
-        message = f"time does not increase: point {point + 1} is at {time[point]:g} s, after {time[point - 1]:g} s"
-        raise InputError(Problem(message, file, hint=f"it is among {where}"))
-    step = int(np.gcd.reduce(steps))
-    grid = np.arange(ticks[0], ticks[-1] + 1, step)
-    return step * _FILM_DT, np.interp(grid, ticks, values), ((ticks - ticks[0]) // step).astype(np.intp)
 
 
 def check_end(file: str, lines: Lines, end: int) -> None:

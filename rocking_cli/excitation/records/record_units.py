@@ -9,7 +9,8 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import isclose, isfinite
+from itertools import islice
+from math import isfinite
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
@@ -20,13 +21,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
 from rocking_cli.excitation.doubts import of_samples
 from rocking_cli.excitation.records.header_words import WORDS, plain
 from rocking_cli.text import did_you_mean, exact, regex
-from rocking_cli.units import KINDS, UnitError, number_of, split
-
-_READ = ("g", "m/s2", "cm/s2", "mm/s2", "gal", "mg", "%g", "ft/s2", "in/s2")
-UNITS: dict[str, float] = {name: float(KINDS["acceleration"][name]) for name in _READ}
-"""Size of each unit that can be read [m/s2], under its canonical name."""
-
-CHOICES = ", ".join(UNITS)
+from rocking_cli.units import CHOICES, KINDS, QUANTITY, UNITS, header_unit
 
 _S = r"s(?:ec)?"
 _OVER_S2 = rf" ?/ ?{_S} ?(?:\^|\*\*)? ?2| ?/ ?{_S} ?/ ?{_S}"
@@ -70,32 +65,6 @@ _SAID_LABEL = regex(r"[\[(] *(?!(?:m?s|secs?|seconds?|-*) *[\])])([^\])\s]{1,20}
 _NOT_USABLE_LABEL = regex(rf"[\[(]\s*({_SPEED}|{_LENGTH}|{_FOREIGN})\s*[\])]")
 
 
-def canonical(spelling: str) -> str | None:
-    """Return the canonical name of a unit of acceleration, ``"m/s2"`` for ``"M/SEC**2"``; None if it is not one."""
-    word = _normal(spelling)
-    if not re.fullmatch(_UNIT, word):
-        return None
-    if word[:2] in ("g", "ga"):
-        return word.rstrip("s")
-    if re.fullmatch(_OF_G, word):
-        return "mg" if word.startswith("m") else "%g"
-    return word[: word.index("s")].rstrip(" ./·*p") + "/s2"
-
-
-def in_g(value: object) -> float:
-    """Return an acceleration in standard gravity, from a number or a text with a unit in any spelling of headers.
-
-    Raises `UnitError`.
-    """
-    parts = split(value) if isinstance(value, str) else None
-    if parts is None or not parts[1]:
-        return number_of(value, "g")
-    unit = canonical(parts[1])
-    if unit is None:
-        raise UnitError(f"{parts[1]!r} is not a unit of acceleration", f"give one of {CHOICES}")
-    return float(parts[0]) if unit == "g" else float(parts[0]) * UNITS[unit] / STANDARD_GRAVITY
-
-
 def is_unit(word: str) -> bool:
     """Return whether a word is the unit of a time, a length, a speed or an acceleration, and nothing else."""
     return re.fullmatch(rf"m?s|secs?|seconds?|{_UNIT}|{_SPEED}|{_LENGTH}|{_FOREIGN}", _normal(word)) is not None
@@ -112,11 +81,13 @@ def header_units(line: str) -> set[str]:
     if _ABOUT_A_VALUE.search(line):
         return set()
     spellings = _BRACKETED.findall(line) or [match for pattern in _NAMED for match in pattern.findall(line)]
-    return {unit for spelling in spellings if (unit := canonical(spelling))}
+    return {unit for spelling in spellings if (unit := header_unit(spelling))}
 
 
-def resolve_unit(file: str, header: Sequence[tuple[int, str]], units: str | None) -> str:
-    """Return the unit of the accelerations in a file, from its header or as given by the user.
+def resolve_unit(
+    file: str, header: Sequence[tuple[int, str]], units: str | None, quantity: Quantity
+) -> tuple[str, float]:
+    """Return name and size of the unit of the values in a file, from its header or as given by the user.
 
     Parameters
     ----------
@@ -126,47 +97,61 @@ def resolve_unit(file: str, header: Sequence[tuple[int, str]], units: str | None
         Line number and text of every header line; the column labels, if there are any, come last.
     units : str, optional
         The unit the user gave.
+    quantity : str
+        Quantity of the values.
 
     Returns
     -------
-    str
-        One of `UNITS`.
+    (str, float)
+        The unit, of accelerations one of `UNITS`, and its size in SI units.
 
     Raises
     ------
     InputError
-        If neither header nor user gives a unit, the two differ, the header has several, or is not about acceleration.
+        If neither header nor user gives a unit, the two differ, the header has several, or is about another quantity.
     """
-    requested = None if units is None else canonical(units)
-    if units is not None and requested is None:
-        raise InputError(Problem(f"unknown unit '{units}'", field=named("units"), hint=f"choose one of: {CHOICES}"))
-    stated = {unit: number for number, line in reversed(header) for unit in sorted(header_units(line))}
-    _refuse_other_quantities(file, header)
-    if requested and stated and not any(_same(requested, unit) for unit in stated):
-        unit, number = next(iter(stated.items()))
-        message = f"the header says the unit is {unit}, but {named('units')} says {requested}"
-        raise InputError(
-            Problem(message, file=file, line=number, hint=f"leave {named('units')} out, or correct the header")
+    size, known = None if units is None else size_of(units, quantity), ", ".join(units_of(quantity))
+    if units is not None and size is None:
+        message = f"'{units}' is not a unit of {quantity}"
+        raise InputError(Problem(message, field=named("units"), hint=f"choose one of: {known}"))
+    if quantity == "acceleration":
+        units = units and header_unit(units)
+        stated = {unit: number for number, line in reversed(header) for unit in sorted(header_units(line))}
+        _refuse_other_quantities(file, header)
+    else:
+        _refuse_another(file, header, quantity)
+        spelled = (
+            (unit, number) for number, line in reversed(header) for unit in map("".join, _IN_HEADER.findall(line))
         )
-    if requested:
-        return next((unit for unit in stated if _same(requested, unit)), requested)
+        stated = dict(islice((each for each in spelled if size_of(each[0], quantity) is not None), 1))
+    sizes = {unit: size_of(unit, quantity) or math.nan for unit in stated}
+    alike = [unit for unit in stated if size is not None and math.isclose(size, sizes[unit])]
+    if size is not None and stated and not alike:
+        unit, number = next(iter(stated.items()))
+        message = f"the header says the unit is {unit}, but {named('units')} says {units}"
+        raise InputError(Problem(message, file, number, hint=f"leave {named('units')} out, or correct the header"))
+    if units is not None and size is not None:
+        return alike[0] if alike and quantity == "acceleration" else units, size
     if not stated:
-        raise InputError(_not_said(file, header))
-    if not all(_same(unit, other) for unit in stated for other in stated):
+        raise InputError(_not_said(file, header, quantity))
+    if not all(math.isclose(one, other) for one in sizes.values() for other in sizes.values()):
         message = f"the header names more than one unit: {', '.join(stated)}"
-        hint = f"say which one holds for the accelerations with {named('units')}: {CHOICES}"
-        raise InputError(Problem(message, file=file, line=max(stated.values()), hint=hint))
-    return next(iter(stated))
+        hint = f"say which one holds for the accelerations with {named('units')}: {known}"
+        raise InputError(Problem(message, file, max(stated.values()), hint=hint))
+    return next(iter(sizes.items()))
 
 
-def _not_said(file: str, header: Sequence[tuple[int, str]]) -> Problem:
+def _not_said(file: str, header: Sequence[tuple[int, str]], quantity: Quantity) -> Problem:
     """Return the problem of a header without a unit, or with one that is not in `UNITS`."""
-    hint = f"say which it is with {named('units')}: {CHOICES}"
+    hint = f"say which it is with {named('units')}: {', '.join(units_of(quantity))}"
+    if quantity != "acceleration":
+        hint += f"; or with {named('gain')}, such as {GAIN_EXAMPLE}"
+        return Problem(f"the file does not say what unit its {plural(quantity)} are in", file, hint=hint)
     for index, (number, line) in enumerate(header):
         if _ABOUT_A_VALUE.search(_normal(line)):
             continue
         match = _STATED_UNIT.search(line) or (_SAID_LABEL.search(line) if index == len(header) - 1 else None)
-        if match and canonical(match[1]) is None:
+        if match and header_unit(match[1]) is None:
             message = f"the header says '{match[1]}', which is not a known unit of acceleration"
             return Problem(message, file=file, line=number, hint=hint)
     return Problem("the file does not say what unit its accelerations are in", file=file, hint=hint)
@@ -185,6 +170,19 @@ def _refuse_other_quantities(file: str, header: Sequence[tuple[int, str]]) -> No
                 f"or by the {named('gain')}"
             )
             raise InputError(Problem(what, file=file, line=number, excerpt=line.strip()[:100], hint=hint))
+
+
+def _refuse_another(file: str, header: Sequence[tuple[int, str]], quantity: Quantity) -> None:
+    """Raise `InputError` if all units of the labels, or of a line on units, are of other quantities."""
+    for number, line in header:
+        units = BRACKETED.findall(line) if number == header[-1][0] else []
+        stated = {quantity_of(unit): unit for unit in (*units, *_OF_UNITS.findall(line))}
+        stated.pop(None, None)
+        if stated and quantity not in stated:
+            other, unit = next(iter(stated.items()))
+            message = f"the header says that the values are in {unit}, a unit of {plural(other)}"
+            hint = f"is it {named('quantity')} {other}?"
+            raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=hint))
 
 
 def other_quantity(line: str, *, label: bool = True) -> str | None:
@@ -216,11 +214,6 @@ def other_quantity(line: str, *, label: bool = True) -> str | None:
     return None
 
 
-def _same(unit: str, other: str) -> bool:
-    """Return whether two units have the same size, as cm/s2 and gal do."""
-    return math.isclose(UNITS[unit], UNITS[other])
-
-
 def _normal(line: str) -> str:
     """Return a line made plain, with one spelling of powers and minus signs."""
     line = plain(line)
@@ -231,11 +224,7 @@ def _normal(line: str) -> str:
 
 Quantity = Literal["acceleration", "velocity", "displacement"]
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
-OTHER_UNITS: dict[Quantity, tuple[str, ...]] = {
-    "velocity": tuple(KINDS["velocity"]),
-    "displacement": tuple(KINDS["length"]),
-}
-"""Units of velocities and displacements; those of accelerations are in `UNITS`."""
+_KINDS: dict[Quantity, str] = {"acceleration": "acceleration", "velocity": "velocity", "displacement": "length"}
 GAIN_EXAMPLE = "0.05 m/V"
 MIN_GAIN, MAX_GAIN = 1e-30, 1e30  # products overflow beyond these bounds
 TIME_UNITS = frozenset(
@@ -246,17 +235,7 @@ MAX_STEP_OVER_PEAK = 0.05  # acceleration of one step of the last digit over the
 _IN_HEADER = regex(rf"[\[(]\s*([^\])]+?)\s*[\])]|\bin\s+(?!units?\b)([^\s,;]+)|{_UNITS_OF}([^\s,;]+)", re.IGNORECASE)
 _OF_UNITS = regex(rf"{_UNITS_OF}([^\s,;]+)", re.IGNORECASE)
 BRACKETED = regex(r"[\[(]\s*([^\])]+?)\s*[\])]")
-_PER_SECOND = regex(r"/sec(?:onds?)?$|[.*]?s\^?-1$")
-_FORM = regex(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.ASCII)
 _PER = regex(r"(.+?)\s*(?:/|\bper\b)\s*([^\W\d_%]{1,20}|%)")
-
-
-class _Stated(NamedTuple):
-    """A unit stated in a header: its name, its size in SI units and its line."""
-
-    unit: str
-    size: float
-    line: int
 
 
 class Wanted(NamedTuple):
@@ -289,7 +268,7 @@ class Wanted(NamedTuple):
         return self.quantity == "acceleration" and not self.raw
 
     def unit(self, file: str, header: Sequence[tuple[int, str]], units: str | None) -> tuple[str, float]:
-        """Return name and size of the unit of the values; arguments and errors are those of `units.resolve_unit`."""
+        """Return name and size of the unit of the values; arguments and errors are those of `resolve_unit`."""
         if self.raw:
             for number, line in header:
                 if stated := header_units(line):
@@ -297,51 +276,7 @@ class Wanted(NamedTuple):
                     hint = f"leave {named('gain')} out"
                     raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=hint))
             return "raw", 1.0
-        if self.quantity == "acceleration":
-            name = resolve_unit(file, header, units)
-            return name, UNITS[name]
-        return self._other_unit(file, header, units)
-
-    def _refuse_another(self, file: str, header: Sequence[tuple[int, str]]) -> None:
-        """Raise `InputError` if all units of the labels, or of a line on units, are of other quantities."""
-        for number, line in header:
-            units = BRACKETED.findall(line) if number == header[-1][0] else []
-            units += _OF_UNITS.findall(line)
-            stated = {each: unit for unit in units if (each := quantity_of(unit)) is not None}
-            if stated and self.quantity not in stated:
-                other, unit = next(iter(stated.items()))
-                message = f"the header says that the values are in {unit}, a unit of {plural(other)}"
-                hint = f"is it {named('quantity')} {other}?"
-                raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=hint))
-
-    def _stated(self, header: Sequence[tuple[int, str]]) -> _Stated | None:
-        """Return the unit that the header states; None if it states none."""
-        for number, line in reversed(header):
-            for one in map("".join, _IN_HEADER.findall(line)):
-                if (size := size_of(one, self.quantity)) is not None:
-                    return _Stated(one, size, number)
-        return None
-
-    def _other_unit(self, file: str, header: Sequence[tuple[int, str]], units: str | None) -> tuple[str, float]:
-        known = ", ".join(units_of(self.quantity))
-        size = None if units is None else size_of(units, self.quantity)
-        if units is not None and size is None:
-            message = f"'{units}' is not a unit of {self.quantity}"
-            raise InputError(Problem(message, field=named("units"), hint=f"choose one of: {known}"))
-        self._refuse_another(file, header)
-        stated = self._stated(header)
-        if size is not None and stated is not None and not isclose(size, stated.size):
-            message = f"the header says the unit is {stated.unit}, but {named('units')} says {units}"
-            raise InputError(
-                Problem(message, file, stated.line, hint=f"leave {named('units')} out, or correct the header")
-            )
-        if units is not None and size is not None:
-            return units, size
-        if stated is not None:
-            return stated.unit, stated.size
-        message = f"the file does not say what unit its {plural(self.quantity)} are in"
-        hint = f"say which it is with {named('units')}: {known}; or with {named('gain')}, such as {GAIN_EXAMPLE}"
-        raise InputError(Problem(message, file, hint=hint))
+        return resolve_unit(file, header, units, self.quantity)
 
 
 ACCELERATIONS = Wanted()
@@ -367,17 +302,13 @@ def plural(quantity: Quantity) -> str:
 
 def units_of(quantity: Quantity) -> tuple[str, ...]:
     """Return the units in which a quantity may be given."""
-    return tuple(UNITS) if quantity == "acceleration" else OTHER_UNITS[quantity]
+    return tuple(UNITS if quantity == "acceleration" else KINDS[_KINDS[quantity]])
 
 
 def size_of(unit: str, quantity: Quantity) -> float | None:
     """Return the size of a unit of a quantity, in SI units; None if it is not a unit of this quantity."""
-    if quantity == "acceleration":
-        name = canonical(unit)
-        return None if name is None else UNITS[name]
-    word = _PER_SECOND.sub("/s", "".join(_normal(unit).split()))
-    size = KINDS["velocity" if quantity == "velocity" else "length"].get(word)
-    return None if size is None else float(size)
+    name = header_unit(unit, _KINDS[quantity])
+    return None if name is None else float(KINDS[_KINDS[quantity]][name])
 
 
 def quantity_of(unit: str) -> Quantity | None:
@@ -415,11 +346,11 @@ class Gain:
         InputError
             If the text has no number, or no unit of acceleration, velocity or length.
         """
-        match = _FORM.fullmatch(text)
+        match = QUANTITY.fullmatch(text.strip())
         if match is None or not MIN_GAIN <= abs(float(match[1])) <= MAX_GAIN:
             raise _refused(f"{text!r} is not a number with a unit")
         number, unit = match[1], match[2]
-        if not unit:
+        if unit is None:
             raise _refused(f"{text!r} is a gain without a unit")
         per = None if quantity_of(unit) else _PER.fullmatch(unit)
         if per is not None and per[2].lower() in TIME_UNITS:

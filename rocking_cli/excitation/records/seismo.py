@@ -18,9 +18,10 @@ from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Origin
 from rocking_cli.excitation.records.layout import CUT, Channel
 from rocking_cli.excitation.records.origins import origin
-from rocking_cli.excitation.records.record_units import UNITS, Wanted
+from rocking_cli.excitation.records.record_units import Wanted
 from rocking_cli.excitation.records.text import sensible, usable
 from rocking_cli.text import regex
+from rocking_cli.units import UNITS
 
 # SEED names a channel by band, instrument and direction; instruments H, L and P measure velocity.
 _VELOCITY_CODE = regex(r"[A-Z][HLP][A-Z0-9]")

@@ -9,8 +9,9 @@ from typing import NamedTuple
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import Doubt
 from rocking_cli.excitation.records.header_words import WORDS, component, plain
-from rocking_cli.excitation.records.record_units import TIME_UNITS, UNITS, canonical, is_unit
+from rocking_cli.excitation.records.record_units import TIME_UNITS, is_unit
 from rocking_cli.text import cut, regex
+from rocking_cli.units import UNITS, header_unit
 
 _INTERVAL_TOLERANCE = 1e-3  # relative difference; more, up to the second number, where few digits are printed
 _MAX_ROUNDING = 1e-2
@@ -180,11 +181,11 @@ def _peaks(number: int, line: str, text: str, start: int, unit: str | None) -> l
         else:
             start = match.end()
         spelled = unit or after or ""
-        if canonical(spelled) is None and (is_unit(spelled) or (after and after not in ("at", "a"))):
+        if header_unit(spelled) is None and (is_unit(spelled) or (after and after not in ("at", "a"))):
             break
         values = [_number(each) for each in (first, last) if each]
         value, rounding = max(values, key=lambda each: abs(each[0]))
-        peaks.append(Statement(abs(value), rounding, number, line, canonical(spelled) or "", of))
+        peaks.append(Statement(abs(value), rounding, number, line, header_unit(spelled) or "", of))
     return peaks
 
 

@@ -21,11 +21,12 @@ from rocking_cli.excitation.records.columns import MAX_COLUMNS, Choice, Label, c
 from rocking_cli.excitation.records.header_words import WORDS, component
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.prepared import read_header
-from rocking_cli.excitation.records.record_units import ACCELERATIONS, UNITS, Wanted, other_quantity, plural
+from rocking_cli.excitation.records.record_units import ACCELERATIONS, Wanted, other_quantity, plural
 from rocking_cli.excitation.records.shapes import FEWEST_ROWS, counts_rows, runs_on
 from rocking_cli.excitation.records.statements import Statements, statements
 from rocking_cli.excitation.records.widths import PrintedRows, unlike_the_others
 from rocking_cli.text import regex
+from rocking_cli.units import UNITS
 
 TITLE = "delimited text"
 SIGN = "a line that begins with a number"
