@@ -105,7 +105,7 @@ def _azimuth(value: Any) -> float | str:
 
 
 def _floor(value: Any) -> Any:
-    from rocking_cli.processing.floor import Floor
+    from rocking_cli.processing.oscillator import Floor
 
     return value if isinstance(value, Floor) else Floor.parse(value)
 

@@ -60,7 +60,7 @@ class TestDerivatives:
 
     @pytest.mark.parametrize(("quantity", "response"), [("displacement", 0.44295), ("velocity", 0.30168)])
     def test_half_is_left_at_the_frequency_that_is_said(self, tmp_path, quantity, response):
-        from rocking_cli.excitation.records.record_units import in_words
+        from rocking_cli.processing.reading import in_words
 
         f = response / DT
         values = np.sin(2 * np.pi * f * T + 0.3)

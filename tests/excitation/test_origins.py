@@ -7,7 +7,7 @@ import pytest
 
 from rocking_cli.ask.read import read_record
 from rocking_cli.excitation.base import NOT_SAID, Origin
-from rocking_cli.excitation.records import origins
+from rocking_cli.excitation.records import statements
 from tests.cli.test_cli import run, run_json
 from tests.conftest import record
 from tests.excitation import test_record_formats as made
@@ -153,11 +153,11 @@ def test_seismologists_formats(tmp_path, form):
     ],
 )
 def test_numbers_that_make_no_sense_are_left_out(given, magnitude, distance):
-    assert origins.origin("a", "b", given, given) == Origin("a", "b", magnitude, distance)
+    assert statements.origin("a", "b", given, given) == Origin("a", "b", magnitude, distance)
 
 
 def test_a_name_of_any_length_is_cut():
-    assert len(origins.name("ab " * 400) or "") <= origins.MAX_NAME_CHARACTERS
+    assert len(statements.name("ab " * 400) or "") <= statements.MAX_NAME_CHARACTERS
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from rocking_cli.errors import DoubtWarning
 from rocking_cli.excitation.base import STANDARD_GRAVITY as G
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import read_measured
-from rocking_cli.excitation.records.by_obspy import form_of
+from rocking_cli.excitation.records.seismo import form_of
 from tests.excitation.test_record_formats import VALUES, columns, cosmos, csmip, esm, geonet, problem, smc
 from tests.questions.verify.test_grid import workbook
 

@@ -18,8 +18,8 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
 from rocking_cli.excitation.records import layout
+from rocking_cli.excitation.records.formats import FALLBACKS, Readers, load_readers, reader_for, takes_bytes
 from rocking_cli.excitation.records.record_units import Asked
-from rocking_cli.excitation.records.registry import FALLBACKS, Readers, load_readers, reader_for, takes_bytes
 from rocking_cli.units import UNITS
 from tests.conftest import FORMATS, NEEDS_RECORDS, RECORDS, record
 

@@ -15,7 +15,7 @@ from click.testing import CliRunner
 from rocking_cli.ask.read import read_record
 from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError
-from rocking_cli.excitation.records.header_words import component
+from rocking_cli.excitation.records.record_units import component
 from tests import header_files
 from tests.conftest import RECORDS
 from tests.excitation.test_record_formats import MADE

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from rocking_cli.ask.read import read_record
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.processing.floor import Floor
+from rocking_cli.processing.oscillator import Floor
 from rocking_cli.processing.reading import turned
 from rocking_cli.questions.respond.azimuths import all_around, sectors
 from tests.cli.test_cli import run, run_json

@@ -12,9 +12,9 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
-from rocking_cli.processing.entry import Entry, of_reading
-from rocking_cli.processing.floor import Floor
+from rocking_cli.processing.oscillator import Floor
 from rocking_cli.processing.reading import Reading, reading_of
+from rocking_cli.processing.record_list import Entry, of_reading
 from rocking_cli.processing.steps import parse_step, parse_steps, process
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
@@ -146,7 +146,7 @@ class TestShape:
         from dataclasses import replace
 
         from rocking_cli.excitation.base import Doubt
-        from rocking_cli.excitation.records.record_units import as_acceleration
+        from rocking_cli.processing.reading import as_acceleration
 
         coarse = replace(motion, acceleration=np.round(0.05 * np.sin(motion.time), 3))  # displacements of whole mm
         (noisy,) = (each for each in as_acceleration(coarse, "displacement").remarks if each.kind == "resolution")

@@ -11,7 +11,7 @@ import numpy as np
 
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError
-from rocking_cli.excitation.pulses.base import Pulse, Segment
+from rocking_cli.excitation.pulses import Pulse, Segment
 
 
 class Sine(Pulse):

@@ -1,4 +1,4 @@
-"""Units of accelerations: their spellings and sizes, and where a header states them. A unit is never guessed.
+"""Words and units of headers, in five languages: where a header states a unit, which is never guessed.
 
 Other recorded values are displacements, velocities, volts and counts.
 """
@@ -7,21 +7,119 @@ from __future__ import annotations
 
 import math
 import re
+import unicodedata
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import islice
-from math import isfinite
 from typing import Literal, NamedTuple, get_args
 
-import numpy as np
-
-from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem, named
-from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
-from rocking_cli.excitation.doubts import of_samples
-from rocking_cli.excitation.records.header_words import WORDS, plain
 from rocking_cli.text import did_you_mean, exact, regex
 from rocking_cli.units import CHOICES, KINDS, QUANTITY, UNITS, header_unit
+
+# Each row has English, Italian, Spanish, Turkish and romanised Japanese, as expressions for text made `plain`.
+_WORDS = {
+    "interval": (
+        r"(?:sampl(?:e|ing)|time|data)[ -]?(?:intervals?|steps?|period|increment|spacing)|delta ?t|dt"
+        r"|(?:equally )?spaced at|(?:points|samples|data) at|intervals (?:at|of)",
+        r"(?:passo|intervallo|periodo) (?:di )?(?:campionamento|tempo)|passo temporale",
+        r"(?:intervalo|periodo|paso) de (?:muestreo|tiempo)",
+        r"ornekleme (?:araligi|periyodu|adimi)|zaman (?:araligi|adimi)",
+        r"sa[nm]puringu kankaku|jikan kankaku",
+    ),
+    "rate": (
+        r"sampl(?:e|ing) ?(?:rate|freq(?:uency)?)|samp rate|samples per sec(?:ond)?|sps",
+        r"(?:frequenza|velocita) di campionamento|campioni al secondo",
+        r"(?:frecuencia|velocidad|tasa|razon) de muestreo|muestras por segundo",
+        r"ornekleme (?:hizi|frekansi|sikligi)",
+        r"sa[nm]puringu (?:shu(?:u)?hasu+|reeto|rate)",
+    ),
+    "count": (
+        r"npts|ndata|n ?points|n ?samples|(?:number|no\.?|num\.?|total) (?:of )?(?:the )?(?:data|points?|samples?)"
+        r"(?: points?| samples?)?",
+        r"(?:numero|n\.?|totale) (?:di |dei )?(?:punti|campioni|dati)",
+        r"(?:numero|no\.?|num\.?|total) (?:de )?(?:puntos|muestras|datos)",
+        r"(?:veri|data|nokta|ornek) sayisi",
+        r"(?:deeta|deta|data|sa[nm]puru|ten) ?su+",
+    ),
+    "counted": (r"(?:data ?)?points|samples|pts", r"punti|campioni", r"puntos|muestras", r"nokta|ornek", r"tensu+"),
+    "seconds": (r"s|secs?|seconds?", "secondi", "segundos", "saniye|sn", "byo"),
+    "milliseconds": (r"ms|msecs?|milliseconds?", "millisecondi", "milisegundos", "milisaniye", "miribyo"),
+    "hertz": ("hz|sps|samples.*|points.*", "campioni.*", "muestras.*", "ornek.*", "herutsu"),
+    "time": ("t|time", "tempo", "tiempo", "zaman", "jikan"),
+    "unit": (r"units?", r"unita'?(?: di misura)?", r"unidad(?:es)?", r"birim(?:i|ler|leri)?", r"tan'?i"),
+    "acceleration": ("acc", r"accelerazion[ei]|acc", "aceleracion(?:es)?", "ivme(?:si)?", "kasokudo"),
+    "peak": (
+        r"pga|(?:amplitude )?max(?:imum)?|peak(?: ground)?",
+        r"picco|(?:valore )?massim[oai]",
+        r"maxim[oa]s?|pico|amax",
+        r"maksimum|en (?:buyuk|yuksek)|tepe",
+        r"saidai(?:chi)?",
+    ),
+    # A line about one value or the instrument: its unit may differ from that of the record.
+    "about a value": (
+        r"pg[avd]|peak|max\w*|min|minimum|rms|arias|scaled?|factor|gravity|full[ -]?scale|range|sensitivity|resolution"
+        r"|lsb|mean(?! (?:removed|subtracted))|average|st(?:andar)?d\.? dev\w*|clip\w*",
+        r"picco|massim\w*|minim\w*|fondo ?scala|fattore|sensibilita|media|risoluzione",
+        r"pico|fondo de escala|escala|sensibilidad|promedio|desviacion",
+        r"tepe|en (?:buyuk|yuksek|kucuk)|maksimum|ortalama|tam olcek|olcek|duyarlilik",
+        r"saidai\w*|saisho\w*|heikin|furusukeeru|kando",
+    ),
+    # Peaks and numbers of points of something else.
+    "something else": (
+        r"vel\w*|dis\w*|pgv|pgd|full[ -]?scale|range|factor|sensitivity|freq\w*|period|spectr\w*|fft|filter\w*|taper\w*"
+        r"|poles?|vector|resultant|intensity|magnitude|clip\w*|per (?:line|row|block)|lines|resolution",
+        r"spostament\w*|fondo ?scala|fattore|filtr\w*|per riga",
+        r"desplazamiento\w*|escala|factor|filtr\w*|por (?:linea|renglon)",
+        r"hiz\w*|yer ?degistirme|olcek|filtre",
+        r"sokudo|hen'?i|shindo",
+    ),
+    "north": (r"ns?|n-s|sn|s|north(?:-south)?", "nord(?:-sud)?", "norte(?:-sur)?", "k-?g|kuzey(?:-guney)?", "nanboku"),
+    "east": (r"ew?|e-w|we|w|east(?:-west)?", r"est(?:-ovest)?", r"este(?:-oeste)?", r"d-?b|dogu(?:-bati)?", "to+u?zai"),
+    "up": (r"ud?|u-d|up(?:-down)?|z|v|vert(?:ical)?", "verticale", "vertical", "dusey", "jo+u?ge"),
+    "another": (
+        r"[lrtxyh]|h[12]|long(?:itudinal)?|tran(?:sverse|sversal|s)?|lat(?:eral)?|rad(?:ial)?|[a-z][nhlg][nez123xyz]|[ns]\d\d?[ew]"
+        r"|\d{1,3} ?deg|a[xyz\d]|(?:chan?|channel|comp|component|sensor|ch) ?\.?\w{1,3}",
+        "longitudinale|trasversale", "transversal", "boyuna|enine", "",
+    ),
+}  # fmt: skip
+WORDS = {item: "|".join(filter(None, row)) for item, row in _WORDS.items()}
+"""Expressions of the words for each item."""
+
+_SIGN = r" *\([+-]\)$|:$"
+_COMPONENT = {item: regex(rf"(?:{WORDS[item]})") for item in ("north", "east", "up", "another")}
+_OF_ACCELERATION = regex(rf"(?:(?:{WORDS['acceleration']})\w*[ ._-]*)?(.*?)[ ._-]*(?:acc\w*)?")
+_BRACKETS = regex(r"\s*(?:\[[^\]]*\]|\((?![+-]\))[^)]*\))")
+_JOINED = regex(r"(?<=[a-z]{2})(?=[A-Z])")
+
+
+def plain(line: str) -> str:
+    """Return a line in lower case without accents, with spaces for underscores and between joined words.
+
+    Examples
+    --------
+    >>> plain("#SampleRate(Hz): 100"), plain("ÖRNEKLEME_HIZI")
+    ('#sample rate(hz): 100', 'ornekleme hizi')
+    """
+    parted = _JOINED.sub(" ", line.replace("_", " "))
+    letters = unicodedata.normalize("NFKD", parted.lower().replace("\u0131", "i"))
+    return "".join(each for each in letters if not unicodedata.combining(each)).strip()
+
+
+def without_sign(name: str) -> str:
+    """Return the name of a component without its sign or a colon: `E(+)` is `E`."""
+    return re.sub(_SIGN, "", name.strip()).strip()
+
+
+def component(label: str) -> str | None:
+    """Return the direction that a label names, or the label itself if it is another component; None if it is none."""
+    word = without_sign(_BRACKETS.sub("", plain(label)))
+    match = _OF_ACCELERATION.fullmatch(word)
+    word = match[1] if match is not None and match[1] else word
+    return next(
+        (word if item == "another" else item for item, each in _COMPONENT.items() if each.fullmatch(word)), None
+    )
+
 
 _S = r"s(?:ec)?"
 _OVER_S2 = rf" ?/ ?{_S} ?(?:\^|\*\*)? ?2| ?/ ?{_S} ?/ ?{_S}"
@@ -176,8 +274,8 @@ def _refuse_another(file: str, header: Sequence[tuple[int, str]], quantity: Quan
     """Raise `InputError` if all units of the labels, or of a line on units, are of other quantities."""
     for number, line in header:
         units = BRACKETED.findall(line) if number == header[-1][0] else []
-        stated = {quantity_of(unit): unit for unit in (*units, *_OF_UNITS.findall(line))}
-        stated.pop(None, None)
+        units += _OF_UNITS.findall(line)
+        stated = {kind: unit for unit in units if (kind := quantity_of(unit)) is not None}
         if stated and quantity not in stated:
             other, unit = next(iter(stated.items()))
             message = f"the header says that the values are in {unit}, a unit of {plural(other)}"
@@ -230,7 +328,6 @@ MIN_GAIN, MAX_GAIN = 1e-30, 1e30  # products overflow beyond these bounds
 TIME_UNITS = frozenset(
     ["s", "sec", "second", "seconds", "ms", "min", "minute", "minutes", "h", "hr", "hour", "hours", "d", "day", "days"]
 )
-MAX_STEP_OVER_PEAK = 0.05  # acceleration of one step of the last digit over the peak
 
 _IN_HEADER = regex(rf"[\[(]\s*([^\])]+?)\s*[\])]|\bin\s+(?!units?\b)([^\s,;]+)|{_UNITS_OF}([^\s,;]+)", re.IGNORECASE)
 _OF_UNITS = regex(rf"{_UNITS_OF}([^\s,;]+)", re.IGNORECASE)
@@ -283,7 +380,7 @@ ACCELERATIONS = Wanted()
 
 
 class Asked(NamedTuple):
-    """Arguments of a reader of this package: those of `registry.Reader.read`, and what is wanted."""
+    """Arguments of a reader of this package: those of `formats.Reader.read`, and what is wanted."""
 
     dt: float | None = None
     units: str | None = None
@@ -369,74 +466,3 @@ def _refused(message: str, guess: str | None = None) -> InputError:
     hint = f"{guess}; " if guess else ""
     hint += f"say what one unit stands for, such as {GAIN_EXAMPLE}"
     return InputError(Problem(message, field=named("gain"), hint=hint))
-
-
-def smallest_step(measured: GroundMotion) -> float:
-    """Return the smallest non-zero difference of consecutive samples, usually one last digit; 0 if there is none."""
-    steps = np.abs(np.diff(measured.acceleration))
-    smallest = float(steps[steps > 0].min(initial=np.inf))
-    return smallest if isfinite(smallest) else 0.0
-
-
-def as_acceleration(measured: GroundMotion, quantity: Quantity, step: float | None = None) -> GroundMotion:
-    """Return the ground acceleration from measured displacements, velocities or accelerations.
-
-    Parameters
-    ----------
-    measured : GroundMotion
-        Motion whose "accelerations" are the measured values, in m, m/s or m/s2; accelerations are returned unchanged.
-    quantity : str
-        Quantity of the measured values.
-    step : float, optional
-        `smallest_step` of the values before corrections, which hide it; 0 to raise no doubt about the resolution.
-
-    Returns
-    -------
-    GroundMotion
-        Motion by central differences, zero at the first and the last sample. At a frequency f they reduce the amplitude
-        by sinc^2(f dt) for displacements and sinc(2 f dt) for velocities, with sinc(x) = sin(pi x)/(pi x).
-    """
-    if quantity == "acceleration":
-        return measured
-    dt, values = measured.dt, measured.acceleration
-    step = smallest_step(measured) if step is None else step
-    inner = np.diff(values, 2) / dt**2 if quantity == "displacement" else (values[2:] - values[:-2]) / (2 * dt)
-    acceleration = np.pad(inner, 1)
-    if not np.isfinite(acceleration).all():
-        raise InputError(Problem("its differences are beyond the range of numbers", measured.name))
-    remarks = (
-        *measured.remarks,
-        *of_samples(measured, accelerations=False),
-        *_resolution(step, acceleration, dt, quantity),
-    )
-    return replace(
-        measured,
-        acceleration=acceleration,
-        remarks=remarks,
-        processing=(*measured.processing, differentiation_step(quantity)),
-    )
-
-
-def differentiation_step(quantity: Quantity) -> str:
-    """Return the name of the differentiation of a quantity in the list of processing steps."""
-    return f"from {quantity}"
-
-
-def in_words(quantity: Quantity, dt: float) -> str:
-    """Return a description of the differentiation as a filter, for users."""
-    twice, half = ("twice ", 0.44295 / dt) if quantity == "displacement" else ("", 0.30168 / dt)
-    return f"differentiated {twice}by central differences, which leave half of what is at {half:.3g} Hz"
-
-
-def _resolution(smallest: float, acceleration: Reals, dt: float, quantity: Quantity) -> tuple[Doubt, ...]:
-    """Return a doubt if one step of the last digit, differentiated, is a large part of the peak acceleration."""
-    power, unit = (2, "m") if quantity == "displacement" else (1, "m/s")
-    noise = smallest / dt**power
-    peak = float(np.abs(acceleration).max())
-    if not (isfinite(noise) and noise > MAX_STEP_OVER_PEAK * peak):
-        return ()
-    text = (
-        f"its smallest step, {smallest:.3g} {unit}, is {noise / STANDARD_GRAVITY:.2g} g once differentiated, of a peak "
-        f"of {peak / STANDARD_GRAVITY:.2g} g: noise, unless a low-pass filter takes it out"
-    )
-    return (Doubt("resolution", noise / STANDARD_GRAVITY, text),)

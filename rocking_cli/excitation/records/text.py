@@ -17,14 +17,20 @@ import numpy as np
 from rocking_cli.arrays import Bools, Reals
 from rocking_cli.errors import InputError, Problem, how_to_correct, named
 from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
-from rocking_cli.excitation.records.columns import MAX_COLUMNS, Choice, Label, choose, labels
-from rocking_cli.excitation.records.header_words import WORDS, component
-from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.excitation.records.columns import (
+    FEWEST_ROWS,
+    MAX_COLUMNS,
+    Choice,
+    Label,
+    choose,
+    counts_rows,
+    labels,
+    runs_on,
+)
+from rocking_cli.excitation.records.lines import Lines, PrintedRows, unlike_the_others
 from rocking_cli.excitation.records.prepared import read_header
-from rocking_cli.excitation.records.record_units import ACCELERATIONS, Wanted, other_quantity, plural
-from rocking_cli.excitation.records.shapes import FEWEST_ROWS, counts_rows, runs_on
+from rocking_cli.excitation.records.record_units import ACCELERATIONS, WORDS, Wanted, component, other_quantity, plural
 from rocking_cli.excitation.records.statements import Statements, statements
-from rocking_cli.excitation.records.widths import PrintedRows, unlike_the_others
 from rocking_cli.text import regex
 from rocking_cli.units import UNITS
 
@@ -83,7 +89,7 @@ def read(
     channel: str | None = None,
     wanted: Wanted = ACCELERATIONS,
 ) -> GroundMotion:
-    """Read delimited text; arguments, result and errors are those of `registry.Reader.read`."""
+    """Read delimited text; arguments, result and errors are those of `formats.Reader.read`."""
     rows = _rows(text, file)
     prepared = read_header(file, rows.lines[: rows.start])
     header = _header(file, rows, prepared.lines)

@@ -11,9 +11,9 @@ from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import formats, layout
-from rocking_cli.excitation.records.header_fields import Field, read_head
-from rocking_cli.excitation.records.origins import length_doubts
+from rocking_cli.excitation.records.layout import Field, read_head
 from rocking_cli.excitation.records.record_units import Asked
+from rocking_cli.excitation.records.statements import length_doubts
 from rocking_cli.text import regex
 from rocking_cli.units import UNITS
 
@@ -33,7 +33,7 @@ _INTEGERS, _REALS = 100, 50
 
 
 def read(text: str, file: str, asked: Asked) -> GroundMotion:
-    """Read a USC V1 file; see `registry.Reader.read`.
+    """Read a USC V1 file; see `formats.Reader.read`.
 
     The record is linear between its points, whose times are whole milliseconds. The motion has the largest constant
     interval that includes all of these times: it has more samples than the file has points, but is not an

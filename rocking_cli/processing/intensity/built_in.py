@@ -14,7 +14,7 @@ from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.measures import measure, time_of_share
-from rocking_cli.processing.intensity.base import MotionMeasure, Reference, RelativeMeasure, RunMeasure
+from rocking_cli.processing.intensity import MotionMeasure, Reference, RelativeMeasure, RunMeasure
 from rocking_cli.processing.oscillator import DAMPING, check_oscillator, response_spectrum
 
 MIN_FREQUENCY, MAX_FREQUENCY = 0.25, 20.0  # Hz; bounds of the frequencies of the mean period

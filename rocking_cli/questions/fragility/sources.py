@@ -12,8 +12,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
-from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD, parse_pulse
-from rocking_cli.excitation.pulses.base import SAMPLING
+from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD, SAMPLING, parse_pulse
 from rocking_cli.processing.reading import Reading
 from rocking_cli.processing.steps import process
 from rocking_cli.questions.fragility.definition import RecordEntry

@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from math import nan
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, BinaryIO
@@ -22,19 +23,19 @@ from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.measures import Measures
 from rocking_cli.excitation.pulse_fit import PulseFit
-from rocking_cli.processing.intensity import Measure
-from rocking_cli.processing.listed import Listed
+from rocking_cli.processing.intensity import Measure, Reference, RunMeasure
+from rocking_cli.processing.reading import Listed
 from rocking_cli.questions.record.asked import RecordAsked, ResponseSpectrumAsked
 from rocking_cli.questions.record.view import Examined
+from rocking_cli.structure import Structure
 from rocking_cli.views.view import View
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking_cli.io.tables import Columns
-    from rocking_cli.processing.listed import Scaled
     from rocking_cli.processing.oscillator import ResponseSpectrum
-    from rocking_cli.structure import Structure
+    from rocking_cli.processing.reading import Scaled
 
 PROGRESS_DELAY = 1.0  # s of work before progress is shown
 
@@ -274,13 +275,13 @@ def _spectra(examined: Sequence[Examined]) -> dict[str, ResponseSpectrum]:
 
 
 def _spectra_table(examined: Sequence[Examined]) -> Columns:
-    from rocking_cli.questions.record.response_spectrum_view import table
+    from rocking_cli.questions.record.view import spectra_table
 
-    return table(_spectra(examined))
+    return spectra_table(_spectra(examined))
 
 
 def _spectra_figure(examined: Sequence[Examined]) -> Callable[[], Figure]:
-    return drawn("questions.record.response_spectrum_picture.draw_response_spectra", _spectra(examined))
+    return drawn("questions.record.picture.draw_response_spectra", _spectra(examined))
 
 
 def _fit(motion: GroundMotion, watch: Watcher) -> list[PulseFit]:
@@ -305,7 +306,6 @@ def _measured(
         return {}
     names = names if isinstance(names, str) else ", ".join(names)
     from rocking_cli.processing.intensity import ALL_MEASURES, parse_measures
-    from rocking_cli.questions.record.study import intensities, reference_of
 
     parsed = parse_measures(names)
     if structure is None and names.strip().lower() == ALL_MEASURES:
@@ -369,13 +369,68 @@ def response_spectrum(asked: ResponseSpectrumAsked, watch: Watcher) -> Answer[Re
     [0.54]
     """
     from rocking_cli.processing.oscillator import response_spectrum as respond_linearly
-    from rocking_cli.questions.record import response_spectrum_view as views
+    from rocking_cli.questions.record import view as views
 
     scaled = motion_of(asked.motions).scaled(asked.scale)
     spectrum = respond_linearly(scaled, asked.periods, asked.damping)
     named = {scaled.name: spectrum}
-    figure = drawn("questions.record.response_spectrum_picture.draw_response_spectra", named)
+    figure = drawn("questions.record.picture.draw_response_spectra", named)
     dims = [Dimensions(("motion", "period"))]
     return Answer(
-        "response spectrum", spectrum, views.view(scaled.name, spectrum), partial(views.table, named), figure, dims=dims
+        "response spectrum",
+        spectrum,
+        views.spectrum_view(scaled.name, spectrum),
+        partial(views.spectra_table, named),
+        figure,
+        dims=dims,
     )
+
+
+def reference_of(structure: Structure) -> Reference:
+    """Return the reference values of measures relative to a structure, in the direction that uplifts first."""
+    gravity = structure.mechanism.gravity
+    if structure.why_no_block is not None:
+        return Reference(nan, min(side.lambda_ for side in structure.statics), gravity)
+    block = min((structure.equivalence.positive, structure.equivalence.negative), key=lambda each: each.lambda_)
+    return Reference(block.p, block.lambda_, gravity, block.v_imp)
+
+
+def intensities(
+    motion: GroundMotion, measures: Sequence[Measure], structure: Reference | None = None
+) -> dict[Measure, float]:  # fmt: skip
+    """Compute intensity measures of a ground motion.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The scaled motion.
+    measures : sequence of Measure
+        The measures to compute.
+    structure : Reference, optional
+        Reference values of relative measures.
+
+    Returns
+    -------
+    dict of Measure to float
+        Value of each measure; NaN if the motion or the structure has none.
+
+    Raises
+    ------
+    InputError
+        If a measure is relative, and there is no structure.
+    PluginError
+        If the plugin of a measure fails.
+    """
+    bare = [str(measure) for measure in measures if measure.is_relative]
+    if bare and structure is None:
+        raise InputError(Problem(f"{', '.join(bare)}: relative to what is shaken", hint=f"give a {named('structure')}"))
+    values: dict[Measure, float] = {}
+    for measure in measures:
+        if isinstance(measure, RunMeasure):
+            assert structure is not None
+            values[measure] = measure.value(motion, structure)
+        else:
+            assert measure.base is not None
+            value = measure.base.value(motion)
+            values[measure] = float(value if structure is None else measure.relative(value, structure))
+    return values

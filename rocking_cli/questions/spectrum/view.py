@@ -12,7 +12,7 @@ import numpy as np
 from rocking_cli.arrays import Integers, Reals
 from rocking_cli.io.tables import Columns, stacked
 from rocking_cli.names import MIN_MOTIONS, NO_UPLIFT, OVERTURNS, ROCKS, UNKNOWN
-from rocking_cli.processing.listed import Scaled
+from rocking_cli.processing.reading import Scaled
 from rocking_cli.questions.overturning.view import NO_JOINTS, numbers, source_of, spaced
 from rocking_cli.questions.spectrum.study import Spectrum
 from rocking_cli.short_repr import short_repr

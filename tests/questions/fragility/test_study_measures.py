@@ -175,8 +175,8 @@ class TestStore:
         def never(*given):
             raise AssertionError("measured again")
 
-        monkeypatch.setattr("rocking_cli.processing.intensity.base.MotionMeasure.value", never)
-        monkeypatch.setattr("rocking_cli.processing.intensity.base.RunMeasure.value", never)
+        monkeypatch.setattr("rocking_cli.processing.intensity.MotionMeasure.value", never)
+        monkeypatch.setattr("rocking_cli.processing.intensity.RunMeasure.value", never)
         assert command("fragility", path, "--json").exit_code == 0
         monkeypatch.undo()
 

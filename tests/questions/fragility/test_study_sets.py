@@ -9,7 +9,7 @@ import pytest
 import statsmodels.api as sm
 from pydantic import ValidationError
 
-from rocking_cli.processing.entry import Entry
+from rocking_cli.processing.record_list import Entry
 from rocking_cli.questions.fragility.curves import fit_capacities, fit_curve, fit_surface
 from rocking_cli.questions.fragility.observed import Observations
 from tests.cli.test_cli import run

@@ -20,7 +20,7 @@ from rocking_cli.dynamics import kernels, shipped, ways
 from rocking_cli.dynamics.calling import SETS
 from rocking_cli.dynamics.exact import closed_form
 from rocking_cli.errors import KernelWarning
-from rocking_cli.excitation.records.registry import Readers
+from rocking_cli.excitation.records.formats import Readers
 from rocking_cli.questions.selfcheck import checks
 from rocking_cli.questions.selfcheck import study as run
 from rocking_cli.questions.selfcheck.checks import different_values, largest_difference
