@@ -289,13 +289,8 @@ def as_acceleration(measured: GroundMotion, quantity: Quantity, step: float | No
         measured,
         acceleration=acceleration,
         remarks=remarks,
-        processing=(*measured.processing, differentiation_step(quantity)),
+        processing=(*measured.processing, f"from {quantity}"),
     )
-
-
-def differentiation_step(quantity: Quantity) -> str:
-    """Return the name of the differentiation of a quantity in the list of processing steps."""
-    return f"from {quantity}"
 
 
 def in_words(quantity: Quantity, dt: float) -> str:

@@ -15,7 +15,7 @@ def in_words(motion: GroundMotion) -> str:
 
     steps = list(motion.processing)
     for quantity in QUANTITIES:
-        if (step := reading.differentiation_step(quantity)) in steps:
+        if (step := f"from {quantity}") in steps:
             steps[steps.index(step)] += f" ({reading.in_words(quantity, motion.of_ground.dt)})"
     parts = [f"processed: {', '.join(steps)}"] if steps else []
     return "; ".join(parts + ([f"prepared from {motion.prepared_from}"] if motion.prepared_from else []))

@@ -1,6 +1,5 @@
 """Damaged record files are refused or doubted, files that an editor has saved are not, and hostile ones do no harm."""
 
-import json
 import os
 import re
 import tracemalloc
@@ -18,8 +17,6 @@ from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
 from rocking_cli.excitation.records import usc as usc_v1
 from rocking_cli.excitation.records.record_units import Asked
-from tests.cli.test_cli import run, run_json
-from tests.conftest import EXAMPLES
 from tests.damage import CHANGES, MOST_SILENT, REAL, Kind, Read, read, survey
 from tests.excitation.test_record_formats import (
     MADE,
@@ -135,11 +132,12 @@ def motion_of(content: str, tmp_path: Path, how=read_record, **options):
 @pytest.mark.parametrize(
     ("content", "width"),
     [
-        (csmip(SMOOTH, names=("UP",)), 10), (geonet(SMOOTH, names=("Up",)), 8), (cosmos(SMOOTH, length=2), 10),
-        (smc(SMOOTH), 10), (usc(SMOOTH), 7), (knet(SMOOTH, duration=240), 9),
+        (csmip(SMOOTH, names=("UP",)), 10),  # nothing around the numbers
+        (usc(SMOOTH), 7),  # a margin
+        (knet(SMOOTH, duration=240), 9),  # blanks after them
     ],
-    ids=["csmip", "geonet", "cosmos", "smc", "usc", "knet"],
-)  # fmt: skip
+    ids=["csmip", "usc", "knet"],
+)
 def test_a_row_that_leaves_its_columns_is_named(content, width, tmp_path):
     lines = content.split("\n")
     row = max(k for k, line in enumerate(lines) if re.fullmatch(r"[\s\dE.+-]{30,}", line)) - 5
@@ -482,7 +480,7 @@ HOSTILE = {
     "times beyond numbers": usc().replace("  0.100 -7.000", "   1e29 -7.000"),
     "interval, AT2": at2().replace("DT= .01", "DT= 1e-300"),
     "rate, SMC": smc(rate=1e-20),
-    "a long line": at2() + "x" * 10_000_000,
+    "a long line": at2() + "x" * 1_200_000,
 }
 
 
@@ -514,13 +512,3 @@ def test_what_a_message_quotes_is_cut(tmp_path):
 
 
 # --- the commands ---------------------------------------------------------------------------------------------------
-
-
-def test_doubts_about_a_file_are_shown_by_every_command(tmp_path):
-    path = tmp_path / "saved.v2"
-    path.write_text(EDITORS["blanks before rows"](csmip(SMOOTH * 20, names=("UP",))), encoding="utf-8")
-    (doubt,) = [each for each in run_json("record", path)["warnings"] if each["kind"] == "columns"]
-    assert doubt["value"] == 30
-    for command in (("record",), ("respond", EXAMPLES / "block.yaml", "--model", "linear1", "--record")):
-        assert f"warning: saved.v2: {doubt['text']}" in run(*command, path).stderr
-    assert json.loads(run("record", path, "--scale", "2", "--json").stdout)["warnings"][0] == doubt

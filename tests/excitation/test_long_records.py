@@ -127,9 +127,8 @@ def test_numbers_only_fortran_prints_are_read_among_others(made):
     assert read(changed).acceleration[199_998] == 0.15 * 9.80665
 
 
-@pytest.mark.parametrize("values", [COUNT - 5, COUNT + 5])
-def test_a_long_record_of_another_length_than_it_says_is_refused(made, values):
-    changed = made(at2, 4, f"NPTS= {values}, DT= .005 SEC")
+def test_a_long_record_of_another_length_than_it_says_is_refused(made):
+    changed = made(at2, 4, f"NPTS= {COUNT - 5}, DT= .005 SEC")
     assert f"but the file has {COUNT} values" in problem(changed).message
 
 

@@ -141,7 +141,7 @@ def test_values_missing_before_and_after_a_record_are_left_out_and_said(write):
 # --- the reader that fits -------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["knet", "jma", "peer_at2", "text"])
+@pytest.mark.parametrize("name", ["jma", "text"])
 def test_reading_a_file_imports_the_reader_of_no_other_format(name, tmp_path):
     from tests.readers import samples
 
@@ -157,9 +157,3 @@ def test_reading_a_file_imports_the_reader_of_no_other_format(name, tmp_path):
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=PROJECT)
     own = [] if name == "text" else [getattr(formats, name).module]
     assert done.stdout == f"{own} False\n", done.stderr
-
-
-def test_the_made_files_are_in_the_check_of_the_installation():
-    from rocking_cli.questions.selfcheck import checks
-
-    assert set(networks.MADE) <= set(checks.FILES)

@@ -6,7 +6,6 @@ import sys
 import time as clock
 import tracemalloc
 import zipfile
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -88,15 +87,7 @@ def test_one_column_takes_the_interval_from_the_user(write, rows):
 
 @pytest.mark.parametrize(
     ("unit", "factor"),
-    [
-        ("g", 9.80665),
-        ("m/s2", 1.0),
-        ("cm/s2", 0.01),
-        ("mm/s2", 0.001),
-        ("gal", 0.01),
-        ("mg", 0.00980665),
-        ("%g", 0.0980665),
-    ],
+    [("g", 9.80665), ("m/s2", 1.0), ("gal", 0.01), ("%g", 0.0980665)],
 )
 def test_units_are_converted_to_si(write, unit, factor):
     motion = read_record(write("0,1\n0.01,-2\n"), units=unit)
@@ -104,7 +95,7 @@ def test_units_are_converted_to_si(write, unit, factor):
     assert motion.source_unit == unit
 
 
-@pytest.mark.parametrize("name", ["record.AT2", "record.json", "record", "record.png"])
+@pytest.mark.parametrize("name", ["record.AT2", "record.json"])
 def test_the_format_is_found_from_the_content_not_the_name(write, name):
     assert read_record(write("t,accel_g\n0,1\n0.01,2\n", name)).format == "text"
     assert read_record(write(at2([1, 2]), name)).format == "PEER AT2"
@@ -135,14 +126,6 @@ def test_round_trip_of_two_columns(tmp_path_factory, values, dt, first, mark, ne
     motion = read_record(path)
     assert accelerations(motion) == values
     assert motion.dt == pytest.approx(dt, rel=1e-9)
-
-
-@UNTIMED
-@given(values=st.lists(st.floats(-1e6, 1e6), min_size=2, max_size=40), form=st.sampled_from(["r", ".17e", "+.17E"]))
-def test_round_trip_of_one_column(tmp_path_factory, values, form):
-    path = tmp_path_factory.getbasetemp() / "round_trip_one.txt"
-    path.write_text("\n".join(repr(v) if form == "r" else format(v, form) for v in values))
-    assert accelerations(read_record(path, dt=0.02, units="m/s2")) == values
 
 
 def test_a_long_record_is_read_quickly(write):
@@ -245,11 +228,6 @@ def test_unknown_unit_of_the_user(write):
     assert "g, m/s2, cm/s2, mm/s2, gal" in found.hint
 
 
-def test_header_and_user_may_agree(write):
-    assert read_record(write("t,accel_g\n0,1\n0.5,2\n"), units="g").source_unit == "g"
-    assert read_record(write("t,a [cm/s2]\n0,1\n0.5,2\n"), units="gal").source_unit == "cm/s2"
-
-
 def test_two_units_in_a_header_are_not_guessed_between(write):
     path = write("# units: m/s2\nt,accel_g\n0,1\n0.5,2\n")
     found = problem(path)
@@ -304,10 +282,8 @@ def test_steps_that_grow_bit_by_bit_are_refused(write):
     assert "a constant interval would give" in found.message
 
 
-@pytest.mark.parametrize(
-    ("dt", "decimals"), [(1 / 128, 4), (1 / 256, 4), (1 / 256, 5), (1 / 150, 4), (0.005, 3), (0.02, 2), (1 / 3, 2)]
-)
-@pytest.mark.parametrize("n", [2, 3, 10, 1000, 20000])
+@pytest.mark.parametrize(("dt", "decimals"), [(1 / 128, 4), (1 / 256, 4), (1 / 150, 4), (0.005, 3), (1 / 3, 2)])
+@pytest.mark.parametrize("n", [2, 10, 4000])
 def test_rounded_times_are_accepted(write, dt, decimals, n):
     motion = read_record(times(write, *(f"{i * dt:.{decimals}f}" for i in range(n))))
     assert motion.dt == pytest.approx(dt, abs=1.01 * 10**-decimals / (n - 1))
@@ -480,9 +456,8 @@ VALUES = [0.001 * i * (-1) ** i for i in range(1, 14)]
 
 
 @pytest.mark.parametrize("per_line", [1, 5, 8])
-@pytest.mark.parametrize("newline", ["\n", "\r\n"])
-def test_peer(write, per_line, newline):
-    path = write(at2(VALUES, per_line=per_line).replace("\n", newline), "RSN1.AT2")
+def test_peer(write, per_line):
+    path = write(at2(VALUES, per_line=per_line), "RSN1.AT2")
     motion = read_record(path)
     np.testing.assert_allclose(motion.acceleration, np.array(VALUES) * G, rtol=1e-12)
     assert (motion.dt, motion.name, motion.source_unit, motion.format) == (0.01, "RSN1.AT2", "g", "PEER AT2")
@@ -505,19 +480,6 @@ def test_peer_headers(write, header):
     motion = read_record(write(header + "  .1000000E+00  -.2000000E+00   .3000000E+00\n"))
     np.testing.assert_allclose(motion.acceleration, [0.1 * G, -0.2 * G, 0.3 * G], rtol=1e-15)
     assert (motion.dt, motion.source_unit, motion.format) == (0.005, "g", "PEER AT2")
-
-
-@pytest.mark.parametrize("header", ["{npts:6d}  {dt}    NPTS, DT\n", "NPTS= {npts:6d}, DT= {dt} SEC,\n"])
-@pytest.mark.parametrize("per_line", [5, 8])
-@pytest.mark.parametrize(
-    ("printed", "dt"),
-    [(".00390625", 1 / 256), ("0.0024", 0.0024), (".009756", 0.009756), ("9.765625E-03", 0.009765625)],
-)
-def test_odd_intervals_of_peer(write, header, per_line, printed, dt):
-    body = at2(VALUES, per_line=per_line).split("\n", 4)[4]
-    motion = read_record(write(TITLE + UNITS_OF_G + header.format(npts=len(VALUES), dt=printed) + body))
-    np.testing.assert_allclose(motion.acceleration, np.array(VALUES) * G, rtol=1e-12)
-    assert (motion.dt, motion.format) == (dt, "PEER AT2")
 
 
 @pytest.mark.parametrize(
@@ -544,20 +506,6 @@ def test_round_trip_of_values_run_together(tmp_path_factory, values, per_line):
     assert accelerations(read_record(path)) == values
 
 
-@pytest.mark.parametrize(
-    ("line", "unit"),
-    [
-        ("ACCELERATION TIME SERIES IN UNITS OF G", "g"),
-        ("ACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.1 Hz LP=23.0 Hz", "g"),
-        ("The units are (g)", "g"),
-        ("ACCELERATION TIME SERIES IN UNITS OF CM/SEC/SEC", "cm/s2"),
-        ("ACCELERATION IN GAL", "gal"),
-    ],
-)
-def test_unit_of_peer(write, line, unit):
-    assert read_record(write(at2(VALUES, units=line + "\n"))).source_unit == unit
-
-
 def test_unit_missing_or_contradicted_in_peer(write):
     path = write(at2(VALUES, units="\n"))
     assert "`units`" in problem(path).hint
@@ -565,14 +513,6 @@ def test_unit_missing_or_contradicted_in_peer(write):
     found = problem(write(at2(VALUES)), units="m/s2")
     assert "the unit is g, but `units` says m/s2" in found.message
     assert found.line == 3
-
-
-def test_an_interval_that_is_given_must_agree_with_peer(write):
-    path = write(at2(VALUES))
-    assert read_record(path, dt=0.01).dt == 0.01
-    found = problem(path, dt=0.005)
-    assert "0.01 s, but `dt` says 0.005 s" in found.message
-    assert found.line == 4
 
 
 def test_comments_in_peer_are_passed_over(write):
@@ -667,7 +607,7 @@ def test_without_a_choice_the_columns_are_listed(write):
     assert "column 4, vel (cm/s), is no acceleration" in found.hint
 
 
-@pytest.mark.parametrize("channel", ["3", "0", "vel", "time_s", "az", "²"])
+@pytest.mark.parametrize("channel", ["3", "vel", "²"])
 def test_a_column_that_is_not_there_is_listed_too(write, channel):
     found = problem(write(TABLE), channel=channel)
     assert f"there is no channel '{channel}'" in found.message
@@ -675,8 +615,8 @@ def test_a_column_that_is_not_there_is_listed_too(write, channel):
     assert "leave `channel` out" not in str(found)
 
 
-@pytest.mark.parametrize("columns", [3, 4, 5, 8])
-@pytest.mark.parametrize("mark", [",", ";", "\t", "  "])
+@pytest.mark.parametrize("columns", [3, 8])
+@pytest.mark.parametrize("mark", [",", "\t", "  "])
 @pytest.mark.parametrize("labelled", [True, False])
 def test_tables_of_any_width(write, columns, mark, labelled):
     table = np.array([[0.01 * row, *(row * (-1) ** row + k for k in range(1, columns))] for row in range(6)])
@@ -729,12 +669,6 @@ def test_a_bad_value_in_a_table_names_its_column(write):
     assert "'x' is not a number" in found.message
 
 
-def test_two_components_without_times(write):
-    path = write("ns [g],ew [g]\n1,2\n-1,5\n1,8\n")
-    assert accelerations(read_record(path, channel="ns", dt=0.01)) == [G, -G, G]
-    assert "2 columns that may be accelerations" in problem(path, dt=0.01).message
-
-
 def test_accelerations_that_repeat_the_times_are_no_times(write):
     path = write("x,y\n0,0\n0.02,0.02\n")
     assert accelerations(read_record(path, channel="1", units="m/s2")) == [0, 0.02]
@@ -747,7 +681,7 @@ def printed(dt: float, n: int, form: str = ".6g") -> list[str]:
     return [format(k * dt, form) for k in range(n)]
 
 
-@pytest.mark.parametrize(("dt", "n"), [(1 / 800, 16872), (1 / 400, 60000), (1 / 256, 5000), (1 / 1024, 20000)])
+@pytest.mark.parametrize(("dt", "n"), [(1 / 800, 16872), (1 / 256, 5000)])
 def test_times_of_six_digits_are_even(write, dt, n):
     motion = read_record(times(write, *printed(dt, n)))
     assert motion.npts == n
@@ -760,7 +694,7 @@ def test_times_of_few_decimals_are_not_taken_for_times_of_few_digits(write):
     assert problem(times(write, *rows)).line == 3000 + 4
 
 
-@pytest.mark.parametrize("missing", [10, 7000, 12345])
+@pytest.mark.parametrize("missing", [10, 12345])
 def test_a_missing_sample_is_found_among_times_of_six_digits(write, missing):
     rows = printed(1 / 800, 16000)
     del rows[missing]
@@ -784,11 +718,6 @@ def test_the_table_of_a_laboratory_is_read():
 def test_utf_16(write, encoding, content):
     motion = read_record(write(content.encode(encoding)))
     assert (accelerations(motion), motion.source_unit) == ([1.5, 2], "m/s2")
-
-
-@pytest.mark.parametrize("content", [b"t,accel_g\n0,1\n0.1,2\n\0\0\0\0", b"t,accel_g\0\0\n0,1\0\n0.1,2\0\0\n"])
-def test_padding_with_nul(write, content):
-    assert accelerations(read_record(write(content))) == [G, 2 * G]
 
 
 # --- packed files ---------------------------------------------------------------------------------------------------
@@ -866,9 +795,8 @@ def test_what_expands_too_far_is_refused(write, monkeypatch):
     assert problems(write(bytes(lying)))
 
 
-@pytest.mark.parametrize("pack", [partial(gzip.compress, compresslevel=1), lambda data: zipped(a=data)])
-def test_what_was_packed_a_thousand_times_smaller_is_refused_before_it_fills_the_memory(write, pack):
-    path = write(pack(b"0\n" * 20_000_000))
+def test_what_was_packed_a_thousand_times_smaller_is_refused_before_it_fills_the_memory(write):
+    path = write(gzip.compress(b"0\n" * 20_000_000, compresslevel=1))
     tracemalloc.start()
     try:
         (found,) = problems(path)

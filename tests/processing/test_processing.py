@@ -93,7 +93,7 @@ class TestShape:
         assert found.dt == pytest.approx(0.013, rel=1e-7)
         assert found.duration <= motion.duration * (1 + 1e-9) < found.duration + found.dt
 
-    @pytest.mark.parametrize("count", [100, 101, 102, 103])
+    @pytest.mark.parametrize("count", [100, 101])
     @pytest.mark.parametrize(("dt", "parts", "of"), [(0.015, 2, 3), (0.02, 1, 2), (0.03, 1, 3)])
     def test_a_coarser_interval_keeps_every_sample_within_the_record(self, count, dt, parts, of):
         found = process(GroundMotion("one", 0.01, np.ones(count), unit="m/s2"), parse_steps([{"resample": dt}]))
@@ -320,7 +320,7 @@ def test_record_takes_lists_and_patterns(tmp_path):
         (tmp_path / f"{name}.yaml").write_text(f"records: [{{file: {name}.csv, factor: {factor}}}]\n")
     said = [json.loads(line) for line in run("record", tmp_path / "*.yaml", "--json").stdout.splitlines()]
     assert [each["pga_g"] for each in said] == pytest.approx([0.55, 1.1])
-    run("record", tmp_path / "two.yaml", "--plot", tmp_path / "two.png", "-o", tmp_path / "clean")
+    run("record", tmp_path / "two.yaml", "-o", tmp_path / "clean")
     assert run_json("record", tmp_path / "clean" / "two.csv")["pga_g"] == pytest.approx(1.1)
 
 

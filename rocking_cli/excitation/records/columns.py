@@ -23,7 +23,6 @@ from rocking_cli.excitation.records.record_units import (
     is_acceleration,
     is_unit,
     other_quantity,
-    plural,
     quantity_of,
     without_sign,
 )
@@ -42,6 +41,7 @@ _COLUMN = regex(r"col(?:umn)?\.? *(\d{1,4})")
 _NO_NAME = regex(r"=|:$|^[+-]?\.?\d(?!\d{0,2} ?deg)")
 _NO_AZIMUTH = regex(r"=|:$|^[+-]?\d*\.\d|^\d{4}")  # beside a time, numbers may be names
 _BREAKS = regex(r"[;,\s]+")
+_UNIT_BEHIND = regex(r"\s*(?:\[[^\]]*\]|\([^)]*\))\s*$")
 
 
 @dataclass(frozen=True)
@@ -177,7 +177,7 @@ def choose(
     times = _times(table, names, increases)
     values = [k for k in range(len(table)) if k not in times and _may_be(str(names[k]), wanted)]
     if not values:
-        message = f"none of the columns holds {_values(wanted)}"
+        message = f"none of the columns holds {wanted.values}"
         raise InputError(Problem(message, file, hint=f"there are:{_listed(table, names, times, values, wanted)}"))
     place = (
         0 if requested is None and len(values) == 1 else _place(file, table, names, times, values, requested, wanted)
@@ -249,9 +249,7 @@ def _place(
     """Return the index in `values` of the requested column."""
     listed = _listed(table, names, times, values, wanted)
     if requested is None:
-        message = (
-            f"the table has {len(values)} columns that may be {_values(wanted)}, and only one can shake a structure"
-        )
+        message = f"the table has {len(values)} columns that may be {wanted.values}, and only one can shake a structure"
         if not any(label.name for label in names) and not times and runs_on(table) is None:
             listed += (
                 f"\n  if the values run on from line to line, and the columns are no components, give {named('run_on')}"
@@ -262,7 +260,8 @@ def _place(
         return values.index(int(number[1]) - 1)
     if word.isascii() and word.isdigit() and len(word) < 9 and 1 <= int(word) <= len(values):
         return int(word) - 1
-    for spellings in ([_plain(str(names[k])) for k in values], [_without_unit(names[k].name) for k in values]):
+    bare = [_plain(_UNIT_BEHIND.sub("", names[k].name)) for k in values]
+    for spellings in ([_plain(str(names[k])) for k in values], bare):
         places = [place for place, name in enumerate(spellings) if name and name == word]
         if len(places) == 1:
             return places[0]
@@ -276,16 +275,6 @@ def _place(
 
 def _plain(name: str) -> str:
     return " ".join(name.lower().split())
-
-
-def _without_unit(name: str) -> str:
-    """Return a name without a unit in brackets at its end."""
-    return _plain(re.sub(r"\s*(?:\[[^\]]*\]|\([^)]*\))\s*$", "", name))
-
-
-def _values(wanted: Wanted) -> str:
-    """Return the plural of the requested quantity."""
-    return "values" if wanted.raw else plural(wanted.quantity)
 
 
 def _units(label: str, wanted: Wanted) -> set[str]:

@@ -162,7 +162,8 @@ def fixed_width(file: str, lines: Lines, block: RecordBlock, *, last: bool = Tru
     leaving: list[int] = []  # line numbers of rows that leave the columns
     unread: InputError | None = None
     for line in lines.since(block.start):
-        if not _is_row(line) or (len(values) >= block.count and not last):
+        has_words = _NO_ROW.search(line) and _NO_ROW.search(_NOT_FINITE.sub("0", line))
+        if has_words or not line.strip() or (len(values) >= block.count and not last):
             break
         row = line.rstrip()
         index += 1
@@ -346,10 +347,6 @@ def choose(file: str, form: str, channels: Sequence[Channel], asked: Asked) -> G
         remarks=chosen.remarks,
         origin=chosen.origin,
     )
-
-
-def _is_row(line: str) -> bool:
-    return bool(line.strip()) and not (_NO_ROW.search(line) and _NO_ROW.search(_NOT_FINITE.sub("0", line)))
 
 
 def _find(file: str, channels: Sequence[Channel], requested: str, wanted: Wanted) -> Channel:

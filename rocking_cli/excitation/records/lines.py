@@ -224,8 +224,9 @@ def odd_digits(rows: PrintedRows) -> list[Doubt]:
         for line, number in _unlike(rows, usual)
         if (mantissa := _mantissa(number)) and (usual[2] is not None or len(mantissa) < longest)
     ]
-    if not wrong or not any(_is_padded(number, usual) for _, line in rows for number in rows.split(line)):
-        return []
+    printed = (number for _, line in rows for number in rows.split(line))
+    if not wrong or not any(_mantissa(each).endswith("0") and _form(_blank_out(each)) == usual for each in printed):
+        return []  # no program that pads with zeros
     first, token = wrong[0]
     others = f", and {len(wrong) - 1} more," if len(wrong) > 1 else ""
     text = (
@@ -243,11 +244,6 @@ def _unlike(rows: PrintedRows, usual: Form) -> Iterator[tuple[int, str]]:
         for line_number, (row, line) in enumerate(zip(blanked, page, strict=True), start=first + 1):
             if row in odd:
                 yield from ((line_number, each) for each in rows.split(line) if _form(_blank_out(each)) != usual)
-
-
-def _is_padded(number: str, usual: Form) -> bool:
-    """Return whether a number, other than zero, has the usual form and ends with a zero."""
-    return _mantissa(number).endswith("0") and _form(_blank_out(number)) == usual
 
 
 def _blank_out(text: str) -> str:

@@ -360,6 +360,11 @@ class Wanted(NamedTuple):
     despite_header: bool = False
 
     @property
+    def values(self) -> str:
+        """The values in words, in the plural."""
+        return "values" if self.raw else plural(self.quantity)
+
+    @property
     def of_accelerations(self) -> bool:
         """Whether accelerations are requested, and not the output of an instrument."""
         return self.quantity == "acceleration" and not self.raw

@@ -29,7 +29,7 @@ from rocking_cli.excitation.records.columns import (
 )
 from rocking_cli.excitation.records.lines import Lines, PrintedRows, unlike_the_others
 from rocking_cli.excitation.records.prepared import read_header
-from rocking_cli.excitation.records.record_units import ACCELERATIONS, WORDS, Wanted, component, other_quantity, plural
+from rocking_cli.excitation.records.record_units import ACCELERATIONS, WORDS, Wanted, component, other_quantity
 from rocking_cli.excitation.records.statements import Statements, statements
 from rocking_cli.text import regex
 from rocking_cli.units import UNITS
@@ -282,7 +282,7 @@ def _against_header(
 
 
 def _no_interval(file: str, wanted: Wanted, columns: int) -> Problem:
-    kind = "values" if wanted.raw else plural(wanted.quantity)
+    kind = wanted.values
     what = f"one column of {kind}" if columns == 1 else "no column is called time or is one"
     hint = f"give it with {named('dt')}, in seconds, or add a time column before the {kind}"
     return Problem(f"{what}, and no sample interval", file=file, hint=hint)
@@ -597,7 +597,10 @@ def even_interval(time: Reals) -> float:
         hint = "the first column must be the time, increasing; printed times need enough decimals to tell rows apart"
         raise UnevenTimeError(f"time does not increase: {time[row]:g} s {what}", hint, row)
 
-    dt = _as_written(float((time[-1] - time[0]) / (len(time) - 1)))
+    dt = float((time[-1] - time[0]) / (len(time) - 1))
+    written = float(f"{dt:.12g}")
+    if abs(written - dt) <= 2 * np.spacing(dt):  # it differs by the rounding of the quotient only
+        dt = written
     if dt < _MIN_DT:
         hint = "the first column must be the time, in seconds"
         raise UnevenTimeError(f"the times give a sample interval of {dt:g} s", hint, None)
@@ -642,12 +645,6 @@ def is_even(time: Reals) -> bool:
 def increasing(time: Reals) -> bool:
     """Return whether a column may be one of uneven times."""
     return bool((np.diff(time) > 0).all())
-
-
-def _as_written(value: float) -> float:
-    """Return the number of at most twelve digits that differs from a quotient by rounding only, or the quotient."""
-    written = float(f"{value:.12g}")
-    return written if abs(written - value) <= 2 * np.spacing(value) else value
 
 
 def on_grid(time: Reals, values: Reals) -> tuple[float, Reals, Doubt] | None:

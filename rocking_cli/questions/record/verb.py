@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from math import nan
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from rocking_cli.processing.oscillator import ResponseSpectrum
     from rocking_cli.processing.reading import Scaled
 
+SPECTRA = "questions.record.picture.draw_response_spectra"
 PROGRESS_DELAY = 1.0  # s of work before progress is shown
 
 
@@ -126,7 +127,7 @@ def record(asked: RecordAsked, watch: Watcher) -> RecordAnswer | Answers[RecordA
     answer: RecordAnswer | Answers[RecordAnswer] = by_name[next(iter(by_name))]
     if several:
         kept = {"spectrum": partial(_spectra_table, examined)} if spectrum else {}
-        figure = _spectra_figure(examined) if spectrum else None
+        figure = drawn(SPECTRA, _spectra(examined)) if spectrum else None
         answer = answers("records", "motion", by_name, list(parts(examined, 100)), figure, kept)
     if isinstance(asked.spectrum, Path):
         write_rows(asked.spectrum, [answer.tables["spectrum"]()], watch)
@@ -186,7 +187,7 @@ def _answer(examined: Sequence[Examined], scaled: Sequence[GroundMotion], read: 
         measures,
         View(lambda: data(first), [*parts(examined, 100), sentence]),
         partial(_columns, scaled[0]),
-        _spectra_figure(examined) if with_spectra else partial(_figure, scaled[0], first, read),
+        drawn(SPECTRA, _spectra(examined)) if with_spectra else partial(_figure, scaled[0], first, read),
         tables={"spectrum": partial(_spectra_table, examined)} if with_spectra else {},
         examined=tuple(examined),
         motions=tuple(scaled),
@@ -280,10 +281,6 @@ def _spectra_table(examined: Sequence[Examined]) -> Columns:
     return spectra_table(_spectra(examined))
 
 
-def _spectra_figure(examined: Sequence[Examined]) -> Callable[[], Figure]:
-    return drawn("questions.record.picture.draw_response_spectra", _spectra(examined))
-
-
 def _fit(motion: GroundMotion, watch: Watcher) -> list[PulseFit]:
     """Fit the best pulse of each shape by each criterion; report progress if that takes long."""
     from rocking_cli.excitation.pulse_fit import CRITERIA, FITTED, fit_pulses
@@ -330,17 +327,14 @@ def _figure(motion: GroundMotion, examined: Examined, read: Scaled) -> Figure:
     from rocking_cli.questions.record.picture import draw_before_and_after, draw_pulses, draw_record
 
     if examined.pulses:
-        return draw_pulses(motion, _best(examined.pulses), examined.measures.t_95 or motion.duration)
+        # Of each criterion the pulse that captures most, velocity first.
+        best = {fit.criterion: fit for fit in sorted(examined.pulses, key=lambda fit: fit.captured)}
+        end = examined.measures.t_95 or motion.duration
+        return draw_pulses(motion, [best["velocity"], best["acceleration"]], end)
     if read.reading is not None and (before := unprocessed(read)) is not None:
         start = sum(step.start for step in read.reading.steps if isinstance(step, Trim))
         return draw_before_and_after(before.scaled(examined.factor), motion, start)
     return draw_record(motion, examined.measures)
-
-
-def _best(fits: Sequence[PulseFit]) -> list[PulseFit]:
-    """Return the fitted pulse that captures most, by each criterion, velocity first."""
-    by_criterion = {fit.criterion: fit for fit in sorted(fits, key=lambda fit: fit.captured)}
-    return [by_criterion["velocity"], by_criterion["acceleration"]]
 
 
 @verb(ResponseSpectrumAsked)
@@ -374,7 +368,7 @@ def response_spectrum(asked: ResponseSpectrumAsked, watch: Watcher) -> Answer[Re
     scaled = motion_of(asked.motions).scaled(asked.scale)
     spectrum = respond_linearly(scaled, asked.periods, asked.damping)
     named = {scaled.name: spectrum}
-    figure = drawn("questions.record.picture.draw_response_spectra", named)
+    figure = drawn(SPECTRA, named)
     dims = [Dimensions(("motion", "period"))]
     return Answer(
         "response spectrum",

@@ -93,10 +93,6 @@ class TestDoubts:
             assert f"warning: odd.csv: {each['text']}" in result.stderr
         assert all(each["kind"] != "p_dt" for each in warnings)
 
-    def test_respond_says_the_same(self, odd):
-        said = run("record", odd).stderr.splitlines()
-        assert said and set(said) <= set(run("respond", "--record", odd).stderr.splitlines())
-
     def test_an_interval_too_coarse_for_a_structure(self, tmp_path):
         (tmp_path / "small.yaml").write_text("mechanism: block\nwidth: 0.02\nheight: 0.06\n", encoding="utf-8")
         result = run("record", ACCEL, "--structure", "small.yaml")
@@ -125,13 +121,6 @@ class TestScaling:
         plain, reversed_ = run_json("record", ACCEL), run_json("record", ACCEL, "--polarity", "-1", "--scale", "2")
         assert reversed_["factor"] == -2 and reversed_["pga_g"] == 2 * plain["pga_g"]
         assert reversed_["final_displacement"] == pytest.approx(-2 * plain["final_displacement"])
-
-    def test_respond_scales_to_the_same(self):
-        for option in ("--target-pga", "--target-pgv"):
-            record = run_json("respond", "--record", ACCEL, option, "0.3", "--polarity", "-1")["record"]
-            assert record["scale"] == run_json("record", ACCEL, option, "0.3")["factor"]
-            assert (record["pga_g"], record["polarity"]) == (pytest.approx(0.55), -1)
-        assert "PGV = 0.3 m/s" in run("respond", "--record", ACCEL, "--target-pgv", "0.3").stderr
 
     def test_an_odd_unit_is_not_hidden_by_a_target(self, tmp_path):
         (tmp_path / "cm.csv").write_text("t,accel_g\n0,0\n0.01,300\n0.02,0\n", encoding="utf-8")
@@ -204,7 +193,7 @@ class TestCleanFile:
         assert back.acceleration.tolist() == values
         assert abs(back.dt - dt) <= np.spacing(dt)
 
-    @pytest.mark.parametrize("npts", [2, 1991, 5372, 10_000, 10_001, 34_717])
+    @pytest.mark.parametrize("npts", [2, 10_000, 10_001, 34_717])
     def test_usual_intervals_come_back_too_over_block_borders(self, npts, tmp_path):
         with (tmp_path / "back.csv").open("wb") as stream:
             write_record_csv(stream, GroundMotion("any", 0.005, np.linspace(-1, 1, npts), unit="m/s2"))
