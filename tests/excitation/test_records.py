@@ -551,20 +551,6 @@ def test_the_example_is_what_its_script_makes(make_accel, tmp_path):
     np.testing.assert_allclose(np.arange(kept.npts) * kept.dt, time, rtol=0, atol=1e-9)
 
 
-def test_the_example_is_a_plausible_near_fault_motion(make_accel):
-    motion = read_record(EXAMPLES / "accel.csv")
-    assert (motion.npts, motion.source_unit, motion.format) == (1201, "g", "text")
-    assert motion.dt == pytest.approx(0.01)
-    assert 0.5 <= motion.pga_g <= 0.6
-    assert motion.acceleration[0] == motion.acceleration[-1] == 0
-    velocity = np.cumsum(motion.acceleration) * motion.dt
-    assert 0.4 < np.abs(velocity).max() < 1.0  # m/s, from the pulse
-    assert abs(velocity[-1]) < 1e-3
-    pulse = make_accel["pulse"](np.arange(motion.npts) * motion.dt)
-    assert np.abs(pulse).max() == 1
-    assert abs(pulse.sum() * motion.dt) < 1e-3  # a pulse leaves no velocity behind
-
-
 # --- tables of several columns --------------------------------------------------------------------------------------
 
 TABLE = "time_s,ax [g],ay [m/s2],vel (cm/s)\n0.00,0.1,1,9\n0.01,-0.2,-2,9\n0.02,0.3,3,9\n"
@@ -687,18 +673,6 @@ def test_a_missing_sample_is_found_among_times_of_six_digits(write, missing):
     rows = printed(1 / 800, 16000)
     del rows[missing]
     assert problem(times(write, *rows)).line == missing + 4
-
-
-def test_the_table_of_a_laboratory_is_read():
-    path = record("../experiments/raw_test438.txt")
-    first, second = (read_record(path, channel=channel, units="g") for channel in ("1", "Amplitude - Plot 1"))
-    assert first.npts == second.npts == 16872
-    assert first.dt == pytest.approx(1 / 800, rel=1e-5)
-    rows = [line.split("\t") for line in path.read_text().splitlines()[1:]]
-    np.testing.assert_array_equal(first.acceleration, [float(row[1]) * G for row in rows])
-    np.testing.assert_array_equal(second.acceleration, [float(row[3]) * G for row in rows])
-    found = problem(path)
-    assert "4: Amplitude - Plot 3, column 8" in found.hint
 
 
 @pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be"])
