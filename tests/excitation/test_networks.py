@@ -150,7 +150,8 @@ def test_reading_a_file_imports_the_reader_of_no_other_format(name, tmp_path):
     code = (
         "import sys; from rocking_cli import read_record; from rocking_cli.excitation.records import formats; "
         f"read_record({str(path)!r}, channel={'1' if name == 'jma' else None!r}); "
-        "modules = {each.module.partition('.')[0] for each in vars(formats).values() if isinstance(each, formats.Format)}; "
+        "known = [each for each in vars(formats).values() if isinstance(each, formats.Format)]; "
+        "modules = {each.module.partition('.')[0] for each in known}; "
         "loaded = sorted(each for each in modules if formats.__package__ + '.' + each in sys.modules); "
         "print(loaded, 'obspy' in sys.modules)"
     )
