@@ -248,7 +248,7 @@ def test_the_interval_of_the_file_may_not_be_contradicted(name, write):
 
 
 @BY_FORMAT
-@pytest.mark.parametrize("count", [10, 12])
+@pytest.mark.parametrize("count", [10, 13])
 def test_a_wrong_number_of_points_is_refused(name, count, write):
     if name == "knet":
         content = knet(duration=count)

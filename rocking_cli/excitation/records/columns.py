@@ -9,6 +9,7 @@ import csv
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -143,6 +144,62 @@ def _is_label(cell: str) -> bool:
     return named or bool(header_units(cell)) or other_quantity(cell) is not None or is_acceleration(cell)
 
 
+class _Candidates(NamedTuple):
+    """A table, and which of its columns are times or may be the requested values."""
+
+    file: str
+    table: Reals
+    names: Sequence[Label]
+    times: Sequence[int]
+    values: Sequence[int]
+    wanted: Wanted
+
+    def place(self, requested: str | None) -> int:
+        """Return the index in `values` of the requested column."""
+        _, table, names, times, values, wanted = self
+        listed = self.listed()
+        if requested is None:
+            message = f"the table has {len(values)} columns that may be {wanted.values}"
+            hint = f"choose one with {named('channel')}, by place or name:{listed}"
+            if not any(label.name for label in names) and not times and runs_on(table) is None:
+                hint += "\n  if the values run on from line to line, and the columns are no components, give "
+                hint += named("run_on")
+            raise InputError(Problem(f"{message}, and only one can shake a structure", self.file, hint=hint))
+        word = _plain(requested)
+        if (number := _COLUMN.fullmatch(word)) and int(number[1]) - 1 in values:
+            return values.index(int(number[1]) - 1)
+        if word.isascii() and word.isdigit() and len(word) < 9 and 1 <= int(word) <= len(values):
+            return int(word) - 1
+        bare = [_plain(_UNIT_BEHIND.sub("", names[k].name)) for k in values]
+        for spellings in ([_plain(str(names[k])) for k in values], bare):
+            places = [place for place, name in enumerate(spellings) if name and name == word]
+            if len(places) == 1:
+                return places[0]
+            if places:
+                message, hint = f"{len(places)} columns are called '{requested}'", f"give the place of one:{listed}"
+                raise InputError(Problem(message, self.file, field=named("channel"), hint=hint))
+        message = f"there is no channel '{requested}'"
+        hint = f"the file has:{listed}"
+        raise InputError(Problem(message, self.file, field=named("channel"), hint=hint))
+
+    def listed(self) -> str:
+        """Return text that lists the columns that may be meant, with number, name, unit and peak, and the others."""
+        _, table, names, times, values, wanted = self
+        out = []
+        for place, k in enumerate(values, start=1):
+            units = _units(str(names[k]), wanted)
+            unit = f"in {units.pop()}" if len(units) == 1 else "unit not stated"
+            name = f"{names[k]}, " if names[k].name else ""
+            out.append(f"\n    {place}: {name}column {k + 1}, {unit}, peak {float(np.abs(table[k]).max()):.4g}")
+        for k, label in enumerate(names):
+            if k not in values:
+                what = "time" if k in times else f"no {wanted.quantity}"
+                out.append(f"\n    column {k + 1}{f', {label},' if label.name else ''} is {what}")
+        if len(out) > MAX_LISTED_COLUMNS:
+            out[MAX_LISTED_COLUMNS:] = [f"\n    and {len(out) - MAX_LISTED_COLUMNS} more"]
+        return "".join(out)
+
+
 def choose(
     file: str,
     table: Reals,
@@ -176,12 +233,11 @@ def choose(
     """
     times = _times(table, names, increases)
     values = [k for k in range(len(table)) if k not in times and _may_be(str(names[k]), wanted)]
+    candidates = _Candidates(file, table, names, times, values, wanted)
     if not values:
         message = f"none of the columns holds {wanted.values}"
-        raise InputError(Problem(message, file, hint=f"there are:{_listed(table, names, times, values, wanted)}"))
-    place = (
-        0 if requested is None and len(values) == 1 else _place(file, table, names, times, values, requested, wanted)
-    )
+        raise InputError(Problem(message, file, hint=f"there are:{candidates.listed()}"))
+    place = 0 if requested is None and len(values) == 1 else candidates.place(requested)
     column = values[place]
     time = max((k for k in times if k < column), default=min(times, default=None))
     channel = "" if len(values) == 1 else names[column].name or str(place + 1)
@@ -237,42 +293,6 @@ def _times(table: Reals, names: Sequence[Label], increases: Callable[[Reals], bo
     return times or [k for k in called if not _BARE_T.fullmatch(str(names[k]))]
 
 
-def _place(
-    file: str,
-    table: Reals,
-    names: Sequence[Label],
-    times: Sequence[int],
-    values: Sequence[int],
-    requested: str | None,
-    wanted: Wanted,
-) -> int:
-    """Return the index in `values` of the requested column."""
-    listed = _listed(table, names, times, values, wanted)
-    if requested is None:
-        message = f"the table has {len(values)} columns that may be {wanted.values}, and only one can shake a structure"
-        if not any(label.name for label in names) and not times and runs_on(table) is None:
-            listed += (
-                f"\n  if the values run on from line to line, and the columns are no components, give {named('run_on')}"
-            )
-        raise InputError(Problem(message, file, hint=f"choose one with {named('channel')}, by place or name:{listed}"))
-    word = _plain(requested)
-    if (number := _COLUMN.fullmatch(word)) and int(number[1]) - 1 in values:
-        return values.index(int(number[1]) - 1)
-    if word.isascii() and word.isdigit() and len(word) < 9 and 1 <= int(word) <= len(values):
-        return int(word) - 1
-    bare = [_plain(_UNIT_BEHIND.sub("", names[k].name)) for k in values]
-    for spellings in ([_plain(str(names[k])) for k in values], bare):
-        places = [place for place, name in enumerate(spellings) if name and name == word]
-        if len(places) == 1:
-            return places[0]
-        if places:
-            message = f"{len(places)} columns are called '{requested}'"
-            raise InputError(Problem(message, file, field=named("channel"), hint=f"give the place of one:{listed}"))
-    message = f"there is no channel '{requested}'"
-    hint = f"the file has:{listed}"
-    raise InputError(Problem(message, file, field=named("channel"), hint=hint))
-
-
 def _plain(name: str) -> str:
     return " ".join(name.lower().split())
 
@@ -282,23 +302,6 @@ def _units(label: str, wanted: Wanted) -> set[str]:
     if wanted.raw or wanted.quantity == "acceleration":
         return header_units(label)
     return {unit for unit in BRACKETED.findall(label) if quantity_of(unit) == wanted.quantity}
-
-
-def _listed(table: Reals, names: Sequence[Label], times: Sequence[int], values: Sequence[int], wanted: Wanted) -> str:
-    """Return text that lists the columns that may be meant, with number, name, unit and peak, and the other columns."""
-    out = []
-    for place, k in enumerate(values, start=1):
-        units = _units(str(names[k]), wanted)
-        unit = f"in {units.pop()}" if len(units) == 1 else "unit not stated"
-        name = f"{names[k]}, " if names[k].name else ""
-        out.append(f"\n    {place}: {name}column {k + 1}, {unit}, peak {float(np.abs(table[k]).max()):.4g}")
-    for k, label in enumerate(names):
-        if k not in values:
-            what = "time" if k in times else f"no {wanted.quantity}"
-            out.append(f"\n    column {k + 1}{f', {label},' if label.name else ''} is {what}")
-    return "".join(out[:MAX_LISTED_COLUMNS]) + (
-        f"\n    and {len(out) - MAX_LISTED_COLUMNS} more" if len(out) > MAX_LISTED_COLUMNS else ""
-    )
 
 
 FEWEST_ROWS = 10  # with which the steps of a table tell its shape

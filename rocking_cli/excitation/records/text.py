@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Container, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import replace
 from datetime import date
 from itertools import islice
@@ -127,9 +126,11 @@ def read(
 
     values, uneven = table[choice.column], None
     if choice.time is not None:
-        column = _called(names, choice.time) if columns > 2 else ""
-        with _uneven_rows(file, rows, column):
+        column = _called(names, choice.time) if columns > 2 else None
+        try:
             interval, values, uneven = _at_even_times(table[choice.time], values, as_it_comes=wanted.uneven)
+        except UnevenTimeError as error:
+            raise InputError(_uneven_row(file, rows, column, error)) from None
         stated.check_interval(interval, 0.5 * interval / (table.shape[1] - 1))
         check_interval(file, None, interval, dt)
     assert interval is not None  # a missing interval was refused above
@@ -514,21 +515,17 @@ def _called(names: Sequence[Label], place: int) -> str:
     return f"column {place + 1}" + (f" ({names[place]})" if names[place].name else "")
 
 
-@contextmanager
-def _uneven_rows(file: str, rows: _Rows, column: str) -> Iterator[None]:
-    """Turn errors of uneven times into problems at their rows, counted without blank lines and comments.
+def _uneven_row(file: str, rows: _Rows, column: str | None, error: UnevenTimeError) -> Problem:
+    """Return the problem of uneven times at their row, counted without blank lines and comments.
 
     `column` is the name of the column of times, if there are several columns.
     """
-    try:
-        yield
-    except UnevenTimeError as error:
-        problem = Problem(error.message, file=file, field=column or None, hint=error.hint)
-        if error.row is not None:
-            below = enumerate(rows.lines.since(rows.start), start=rows.start + 1)
-            number, line = next(islice(((number, line) for number, line in below if _clean(line)), error.row, None))
-            problem = replace(problem, line=number, excerpt=line.strip()[:100])
-        raise InputError(problem) from None
+    problem = Problem(error.message, file, field=column, hint=error.hint)
+    if error.row is None:
+        return problem
+    below = enumerate(rows.lines.since(rows.start), start=rows.start + 1)
+    number, line = next(islice(((number, line) for number, line in below if _clean(line)), error.row, None))
+    return replace(problem, line=number, excerpt=line.strip()[:100])
 
 
 def _not_a_number(file: str, line_number: int, line: str, token: str, *, known: bool) -> Problem:
