@@ -176,8 +176,6 @@ class RelativeMeasure(Measure):
     @property
     def base(self) -> MotionMeasure:
         """The measure of the motion on which this one is based."""
-        from rocking_cli.processing.intensity import parse_measure
-
         measure = parse_measure(self.to)
         if not isinstance(measure, MotionMeasure):
             raise PluginError(

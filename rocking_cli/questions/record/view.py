@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from rocking_cli.excitation.base import Doubt, GroundMotion
     from rocking_cli.excitation.measures import Measures
     from rocking_cli.excitation.pulse_fit import PulseFit
+    from rocking_cli.io.tables import Columns
     from rocking_cli.processing.intensity import Measure
     from rocking_cli.processing.oscillator import ResponseSpectrum
 
@@ -198,11 +199,6 @@ def _pulses(name: str, fits: Sequence[PulseFit]) -> Iterator[Table | str]:
         one = [fit for fit in fits if fit.criterion == criterion]
         yield table_across(f"{name}: pulses fitted in {criterion}", PULSES, [fit.pulse.name for fit in one], one)
     yield "Energy captured: 1 - sum (r - s)^2 / sum r^2, r of the record and s of the pulse."
-
-
-if TYPE_CHECKING:
-    from rocking_cli.io.tables import Columns
-    from rocking_cli.processing.oscillator import ResponseSpectrum
 
 
 ORDINATES: tuple[Column[ResponseSpectrum], ...] = (
