@@ -183,7 +183,7 @@ class TestRefusals:
         ("name", "given", "words"),
         [
             ("baseline", "cubic", "is not one of constant, linear, quadratic"),
-            ("highpass", "-1", "is not a frequency in Hz above zero"),
+            ("highpass", "0", "is not a frequency in Hz above zero"),
             ("taper", "0.7", "more than half of the record"),
             ("trim", "2", "is no.* range of times"),
             ("trim", "5:2", "ends before it begins"),
