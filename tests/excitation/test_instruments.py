@@ -191,11 +191,6 @@ class TestColumns:
     def table(self, tmp_path):
         return write(tmp_path / "t.txt", "Time\tacc x [g]\tTime 2\tlaser [mm]", T, ACC, T, 1000 * U, sep="\t")
 
-    def test_by_the_number_of_the_column(self, table):
-        assert read_record(table, channel="column 2").acceleration == pytest.approx(ACC * STANDARD_GRAVITY)
-        laser = read_record(table, channel="column 4", gain="0.001 m/mm")
-        assert laser.acceleration == pytest.approx(ACC, abs=2e-3 * np.abs(ACC).max())
-
     def test_what_the_label_says_it_is_decides(self, table):
         assert read_record(table).name == "t.txt"  # one column of accelerations
         laser = read_record(table, quantity="displacement")  # and one of displacements

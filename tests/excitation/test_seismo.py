@@ -95,12 +95,6 @@ def test_miniseed(made, byteorder, encoding):
     assert (motion.dt, motion.source_unit, motion.format) == (0.005, "cm/s2", "miniSEED")
 
 
-@pytest.mark.parametrize("name", ["record.AT2"])
-def test_the_format_is_found_from_the_content_not_the_name(made, name):
-    assert read_record(made("SAC", ("HNE", VALUES), name=name), units="g").format == "SAC"
-    assert read_record(made("MSEED", ("HNE", VALUES), name=name), units="g").format == "miniSEED"
-
-
 def test_channels(made):
     path = made("MSEED", ("HNE", VALUES), ("HNN", 2 * VALUES), ("HHZ", VALUES))
     hint = problem(path).hint
@@ -294,10 +288,3 @@ def test_without_obspy_it_is_said_what_to_install(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "obspy", None)
     found = problem(path)
     assert "obspy" in found.message and "pip install 'rocking-cli[seismo]'" in found.hint
-
-
-def test_obspy_is_loaded_only_for_its_files(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "obspy", None)
-    path = tmp_path / "record.csv"
-    path.write_text("t,accel_g\n0,1\n0.01,2\n")
-    assert read_record(path).npts == 2

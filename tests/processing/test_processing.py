@@ -239,8 +239,6 @@ class TestCommands:
         [
             (("--highpass", "1", "--highpass", "2"), "is given twice"),
             (("--lowpass", "80"), "--lowpass: 80 Hz is not below the Nyquist frequency, 50 Hz"),
-            (("--gain", "3"), "is a gain without a unit"),
-            (("--floor", "T1=0.4"), "z with H and gamma, or n"),
         ],
     )
     def test_wrong_options(self, options, words):

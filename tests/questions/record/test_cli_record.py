@@ -117,11 +117,6 @@ class TestScaling:
         assert scaled["arias_intensity"] == pytest.approx(scaled["factor"] ** 2 * plain["arias_intensity"])
         assert f"{scaled['factor']:.6g}" in run("record", ACCEL, option, "0.4").stdout
 
-    def test_polarity_reverses(self):
-        plain, reversed_ = run_json("record", ACCEL), run_json("record", ACCEL, "--polarity", "-1", "--scale", "2")
-        assert reversed_["factor"] == -2 and reversed_["pga_g"] == 2 * plain["pga_g"]
-        assert reversed_["final_displacement"] == pytest.approx(-2 * plain["final_displacement"])
-
     def test_an_odd_unit_is_not_hidden_by_a_target(self, tmp_path):
         (tmp_path / "cm.csv").write_text("t,accel_g\n0,0\n0.01,300\n0.02,0\n", encoding="utf-8")
         assert "is the unit really g?" in run("record", "cm.csv", "--target-pga", "0.3").stderr
