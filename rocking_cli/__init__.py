@@ -36,9 +36,8 @@ _HOME = {
     "excitation.pulse_fit": ["PulseFit", "fit_pulse"],
     "excitation.pulses": ["Pulse", "parse_pulse"],
     "processing.reading": ["turned"],
-    "processing.floor": ["Floor"],
     "processing.intensity": ["Measure", "MotionMeasure", "RelativeMeasure", "RunMeasure", "parse_measure"],
-    "processing.oscillator": ["ResponseSpectrum"],
+    "processing.oscillator": ["Floor", "ResponseSpectrum"],
     "core.structure_file": ["load_structure"],
 }
 _MODULES = {name: module for module, names in _HOME.items() for name in names}

@@ -8,6 +8,7 @@ The module imports neither numpy nor pydantic, so that the command line can use 
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Mapping
 from decimal import Context, Decimal
 from math import inf, isfinite
@@ -16,80 +17,53 @@ from rocking_cli.text import cut, printable, regex
 
 PI = "3.14159265358979323846264338327950288419716939937510"
 
-# Units of every quantity, in SI units; the first is the SI unit itself. Decimal, so that 800 mm is exactly 0.8 m.
+
+def _table(units: str) -> dict[str, str]:
+    return dict(unit.split() for unit in units.split(", "))
+
+
+# Units of every quantity, each with its size in the first, the SI unit. As text, so that 800 mm is exactly 0.8 m.
+# Accelerations come before masses, as a field in g is an acceleration and masses are in kg.
 KINDS: Mapping[str, Mapping[str, str]] = {
-    "length": {"m": "1", "mm": "0.001", "cm": "0.01", "dm": "0.1", "km": "1000", "in": "0.0254", "ft": "0.3048"},
-    # Accelerations come before masses, as a field in g is an acceleration and masses are in kg.
-    "acceleration": {
-        "m/s2": "1",
-        "cm/s2": "0.01",
-        "mm/s2": "0.001",
-        "gal": "0.01",
-        "g": "9.80665",
-        "mg": "0.00980665",
-        "%g": "0.0980665",
-        "ft/s2": "0.3048",
-        "in/s2": "0.0254",
-    },
-    "mass": {"kg": "1", "g": "0.001", "t": "1000", "Mg": "1000", "lb": "0.45359237"},
-    "force": {
-        "N": "1",
-        "daN": "10",
-        "kN": "1000",
-        "MN": "1000000",
-        "kgf": "9.80665",
-        "lbf": "4.4482216152605",
-        "kip": "4448.2216152605",
-    },
-    "stiffness": {
-        "N/m": "1",
-        "daN/m": "10",
-        "kN/m": "1000",
-        "MN/m": "1000000",
-        "N/mm": "1000",
-        "kN/mm": "1000000",
-        "kgf/m": "9.80665",
-    },
-    "area": {"m2": "1", "cm2": "0.0001", "mm2": "0.000001"},
-    "pressure": {
-        "Pa": "1",
-        "kPa": "1000",
-        "MPa": "1000000",
-        "GPa": "1000000000",
-        "N/mm2": "1000000",
-        "daN/m2": "10",
-        "kN/m2": "1000",
-        "daN/cm2": "100000",
-        "kg/cm2": "98066.5",
-        "kgf/cm2": "98066.5",
-        "bar": "100000",
-        "psi": "4.4482216152605/0.00064516",
-        "ksi": "4448.2216152605/0.00064516",
-    },
-    "density": {"kg/m3": "1", "t/m3": "1000", "g/cm3": "1000", "kg/dm3": "1000", "lb/ft3": "0.45359237/0.028316846592"},
-    "mass per length": {"kg/m": "1", "t/m": "1000"},
-    "mass per area": {"kg/m2": "1", "t/m2": "1000"},
-    "weight density": {
-        "N/m3": "1",
-        "daN/m3": "10",
-        "kN/m3": "1000",
-        "kgf/m3": "9.80665",
-        "lbf/ft3": "4.4482216152605/0.028316846592",
-    },
-    "time": {"s": "1", "ms": "0.001", "min": "60"},
-    "velocity": {"m/s": "1", "cm/s": "0.01", "mm/s": "0.001", "in/s": "0.0254", "ft/s": "0.3048"},
-    "angle": {"rad": "1", "deg": f"{PI}/180", "°": f"{PI}/180", "mrad": "0.001"},
+    "length": _table("m 1, mm 0.001, cm 0.01, dm 0.1, km 1000, in 0.0254, ft 0.3048"),
+    "acceleration": _table(
+        "m/s2 1, cm/s2 0.01, mm/s2 0.001, gal 0.01, g 9.80665, mg 0.00980665, %g 0.0980665, ft/s2 0.3048, in/s2 0.0254"
+    ),
+    "mass": _table("kg 1, g 0.001, t 1000, Mg 1000, lb 0.45359237"),
+    "force": _table("N 1, daN 10, kN 1000, MN 1000000, kgf 9.80665, lbf 4.4482216152605, kip 4448.2216152605"),
+    "stiffness": _table("N/m 1, daN/m 10, kN/m 1000, MN/m 1000000, N/mm 1000, kN/mm 1000000, kgf/m 9.80665"),
+    "area": _table("m2 1, cm2 0.0001, mm2 0.000001"),
+    "pressure": _table(
+        "Pa 1, kPa 1000, MPa 1000000, GPa 1000000000, N/mm2 1000000, daN/m2 10, kN/m2 1000, daN/cm2 100000, "
+        "kg/cm2 98066.5, kgf/cm2 98066.5, bar 100000, psi 4.4482216152605/0.00064516, ksi 4448.2216152605/0.00064516"
+    ),
+    "density": _table("kg/m3 1, t/m3 1000, g/cm3 1000, kg/dm3 1000, lb/ft3 0.45359237/0.028316846592"),
+    "mass per length": _table("kg/m 1, t/m 1000"),
+    "mass per area": _table("kg/m2 1, t/m2 1000"),
+    "weight density": _table("N/m3 1, daN/m3 10, kN/m3 1000, kgf/m3 9.80665, lbf/ft3 4.4482216152605/0.028316846592"),
+    "time": _table("s 1, ms 0.001, min 60"),
+    "velocity": _table("m/s 1, cm/s 0.01, mm/s 0.001, in/s 0.0254, ft/s 0.3048"),
+    "angle": _table(f"rad 1, deg {PI}/180, ° {PI}/180, mrad 0.001"),
 }
+UNITS = {unit: float(size) for unit, size in sorted(KINDS["acceleration"].items(), key=lambda each: each[0] != "g")}
+"""Size of each unit of acceleration [m/s2], g first."""
+CHOICES = ", ".join(UNITS)
 STANDARD_GRAVITY = Decimal("9.80665")  # m/s2
 WEIGHT_OF = {"mass": "force", "density": "weight density", "mass per length": "stiffness", "mass per area": "pressure"}
 """Kinds of mass, and the kind of their weight; the weight of a length has the unit of a stiffness."""
 
-_FORM = regex(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*([^\s\d.,+-].*)?", re.DOTALL)
+QUANTITY = regex(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*([^\s\d.,+-].*)?", re.DOTALL)
+"""A number, and its unit as it is written, if there is one."""
 _COMMA = regex(r"[-+]?[0-9]+(,[0-9]+)+\s*\D*", re.ASCII)
 _RAISED = str.maketrans({"²": "2", "³": "3", "º": "°", "^": "", "·": "", "*": ""})
+_PRINTED = str.maketrans({"\N{MINUS SIGN}": "-", '"': "", "_": ""})
 _ITALIAN_POWER = regex(r"\b([cdm]?m)([qc])(?![a-z])")
 _GALS = regex(r"gals?", re.IGNORECASE)
 _PREFIX = regex(r"(da|[hdcmkMGTuµn])(?!\1)(.+)")
+# As headers spell units of acceleration and velocity, in lower case: cm/sec/sec, cm.s-2, cmps2; cm/sec.
+_PER_SECOND_2 = regex(r"(?:/s(?:ec)?(?:2|/s(?:ec)?)|(?<=m)(?:\.?s(?:ec)?-2|p?s2))$")
+_PER_SECOND = regex(r"(?:/sec(?:onds?)?|\.?s-1)$")
+_OF_G = {"millig": "mg", "milli-g": "mg", "percentg": "%g", "pctg": "%g"}
 _EXACT = Context(prec=60, Emax=10**6, Emin=-(10**6), traps=[])
 
 
@@ -122,7 +96,7 @@ def units_of(unit: str) -> tuple[str, ...]:
 
 def split(text: str) -> tuple[str, str] | None:
     """Split a text such as `800 mm` into number and unit, which may be empty; None if it is not a number."""
-    match = _FORM.fullmatch(text.strip())
+    match = QUANTITY.fullmatch(text.strip())
     return (match[1], _plain(match[2] or "")) if match else None
 
 
@@ -130,6 +104,14 @@ def _plain(unit: str) -> str:
     """Return a unit as the table spells it: `kg / m³` and the Italian `kg/mc` are `kg/m3`."""
     unit = "".join(unit.translate(_RAISED).split())
     return "gal" if _GALS.fullmatch(unit) else _ITALIAN_POWER.sub(lambda power: power[1] + "23"[power[2] == "c"], unit)
+
+
+def header_unit(spelling: str, kind: str = "acceleration") -> str | None:
+    """Return the unit of a kind that a header means, in any case: `m/s2` for `M/SEC**2`; None if it is none of it."""
+    word = _plain(unicodedata.normalize("NFKD", spelling.lower()).translate(_PRINTED).replace("'s", ""))
+    word = _PER_SECOND.sub("/s", _PER_SECOND_2.sub("/s2", word))
+    word = _OF_G.get(word, word)
+    return word if word in KINDS[kind] else None
 
 
 def read(text: str, unit: str) -> float:
@@ -172,6 +154,8 @@ def read(text: str, unit: str) -> float:
         raise UnitError(f"{quoted!r} has a unit", "give a number without one")
     if stated == _plain(unit):
         return float(number)
+    if kind == "acceleration" and kind_of(stated) is None:
+        stated = header_unit(stated, kind) or stated
     if kind and stated in known:
         ratio = _EXACT.divide(_factor(kind, stated), _factor(kind, unit))
         return float(_EXACT.multiply(_EXACT.create_decimal(number), ratio))
@@ -214,7 +198,8 @@ def number_of(value: object, unit: str) -> float:
     if parts is None:
         raise UnitError(f"{quoted} is not a number{', with or without a unit' if unit else ''}")
     if parts[1].lower() not in ("", unit.lower()):
-        return read(str(value), unit)
+        # In g as the amplitude of a motion in m/s2 is, divided by the same number.
+        return read(str(value), "m/s2") / UNITS["g"] if unit == "g" else read(str(value), unit)
     try:
         number = float(parts[0]) / (100 if parts[1] == "%" else 1)
     except OverflowError:  # an int may be larger than any float

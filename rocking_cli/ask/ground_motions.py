@@ -20,8 +20,7 @@ from rocking_cli.excitation.doubts import coarse_for, doubts
 from rocking_cli.excitation.measures import Measures, measure
 from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
 from rocking_cli.excitation.records.opening import allow_again, matching_files
-from rocking_cli.processing.listed import LIST_FILE, Listed, Scaled, is_list
-from rocking_cli.processing.reading import Reading, reading_of
+from rocking_cli.processing.reading import LIST_FILE, Listed, Reading, Scaled, is_list, reading_of
 from rocking_cli.processing.reading_options import READING, SCALING
 from rocking_cli.processing.steps import Resample, process
 from rocking_cli.views.processing import in_words

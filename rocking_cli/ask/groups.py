@@ -38,7 +38,7 @@ if TYPE_CHECKING:  # the stub of verbs finds their types here
     from rocking_cli.ask.inputs import SiteLike as SiteLike
     from rocking_cli.ask.inputs import StructureLike as StructureLike
     from rocking_cli.excitation.records.record_units import Gain as Gain
-    from rocking_cli.processing.floor import Floor as Floor
+    from rocking_cli.processing.oscillator import Floor as Floor
     from rocking_cli.processing.reading import Reading as RecordReading
     from rocking_cli.processing.steps import Step as Step
     from rocking_cli.structure import Structure

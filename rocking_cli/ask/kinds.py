@@ -13,7 +13,7 @@ from typing import Any
 from rocking_cli.ask.asked import Kind
 from rocking_cli.errors import named
 from rocking_cli.text import cut
-from rocking_cli.units import UnitError, read, split
+from rocking_cli.units import CHOICES, UnitError, number_of, read, split
 
 STANDARD_OUTPUT = "-"
 LOCAL_FILE = Path("rocking.yaml")
@@ -107,17 +107,11 @@ def _in_unit(value: Any, what: str, unit: str, *, bare: bool) -> float:
         raise UnitError(f"{value!r} is not a valid {what}")
     if not parts[1]:
         if not bare:  # a plain 6 may mean g or m/s2
-            from rocking_cli.processing.reading_options import UNITS
-
-            raise UnitError(f"{value!r} has no unit", f"give one of {', '.join(UNITS)}")
+            raise UnitError(f"{value!r} has no unit", f"give one of {CHOICES}")
         return float(parts[0])
-    if unit == "g":
-        from rocking_cli.excitation.records.record_units import in_g
-
-        return in_g(value)
     if what == "period" and parts[1].lower() == "hz":
         return 1 / float(parts[0]) if float(parts[0]) else 0.0
-    return read(value, unit)
+    return number_of(value, unit) if unit == "g" else read(value, unit)
 
 
 def quantity(

@@ -13,7 +13,7 @@ from rocking_cli.ask.answer import Answer, Answers, Dimensions, no_plot
 from rocking_cli.ask.ground_motions import Motions
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import RockingError, named
-from rocking_cli.processing.listed import Scaled
+from rocking_cli.processing.reading import Scaled
 from rocking_cli.text import numbered
 from rocking_cli.views.view import Table, View
 

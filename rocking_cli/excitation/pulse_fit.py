@@ -19,7 +19,7 @@ import numpy as np
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.pulses.base import Pulse
+from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.excitation.pulses.shapes import MavroeidisPapageorgiou, Ricker, Sine
 
 Criterion = Literal["acceleration", "velocity"]

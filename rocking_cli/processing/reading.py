@@ -5,17 +5,23 @@ from __future__ import annotations
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from math import cos, isclose, radians, sin
+from math import cos, isclose, isfinite, prod, radians, sin
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
+from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem, named
-from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
+from rocking_cli.excitation.doubts import of_samples
 from rocking_cli.excitation.records import read_measured
 from rocking_cli.excitation.records.opening import allow_again
-from rocking_cli.excitation.records.record_units import Quantity, as_acceleration, size_of, smallest_step
+from rocking_cli.excitation.records.record_units import Quantity, size_of
+from rocking_cli.excitation.records.statements import name as plain_name
 from rocking_cli.processing.reading_options import ALL_AZIMUTHS, PREPARING, READING
 from rocking_cli.processing.steps import Factor, Lowpass, Resample, Step, of_vertical, process
+from rocking_cli.short_repr import short_repr
 from rocking_cli.text import exact
 
 OF_FILES = ("dt", "units", "channel", "quantity", "gain", "run_on", "despite_header")
@@ -236,3 +242,144 @@ def _unlike(other: GroundMotion, message: str, hint: str) -> InputError:
     return InputError(
         Problem(f"{message}: two components go sample by sample", other.name, field=named("other"), hint=hint)
     )
+
+
+MAX_STEP_OVER_PEAK = 0.05  # acceleration of one step of the last digit over the peak
+
+
+def smallest_step(measured: GroundMotion) -> float:
+    """Return the smallest non-zero difference of consecutive samples, usually one last digit; 0 if there is none."""
+    steps = np.abs(np.diff(measured.acceleration))
+    smallest = float(steps[steps > 0].min(initial=np.inf))
+    return smallest if isfinite(smallest) else 0.0
+
+
+def as_acceleration(measured: GroundMotion, quantity: Quantity, step: float | None = None) -> GroundMotion:
+    """Return the ground acceleration from measured displacements, velocities or accelerations.
+
+    Parameters
+    ----------
+    measured : GroundMotion
+        Motion whose "accelerations" are the measured values, in m, m/s or m/s2; accelerations are returned unchanged.
+    quantity : str
+        Quantity of the measured values.
+    step : float, optional
+        `smallest_step` of the values before corrections, which hide it; 0 to raise no doubt about the resolution.
+
+    Returns
+    -------
+    GroundMotion
+        Motion by central differences, zero at the first and the last sample. At a frequency f they reduce the amplitude
+        by sinc^2(f dt) for displacements and sinc(2 f dt) for velocities, with sinc(x) = sin(pi x)/(pi x).
+    """
+    if quantity == "acceleration":
+        return measured
+    dt, values = measured.dt, measured.acceleration
+    step = smallest_step(measured) if step is None else step
+    inner = np.diff(values, 2) / dt**2 if quantity == "displacement" else (values[2:] - values[:-2]) / (2 * dt)
+    acceleration = np.pad(inner, 1)
+    if not np.isfinite(acceleration).all():
+        raise InputError(Problem("its differences are beyond the range of numbers", measured.name))
+    remarks = (
+        *measured.remarks,
+        *of_samples(measured, accelerations=False),
+        *_resolution(step, acceleration, dt, quantity),
+    )
+    return replace(
+        measured,
+        acceleration=acceleration,
+        remarks=remarks,
+        processing=(*measured.processing, f"from {quantity}"),
+    )
+
+
+def in_words(quantity: Quantity, dt: float) -> str:
+    """Return a description of the differentiation as a filter, for users."""
+    twice, half = ("twice ", 0.44295 / dt) if quantity == "displacement" else ("", 0.30168 / dt)
+    return f"differentiated {twice}by central differences, which leave half of what is at {half:.3g} Hz"
+
+
+def _resolution(smallest: float, acceleration: Reals, dt: float, quantity: Quantity) -> tuple[Doubt, ...]:
+    """Return a doubt if one step of the last digit, differentiated, is a large part of the peak acceleration."""
+    power, unit = (2, "m") if quantity == "displacement" else (1, "m/s")
+    noise = smallest / dt**power
+    peak = float(np.abs(acceleration).max())
+    if not (isfinite(noise) and noise > MAX_STEP_OVER_PEAK * peak):
+        return ()
+    text = (
+        f"its smallest step, {smallest:.3g} {unit}, is {noise / STANDARD_GRAVITY:.2g} g once differentiated, of a peak "
+        f"of {peak / STANDARD_GRAVITY:.2g} g: noise, unless a low-pass filter takes it out"
+    )
+    return (Doubt("resolution", noise / STANDARD_GRAVITY, text),)
+
+
+if TYPE_CHECKING:  # pydantic is slow to import, and only lists need it
+    from rocking_cli.excitation.pulses import Pulse
+
+
+LIST_SUFFIXES = (".yaml", ".yml")
+LIST_FILE = "set.yaml"
+"""The list in a folder of records that `rocking select` writes."""
+
+
+class Listed(NamedTuple):
+    """A record file, with its entry in a list of records; the entry is None if the user named the file itself."""
+
+    path: Path
+    entry: Any = None  # an `Entry` of `record_list`, which imports pydantic
+    folder: Path = Path()
+
+    def reading(self, common: Reading) -> Reading:
+        """Return how to read the record, with the items of `common` for all records.
+
+        Raises `InputError` if its items contradict one another.
+        """
+        if self.entry is None:
+            return common
+        try:
+            reading: Reading = self.entry.reading(self.folder, common)
+            return reading
+        except InputError as error:
+            raise InputError(*(replace(each, file=str(self.path)) for each in error.problems)) from None
+
+    def settled(self, common: Reading) -> tuple[GroundMotion, Reading]:
+        """Return the motion of the record, and how it was read. Raises `InputError` if it cannot be read.
+
+        Earthquake and station of the list take the place of those of the file.
+        """
+        motion, reading = self.reading(common).settled(self.path)
+        if self.entry is not None:
+            file_origin = motion.origin
+            event, station = (
+                plain_name(self.entry.event) or file_origin.event,
+                plain_name(self.entry.station) or file_origin.station,
+            )
+            motion = replace(motion, origin=file_origin._replace(event=event, station=station))
+        return motion, reading
+
+
+def is_list(path: Path) -> bool:
+    """Return whether a file is a list of records, by its name."""
+    return path.suffix.lower() in LIST_SUFFIXES
+
+
+@short_repr
+class Scaled(NamedTuple):
+    """A ground motion as read, its scale factor, and its pulse, or its record and how that was read."""
+
+    motion: GroundMotion
+    factor: float
+    pulse: Pulse | None = None
+    record: Listed | None = None
+    reading: Reading | None = None
+
+    @property
+    def scale_factor(self) -> float:
+        """The factor on the accelerations of the record, with those of its list."""
+        steps = self.reading.steps if self.reading is not None else ()
+        return self.factor * prod(step.by for step in steps if isinstance(step, Factor))
+
+    @property
+    def file(self) -> Path | None:
+        """The file of the record, if there is one."""
+        return self.record.path if self.record is not None else None

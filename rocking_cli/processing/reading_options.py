@@ -8,13 +8,11 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from rocking_cli.errors import InputError, Problem, how_to_correct, named
-from rocking_cli.units import UnitError, number_of
+from rocking_cli.units import CHOICES, UNITS, UnitError, header_unit, number_of
 
 ALL_AZIMUTHS = "all"
 """The azimuth that stands for every direction."""
 QUANTITIES = ("acceleration", "velocity", "displacement")
-UNITS = ("g", "m/s2", "cm/s2", "mm/s2", "gal", "mg", "%g", "ft/s2", "in/s2")
-"""Units of acceleration, repeated here so that the help needs no numpy; a test compares both lists."""
 
 
 class Option(NamedTuple):
@@ -50,7 +48,7 @@ def _in(unit: str, name: str, example: str, *, positive: bool = True) -> Callabl
 
     def parse(value: Any) -> float:
         try:
-            number = _acceleration(value) if unit == "g" else number_of(value, unit)
+            number = number_of(value, unit)
         except UnitError as error:
             before = f"{error.hint}; " if error.hint else ""
             raise _refused(name, error.message, f"{before}give a value such as {example}") from None
@@ -61,19 +59,11 @@ def _in(unit: str, name: str, example: str, *, positive: bool = True) -> Callabl
     return parse
 
 
-def _acceleration(value: Any) -> float:
-    from rocking_cli.excitation.records.record_units import in_g
-
-    return in_g(value)
-
-
 def _unit(value: Any) -> str:
     """Return the name of a unit of acceleration, velocity or length in any spelling that headers have."""
-    from rocking_cli.excitation.records.record_units import canonical, quantity_of
-
-    name = canonical(str(value))
-    if name is None and quantity_of(str(value)) is None:
-        raise _refused("units", f"{value!r} is not a known unit", f"give one of {', '.join(UNITS)}")
+    name = header_unit(str(value))
+    if name is None and not any(header_unit(str(value), kind) for kind in ("velocity", "length")):
+        raise _refused("units", f"{value!r} is not a known unit", f"give one of {CHOICES}")
     return name or "".join(str(value).split())
 
 
@@ -115,7 +105,7 @@ def _azimuth(value: Any) -> float | str:
 
 
 def _floor(value: Any) -> Any:
-    from rocking_cli.processing.floor import Floor
+    from rocking_cli.processing.oscillator import Floor
 
     return value if isinstance(value, Floor) else Floor.parse(value)
 

@@ -29,6 +29,9 @@ class Step:
 
     name: ClassVar[str]
     example: ClassVar[str]
+    unit: ClassVar[str] = ""
+    what: ClassVar[str] = ""
+    """Unit and kind of its positive number, if it takes one."""
 
     @property
     def value(self) -> str:
@@ -42,7 +45,7 @@ class Step:
     @classmethod
     def parse(cls, text: str) -> Self:
         """Return the step with parameters from a text. Raises `InputError`."""
-        raise NotImplementedError
+        return cls(_positive(cls, text, cls.unit, cls.what))  # type: ignore[call-arg]  # a subclass has one field
 
     def of(self, motion: GroundMotion) -> GroundMotion:
         """Return the corrected motion, with its vertical component unchanged. Raises `InputError` if not possible."""
@@ -89,14 +92,9 @@ class Baseline(Step):
 class Filter(Step):
     """A filter with its corner frequency [Hz]."""
 
-    example = "0.1"
+    example, unit, what = "0.1", "Hz", "a frequency in Hz"
     kind: ClassVar[str]
     frequency: float
-
-    @classmethod
-    def parse(cls, text: str) -> Self:
-        """Return the filter with a corner frequency in Hz."""
-        return cls(_positive(cls, text, "Hz", "a frequency in Hz"))
 
     def of(self, motion: GroundMotion) -> GroundMotion:
         """Return the motion, filtered forwards and backwards."""
@@ -207,7 +205,7 @@ class Resample(Step):
     """Change the sampling interval [s]: interpolate linearly to a finer one; filter and resample to a coarser one."""
 
     name = "resample"
-    example = "0.005"
+    example, unit, what = "0.005", "s", "a time"
     dt: float
 
     MAX_PARTS: ClassVar[int] = 1000
@@ -215,11 +213,6 @@ class Resample(Step):
     MAX_SAMPLES: ClassVar[int] = 50_000_000
     MAX_DENOMINATOR: ClassVar[int] = 20_000
     MAX_NUMERATOR: ClassVar[int] = 1_000_000  # scipy's filter is twenty times as long
-
-    @classmethod
-    def parse(cls, text: str) -> Self:
-        """Return the step for an interval, in s or with its unit."""
-        return cls(_positive(cls, text, "s", "a time"))
 
     def of(self, motion: GroundMotion) -> GroundMotion:
         """Return the motion at the new sampling interval."""

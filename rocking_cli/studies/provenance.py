@@ -10,7 +10,7 @@ from importlib.metadata import version
 from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
 from rocking_cli.excitation.records.opening import name_of, original
-from rocking_cli.processing.listed import Scaled
+from rocking_cli.processing.reading import Scaled
 from rocking_cli.short_repr import short_repr
 
 RECORDED_PACKAGES = ("numpy", "scipy", "matplotlib")

@@ -12,7 +12,7 @@ from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import Agreement, agreements, remedy
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulse_fit import FITTED, PulseFit, fit_pulses
-from rocking_cli.processing.listed import Scaled
+from rocking_cli.processing.reading import Scaled
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare, NextStep, are_alike, worst
 from rocking_cli.studies.conditions import Conditions

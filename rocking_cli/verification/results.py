@@ -17,8 +17,8 @@ from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.hung.attachments import RefusedFields
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.processing.floor import Floor
-from rocking_cli.processing.listed import Scaled
+from rocking_cli.processing.oscillator import Floor
+from rocking_cli.processing.reading import Scaled
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.conclusion import Concluded, Conclusion, Effect, LeftOut, Limit, worst
 

@@ -524,14 +524,6 @@ def test_the_default_block_is_a_structure():
     assert parse_structure(DEFAULT_STRUCTURE, "default", "default").mechanism == "block"
 
 
-def test_the_units_offered_are_those_the_readers_know():
-    """Written twice so that `--help` needs no numpy."""
-    from rocking_cli.excitation.records import record_units
-    from rocking_cli.processing.reading_options import UNITS
-
-    assert set(UNITS) == set(record_units.UNITS)
-
-
 @pytest.mark.parametrize("command", ["respond", "margin"])
 def test_where_a_mechanism_is_not_on_the_safe_side_the_verdict_says_so_too(command):
     from rocking_cli.core.structure_file import load_structure

@@ -53,7 +53,7 @@ def test_the_same_quantity_in_any_spelling_gives_the_same(command, option, alike
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("record", ACCEL, "--target-pga", "3m"), "'m' is not a unit of acceleration give one of g, m/s2"),
+        (("record", ACCEL, "--target-pga", "3m"), "3m is a length, not an acceleration units: m/s2"),
         (("record", ACCEL, "--dt", "10 Hz"), "'Hz' is not a unit of time"),
         (("record", ACCEL, "--dt", "x"), "'x' is not a number, with or without a unit give a value such as 0.01s"),
         (("respond", BLOCK, "--record", ACCEL, "--tail", "61min"),

@@ -11,7 +11,7 @@ import rocking_cli as rk
 from rocking_cli.ask import watcher as rk_watcher
 from rocking_cli.ask.asked import checked
 from rocking_cli.plugins.rooms import names
-from rocking_cli.processing.reading_options import UNITS
+from rocking_cli.units import UNITS
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 
@@ -76,7 +76,7 @@ def test_an_option_of_a_record_may_be_text_with_its_unit_as_on_the_command_line(
     ("option", "said"),
     [
         ({"dt": "10 kg"}, "`dt`: 10 kg is a mass, not a time"),
-        ({"target_pga": "0.4 m"}, "`target_pga`: 'm' is not a unit of acceleration"),
+        ({"target_pga": "0.4 m"}, "`target_pga`: 0.4 m is a length, not an acceleration"),
         ({"azimuth": "north", "other": "a.csv"}, "`azimuth`: 'north' is not a number"),
         ({"quantity": "speed"}, "`quantity` must be one of acceleration, velocity, displacement"),
         ({"channel": 1.5}, "`channel` must be a number, from 1, or a name"),

@@ -301,7 +301,7 @@ class TestPluginsThatGoWrong:
         run = rocking(odd_plugin, "record", str(tmp_path / "none.txt"))
         assert run.returncode == 2
         tried = run.stderr.split("one of these formats:")[1]
-        assert " an odd format, ASA, COSMOS, CSMIP V1," in tried.splitlines()[0] and "cannot be used," not in tried
+        assert " an odd format, ASA, COSMOS, CSMIP V2," in tried.splitlines()[0] and "cannot be used," not in tried
         for name in ("breaking_format", "leaving_format", "sniffing_format"):
             assert f"{name} (cannot be used: plugin {name} of odd 1.0" in tried
 

@@ -1,6 +1,5 @@
 """Damaged record files are refused or doubted, files that an editor has saved are not, and hostile ones do no harm."""
 
-import json
 import os
 import re
 import tracemalloc
@@ -18,17 +17,13 @@ from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
 from rocking_cli.excitation.records import usc as usc_v1
 from rocking_cli.excitation.records.record_units import Asked
-from tests.cli.test_cli import run, run_json
-from tests.conftest import EXAMPLES
 from tests.damage import CHANGES, MOST_SILENT, REAL, Kind, Read, read, survey
 from tests.excitation.test_record_formats import (
-    EVENLY,
     MADE,
     VALUES,
     columns,
     cosmos,
     csmip,
-    csmip_v1,
     esm,
     geonet,
     knet,
@@ -60,16 +55,11 @@ def printed_json(values=SMOOTH, count: int | None = None) -> str:
     return f'{{"info": "UNITS OF G", "numPoints": {count}, "dT": 0.01,\n"accel_data": [\n{numbers}\n]}}\n'
 
 
-def evenly(values=SMOOTH) -> str:
-    return csmip_v1(values / 10, evenly=EVENLY[0])
-
-
 MADE_UP = {
     **{name: make for name, (make, *_) in MADE.items() if name not in ("simcenter", "knet", "cosmos")},
     "knet": lambda values: knet(values, duration=len(values)),
     "cosmos": lambda values: cosmos(values, length=2),
     "simcenter": printed_json,
-    "csmip_v1 evenly": evenly,
     "peer_at2": at2,
     "text in columns": table,
     "text": lambda values: table(values, "{:.3f},{:.7E}"),
@@ -107,13 +97,12 @@ def test_a_character_lost_from_a_made_file_is_seldom_silent(name, tmp_path):
 def _accelerations(name: str, content: str) -> int:
     """Line number of the first accelerations."""
     start = {"peer_at2": "NPTS", "text": "accel", "text in columns": "accel", "simcenter": "accel_data", "knet": "Memo"}
-    start |= {"esm": "USER5", "csmip_v2": "POINTS OF ACCEL", "csmip_v1 evenly": "POINTS OF ACCEL", "cosmos": "pts,"}
+    start |= {"esm": "USER5", "csmip_v2": "POINTS OF ACCEL", "cosmos": "pts,"}
     start |= {"smc": "| 1"}
     lines = content.split("\n")
     if name in start:
         return max(k for k, line in enumerate(lines, 2) if start[name] in line)
     first = {"geonet_v2a": columns(SMOOTH[:10], "8.2f", 10), "usc_v1": columns([0.0, SMOOTH[0]], "7.3f", 10, " ")}
-    first |= {"csmip_v1": columns([0.0, SMOOTH[0]], "7.3f", 10)}
     return next(k for k, line in enumerate(lines, 1) if line.startswith(first[name].rstrip("\n")))
 
 
@@ -143,11 +132,12 @@ def motion_of(content: str, tmp_path: Path, how=read_record, **options):
 @pytest.mark.parametrize(
     ("content", "width"),
     [
-        (csmip(SMOOTH, names=("UP",)), 10), (geonet(SMOOTH, names=("Up",)), 8), (cosmos(SMOOTH, length=2), 10),
-        (smc(SMOOTH), 10), (usc(SMOOTH), 7), (csmip_v1(SMOOTH), 7), (evenly(), 9), (knet(SMOOTH, duration=240), 9),
+        (csmip(SMOOTH, names=("UP",)), 10),  # nothing around the numbers
+        (usc(SMOOTH), 7),  # a margin
+        (knet(SMOOTH, duration=240), 9),  # blanks after them
     ],
-    ids=["csmip", "geonet", "cosmos", "smc", "usc", "csmip_v1", "evenly", "knet"],
-)  # fmt: skip
+    ids=["csmip", "usc", "knet"],
+)
 def test_a_row_that_leaves_its_columns_is_named(content, width, tmp_path):
     lines = content.split("\n")
     row = max(k for k, line in enumerate(lines) if re.fullmatch(r"[\s\dE.+-]{30,}", line)) - 5
@@ -243,9 +233,9 @@ def test_that_columns_are_gone_is_said_with_the_number_of_rows(tmp_path):
 
 
 def test_numbers_that_touch_need_their_columns(tmp_path):
-    touching = np.abs(SMOOTH) + 10
-    saved = EDITORS["blanks before rows"](csmip_v1(touching, evenly=EVENLY[0]).replace(" 1", "1", 1))
-    assert motion_of(csmip_v1(touching, evenly=EVENLY[0]), tmp_path).npts == 240
+    content = csmip(np.abs(SMOOTH) + 1e5, names=("UP",))
+    saved = EDITORS["blanks before rows"](content)
+    assert motion_of(content, tmp_path).npts == 240
     lines = saved.split("\n")
     first = next(k for k, line in enumerate(lines) if "POINTS OF ACCEL" in line) + 1
     lines[first : first + 30] = [line[1:] for line in lines[first : first + 30]]
@@ -339,7 +329,6 @@ def with_peak(stated: str) -> str:
         (usc().replace("0.100 SEC", "0.150 SEC"), "header_length", 0.10),
         (with_peak("-9.950    CM/SEC/SEC  AT  .090"), "header_peak", 10),
         (with_peak("-10.000    CM/SEC/SEC  AT  .900"), "header_time", 0.09),
-        (csmip_v1(evenly=EVENLY[0]), "header_length", 0.055),
     ],
 )  # fmt: skip
 def test_a_header_that_contradicts_its_values_is_doubted(content, kind, value, tmp_path):
@@ -410,7 +399,7 @@ class TestSimCenter:
         for count in (239, 242):
             assert f"numPoints = {count}" in refused(printed_json(count=count), tmp_path).message
 
-    @pytest.mark.parametrize("points", ['"240"', "[240]", "null", "true", HUGE, "NaN", '{"a": 1}'])
+    @pytest.mark.parametrize("points", ['"240"', "null", "true", HUGE])
     def test_a_number_of_points_that_is_none(self, points, tmp_path):
         content = printed_json().replace('"numPoints": 240', f'"numPoints": {points}')
         assert "numPoints = " in refused(content, tmp_path).message
@@ -478,7 +467,6 @@ class TestSamples:
 HOSTILE = {
     "number of points, AT2": at2().replace("NPTS= 240", f"NPTS= {HUGE}"),
     "number of points, CSMIP V2": csmip(names=("UP",)).replace(" 11 POINTS", f" {HUGE} POINTS"),
-    "number of points, CSMIP V1": csmip_v1().replace("POINTS =  11", f"POINTS =  {HUGE}"),
     "counts, GeoNet": geonet(names=("Up",)).replace("      11      11", f" 11 {HUGE}"),
     "number of points, ESM": esm().replace("NDATA: 11", f"NDATA: {HUGE}"),
     "number of points, COSMOS": cosmos().replace("   11  acc", f"   {HUGE}  acc"),
@@ -492,7 +480,7 @@ HOSTILE = {
     "times beyond numbers": usc().replace("  0.100 -7.000", "   1e29 -7.000"),
     "interval, AT2": at2().replace("DT= .01", "DT= 1e-300"),
     "rate, SMC": smc(rate=1e-20),
-    "a long line": at2() + "x" * 10_000_000,
+    "a long line": at2() + "x" * 1_200_000,
 }
 
 
@@ -524,13 +512,3 @@ def test_what_a_message_quotes_is_cut(tmp_path):
 
 
 # --- the commands ---------------------------------------------------------------------------------------------------
-
-
-def test_doubts_about_a_file_are_shown_by_every_command(tmp_path):
-    path = tmp_path / "saved.v2"
-    path.write_text(EDITORS["blanks before rows"](csmip(SMOOTH * 20, names=("UP",))), encoding="utf-8")
-    (doubt,) = [each for each in run_json("record", path)["warnings"] if each["kind"] == "columns"]
-    assert doubt["value"] == 30
-    for command in (("record",), ("respond", EXAMPLES / "block.yaml", "--model", "linear1", "--record")):
-        assert f"warning: saved.v2: {doubt['text']}" in run(*command, path).stderr
-    assert json.loads(run("record", path, "--scale", "2", "--json").stdout)["warnings"][0] == doubt

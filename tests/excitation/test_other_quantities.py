@@ -12,7 +12,7 @@ from rocking_cli.errors import DoubtWarning
 from rocking_cli.excitation.base import STANDARD_GRAVITY as G
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import read_measured
-from rocking_cli.excitation.records.by_obspy import form_of
+from rocking_cli.excitation.records.seismo import form_of
 from tests.excitation.test_record_formats import VALUES, columns, cosmos, csmip, esm, geonet, problem, smc
 from tests.questions.verify.test_grid import workbook
 
@@ -28,13 +28,9 @@ def peer(series: str) -> str:
 
 HELD = {
     "peer": (peer("VELOCITY TIME SERIES IN UNITS OF CM/S"), "velocity", 0.01),
-    "peer_displacement": (peer("DISPLACEMENT TIME SERIES IN UNITS OF CM"), "displacement", 0.01),
-    "esm": (esm(kind="VELOCITY", unit="cm/s"), "velocity", 0.01),
     "esm_displacement": (esm(kind="DISPLACEMENT", unit="cm"), "displacement", 0.01),
     "csmip": (csmip(kinds=("VELOC",), names=("UP",)), "velocity", 0.01),
     "cosmos": (cosmos(kind="velocity", unit="cm/sec(05)"), "velocity", 0.01),
-    "cosmos_displacement": (cosmos(kind="displacement", unit="cm(06)"), "displacement", 0.01),
-    "smc": (smc(first="3 VELOCITY"), "velocity", 0.01),
     "smc_displacement": (smc(first="4 DISPLACEMENT"), "displacement", 0.01),
     "text": ("t,v [ft/s]\n" + "".join(f"{0.01 * k:.2f},{each}\n" for k, each in enumerate(VALUES)), "velocity", 0.3048),
 }
@@ -165,7 +161,7 @@ def obspy():
         return pytest.importorskip("obspy", reason="obspy is not installed (the extra rocking-cli[seismo])")
 
 
-@pytest.mark.parametrize(("form", "title"), [("SLIST", "SLIST"), ("TSPAIR", "TSPAIR"), ("GSE2", "GSE2"), ("AH", "AH")])
+@pytest.mark.parametrize(("form", "title"), [("SLIST", "SLIST"), ("GSE2", "GSE2"), ("AH", "AH")])
 def test_a_format_of_obspy_needs_a_unit_or_a_gain(form, title, obspy, tmp_path):
     path = tmp_path / "record.dat"
     counts = np.array([0, 50, -25, 75, -100, 12] * 40, dtype="i4" if form == "GSE2" else "f4")
@@ -178,7 +174,7 @@ def test_a_format_of_obspy_needs_a_unit_or_a_gain(form, title, obspy, tmp_path):
     np.testing.assert_allclose(motion.acceleration, counts / 100, rtol=1e-6)
     assert (motion.dt, motion.format) == (pytest.approx(0.005), title)
     assert read_record(path, gain="1e-3 m/s2/count").pga_g == pytest.approx(0.1 / G)
-    if form in ("SLIST", "TSPAIR"):  # the header of these may state the unit
+    if form == "SLIST":  # its header may state the unit
         text = path.read_text().split("\n", 1)
         path.write_text(text[0] + "M/S**2\n" + text[1])
         assert read_record(path).pga_g == pytest.approx(100 / G)
@@ -229,15 +225,6 @@ def test_a_pickle_is_never_opened(obspy, tmp_path):
     path.write_bytes(pickle.dumps(Run()))
     assert "binary file" in problem(path, units="g").message
     assert not (tmp_path / "run").exists()
-
-
-def test_without_obspy_its_formats_say_what_to_install(write, monkeypatch):
-    monkeypatch.setitem(__import__("sys").modules, "obspy", None)
-    for content in (
-        "TIMESERIES XX_STA__HNE_, 2 samples, 100 sps, 1970-01-01T00:00:00, SLIST, FLOAT, \n0 1\n",
-        "WID2 1970\n",
-    ):
-        assert "rocking-cli[seismo]" in problem(write(content)).hint
 
 
 # --- arrays ---------------------------------------------------------------------------------------------------------

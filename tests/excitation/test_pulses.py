@@ -161,13 +161,13 @@ class TestEvery:
         chords = np.interp(here, motion.dt * np.arange(motion.npts), motion.acceleration)
         assert np.abs(chords - pulse.acceleration(here)).max() < 2e-4 * A
 
-    @each
-    @pytest.mark.parametrize("bad", [0.0, -1.0, float("nan"), float("inf")])
-    def test_wrong_numbers_are_refused(self, pulse, bad):
-        with pytest.raises(InputError, match="amplitude must be positive"):
-            type(pulse)(bad, T)
-        with pytest.raises(InputError, match="period must be positive"):
-            type(pulse)(A, bad)
+    @pytest.mark.parametrize("bad", [0.0, float("nan"), float("inf")])
+    def test_wrong_numbers_are_refused(self, bad):
+        for shape in (Sine, MavroeidisPapageorgiou):
+            with pytest.raises(InputError, match="amplitude must be positive"):
+                shape(bad, T)
+            with pytest.raises(InputError, match="period must be positive"):
+                shape(A, bad)
 
 
 @given(st.floats(-720, 720), st.floats(1.001, 20))

@@ -6,7 +6,6 @@ import sys
 import time as clock
 import tracemalloc
 import zipfile
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -17,8 +16,8 @@ from hypothesis import strategies as st
 from rocking_cli.ask.read import read_record
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
-from rocking_cli.excitation.records.record_units import canonical
 from rocking_cli.excitation.records.text import on_grid
+from rocking_cli.units import header_unit
 from tests.conftest import NEEDS_RECORDS, PROJECT, record
 
 EXAMPLES = PROJECT / "examples"
@@ -88,15 +87,7 @@ def test_one_column_takes_the_interval_from_the_user(write, rows):
 
 @pytest.mark.parametrize(
     ("unit", "factor"),
-    [
-        ("g", 9.80665),
-        ("m/s2", 1.0),
-        ("cm/s2", 0.01),
-        ("mm/s2", 0.001),
-        ("gal", 0.01),
-        ("mg", 0.00980665),
-        ("%g", 0.0980665),
-    ],
+    [("g", 9.80665), ("m/s2", 1.0), ("gal", 0.01), ("%g", 0.0980665)],
 )
 def test_units_are_converted_to_si(write, unit, factor):
     motion = read_record(write("0,1\n0.01,-2\n"), units=unit)
@@ -104,7 +95,7 @@ def test_units_are_converted_to_si(write, unit, factor):
     assert motion.source_unit == unit
 
 
-@pytest.mark.parametrize("name", ["record.AT2", "record.json", "record", "record.png"])
+@pytest.mark.parametrize("name", ["record.AT2", "record.json"])
 def test_the_format_is_found_from_the_content_not_the_name(write, name):
     assert read_record(write("t,accel_g\n0,1\n0.01,2\n", name)).format == "text"
     assert read_record(write(at2([1, 2]), name)).format == "PEER AT2"
@@ -135,14 +126,6 @@ def test_round_trip_of_two_columns(tmp_path_factory, values, dt, first, mark, ne
     motion = read_record(path)
     assert accelerations(motion) == values
     assert motion.dt == pytest.approx(dt, rel=1e-9)
-
-
-@UNTIMED
-@given(values=st.lists(st.floats(-1e6, 1e6), min_size=2, max_size=40), form=st.sampled_from(["r", ".17e", "+.17E"]))
-def test_round_trip_of_one_column(tmp_path_factory, values, form):
-    path = tmp_path_factory.getbasetemp() / "round_trip_one.txt"
-    path.write_text("\n".join(repr(v) if form == "r" else format(v, form) for v in values))
-    assert accelerations(read_record(path, dt=0.02, units="m/s2")) == values
 
 
 def test_a_long_record_is_read_quickly(write):
@@ -177,7 +160,7 @@ def test_a_long_record_is_read_quickly(write):
     ],
 )
 def test_spellings(spelling, name):
-    assert canonical(spelling) == name
+    assert header_unit(spelling) == name
 
 
 @pytest.mark.parametrize(
@@ -245,11 +228,6 @@ def test_unknown_unit_of_the_user(write):
     assert "g, m/s2, cm/s2, mm/s2, gal" in found.hint
 
 
-def test_header_and_user_may_agree(write):
-    assert read_record(write("t,accel_g\n0,1\n0.5,2\n"), units="g").source_unit == "g"
-    assert read_record(write("t,a [cm/s2]\n0,1\n0.5,2\n"), units="gal").source_unit == "cm/s2"
-
-
 def test_two_units_in_a_header_are_not_guessed_between(write):
     path = write("# units: m/s2\nt,accel_g\n0,1\n0.5,2\n")
     found = problem(path)
@@ -304,10 +282,8 @@ def test_steps_that_grow_bit_by_bit_are_refused(write):
     assert "a constant interval would give" in found.message
 
 
-@pytest.mark.parametrize(
-    ("dt", "decimals"), [(1 / 128, 4), (1 / 256, 4), (1 / 256, 5), (1 / 150, 4), (0.005, 3), (0.02, 2), (1 / 3, 2)]
-)
-@pytest.mark.parametrize("n", [2, 3, 10, 1000, 20000])
+@pytest.mark.parametrize(("dt", "decimals"), [(1 / 128, 4), (1 / 256, 4), (1 / 150, 4), (0.005, 3), (1 / 3, 2)])
+@pytest.mark.parametrize("n", [2, 10, 4000])
 def test_rounded_times_are_accepted(write, dt, decimals, n):
     motion = read_record(times(write, *(f"{i * dt:.{decimals}f}" for i in range(n))))
     assert motion.dt == pytest.approx(dt, abs=1.01 * 10**-decimals / (n - 1))
@@ -344,12 +320,10 @@ def peer_of(
     [
         ("t,accel_g\n0,1\n0.01,abc\n0.02,3\n", 3, "'abc' is not a number", {}),
         ("t,accel_g\nO.00,1\n0.01,2\n0.02,2\n", 2, "'O.00' is not a number", {}),
-        ("t,accel_g\n0,1\n0.01,2\nend\n", 4, "'end' is not a number", {}),
         ("t,accel_g\n0,1_0\n0.01,2\n", 2, "'1_0' is not a number", {}),
         ("t,accel_g\n0,1\n0.01,NaN\n0.02,3\n", 3, "'NaN' is not a finite number", {}),
         ("t,accel_g\n0,1\n0.01,-inf\n", 3, "'-inf' is not a finite number", {}),
         ("t,accel_g\n0,1\n0.01,1e300\n", 3, "'1e300' is not a finite number of sensible size", {}),
-        ("t,accel_g\n-1e308,1\n1e308,2\n", 2, "'-1e308' is not a finite number of sensible size", {}),
         ("t,accel_g\n\n0,1\n# c\n0.01\n0.02,3\n", 5, "has 1 column, the rows before it have 2", {}),
         ("t,accel_g\n0,1\n0.01,2,3\n", 3, "has 3 columns, the rows before it have 2", {}),
         ("t,accel_g\n0,1\n0.01,,2\n", 3, "a value is missing", {}),
@@ -358,7 +332,6 @@ def peer_of(
         ("accel_g\n1\n", 2, "at least two samples", {"dt": 0.01}),
         ("accel_g\n1\n2\n", None, "no sample interval", {}),
         ("t a [g]\n0,00 0,10\n0,01 0,20\n", 2, "point, not a comma", {}),
-        ("t,accel_g\n0.0,1\n0.5,2x\n", 3, "correct it", {}),
         ("1 -2 3 -4 5 -6 7 -8\n2 -3 4 -5 6 -7 8 -9\n0 1 0 1 0 1 0 1\n", None, "run on from line", {"units": "g"}),
         ("0,00;0,1\n0,01;1.234\n0,02;0,3\n", 2, "a point", {"units": "g"}),
         ("0,00;0,1\n0,01;1,2,3\n0,02;0,3\n", 2, "'1.2.3' is not a number", {"units": "g"}),
@@ -376,7 +349,6 @@ def peer_of(
         ('"acc (g)",Time\n0,0\n1,1\n', 1, "the time is in the second column", {}),
         # units and quantities
         ("# made up\nt,accel_g\n0,1\n0.5,2\n", 2, "but `units` says m/s2", {"units": "m/s2"}),
-        ("# made up\nt,a [cm/s2]\n0,1\n0.5,2\n", 2, "but `units` says mm/s2", {"units": "mm/s2"}),
         ("t,a [furlong/s2]\n0,1\n0.5,2\n", 1, "says 'furlong/s2', which is not a known unit", {}),
         ("# made up\nTime (sec); acc (kine)\n0;1\n0.5;2\n", 2, "says 'kine', which is not a known unit", {}),
         ("# units: furlong/fortnight^2\nt,a\n0,1\n0.5,2\n", 1, "says 'furlong/fortnight^2', which", {}),
@@ -390,11 +362,9 @@ def peer_of(
         # PEER AT2
         (peer_of("1 2 3\n4 oops 6", 6), 6, "'oops' is not a number", {}),
         (peer_of("1 2 3\n4 ******** 6", 6), 6, "'********' is not a number", {}),
-        (peer_of("1 -1e300 3"), 5, "'-1e300' is not a finite number", {}),
         (peer_of("1 2,5 3"), 5, "'2,5' is not a number", {}),
         (peer_of("1 2 3", None), None, "(NPTS)", {}),
         (peer_of("1 2 3", 3, None), 4, "(DT)", {}),
-        (peer_of("1 2 3", 2), 4, "NPTS = 2", {}),
         (peer_of("1 2 3", 4), 4, "3 values", {}),
         (peer_of("1", 1), 4, "at least two samples", {}),
         (peer_of("1 2 3", dt="-.01"), 4, "positive", {}),
@@ -417,12 +387,6 @@ def test_what_is_wrong_is_said_with_its_line(write, content, line, fragment, opt
     found = problem(write(content), **{"dt": 0.01} | options if "run on" in fragment else options)
     assert fragment in str(found)
     assert found.line == line and "\n" not in (found.excerpt or "")
-
-
-def test_a_bad_value_late_in_a_long_file_is_placed(write):
-    rows = [f"{i * 0.01:.2f},0.1" for i in range(5000)]
-    rows[4321] = "43.21,oops"
-    assert problem(write("\n".join(["t,accel_g", *rows]))).line == 4323
 
 
 # --- what is wrong with any file ------------------------------------------------------------------------------------
@@ -480,9 +444,8 @@ VALUES = [0.001 * i * (-1) ** i for i in range(1, 14)]
 
 
 @pytest.mark.parametrize("per_line", [1, 5, 8])
-@pytest.mark.parametrize("newline", ["\n", "\r\n"])
-def test_peer(write, per_line, newline):
-    path = write(at2(VALUES, per_line=per_line).replace("\n", newline), "RSN1.AT2")
+def test_peer(write, per_line):
+    path = write(at2(VALUES, per_line=per_line), "RSN1.AT2")
     motion = read_record(path)
     np.testing.assert_allclose(motion.acceleration, np.array(VALUES) * G, rtol=1e-12)
     assert (motion.dt, motion.name, motion.source_unit, motion.format) == (0.01, "RSN1.AT2", "g", "PEER AT2")
@@ -505,19 +468,6 @@ def test_peer_headers(write, header):
     motion = read_record(write(header + "  .1000000E+00  -.2000000E+00   .3000000E+00\n"))
     np.testing.assert_allclose(motion.acceleration, [0.1 * G, -0.2 * G, 0.3 * G], rtol=1e-15)
     assert (motion.dt, motion.source_unit, motion.format) == (0.005, "g", "PEER AT2")
-
-
-@pytest.mark.parametrize("header", ["{npts:6d}  {dt}    NPTS, DT\n", "NPTS= {npts:6d}, DT= {dt} SEC,\n"])
-@pytest.mark.parametrize("per_line", [5, 8])
-@pytest.mark.parametrize(
-    ("printed", "dt"),
-    [(".00390625", 1 / 256), ("0.0024", 0.0024), (".009756", 0.009756), ("9.765625E-03", 0.009765625)],
-)
-def test_odd_intervals_of_peer(write, header, per_line, printed, dt):
-    body = at2(VALUES, per_line=per_line).split("\n", 4)[4]
-    motion = read_record(write(TITLE + UNITS_OF_G + header.format(npts=len(VALUES), dt=printed) + body))
-    np.testing.assert_allclose(motion.acceleration, np.array(VALUES) * G, rtol=1e-12)
-    assert (motion.dt, motion.format) == (dt, "PEER AT2")
 
 
 @pytest.mark.parametrize(
@@ -544,20 +494,6 @@ def test_round_trip_of_values_run_together(tmp_path_factory, values, per_line):
     assert accelerations(read_record(path)) == values
 
 
-@pytest.mark.parametrize(
-    ("line", "unit"),
-    [
-        ("ACCELERATION TIME SERIES IN UNITS OF G", "g"),
-        ("ACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.1 Hz LP=23.0 Hz", "g"),
-        ("The units are (g)", "g"),
-        ("ACCELERATION TIME SERIES IN UNITS OF CM/SEC/SEC", "cm/s2"),
-        ("ACCELERATION IN GAL", "gal"),
-    ],
-)
-def test_unit_of_peer(write, line, unit):
-    assert read_record(write(at2(VALUES, units=line + "\n"))).source_unit == unit
-
-
 def test_unit_missing_or_contradicted_in_peer(write):
     path = write(at2(VALUES, units="\n"))
     assert "`units`" in problem(path).hint
@@ -565,14 +501,6 @@ def test_unit_missing_or_contradicted_in_peer(write):
     found = problem(write(at2(VALUES)), units="m/s2")
     assert "the unit is g, but `units` says m/s2" in found.message
     assert found.line == 3
-
-
-def test_an_interval_that_is_given_must_agree_with_peer(write):
-    path = write(at2(VALUES))
-    assert read_record(path, dt=0.01).dt == 0.01
-    found = problem(path, dt=0.005)
-    assert "0.01 s, but `dt` says 0.005 s" in found.message
-    assert found.line == 4
 
 
 def test_comments_in_peer_are_passed_over(write):
@@ -623,20 +551,6 @@ def test_the_example_is_what_its_script_makes(make_accel, tmp_path):
     np.testing.assert_allclose(np.arange(kept.npts) * kept.dt, time, rtol=0, atol=1e-9)
 
 
-def test_the_example_is_a_plausible_near_fault_motion(make_accel):
-    motion = read_record(EXAMPLES / "accel.csv")
-    assert (motion.npts, motion.source_unit, motion.format) == (1201, "g", "text")
-    assert motion.dt == pytest.approx(0.01)
-    assert 0.5 <= motion.pga_g <= 0.6
-    assert motion.acceleration[0] == motion.acceleration[-1] == 0
-    velocity = np.cumsum(motion.acceleration) * motion.dt
-    assert 0.4 < np.abs(velocity).max() < 1.0  # m/s, from the pulse
-    assert abs(velocity[-1]) < 1e-3
-    pulse = make_accel["pulse"](np.arange(motion.npts) * motion.dt)
-    assert np.abs(pulse).max() == 1
-    assert abs(pulse.sum() * motion.dt) < 1e-3  # a pulse leaves no velocity behind
-
-
 # --- tables of several columns --------------------------------------------------------------------------------------
 
 TABLE = "time_s,ax [g],ay [m/s2],vel (cm/s)\n0.00,0.1,1,9\n0.01,-0.2,-2,9\n0.02,0.3,3,9\n"
@@ -667,7 +581,7 @@ def test_without_a_choice_the_columns_are_listed(write):
     assert "column 4, vel (cm/s), is no acceleration" in found.hint
 
 
-@pytest.mark.parametrize("channel", ["3", "0", "vel", "time_s", "az", "²"])
+@pytest.mark.parametrize("channel", ["3", "vel", "²"])
 def test_a_column_that_is_not_there_is_listed_too(write, channel):
     found = problem(write(TABLE), channel=channel)
     assert f"there is no channel '{channel}'" in found.message
@@ -675,8 +589,8 @@ def test_a_column_that_is_not_there_is_listed_too(write, channel):
     assert "leave `channel` out" not in str(found)
 
 
-@pytest.mark.parametrize("columns", [3, 4, 5, 8])
-@pytest.mark.parametrize("mark", [",", ";", "\t", "  "])
+@pytest.mark.parametrize("columns", [3, 8])
+@pytest.mark.parametrize("mark", [",", "\t", "  "])
 @pytest.mark.parametrize("labelled", [True, False])
 def test_tables_of_any_width(write, columns, mark, labelled):
     table = np.array([[0.01 * row, *(row * (-1) ** row + k for k in range(1, columns))] for row in range(6)])
@@ -729,12 +643,6 @@ def test_a_bad_value_in_a_table_names_its_column(write):
     assert "'x' is not a number" in found.message
 
 
-def test_two_components_without_times(write):
-    path = write("ns [g],ew [g]\n1,2\n-1,5\n1,8\n")
-    assert accelerations(read_record(path, channel="ns", dt=0.01)) == [G, -G, G]
-    assert "2 columns that may be accelerations" in problem(path, dt=0.01).message
-
-
 def test_accelerations_that_repeat_the_times_are_no_times(write):
     path = write("x,y\n0,0\n0.02,0.02\n")
     assert accelerations(read_record(path, channel="1", units="m/s2")) == [0, 0.02]
@@ -747,7 +655,7 @@ def printed(dt: float, n: int, form: str = ".6g") -> list[str]:
     return [format(k * dt, form) for k in range(n)]
 
 
-@pytest.mark.parametrize(("dt", "n"), [(1 / 800, 16872), (1 / 400, 60000), (1 / 256, 5000), (1 / 1024, 20000)])
+@pytest.mark.parametrize(("dt", "n"), [(1 / 800, 16872), (1 / 256, 5000)])
 def test_times_of_six_digits_are_even(write, dt, n):
     motion = read_record(times(write, *printed(dt, n)))
     assert motion.npts == n
@@ -760,23 +668,11 @@ def test_times_of_few_decimals_are_not_taken_for_times_of_few_digits(write):
     assert problem(times(write, *rows)).line == 3000 + 4
 
 
-@pytest.mark.parametrize("missing", [10, 7000, 12345])
+@pytest.mark.parametrize("missing", [10, 12345])
 def test_a_missing_sample_is_found_among_times_of_six_digits(write, missing):
     rows = printed(1 / 800, 16000)
     del rows[missing]
     assert problem(times(write, *rows)).line == missing + 4
-
-
-def test_the_table_of_a_laboratory_is_read():
-    path = record("../experiments/raw_test438.txt")
-    first, second = (read_record(path, channel=channel, units="g") for channel in ("1", "Amplitude - Plot 1"))
-    assert first.npts == second.npts == 16872
-    assert first.dt == pytest.approx(1 / 800, rel=1e-5)
-    rows = [line.split("\t") for line in path.read_text().splitlines()[1:]]
-    np.testing.assert_array_equal(first.acceleration, [float(row[1]) * G for row in rows])
-    np.testing.assert_array_equal(second.acceleration, [float(row[3]) * G for row in rows])
-    found = problem(path)
-    assert "4: Amplitude - Plot 3, column 8" in found.hint
 
 
 @pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be"])
@@ -784,11 +680,6 @@ def test_the_table_of_a_laboratory_is_read():
 def test_utf_16(write, encoding, content):
     motion = read_record(write(content.encode(encoding)))
     assert (accelerations(motion), motion.source_unit) == ([1.5, 2], "m/s2")
-
-
-@pytest.mark.parametrize("content", [b"t,accel_g\n0,1\n0.1,2\n\0\0\0\0", b"t,accel_g\0\0\n0,1\0\n0.1,2\0\0\n"])
-def test_padding_with_nul(write, content):
-    assert accelerations(read_record(write(content))) == [G, 2 * G]
 
 
 # --- packed files ---------------------------------------------------------------------------------------------------
@@ -866,9 +757,8 @@ def test_what_expands_too_far_is_refused(write, monkeypatch):
     assert problems(write(bytes(lying)))
 
 
-@pytest.mark.parametrize("pack", [partial(gzip.compress, compresslevel=1), lambda data: zipped(a=data)])
-def test_what_was_packed_a_thousand_times_smaller_is_refused_before_it_fills_the_memory(write, pack):
-    path = write(pack(b"0\n" * 20_000_000))
+def test_what_was_packed_a_thousand_times_smaller_is_refused_before_it_fills_the_memory(write):
+    path = write(gzip.compress(b"0\n" * 20_000_000, compresslevel=1))
     tracemalloc.start()
     try:
         (found,) = problems(path)

@@ -72,8 +72,7 @@ VERSION, NPTS, KIND, QUANTITY, EVEN = (4 * word for word in (76, 79, 85, 86, 105
 # --- what is read ---------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("byteorder", ["<", ">"])
-@pytest.mark.parametrize("dt", [0.005, 0.01, 1 / 256])
+@pytest.mark.parametrize(("byteorder", "dt"), [("<", 0.005), (">", 1 / 256)])
 def test_sac(made, byteorder, dt):
     path = made("SAC", ("HNE", VALUES), dt=dt, byteorder=byteorder)
     motion = read_record(path, units="g")
@@ -88,19 +87,12 @@ def test_sac_of_version_7_has_a_footer(made):
     assert read_record(path, units="g").npts == VALUES.size
 
 
-@pytest.mark.parametrize("byteorder", ["<", ">"])
-@pytest.mark.parametrize("encoding", ["FLOAT32", "FLOAT64", "STEIM1", "STEIM2", "INT32"])
+@pytest.mark.parametrize(("byteorder", "encoding"), [("<", "FLOAT32"), (">", "FLOAT64"), (">", "STEIM2")])
 def test_miniseed(made, byteorder, encoding):
     values = VALUES.astype({"FLOAT32": "f4", "FLOAT64": "f8"}.get(encoding, "i4"))
     motion = read_record(made("MSEED", ("HNE", values), encoding=encoding, byteorder=byteorder), units="cm/s2")
     np.testing.assert_allclose(motion.acceleration, values.astype(float) * 0.01, rtol=1e-15)
     assert (motion.dt, motion.source_unit, motion.format) == (0.005, "cm/s2", "miniSEED")
-
-
-@pytest.mark.parametrize("name", ["record.txt", "record.sac", "record.mseed", "record.AT2"])
-def test_the_format_is_found_from_the_content_not_the_name(made, name):
-    assert read_record(made("SAC", ("HNE", VALUES), name=name), units="g").format == "SAC"
-    assert read_record(made("MSEED", ("HNE", VALUES), name=name), units="g").format == "miniSEED"
 
 
 def test_channels(made):
@@ -149,15 +141,13 @@ def test_the_interval_and_the_channel_may_not_be_contradicted(made, form):
         read_record(path, units="g", channel="HNZ")
 
 
-@pytest.mark.parametrize("form", ["SAC", "MSEED"])
-@pytest.mark.parametrize("code", ["HHE", "BLZ", "EPN"])
+@pytest.mark.parametrize(("form", "code"), [("SAC", "HHE"), ("MSEED", "BLZ"), ("MSEED", "EPN")])
 def test_seismometers_record_velocity(made, form, code):
     found = problem(made(form, (code, VALUES)))
     assert f"channel {code} is of a seismometer" in found.message and "HNE" in found.hint
 
 
-@pytest.mark.parametrize("form", ["SAC", "MSEED"])
-@pytest.mark.parametrize("code", ["HNE", "BGZ", "X", "L", "90", ""])
+@pytest.mark.parametrize(("form", "code"), [("SAC", "BGZ"), ("SAC", ""), ("MSEED", "L"), ("MSEED", "90")])
 def test_other_codes_say_nothing_against_an_acceleration(made, form, code):
     assert read_record(made(form, (code, VALUES)), units="g").npts == VALUES.size
 
@@ -201,8 +191,7 @@ def test_a_channel_that_changes_its_rate_is_refused(made, tmp_path):
     assert "goes from 0.005 s to 0.01 s between samples after sample 240" in problem(path).message
 
 
-@pytest.mark.parametrize("form", ["SAC", "MSEED"])
-@pytest.mark.parametrize("bad", [np.nan, np.inf, 1e35])
+@pytest.mark.parametrize(("form", "bad"), [("SAC", np.nan), ("MSEED", np.inf), ("SAC", 1e35)])
 def test_a_sample_that_is_no_number_is_pointed_at(made, form, bad):
     values = VALUES.copy()
     values[123] = bad
@@ -299,10 +288,3 @@ def test_without_obspy_it_is_said_what_to_install(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "obspy", None)
     found = problem(path)
     assert "obspy" in found.message and "pip install 'rocking-cli[seismo]'" in found.hint
-
-
-def test_obspy_is_loaded_only_for_its_files(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "obspy", None)
-    path = tmp_path / "record.csv"
-    path.write_text("t,accel_g\n0,1\n0.01,2\n")
-    assert read_record(path).npts == 2

@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from rocking_cli.excitation.records.registry import load_readers
+from rocking_cli.excitation.records.formats import load_readers
 from tests import readers
 
 

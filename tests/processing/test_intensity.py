@@ -21,7 +21,7 @@ from rocking_cli.processing.intensity import (
     parse_measures,
     power_of,
 )
-from rocking_cli.questions.record.study import intensities, reference_of
+from rocking_cli.questions.record.verb import intensities, reference_of
 from rocking_cli.structure import Structure
 from tests.conftest import EXAMPLES
 

@@ -17,7 +17,7 @@ from rocking_cli.core.fields import Name, quantity
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.yaml_file import Place
-from rocking_cli.processing.floor import Floor
+from rocking_cli.processing.oscillator import Floor
 from rocking_cli.studies.file_part import Part, Sound
 from rocking_cli.text import cut
 from rocking_cli.verification.code import Site

@@ -11,10 +11,21 @@ import numpy as np
 
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError
-from rocking_cli.excitation.pulses.base import Pulse, Segment
+from rocking_cli.excitation.pulses import Pulse, Segment
 
 
-class Sine(Pulse):
+class _OneSine(Pulse):
+    """A pulse of one sine or constant, from a phase [rad] on; `turns` are its cycles in a period."""
+
+    turns: ClassVar[float] = 1.0
+    first: ClassVar[float] = 0.0
+
+    def segments(self) -> tuple[Segment, ...]:
+        """Return the segment of the pulse, as `Pulse.segments`."""
+        return (Segment(0.0, self.duration, self.amplitude, 2 * pi * self.turns / self.period, self.first),)
+
+
+class Sine(_OneSine):
     """One full cycle of a sine."""
 
     name = "sine"
@@ -31,29 +42,22 @@ class Sine(Pulse):
         curve: Reals = (1 - np.cos(2 * pi * x)) / (2 * pi)
         return curve
 
-    def segments(self) -> tuple[Segment, ...]:
-        """Return the segments of the pulse, as `Pulse.segments`."""
-        return (Segment(0.0, self.duration, self.amplitude, 2 * pi / self.period, 0.0),)
 
-
-class Cosine(Pulse):
+class Cosine(_OneSine):
     """One full cycle of a cosine, which begins and ends at its peak."""
 
     name = "cosine"
     title = "full cosine"
     source = "Zhang and Makris (2001), type B"
     span = 1.0
+    first = pi / 2
 
     def shape(self, x: Reals) -> Reals:
         """Return the normalised acceleration, as `Pulse.shape`."""
         return np.cos(2 * pi * x)
 
-    def segments(self) -> tuple[Segment, ...]:
-        """Return the segments of the pulse, as `Pulse.segments`."""
-        return (Segment(0.0, self.duration, self.amplitude, 2 * pi / self.period, pi / 2),)
 
-
-class HalfSine(Pulse):
+class HalfSine(_OneSine):
     """The first half of a sine of the given period; its duration is half the period."""
 
     name = "half_sine"
@@ -65,26 +69,19 @@ class HalfSine(Pulse):
         """Return the normalised acceleration, as `Pulse.shape`."""
         return np.sin(2 * pi * x)
 
-    def segments(self) -> tuple[Segment, ...]:
-        """Return the segments of the pulse, as `Pulse.segments`."""
-        return (Segment(0.0, self.duration, self.amplitude, 2 * pi / self.period, 0.0),)
 
-
-class Rectangular(Pulse):
+class Rectangular(_OneSine):
     """A constant acceleration; its duration is the period."""
 
     name = "rectangular"
     title = "constant, for one period"
     source = "Housner (1963)"
     span = 1.0
+    turns, first = 0.0, pi / 2
 
     def shape(self, x: Reals) -> Reals:
         """Return the normalised acceleration, as `Pulse.shape`."""
         return np.ones_like(x)
-
-    def segments(self) -> tuple[Segment, ...]:
-        """Return the segments of the pulse, as `Pulse.segments`."""
-        return (Segment(0.0, self.duration, self.amplitude, 0.0, pi / 2),)
 
 
 class Ricker(Pulse):

@@ -10,10 +10,10 @@ from typing import Any
 
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records.formats import Reader, load_readers, reader_for, takes_bytes, takes_wanted
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.opening import decoded, open_record
 from rocking_cli.excitation.records.record_units import Gain, Quantity, Wanted
-from rocking_cli.excitation.records.registry import Reader, load_readers, reader_for, takes_bytes, takes_wanted
 from rocking_cli.excitation.records.text import TITLE, Followed
 
 _MESSAGE, _EXCERPT = 500, 100  # largest numbers of characters that are shown

@@ -1,4 +1,7 @@
-"""Columns of a table: their names, which of them are times or accelerations, and which one is requested."""
+"""Columns of a table: their names, which of them are times or accelerations, and which one is requested.
+
+Without labels, the steps between numbers tell components side by side from one series that runs on over the rows.
+"""
 
 from __future__ import annotations
 
@@ -6,23 +9,24 @@ import csv
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem, named
-from rocking_cli.excitation.records.header_words import WORDS, component, without_sign
 from rocking_cli.excitation.records.record_units import (
     BRACKETED,
+    WORDS,
     Wanted,
+    component,
     header_units,
     is_acceleration,
     is_unit,
     other_quantity,
-    plural,
     quantity_of,
+    without_sign,
 )
-from rocking_cli.excitation.records.shapes import runs_on
 from rocking_cli.text import regex
 
 MAX_COLUMNS = 1000
@@ -38,6 +42,7 @@ _COLUMN = regex(r"col(?:umn)?\.? *(\d{1,4})")
 _NO_NAME = regex(r"=|:$|^[+-]?\.?\d(?!\d{0,2} ?deg)")
 _NO_AZIMUTH = regex(r"=|:$|^[+-]?\d*\.\d|^\d{4}")  # beside a time, numbers may be names
 _BREAKS = regex(r"[;,\s]+")
+_UNIT_BEHIND = regex(r"\s*(?:\[[^\]]*\]|\([^)]*\))\s*$")
 
 
 @dataclass(frozen=True)
@@ -139,6 +144,62 @@ def _is_label(cell: str) -> bool:
     return named or bool(header_units(cell)) or other_quantity(cell) is not None or is_acceleration(cell)
 
 
+class _Candidates(NamedTuple):
+    """A table, and which of its columns are times or may be the requested values."""
+
+    file: str
+    table: Reals
+    names: Sequence[Label]
+    times: Sequence[int]
+    values: Sequence[int]
+    wanted: Wanted
+
+    def place(self, requested: str | None) -> int:
+        """Return the index in `values` of the requested column."""
+        _, table, names, times, values, wanted = self
+        listed = self.listed()
+        if requested is None:
+            message = f"the table has {len(values)} columns that may be {wanted.values}"
+            hint = f"choose one with {named('channel')}, by place or name:{listed}"
+            if not any(label.name for label in names) and not times and runs_on(table) is None:
+                hint += "\n  if the values run on from line to line, and the columns are no components, give "
+                hint += named("run_on")
+            raise InputError(Problem(f"{message}, and only one can shake a structure", self.file, hint=hint))
+        word = _plain(requested)
+        if (number := _COLUMN.fullmatch(word)) and int(number[1]) - 1 in values:
+            return values.index(int(number[1]) - 1)
+        if word.isascii() and word.isdigit() and len(word) < 9 and 1 <= int(word) <= len(values):
+            return int(word) - 1
+        bare = [_plain(_UNIT_BEHIND.sub("", names[k].name)) for k in values]
+        for spellings in ([_plain(str(names[k])) for k in values], bare):
+            places = [place for place, name in enumerate(spellings) if name and name == word]
+            if len(places) == 1:
+                return places[0]
+            if places:
+                message, hint = f"{len(places)} columns are called '{requested}'", f"give the place of one:{listed}"
+                raise InputError(Problem(message, self.file, field=named("channel"), hint=hint))
+        message = f"there is no channel '{requested}'"
+        hint = f"the file has:{listed}"
+        raise InputError(Problem(message, self.file, field=named("channel"), hint=hint))
+
+    def listed(self) -> str:
+        """Return text that lists the columns that may be meant, with number, name, unit and peak, and the others."""
+        _, table, names, times, values, wanted = self
+        out = []
+        for place, k in enumerate(values, start=1):
+            units = _units(str(names[k]), wanted)
+            unit = f"in {units.pop()}" if len(units) == 1 else "unit not stated"
+            name = f"{names[k]}, " if names[k].name else ""
+            out.append(f"\n    {place}: {name}column {k + 1}, {unit}, peak {float(np.abs(table[k]).max()):.4g}")
+        for k, label in enumerate(names):
+            if k not in values:
+                what = "time" if k in times else f"no {wanted.quantity}"
+                out.append(f"\n    column {k + 1}{f', {label},' if label.name else ''} is {what}")
+        if len(out) > MAX_LISTED_COLUMNS:
+            out[MAX_LISTED_COLUMNS:] = [f"\n    and {len(out) - MAX_LISTED_COLUMNS} more"]
+        return "".join(out)
+
+
 def choose(
     file: str,
     table: Reals,
@@ -172,12 +233,11 @@ def choose(
     """
     times = _times(table, names, increases)
     values = [k for k in range(len(table)) if k not in times and _may_be(str(names[k]), wanted)]
+    candidates = _Candidates(file, table, names, times, values, wanted)
     if not values:
-        message = f"none of the columns holds {_values(wanted)}"
-        raise InputError(Problem(message, file, hint=f"there are:{_listed(table, names, times, values, wanted)}"))
-    place = (
-        0 if requested is None and len(values) == 1 else _place(file, table, names, times, values, requested, wanted)
-    )
+        message = f"none of the columns holds {wanted.values}"
+        raise InputError(Problem(message, file, hint=f"there are:{candidates.listed()}"))
+    place = 0 if requested is None and len(values) == 1 else candidates.place(requested)
     column = values[place]
     time = max((k for k in times if k < column), default=min(times, default=None))
     channel = "" if len(values) == 1 else names[column].name or str(place + 1)
@@ -233,55 +293,8 @@ def _times(table: Reals, names: Sequence[Label], increases: Callable[[Reals], bo
     return times or [k for k in called if not _BARE_T.fullmatch(str(names[k]))]
 
 
-def _place(
-    file: str,
-    table: Reals,
-    names: Sequence[Label],
-    times: Sequence[int],
-    values: Sequence[int],
-    requested: str | None,
-    wanted: Wanted,
-) -> int:
-    """Return the index in `values` of the requested column."""
-    listed = _listed(table, names, times, values, wanted)
-    if requested is None:
-        message = (
-            f"the table has {len(values)} columns that may be {_values(wanted)}, and only one can shake a structure"
-        )
-        if not any(label.name for label in names) and not times and runs_on(table) is None:
-            listed += (
-                f"\n  if the values run on from line to line, and the columns are no components, give {named('run_on')}"
-            )
-        raise InputError(Problem(message, file, hint=f"choose one with {named('channel')}, by place or name:{listed}"))
-    word = _plain(requested)
-    if (number := _COLUMN.fullmatch(word)) and int(number[1]) - 1 in values:
-        return values.index(int(number[1]) - 1)
-    if word.isascii() and word.isdigit() and len(word) < 9 and 1 <= int(word) <= len(values):
-        return int(word) - 1
-    for spellings in ([_plain(str(names[k])) for k in values], [_without_unit(names[k].name) for k in values]):
-        places = [place for place, name in enumerate(spellings) if name and name == word]
-        if len(places) == 1:
-            return places[0]
-        if places:
-            message = f"{len(places)} columns are called '{requested}'"
-            raise InputError(Problem(message, file, field=named("channel"), hint=f"give the place of one:{listed}"))
-    message = f"there is no channel '{requested}'"
-    hint = f"the file has:{listed}"
-    raise InputError(Problem(message, file, field=named("channel"), hint=hint))
-
-
 def _plain(name: str) -> str:
     return " ".join(name.lower().split())
-
-
-def _without_unit(name: str) -> str:
-    """Return a name without a unit in brackets at its end."""
-    return _plain(re.sub(r"\s*(?:\[[^\]]*\]|\([^)]*\))\s*$", "", name))
-
-
-def _values(wanted: Wanted) -> str:
-    """Return the plural of the requested quantity."""
-    return "values" if wanted.raw else plural(wanted.quantity)
 
 
 def _units(label: str, wanted: Wanted) -> set[str]:
@@ -291,18 +304,32 @@ def _units(label: str, wanted: Wanted) -> set[str]:
     return {unit for unit in BRACKETED.findall(label) if quantity_of(unit) == wanted.quantity}
 
 
-def _listed(table: Reals, names: Sequence[Label], times: Sequence[int], values: Sequence[int], wanted: Wanted) -> str:
-    """Return text that lists the columns that may be meant, with number, name, unit and peak, and the other columns."""
-    out = []
-    for place, k in enumerate(values, start=1):
-        units = _units(str(names[k]), wanted)
-        unit = f"in {units.pop()}" if len(units) == 1 else "unit not stated"
-        name = f"{names[k]}, " if names[k].name else ""
-        out.append(f"\n    {place}: {name}column {k + 1}, {unit}, peak {float(np.abs(table[k]).max()):.4g}")
-    for k, label in enumerate(names):
-        if k not in values:
-            what = "time" if k in times else f"no {wanted.quantity}"
-            out.append(f"\n    column {k + 1}{f', {label},' if label.name else ''} is {what}")
-    return "".join(out[:MAX_LISTED_COLUMNS]) + (
-        f"\n    and {len(out) - MAX_LISTED_COLUMNS} more" if len(out) > MAX_LISTED_COLUMNS else ""
+FEWEST_ROWS = 10  # with which the steps of a table tell its shape
+_MOST_RATIO = 2.0  # factor between mean steps that are still alike
+_LEAST_RATIO = 1.4  # factor between mean steps that tell two shapes apart
+
+
+def runs_on(table: Reals) -> bool | None:
+    """Return whether values run on over the rows, by the steps between neighbours; None if nothing tells.
+
+    In a series that runs on, a step from one row to the next is like a step within a row, and less than one down a
+    column, which is several samples long. In a table of components, a step down a column is the smaller one.
+
+    Parameters
+    ----------
+    table : ndarray, shape (columns, rows)
+        The numbers.
+    """
+    if table.shape[1] < FEWEST_ROWS:
+        return None
+    within, across, down = (
+        float(np.abs(steps).mean()) for steps in (np.diff(table, axis=0), table[0, 1:] - table[-1, :-1], np.diff(table))
     )
+    if across / _MOST_RATIO <= within <= across * _MOST_RATIO and across * _LEAST_RATIO < down:
+        return True
+    return False if across > down * _LEAST_RATIO or within < across / _MOST_RATIO else None
+
+
+def counts_rows(column: Reals) -> bool:
+    """Return whether a column has the numbers of the rows."""
+    return len(column) > 2 and bool((np.diff(column) == 1).all() and column[0] in (0, 1))

@@ -11,10 +11,10 @@ from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import Doubt, GroundMotion, Origin
 from rocking_cli.excitation.records import formats, layout
-from rocking_cli.excitation.records.header_fields import Field, read_head
+from rocking_cli.excitation.records.layout import Field, read_head
 from rocking_cli.excitation.records.lines import Lines
-from rocking_cli.excitation.records.origins import magnitude, origin, peak_doubts
 from rocking_cli.excitation.records.record_units import Asked
+from rocking_cli.excitation.records.statements import magnitude, origin, peak_doubts
 from rocking_cli.excitation.records.text import numbers_in
 from rocking_cli.text import regex
 
@@ -61,7 +61,7 @@ class _Headers:
 
 
 def read(text: str, file: str, asked: Asked) -> GroundMotion:
-    """Read a COSMOS V0, V1 or V2c file; see `registry.Reader.read`."""
+    """Read a COSMOS V0, V1 or V2c file; see `formats.Reader.read`."""
     lines = layout.lines_of(text)
     channels: list[layout.Channel] = []
     others: list[str] = []

@@ -8,11 +8,12 @@ import re
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import formats, layout
-from rocking_cli.excitation.records.origins import of_csmip, peak_doubts
 from rocking_cli.excitation.records.record_units import Asked
+from rocking_cli.excitation.records.statements import of_csmip, peak_doubts
 from rocking_cli.text import regex
 
 _DATA = regex(r"\s*(\d+) +POINTS OF (ACCEL|VELOC|DISPL)\w* +DATA EQUALLY SPACED AT +(\S+?) *SEC\b(.*)", re.I)
+_UNCORRECTED = regex(r"\s*UNCORRECTED ACCELEROGRAM DATA\b", re.I)
 _FIRST_LINE = regex(r"\s*CORRECTED ACCELEROGRAM\b", re.I)
 _TEXT_LINES = 25
 _UNIT = regex(r"(?:\bunits:|\bin) *([^,()]*?\w)\.? *(?:[,()]|$|format)", re.I)
@@ -23,7 +24,10 @@ _DEFAULT_WIDTH = 10  # characters per number, as in 8F10.3
 
 
 def read(text: str, file: str, asked: Asked) -> GroundMotion:
-    """Read a CSMIP V2 file; see `registry.Reader.read`."""
+    """Read a CSMIP V2 file; see `formats.Reader.read`."""
+    if _UNCORRECTED.match(text):
+        message = "this is CSMIP V1, an uncorrected record as digitised, which is not read"
+        raise InputError(Problem(message, file, 1, hint="give the corrected record, CSMIP V2, of the same archive"))
     lines = layout.lines_of(text)
     channels: list[layout.Channel] = []
     held: list[str] = []  # quantities in the file

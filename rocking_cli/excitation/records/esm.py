@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion, Origin
 from rocking_cli.excitation.records import formats, layout
-from rocking_cli.excitation.records.origins import length_doubts, origin, peak_doubts
 from rocking_cli.excitation.records.record_units import Asked
+from rocking_cli.excitation.records.statements import length_doubts, origin, peak_doubts
 from rocking_cli.text import regex
 
 _KEY = regex(r"([A-Z][A-Z0-9_/^]*):(.*)")
@@ -16,7 +16,7 @@ _DAY, _TIME = regex(r"(\d{4})(\d{2})(\d{2})"), regex(r"(\d{2})(\d{2})(\d{2})")
 
 
 def read(text: str, file: str, asked: Asked) -> GroundMotion:
-    """Read an ESM ASCII file; see `registry.Reader.read`."""
+    """Read an ESM ASCII file; see `formats.Reader.read`."""
     lines = layout.lines_of(text)
     header: dict[str, tuple[int, str]] = {}
     start = 0

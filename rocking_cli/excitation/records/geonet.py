@@ -11,10 +11,10 @@ from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import Doubt, GroundMotion
 from rocking_cli.excitation.records import formats, layout
-from rocking_cli.excitation.records.header_fields import Field, read_head
+from rocking_cli.excitation.records.layout import Field, read_head
 from rocking_cli.excitation.records.lines import Lines
-from rocking_cli.excitation.records.origins import length_doubts, peak_doubts
 from rocking_cli.excitation.records.record_units import QUANTITIES, Asked, plural
+from rocking_cli.excitation.records.statements import length_doubts, peak_doubts
 from rocking_cli.text import regex
 
 _TEXT_LINES = 16
@@ -43,7 +43,7 @@ _PEAKS = {
 
 
 def read(text: str, file: str, asked: Asked) -> GroundMotion:
-    """Read a GeoNet V1A or V2A file; see `registry.Reader.read`."""
+    """Read a GeoNet V1A or V2A file; see `formats.Reader.read`."""
     lines = layout.lines_of(text)
     channels = []
     start = 0

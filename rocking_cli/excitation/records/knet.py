@@ -7,9 +7,9 @@ import numpy as np
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import formats, layout
-from rocking_cli.excitation.records.header_fields import Field, read_head
-from rocking_cli.excitation.records.origins import peak_doubts
+from rocking_cli.excitation.records.layout import Field, read_head
 from rocking_cli.excitation.records.record_units import Asked
+from rocking_cli.excitation.records.statements import peak_doubts
 from rocking_cli.excitation.records.text import sensible
 from rocking_cli.text import regex
 
@@ -34,7 +34,7 @@ _NUMBER_WIDTH, _BLANKS_AFTER = 9, 1  # characters per number, and blanks after i
 def read(text: str, file: str, asked: Asked) -> GroundMotion:
     """Read a K-NET or KiK-net file, and subtract the mean, which is the zero of the digitiser.
 
-    Arguments, result and errors are those of `registry.Reader.read`.
+    Arguments, result and errors are those of `formats.Reader.read`.
     """
     lines = layout.lines_of(text)
     head = read_head(file, lines, _FIELDS, _HEADER_LINES)

@@ -1,11 +1,11 @@
-"""Common parts of the data centres' formats: Fortran's fixed-width numbers, stated units, and several channels."""
+"""Common parts of the data centres' formats: items of headers, Fortran's fixed-width numbers, and several channels."""
 
 from __future__ import annotations
 
 import math
 import re
 from array import array
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
@@ -16,27 +16,23 @@ from numpy.typing import NDArray
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import MOST_SAMPLES, NOT_SAID, STANDARD_GRAVITY, Doubt, GroundMotion, Origin
-from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.excitation.records.lines import Lines, PrintedRows, odd_digits, odd_row, split_numbers
 from rocking_cli.excitation.records.record_units import (
     GAIN_EXAMPLE,
     QUANTITIES,
-    UNITS,
     Asked,
     Quantity,
     Wanted,
     units_of,
 )
+from rocking_cli.excitation.records.statements import origin
 from rocking_cli.excitation.records.text import Followed, check_interval, numbers_in, sensible
-from rocking_cli.excitation.records.widths import PrintedRows, odd_digits, odd_row, split_numbers
 from rocking_cli.text import regex
 
 # The only letters in a row of numbers are exponents. Asterisks are overflows, which `numbers_in` refuses.
 _NO_ROW = regex(r"[^\s\d.+\-*EeDd]")
 _NOT_FINITE = regex(r"[+-]?(?:nan|inf|infinity)\b", re.IGNORECASE)
 FIRST_ROW = regex(r"\s*[+-]?\.?\d")
-TENTH_OF_G = "g/10"
-_FILM_DT = 1e-3  # s; times of digitised films are printed with three decimals
-_MAX_FILM_DURATION = 3600.0  # s; films ran for a minute or two, and each second takes a thousand samples
 _MAX_COLUMN_WIDTH = 1000  # characters
 CUT = "the file may have been cut short or edited: download it again"
 _LOST = "a character was lost or added, so that its values are wrong: download the file again"
@@ -166,7 +162,8 @@ def fixed_width(file: str, lines: Lines, block: RecordBlock, *, last: bool = Tru
     leaving: list[int] = []  # line numbers of rows that leave the columns
     unread: InputError | None = None
     for line in lines.since(block.start):
-        if not _is_row(line) or (len(values) >= block.count and not last):
+        has_words = _NO_ROW.search(line) and _NO_ROW.search(_NOT_FINITE.sub("0", line))
+        if has_words or not line.strip() or (len(values) >= block.count and not last):
             break
         row = line.rstrip()
         index += 1
@@ -259,17 +256,6 @@ def stated_unit(file: str, line_number: int, unit: str, asked: Asked) -> tuple[s
     return asked.unit(file, [(line_number, f"units: {unit}")])
 
 
-def old_unit(file: str, line_number: int, spelling: str, asked: Asked) -> tuple[str, float]:
-    """Return the unit as `stated_unit` does, or a tenth of g, which only digitised films have."""
-    if spelling.replace(" ", "").lower() != TENTH_OF_G:
-        return stated_unit(file, line_number, spelling, asked)
-    if asked.units is not None:
-        unit, _ = asked.unit(file, [])  # refuses an unknown one
-        message = f"the header says the unit is {TENTH_OF_G}, but {named('units')} says {unit}"
-        raise InputError(Problem(message, file, line_number, hint=f"leave {named('units')} out"))
-    return TENTH_OF_G, UNITS["g"] / 10
-
-
 def quantity_called(word: str) -> Quantity | None:
     """Return the quantity that a header calls by a word such as ACCEL or velocity; None if it is another."""
     return next((each for each in QUANTITIES if word.lower().startswith(each[:3])), None)
@@ -284,47 +270,6 @@ def lacking(file: str, wanted: Wanted, held: Sequence[str], line_number: int | N
     elif not wanted.raw:
         hint += f", or the {named('gain')} of the instrument, such as {GAIN_EXAMPLE}"
     return InputError(Problem(message, file, line_number, hint=hint))
-
-
-def straight_lines(file: str, pairs: Reals, where: str) -> tuple[float, Reals, NDArray[np.intp]]:
-    """Interpolate a digitised film, with uneven times, to a constant interval that includes all of its times.
-
-    Times are in whole milliseconds, so that such an interval exists and the interpolation is exact: the motion has more
-    samples than the film has points, but the same straight lines between these.
-
-    Parameters
-    ----------
-    file : str
-        The file, for the messages.
-    pairs : ndarray, shape (2 * points,)
-        Time [s] and value of each point.
-    where : str
-        Lines of the points in the file, for messages.
-
-    Returns
-    -------
-    dt : float
-        The largest interval that includes all times [s].
-    values : ndarray, shape (npts,)
-        Values at this interval.
-    points : ndarray of int, shape (points,)
-        Indices of the samples that are points of the film.
-    """
-    time, values = pairs.reshape(-1, 2).T
-    far = np.abs(time) > _MAX_FILM_DURATION
-    if far.any():
-        point = int(np.argmax(far))
-        message = f"point {point + 1} is at {time[point]:g} s: no film runs for more than {_MAX_FILM_DURATION:g} s"
-        raise InputError(Problem(message, file, hint=f"it is among {where}"))
-    ticks = np.rint(time / _FILM_DT).astype(np.int64)
-    steps = np.diff(ticks)
-    if (steps <= 0).any():
-        point = int(np.argmax(steps <= 0)) + 1
-        message = f"time does not increase: point {point + 1} is at {time[point]:g} s, after {time[point - 1]:g} s"
-        raise InputError(Problem(message, file, hint=f"it is among {where}"))
-    step = int(np.gcd.reduce(steps))
-    grid = np.arange(ticks[0], ticks[-1] + 1, step)
-    return step * _FILM_DT, np.interp(grid, ticks, values), ((ticks - ticks[0]) // step).astype(np.intp)
 
 
 def check_end(file: str, lines: Lines, end: int) -> None:
@@ -404,10 +349,6 @@ def choose(file: str, form: str, channels: Sequence[Channel], asked: Asked) -> G
     )
 
 
-def _is_row(line: str) -> bool:
-    return bool(line.strip()) and not (_NO_ROW.search(line) and _NO_ROW.search(_NOT_FINITE.sub("0", line)))
-
-
 def _find(file: str, channels: Sequence[Channel], requested: str, wanted: Wanted) -> Channel:
     """Return the channel with a number or name; a number such as 90 is tried as the channel's number first."""
     word = _plain(requested)
@@ -439,3 +380,97 @@ def _listed(channels: Sequence[Channel], wanted: Wanted) -> str:
             unit = "" if wanted.raw else f" {units_of(wanted.quantity)[0]}"
             out += f"peak {float(np.abs(channel.acceleration).max()):.4g}{unit}"
     return out
+
+
+_SEARCHED_PER_LINE = 1000
+
+
+class Field(NamedTuple):
+    """Where an item of a text header stands.
+
+    Parameters
+    ----------
+    pattern : re.Pattern
+        Pattern of its line; the groups are the texts of the item.
+    what : str, optional
+        Name of the item in messages; empty if a header may lack it.
+    such : str, optional
+        Spelling or example of the item, for the message that it is missing.
+    line : int, optional
+        Number of the only line that may have it, from 1 at the first line of the header.
+    """
+
+    pattern: re.Pattern[str]
+    what: str = ""
+    such: str = ""
+    line: int | None = None
+
+
+class Item(NamedTuple):
+    """Item of a header: the number of its line in the file from 1, the line, and the groups of its pattern."""
+
+    line_number: int
+    line: str
+    groups: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class RecordHead:
+    """Items of a text header, as `read_head` finds them.
+
+    Parameters
+    ----------
+    file : str
+        The file, for messages.
+    fields : mapping of str to Field
+        Where the items stand, by name.
+    items : mapping of str to Item
+        The items that the header states, by name.
+    """
+
+    file: str
+    fields: Mapping[str, Field]
+    items: Mapping[str, Item]
+
+    def __getitem__(self, name: str) -> Item:
+        """Return an item that the header must state."""
+        return self.items[name]
+
+    def text(self, name: str) -> str | None:
+        """Return the text of an item; None if the header does not state it."""
+        return self.items[name].groups[0] if name in self.items else None
+
+    def number(self, name: str, group: int = 0) -> float:
+        """Return a positive number that the header must state."""
+        item = self.items[name]
+        return number(self.file, item.line_number, item.line, item.groups[group], self.fields[name].what)
+
+    @property
+    def count(self) -> int:
+        """The item `count`, a number of points."""
+        item = self.items["count"]
+        return whole_number(self.file, item.line_number, item.line, item.groups[0], "number of points", least=2)
+
+    @property
+    def origin(self) -> Origin:
+        """The items `event`, `station`, `magnitude` and `distance`, as far as the header states them."""
+        return origin(*map(self.text, ("event", "station", "magnitude", "distance")))
+
+
+def read_head(file: str, lines: Lines, fields: Mapping[str, Field], count: int, start: int = 0) -> RecordHead:
+    """Read the text header of a channel, which has `count` lines from line index `start` on.
+
+    Raises `InputError` if the header does not state an item that it must state.
+    """
+    head = [line.rstrip()[:_SEARCHED_PER_LINE] for line in lines[start : start + count]]
+    items: dict[str, Item] = {}
+    for name, field in fields.items():
+        for place, line in enumerate(head, start=1):
+            if field.line in (None, place) and (match := field.pattern.search(line)):
+                items[name] = Item(start + place, line, match.groups())
+                break
+        else:
+            if field.what:
+                message = f"the header does not state the {field.what}{field.such}"
+                raise InputError(Problem(message, file, start + 1))
+    return RecordHead(file, fields, items)

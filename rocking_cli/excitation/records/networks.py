@@ -15,12 +15,11 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import Doubt, GroundMotion
 from rocking_cli.excitation.records import formats, layout
 from rocking_cli.excitation.records.formats import Format
-from rocking_cli.excitation.records.header_fields import Field, RecordHead, read_head
-from rocking_cli.excitation.records.lines import Lines
-from rocking_cli.excitation.records.origins import length_doubts, peak_doubts
+from rocking_cli.excitation.records.layout import Field, RecordHead, read_head
+from rocking_cli.excitation.records.lines import Lines, PrintedRows, split_numbers
 from rocking_cli.excitation.records.record_units import Asked
+from rocking_cli.excitation.records.statements import length_doubts, peak_doubts
 from rocking_cli.excitation.records.text import numbers_in
-from rocking_cli.excitation.records.widths import PrintedRows, split_numbers
 from rocking_cli.text import regex
 
 _LIST = r" *C\d+ *- *C\d+[^:]*: *(/.*)"  # of the items of six channels, each behind a slash
@@ -66,7 +65,7 @@ _PEAK_OF_CWA = regex(r"^#AmplitudeMAX\. *(\w+): *(\S+?) *~ *(\S+)", re.MULTILINE
 
 
 def read(text: str, file: str, asked: Asked) -> GroundMotion:
-    """Read a file of one of the networks; see `registry.Reader.read`."""
+    """Read a file of one of the networks; see `formats.Reader.read`."""
     form = next(each for each in _FIELDS if each.sniff(text))
     lines = layout.lines_of(text)
     head = read_head(file, lines, _FIELDS[form], _HEADER_LINES)

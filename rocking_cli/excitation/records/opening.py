@@ -31,6 +31,7 @@ _ZIP = (b"PK\x03\x04", b"PK\x05\x06", b"PK\x07\x08")
 _TAR = slice(257, 262), b"ustar"
 _OFFICE = "[Content_Types].xml"
 _WORKBOOK = frozenset(["xl/workbook.xml", "xl/workbook.bin", "content.xml"])  # of .xlsx, .xlsb and .ods
+_HIDDEN = regex(r"^__MACOSX(?:/|$)|(?:^|/)\.[^/]*$")
 _UNPACK = "unpack it, and give the record in it"
 
 _taken: WeakKeyDictionary[Any, bytes] = WeakKeyDictionary()
@@ -172,7 +173,8 @@ def _of_zip(data: bytes, file: str, channel: str | None) -> tuple[bytes, str, bo
         )
     try:
         archive = zipfile.ZipFile(io.BytesIO(data))
-        members = [member for member in archive.infolist() if not _is_no_record(member)]
+        # Without folders, and hidden files that a file manager adds.
+        members = [each for each in archive.infolist() if not (each.is_dir() or _HIDDEN.search(each.filename))]
     except Exception as error:  # the library raises many kinds of errors, without a common base
         raise InputError(_damaged("zip archive", error, file)) from None
     names = [_printable(member.filename) for member in members]
@@ -210,12 +212,6 @@ def _of_spreadsheet(data: bytes, file: str, channel: str | None) -> tuple[bytes,
     place, channel = _chosen(file, list(sheets), channel, of=("spreadsheet", "sheet"))
     name, rows = list(sheets.items())[place]
     return "\n".join(map("\t".join, rows)).encode(), _printable(name), len(sheets) > 1, channel
-
-
-def _is_no_record(member: zipfile.ZipInfo) -> bool:
-    """Return whether a member of an archive is a folder, or a hidden file that a file manager adds."""
-    parts = member.filename.split("/")
-    return member.is_dir() or parts[0] == "__MACOSX" or parts[-1].startswith(".")
 
 
 def _chosen(

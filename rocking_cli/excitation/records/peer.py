@@ -15,10 +15,10 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import NOT_SAID, GroundMotion
 from rocking_cli.excitation.records import formats
 from rocking_cli.excitation.records.layout import CUT, FIRST_ROW, aligned, lines_of, whole_number
-from rocking_cli.excitation.records.origins import of_peer
+from rocking_cli.excitation.records.lines import PrintedRows, split_numbers
 from rocking_cli.excitation.records.record_units import Asked
+from rocking_cli.excitation.records.statements import of_peer
 from rocking_cli.excitation.records.text import check_interval, numbers_in, only_channel, usable
-from rocking_cli.excitation.records.widths import PrintedRows, split_numbers
 from rocking_cli.text import regex
 
 _FLOAT = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?"
@@ -41,7 +41,7 @@ class _PeerHeader:
 
 
 def read(text: str, file: str, asked: Asked) -> GroundMotion:
-    """Read a PEER AT2 file; see `registry.Reader.read`."""
+    """Read a PEER AT2 file; see `formats.Reader.read`."""
     only_channel(file, asked.channel)
     lines = lines_of(text)
     header = _header(file, lines)

@@ -12,7 +12,7 @@ import numpy as np
 
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import NOT_SAID, Doubt, GroundMotion, Origin
-from rocking_cli.excitation.records.origins import origin
+from rocking_cli.excitation.records.statements import origin
 from rocking_cli.text import one_line, regex
 
 COLUMNS = "t [s],a [m/s2]\n"  # metres, as any other unit would round the accelerations when read again

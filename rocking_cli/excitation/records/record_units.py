@@ -1,4 +1,4 @@
-"""Units of accelerations: their spellings and sizes, and where a header states them. A unit is never guessed.
+"""Words and units of headers, in five languages: where a header states a unit, which is never guessed.
 
 Other recorded values are displacements, velocities, volts and counts.
 """
@@ -7,26 +7,119 @@ from __future__ import annotations
 
 import math
 import re
+import unicodedata
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from math import isclose, isfinite
+from dataclasses import dataclass
+from itertools import islice
 from typing import Literal, NamedTuple, get_args
 
-import numpy as np
-
-from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem, named
-from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
-from rocking_cli.excitation.doubts import of_samples
-from rocking_cli.excitation.records.header_words import WORDS, plain
 from rocking_cli.text import did_you_mean, exact, regex
-from rocking_cli.units import KINDS, UnitError, number_of, split
+from rocking_cli.units import CHOICES, KINDS, QUANTITY, UNITS, header_unit
 
-_READ = ("g", "m/s2", "cm/s2", "mm/s2", "gal", "mg", "%g", "ft/s2", "in/s2")
-UNITS: dict[str, float] = {name: float(KINDS["acceleration"][name]) for name in _READ}
-"""Size of each unit that can be read [m/s2], under its canonical name."""
+# Each row has English, Italian, Spanish, Turkish and romanised Japanese, as expressions for text made `plain`.
+_WORDS = {
+    "interval": (
+        r"(?:sampl(?:e|ing)|time|data)[ -]?(?:intervals?|steps?|period|increment|spacing)|delta ?t|dt"
+        r"|(?:equally )?spaced at|(?:points|samples|data) at|intervals (?:at|of)",
+        r"(?:passo|intervallo|periodo) (?:di )?(?:campionamento|tempo)|passo temporale",
+        r"(?:intervalo|periodo|paso) de (?:muestreo|tiempo)",
+        r"ornekleme (?:araligi|periyodu|adimi)|zaman (?:araligi|adimi)",
+        r"sa[nm]puringu kankaku|jikan kankaku",
+    ),
+    "rate": (
+        r"sampl(?:e|ing) ?(?:rate|freq(?:uency)?)|samp rate|samples per sec(?:ond)?|sps",
+        r"(?:frequenza|velocita) di campionamento|campioni al secondo",
+        r"(?:frecuencia|velocidad|tasa|razon) de muestreo|muestras por segundo",
+        r"ornekleme (?:hizi|frekansi|sikligi)",
+        r"sa[nm]puringu (?:shu(?:u)?hasu+|reeto|rate)",
+    ),
+    "count": (
+        r"npts|ndata|n ?points|n ?samples|(?:number|no\.?|num\.?|total) (?:of )?(?:the )?(?:data|points?|samples?)"
+        r"(?: points?| samples?)?",
+        r"(?:numero|n\.?|totale) (?:di |dei )?(?:punti|campioni|dati)",
+        r"(?:numero|no\.?|num\.?|total) (?:de )?(?:puntos|muestras|datos)",
+        r"(?:veri|data|nokta|ornek) sayisi",
+        r"(?:deeta|deta|data|sa[nm]puru|ten) ?su+",
+    ),
+    "counted": (r"(?:data ?)?points|samples|pts", r"punti|campioni", r"puntos|muestras", r"nokta|ornek", r"tensu+"),
+    "seconds": (r"s|secs?|seconds?", "secondi", "segundos", "saniye|sn", "byo"),
+    "milliseconds": (r"ms|msecs?|milliseconds?", "millisecondi", "milisegundos", "milisaniye", "miribyo"),
+    "hertz": ("hz|sps|samples.*|points.*", "campioni.*", "muestras.*", "ornek.*", "herutsu"),
+    "time": ("t|time", "tempo", "tiempo", "zaman", "jikan"),
+    "unit": (r"units?", r"unita'?(?: di misura)?", r"unidad(?:es)?", r"birim(?:i|ler|leri)?", r"tan'?i"),
+    "acceleration": ("acc", r"accelerazion[ei]|acc", "aceleracion(?:es)?", "ivme(?:si)?", "kasokudo"),
+    "peak": (
+        r"pga|(?:amplitude )?max(?:imum)?|peak(?: ground)?",
+        r"picco|(?:valore )?massim[oai]",
+        r"maxim[oa]s?|pico|amax",
+        r"maksimum|en (?:buyuk|yuksek)|tepe",
+        r"saidai(?:chi)?",
+    ),
+    # A line about one value or the instrument: its unit may differ from that of the record.
+    "about a value": (
+        r"pg[avd]|peak|max\w*|min|minimum|rms|arias|scaled?|factor|gravity|full[ -]?scale|range|sensitivity|resolution"
+        r"|lsb|mean(?! (?:removed|subtracted))|average|st(?:andar)?d\.? dev\w*|clip\w*",
+        r"picco|massim\w*|minim\w*|fondo ?scala|fattore|sensibilita|media|risoluzione",
+        r"pico|fondo de escala|escala|sensibilidad|promedio|desviacion",
+        r"tepe|en (?:buyuk|yuksek|kucuk)|maksimum|ortalama|tam olcek|olcek|duyarlilik",
+        r"saidai\w*|saisho\w*|heikin|furusukeeru|kando",
+    ),
+    # Peaks and numbers of points of something else.
+    "something else": (
+        r"vel\w*|dis\w*|pgv|pgd|full[ -]?scale|range|factor|sensitivity|freq\w*|period|spectr\w*|fft|filter\w*|taper\w*"
+        r"|poles?|vector|resultant|intensity|magnitude|clip\w*|per (?:line|row|block)|lines|resolution",
+        r"spostament\w*|fondo ?scala|fattore|filtr\w*|per riga",
+        r"desplazamiento\w*|escala|factor|filtr\w*|por (?:linea|renglon)",
+        r"hiz\w*|yer ?degistirme|olcek|filtre",
+        r"sokudo|hen'?i|shindo",
+    ),
+    "north": (r"ns?|n-s|sn|s|north(?:-south)?", "nord(?:-sud)?", "norte(?:-sur)?", "k-?g|kuzey(?:-guney)?", "nanboku"),
+    "east": (r"ew?|e-w|we|w|east(?:-west)?", r"est(?:-ovest)?", r"este(?:-oeste)?", r"d-?b|dogu(?:-bati)?", "to+u?zai"),
+    "up": (r"ud?|u-d|up(?:-down)?|z|v|vert(?:ical)?", "verticale", "vertical", "dusey", "jo+u?ge"),
+    "another": (
+        r"[lrtxyh]|h[12]|long(?:itudinal)?|tran(?:sverse|sversal|s)?|lat(?:eral)?|rad(?:ial)?|[a-z][nhlg][nez123xyz]|[ns]\d\d?[ew]"
+        r"|\d{1,3} ?deg|a[xyz\d]|(?:chan?|channel|comp|component|sensor|ch) ?\.?\w{1,3}",
+        "longitudinale|trasversale", "transversal", "boyuna|enine", "",
+    ),
+}  # fmt: skip
+WORDS = {item: "|".join(filter(None, row)) for item, row in _WORDS.items()}
+"""Expressions of the words for each item."""
 
-CHOICES = ", ".join(UNITS)
+_SIGN = r" *\([+-]\)$|:$"
+_COMPONENT = {item: regex(rf"(?:{WORDS[item]})") for item in ("north", "east", "up", "another")}
+_OF_ACCELERATION = regex(rf"(?:(?:{WORDS['acceleration']})\w*[ ._-]*)?(.*?)[ ._-]*(?:acc\w*)?")
+_BRACKETS = regex(r"\s*(?:\[[^\]]*\]|\((?![+-]\))[^)]*\))")
+_JOINED = regex(r"(?<=[a-z]{2})(?=[A-Z])")
+
+
+def plain(line: str) -> str:
+    """Return a line in lower case without accents, with spaces for underscores and between joined words.
+
+    Examples
+    --------
+    >>> plain("#SampleRate(Hz): 100"), plain("ÖRNEKLEME_HIZI")
+    ('#sample rate(hz): 100', 'ornekleme hizi')
+    """
+    parted = _JOINED.sub(" ", line.replace("_", " "))
+    letters = unicodedata.normalize("NFKD", parted.lower().replace("\u0131", "i"))
+    return "".join(each for each in letters if not unicodedata.combining(each)).strip()
+
+
+def without_sign(name: str) -> str:
+    """Return the name of a component without its sign or a colon: `E(+)` is `E`."""
+    return re.sub(_SIGN, "", name.strip()).strip()
+
+
+def component(label: str) -> str | None:
+    """Return the direction that a label names, or the label itself if it is another component; None if it is none."""
+    word = without_sign(_BRACKETS.sub("", plain(label)))
+    match = _OF_ACCELERATION.fullmatch(word)
+    word = match[1] if match is not None and match[1] else word
+    return next(
+        (word if item == "another" else item for item, each in _COMPONENT.items() if each.fullmatch(word)), None
+    )
+
 
 _S = r"s(?:ec)?"
 _OVER_S2 = rf" ?/ ?{_S} ?(?:\^|\*\*)? ?2| ?/ ?{_S} ?/ ?{_S}"
@@ -70,32 +163,6 @@ _SAID_LABEL = regex(r"[\[(] *(?!(?:m?s|secs?|seconds?|-*) *[\])])([^\])\s]{1,20}
 _NOT_USABLE_LABEL = regex(rf"[\[(]\s*({_SPEED}|{_LENGTH}|{_FOREIGN})\s*[\])]")
 
 
-def canonical(spelling: str) -> str | None:
-    """Return the canonical name of a unit of acceleration, ``"m/s2"`` for ``"M/SEC**2"``; None if it is not one."""
-    word = _normal(spelling)
-    if not re.fullmatch(_UNIT, word):
-        return None
-    if word[:2] in ("g", "ga"):
-        return word.rstrip("s")
-    if re.fullmatch(_OF_G, word):
-        return "mg" if word.startswith("m") else "%g"
-    return word[: word.index("s")].rstrip(" ./·*p") + "/s2"
-
-
-def in_g(value: object) -> float:
-    """Return an acceleration in standard gravity, from a number or a text with a unit in any spelling of headers.
-
-    Raises `UnitError`.
-    """
-    parts = split(value) if isinstance(value, str) else None
-    if parts is None or not parts[1]:
-        return number_of(value, "g")
-    unit = canonical(parts[1])
-    if unit is None:
-        raise UnitError(f"{parts[1]!r} is not a unit of acceleration", f"give one of {CHOICES}")
-    return float(parts[0]) if unit == "g" else float(parts[0]) * UNITS[unit] / STANDARD_GRAVITY
-
-
 def is_unit(word: str) -> bool:
     """Return whether a word is the unit of a time, a length, a speed or an acceleration, and nothing else."""
     return re.fullmatch(rf"m?s|secs?|seconds?|{_UNIT}|{_SPEED}|{_LENGTH}|{_FOREIGN}", _normal(word)) is not None
@@ -112,11 +179,13 @@ def header_units(line: str) -> set[str]:
     if _ABOUT_A_VALUE.search(line):
         return set()
     spellings = _BRACKETED.findall(line) or [match for pattern in _NAMED for match in pattern.findall(line)]
-    return {unit for spelling in spellings if (unit := canonical(spelling))}
+    return {unit for spelling in spellings if (unit := header_unit(spelling))}
 
 
-def resolve_unit(file: str, header: Sequence[tuple[int, str]], units: str | None) -> str:
-    """Return the unit of the accelerations in a file, from its header or as given by the user.
+def resolve_unit(
+    file: str, header: Sequence[tuple[int, str]], units: str | None, quantity: Quantity
+) -> tuple[str, float]:
+    """Return name and size of the unit of the values in a file, from its header or as given by the user.
 
     Parameters
     ----------
@@ -126,47 +195,61 @@ def resolve_unit(file: str, header: Sequence[tuple[int, str]], units: str | None
         Line number and text of every header line; the column labels, if there are any, come last.
     units : str, optional
         The unit the user gave.
+    quantity : str
+        Quantity of the values.
 
     Returns
     -------
-    str
-        One of `UNITS`.
+    (str, float)
+        The unit, of accelerations one of `UNITS`, and its size in SI units.
 
     Raises
     ------
     InputError
-        If neither header nor user gives a unit, the two differ, the header has several, or is not about acceleration.
+        If neither header nor user gives a unit, the two differ, the header has several, or is about another quantity.
     """
-    requested = None if units is None else canonical(units)
-    if units is not None and requested is None:
-        raise InputError(Problem(f"unknown unit '{units}'", field=named("units"), hint=f"choose one of: {CHOICES}"))
-    stated = {unit: number for number, line in reversed(header) for unit in sorted(header_units(line))}
-    _refuse_other_quantities(file, header)
-    if requested and stated and not any(_same(requested, unit) for unit in stated):
-        unit, number = next(iter(stated.items()))
-        message = f"the header says the unit is {unit}, but {named('units')} says {requested}"
-        raise InputError(
-            Problem(message, file=file, line=number, hint=f"leave {named('units')} out, or correct the header")
+    size, known = None if units is None else size_of(units, quantity), ", ".join(units_of(quantity))
+    if units is not None and size is None:
+        message = f"'{units}' is not a unit of {quantity}"
+        raise InputError(Problem(message, field=named("units"), hint=f"choose one of: {known}"))
+    if quantity == "acceleration":
+        units = units and header_unit(units)
+        stated = {unit: number for number, line in reversed(header) for unit in sorted(header_units(line))}
+        _refuse_other_quantities(file, header)
+    else:
+        _refuse_another(file, header, quantity)
+        spelled = (
+            (unit, number) for number, line in reversed(header) for unit in map("".join, _IN_HEADER.findall(line))
         )
-    if requested:
-        return next((unit for unit in stated if _same(requested, unit)), requested)
+        stated = dict(islice((each for each in spelled if size_of(each[0], quantity) is not None), 1))
+    sizes = {unit: size_of(unit, quantity) or math.nan for unit in stated}
+    alike = [unit for unit in stated if size is not None and math.isclose(size, sizes[unit])]
+    if size is not None and stated and not alike:
+        unit, number = next(iter(stated.items()))
+        message = f"the header says the unit is {unit}, but {named('units')} says {units}"
+        raise InputError(Problem(message, file, number, hint=f"leave {named('units')} out, or correct the header"))
+    if units is not None and size is not None:
+        return alike[0] if alike and quantity == "acceleration" else units, size
     if not stated:
-        raise InputError(_not_said(file, header))
-    if not all(_same(unit, other) for unit in stated for other in stated):
+        raise InputError(_not_said(file, header, quantity))
+    if not all(math.isclose(one, other) for one in sizes.values() for other in sizes.values()):
         message = f"the header names more than one unit: {', '.join(stated)}"
-        hint = f"say which one holds for the accelerations with {named('units')}: {CHOICES}"
-        raise InputError(Problem(message, file=file, line=max(stated.values()), hint=hint))
-    return next(iter(stated))
+        hint = f"say which one holds for the accelerations with {named('units')}: {known}"
+        raise InputError(Problem(message, file, max(stated.values()), hint=hint))
+    return next(iter(sizes.items()))
 
 
-def _not_said(file: str, header: Sequence[tuple[int, str]]) -> Problem:
+def _not_said(file: str, header: Sequence[tuple[int, str]], quantity: Quantity) -> Problem:
     """Return the problem of a header without a unit, or with one that is not in `UNITS`."""
-    hint = f"say which it is with {named('units')}: {CHOICES}"
+    hint = f"say which it is with {named('units')}: {', '.join(units_of(quantity))}"
+    if quantity != "acceleration":
+        hint += f"; or with {named('gain')}, such as {GAIN_EXAMPLE}"
+        return Problem(f"the file does not say what unit its {plural(quantity)} are in", file, hint=hint)
     for index, (number, line) in enumerate(header):
         if _ABOUT_A_VALUE.search(_normal(line)):
             continue
         match = _STATED_UNIT.search(line) or (_SAID_LABEL.search(line) if index == len(header) - 1 else None)
-        if match and canonical(match[1]) is None:
+        if match and header_unit(match[1]) is None:
             message = f"the header says '{match[1]}', which is not a known unit of acceleration"
             return Problem(message, file=file, line=number, hint=hint)
     return Problem("the file does not say what unit its accelerations are in", file=file, hint=hint)
@@ -185,6 +268,19 @@ def _refuse_other_quantities(file: str, header: Sequence[tuple[int, str]]) -> No
                 f"or by the {named('gain')}"
             )
             raise InputError(Problem(what, file=file, line=number, excerpt=line.strip()[:100], hint=hint))
+
+
+def _refuse_another(file: str, header: Sequence[tuple[int, str]], quantity: Quantity) -> None:
+    """Raise `InputError` if all units of the labels, or of a line on units, are of other quantities."""
+    for number, line in header:
+        units = BRACKETED.findall(line) if number == header[-1][0] else []
+        units += _OF_UNITS.findall(line)
+        stated = {kind: unit for unit in units if (kind := quantity_of(unit)) is not None}
+        if stated and quantity not in stated:
+            other, unit = next(iter(stated.items()))
+            message = f"the header says that the values are in {unit}, a unit of {plural(other)}"
+            hint = f"is it {named('quantity')} {other}?"
+            raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=hint))
 
 
 def other_quantity(line: str, *, label: bool = True) -> str | None:
@@ -216,11 +312,6 @@ def other_quantity(line: str, *, label: bool = True) -> str | None:
     return None
 
 
-def _same(unit: str, other: str) -> bool:
-    """Return whether two units have the same size, as cm/s2 and gal do."""
-    return math.isclose(UNITS[unit], UNITS[other])
-
-
 def _normal(line: str) -> str:
     """Return a line made plain, with one spelling of powers and minus signs."""
     line = plain(line)
@@ -231,32 +322,17 @@ def _normal(line: str) -> str:
 
 Quantity = Literal["acceleration", "velocity", "displacement"]
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
-OTHER_UNITS: dict[Quantity, tuple[str, ...]] = {
-    "velocity": tuple(KINDS["velocity"]),
-    "displacement": tuple(KINDS["length"]),
-}
-"""Units of velocities and displacements; those of accelerations are in `UNITS`."""
+_KINDS: dict[Quantity, str] = {"acceleration": "acceleration", "velocity": "velocity", "displacement": "length"}
 GAIN_EXAMPLE = "0.05 m/V"
 MIN_GAIN, MAX_GAIN = 1e-30, 1e30  # products overflow beyond these bounds
 TIME_UNITS = frozenset(
     ["s", "sec", "second", "seconds", "ms", "min", "minute", "minutes", "h", "hr", "hour", "hours", "d", "day", "days"]
 )
-MAX_STEP_OVER_PEAK = 0.05  # acceleration of one step of the last digit over the peak
 
 _IN_HEADER = regex(rf"[\[(]\s*([^\])]+?)\s*[\])]|\bin\s+(?!units?\b)([^\s,;]+)|{_UNITS_OF}([^\s,;]+)", re.IGNORECASE)
 _OF_UNITS = regex(rf"{_UNITS_OF}([^\s,;]+)", re.IGNORECASE)
 BRACKETED = regex(r"[\[(]\s*([^\])]+?)\s*[\])]")
-_PER_SECOND = regex(r"/sec(?:onds?)?$|[.*]?s\^?-1$")
-_FORM = regex(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.ASCII)
 _PER = regex(r"(.+?)\s*(?:/|\bper\b)\s*([^\W\d_%]{1,20}|%)")
-
-
-class _Stated(NamedTuple):
-    """A unit stated in a header: its name, its size in SI units and its line."""
-
-    unit: str
-    size: float
-    line: int
 
 
 class Wanted(NamedTuple):
@@ -284,12 +360,17 @@ class Wanted(NamedTuple):
     despite_header: bool = False
 
     @property
+    def values(self) -> str:
+        """The values in words, in the plural."""
+        return "values" if self.raw else plural(self.quantity)
+
+    @property
     def of_accelerations(self) -> bool:
         """Whether accelerations are requested, and not the output of an instrument."""
         return self.quantity == "acceleration" and not self.raw
 
     def unit(self, file: str, header: Sequence[tuple[int, str]], units: str | None) -> tuple[str, float]:
-        """Return name and size of the unit of the values; arguments and errors are those of `units.resolve_unit`."""
+        """Return name and size of the unit of the values; arguments and errors are those of `resolve_unit`."""
         if self.raw:
             for number, line in header:
                 if stated := header_units(line):
@@ -297,58 +378,14 @@ class Wanted(NamedTuple):
                     hint = f"leave {named('gain')} out"
                     raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=hint))
             return "raw", 1.0
-        if self.quantity == "acceleration":
-            name = resolve_unit(file, header, units)
-            return name, UNITS[name]
-        return self._other_unit(file, header, units)
-
-    def _refuse_another(self, file: str, header: Sequence[tuple[int, str]]) -> None:
-        """Raise `InputError` if all units of the labels, or of a line on units, are of other quantities."""
-        for number, line in header:
-            units = BRACKETED.findall(line) if number == header[-1][0] else []
-            units += _OF_UNITS.findall(line)
-            stated = {each: unit for unit in units if (each := quantity_of(unit)) is not None}
-            if stated and self.quantity not in stated:
-                other, unit = next(iter(stated.items()))
-                message = f"the header says that the values are in {unit}, a unit of {plural(other)}"
-                hint = f"is it {named('quantity')} {other}?"
-                raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=hint))
-
-    def _stated(self, header: Sequence[tuple[int, str]]) -> _Stated | None:
-        """Return the unit that the header states; None if it states none."""
-        for number, line in reversed(header):
-            for one in map("".join, _IN_HEADER.findall(line)):
-                if (size := size_of(one, self.quantity)) is not None:
-                    return _Stated(one, size, number)
-        return None
-
-    def _other_unit(self, file: str, header: Sequence[tuple[int, str]], units: str | None) -> tuple[str, float]:
-        known = ", ".join(units_of(self.quantity))
-        size = None if units is None else size_of(units, self.quantity)
-        if units is not None and size is None:
-            message = f"'{units}' is not a unit of {self.quantity}"
-            raise InputError(Problem(message, field=named("units"), hint=f"choose one of: {known}"))
-        self._refuse_another(file, header)
-        stated = self._stated(header)
-        if size is not None and stated is not None and not isclose(size, stated.size):
-            message = f"the header says the unit is {stated.unit}, but {named('units')} says {units}"
-            raise InputError(
-                Problem(message, file, stated.line, hint=f"leave {named('units')} out, or correct the header")
-            )
-        if units is not None and size is not None:
-            return units, size
-        if stated is not None:
-            return stated.unit, stated.size
-        message = f"the file does not say what unit its {plural(self.quantity)} are in"
-        hint = f"say which it is with {named('units')}: {known}; or with {named('gain')}, such as {GAIN_EXAMPLE}"
-        raise InputError(Problem(message, file, hint=hint))
+        return resolve_unit(file, header, units, self.quantity)
 
 
 ACCELERATIONS = Wanted()
 
 
 class Asked(NamedTuple):
-    """Arguments of a reader of this package: those of `registry.Reader.read`, and what is wanted."""
+    """Arguments of a reader of this package: those of `formats.Reader.read`, and what is wanted."""
 
     dt: float | None = None
     units: str | None = None
@@ -367,17 +404,13 @@ def plural(quantity: Quantity) -> str:
 
 def units_of(quantity: Quantity) -> tuple[str, ...]:
     """Return the units in which a quantity may be given."""
-    return tuple(UNITS) if quantity == "acceleration" else OTHER_UNITS[quantity]
+    return tuple(UNITS if quantity == "acceleration" else KINDS[_KINDS[quantity]])
 
 
 def size_of(unit: str, quantity: Quantity) -> float | None:
     """Return the size of a unit of a quantity, in SI units; None if it is not a unit of this quantity."""
-    if quantity == "acceleration":
-        name = canonical(unit)
-        return None if name is None else UNITS[name]
-    word = _PER_SECOND.sub("/s", "".join(_normal(unit).split()))
-    size = KINDS["velocity" if quantity == "velocity" else "length"].get(word)
-    return None if size is None else float(size)
+    name = header_unit(unit, _KINDS[quantity])
+    return None if name is None else float(KINDS[_KINDS[quantity]][name])
 
 
 def quantity_of(unit: str) -> Quantity | None:
@@ -415,11 +448,11 @@ class Gain:
         InputError
             If the text has no number, or no unit of acceleration, velocity or length.
         """
-        match = _FORM.fullmatch(text)
+        match = QUANTITY.fullmatch(text.strip())
         if match is None or not MIN_GAIN <= abs(float(match[1])) <= MAX_GAIN:
             raise _refused(f"{text!r} is not a number with a unit")
         number, unit = match[1], match[2]
-        if not unit:
+        if unit is None:
             raise _refused(f"{text!r} is a gain without a unit")
         per = None if quantity_of(unit) else _PER.fullmatch(unit)
         if per is not None and per[2].lower() in TIME_UNITS:
@@ -438,74 +471,3 @@ def _refused(message: str, guess: str | None = None) -> InputError:
     hint = f"{guess}; " if guess else ""
     hint += f"say what one unit stands for, such as {GAIN_EXAMPLE}"
     return InputError(Problem(message, field=named("gain"), hint=hint))
-
-
-def smallest_step(measured: GroundMotion) -> float:
-    """Return the smallest non-zero difference of consecutive samples, usually one last digit; 0 if there is none."""
-    steps = np.abs(np.diff(measured.acceleration))
-    smallest = float(steps[steps > 0].min(initial=np.inf))
-    return smallest if isfinite(smallest) else 0.0
-
-
-def as_acceleration(measured: GroundMotion, quantity: Quantity, step: float | None = None) -> GroundMotion:
-    """Return the ground acceleration from measured displacements, velocities or accelerations.
-
-    Parameters
-    ----------
-    measured : GroundMotion
-        Motion whose "accelerations" are the measured values, in m, m/s or m/s2; accelerations are returned unchanged.
-    quantity : str
-        Quantity of the measured values.
-    step : float, optional
-        `smallest_step` of the values before corrections, which hide it; 0 to raise no doubt about the resolution.
-
-    Returns
-    -------
-    GroundMotion
-        Motion by central differences, zero at the first and the last sample. At a frequency f they reduce the amplitude
-        by sinc^2(f dt) for displacements and sinc(2 f dt) for velocities, with sinc(x) = sin(pi x)/(pi x).
-    """
-    if quantity == "acceleration":
-        return measured
-    dt, values = measured.dt, measured.acceleration
-    step = smallest_step(measured) if step is None else step
-    inner = np.diff(values, 2) / dt**2 if quantity == "displacement" else (values[2:] - values[:-2]) / (2 * dt)
-    acceleration = np.pad(inner, 1)
-    if not np.isfinite(acceleration).all():
-        raise InputError(Problem("its differences are beyond the range of numbers", measured.name))
-    remarks = (
-        *measured.remarks,
-        *of_samples(measured, accelerations=False),
-        *_resolution(step, acceleration, dt, quantity),
-    )
-    return replace(
-        measured,
-        acceleration=acceleration,
-        remarks=remarks,
-        processing=(*measured.processing, differentiation_step(quantity)),
-    )
-
-
-def differentiation_step(quantity: Quantity) -> str:
-    """Return the name of the differentiation of a quantity in the list of processing steps."""
-    return f"from {quantity}"
-
-
-def in_words(quantity: Quantity, dt: float) -> str:
-    """Return a description of the differentiation as a filter, for users."""
-    twice, half = ("twice ", 0.44295 / dt) if quantity == "displacement" else ("", 0.30168 / dt)
-    return f"differentiated {twice}by central differences, which leave half of what is at {half:.3g} Hz"
-
-
-def _resolution(smallest: float, acceleration: Reals, dt: float, quantity: Quantity) -> tuple[Doubt, ...]:
-    """Return a doubt if one step of the last digit, differentiated, is a large part of the peak acceleration."""
-    power, unit = (2, "m") if quantity == "displacement" else (1, "m/s")
-    noise = smallest / dt**power
-    peak = float(np.abs(acceleration).max())
-    if not (isfinite(noise) and noise > MAX_STEP_OVER_PEAK * peak):
-        return ()
-    text = (
-        f"its smallest step, {smallest:.3g} {unit}, is {noise / STANDARD_GRAVITY:.2g} g once differentiated, of a peak "
-        f"of {peak / STANDARD_GRAVITY:.2g} g: noise, unless a low-pass filter takes it out"
-    )
-    return (Doubt("resolution", noise / STANDARD_GRAVITY, text),)

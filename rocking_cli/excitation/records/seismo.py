@@ -1,13 +1,21 @@
-"""Common parts of seismological formats, which obspy reads and which need not hold accelerations or state a unit."""
+"""Seismological formats, which obspy reads and which need not hold accelerations or state a unit.
+
+SAC, versions 6 and 7: a header of 158 words without a unit, then the samples of one component. MiniSEED, version 2:
+records of a few thousand bytes, each with the channel's code and time. And SLIST, TSPAIR, GSE, Kinemetrics EVT, REFTEK,
+WIN and more.
+"""
 
 from __future__ import annotations
 
 import io
+import struct
 import warnings
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from importlib import import_module
 from itertools import pairwise
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -15,12 +23,15 @@ from numpy.typing import NDArray
 
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem, named
-from rocking_cli.excitation.base import STANDARD_GRAVITY, Origin
-from rocking_cli.excitation.records.layout import CUT, Channel
-from rocking_cli.excitation.records.origins import origin
-from rocking_cli.excitation.records.record_units import UNITS, Wanted
+from rocking_cli.excitation.base import MOST_SAMPLES, STANDARD_GRAVITY, Doubt, GroundMotion, Origin
+from rocking_cli.excitation.records import formats
+from rocking_cli.excitation.records.layout import CUT, Channel, choose
+from rocking_cli.excitation.records.record_units import Asked, Wanted
+from rocking_cli.excitation.records.statements import origin
 from rocking_cli.excitation.records.text import sensible, usable
+from rocking_cli.plugins.registry import find
 from rocking_cli.text import regex
+from rocking_cli.units import UNITS
 
 # SEED names a channel by band, instrument and direction; instruments H, L and P measure velocity.
 _VELOCITY_CODE = regex(r"[A-Z][HLP][A-Z0-9]")
@@ -147,3 +158,140 @@ def _gap(file: str, name: str, segments: Sequence[Any]) -> Problem | None:
             message = f"channel {name} has {'a gap' if missing > 0 else 'an overlap'} of {abs(missing):g} s {where}"
             return Problem(message, file, hint="give a file that holds the whole motion without a break")
     return None
+
+
+MAX_MINISEED_BYTES = 4 * MOST_SAMPLES  # four bytes per sample, as without compression
+
+
+def read_miniseed(data: bytes, file: str, asked: Asked) -> GroundMotion:
+    """Read a miniSEED file; see `formats.Reader.read`."""
+    if data.startswith(b"MS\x03"):
+        hint = "convert it to miniSEED 2 first"
+        raise InputError(Problem("this is miniSEED 3, which obspy does not read", file, hint=hint))
+    if len(data) > MAX_MINISEED_BYTES:
+        message = f"the file has {len(data) / 1e6:.4g} MB: a record of at most {MOST_SAMPLES} samples has less"
+        raise InputError(Problem(message, file, hint="cut the motion out of the file first"))
+    unit = asked.unit(file, [])
+    traces_read = traces(data, file, "MSEED")
+    # obspy ignores an incomplete last record.
+    if len(data) % min(trace.stats.mseed.record_length for trace in traces_read):
+        raise InputError(Problem("the file ends in the middle of a record", file, hint=CUT))
+    return choose(file, formats.miniseed.TITLE, channels_of(file, traces_read, unit, asked.wanted), asked)
+
+
+_HEADER, _FOOTER = 632, 176  # bytes; version 7 repeats part of the header at its end, in double precision
+_SAC_VERSIONS = (6, 7)
+_TIME_SERIES, _XY = 1, 4  # values of the field IFTYPE: time series, and x against y
+_ACCELERATION_KIND = 8  # value of the field IDEP for accelerations
+_UNSET = -12345.0
+_EXTREMES_TOLERANCE = 1e-5  # relative difference; the extremes have 32 bits
+_OTHER_QUANTITIES = {6: "displacement", 7: "velocity", 50: "voltage"}
+_WITH_ARTICLE = {"acceleration": "an acceleration", "velocity": "a velocity", "displacement": "a displacement"}
+
+
+@dataclass(frozen=True)
+class _SacHeader:
+    """Content of the header: interval [s], extremes, version, number of points, kind of file and values, evenness."""
+
+    delta: float
+    least: float
+    most: float
+    version: int
+    npts: int
+    kind: int
+    quantity: int
+    even: int
+
+
+def read_sac(data: bytes, file: str, asked: Asked) -> GroundMotion:
+    """Read a SAC file; see `formats.Reader.read`."""
+    header = _sac_header(data)
+    if not header.even:
+        hint = "interpolate it at a constant interval first"
+        raise InputError(Problem("the header says the samples are unevenly spaced (LEVEN)", file, hint=hint))
+    if header.kind not in (_TIME_SERIES, _XY):
+        message = f"the header says this is not a time series (IFTYPE = {header.kind})"
+        raise InputError(Problem(message, file, hint="give the file with the acceleration"))
+    quantity = _OTHER_QUANTITIES.get(header.quantity, asked.wanted.quantity)
+    if quantity != asked.wanted.quantity and not asked.wanted.raw:
+        message = f"the header says the values are a {quantity}, not {_WITH_ARTICLE[asked.wanted.quantity]} (IDEP)"
+        raise InputError(
+            Problem(message, file, hint=f"give the file with the acceleration, or say {named('quantity')} what it is")
+        )
+    if header.npts > MOST_SAMPLES:
+        message = f"the header says {header.npts} points: a record has at most {MOST_SAMPLES}"
+        raise InputError(Problem(message, file))
+    size = _HEADER + 4 * header.npts
+    if len(data) != size + (_FOOTER if header.version == 7 else 0):
+        message = f"the header says {header.npts} points, which do not make the {len(data)} bytes of the file"
+        raise InputError(Problem(message, file, hint=CUT))
+    unit = asked.unit(file, [])
+    (trace,) = traces(data[:size], file, "SAC")
+    name = trace.stats.channel
+    flaw = None if header.quantity == _ACCELERATION_KIND else velocity_code(file, name, asked.wanted)
+    # The interval is a 32-bit float, 0.004999999888 for 0.005; its shortest decimal form restores it.
+    interval = float(str(np.float32(header.delta)))
+    only = channel_of(file, name, interval, trace.data, unit, flaw)
+    only = replace(only, remarks=_extremes(header, trace.data), origin=origin_of(trace))
+    return choose(file, formats.sac.TITLE, [only], asked)
+
+
+def _extremes(header: _SacHeader, samples: NDArray[np.float32]) -> tuple[Doubt, ...]:
+    """Return a doubt if the smallest or largest sample differs from that in the header, if there is one."""
+    if not samples.size or _UNSET in (header.least, header.most):
+        return ()
+    least, most = float(samples.min()), float(samples.max())
+    size = max(abs(header.least), abs(header.most), abs(least), abs(most))
+    if max(abs(least - header.least), abs(most - header.most)) <= _EXTREMES_TOLERANCE * size:
+        return ()
+    text = (
+        f"its header says the samples go from {header.least:g} to {header.most:g} (DEPMIN, DEPMAX), they go from "
+        f"{least:g} to {most:g}: a damaged file, or processed since?"
+    )
+    return (Doubt("header_peak", max(abs(least), abs(most)), text),)
+
+
+def _sac_header(data: bytes) -> _SacHeader:
+    """Read the header in the byte order that gives a valid version, as one does for a file of the format."""
+    both = (_SacHeader(*struct.unpack_from(f"{order}fff292xi8xi20xii72xi", data)) for order in "<>")
+    return next(header for header in both if header.version in _SAC_VERSIONS)
+
+
+# Not among them: pickles, which run code when they are read; formats whose files name other files; those without marks.
+_NAMES = {
+    "SLIST": "SLIST", "TSPAIR": "TSPAIR", "GSE2": "GSE2", "GSE1": "GSE1", "KINEMETRICS_EVT": "Kinemetrics EVT",
+    "REFTEK130": "REFTEK 130", "SEISAN": "SEISAN", "SEG2": "SEG-2", "PDAS": "PDAS", "DMX": "DMX", "Y": "Nanometrics Y",
+    "AH": "AH", "GCF": "GCF", "WIN": "WIN",
+}  # fmt: skip
+"""Names of the formats, by those of obspy; formats with weak marks are tried last."""
+
+
+def form_of(data: bytes) -> str | None:
+    """Return the name in obspy of the format of a file; None if it is of none of them, or obspy is not installed."""
+    with TemporaryDirectory(ignore_cleanup_errors=True) as folder:  # some formats are recognised in files only
+        path = Path(folder) / "record"
+        path.write_bytes(data)
+        for form in _NAMES:
+            if form == "WIN" and int.from_bytes(data[:4]) > len(data):  # the size of its first block
+                continue
+            for point in find(f"obspy.plugin.waveform.{form}").get("isFormat", []):
+                try:
+                    if point.load()(str(path)):
+                        return form
+                except Exception:  # such a file is not of this format
+                    continue
+    return None
+
+
+def read_any(data: bytes, file: str, asked: Asked) -> GroundMotion:
+    """Read a file of any of the formats; see `formats.Reader.read`."""
+    with warnings.catch_warnings():
+        obspy_for(file)
+        form = form_of(data)
+    if form is None:
+        raise InputError(Problem("obspy does not recognise this file", file, hint=CUT))
+    traces_read = traces(data, file, form)
+    # Where a header states no unit, obspy gives what is before it.
+    stated = {trace.stats.get("ascii", {}).get("unit", "") for trace in traces_read} - {"", "FLOAT", "INTEGER"}
+    unit = asked.unit(file, [(1, f"units: {spelling}") for spelling in sorted(stated)])
+    return choose(file, _NAMES[form], channels_of(file, traces_read, unit, asked.wanted), asked)

@@ -15,15 +15,14 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
 from rocking_cli.excitation.records import formats
 from rocking_cli.excitation.records.layout import CUT
-from rocking_cli.excitation.records.lines import Lines
-from rocking_cli.excitation.records.origins import of_info
+from rocking_cli.excitation.records.lines import Lines, PrintedRows, odd_digits
 from rocking_cli.excitation.records.record_units import Asked
+from rocking_cli.excitation.records.statements import of_info
 from rocking_cli.excitation.records.text import check_interval, only_channel, sensible
-from rocking_cli.excitation.records.widths import PrintedRows, odd_digits
 
 
 def read(text: str, file: str, asked: Asked) -> GroundMotion:
-    """Read a SimCenter JSON file; see `registry.Reader.read`."""
+    """Read a SimCenter JSON file; see `formats.Reader.read`."""
     only_channel(file, asked.channel)
     if text.count(",") > MOST_SAMPLES:
         raise InputError(Problem(f"a record has at most {MOST_SAMPLES} samples, this file has more values", file))

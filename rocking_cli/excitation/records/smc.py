@@ -7,9 +7,9 @@ import numpy as np
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion, Origin
 from rocking_cli.excitation.records import formats, layout
-from rocking_cli.excitation.records.header_fields import Field, RecordHead, read_head
-from rocking_cli.excitation.records.origins import origin, peak_doubts
+from rocking_cli.excitation.records.layout import Field, RecordHead, read_head
 from rocking_cli.excitation.records.record_units import Asked, Quantity
+from rocking_cli.excitation.records.statements import origin, peak_doubts
 from rocking_cli.text import regex
 
 _FIRST_LINE = regex(r"(\d) +([A-Z].*)")
@@ -44,7 +44,7 @@ _EXTREMES_PLACES = ((29, 30), (31, 32))  # places of time and value of the large
 
 
 def read(text: str, file: str, asked: Asked) -> GroundMotion:
-    """Read a USGS SMC file; see `registry.Reader.read`."""
+    """Read a USGS SMC file; see `formats.Reader.read`."""
     lines = layout.lines_of(text)
     kind = _FIRST_LINE.match(lines[0])
     assert kind is not None  # as the format was recognised by it

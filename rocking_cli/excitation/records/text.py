@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Container, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import replace
 from datetime import date
 from itertools import islice
@@ -17,15 +16,22 @@ import numpy as np
 from rocking_cli.arrays import Bools, Reals
 from rocking_cli.errors import InputError, Problem, how_to_correct, named
 from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
-from rocking_cli.excitation.records.columns import MAX_COLUMNS, Choice, Label, choose, labels
-from rocking_cli.excitation.records.header_words import WORDS, component
-from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.excitation.records.columns import (
+    FEWEST_ROWS,
+    MAX_COLUMNS,
+    Choice,
+    Label,
+    choose,
+    counts_rows,
+    labels,
+    runs_on,
+)
+from rocking_cli.excitation.records.lines import Lines, PrintedRows, unlike_the_others
 from rocking_cli.excitation.records.prepared import read_header
-from rocking_cli.excitation.records.record_units import ACCELERATIONS, UNITS, Wanted, other_quantity, plural
-from rocking_cli.excitation.records.shapes import FEWEST_ROWS, counts_rows, runs_on
+from rocking_cli.excitation.records.record_units import ACCELERATIONS, WORDS, Wanted, component, other_quantity
 from rocking_cli.excitation.records.statements import Statements, statements
-from rocking_cli.excitation.records.widths import PrintedRows, unlike_the_others
 from rocking_cli.text import regex
+from rocking_cli.units import UNITS
 
 TITLE = "delimited text"
 SIGN = "a line that begins with a number"
@@ -82,7 +88,7 @@ def read(
     channel: str | None = None,
     wanted: Wanted = ACCELERATIONS,
 ) -> GroundMotion:
-    """Read delimited text; arguments, result and errors are those of `registry.Reader.read`."""
+    """Read delimited text; arguments, result and errors are those of `formats.Reader.read`."""
     rows = _rows(text, file)
     prepared = read_header(file, rows.lines[: rows.start])
     header = _header(file, rows, prepared.lines)
@@ -120,9 +126,11 @@ def read(
 
     values, uneven = table[choice.column], None
     if choice.time is not None:
-        column = _called(names, choice.time) if columns > 2 else ""
-        with _uneven_rows(file, rows, column):
+        column = _called(names, choice.time) if columns > 2 else None
+        try:
             interval, values, uneven = _at_even_times(table[choice.time], values, as_it_comes=wanted.uneven)
+        except UnevenTimeError as error:
+            raise InputError(_uneven_row(file, rows, column, error)) from None
         stated.check_interval(interval, 0.5 * interval / (table.shape[1] - 1))
         check_interval(file, None, interval, dt)
     assert interval is not None  # a missing interval was refused above
@@ -275,7 +283,7 @@ def _against_header(
 
 
 def _no_interval(file: str, wanted: Wanted, columns: int) -> Problem:
-    kind = "values" if wanted.raw else plural(wanted.quantity)
+    kind = wanted.values
     what = f"one column of {kind}" if columns == 1 else "no column is called time or is one"
     hint = f"give it with {named('dt')}, in seconds, or add a time column before the {kind}"
     return Problem(f"{what}, and no sample interval", file=file, hint=hint)
@@ -507,21 +515,17 @@ def _called(names: Sequence[Label], place: int) -> str:
     return f"column {place + 1}" + (f" ({names[place]})" if names[place].name else "")
 
 
-@contextmanager
-def _uneven_rows(file: str, rows: _Rows, column: str) -> Iterator[None]:
-    """Turn errors of uneven times into problems at their rows, counted without blank lines and comments.
+def _uneven_row(file: str, rows: _Rows, column: str | None, error: UnevenTimeError) -> Problem:
+    """Return the problem of uneven times at their row, counted without blank lines and comments.
 
     `column` is the name of the column of times, if there are several columns.
     """
-    try:
-        yield
-    except UnevenTimeError as error:
-        problem = Problem(error.message, file=file, field=column or None, hint=error.hint)
-        if error.row is not None:
-            below = enumerate(rows.lines.since(rows.start), start=rows.start + 1)
-            number, line = next(islice(((number, line) for number, line in below if _clean(line)), error.row, None))
-            problem = replace(problem, line=number, excerpt=line.strip()[:100])
-        raise InputError(problem) from None
+    problem = Problem(error.message, file, field=column, hint=error.hint)
+    if error.row is None:
+        return problem
+    below = enumerate(rows.lines.since(rows.start), start=rows.start + 1)
+    number, line = next(islice(((number, line) for number, line in below if _clean(line)), error.row, None))
+    return replace(problem, line=number, excerpt=line.strip()[:100])
 
 
 def _not_a_number(file: str, line_number: int, line: str, token: str, *, known: bool) -> Problem:
@@ -590,7 +594,10 @@ def even_interval(time: Reals) -> float:
         hint = "the first column must be the time, increasing; printed times need enough decimals to tell rows apart"
         raise UnevenTimeError(f"time does not increase: {time[row]:g} s {what}", hint, row)
 
-    dt = _as_written(float((time[-1] - time[0]) / (len(time) - 1)))
+    dt = float((time[-1] - time[0]) / (len(time) - 1))
+    written = float(f"{dt:.12g}")
+    if abs(written - dt) <= 2 * np.spacing(dt):  # it differs by the rounding of the quotient only
+        dt = written
     if dt < _MIN_DT:
         hint = "the first column must be the time, in seconds"
         raise UnevenTimeError(f"the times give a sample interval of {dt:g} s", hint, None)
@@ -635,12 +642,6 @@ def is_even(time: Reals) -> bool:
 def increasing(time: Reals) -> bool:
     """Return whether a column may be one of uneven times."""
     return bool((np.diff(time) > 0).all())
-
-
-def _as_written(value: float) -> float:
-    """Return the number of at most twelve digits that differs from a quotient by rounding only, or the quotient."""
-    written = float(f"{value:.12g}")
-    return written if abs(written - value) <= 2 * np.spacing(value) else value
 
 
 def on_grid(time: Reals, values: Reals) -> tuple[float, Reals, Doubt] | None:

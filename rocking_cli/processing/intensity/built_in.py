@@ -6,7 +6,7 @@ They are exact for linear interpolation between samples, except the mean period,
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.measures import measure, time_of_share
-from rocking_cli.processing.intensity.base import MotionMeasure, Reference, RelativeMeasure, RunMeasure
+from rocking_cli.processing.intensity import MotionMeasure, Reference, RelativeMeasure, RunMeasure
 from rocking_cli.processing.oscillator import DAMPING, check_oscillator, response_spectrum
 
 MIN_FREQUENCY, MAX_FREQUENCY = 0.25, 20.0  # Hz; bounds of the frequencies of the mean period
@@ -94,31 +94,31 @@ class CumulativeVelocity(MotionMeasure):
         return float(motion.dt * areas.sum())
 
 
-class Duration75(MotionMeasure):
+class _Duration(MotionMeasure):
+    """Time from 5 % of the Arias intensity to another share of it."""
+
+    share: ClassVar[float]
+
+    def of(self, motion: GroundMotion) -> float | None:
+        """Return the duration [s]; None for a motion that is zero throughout."""
+        start, end = time_of_share(motion, 0.05), time_of_share(motion, self.share)
+        return None if start is None or end is None else end - start
+
+
+class Duration75(_Duration):
     """Significant duration from 5 to 75 % of the Arias intensity."""
 
     name, title, unit, power = "D5-75", "time from 5 to 75 % of the Arias intensity", "s", 0.0
     source = "Somerville et al. (1997)"
-
-    def of(self, motion: GroundMotion) -> float | None:
-        """Return the duration [s]; None for a motion that is zero throughout."""
-        return _duration(motion, 0.75)
+    share = 0.75
 
 
-class Duration95(MotionMeasure):
+class Duration95(_Duration):
     """Significant duration from 5 to 95 % of the Arias intensity."""
 
     name, title, unit, power = "D5-95", "time from 5 to 95 % of the Arias intensity", "s", 0.0
     source = "Trifunac and Brady (1975)"
-
-    def of(self, motion: GroundMotion) -> float | None:
-        """Return the duration [s]; None for a motion that is zero throughout."""
-        return _duration(motion, 0.95)
-
-
-def _duration(motion: GroundMotion, share: float) -> float | None:
-    start, end = time_of_share(motion, 0.05), time_of_share(motion, share)
-    return None if start is None or end is None else end - start
+    share = 0.95
 
 
 class MeanPeriod(MotionMeasure):

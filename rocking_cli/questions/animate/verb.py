@@ -16,7 +16,7 @@ from rocking_cli.ask.several import answers, are_several, ask_each, places_of
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, MechanismError, Problem, RockingError, named, of_structure
-from rocking_cli.processing.listed import Scaled
+from rocking_cli.processing.reading import Scaled
 from rocking_cli.questions.animate.asked import AnimateAsked
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure

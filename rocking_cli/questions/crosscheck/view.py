@@ -10,7 +10,7 @@ from rocking_cli import names
 from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.dynamics.history import History
 from rocking_cli.names import percent
-from rocking_cli.processing.listed import Scaled
+from rocking_cli.processing.reading import Scaled
 from rocking_cli.questions.crosscheck.study import PARTED, SAME_PEAKS, BlockJoint, Crosscheck
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import EngineName

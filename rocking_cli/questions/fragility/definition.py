@@ -18,8 +18,8 @@ from rocking_cli.core.fields import Name, Restitution
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.errors import InputError, Problem, RockingError, named
 from rocking_cli.io.yaml_file import Document, Place
-from rocking_cli.processing.entry import Entry, FloorItem, Steps
 from rocking_cli.processing.reading import Reading, reading_of
+from rocking_cli.processing.record_list import Entry, FloorItem, Steps
 from rocking_cli.processing.steps import parse_steps
 from rocking_cli.questions.fragility.asked import MAX_LEVELS, OfStudy
 from rocking_cli.questions.fragility.asked import OVERTURNING as OVERTURNING

@@ -22,16 +22,13 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
 from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD, Pulse, parse_pulse
-from rocking_cli.excitation.pulses.base import SAMPLING
 from rocking_cli.excitation.records.opening import matching_files
 from rocking_cli.io.field_problems import by_meaning, say
 from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text
-from rocking_cli.processing.entry import Entry, as_written
-from rocking_cli.processing.floor import Floor
-from rocking_cli.processing.listed import is_list
-from rocking_cli.processing.reading import Reading
-from rocking_cli.processing.record_list import read_list
+from rocking_cli.processing.oscillator import Floor
+from rocking_cli.processing.reading import Reading, is_list
+from rocking_cli.processing.record_list import Entry, as_written, read_list
 from rocking_cli.processing.steps import process
 from rocking_cli.questions.fragility.definition import (
     HINT,

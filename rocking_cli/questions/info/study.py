@@ -15,7 +15,7 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics import ways
 from rocking_cli.errors import RockingError
 from rocking_cli.excitation.pulses import PulseShapes
-from rocking_cli.excitation.records.registry import Readers
+from rocking_cli.excitation.records.formats import Readers
 from rocking_cli.plugins.registry import Plugins
 from rocking_cli.processing.intensity import IntensityMeasures
 from rocking_cli.verification.code import Codes

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from rocking_cli.excitation.measures import Measures, arias_build_up
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.plotting import style
 from rocking_cli.plotting.curve_names import name_points
-from rocking_cli.processing.oscillator import DAMPING, response_spectrum
+from rocking_cli.processing.oscillator import DAMPING, ResponseSpectrum, response_spectrum
 
 SPECTRUM_PERIODS = np.geomspace(0.02, 10.0, 120)  # s; periods of a spectrum
 MAX_BEFORE_RATIO = 3.0  # the series before processing is cut off at this multiple of the peak after it
@@ -167,4 +167,46 @@ def draw_pulses(motion: GroundMotion, fits: Sequence[PulseFit], end: float) -> F
     style.time_axis(below, min([0.0, *(fit.start for fit in fits)]), min(end, motion.duration))
     style.legend_below(figure, ncols=1)
     figure.align_ylabels()
+    return figure
+
+
+MAX_NAMED_CURVES = 6  # more curves are all drawn in one style
+QUANTITIES = (("sa", "Sa, pseudo [g]"), ("sv", "Sv, pseudo [m/s]"), ("sd", "Sd [m]"))
+
+
+def draw_response_spectra(spectra: Mapping[str, ResponseSpectrum]) -> Figure:
+    """Plot the spectra of motions, all of one damping ratio.
+
+    Parameters
+    ----------
+    spectra : mapping of str to ResponseSpectrum
+        The spectra, by the name of the motion.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure, every = style.panels(6.6, 3, sharex=True)
+    panels = every[:, 0]
+    first = next(iter(spectra.values()))
+    names = list(spectra)
+    title = names[0] if len(names) == 1 else f"{len(names)} motions"
+    style.heading(panels[0], f"{title}: response spectra, {100 * first.damping:g} % damping")
+    for axes, (quantity, label) in zip(panels, QUANTITIES, strict=True):
+        for k, (name, each) in enumerate(spectra.items()):
+            look = (
+                style.distinct(k) | {"marker": ""}
+                if len(names) <= MAX_NAMED_CURVES
+                else {"color": style.INK, "alpha": 0.5}
+            )
+            width = {"linewidth": style.CURVE if len(names) == 1 else style.MEDIUM}
+            axes.plot(each.periods, getattr(each, quantity), **look | width, label=style.plain(style.fitted(name, 3.2)))
+        axes.set_ylim(bottom=0.0)
+        axes.margins(x=0.01)
+        style.logarithmic(axes.xaxis)
+        style.tidy(axes, y=label)
+    panels[-1].set_xlabel("period [s]", fontsize=style.LABEL)
+    figure.align_ylabels()
+    if 1 < len(names) <= MAX_NAMED_CURVES:
+        style.legend_below(figure, panels[0].get_lines())
     return figure

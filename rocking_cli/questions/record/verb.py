@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from math import nan
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, BinaryIO
@@ -20,22 +21,28 @@ from rocking_cli.ask.verbs import verb, write_rows
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
-from rocking_cli.excitation.measures import Measures
-from rocking_cli.excitation.pulse_fit import PulseFit
-from rocking_cli.processing.intensity import Measure
-from rocking_cli.processing.listed import Listed
+from rocking_cli.excitation.doubts import coarse_for, doubts
+from rocking_cli.excitation.measures import Measures, measure
+from rocking_cli.excitation.pulse_fit import CRITERIA, FITTED, PulseFit, fit_pulses
+from rocking_cli.excitation.records.opening import name_of
+from rocking_cli.excitation.records.prepared import is_record_csv, write_record_csv
+from rocking_cli.processing import oscillator
+from rocking_cli.processing.intensity import ALL_MEASURES, Measure, Reference, RunMeasure, parse_measures
+from rocking_cli.processing.reading import Listed
+from rocking_cli.processing.steps import Trim, multiplied
 from rocking_cli.questions.record.asked import RecordAsked, ResponseSpectrumAsked
-from rocking_cli.questions.record.view import Examined
+from rocking_cli.questions.record.view import Examined, data, parts, spectra_table, spectrum_view
+from rocking_cli.structure import Structure
 from rocking_cli.views.view import View
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking_cli.io.tables import Columns
-    from rocking_cli.processing.listed import Scaled
     from rocking_cli.processing.oscillator import ResponseSpectrum
-    from rocking_cli.structure import Structure
+    from rocking_cli.processing.reading import Scaled
 
+SPECTRA = "questions.record.picture.draw_response_spectra"
 PROGRESS_DELAY = 1.0  # s of work before progress is shown
 
 
@@ -89,8 +96,6 @@ def record(asked: RecordAsked, watch: Watcher) -> RecordAnswer | Answers[RecordA
     >>> round(rk.record("ricker:0.6g:0.5s", structure=block, measures="PGA/(g lambda)").measures["PGA/(g lambda)"], 6)
     2.4
     """
-    from rocking_cli.questions.record.view import parts
-
     motions, signs, spectrum = asked.ground_motions, asked.signs, asked.spectrum is not False
     motions.check()
     motions.remark(watch)
@@ -124,8 +129,8 @@ def record(asked: RecordAsked, watch: Watcher) -> RecordAnswer | Answers[RecordA
     examined = [seen for each in by_name.values() for seen in each.examined]
     answer: RecordAnswer | Answers[RecordAnswer] = by_name[next(iter(by_name))]
     if several:
-        kept = {"spectrum": partial(_spectra_table, examined)} if spectrum else {}
-        figure = _spectra_figure(examined) if spectrum else None
+        kept = {"spectrum": partial(spectra_table, _spectra(examined))} if spectrum else {}
+        figure = drawn(SPECTRA, _spectra(examined)) if spectrum else None
         answer = answers("records", "motion", by_name, list(parts(examined, 100)), figure, kept)
     if isinstance(asked.spectrum, Path):
         write_rows(asked.spectrum, [answer.tables["spectrum"]()], watch)
@@ -145,10 +150,6 @@ def _examine(
     fit_pulse: bool,
 ) -> tuple[list[Examined], list[GroundMotion]]:
     """Return the results for a motion in each polarity, and the motions; warn of what is doubtful."""
-    from rocking_cli.excitation.doubts import coarse_for, doubts
-    from rocking_cli.excitation.measures import measure
-    from rocking_cli.excitation.records.opening import name_of
-
     p = ready.p if ready is not None else None
     if any(each.startswith("from ") for each in read.motion.processing):
         watch.note(f"{read.motion.name}{done(read.motion)}")
@@ -175,7 +176,6 @@ def _examine(
 
 
 def _answer(examined: Sequence[Examined], scaled: Sequence[GroundMotion], read: Scaled) -> RecordAnswer:
-    from rocking_cli.questions.record.view import data, parts
 
     first, measures = examined[0], examined[0].measures
     sentence = f"{first.label}: PGA {measures.pga_g:.3g} g, PGV {measures.pgv:.3g} m/s."
@@ -185,8 +185,8 @@ def _answer(examined: Sequence[Examined], scaled: Sequence[GroundMotion], read: 
         measures,
         View(lambda: data(first), [*parts(examined, 100), sentence]),
         partial(_columns, scaled[0]),
-        _spectra_figure(examined) if with_spectra else partial(_figure, scaled[0], first, read),
-        tables={"spectrum": partial(_spectra_table, examined)} if with_spectra else {},
+        drawn(SPECTRA, _spectra(examined)) if with_spectra else partial(_figure, scaled[0], first, read),
+        tables={"spectrum": partial(spectra_table, _spectra(examined))} if with_spectra else {},
         examined=tuple(examined),
         motions=tuple(scaled),
     )
@@ -200,8 +200,6 @@ def _places(
     All are checked: they can be written, no file that is read is among them, and files that are not prepared records
     are kept.
     """
-    from rocking_cli.excitation.records.opening import name_of
-    from rocking_cli.excitation.records.prepared import is_record_csv
     from rocking_cli.io.files import check_writable, folder, keep_apart
     from rocking_cli.io.tables import PARQUET
 
@@ -241,9 +239,7 @@ def _places(
 
 def _write(place: Path | BinaryIO, seen: Examined, watch: Watcher) -> None:
     """Write a record, as it is scaled."""
-    from rocking_cli.excitation.records.prepared import write_record_csv
     from rocking_cli.io.files import write_whole
-    from rocking_cli.processing.steps import multiplied
 
     motion = multiplied(seen.motion, seen.factor)
     if not isinstance(place, Path):
@@ -273,20 +269,8 @@ def _spectra(examined: Sequence[Examined]) -> dict[str, ResponseSpectrum]:
     return spectra
 
 
-def _spectra_table(examined: Sequence[Examined]) -> Columns:
-    from rocking_cli.questions.record.response_spectrum_view import table
-
-    return table(_spectra(examined))
-
-
-def _spectra_figure(examined: Sequence[Examined]) -> Callable[[], Figure]:
-    return drawn("questions.record.response_spectrum_picture.draw_response_spectra", _spectra(examined))
-
-
 def _fit(motion: GroundMotion, watch: Watcher) -> list[PulseFit]:
     """Fit the best pulse of each shape by each criterion; report progress if that takes long."""
-    from rocking_cli.excitation.pulse_fit import CRITERIA, FITTED, fit_pulses
-
     fits: list[PulseFit] = []
     since = perf_counter()
     for fit in fit_pulses(motion):
@@ -304,8 +288,6 @@ def _measured(
     if names is None:
         return {}
     names = names if isinstance(names, str) else ", ".join(names)
-    from rocking_cli.processing.intensity import ALL_MEASURES, parse_measures
-    from rocking_cli.questions.record.study import intensities, reference_of
 
     parsed = parse_measures(names)
     if structure is None and names.strip().lower() == ALL_MEASURES:
@@ -314,7 +296,6 @@ def _measured(
 
 
 def _spectrum(motion: GroundMotion, asked: RecordAsked) -> ResponseSpectrum:
-    from rocking_cli.processing import oscillator
 
     periods = oscillator.periods_between(*(asked.period or (oscillator.SHORTEST_PERIOD, oscillator.LONGEST_PERIOD)))
     return oscillator.response_spectrum(motion, periods, asked.damping)
@@ -326,21 +307,17 @@ def _columns(motion: GroundMotion) -> Columns:
 
 def _figure(motion: GroundMotion, examined: Examined, read: Scaled) -> Figure:
     """Draw the fitted pulses, or the record before and after its corrections, or the record alone."""
-    from rocking_cli.processing.steps import Trim
     from rocking_cli.questions.record.picture import draw_before_and_after, draw_pulses, draw_record
 
     if examined.pulses:
-        return draw_pulses(motion, _best(examined.pulses), examined.measures.t_95 or motion.duration)
+        # Of each criterion the pulse that captures most, velocity first.
+        best = {fit.criterion: fit for fit in sorted(examined.pulses, key=lambda fit: fit.captured)}
+        end = examined.measures.t_95 or motion.duration
+        return draw_pulses(motion, [best["velocity"], best["acceleration"]], end)
     if read.reading is not None and (before := unprocessed(read)) is not None:
         start = sum(step.start for step in read.reading.steps if isinstance(step, Trim))
         return draw_before_and_after(before.scaled(examined.factor), motion, start)
     return draw_record(motion, examined.measures)
-
-
-def _best(fits: Sequence[PulseFit]) -> list[PulseFit]:
-    """Return the fitted pulse that captures most, by each criterion, velocity first."""
-    by_criterion = {fit.criterion: fit for fit in sorted(fits, key=lambda fit: fit.captured)}
-    return [by_criterion["velocity"], by_criterion["acceleration"]]
 
 
 @verb(ResponseSpectrumAsked)
@@ -368,14 +345,66 @@ def response_spectrum(asked: ResponseSpectrumAsked, watch: Watcher) -> Answer[Re
     >>> rk.response_spectrum("sine:0.2g:0.8s", [0.8]).sa.round(2).tolist()
     [0.54]
     """
-    from rocking_cli.processing.oscillator import response_spectrum as respond_linearly
-    from rocking_cli.questions.record import response_spectrum_view as views
-
     scaled = motion_of(asked.motions).scaled(asked.scale)
-    spectrum = respond_linearly(scaled, asked.periods, asked.damping)
+    spectrum = oscillator.response_spectrum(scaled, asked.periods, asked.damping)
     named = {scaled.name: spectrum}
-    figure = drawn("questions.record.response_spectrum_picture.draw_response_spectra", named)
+    figure = drawn(SPECTRA, named)
     dims = [Dimensions(("motion", "period"))]
     return Answer(
-        "response spectrum", spectrum, views.view(scaled.name, spectrum), partial(views.table, named), figure, dims=dims
+        "response spectrum",
+        spectrum,
+        spectrum_view(scaled.name, spectrum),
+        partial(spectra_table, named),
+        figure,
+        dims=dims,
     )
+
+
+def reference_of(structure: Structure) -> Reference:
+    """Return the reference values of measures relative to a structure, in the direction that uplifts first."""
+    gravity = structure.mechanism.gravity
+    if structure.why_no_block is not None:
+        return Reference(nan, min(side.lambda_ for side in structure.statics), gravity)
+    block = min((structure.equivalence.positive, structure.equivalence.negative), key=lambda each: each.lambda_)
+    return Reference(block.p, block.lambda_, gravity, block.v_imp)
+
+
+def intensities(
+    motion: GroundMotion, measures: Sequence[Measure], structure: Reference | None = None
+) -> dict[Measure, float]:  # fmt: skip
+    """Compute intensity measures of a ground motion.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The scaled motion.
+    measures : sequence of Measure
+        The measures to compute.
+    structure : Reference, optional
+        Reference values of relative measures.
+
+    Returns
+    -------
+    dict of Measure to float
+        Value of each measure; NaN if the motion or the structure has none.
+
+    Raises
+    ------
+    InputError
+        If a measure is relative, and there is no structure.
+    PluginError
+        If the plugin of a measure fails.
+    """
+    bare = [str(measure) for measure in measures if measure.is_relative]
+    if bare and structure is None:
+        raise InputError(Problem(f"{', '.join(bare)}: relative to what is shaken", hint=f"give a {named('structure')}"))
+    values: dict[Measure, float] = {}
+    for requested in measures:
+        if isinstance(requested, RunMeasure):
+            assert structure is not None
+            values[requested] = requested.value(motion, structure)
+        else:
+            assert requested.base is not None
+            value = requested.base.value(motion)
+            values[requested] = float(value if structure is None else requested.relative(value, structure))
+    return values

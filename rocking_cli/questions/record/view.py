@@ -9,16 +9,21 @@ from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rocking_cli.questions.record import response_spectrum_view as spectra
+import numpy as np
+
+from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.excitation.pulse_fit import CRITERIA, PulseFit
 from rocking_cli.short_repr import short_repr
 from rocking_cli.views import processing
 from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
-from rocking_cli.views.view import ABSENT, Table, number
+from rocking_cli.views.response import fit_data, pulse_data
+from rocking_cli.views.view import ABSENT, Table, View, number
 
 if TYPE_CHECKING:
     from rocking_cli.excitation.base import Doubt, GroundMotion
     from rocking_cli.excitation.measures import Measures
     from rocking_cli.excitation.pulse_fit import PulseFit
+    from rocking_cli.io.tables import Columns
     from rocking_cli.processing.intensity import Measure
     from rocking_cli.processing.oscillator import ResponseSpectrum
 
@@ -96,13 +101,11 @@ def data(record: Examined) -> dict[str, Any]:
     entry = data_of(AS_READ, record) | processing.data(record.motion) | data_of(MEASURED, record)
     entry["warnings"] = [doubt._asdict() for doubt in record.doubts]
     if record.pulses:
-        from rocking_cli.questions.record.pulse_fits import fits_data
-
         entry["pulses"] = fits_data(record.pulses)
     if record.asked:
         entry["measures"] = {str(measure): value for measure, value in record.asked.items()}
     if record.spectrum is not None:
-        entry["spectrum"] = spectra.data(record.spectrum)
+        entry["spectrum"] = spectrum_data(record.spectrum)
     return entry
 
 
@@ -119,10 +122,8 @@ def parts(records: Sequence[Examined], width: int | None) -> Iterator[Table | st
         yield from _side_by_side(records, columns, width)
     for record in records:
         if record.pulses:
-            from rocking_cli.questions.record import pulse_fits
-
-            yield from pulse_fits.parts(record.label, record.pulses)
-    yield from (spectra.peaks(each.label, each.spectrum) for each in records if each.spectrum is not None)
+            yield from _pulses(record.label, record.pulses)
+    yield from (peaks(each.label, each.spectrum) for each in records if each.spectrum is not None)
 
 
 def _side_by_side(
@@ -170,3 +171,71 @@ def _columns(records: Sequence[Examined]) -> list[Column[Examined]]:
 
 def _asked(measure: Measure, record: Examined) -> float:
     return record.asked[measure]
+
+
+PULSES: tuple[Column[PulseFit], ...] = (
+    only_shown("energy captured", lambda fit: 100 * fit.captured, "{:.1f}".format, "%"),
+    only_shown("a_p", lambda fit: fit.pulse.amplitude / STANDARD_GRAVITY, rounded(4), "g"),
+    only_shown("T_p", of("pulse.period"), rounded(4), "s"),
+    only_shown("start", of("start"), rounded(4), "s"),
+    only_shown("centre", of("centre"), rounded(4), "s"),
+    only_shown("sign", of("sign"), "{:+d}".format),
+    only_shown("phase", lambda fit: pulse_data(fit.pulse).get("phase"), rounded(4), "deg"),
+    only_shown("cycles", lambda fit: pulse_data(fit.pulse).get("cycles"), rounded(4)),
+)
+
+
+def fits_data(fits: Sequence[PulseFit]) -> dict[str, Any]:
+    """Return fitted pulses as plain data, by criterion and shape."""
+    return {
+        criterion: {fit.pulse.name: fit_data(fit) for fit in fits if fit.criterion == criterion}
+        for criterion in CRITERIA
+    }
+
+
+def _pulses(name: str, fits: Sequence[PulseFit]) -> Iterator[Table | str]:
+    """Yield a table for each criterion, with a column for each shape, and a sentence on what is maximised."""
+    for criterion in CRITERIA:
+        one = [fit for fit in fits if fit.criterion == criterion]
+        yield table_across(f"{name}: pulses fitted in {criterion}", PULSES, [fit.pulse.name for fit in one], one)
+    yield "Energy captured: 1 - sum (r - s)^2 / sum r^2, r of the record and s of the pulse."
+
+
+ORDINATES: tuple[Column[ResponseSpectrum], ...] = (
+    Column("period", of("periods"), "s"),
+    Column("sa", of("sa"), "g", name="pseudo Sa"),
+    Column("sv", of("sv"), "m/s", name="pseudo Sv"),
+    Column("sd", of("sd"), "m", name="Sd"),
+)
+"""Columns whose values are arrays, over all periods."""
+
+
+def spectrum_data(spectrum: ResponseSpectrum) -> dict[str, Any]:
+    """Return a spectrum as plain data, in s, standard gravity, m/s and m."""
+    return {"damping": spectrum.damping} | {
+        key: values.tolist() for key, values in data_of(ORDINATES, spectrum).items()
+    }
+
+
+def spectra_table(spectra: Mapping[str, ResponseSpectrum]) -> Columns:
+    """Return spectra as columns, one motion below the other."""
+    all_spectra = list(spectra.values())
+    return {
+        "motion": [name for name, each in spectra.items() for _ in each.periods],
+        "damping": [each.damping for each in all_spectra for _ in each.periods],
+        **{column.heading: np.concatenate([column.of(each) for each in all_spectra]).tolist() for column in ORDINATES},
+    }
+
+
+def peaks(name: str, spectrum: ResponseSpectrum) -> str:
+    """Return a sentence on the largest ordinates of a spectrum and their periods."""
+    k, j = int(spectrum.sa.argmax()), int(spectrum.sv.argmax())
+    return (
+        f"{name}: with {100 * spectrum.damping:g} % damping Sa is largest at {spectrum.periods[k]:.3g} s, "
+        f"{spectrum.sa[k]:.3g} g, and Sv at {spectrum.periods[j]:.3g} s, {spectrum.sv[j]:.3g} m/s."
+    )
+
+
+def spectrum_view(name: str, spectrum: ResponseSpectrum) -> View:
+    """Show the spectrum of one motion."""
+    return View(lambda: {"name": name, **spectrum_data(spectrum)}, [peaks(name, spectrum)])

@@ -16,7 +16,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
 from rocking_cli.excitation.doubts import coarse_for, doubts
 from rocking_cli.excitation.measures import Measures, measure
 from rocking_cli.excitation.pulse_fit import PulseFit, fit_pulses
-from rocking_cli.processing.listed import Scaled
+from rocking_cli.processing.reading import Scaled
 from rocking_cli.questions.error.study import Linearisation, compare
 from rocking_cli.questions.margin.study import SHARE_LEVELS, Margin, margin
 from rocking_cli.questions.overturning.study import OverturningMap, overturning_map, usual_amplitudes, usual_periods

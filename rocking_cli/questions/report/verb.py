@@ -17,7 +17,7 @@ from rocking_cli.views.view import heading
 if TYPE_CHECKING:
     from rocking_cli.ask.inputs import SiteLike
     from rocking_cli.io.tables import Columns
-    from rocking_cli.processing.listed import Scaled
+    from rocking_cli.processing.reading import Scaled
     from rocking_cli.questions.report.document import VerifiedReport
     from rocking_cli.questions.report.study import Assessment
     from rocking_cli.questions.verify.sheets import SheetOrigin

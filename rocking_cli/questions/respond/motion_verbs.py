@@ -16,8 +16,8 @@ from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.measures import measure
-from rocking_cli.processing.floor import Floor
-from rocking_cli.processing.listed import Scaled
+from rocking_cli.processing.oscillator import Floor
+from rocking_cli.processing.reading import Scaled
 from rocking_cli.processing.steps import Step, parse_steps, process
 from rocking_cli.questions.respond.asked import ByTolerance, OfModels, RespondAroundAsked, RespondAsked
 from rocking_cli.questions.respond.azimuths import AzimuthResponses

@@ -21,7 +21,7 @@ from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.io.tables import stacked
-from rocking_cli.processing.listed import Scaled
+from rocking_cli.processing.reading import Scaled
 from rocking_cli.questions.respond.asked import NOT_BY_ENGINES, NOT_OF_BLOCKS, RespondAsked
 from rocking_cli.questions.respond.motion_verbs import all_directions, with_vertical
 from rocking_cli.structure import Structure

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.errors import InputError, Problem, named
-from rocking_cli.processing.listed import LIST_FILE
+from rocking_cli.processing.reading import LIST_FILE
 from rocking_cli.text import numbered, one_line
 
 if TYPE_CHECKING:
@@ -142,7 +142,7 @@ def _list(place: Path, results: ShownSet, readings: Sequence[Reading | None], pa
 
 def _entry(place: Path, file: str | None, motion: GroundMotion, factor: float, reading: Reading) -> dict[str, Any]:
     """Return one record of the list."""
-    from rocking_cli.processing.entry import of_reading, relative
+    from rocking_cli.processing.record_list import of_reading, relative
 
     assert file is not None
     named = {"event": motion.origin.event, "station": motion.origin.station}

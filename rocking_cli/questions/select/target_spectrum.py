@@ -13,10 +13,11 @@ import numpy as np
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.excitation.records.record_units import CHOICES, UNITS, canonical, header_units
+from rocking_cli.excitation.records.record_units import header_units
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.points_file import read_points, separator_in
 from rocking_cli.text import did_you_mean
+from rocking_cli.units import CHOICES, UNITS, header_unit
 from rocking_cli.verification.check import demand
 from rocking_cli.verification.code import SiteFile
 
@@ -184,7 +185,7 @@ def _unit(file: str, number: int, line: str) -> str | None:
         hint = "turn frequencies or other units into periods in s first, the shortest in the first line"
         raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=hint))
     heading = cells[1] if len(cells) > 1 else ""
-    units = {canonical(word) for word in _BRACKETS.findall(heading)} - {None} or set(header_units(heading))
+    units = {header_unit(word) for word in _BRACKETS.findall(heading)} - {None} or set(header_units(heading))
     if not units and _BARE_G.search(heading):
         units = {"g"}
     if len(units) == 1:

@@ -16,7 +16,7 @@ from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.records.opening import STANDARD_INPUT
-from rocking_cli.processing.listed import Listed
+from rocking_cli.processing.reading import Listed
 from rocking_cli.questions.select.asked import SelectAsked
 from rocking_cli.questions.select.study import RecordSet
 

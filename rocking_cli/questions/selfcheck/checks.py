@@ -598,7 +598,6 @@ FILES = {
         ("afad", "AFAD", 0.01),
         ("asa", "ASA", 0.01),
         ("cosmos", "COSMOS", 0.01),
-        ("csmip_v1", "CSMIP V1", GRAVITY / 10),
         ("csmip_v2", "CSMIP V2", 0.01),
         ("cwa", "CWA", 0.01),
         ("esm", "ESM ASCII", 0.01),

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from math import cos, exp, inf, isclose, log, nan, pi, sin
 
 import numpy as np
 from pydantic import ValidationError
 
 from rocking_cli.arrays import Bools, Integers, Reals
-from rocking_cli.core import (
-    Direction,
-    Equivalence,
-    EquivalentBlock,
-    Mechanism,
-    equivalent_block,
-)
+from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, equivalent_block
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_fields import Strength
 from rocking_cli.dynamics.batch import Runs, respond_many
@@ -31,6 +26,8 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies.intervals import fractile
 from rocking_cli.studies.under_pulses import Progress, PulsedModel, parse_shape, pulsed_model, uplift
 
+Respond = Callable[[Sequence[Model], Sequence[GroundMotion], Runs], Outcomes]
+"""Simulates histories, as `respond_many`."""
 SIZE_TOLERANCE = 1e-9  # relative difference below which a size is that of the structure as given
 MAX_SCALE = 10.0  # default largest scale of a structure; the least is its inverse
 BLOCK_PERIODS = (1.0, 10.0)  # range of 2 pi/p of blocks [s]: R from 0.19 to 19 m
@@ -70,11 +67,6 @@ class SpectrumShape:
     bodies: int = 1
     caution: str = ""
     height: float | None = None
-
-    @property
-    def leaves_out_joints(self) -> bool:
-        """Whether the model is an equivalent block of several bodies, whose joints are not checked."""
-        return self.structure.model.is_linear and self.bodies > 1
 
     @property
     def period(self) -> float:
@@ -310,11 +302,12 @@ def spectra(
     """
     if not motions:
         raise InputError("no ground motion was given")
+    run = partial(respond_many, threads=threads, only_peaks=True, progress=progress)
     results = []
     for shape in shapes:
         scales, signs = _scales(shape, periods), _signs(shape, polarities)
         follow = _of_one_shape if shape.own is None else _each_its_own
-        results.append(Spectrum(shape, scales, *_worst(follow(shape, scales, motions, signs, threads, progress))))
+        results.append(Spectrum(shape, scales, *_worst(follow(shape, scales, motions, signs, run))))
     return results
 
 
@@ -329,29 +322,19 @@ def _worst(found: Outcomes) -> tuple[Reals, Reals]:
 
 
 def _of_one_shape(
-    shape: SpectrumShape,
-    scales: Reals,
-    motions: Sequence[GroundMotion],
-    signs: Sequence[int],
-    threads: int | None,
-    progress: Progress | None,
+    shape: SpectrumShape, scales: Reals, motions: Sequence[GroundMotion], signs: Sequence[int], run: Respond
 ) -> Outcomes:
     """Simulate every motion, polarity and scale with one model.
 
     This is possible if sizes differ only in their time scale, because the kernel scales the model to each size.
     """
     runs = Runs.every(1, len(motions), polarities=signs, sizes=scales.tolist())
-    outcomes = _outcomes([shape.structure.model], motions, runs, threads, progress)
+    outcomes = run([shape.structure.model], motions, runs)
     return outcomes.by_field(lambda values: values.reshape(-1, len(signs), scales.size))
 
 
 def _each_its_own(
-    shape: SpectrumShape,
-    scales: Reals,
-    motions: Sequence[GroundMotion],
-    signs: Sequence[int],
-    threads: int | None,
-    progress: Progress | None,
+    shape: SpectrumShape, scales: Reals, motions: Sequence[GroundMotion], signs: Sequence[int], run: Respond
 ) -> Outcomes:
     """Simulate every motion, polarity and scale, with a model for every scale."""
     assert shape.own is not None
@@ -359,22 +342,12 @@ def _each_its_own(
     for start in range(0, scales.size, SIZES_PER_CALL):
         models = [shape.own.build(scale) for scale in scales[start : start + SIZES_PER_CALL].tolist()]
         runs = Runs.every(len(models), len(motions), polarities=signs)
-        parts.append((len(models), _outcomes(models, motions, runs, threads, progress)))
+        parts.append((len(models), run(models, motions, runs)))
     placed = [
         outcomes.by_field(lambda values, many=many: np.moveaxis(values.reshape(many, -1, len(signs)), 0, -1))
         for many, outcomes in parts
     ]
     return placed[0].by_field(lambda *values: np.concatenate(values, axis=-1), *placed[1:])
-
-
-def _outcomes(
-    models: Sequence[Model],
-    motions: Sequence[GroundMotion],
-    runs: Runs,
-    threads: int | None,
-    progress: Progress | None,
-) -> Outcomes:
-    return respond_many(models, motions, runs, threads=threads, only_peaks=True, progress=progress)
 
 
 def count_histories(shapes: Sequence[SpectrumShape], periods: Reals, motions: int, polarities: Sequence[int]) -> int:

@@ -12,7 +12,7 @@ import numpy as np
 from rocking_cli.arrays import Integers, Reals
 from rocking_cli.io.tables import Columns, stacked
 from rocking_cli.names import MIN_MOTIONS, NO_UPLIFT, OVERTURNS, ROCKS, UNKNOWN
-from rocking_cli.processing.listed import Scaled
+from rocking_cli.processing.reading import Scaled
 from rocking_cli.questions.overturning.view import NO_JOINTS, numbers, source_of, spaced
 from rocking_cli.questions.spectrum.study import Spectrum
 from rocking_cli.short_repr import short_repr
@@ -85,14 +85,11 @@ def _all(results: ShownSpectra) -> dict[str, Any]:
 
 def _joints(results: ShownSpectra) -> list[str]:
     """Return sentences on joints of the structures that are not checked; empty if all are."""
-    sentences = [NO_JOINTS] if any(each.shape.leaves_out_joints for each in results.spectra) else []
-    several = len(results.spectra) > 1
-    sentences += [
-        unchecked(each.shape.structure.name if several else "") for each in results.spectra if not each.checked
-    ]
-    return sentences + [
-        f"Caution: {each.shape.structure.name}: {each.shape.caution}" for each in results.spectra if each.shape.caution
-    ]
+    shapes, several = [each.shape for each in results.spectra], len(results.spectra) > 1
+    # Those of an equivalent block of several bodies are not checked.
+    sentences = [NO_JOINTS] * any(shape.structure.model.is_linear and shape.bodies > 1 for shape in shapes)
+    sentences += [unchecked(shape.structure.name if several else "") for shape in shapes if not shape.structure.checked]
+    return sentences + [f"Caution: {shape.structure.name}: {shape.caution}" for shape in shapes if shape.caution]
 
 
 def title(results: ShownSpectra) -> str:

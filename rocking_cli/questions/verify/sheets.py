@@ -15,7 +15,7 @@ from rocking_cli.excitation.records.opening import STANDARD_INPUT, name_of, orig
 from rocking_cli.io.browser import browser, has_browser
 from rocking_cli.io.files import check_writable
 from rocking_cli.io.json_text import json_text
-from rocking_cli.processing.listed import Scaled
+from rocking_cli.processing.reading import Scaled
 from rocking_cli.structure import Structure
 from rocking_cli.studies.provenance import File, TitleBlock, file_of_motion, versions
 from rocking_cli.verification.code import SiteFile

@@ -17,7 +17,7 @@ from rocking_cli.verification.results import Verification
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rocking_cli.processing.listed import Scaled
+    from rocking_cli.processing.reading import Scaled
     from rocking_cli.structure import Structure
 
 

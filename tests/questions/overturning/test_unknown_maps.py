@@ -17,7 +17,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD, parse_pulse
 from rocking_cli.plotting import style
 from rocking_cli.plotting.moving import ratio_chart
-from rocking_cli.processing.listed import Scaled
+from rocking_cli.processing.reading import Scaled
 from rocking_cli.questions.animate.picture import animation_page
 from rocking_cli.questions.equivalent_pulses.picture import draw_equivalent
 from rocking_cli.questions.equivalent_pulses.study import equivalent_pulses

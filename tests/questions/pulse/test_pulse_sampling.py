@@ -13,8 +13,7 @@ from mechanisms.block import Block
 from rocking_cli.core import equivalent_block
 from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.dynamics.history import follow
-from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD, Pulse, parse_pulse
-from rocking_cli.excitation.pulses.base import POINTS_PER_PERIOD
+from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD, POINTS_PER_PERIOD, Pulse, parse_pulse
 from rocking_cli.questions.pulse.study_on_structure import sampled_history
 from rocking_cli.structure import Structure
 from rocking_cli.studies.under_pulses import parse_shape

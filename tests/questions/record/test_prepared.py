@@ -47,11 +47,10 @@ def test_what_is_read_is_what_was_prepared(prepared):
     assert "highpass 0.2" in text and "baseline linear" in text and "prepared from" in text
 
 
-@pytest.mark.parametrize("command", ["respond", "margin", "spectrum", "report"])
+@pytest.mark.parametrize("command", ["respond", "margin", "spectrum"])
 def test_who_uses_it_says_what_was_done(prepared, command):
-    more = ("-o", prepared.with_name("r.html")) if command == "report" else ()
     few = () if command == "spectrum" else ("--neighbours", 1)
-    result = run(command, BLOCK, "--record", prepared, *few, *more, "--json")
+    result = run(command, BLOCK, "--record", prepared, *few, "--json")
     assert SAID in result.stderr
     if command != "margin":
         assert f'"processing": {json.dumps(STEPS)}, "prepared_from": "accel.csv"' in result.stdout

@@ -20,13 +20,13 @@ from rocking_cli.dynamics import kernels, shipped, ways
 from rocking_cli.dynamics.calling import SETS
 from rocking_cli.dynamics.exact import closed_form
 from rocking_cli.errors import KernelWarning
-from rocking_cli.excitation.records import record_units
-from rocking_cli.excitation.records.registry import Readers
+from rocking_cli.excitation.records.formats import Readers
 from rocking_cli.questions.selfcheck import checks
 from rocking_cli.questions.selfcheck import study as run
 from rocking_cli.questions.selfcheck.checks import different_values, largest_difference
 from rocking_cli.questions.selfcheck.study import Check, NotRun
 from rocking_cli.questions.selfcheck.view import view
+from rocking_cli.units import KINDS, UNITS
 from tests.mechanisms.test_arch import Scan
 from tests.reference_mechanics import Voussoirs
 
@@ -164,13 +164,14 @@ class TestEachCheck:
         readers = Readers()
         own = {name for name in readers if readers.package_of(name).startswith("rocking-cli ")}
         assert {*checks.FILES, *checks.OBSPY_FILES} == own
-        assert len(checks.FILES) == 16 and sum(checks.SAMPLES) == 0
-        assert set(checks.UNIT_SPELLINGS) == set(record_units.UNITS)
+        assert len(checks.FILES) == 15 and sum(checks.SAMPLES) == 0
+        assert set(checks.UNIT_SPELLINGS) == set(UNITS)
 
     @pytest.mark.every(2)
     @pytest.mark.parametrize("unit", checks.UNIT_SPELLINGS)
     def test_records_fail_if_a_unit_is_wrong(self, monkeypatch, unit):
-        monkeypatch.setitem(record_units.UNITS, unit, record_units.UNITS[unit] * 1.02)
+        monkeypatch.setitem(KINDS["acceleration"], unit, str(1.02 * UNITS[unit]))
+        monkeypatch.setitem(UNITS, unit, UNITS[unit] * 1.02)
         assert checked("records").passed is False
 
     @pytest.mark.every(4)

@@ -117,10 +117,6 @@ class TestTables:
         least, largest = (f"{np.array(between['scale'])[fell][k]:.3g}" for k in (0, -1))
         assert between["verdict"].endswith(f"{fell.sum()} of 30 overturn, between scale {least} and {largest}.")
 
-    def test_a_picture(self, tmp_path, records):
-        run(BLOCK, FRAME, "--record", records, *QUICK, "--plot", "s.svg")
-        assert (tmp_path / "s.svg").read_text(encoding="utf-8").startswith("<?xml")
-
 
 class TestReported:
     def test_a_bad_record_among_others(self, tmp_path, records):

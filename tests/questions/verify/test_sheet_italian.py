@@ -19,7 +19,7 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.documents import sheet_page
 from rocking_cli.errors import InputError
-from rocking_cli.processing.floor import Floor
+from rocking_cli.processing.oscillator import Floor
 from rocking_cli.views.sheet.language import Language, texts_of
 from rocking_cli.views.verification import view
 from tests.cli.test_cli import run
