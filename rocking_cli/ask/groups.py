@@ -145,12 +145,10 @@ class ReadsRecords(Reading):
 
     @property
     def reading(self) -> RecordReading:
-        """How they are read; a user's defaults are for records that do not state it themselves."""
+        """How they are read."""
         from rocking_cli.processing.reading import reading_of
 
-        given = self.part(Reading)
-        usual = {name: given.pop(name) for name in [*given] if name in self._usual}
-        return reading_of(given, usual)
+        return reading_of(self.part(Reading))
 
 
 class BothWays(AskedModel):
@@ -182,9 +180,7 @@ class OfRecords(Reading):
         """Return motions together with how they are read and scaled."""
         from rocking_cli.ask.ground_motions import Motions
 
-        given = self.in_order_given(PREPARING, SCALING)
-        usual = {name: given.pop(name) for name in [*given] if name in self._usual}
-        return Motions.of(motions, given, usual=usual)
+        return Motions.of(motions, self.in_order_given(PREPARING, SCALING))
 
 
 class UnderMotions(OfRecords, Scaling, BothWays):

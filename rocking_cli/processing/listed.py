@@ -48,7 +48,8 @@ class Listed(NamedTuple):
 
         Earthquake and station of the list take the place of those of the file.
         """
-        motion, reading = self.reading(common).settled(self.path)
+        reading = self.reading(common)
+        motion = reading.read(self.path)
         if self.entry is not None:
             file_origin = motion.origin
             event, station = (
