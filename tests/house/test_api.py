@@ -96,6 +96,7 @@ def test_files_place_their_errors_themselves(tmp_path):
         rk.load_structure(tmp_path / "w.yaml")
 
 
+@pytest.mark.docs
 def test_the_stub_is_not_stale(maker):
     stub = maker("make_stub")
     assert stub.STUB.read_text(encoding="utf-8") == stub.stub(), "run make pages"
@@ -531,10 +532,8 @@ def test_a_mechanism_stands_for_the_file_of_an_entry(tmp_path):
 PICTURES = {"scatter.png", "response.png", "spectrum.png", "fragility.png"}
 
 
-@pytest.mark.parametrize(
-    ("page", "pictures"),
-    [("python.md", PICTURES), pytest.param("import.md", {"import.png"}, marks=pytest.mark.docs)],
-)
+@pytest.mark.docs
+@pytest.mark.parametrize(("page", "pictures"), [("python.md", PICTURES), ("import.md", {"import.png"})])
 def test_the_pages_on_python_do_what_they_show(page, pictures, maker, tmp_path):
     assert maker("make_python").run(tmp_path, page) == 0
     assert {path.name for path in tmp_path.glob("*.png")} == pictures

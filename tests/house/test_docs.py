@@ -86,13 +86,13 @@ def test_the_calculation_sheets_are_not_stale(made):
     assert made.make_sheets.stale({**every, "facade.html": page.replace("<p>", "<p class='other'>")}) == []
 
 
-@pytest.mark.docs
+@pytest.mark.rest
 def test_pages_of_a_sheet_are_drawn_the_same_each_time(made, tmp_path):
     drawn = [made.make_sheets.page_pictures(made.make_sheets.made("parapet"), 20) for _ in range(2)]
     assert drawn[0] == drawn[1] and all(each.startswith(b"\x89PNG") for each in drawn[0])
 
 
-@pytest.mark.docs
+@pytest.mark.rest
 def test_another_picture_is_not_alike(made, tmp_path):
     commands = {
         "pedestal": "rocking new block > pedestal.yaml",
