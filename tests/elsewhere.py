@@ -1,8 +1,8 @@
 """Run the tests that rest on the machine as others would: `python -m tests.elsewhere kernels versions`.
 
-Other processors round the last bits of linear algebra otherwise: all cases of `ROUNDED` are run. Other versions of Python
-and of libraries change what calls them: one case of each test of `OF_PYTHON` or of `LIBRARIES` is run. `files` prints the
-latter for `make test-newest` and `test-oldest`. What this machine cannot run is said and left out.
+Other processors round the last bits of linear algebra otherwise: all cases of `ROUNDED` are run. Other versions of
+Python and of libraries change what calls them: one case of each test of `OF_PYTHON` or of `LIBRARIES` is run. `files`
+prints the latter for `make test-newest` and `test-oldest`. What this machine cannot run is said and left out.
 """
 
 import os
