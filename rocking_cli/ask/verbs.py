@@ -18,12 +18,10 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from rocking_cli.ask.answer import Answer, Answers, Dimensions, no_plot
 from rocking_cli.ask.asked import AskedModel, M, checked, choices, in_order, owner_of, told_of
-from rocking_cli.ask.ground_motions import Motions
 from rocking_cli.ask.groups import WithTable
 from rocking_cli.ask.kinds import STANDARD_OUTPUT
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem, RockingError, named
-from rocking_cli.processing.listed import Scaled
 from rocking_cli.processing.reading_options import CORRECTIONS, SCALING, corrected_once
 from rocking_cli.text import cut, did_you_mean, numbered
 from rocking_cli.views.view import Table, View
@@ -31,7 +29,9 @@ from rocking_cli.views.view import Table, View
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from rocking_cli.ask.ground_motions import Motions
     from rocking_cli.io.tables import Columns
+    from rocking_cli.processing.listed import Scaled
 
 A = TypeVar("A", bound=Answer[Any])
 A_co = TypeVar("A_co", covariant=True)
@@ -255,6 +255,8 @@ def described(field: Any) -> str:
 
 def are_several(given: object, motions: Motions) -> bool:
     """Return whether several motions are given, or any number of them in a list."""
+    from rocking_cli.processing.listed import Scaled
+
     return motions.count > 1 or (isinstance(given, list | tuple) and not isinstance(given, Scaled))
 
 
