@@ -6,7 +6,7 @@ import io
 import os
 import shlex
 import sys
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from pathlib import Path
 
 import pytest
@@ -16,7 +16,7 @@ from rocking_cli.cli.main import main
 from rocking_cli.io import files
 from tests.cli.test_every_command import needs_mujoco
 from tests.conftest import EXAMPLES
-from tests.crash.attacks import LINES, light, words_of
+from tests.crash.attacks import DRAWN, LINES, light, words_of
 
 OTHERS = {
     "help": "--help",
@@ -77,7 +77,7 @@ def typed(request, tmp_path, monkeypatch):
     (tmp_path / "folder").mkdir()
     monkeypatch.chdir(tmp_path / "folder")
     inputs = tmp_path / "inputs"
-    with light():
+    with nullcontext() if request.param in DRAWN else light():
         yield shlex.split(OTHERS[request.param]) if request.param in OTHERS else words_of(request.param, inputs)
 
 

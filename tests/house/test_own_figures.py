@@ -32,7 +32,7 @@ ASKED = {verb: (verb, given) for verb, given in QUESTIONS.items()} | {
 }
 WITHOUT = {"respond_each", "shares", "selfcheck", "results"}
 """Verbs whose answers have no plot, and `results`, whose plot is that of `fragility`."""
-FAST = {"margins", "respond"}
+FAST = {"margins"}
 
 
 @pytest.fixture
