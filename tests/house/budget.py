@@ -22,24 +22,30 @@ DEFINITIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 MOST_SHARE, LEAST_LINES = 0.03, 5  # below its number a folder stays, and is not asked for a lower one
 
 
+def statements(node):
+    """Yield a node and all statements in it, without their expressions."""
+    yield node
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.stmt | ast.excepthandler | ast.match_case):
+            yield from statements(child)
+
+
 def code(text):
-    """Return the syntax of a text of Python, and its lines that are not blank, nor of comments or docstrings alone."""
-    tree, documentation, in_texts = ast.parse(text), set(), set()
-    for node in ast.walk(tree):
-        first = node.body[0] if isinstance(node, (ast.Module, ast.ClassDef, *DEFINITIONS)) and node.body else None
-        if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant) and isinstance(first.value.value, str):
-            documentation.update(range(first.lineno, first.end_lineno + 1))
-        elif isinstance(node, ast.Constant | ast.JoinedStr) and node.end_lineno > node.lineno:
-            in_texts.update(range(node.lineno, node.end_lineno + 1))  # where a # begins no comment
-    lines = enumerate(map(str.strip, text.splitlines()), 1)
-    return tree, {n for n, line in lines if n in in_texts or (line and not line.startswith("#"))} - documentation
-
-
-def functions(tree, lines):
-    """Yield the lines of code of each function, from the first line of its definition to its end."""
-    for node in ast.walk(tree):
-        if isinstance(node, DEFINITIONS):
-            yield sum(n in lines for n in range(node.lineno, node.end_lineno + 1))
+    """Return the lines of a text without blank lines, comments and docstrings, and those of each function."""
+    lines = [line.strip() for line in text.splitlines()]
+    passed = {n for n, line in enumerate(lines, 1) if not line or line.startswith("#")}
+    found, documentation, nodes = set(range(1, len(lines) + 1)) - passed, set(), [*statements(ast.parse(text))]
+    for node in nodes:
+        if isinstance(node, (ast.Module, ast.ClassDef, *DEFINITIONS)):
+            if ast.get_docstring(node, clean=False) is not None:
+                documentation.update(range(node.body[0].lineno, node.body[0].end_lineno + 1))
+        elif not hasattr(node, "body") and passed.intersection(range(node.lineno, node.end_lineno + 1)):
+            for part in ast.walk(node):  # a # in a text of several lines begins no comment
+                if isinstance(part, ast.Constant | ast.JoinedStr) and part.end_lineno > part.lineno:
+                    found.update(range(part.lineno, part.end_lineno + 1))
+    found -= documentation
+    functions = [node for node in nodes if isinstance(node, DEFINITIONS)]
+    return len(found), [sum(n in found for n in range(each.lineno, each.end_lineno + 1)) for each in functions]
 
 
 def counts_for(file):
@@ -57,11 +63,11 @@ def counted():
     for file in (file for top in SPLIT + BESIDE for file in (PROJECT / top).rglob("*.py")):
         if "_generated" in file.parts:  # copies that the documentation makes
             continue
-        tree, lines = code(file.read_text(encoding="utf-8"))
-        found.update(dict.fromkeys(counts_for(file), len(lines)))
+        lines, functions = code(file.read_text(encoding="utf-8"))
+        found.update(dict.fromkeys(counts_for(file), lines))
         if file.relative_to(PROJECT).parts[0] in PACKAGE:
             found[FILES] += 1
-            sizes += functions(tree, lines)
+            sizes += functions
     found[SHORT], found[MEDIAN] = sum(size <= MAX_SHORT_LINES for size in sizes), int(median(sizes))
     return found
 

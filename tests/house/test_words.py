@@ -1,6 +1,5 @@
 """Words of names, texts and helps, by lists: what says nothing, what is not English, what each option has to say."""
 
-import ast
 import re
 from collections import defaultdict
 
@@ -12,15 +11,14 @@ from rocking_cli.errors import Problem
 from rocking_cli.plugins.rooms import commands
 from rocking_cli.processing.reading_options import CORRECTIONS
 from tests.conftest import PROJECT
-from tests.house.test_layers import parsed
 
-VAGUE = re.compile(
+VAGUE = (
     "MOST|LEAST|FEW|MANY|MUCH|ENOUGH|ALL|EVERY|SOME|FIRST|LAST|SMALL|LARGE|BIG|TINY|HUGE|CLOSE|NEAR|FAR|LONG|LONGEST|"
     "LARGEST|SHORT|SLOW|FAST|HIGH|LOW|THIN|WIDE|STRONG|WEAK|FAINT|OFTEN|SAME|SIMILAR|GOOD|BAD|FINE|COARSE|BEHIND|BEFORE|"
     "AFTER|ABOVE|BELOW|BEYOND|APART|STILL|IDLE|LATE|EARLY|SOON|THING|STUFF|TMP"
 )
 """Constants that have neither what is limited nor its kind: `MAX_NAMED_MOTIONS` has both, `MANY` none."""
-EMPTY = re.compile(r"found|said|near|own|thing|stuff|foo|te?mp|(data|item|list|obj|res|result|text|tmp|val|value)\d+")
+EMPTY = r"found|said|near|own|thing|stuff|foo|te?mp|(?:data|item|list|obj|res|result|text|tmp|val|value)\d+"
 """Locals that do not say what they hold."""
 VAGUE_CONSTANTS = {
     "rocking_cli/dynamics/kernels.py": {"APART", "BEHIND", "FAINT", "IDLE", "LARGEST", "LONG", "LONGEST", "SLOW"},
@@ -28,7 +26,7 @@ VAGUE_CONSTANTS = {
     "rocking_cli/plotting/style.py": {"FAINT", "SMALL", "THIN", "TINY"},  # steps of a scale, read as `style.SMALL`
 }
 """Constants that keep a vague name: that of the kernels cannot change without building the shipped libraries anew."""
-PHRASES = re.compile(
+PHRASES = (
     "asked for|held against|can take|on the safe side|goes not with|goes with|it is said|that is said|hangs on|"
     "as often as you like|takes for granted|do alike|is no unit|are warned of|what there is none of"
 )
@@ -51,41 +49,40 @@ OPTIONS = [
 ]
 
 
-def names_of(tree):
-    """Yield the name of each assignment of a file but those of fields, and whether it is one of a constant."""
-    fields = {
-        id(name) for node in ast.walk(tree) if isinstance(node, ast.ClassDef)
-        for statement in node.body if isinstance(statement, ast.Assign | ast.AnnAssign) for name in ast.walk(statement)
-    }  # fmt: skip
-    top = {id(name) for node in tree.body if isinstance(node, ast.Assign | ast.AnnAssign) for name in ast.walk(node)}
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) and id(node) not in fields:
-            yield node.id, id(node) in top
+def texts(*folders):
+    """Yield the files of some folders that their authors wrote, and their texts."""
+    for file in [*(file for folder in folders for file in (PROJECT / folder).rglob("*.*")), *PROJECT.glob("*.md")]:
+        if file.suffix in KINDS and file.name not in ("words.md", "CHANGELOG.md") and "_generated" not in file.parts:
+            yield file.relative_to(PROJECT).as_posix(), file.read_text(encoding="utf-8")
+
+
+def assigned(text, words):
+    """Return which of some words a file assigns as variables, in lines, loops and contexts."""
+    among = rf"(?:[\w*]+, )*({words})(?:, [\w*]+)*"
+    stores = re.finditer(rf"(?m)^(?:_| *){among} = |\bfor {among} in | as ({words}):|\(({words}) := ", text)
+    return {next(filter(None, store.groups())) for store in stores}
 
 
 def test_no_name_says_nothing():
-    vague, empty = defaultdict(set), defaultdict(set)
-    for place, tree in parsed("rocking_cli/**/*.py", "mechanisms/**/*.py").items():
-        for name, is_constant in names_of(tree):
-            if is_constant and VAGUE.fullmatch(name.strip("_")):
-                vague[place].add(name.strip("_"))
-            if EMPTY.fullmatch(name):
-                empty[place].add(name)
-    assert not {place: kept for place, names in vague.items() if (kept := names - VAGUE_CONSTANTS.get(place, set()))}
-    assert not empty, f"name these locals after what they hold: {dict(empty)}"
+    for place, text in texts("rocking_cli", "mechanisms"):
+        if place.endswith(".py"):
+            constants = assigned("\n".join(re.findall(r"(?m)^[A-Z_].* = ", text)), VAGUE)
+            assert constants <= VAGUE_CONSTANTS.get(place, set()), f"{place}: name these constants by what they limit"
+            assert not assigned(text, EMPTY), f"{place}: name these locals after what they hold"
+
+
+def test_names_that_say_nothing_are_found():
+    text = "_FEW = 3\nMIN_FEW = 4\nSMALL, other = 1, 2\n    def f(said):\n        own, x = said\n"
+    text += "        return [near.found for x, near in own if (thing := near.item)]\n"
+    assert assigned(text, VAGUE) == {"FEW", "SMALL"} and assigned(text, EMPTY) >= {"own", "near", "thing"}
 
 
 def test_phrases_that_are_not_english_are_gone():
-    files = [file for folder in ("rocking_cli", "mechanisms", "docs") for file in (PROJECT / folder).rglob("*.*")]
-    places = []
-    for file in [*files, PROJECT / "README.md", PROJECT / "CONTRIBUTING.md"]:
-        if (
-            file.suffix in {".py", ".md", ".yaml", ".html", ".j2"}
-            and file.name != "words.md"
-            and "_generated" not in file.parts
-        ):
-            text = re.sub(r"(?:\s|#|\"\s*\n\s*f?\")+", " ", file.read_text(encoding="utf-8")).lower()
-            places += [f"{file.relative_to(PROJECT)}: {phrase[0]}" for phrase in PHRASES.finditer(text)]
+    places = [
+        f"{place}: {phrase[0]}"
+        for place, text in texts("rocking_cli", "mechanisms", "docs")
+        for phrase in re.finditer(PHRASES, re.sub(r"(?:\s|#|\"\s*\n\s*f?\")+", " ", text).lower())
+    ]
     assert len(places) <= MAX_PHRASES, "\n".join(places)
 
 
