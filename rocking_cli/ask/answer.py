@@ -94,10 +94,10 @@ class Answer(Generic[R]):
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a pickle keeps: everything, with data and columns computed."""
-        columns = partial(_kept, self.columns())
-        tables = {name: partial(_kept, each()) for name, each in self.tables.items()}
+        columns: Any = partial(dict, self.columns())
+        tables: dict[str, Any] = {name: partial(dict, each()) for name, each in self.tables.items()}
         view = View(self.view.plain(), self.view.parts)
-        tables_of_dims = {table: partial(_kept, table()) for each in self.dims if (table := each.table)}
+        tables_of_dims: dict[Any, Any] = {table: partial(dict, table()) for each in self.dims if (table := each.table)}
         dims = [replace(each, table=each.table and tables_of_dims[each.table]) for each in self.dims]
         return {**vars(self), "view": view, "columns": columns, "blocks": None, "tables": tables, "dims": dims}
 
@@ -345,30 +345,26 @@ def _refuse(why: str, hint: str | None) -> Figure:
     raise InputError(Problem(why, hint=hint))
 
 
-def _kept(columns: Columns) -> Columns:
-    return columns
-
-
 def _ends_of(columns: Columns) -> Table:
     """Return the first and the last rows of columns as a table."""
-
-    def cells(column: Any) -> list[str]:
+    shown = []
+    for column in columns.values():
         ends = column if len(column) <= 2 * SHOWN_ROWS else [*column[:SHOWN_ROWS], "...", *column[-SHOWN_ROWS:]]
-        return [number(each, 5) if isinstance(each, float) else str(each) for each in ends]
-
-    return table_of("", text_columns(*columns), list(zip(*map(cells, columns.values()), strict=True)))
+        shown.append([number(value, 5) if isinstance(value, float) else str(value) for value in ends])
+    return table_of("", text_columns(*columns), list(zip(*shown, strict=True)))
 
 
 def _html(part: Table | str) -> str:
     if isinstance(part, str):
         return f"<p>{escape(part)}</p>"
 
-    def row(cells: Any, tag: str) -> str:
-        return "<tr>" + "".join(f"<{tag}>{escape(str(each))}</{tag}>" for each in cells) + "</tr>"
-
-    body = "".join(row(each, "td") for each in part.rows)
+    heads, *rows = (
+        "".join(f"<{tag}>{escape(str(cell))}</{tag}>" for cell in row)
+        for tag, row in [("th", part.columns), *(("td", row) for row in part.rows)]
+    )
     title = f"<caption>{escape(part.title)}</caption>" if part.title else ""
-    return f"<table>{title}<thead>{row(part.columns, 'th')}</thead><tbody>{body}</tbody></table>"
+    body = "".join(f"<tr>{row}</tr>" for row in rows)
+    return f"<table>{title}<thead><tr>{heads}</tr></thead><tbody>{body}</tbody></table>"
 
 
 def labelled(tables: Sequence[tuple[Dimensions, Parted]]) -> xarray.Dataset:

@@ -284,10 +284,8 @@ def checked(model: type[M], given: Mapping[str, Any], usual: Mapping[str, Any] |
         missing = [str(each["loc"][0]) for each in errors if each["type"] == "missing"]
         problems = [Problem("is missing", field=name, hint=model.model_fields[name].description) for name in missing]
         problems += of_arguments(model, (each for each in errors if each["type"] != "missing"), "arguments")
-        raise InputError(*map(_spelled, problems)) from None
-
-
-def _spelled(problem: Problem) -> Problem:
-    """Return a problem whose field is named as it was given."""
-    field, dot, more = (problem.field or "").partition(".")
-    return Problem(problem.message, field=named(field) + dot + more, hint=problem.hint) if field else problem
+        for k, problem in enumerate(problems):
+            if problem.field:  # it is named as it was given
+                name, dot, more = problem.field.partition(".")
+                problems[k] = Problem(problem.message, field=named(name) + dot + more, hint=problem.hint)
+        raise InputError(*problems) from None

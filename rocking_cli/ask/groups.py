@@ -58,7 +58,8 @@ def fields_of(options: dict[str, Option], *, once: bool = False) -> dict[str, An
     """Return the fields of the options of records, which may be typed only `once`."""
     fields = {}
     for name, each in options.items():
-        kind = Kind(each.parse, each.metavar, words=_words(each))
+        choices = each.metavar[1:-1].replace("|", " ") if "|" in each.metavar else ""
+        kind = Kind(each.parse, each.metavar, words="file" if each.metavar == "FILE" else choices)
         field = option(each.help, only_once(kind) if once else kind, typed=each.key, repeat=once, type=each.type)
         fields[name] = (Any if each.metavar else bool | None, field)
     return fields
@@ -75,10 +76,6 @@ def only_once(kind: Kind) -> Kind:
         return kind.read(value)
 
     return kind._replace(read=read)
-
-
-def _words(each: Option) -> str:
-    return "file" if each.metavar == "FILE" else each.metavar[1:-1].replace("|", " ") if "|" in each.metavar else ""
 
 
 class OfStructure(AskedModel):

@@ -20,6 +20,7 @@ from rocking_cli.ask.answer import Answer, Answers, Dimensions, no_plot
 from rocking_cli.ask.asked import AskedModel, M, checked, choices, in_order, owner_of, told_of
 from rocking_cli.ask.groups import WithTable
 from rocking_cli.ask.kinds import STANDARD_OUTPUT
+from rocking_cli.ask.kinds import each as several_of
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem, RockingError, named
 from rocking_cli.processing.reading_options import CORRECTIONS, SCALING, corrected_once
@@ -154,16 +155,12 @@ def _keep_apart(asked: AskedModel) -> None:
         if "input" in each.where or (each.kind is not None and each.kind.words == "file")
     ]
     read = [getattr(asked, name) for name in names]
-    files = [str(each) for value in read for each in _each(value) if isinstance(each, str | Path)]
+    files = [str(each) for value in read for each in several_of(value) if isinstance(each, str | Path)]
     motions = getattr(asked, "ground_motions", None)
     files += [str(each.path) for each in motions.records] if motions is not None else []
     keep_apart([(named(name), each) for name, each in written.items()], files)
     for name in ("out", "curves"):
         check_table(written.get(name))
-
-
-def _each(value: Any) -> Sequence[Any]:
-    return value if isinstance(value, list | tuple) else [value]
 
 
 def _unknown(model: type[AskedModel], name: str, given: Mapping[str, Any]) -> Problem:
@@ -187,7 +184,7 @@ def _of_structure(name: str, value: object, known: list[str], structures: Sequen
     from rocking_cli.core import Mechanism
     from rocking_cli.io.field_problems import by_meaning
 
-    cls = next((type(each) for one in structures for each in _each(one) if isinstance(each, Mechanism)), Mechanism)
+    cls = next((type(each) for one in structures for each in several_of(one) if isinstance(each, Mechanism)), Mechanism)
     fields = cls.model_fields
     if name in cls.refused and name not in fields:
         return str(Problem(cls.refused[name], field=name))
@@ -203,12 +200,12 @@ def _of_structure(name: str, value: object, known: list[str], structures: Sequen
 
 def by_place(model: type[AskedModel]) -> dict[str, Any]:
     """Return the fields of a question in the order of the verb: those by place first, of which required ones first."""
-
-    def place(item: tuple[str, Any]) -> tuple[bool, bool, bool]:
-        where = told_of(item[1]).where
-        return "input" not in where, not item[1].is_required(), where != "input"
-
-    return dict(sorted(in_order(model).items(), key=place))
+    fields = in_order(model)
+    places = {}
+    for name, field in fields.items():
+        where = told_of(field).where
+        places[name] = "input" not in where, not field.is_required(), where != "input"
+    return {name: fields[name] for name in sorted(fields, key=lambda name: places[name])}
 
 
 def _signature(model: type[AskedModel], function: Callable[..., Any]) -> Signature:

@@ -198,13 +198,9 @@ def _option(name: str, field: FieldInfo, heading: str) -> HeadedOption:
     elif told.alone:
         more |= {"is_flag": False, "flag_value": told.alone}
     plain = field.is_required() or field.default in (None, (), [], {}) or isinstance(field.default, bool)
-    usual = told.usual or (f"{told.on_terminal}" if told.on_terminal else "" if plain else shown(field.default))
+    values = field.default if isinstance(field.default, tuple) else (field.default,)
+    typed = ",".join(f"{value:g}" if isinstance(value, float) else f"{value}" for value in values)
+    usual = told.usual or (f"{told.on_terminal}" if told.on_terminal else "" if plain else typed)
     text = f"{field.description}{f'  [default: {usual}]' if usual else ''}"
     names = [*(["-o"] if name == "out" else []), f"--{(told.typed or name).replace('_', '-')}", name]
     return HeadedOption(names, heading=heading, help=text, required=field.is_required(), **more)
-
-
-def shown(default: Any) -> str:
-    """Return a default as it would be typed."""
-    parts = default if isinstance(default, tuple) else (default,)
-    return ",".join(f"{each:g}" if isinstance(each, float) else f"{each}" for each in parts)
