@@ -53,12 +53,6 @@ def test_every_mechanism_can_be_imported_by_the_name_of_its_class(name):
     assert rk.mechanisms[name] is cls
 
 
-def test_what_is_not_there_is_no_attribute():
-    with pytest.raises(AttributeError, match="has no attribute 'Steeple'"):
-        _ = rk.Steeple
-    assert not hasattr(rk, "_own")
-
-
 @pytest.mark.parametrize("name", rk._MOVED)
 def test_a_name_that_is_gone_says_what_to_use(name):
     with pytest.raises(AttributeError, match=rf"^rocking_cli has no {name}: use ") as caught:
@@ -82,12 +76,6 @@ def test_wrong_fields_are_an_input_error_that_names_them(fields, words):
         rk.Wall(**fields)
     assert words in str(caught.value)
     assert not isinstance(caught.value, ValidationError)
-
-
-def test_files_place_their_errors_themselves(tmp_path):
-    (tmp_path / "w.yaml").write_text("mechanism: wall\nthickness: -1\nheight: 3\n", encoding="utf-8")
-    with pytest.raises(rk.InputError, match=r"w\.yaml:2:12: thickness must be more than 0"):
-        rk.load_structure(tmp_path / "w.yaml")
 
 
 @pytest.mark.docs
@@ -410,11 +398,6 @@ def test_names_of_others_are_text_in_a_notebook():
     assert "<img" not in answer._repr_html_() and "&lt;img" in answer._repr_html_()
 
 
-def test_a_picture_has_a_known_ending(wall):
-    with pytest.raises(rk.InputError, match=r"give a file name that ends in \.png, \.svg or \.pdf"):
-        rk.equiv(wall).plot("a.jpeg2")
-
-
 def test_a_map_of_a_structure_is_that_of_the_command():
     pulses = {"period": (0.3, 2.0), "ag": (0.1, 1.0), "points": 9}
     answer = rk.overturning_map(EXAMPLES / "block.yaml", **pulses)
@@ -443,18 +426,8 @@ def test_a_study_given_in_python_is_that_of_its_file(tmp_path, monkeypatch):
     (tmp_path / "pillar.yaml").write_text("mechanism: block\nname: pillar\nwidth: 0.6\nheight: 2.6\nrestitution: 0.9\n")
     file = json.dumps({**study, "structures": ["pillar.yaml", str(EXAMPLES / "wall.yaml")]})
     (tmp_path / "study.yaml").write_text(file)
-    again = rk.fragility("study.yaml", store="other.runs")
-    assert first.result[0].structure == "pillar" and len(first.result) == 2
-    assert first.to_frame().equals(again.to_frame())
-    assert first.sentences[0].startswith("pillar: stripes") and again.sentences[0].startswith("study: stripes")
-    told, noted = Watcher(), []
-    told.note = noted.append
-    assert rk.fragility("study.yaml", store="pillar.runs", watch=told).result  # whichever started it, both go on
-    rk.fragility(study, store="other.runs", watch=told)
-    assert noted.count("24 of 24 runs are in the store already") == 2
+    assert first.to_frame().equals(rk.fragility("study.yaml", store="other.runs").to_frame())
     assert rk.results("pillar.runs").to_frame().equals(first.to_frame())
-    with pytest.raises(rk.InputError, match=r"study: levels"):
-        rk.fragility({**study, "levels": 3}, store="bad.runs")
     with pytest.raises(rk.InputError, match=r"study: structures must be a list"):
         rk.fragility({**study, "structures": study["structures"][0]}, store="bad.runs")
 
@@ -565,12 +538,6 @@ def test_a_motion_keeps_samples_of_its_own():
     with pytest.raises(ValueError, match="read-only"):
         made[0].acceleration[0] = 9.0
     assert made[0].scaled(1.0).acceleration is not samples
-
-
-@pytest.mark.parametrize("scales", [[[1.0], [2.0], [3.0]], np.ones((2, 2))])
-def test_factors_in_several_dimensions_are_refused(scales):
-    with pytest.raises(rk.InputError, match="`scale` must be one number or a list of them"):
-        rk.respond_each(rk.Block(width=0.7, height=2.8), "sine:0.4g:0.8s", model="nonlinear", scale=scales)
 
 
 # --- what is refused, and what travels

@@ -74,28 +74,6 @@ def test_a_curve_is_whole_or_the_caption_says_where_it_is_cut(made, number):
     assert cut == (number == 7) == ("cut off" in drawn.get_supxlabel())
 
 
-def test_a_legend_that_all_panels_share_is_on_none_of_them(made):
-    drawn = made.draw_paper_figure(made.FIGURES[13]())
-    assert not any(axes.get_legend() for axes in drawn.axes)
-    (legend,) = drawn.legends
-    assert next(text.get_text() for text in legend.get_texts()).startswith(r"$\beta$")
-    panels = made.draw_paper_figure(made.record_response()).subfigs[1].axes
-    assert all(axes.get_legend() for axes in panels)  # where they differ each has its own
-
-
-def test_curves_are_close_where_they_bend(made):
-    for curve in made.FIGURES[11]().panels[0][0].curves:
-        turn = np.diff(np.arctan2(np.diff(curve.y) / np.ptp(curve.y), np.diff(curve.x)))
-        assert np.abs(turn).max() < np.radians(15)  # between two chords of a panel as wide as high
-
-
-def test_figure_10_wider_and_thinner_arches_are_the_more_slender(made):
-    figure = made.FIGURES[10]()
-    for column in (0, 1):
-        by_thickness = list(curves(figure, 0, column).values())
-        assert all((np.diff(y) < 0).all() for y in by_thickness)
-
-
 def test_figure_14_the_linear_response_follows_the_nonlinear_one_through_the_pulse(made):
     figure = made.record_response()
     assert [len(row[0].curves) for row in figure.panels] == [2, 4]
