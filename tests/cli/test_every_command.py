@@ -258,7 +258,7 @@ def test_every_command_is_walked_or_follows_no_history():
     assert names(HISTORIES) | WITHOUT == set(commands()) and not names(HISTORIES) & WITHOUT
 
 
-@pytest.mark.every(4)
+@pytest.mark.every(6)
 @pytest.mark.usefixtures("hostile")
 @pytest.mark.parametrize("line", [*HISTORIES, *WITHOUT_HISTORY, *AS_TEXT])
 def test_an_unknown_outcome_is_no_pass_and_names_harm_nothing(line, monkeypatch):

@@ -29,6 +29,14 @@ OTHERS = {
     "completion": "completion bash",
 }
 """Commands that print alone."""
+SLOW = {"calibrate", "crosscheck", "select", "survey", "sheets"}
+
+
+def cases(names):
+    """The names of commands, those that take long for `make test-rest`."""
+    return [pytest.param(name, marks=[pytest.mark.rest] * (name in SLOW)) for name in names]
+
+
 ENDS = {
     "whole": (True, True), "broken": ("broken", True), "full": ("full", True), "no errors": (True, None),
     "no results": (None, True), "neither": (None, None), "broken errors": (True, "broken"),
@@ -83,7 +91,7 @@ def typed(request, tmp_path, monkeypatch):
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no full device")
 @pytest.mark.every(14)
-@pytest.mark.parametrize("typed", [*LINES, *OTHERS], indirect=True)
+@pytest.mark.parametrize("typed", cases([*LINES, *OTHERS]), indirect=True)
 def test_streams_that_cannot_be_written(typed):
     codes = {name: ended(typed, *leads) for name, leads in ENDS.items()}
     whole = codes.pop("whole")
@@ -93,7 +101,9 @@ def test_streams_that_cannot_be_written(typed):
 
 
 @pytest.mark.every(7)
-@pytest.mark.parametrize("typed", [name for name in LINES if name not in ("restart", "free_blocks")], indirect=True)
+@pytest.mark.parametrize(
+    "typed", cases([name for name in LINES if name not in ("restart", "free_blocks")]), indirect=True
+)
 def test_the_exit_code_is_that_of_the_disk_for_each_output(typed, monkeypatch):
     """The first file that is written is refused, then the second, until all are written."""
     outputs = []
