@@ -90,7 +90,7 @@ def typed(request, tmp_path, monkeypatch):
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no full device")
-@pytest.mark.every(14)
+@pytest.mark.every(8)
 @pytest.mark.parametrize("typed", cases([*LINES, *OTHERS]), indirect=True)
 def test_streams_that_cannot_be_written(typed):
     codes = {name: ended(typed, *leads) for name, leads in ENDS.items()}
