@@ -353,7 +353,7 @@ def examples(tmp_path_factory):
     return made
 
 
-@pytest.mark.every(6)
+@pytest.mark.every(4)
 @pytest.mark.parametrize("command", asked())
 def test_the_keys_are_those_held(command, examples, monkeypatch):
     monkeypatch.chdir(examples)
