@@ -15,9 +15,9 @@ PYTEST := -m pytest -n auto --dist worksteal
 # The tiers that `make test` leaves out; CONTRIBUTING.md says what is in each.
 LATER := rest or docs or types or kernels
 
-.PHONY: setup constraints demo selfcheck test test-all test-newest test-oldest test-kernels test-versions test-elsewhere damage soak crash bounds fuzz fields \
+.PHONY: setup constraints demo selfcheck test test-all test-rest test-newest test-oldest test-kernels test-versions test-elsewhere damage soak crash bounds fuzz fields \
 	properties budget lint type contracts check bench kernels same-kernels validation free-blocks scoreboard trust trust-check pages pictures \
-	docs release clean
+	docs docs-check release clean
 
 setup: $(STAMP)  ## Create the environment and install the package with its development tools
 
@@ -49,21 +49,24 @@ selfcheck: $(PACKAGE_STAMP)  ## Whether this installation computes correctly
 test: setup  ## What to run before a commit, and the twenty slowest
 	$(BIN)/python $(PYTEST) -m "not ($(LATER))" --durations=20
 
-test-all: test  ## All tests: those of `test`, then the rest
+test-all: test  ## All tests: those of `test`, then those of all other tiers
 	$(BIN)/python $(PYTEST) -m "$(LATER)"
 
-test-newest test-oldest: test-%: setup  ## One case of each test of `test` with the newest versions of what it needs, and with the oldest that pyproject.toml allows
+test-rest: setup  ## Those that `test` leaves out and no other target runs
+	$(BIN)/python $(PYTEST) -m rest --durations=20
+
+test-newest test-oldest: test-%: setup  ## One case of each test that rests on libraries, with their newest versions, and with the oldest that pyproject.toml allows
 	$(BIN)/python -m uv venv --quiet --clear --python $(BIN)/python out/$*
 	$(BIN)/python -m uv pip install --quiet --python out/$* --resolution $(RESOLUTION-$*) --editable ".[dev]"
-	out/$*/$(notdir $(BIN))/python $(PYTEST) -m "not ($(LATER) or again)"
+	$(BIN)/python -m tests.elsewhere files | xargs out/$*/$(notdir $(BIN))/python $(PYTEST) -m "not ($(LATER) or again)"
 
 RESOLUTION-newest := highest
 RESOLUTION-oldest := lowest-direct
 
-test-kernels: setup  ## The tests of fits, studies and linkages, with the last bits as other processors round them
+test-kernels: setup  ## The tests of fits, studies, linkages and spectra, with the last bits as other processors round them
 	$(BIN)/python -m tests.elsewhere kernels
 
-test-versions: setup  ## The same with the other versions of Python that are installed here
+test-versions: setup  ## One case of each, and of what rests on Python, with its first and its last version if they are installed here
 	$(BIN)/python -m tests.elsewhere versions
 
 test-elsewhere: setup  ## Both, side by side
@@ -157,10 +160,14 @@ $(DOCS_STAMP): $(STAMP)
 pages: $(DOCS_STAMP)  ## Every made page, list and picture: the types of the package, outputs and options in the pages, examples in Python
 	$(BIN)/python docs/make_stub.py
 	$(BIN)/python docs/make_pages.py
+	$(BIN)/python docs/make_validation.py
 	$(BIN)/python docs/make_python.py
 
 docs: pages  ## The documentation as a site, out/site/index.html; every warning is an error
 	$(BIN)/python -m sphinx -W --keep-going -E -q -b html -d out/doctrees docs out/site
+
+docs-check: docs  ## The same, and an error if `make pages` had to renew anything
+	git diff --exit-code --stat -- docs README.md rocking_cli/__init__.pyi
 
 $(RELEASE_STAMP): $(PACKAGE_STAMP)
 	$(BIN)/python $(INSTALL) --editable ".[release]"

@@ -69,7 +69,7 @@ def beside_runs(folder: Path) -> None:
 def _fits(place: Path) -> float:
     """Seconds from a finished store to its curves, in a new process but for what every command imports."""
     code = (
-        "import sys, time; from rocking_cli.cli.watching import OnTerminal; from rocking_cli.cli import terminal;"
+        "import sys, time; from rocking_cli.cli.terminal import OnTerminal; from rocking_cli.cli import terminal;"
         "from rocking_cli.questions.fragility.results import results;"
         "import rocking_cli.questions.fragility.campaign; start = time.perf_counter();"
         "terminal.show(results(sys.argv[1], watch=OnTerminal()).view, as_json=True);"

@@ -159,7 +159,7 @@ def keys_of(out: str) -> set[tuple[str, ...]]:
 
 
 def write_keys(folder: Path) -> None:
-    """Write the keys of the JSON of all commands as trees, with the examples where fewer have a key than its parent."""
+    """Write the keys of the JSON of all commands as trees, each with one example that has it if not all have."""
     kept = json.loads((folder / "outputs.json").read_text(encoding="utf-8"))
     lines = []
     for command, examples in questions().items():
@@ -170,25 +170,23 @@ def write_keys(folder: Path) -> None:
         lines.append(command)
         for path in sorted(having):
             some = having[path]
-            shown = "" if some == having.get(path[:-1], examples) else f"  {' '.join(some)}"
+            shown = "" if some == having.get(path[:-1], examples) else f"  {min(some, key=len)}"
             lines.append(f"{INDENT * len(path)}{path[-1]}{shown}")
     KEYS.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def held_keys() -> dict[tuple[str, str], set[tuple[str, ...]]]:
-    """Return the keys that the file holds, by command and example."""
-    held: dict[tuple[str, str], set[tuple[str, ...]]] = {}
+def held_keys() -> dict[str, dict[tuple[str, ...], str]]:
+    """Return the keys that the file holds of each command, with the example that is named for one; empty for all."""
+    held: dict[str, dict[tuple[str, ...], str]] = {}
+    path: tuple[str, ...] = ()
     for line in KEYS.read_text(encoding="utf-8").splitlines():
-        name, _, some = line.strip().partition("  ")
+        name, _, example = line.strip().partition("  ")
         depth = (len(line) - len(line.lstrip())) // len(INDENT)
         if depth == 0:
-            command, path, having = line, (), [questions()[line]]
-            held |= {(command, example): set() for example in questions()[command]}
+            of_command = held.setdefault(line, {})
             continue
         path = (*path[: depth - 1], name)
-        having[depth:] = [some.split() or having[depth - 1]]
-        for example in having[depth]:
-            held[command, example].add(path)
+        of_command[path] = example
     return held
 
 

@@ -84,16 +84,10 @@ def _in_an_empty_folder(request, tmp_path_factory, monkeypatch):
 
 
 @pytest.fixture(autouse=True)
-def _no_defaults_of_a_user(tmp_path_factory, monkeypatch):
-    """No test takes the defaults of whoever runs it: the file that would have them, which is not there."""
-    from rocking_cli.cli import defaults
-
+def _no_variables_of_a_user(monkeypatch):
+    """No test takes the environment of whoever runs it."""
     for name in [each for each in os.environ if each.startswith("ROCKING_") and each not in KEPT]:
         monkeypatch.delenv(name)
-    file = tmp_path_factory.getbasetemp() / "user" / "rocking.toml"
-    file.unlink(missing_ok=True)
-    monkeypatch.setattr(defaults, "user_file", lambda: file)
-    return file
 
 
 @pytest.fixture(autouse=True, scope="module")

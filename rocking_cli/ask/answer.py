@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from html import escape
@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 R = TypeVar("R")
 K = TypeVar("K")
 V = TypeVar("V")
+Parted = tuple[Mapping[str, Any], Mapping[str, str]]
+"""Columns by name, and the units of those that have one."""
 _NO_NAME = re.compile(r"[^\w.]+")  # what is not in the name of a column
 MAX_REPR_LENGTH = 100  # characters of the text that `repr` shows
 SHOWN_ROWS = 5  # at either end of a result that has no table of its own
@@ -92,10 +94,10 @@ class Answer(Generic[R]):
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a pickle keeps: everything, with data and columns computed."""
-        columns = partial(_kept, self.columns())
-        tables = {name: partial(_kept, each()) for name, each in self.tables.items()}
+        columns: Any = partial(dict, self.columns())
+        tables: dict[str, Any] = {name: partial(dict, each()) for name, each in self.tables.items()}
         view = View(self.view.plain(), self.view.parts)
-        tables_of_dims = {table: partial(_kept, table()) for each in self.dims if (table := each.table)}
+        tables_of_dims: dict[Any, Any] = {table: partial(dict, table()) for each in self.dims if (table := each.table)}
         dims = [replace(each, table=each.table and tables_of_dims[each.table]) for each in self.dims]
         return {**vars(self), "view": view, "columns": columns, "blocks": None, "tables": tables, "dims": dims}
 
@@ -146,8 +148,6 @@ class Answer(Generic[R]):
         if find_spec("xarray") is None:
             hint = "pip install 'rocking-cli[xarray]'"
             raise InputError(Problem("labelled arrays require the package xarray", hint=hint))
-        from rocking_cli.ask.labelled import labelled
-
         made = {table: parted(table()) for table in {each.table or self.columns for each in self.dims}}
         return labelled([(each, made[each.table or self.columns]) for each in self.dims])
 
@@ -345,27 +345,70 @@ def _refuse(why: str, hint: str | None) -> Figure:
     raise InputError(Problem(why, hint=hint))
 
 
-def _kept(columns: Columns) -> Columns:
-    return columns
-
-
 def _ends_of(columns: Columns) -> Table:
     """Return the first and the last rows of columns as a table."""
-
-    def cells(column: Any) -> list[str]:
+    shown = []
+    for column in columns.values():
         ends = column if len(column) <= 2 * SHOWN_ROWS else [*column[:SHOWN_ROWS], "...", *column[-SHOWN_ROWS:]]
-        return [number(each, 5) if isinstance(each, float) else str(each) for each in ends]
-
-    return table_of("", text_columns(*columns), list(zip(*map(cells, columns.values()), strict=True)))
+        shown.append([number(value, 5) if isinstance(value, float) else str(value) for value in ends])
+    return table_of("", text_columns(*columns), list(zip(*shown, strict=True)))
 
 
 def _html(part: Table | str) -> str:
     if isinstance(part, str):
         return f"<p>{escape(part)}</p>"
 
-    def row(cells: Any, tag: str) -> str:
-        return "<tr>" + "".join(f"<{tag}>{escape(str(each))}</{tag}>" for each in cells) + "</tr>"
-
-    body = "".join(row(each, "td") for each in part.rows)
+    heads, *rows = (
+        "".join(f"<{tag}>{escape(str(cell))}</{tag}>" for cell in row)
+        for tag, row in [("th", part.columns), *(("td", row) for row in part.rows)]
+    )
     title = f"<caption>{escape(part.title)}</caption>" if part.title else ""
-    return f"<table>{title}<thead>{row(part.columns, 'th')}</thead><tbody>{body}</tbody></table>"
+    body = "".join(f"<tr>{row}</tr>" for row in rows)
+    return f"<table>{title}<thead><tr>{heads}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def labelled(tables: Sequence[tuple[Dimensions, Parted]]) -> xarray.Dataset:
+    """Return the columns of long tables as labelled arrays over the dimensions of each table."""
+    from xarray import merge
+
+    elsewhere = {name for each, _ in tables for name in (*each.names, *each.of)}
+    return merge([_arrays(*each, elsewhere) for each in tables], join="outer", compat="equals")
+
+
+def _arrays(dimensions: Dimensions, parted: Parted, elsewhere: Collection[str]) -> xarray.Dataset:
+    """Return columns as arrays: those that are named, or all whose names are not those of columns `elsewhere`."""
+    import numpy as np
+    from pandas import factorize
+    from xarray import Dataset, Variable
+
+    from rocking_cli.io.tables import column_of
+    from rocking_cli.views.long_names import long_name
+
+    columns, units = {name: column_of(values) for name, values in parted[0].items()}, parted[1]
+    names = dimensions.names
+    labels = [factorize(columns[name], use_na_sentinel=False) for name in names]
+    if np.prod([each.size for _, each in labels]) > columns[names[0]].size:
+        # Not every combination exists: numbers are sorted, as what is drawn against them is a curve.
+        labels = [
+            factorize(columns[name], sort=columns[name].dtype.kind in "if", use_na_sentinel=False) for name in names
+        ]
+    shape, places = tuple(each.size for _, each in labels), tuple(place for place, _ in labels)
+    there = np.zeros(shape, dtype=bool)
+    there[places] = True
+
+    def variable(over: tuple[str, ...], name: str, values: Any) -> xarray.Variable:
+        unit = {"units": units[name]} if name in units else {}
+        return Variable(over, values, unit | {"long_name": long_name(name)})
+
+    def filled(values: np.ndarray) -> np.ndarray:
+        words = values.dtype.kind in "OUS"
+        kind = object if words else values.dtype if there.all() else np.result_type(values, np.float64)
+        array = np.full(shape, "" if words else 0 if there.all() else np.nan, dtype=kind)
+        array[places] = values + 0.0 if kind == np.float64 else values  # + 0.0 turns -0 into 0
+        return array
+
+    chosen = [name for name in columns if (name in dimensions.of if dimensions.of else name not in elsewhere)]
+    return Dataset(
+        {name: variable(names, name, filled(columns[name])) for name in chosen},
+        {name: variable((name,), name, values) for name, (_, values) in zip(names, labels, strict=True)},
+    )

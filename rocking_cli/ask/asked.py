@@ -159,7 +159,7 @@ class AskedModel(BaseModel):
     """Fields that have no effect in some cases; those of base classes apply too."""
     writes_each: ClassVar[bool] = False
     """Whether the verb writes its files itself, as there may be one for each motion."""
-    _usual: tuple[str, ...] = ()  # fields that are a user's defaults
+    _usual: tuple[str, ...] = ()  # fields that are defaults of the command
     _order: tuple[str, ...] = ()  # fields that are given, in their order
 
     @field_validator("*", mode="before")
@@ -184,7 +184,7 @@ class AskedModel(BaseModel):
 
     @model_validator(mode="after")
     def _has_effect(self, info: ValidationInfo) -> Self:
-        """Refuse fields that have no effect, but those that are only a user's defaults."""
+        """Refuse fields that have no effect, but those that are only defaults of the command."""
         self._usual = (info.context or {}).get("usual", ())
         self._order = (info.context or {}).get("order", ())
         for rule in self.idle_rules():
@@ -197,7 +197,7 @@ class AskedModel(BaseModel):
         return [rule for rule in rules if rule.holds(self)]
 
     def refuse(self, why: str, fields: Sequence[str]) -> None:
-        """Raise `InputError` if any of these fields, which have no effect, was given and is no user's default."""
+        """Raise `InputError` if any of these fields, which have no effect, was given and is no default."""
         if names := [name for name in fields if self.has(name) and name not in self._usual]:
             raise InputError(no_effect(names, why))
 
@@ -265,7 +265,7 @@ def checked(model: type[M], given: Mapping[str, Any], usual: Mapping[str, Any] |
     given : mapping
         Fields that are given.
     usual : mapping, optional
-        A user's defaults: where they have no effect, they are left out, not refused.
+        Defaults of the command: where they have no effect, they are left out, not refused.
 
     Raises
     ------
@@ -284,10 +284,8 @@ def checked(model: type[M], given: Mapping[str, Any], usual: Mapping[str, Any] |
         missing = [str(each["loc"][0]) for each in errors if each["type"] == "missing"]
         problems = [Problem("is missing", field=name, hint=model.model_fields[name].description) for name in missing]
         problems += of_arguments(model, (each for each in errors if each["type"] != "missing"), "arguments")
-        raise InputError(*map(_spelled, problems)) from None
-
-
-def _spelled(problem: Problem) -> Problem:
-    """Return a problem whose field is named as it was given."""
-    field, dot, more = (problem.field or "").partition(".")
-    return Problem(problem.message, field=named(field) + dot + more, hint=problem.hint) if field else problem
+        for k, problem in enumerate(problems):
+            if problem.field:  # it is named as it was given
+                name, dot, more = problem.field.partition(".")
+                problems[k] = Problem(problem.message, field=named(name) + dot + more, hint=problem.hint)
+        raise InputError(*problems) from None

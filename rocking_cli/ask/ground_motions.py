@@ -57,17 +57,8 @@ class Motions:
     repeated: int = 0
 
     @classmethod
-    def of(
-        cls,
-        given: Motions | Motion | Sequence[Motion],
-        options: Mapping[str, Any],
-        *,
-        usual: Mapping[str, Any] | None = None,
-    ) -> Motions:
-        """Return the motions of a verb, from its motion arguments and its keyword arguments. Raises `InputError`.
-
-        `usual` is how files are read that do not state it themselves.
-        """
+    def of(cls, given: Motions | Motion | Sequence[Motion], options: Mapping[str, Any]) -> Motions:
+        """Return the motions of a verb, from its motion arguments and its keyword arguments. Raises `InputError`."""
         if isinstance(given, Motions):
             return given
         for name, value in options.items():
@@ -99,7 +90,7 @@ class Motions:
         if any(isinstance(one, np.ndarray) for one in each_of(given)) and not _have_files(sources.values()):
             options = {name: each for name, each in options.items() if name not in ("dt", "units")}  # of the array
         repeated = len(every) - len(sources)
-        return cls(tuple(sources.values()), reading_of(options, usual).check(), **scaling, repeated=repeated)
+        return cls(tuple(sources.values()), reading_of(options).check(), **scaling, repeated=repeated)
 
     def __bool__(self) -> bool:
         """Return whether any motion is given."""
@@ -199,7 +190,7 @@ class Motions:
         """
         reading = motion.record.reading(self.reading) if motion.record is not None else self.reading
         arguments = {"channel": "vertical_channel"}
-        if dt is not None or (reading.dt is None and "dt" not in reading.usual):
+        if dt is not None or reading.dt is None:
             arguments["dt"] = "vertical_dt"
         try:
             with renamed(arguments):

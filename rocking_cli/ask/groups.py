@@ -58,7 +58,8 @@ def fields_of(options: dict[str, Option], *, once: bool = False) -> dict[str, An
     """Return the fields of the options of records, which may be typed only `once`."""
     fields = {}
     for name, each in options.items():
-        kind = Kind(each.parse, each.metavar, words=_words(each))
+        choices = each.metavar[1:-1].replace("|", " ") if "|" in each.metavar else ""
+        kind = Kind(each.parse, each.metavar, words="file" if each.metavar == "FILE" else choices)
         field = option(each.help, only_once(kind) if once else kind, typed=each.key, repeat=once, type=each.type)
         fields[name] = (Any if each.metavar else bool | None, field)
     return fields
@@ -75,10 +76,6 @@ def only_once(kind: Kind) -> Kind:
         return kind.read(value)
 
     return kind._replace(read=read)
-
-
-def _words(each: Option) -> str:
-    return "file" if each.metavar == "FILE" else each.metavar[1:-1].replace("|", " ") if "|" in each.metavar else ""
 
 
 class OfStructure(AskedModel):
@@ -145,12 +142,10 @@ class ReadsRecords(Reading):
 
     @property
     def reading(self) -> RecordReading:
-        """How they are read; a user's defaults are for records that do not state it themselves."""
+        """How they are read."""
         from rocking_cli.processing.reading import reading_of
 
-        given = self.part(Reading)
-        usual = {name: given.pop(name) for name in [*given] if name in self._usual}
-        return reading_of(given, usual)
+        return reading_of(self.part(Reading))
 
 
 class BothWays(AskedModel):
@@ -182,9 +177,7 @@ class OfRecords(Reading):
         """Return motions together with how they are read and scaled."""
         from rocking_cli.ask.ground_motions import Motions
 
-        given = self.in_order_given(PREPARING, SCALING)
-        usual = {name: given.pop(name) for name in [*given] if name in self._usual}
-        return Motions.of(motions, given, usual=usual)
+        return Motions.of(motions, self.in_order_given(PREPARING, SCALING))
 
 
 class UnderMotions(OfRecords, Scaling, BothWays):

@@ -1,29 +1,40 @@
-"""A verb of Python is made of a function of a question: its arguments are the fields of the question's model."""
+"""A verb of Python is made of a function of a question: its arguments are the fields of the question's model.
+
+Verbs that take several motions or structures give an answer to each, and write the files of each.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
-from functools import wraps
+from functools import partial, wraps
 from inspect import Parameter, Signature, getdoc, signature
 from pathlib import Path
 from textwrap import fill, indent
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from rocking_cli.ask.answer import Answer, Answers
+from rocking_cli.ask.answer import Answer, Answers, Dimensions, no_plot
 from rocking_cli.ask.asked import AskedModel, M, checked, choices, in_order, owner_of, told_of
 from rocking_cli.ask.groups import WithTable
 from rocking_cli.ask.kinds import STANDARD_OUTPUT
+from rocking_cli.ask.kinds import each as several_of
 from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.errors import InputError, Problem, named
+from rocking_cli.errors import InputError, Problem, RockingError, named
 from rocking_cli.processing.reading_options import CORRECTIONS, SCALING, corrected_once
-from rocking_cli.text import cut, did_you_mean
-from rocking_cli.views.view import View
+from rocking_cli.text import cut, did_you_mean, numbered
+from rocking_cli.views.view import Table, View
 
 if TYPE_CHECKING:
-    from rocking_cli.io.tables import Columns
+    from matplotlib.figure import Figure
 
+    from rocking_cli.ask.ground_motions import Motions
+    from rocking_cli.io.tables import Columns
+    from rocking_cli.processing.reading import Scaled
+
+A = TypeVar("A", bound=Answer[Any])
 A_co = TypeVar("A_co", covariant=True)
 MIN_LIKENESS = 0.8  # of a word and the name of a field that it means
 MEANT = {
@@ -44,7 +55,7 @@ class Verb(Protocol[A_co]):
         """Answer the question."""
 
     def ask(self, given: Mapping[str, Any], usual: Mapping[str, Any], watch: Watcher) -> A_co:
-        """Answer the question of some fields; `usual` are a user's defaults."""
+        """Answer the question of some fields; `usual` are defaults of the command."""
 
 
 def verb(model: type[M]) -> Callable[[Callable[[M, Watcher], A_co]], Verb[A_co]]:
@@ -144,16 +155,12 @@ def _keep_apart(asked: AskedModel) -> None:
         if "input" in each.where or (each.kind is not None and each.kind.words == "file")
     ]
     read = [getattr(asked, name) for name in names]
-    files = [str(each) for value in read for each in _each(value) if isinstance(each, str | Path)]
+    files = [str(each) for value in read for each in several_of(value) if isinstance(each, str | Path)]
     motions = getattr(asked, "ground_motions", None)
     files += [str(each.path) for each in motions.records] if motions is not None else []
     keep_apart([(named(name), each) for name, each in written.items()], files)
     for name in ("out", "curves"):
         check_table(written.get(name))
-
-
-def _each(value: Any) -> Sequence[Any]:
-    return value if isinstance(value, list | tuple) else [value]
 
 
 def _unknown(model: type[AskedModel], name: str, given: Mapping[str, Any]) -> Problem:
@@ -177,7 +184,7 @@ def _of_structure(name: str, value: object, known: list[str], structures: Sequen
     from rocking_cli.core import Mechanism
     from rocking_cli.io.field_problems import by_meaning
 
-    cls = next((type(each) for one in structures for each in _each(one) if isinstance(each, Mechanism)), Mechanism)
+    cls = next((type(each) for one in structures for each in several_of(one) if isinstance(each, Mechanism)), Mechanism)
     fields = cls.model_fields
     if name in cls.refused and name not in fields:
         return str(Problem(cls.refused[name], field=name))
@@ -193,12 +200,12 @@ def _of_structure(name: str, value: object, known: list[str], structures: Sequen
 
 def by_place(model: type[AskedModel]) -> dict[str, Any]:
     """Return the fields of a question in the order of the verb: those by place first, of which required ones first."""
-
-    def place(item: tuple[str, Any]) -> tuple[bool, bool, bool]:
-        where = told_of(item[1]).where
-        return "input" not in where, not item[1].is_required(), where != "input"
-
-    return dict(sorted(in_order(model).items(), key=place))
+    fields = in_order(model)
+    places = {}
+    for name, field in fields.items():
+        where = told_of(field).where
+        places[name] = "input" not in where, not field.is_required(), where != "input"
+    return {name: fields[name] for name in sorted(fields, key=lambda name: places[name])}
 
 
 def _signature(model: type[AskedModel], function: Callable[..., Any]) -> Signature:
@@ -241,3 +248,106 @@ def described(field: Any) -> str:
         "" if field.is_required() or field.default in (None, False, (), [], {}) else f"{field.default}"
     )
     return f"{field.description}{unit}{f' By default {default}.' if default else ''}"
+
+
+def are_several(given: object, motions: Motions) -> bool:
+    """Return whether several motions are given, or any number of them in a list."""
+    from rocking_cli.processing.reading import Scaled
+
+    return motions.count > 1 or (isinstance(given, list | tuple) and not isinstance(given, Scaled))
+
+
+def answers(
+    question: str,
+    what: str,
+    found: Mapping[str, A],
+    parts: Sequence[Table | str],
+    figure: Callable[[], Figure] | None = None,
+    tables: Mapping[str, Callable[[], Columns]] = MappingProxyType({}),
+) -> Answers[A]:
+    """Return the answers to a question about several motions or structures, with the parts of their common view.
+
+    `figure` is their common plot and `tables` are further tables of all, if there are any.
+    """
+    view = View(lambda: {name: each.to_dict() for name, each in found.items()}, parts)
+    tables = {**{name: each.columns for name, each in found.items()}, **tables}
+    figure = figure or no_plot(f"several {what}s have no common plot", "plot the answer to each")
+    dims = [Dimensions((what, *each.names), each.of) for each in next(iter(found.values())).dims] if found else []
+    return Answers(question, found, view, partial(_columns, what, found), figure, None, tables, dims)
+
+
+def ask_each(
+    motions: Sequence[Scaled], one: Callable[[Scaled, int], A], watch: Watcher
+) -> tuple[dict[str, A], list[str]]:  # fmt: skip
+    """Ask about each of several motions.
+
+    Parameters
+    ----------
+    motions : sequence of Scaled
+        The motions, each with a name of its own.
+    one : callable
+        Function (motion, place) that asks about one.
+    watch : Watcher
+        Told of each answer, which it may take; and which motions cannot be used.
+
+    Returns
+    -------
+    dict of str to Answer
+        Answers that the watcher did not take.
+    list of str
+        Names of the motions that cannot be used.
+
+    Raises
+    ------
+    RockingError
+        If none can be used: the error of the last one.
+    """
+    by_name: dict[str, A] = {}
+    left_out: list[str] = []
+    with watch.progress(len(motions), "motions") as advance:
+        for k, motion in enumerate(motions):
+            name = motion.motion.name
+            try:
+                answer = one(motion, k)
+            except RockingError as error:
+                left_out.append(name)
+                named = type(error)(f"{name}: {error}")
+                named.__cause__ = error
+                if len(left_out) == len(motions):
+                    raise named from error
+                watch.leave_out(named)
+            else:
+                if not watch.take(answer):
+                    by_name[name] = answer
+            advance(1)
+    return by_name, left_out
+
+
+def places_of(
+    argument: str, file: str | Path | None, motions: Sequence[Scaled], read: Sequence[str | Path | None]
+) -> list[Path | None]:  # fmt: skip
+    """Return the file of each of several motions, `out-accel.csv` and so on for `out.csv` as an `argument`.
+
+    Raises
+    ------
+    InputError
+        If one of them would replace a file that is read.
+    """
+    from rocking_cli.io.files import keep_apart
+
+    if file is None:
+        return [None] * len(motions)
+    path, names = Path(file), list[str]()
+    for each in motions:
+        name = each.motion.name if each.file is None else each.motion.name.replace(each.file.name, each.file.stem, 1)
+        word = "-".join(re.findall(r"[\w.+]+", name)) or "motion"
+        names.append(numbered(f"{path.stem}-{word}", path.suffix, names))
+    places, inputs = [path.with_name(name) for name in names], [str(each) for each in read if each is not None]
+    keep_apart([(named(argument), place) for place in places], inputs)
+    return list(places)
+
+
+def _columns(what: str, found: Mapping[str, Answer[Any]]) -> Columns:
+    from rocking_cli.io.tables import stacked
+
+    return stacked({what: name} | dict(each.columns()) | {what: name} for name, each in found.items())

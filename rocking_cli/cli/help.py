@@ -41,11 +41,11 @@ class HelpFormatter(click.HelpFormatter):
 
 
 class HeadedOption(click.Option):
-    """Option that the help lists under a heading; `usual` is its default as it would be typed."""
+    """Option that the help lists under a heading."""
 
-    def __init__(self, *names: Any, heading: str = OPTIONS_HEADING, usual: str = "", **more: Any) -> None:
+    def __init__(self, *names: Any, heading: str = OPTIONS_HEADING, **more: Any) -> None:
         super().__init__(*names, **more)
-        self.heading, self.usual = heading, usual
+        self.heading = heading
 
 
 def heading_of(option: click.Parameter) -> str:
@@ -61,10 +61,8 @@ class Command(click.Command):
         try:
             return super().parse_args(ctx, args)
         except click.NoSuchOption as error:
-            name, reads = (
-                error.option_name.lstrip("-"),
-                any(heading_of(each) == RECORDS_HEADING for each in self.params),
-            )
+            name = error.option_name.lstrip("-")
+            reads = any(heading_of(each) == RECORDS_HEADING for each in self.params)
             if name not in CORRECTIONS or not reads:
                 raise
             with spelled("--{}".format):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import shlex
+from collections.abc import Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any, get_args
@@ -13,11 +14,9 @@ from pydantic.fields import FieldInfo
 
 from rocking_cli.ask.asked import AskedModel, Kind, choices, in_order, no_effect, owner_of, told_of
 from rocking_cli.ask.watcher import Watcher
-from rocking_cli.cli import complete, terminal
-from rocking_cli.cli.command_line import command_line
+from rocking_cli.cli import terminal
 from rocking_cli.cli.help import MOTIONS_HEADING, OPTIONS_HEADING, OUTPUT_HEADING, Command, HeadedOption
-from rocking_cli.cli.options import JSON_HELP
-from rocking_cli.cli.watching import OnTerminal
+from rocking_cli.cli.options import JSON_HELP, PULSES, completer
 from rocking_cli.errors import InputError, spelled
 from rocking_cli.plugins.rooms import names
 from rocking_cli.processing.reading_options import CORRECTIONS
@@ -45,7 +44,7 @@ class Made(Command):
 
     def run(self, *, as_json: bool, **typed: Any) -> None:
         """Ask the question, and show the answer."""
-        watch = OnTerminal(as_json=as_json)
+        watch = terminal.OnTerminal(as_json=as_json)
         with spelled(self.spell):
             given, usual = self._given(typed)
             for name in [name for name, value in usual.items() if callable(value)]:
@@ -70,7 +69,7 @@ class Made(Command):
         terminal.show(answer.view, as_json=as_json)
 
     def _given(self, typed: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Return the fields that are given, and the defaults of the user and of the command."""
+        """Return the fields that are given, and the defaults of the command."""
         context, fields = click.get_current_context(), self.model.model_fields
         given: dict[str, Any] = {}
         usual: dict[str, Any] = {}
@@ -82,11 +81,8 @@ class Made(Command):
                 elif told.on_terminal is not None:
                     usual[name] = told.on_terminal
                 continue
-            source = context.get_parameter_source(name)
-            if source is ParameterSource.COMMANDLINE:
+            if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
                 given[name] = typed[name]
-            elif source is ParameterSource.DEFAULT_MAP:
-                usual[name] = typed[name]
             elif told.on_terminal is not None:
                 usual[name] = told.on_terminal
         if "origin" in fields:
@@ -113,6 +109,19 @@ class Made(Command):
         return typed[name]
 
 
+def command_line(ctx: click.Context, without: Sequence[str] = ()) -> str:
+    """Return the command as it was given, for a POSIX shell, for the documents it writes; `without` some parameters."""
+    words = ["rocking", ctx.info_name or ""]
+    for param in [each for each in ctx.command.params if each.name not in without]:
+        value = ctx.params.get(param.name or "")
+        if ctx.get_parameter_source(param.name or "") is not ParameterSource.COMMANDLINE:
+            continue
+        for each in value if isinstance(value, tuple) else (value,):
+            words += [] if isinstance(param, click.Argument) else [param.opts[0]]
+            words += [] if each is True else [str(each)]
+    return shlex.join(words)
+
+
 def _check_strays(files: tuple[str, ...], records: tuple[str, ...]) -> None:
     """Raise if records stand in the place of a structure: the shell puts the files of a bare pattern there."""
     endings = {Path(place).suffix.lower() for place in records} - {"", ".yaml", ".yml"}
@@ -134,7 +143,7 @@ def _arguments(model: type[AskedModel]) -> list[click.Parameter]:
         kind, usually = told.kind or Kind(str), "" if told.typed else usual.get(name, "")
         metavar = told.typed or usually or kind.metavar or name.upper()
         words = "file" if name in (*STRUCTURES, "motions") else kind.words
-        more: dict[str, Any] = {"shell_complete": complete.words(words)} if words else {}
+        more: dict[str, Any] = {"shell_complete": completer(words)} if words else {}
         more |= {"nargs": -1} if usually or metavar.endswith("...") else {}
         required = field.is_required() and not usually
         arguments.append(click.Argument([name], metavar=metavar, required=required, **more))
@@ -151,15 +160,15 @@ def _motions(model: type[AskedModel]) -> list[click.Parameter]:
     """Return the options that give ground motions."""
     if not _has_motions(model):
         return []
-    pulses = complete.plugins(complete.PULSES, ending=":")
     return [
         HeadedOption(
             ["--record", "records"], heading=MOTIONS_HEADING, multiple=True, metavar="PLACE",
-            shell_complete=complete.files,
+            shell_complete=completer("file"),
             help="Ground motion file, - for standard input, or a quoted pattern such as 'records/*.AT2'. Repeatable.",
         ),
         HeadedOption(
-            ["--pulse", "pulses"], heading=MOTIONS_HEADING, multiple=True, metavar="PULSE", shell_complete=pulses,
+            ["--pulse", "pulses"], heading=MOTIONS_HEADING, multiple=True, metavar="PULSE",
+            shell_complete=completer(PULSES, ending=":"),
             help="Pulse instead of a record, NAME:AMPLITUDE:PERIOD, such as sine:0.6g:0.8s. Repeatable.",
         ),
     ]  # fmt: skip
@@ -183,19 +192,15 @@ def _option(name: str, field: FieldInfo, heading: str) -> HeadedOption:
     kind = told.kind or Kind(str)
     words = kind.words or " ".join(known)
     more: dict[str, Any] = {"metavar": kind.metavar or f"[{words.replace(' ', '|')}]", "multiple": told.repeat}
-    more["shell_complete"] = complete.words(words) if words else None
+    more["shell_complete"] = completer(words) if words else None
     if {*(get_args(field.annotation) or [field.annotation])} <= {bool, type(None)}:
         more = {"is_flag": True}
     elif told.alone:
         more |= {"is_flag": False, "flag_value": told.alone}
     plain = field.is_required() or field.default in (None, (), [], {}) or isinstance(field.default, bool)
-    usual = told.usual or (f"{told.on_terminal}" if told.on_terminal else "" if plain else shown(field.default))
+    values = field.default if isinstance(field.default, tuple) else (field.default,)
+    typed = ",".join(f"{value:g}" if isinstance(value, float) else f"{value}" for value in values)
+    usual = told.usual or (f"{told.on_terminal}" if told.on_terminal else "" if plain else typed)
     text = f"{field.description}{f'  [default: {usual}]' if usual else ''}"
     names = [*(["-o"] if name == "out" else []), f"--{(told.typed or name).replace('_', '-')}", name]
-    return HeadedOption(names, heading=heading, usual=usual, help=text, required=field.is_required(), **more)
-
-
-def shown(default: Any) -> str:
-    """Return a default as it would be typed."""
-    parts = default if isinstance(default, tuple) else (default,)
-    return ",".join(f"{each:g}" if isinstance(each, float) else f"{each}" for each in parts)
+    return HeadedOption(names, heading=heading, help=text, required=field.is_required(), **more)

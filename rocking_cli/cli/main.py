@@ -13,15 +13,13 @@ from typing import Any
 import click
 
 from rocking_cli import __version__
-from rocking_cli.cli import defaults, endings, terminal
+from rocking_cli.cli import endings, terminal
 from rocking_cli.cli.help import HelpFormatter
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.plugins.rooms import commands, short_help
 from rocking_cli.text import cut, keeps_formulas, one_line, printable
 
 NO_MEMORY = "Could not allocate memory", "can't start new thread"  # of MuJoCo, and of Python
-DIAGNOSTIC_COMMANDS = ("info", "selfcheck")
-"""Commands that run even if the user's defaults are invalid."""
 MAX_EPOCH_DIGITS = 11  # number of digits of SOURCE_DATE_EPOCH, up to the year 5138
 
 
@@ -32,29 +30,12 @@ class _Helped(click.Context):
 
 
 class _Context(_Helped):
-    """Context of a command: its options have the user's defaults, and only results go to standard output."""
-
-    def __init__(self, *args: Any, **more: Any) -> None:
-        super().__init__(*args, **more)
-        self.refused: InputError | None = None
-        if not self.resilient_parsing:
-            try:
-                defaults.set_for(self)
-            except InputError as error:  # an invalid default is reported later, as --help works without it
-                self.refused = error
+    """Context of a command: only results go to standard output."""
 
     def invoke(self, callback: Any, /, *args: Any, **named: Any) -> Any:
         """Run the function of a command."""
-        if self.refused is not None and self.info_name not in DIAGNOSTIC_COMMANDS:
-            raise self.refused
-        defaults.say(self)
-        try:
-            with terminal.plugins_apart():
-                return super().invoke(callback, *args, **named)
-        except InputError as error:
-            if whose := defaults.whose(str(error), self):
-                error.add_note(whose.strip())
-            raise
+        with terminal.plugins_apart():
+            return super().invoke(callback, *args, **named)
 
 
 def _check_environment() -> None:
@@ -135,13 +116,8 @@ class LazyGroup(click.Group):
             with endings.in_order():
                 return super().invoke(ctx)
         except click.ClickException as error:
-            if isinstance(error, click.BadParameter) and (blamed := defaults.blame(error)) is not None:
-                terminal.error(str(blamed))
-                terminal.debug_traceback(error)
-                ctx.exit(blamed.exit_code)
-            more = defaults.whose(error.message, error.ctx) if isinstance(error, click.UsageError) else ""
             # The message quotes what the user typed.
-            message = terminal.beside(printable(error.format_message() + more), "Error: ")
+            message = terminal.beside(printable(error.format_message()), "Error: ")
             error.format_message = lambda: message  # type: ignore[method-assign]
             terminal.debug_traceback(error)
             raise
@@ -149,7 +125,7 @@ class LazyGroup(click.Group):
             terminal.error(": ".join(["interrupted", *getattr(stopped, "__notes__", ())]))
             ctx.exit(endings.exit_code(stopped))
         except RockingError as error:
-            terminal.error("\n  ".join([str(error), *getattr(error, "__notes__", ())]))
+            terminal.error(str(error))
             terminal.debug_traceback(error)
             ctx.exit(error.exit_code)
         except OSError as error:  # reported by `main`

@@ -17,13 +17,23 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TextIO
 
 import click
 
+from rocking_cli.ask.watcher import Advance, Watcher
 from rocking_cli.cli.layout import grid, stacked, wrapped
-from rocking_cli.errors import DoubtWarning, KeptWarning, KernelWarning, PluginWarning
+from rocking_cli.errors import (
+    EXIT_INCOMPLETE,
+    DoubtWarning,
+    KeptWarning,
+    KernelWarning,
+    PluginWarning,
+    Refused,
+    RockingError,
+    SolverError,
+)
 from rocking_cli.io.json_text import json_text
 from rocking_cli.text import printable
 
 if TYPE_CHECKING:
-    from rocking_cli.ask.watcher import Advance
+    from rocking_cli.ask.answer import Answer
     from rocking_cli.views.view import View
 
 PROGRESS_DELAY = 1.0  # s of work before progress is shown
@@ -347,11 +357,66 @@ def table(
 def show(view: View, *, as_json: bool) -> None:
     """Print a result: as one line of JSON, or as its tables and sentences, with options as they are typed."""
     if as_json:
-        data = view.plain()
-        print_json(data)
+        print_json(view.plain())
         return
     for part in view.parts:
         if isinstance(part, str):
             sentence(part)
         else:
             table(part.title, part.columns, part.rows, numbers=part.numbers)
+
+
+class OnTerminal(Watcher):
+    """Watcher of a verb that prints, and goes on without the motions and structures that cannot be used."""
+
+    speak, note, warn, detail = staticmethod(speak), staticmethod(note), staticmethod(warning), staticmethod(detail)
+    working, progress = staticmethod(working), staticmethod(progress)
+    standard_output = staticmethod(results_as_bytes)
+
+    def __init__(self, *, as_json: bool = False) -> None:
+        self.left_out = 0
+        self.taken = False  # whether answers were printed as soon as they were ready
+        self._unwritten: list[RockingError] = []
+        self.as_json, self._failed, self._given = as_json, False, dict[str, Any]()
+        self.in_detail = asked("verbose")
+
+    def begin(self, given: Mapping[str, Any]) -> None:
+        """Keep the options for the answers that are taken."""
+        self._given = self._given or dict(given)
+
+    def leave_out(self, error: RockingError) -> None:
+        """Print an error, and count it; raise one of the system, as that of a full disk is not of this motion."""
+        if isinstance(error, Refused):
+            raise error
+        self.incomplete(str(error))
+        debug_traceback(error)
+
+    def take(self, answer: Answer[Any]) -> bool:
+        """Print one of several answers as JSON, if requested: a line each, as soon as it is ready."""
+        if self.as_json:
+            show(answer.view.plus(lambda: {"given": self._given}), as_json=True)
+            self.taken = True
+        return True
+
+    def incomplete(self, text: str) -> None:
+        """Print an error, and count it."""
+        error(text)
+        self.left_out += 1
+
+    def unwritten(self, error: RockingError) -> None:
+        """Keep an error until the answer is shown."""
+        self._unwritten.append(error)
+
+    def fail(self, error: Exception | None) -> None:
+        """Count a check that failed."""
+        debug_traceback(error)
+        self._failed = True
+
+    def end(self) -> None:
+        """End the command; with the exit code of a failed check, or of an answer that lacks something."""
+        for error in self._unwritten:
+            self.leave_out(error)
+        if self._failed:
+            click.get_current_context().exit(SolverError.exit_code)
+        if self.left_out:
+            click.get_current_context().exit(EXIT_INCOMPLETE)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from math import cos, isclose, isfinite, prod, radians, sin
 from pathlib import Path
@@ -16,8 +15,7 @@ from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
 from rocking_cli.excitation.doubts import of_samples
 from rocking_cli.excitation.records import read_measured
-from rocking_cli.excitation.records.opening import allow_again
-from rocking_cli.excitation.records.record_units import Quantity, size_of
+from rocking_cli.excitation.records.record_units import Quantity
 from rocking_cli.excitation.records.statements import name as plain_name
 from rocking_cli.processing.reading_options import ALL_AZIMUTHS, PREPARING, READING
 from rocking_cli.processing.steps import Factor, Lowpass, Resample, Step, of_vertical, process
@@ -38,13 +36,10 @@ class Reading:
         Values of the options that are given, without the corrections.
     steps : tuple of Step
         Corrections in their order, applied to the recorded values, before differentiation.
-    usual : mapping of str to object
-        Options for files that do not state the same themselves.
     """
 
     options: Mapping[str, Any] = field(default_factory=dict)
     steps: tuple[Step, ...] = ()
-    usual: Mapping[str, Any] = field(default_factory=dict)
 
     def __getattr__(self, name: str) -> Any:
         """Return the value of an option."""
@@ -54,7 +49,7 @@ class Reading:
 
     def over(self, common: Reading) -> Reading:
         """Return this reading, completed by the `common` reading of all records, whose corrections come last."""
-        return Reading({**common.options, **self.options}, (*self.steps, *common.steps), common.usual)
+        return Reading({**common.options, **self.options}, (*self.steps, *common.steps))
 
     def without(self, *names: str) -> Reading:
         """Return this reading without some options."""
@@ -79,30 +74,6 @@ class Reading:
         InputError
             If a file cannot be read, a correction cannot be made, or two components do not fit together.
         """
-        return self.settled(file)[0]
-
-    def settled(self, file: str | Path) -> tuple[GroundMotion, Reading]:
-        """Return the motion that excites a structure, and how its file was read: without usual options if it can be.
-
-        Raises
-        ------
-        InputError
-            As `read`.
-        """
-        usual = {name: each for name, each in self.usual.items() if name not in self.options}
-        if "units" in usual:
-            of: Quantity = self.quantity or "acceleration"
-            if self.gain is not None or size_of(usual["units"], of) is None:  # the usual unit does not apply
-                del usual["units"]
-        alone = Reading(self.options, self.steps)
-        if usual:
-            with suppress(InputError):
-                return alone._read(file), alone
-            allow_again(file)
-            alone = replace(alone, options={**usual, **self.options})
-        return alone._read(file), alone
-
-    def _read(self, file: str | Path) -> GroundMotion:
         if self.azimuth == ALL_AZIMUTHS:
             raise InputError(Problem("can be all for `respond` only", field=named("azimuth"), hint="give one angle"))
         measured, quantity = self._measured(file, self.channel)
@@ -154,8 +125,7 @@ class Reading:
         """
         own_options = {name: each for name, each in (("dt", dt), ("channel", channel)) if each is not None}
         bare = self.without("channel", "floor", *OF_PAIRS)
-        usual = {name: each for name, each in self.usual.items() if name != "channel"}
-        return Reading({**bare.options, **own_options}, of_vertical(self.steps), usual).read(file)
+        return Reading({**bare.options, **own_options}, of_vertical(self.steps)).read(file)
 
     def _measured(self, file: str | Path, channel: str | None) -> tuple[GroundMotion, Quantity]:
         uneven = any(isinstance(step, Resample) for step in self.steps)
@@ -163,15 +133,13 @@ class Reading:
         return read_measured(file, uneven=uneven, **of_file)
 
 
-def reading_of(options: Mapping[str, Any], usual: Mapping[str, Any] | None = None) -> Reading:
+def reading_of(options: Mapping[str, Any]) -> Reading:
     """Return how to read a record, from the keyword arguments of a verb, or what the fields of a file say.
 
     Parameters
     ----------
     options : mapping of str to object
         Options by name; corrections are made in the order in which they are given.
-    usual : mapping of str to object, optional
-        Options for files that do not state the same themselves.
 
     Raises
     ------
@@ -182,7 +150,7 @@ def reading_of(options: Mapping[str, Any], usual: Mapping[str, Any] | None = Non
     parsed = {name: PREPARING[name].parse(each) for name, each in given.items()}
     steps = tuple(each for each in parsed.values() if isinstance(each, Step))
     plain_options = {name: each for name, each in parsed.items() if not isinstance(each, Step)}
-    return Reading(plain_options, steps, {name: READING[name].parse(each) for name, each in (usual or {}).items()})
+    return Reading(plain_options, steps)
 
 
 def _same(one: str | Path, other: str | Path) -> bool:
@@ -347,7 +315,8 @@ class Listed(NamedTuple):
 
         Earthquake and station of the list take the place of those of the file.
         """
-        motion, reading = self.reading(common).settled(self.path)
+        reading = self.reading(common)
+        motion = reading.read(self.path)
         if self.entry is not None:
             file_origin = motion.origin
             event, station = (

@@ -126,7 +126,7 @@ def test_an_unknown_argument_is_refused_and_more_by_place_than_there_are():
         toy(1, number=2)
 
 
-def test_a_users_default_without_effect_is_left_out():
+def test_a_default_of_the_command_without_effect_is_left_out():
     asked = checked(ToyAsked, {"kind": "plain"}, {"quick": True, "neighbours": 7})
     assert not asked.quick and asked.neighbours == 7
     assert checked(ToyAsked, {"kind": "odd"}, {"quick": True}).quick

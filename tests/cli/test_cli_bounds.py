@@ -95,11 +95,6 @@ def test_one_bad_structure_of_several_is_reported_and_the_others_are_used(comman
     assert result.stdout == alone and "no.yaml: no such file" in result.stderr
 
 
-def test_the_first_structure_of_equivalent_must_be_there():
-    asked = ("--ag", "0.6g", "--period", "0.5")
-    assert "no.yaml: no such file" in run("equivalent_pulses", "no.yaml", BLOCK, BLOCK, *asked, code=2).stderr
-
-
 class TestWritten:
     def test_there_is_no_minus_zero_in_a_table(self):
         stream = io.BytesIO()

@@ -14,7 +14,6 @@ import re
 import shutil
 from copy import deepcopy
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -22,11 +21,8 @@ import yaml
 
 import rocking_cli as rk
 import rocking_cli.questions.report.study
-import rocking_cli.questions.selfcheck.study
-import rocking_cli.questions.selfcheck.view
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.processing.reading_options import READING, SCALING
-from rocking_cli.views.view import View
 from tests.conftest import EXAMPLES, NEEDS_MUJOCO
 from tests.meshes import box, obj, ply
 
@@ -243,7 +239,7 @@ CALLS = {
     ),
 }  # fmt: skip
 """A question of each verb, and an odd value of each of its arguments."""
-LONG = "report", "verify", "calibrate", "survey", "fragility"
+LONG = "report", "verify", "calibrate", "survey", "fragility", "overturning_map"
 """Verbs whose questions take longer: they are asked with the rest."""
 OF_A_KNOWN_MOTION = {"structure": OTHER, "motions": "sine:0.3g:0.2s"}, {"contact": True, "tail": 0.05, "rtol": 1e-5}
 """Arguments of `respond` that change nothing where friction is given, or where the outcome is unknown."""
@@ -254,8 +250,8 @@ OF_TESTS = (
      "points": 6, "neighbours": 7, "out": "o.yaml", "free_geometry": True},
 )  # fmt: skip
 """Arguments of `calibrate` for the outcomes of tests."""
-WITHOUT_EFFECT = {"watch", "threads", "jobs", "processes", "in_processes", "usual"}
-"""Arguments that change no answer: the watcher, how many processors work on it, and defaults of a command's user."""
+WITHOUT_EFFECT = {"watch", "jobs"}
+"""Arguments that change no answer: the watcher, and how many processors work on it."""
 
 IDLE = [
     ("design", {"structure": BLOCK, "vary": "width=0.5m:0.9m", "until": "lambda >= 0.2", "points": 3},
@@ -384,18 +380,6 @@ def test_arguments_of_a_store_have_an_effect():
         "plot": "p",
     }
     assert not list(without_effect(rk.results, {"store": "in.runs"}, odd))
-
-
-def test_a_quick_selfcheck_computes_less(monkeypatch):
-    asked = []
-    none = SimpleNamespace(failed=())
-    monkeypatch.setattr(
-        rocking_cli.questions.selfcheck.study, "run_checks", lambda *_, quick, **more: asked.append(quick) or none
-    )
-    monkeypatch.setattr(rocking_cli.questions.selfcheck.view, "view", lambda found: View({}, []))
-    for quick in (False, True):
-        rk.selfcheck(quick=quick)
-    assert asked == [False, True]
 
 
 @pytest.mark.parametrize(("name", "call", "idle"), IDLE, ids=lambda value: value if isinstance(value, str) else "")

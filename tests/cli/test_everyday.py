@@ -9,23 +9,16 @@ import sys
 from importlib.metadata import version
 from pathlib import Path
 
-import click
 import pytest
 from click.testing import CliRunner
 
-from rocking_cli.ask.asked import checked
-from rocking_cli.cli import defaults
 from rocking_cli.cli.main import main
 from rocking_cli.dynamics import shipped
-from rocking_cli.errors import InputError
-from rocking_cli.plugins.rooms import commands
-from rocking_cli.questions.fragility.asked import FragilityAsked
 from tests.cli.test_cli import run, run_json
 from tests.cli.test_cli_standard_input import piped
 from tests.conftest import EXAMPLES
 
 ACCEL, BLOCK = str(EXAMPLES / "accel.csv"), str(EXAMPLES / "block.yaml")
-PULSE = ("respond", BLOCK, "--model", "linear2", "--pulse", "sine:0.5g:1s", "--neighbours", "0")
 
 
 def test_the_package_runs_as_the_command_does():
@@ -55,121 +48,6 @@ class TestSwitchesOfTheProgram:
         assert said.stdout == run("equiv", BLOCK).stdout and run("equiv", BLOCK).stderr == ""
 
 
-class TestDefaults:
-    @pytest.fixture
-    def user(self, _no_defaults_of_a_user):
-        _no_defaults_of_a_user.parent.mkdir(exist_ok=True)
-        return _no_defaults_of_a_user
-
-    def neighbours(self, *more):
-        return run_json("respond", BLOCK, "--model", "linear2", "--pulse", "sine:0.5g:1s", *more)["neighbours"]["count"]
-
-    def test_each_place_goes_before_the_next(self, tmp_path, user, monkeypatch):
-        user.write_text("neighbours = 11\n", encoding="utf-8")
-        assert self.neighbours() == 11
-        here = tmp_path / "rocking.toml"
-        here.write_text("neighbours = 12\n", encoding="utf-8")
-        assert self.neighbours() == 12
-        here.write_text("neighbours = 12\n[respond]\nneighbours = 13\n[margin]\nneighbours = 14\n", encoding="utf-8")
-        assert self.neighbours() == 13
-        monkeypatch.setenv("ROCKING_NEIGHBOURS", "15")
-        assert self.neighbours() == 15
-        assert self.neighbours("--neighbours", "16") == 16
-
-    def test_what_was_taken_is_said_once_and_only_where_it_changes_something(self, tmp_path, monkeypatch):
-        (tmp_path / "rocking.toml").write_text("tail = 5\nfps = 3\n", encoding="utf-8")
-        monkeypatch.setenv("ROCKING_AMPLITUDE_DEVIATION", "3%")
-        said = run(*PULSE).stderr
-        assert said.count("defaults:") == 1
-        assert "defaults: --amplitude-deviation 3% (ROCKING_AMPLITUDE_DEVIATION), --tail 5 (rocking.toml)" in said
-        assert "--amplitude" in run(*PULSE, "--tail", "5").stderr and "--tail" not in run(*PULSE, "--tail", "5").stderr
-        monkeypatch.delenv("ROCKING_AMPLITUDE_DEVIATION")
-        (tmp_path / "rocking.toml").write_text("tail = 10\n", encoding="utf-8")
-        assert "defaults:" not in run(*PULSE).stderr
-
-    @pytest.mark.parametrize(
-        ("text", "words"),
-        [
-            ("neighbors = 2", "rocking.toml: neighbors: this option cannot have a default did you mean neigh"),
-            ("model = 'linear1'", "rocking.toml: model: this option cannot have a default its meaning differs between"),
-            ("[repsond]\ntail = 2", "rocking.toml: [repsond]: repsond is not a command did you mean respond?"),
-            ("[respond]\njobs = 2", "rocking.toml: [respond] jobs: `rocking respond` has no option --jobs"),
-            ("tail = true", "rocking.toml: tail: the value is neither a text nor a number"),
-            (
-                "[respond]\nmodel = ['linear3']",
-                "--model linear3 was not typed; it is a default from rocking.toml: [respond]",
-            ),
-            ("[respond\n", "rocking.toml: not valid TOML: "),
-        ],
-    )
-    def test_what_is_wrong_is_said_with_file_and_key(self, text, words, tmp_path):
-        (tmp_path / "rocking.toml").write_text(text, encoding="utf-8")
-        without = (each for each in PULSE if each not in ("--model", "linear2"))
-        assert words in " ".join(run(*without, code=2).stderr.split())
-        assert "Usage:" in run("respond", "--help").stdout
-
-    def test_a_wrong_variable_is_named(self, monkeypatch):
-        monkeypatch.setenv("ROCKING_TAIL", "long")
-        said = run(*PULSE, code=2).stderr
-        assert "--tail: 'long' is not a valid time" in said and "it is a default from ROCKING_TAIL" in said
-
-    def test_an_option_that_does_not_go_with_others_is_said_to_be_a_default(self, tmp_path):
-        (tmp_path / "rocking.toml").write_text("[respond]\npolarity = 'both'\n", encoding="utf-8")
-        asked = ("respond", BLOCK, "--record", EXAMPLES / "accel.csv", "--with-pulse", "sine")
-        said = " ".join(run(*asked, code=2).stderr.split())
-        assert "--polarity both was not typed; it is a default from rocking.toml: [respond] polarity." in said
-        typed = run(*asked, "--polarity", "both", code=2).stderr
-        assert "was not typed" not in typed
-
-    @pytest.mark.parametrize(
-        "words",
-        [
-            ("respond", BLOCK, "--release", "0.3", "--model", "nonlinear"),
-            ("verify", BLOCK, "--site", EXAMPLES / "verify" / "site.yaml"),
-            ("report", BLOCK, "--json"),
-        ],
-    )
-    def test_what_has_no_effect_is_an_error_only_where_it_is_typed(self, words, tmp_path):
-        text = "author = 'me'\nneighbours = 7\nslenderness-deviation = 0.2\n[report]\npolarity = '1'\n"
-        (tmp_path / "rocking.toml").write_text(text, encoding="utf-8")
-        run(*words)
-        option = ("--author", "me") if words[0] == "verify" else ("--slenderness-deviation", 0.2)
-        assert f"{option[0]} has no effect without" in run(*words, *option, code=2).stderr
-
-    def test_a_list_is_what_is_typed_with_commas(self, tmp_path):
-        (tmp_path / "rocking.toml").write_text("[respond]\nmodel = ['linear1', 'linear2']\n", encoding="utf-8")
-        found = run_json("respond", BLOCK, "--pulse", "sine:0.5g:1s", "--neighbours", "0")
-        assert set(found["responses"]) == {"linear1", "linear2"}
-
-    def test_how_records_are_read_holds_where_the_file_does_not_say(self, tmp_path):
-        (tmp_path / "rocking.toml").write_text("units = 'm/s2'\ndt = 0.02\n", encoding="utf-8")
-        assert run_json("record", ACCEL)["dt"] == 0.01  # in its own unit, and with its own times
-        (tmp_path / "bare.txt").write_text("\n".join(f"{k % 7 - 3}.5" for k in range(50)), encoding="utf-8")
-        bare = run_json("record", "bare.txt")
-        assert (bare["unit"], bare["dt"]) == ("m/s2", 0.02)
-        run(*PULSE)  # no record to describe, and nobody typed that there is one
-        assert "describes a record" in run(*PULSE, "--units", "g", code=2).stderr
-
-    def test_jobs_are_for_this_machine_and_silent_on_a_cluster(self):
-        there = {"structures": "study.yaml", "scheduler": "tcp://there"}
-        assert checked(FragilityAsked, there, {"jobs": 3}).jobs is None
-        with pytest.raises(InputError, match="`jobs` has no effect on a cluster, which has its own number of workers"):
-            checked(FragilityAsked, there | {"jobs": 2})
-
-    def test_the_options_that_can_have_one_are_options(self):
-        options: dict[str, set[str]] = {}
-        for name in commands():
-            for each in main.get_command(click.Context(main), name).params:
-                options.setdefault(max(each.opts, key=len)[2:], set()).add(name)
-        assert set(defaults.SHARED_OPTIONS) <= set(options) and set(defaults.AMBIGUOUS_OPTIONS) <= set(options)
-
-    @pytest.mark.rest
-    def test_a_report_says_what_it_took_from_where(self, monkeypatch):
-        monkeypatch.setenv("ROCKING_NEIGHBOURS", "5")
-        run("report", BLOCK, "-o", "r.html")
-        assert "--neighbours 5  # --neighbours from ROCKING_NEIGHBOURS" in Path("r.html").read_text(encoding="utf-8")
-
-
 class TestInfo:
     def test_it_knows_the_versions_the_extras_and_the_plugins(self, monkeypatch):
         from rocking_cli.questions.info import study as installation
@@ -194,18 +72,13 @@ class TestInfo:
         monkeypatch.setattr(installation, "_version", lambda name: None)
         assert "no pyarrow: pip install 'rocking-cli[parquet]'" in run("info").stdout
 
-    def test_it_knows_what_is_taken_for_granted_and_what_is_wrong_with_it(self, tmp_path, monkeypatch):
+    def test_it_knows_the_variables_and_says_which_have_no_effect(self, monkeypatch):
+        monkeypatch.setenv("ROCKING_DEBUG", "0")
         monkeypatch.setenv("ROCKING_TAIL", "3")
-        monkeypatch.setenv("ROCKING_TAILS", "3")
-        (tmp_path / "rocking.toml").write_text("tail = 4\n[margin]\ntail = 5\n", encoding="utf-8")
-        found = run_json("info")["defaults"]
-        assert [(each["value"], each["place"], each["command"]) for each in found["set"]] == [
-            ("3", "ROCKING_TAIL", None), ("5", "rocking.toml", "margin"), ("4", "rocking.toml", None),
-        ]  # fmt: skip
-        assert found["unknown"] == ["ROCKING_TAILS"] and found["problem"] is None
-        (tmp_path / "rocking.toml").write_text("tial = 4\n", encoding="utf-8")
-        assert "rocking.toml: tial: this option cannot have a default" in run_json("info")["defaults"]["problem"]
-        assert "The environment variable ROCKING_TAILS is not used by rocking" in run("info").stdout
+        assert {"ROCKING_DEBUG", "ROCKING_TAIL"} <= set(run_json("info")["environment"])
+        said = run("info").stdout
+        assert "The environment variable ROCKING_TAIL is not used by rocking" in said and "ROCKING_TAIL=3" in said
+        assert "ROCKING_DEBUG is not used" not in said
 
     def test_it_knows_what_runs_the_kernels(self, monkeypatch):
         monkeypatch.delenv("ROCKING_KERNELS", raising=False)

@@ -1,54 +1,42 @@
-"""Every command ends in order where its streams are closed, broken or full: its work is done, or its code says why."""
+"""Every command ends in order where its streams or its disk are closed, broken or full: its work is done, or its code
+says why, and none counts what it could not write as skipped."""
 
+import errno
 import io
 import os
 import shlex
 import sys
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from pathlib import Path
 
 import pytest
-import yaml
+from click.testing import CliRunner
 
 from rocking_cli.cli.main import main
-from tests.cli.test_every_option import ACCEL, ACROSS, BLOCK_FILE, DRAWN_FILE, SITE, STUDY, TRACED
+from rocking_cli.io import files
+from tests.cli.test_every_command import needs_mujoco
 from tests.conftest import EXAMPLES
+from tests.crash.attacks import DRAWN, LINES, light, words_of
 
-UNDER = f"{BLOCK_FILE} --record {ACCEL}"
-LINES = {
-    "draw": f"{BLOCK_FILE}",
-    "equiv": "gone.yaml",
-    "collapse": f"{BLOCK_FILE}",
-    "import": f"{DRAWN_FILE} --scale 1:50 --depth 1 --density 2000",
-    "error": f"{BLOCK_FILE}",
-    "record": f"{ACCEL}",
-    "select": f"{ACCEL} {ACROSS} --target {EXAMPLES / 'target.csv'} --band 0.2:2 --count 2",
-    "verify": f"{BLOCK_FILE} --site {EXAMPLES / 'verify' / 'site.yaml'}",
-    "demand": f"{SITE}",
-    "survey": f"{EXAMPLES / 'survey' / 'parapets.csv'} --record {ACCEL} --neighbours 0",
-    "design": f"{UNDER} --vary width=0.5:0.9 --until 'lambda>=0.2'",
-    "score": f"{EXAMPLES / 'tests.csv'} --neighbours 3",
-    "calibrate": f"{TRACED} --free {EXAMPLES / 'calibrate' / 'trace.csv'}",
-    "animate": f"{UNDER} --out film.html --neighbours 0",
-    "pulse": f"{BLOCK_FILE} --ag 0.3g --period 0.5",
-    "overturning": f"{BLOCK_FILE} --points 3",
-    "equivalent_pulses": f"{BLOCK_FILE} {BLOCK_FILE} --ag 0.5g --period 0.6",
-    "fragility": "study.yaml --store study.runs",
-    "results": "study.runs",
-    "mechanisms": "block",
-    "measures": "",
-    "new": "block",
-    "info": "",
-    "selfcheck": "--help",
-    "completion": "bash",
-    "respond": f"{BLOCK_FILE} --record {ACCEL} --neighbours 0",
-    "margin": f"{BLOCK_FILE} --record {ACCEL} --neighbours 3",
-    "report": f"{BLOCK_FILE} --out r.html",
-    "": "--help",
-    "crosscheck": f"{BLOCK_FILE} --record gone.csv",
-    "spectrum": f"{UNDER}",
+OTHERS = {
+    "help": "--help",
+    "refused": "equiv gone.yaml",
+    "pulse": f"pulse {EXAMPLES / 'block.yaml'} --ag 0.3g --period 0.5",
+    "fields": "mechanisms block",
+    "measures": "measures",
+    "template": "new block",
+    "info": "info",
+    "completion": "completion bash",
 }
-"""A command line of each command, those that take longest in short."""
+"""Commands that print alone."""
+SLOW = {"calibrate", "crosscheck", "select", "survey", "sheets"}
+
+
+def cases(names):
+    """The names of commands, those that take long for `make test-rest`."""
+    return [pytest.param(name, marks=[pytest.mark.rest] * (name in SLOW)) for name in names]
+
+
 ENDS = {
     "whole": (True, True), "broken": ("broken", True), "full": ("full", True), "no errors": (True, None),
     "no results": (None, True), "neither": (None, None), "broken errors": (True, "broken"),
@@ -90,17 +78,48 @@ def ended(words, results, messages):
     return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
 
 
+@pytest.fixture
+def typed(request, tmp_path, monkeypatch):
+    """The words of a command, whose outputs are written into the current folder."""
+    needs_mujoco(request.param)
+    (tmp_path / "folder").mkdir()
+    monkeypatch.chdir(tmp_path / "folder")
+    inputs = tmp_path / "inputs"
+    with nullcontext() if request.param in DRAWN else light():
+        yield shlex.split(OTHERS[request.param]) if request.param in OTHERS else words_of(request.param, inputs)
+
+
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no full device")
-@pytest.mark.every(16)
-@pytest.mark.parametrize("command", LINES)
-def test_streams_that_cannot_be_written(command, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    Path("study.yaml").write_text(yaml.safe_dump(STUDY), encoding="utf-8")
-    if command == "results":
-        ended(["fragility", *shlex.split(LINES["fragility"])], True, True)
-    words = [*filter(None, [command]), *shlex.split(LINES[command])]
-    codes = {name: ended(words, *leads) for name, leads in ENDS.items()}
+@pytest.mark.every(8)
+@pytest.mark.parametrize("typed", cases([*LINES, *OTHERS]), indirect=True)
+def test_streams_that_cannot_be_written(typed):
+    codes = {name: ended(typed, *leads) for name, leads in ENDS.items()}
     whole = codes.pop("whole")
     assert whole in (0, 2, 5)
     lost = whole or (1 if Path("1.txt").read_bytes() else 0)
     assert codes == {name: lost if name in ("broken", "full") else whole for name in codes}
+
+
+@pytest.mark.every(7)
+@pytest.mark.parametrize(
+    "typed", cases([name for name in LINES if name not in ("restart", "free_blocks")]), indirect=True
+)
+def test_the_exit_code_is_that_of_the_disk_for_each_output(typed, monkeypatch):
+    """The first file that is written is refused, then the second, until all are written."""
+    outputs = []
+
+    def refuses(file, data):
+        outputs.extend([file] * (file not in outputs))
+        if outputs[-1] is file and len(outputs) == nth:
+            file.refused = OSError((errno.ENOSPC, errno.EIO, errno.EDQUOT)[nth % 3], "no room")
+            raise file.refused
+        return io.FileIO.write(file, data)
+
+    monkeypatch.setattr(files._Output, "write", refuses)
+    for nth in range(1, 30):
+        outputs.clear()
+        done = CliRunner().invoke(main, typed)
+        if len(outputs) < nth:
+            break
+        assert done.exit_code == 1 and "cannot be written: no room" in done.stderr, (typed, done.output, done.exception)
+    assert nth > 1 and done.exit_code == 0, done.output

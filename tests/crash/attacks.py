@@ -11,7 +11,7 @@ import shlex
 import shutil
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, chdir
+from contextlib import ExitStack, chdir, nullcontext
 from io import StringIO
 from itertools import groupby
 from pathlib import Path
@@ -118,11 +118,29 @@ def restore(folder: Path, before: State) -> None:
             (folder / path).write_bytes(content)
 
 
+def light() -> ExitStack:
+    """Let commands draw no pictures within this context."""
+    stack = ExitStack()
+    for what, instead in LIGHT.items():
+        stack.enter_context(patch(what, instead))
+    return stack
+
+
+def words_of(name: str, inputs: Path) -> list[str]:
+    """Return what is typed for a command, whose inputs are made in a folder."""
+    inputs.mkdir(parents=True)
+    for file, text in INPUTS.items():
+        (inputs / file).write_text(text, encoding="utf-8")
+    (inputs / "box.obj").write_bytes(obj(box((0.0, 0.0, 0.0), (0.6, 0.8, 2.4))))
+    if name == "results":
+        study = shlex.split(f"fragility {STUDY} --store {inputs}/study.runs --jobs 1")
+        assert CliRunner().invoke(main, study).exit_code == 0
+    return shlex.split(LINES[name].replace("INPUTS", str(inputs)))
+
+
 def attack(name: str, place: Path, one_in: int = 1) -> tuple[Counter[str], list[str]]:
     """Try a command at all calls, or one in so many; return the numbers of calls, tries and faults, and the faults."""
-    with ExitStack() as light:
-        for what, instead in ({} if name in DRAWN else LIGHT).items():
-            light.enter_context(patch(what, instead))
+    with nullcontext() if name in DRAWN else light():
         attacked = Attacked(name, place)
         attacked.all(one_in)
     figures = Counter(calls=len(attacked.traced.calls), faults=len(attacked.faults))
@@ -134,17 +152,10 @@ class Attacked:
 
     def __init__(self, name: str, place: Path) -> None:
         self.folder = place / "folder"
-        inputs = place / "inputs"
-        inputs.mkdir(parents=True)
-        for file, text in INPUTS.items():
-            (inputs / file).write_text(text, encoding="utf-8")
-        (inputs / "box.obj").write_bytes(obj(box((0.0, 0.0, 0.0), (0.6, 0.8, 2.4))))
         self.before: State = {}
-        if name == "results":
-            self._warm(f"fragility {STUDY} --store {inputs}/study.runs --jobs 1")
-        self.words = shlex.split(LINES[name].replace("INPUTS", str(inputs)))
+        self.words = words_of(name, place / "inputs")
         if name in BEFORE:
-            self.before = self._warm(BEFORE[name].replace("INPUTS", str(inputs)))
+            self.before = self._warm(BEFORE[name].replace("INPUTS", str(place / "inputs")))
         self._warm(shlex.join(self.words))
         if not self.before:
             first = next((path for path, text in state(self.folder).items() if text is not None), Path("no/file"))

@@ -118,14 +118,6 @@ class TestDerivatives:
         with pytest.raises(InputError, match=words):
             read_record(file, quantity=quantity, units=units)
 
-    def test_a_default_unit_of_accelerations_says_nothing_of_others(self, moved, tmp_path, monkeypatch):
-        monkeypatch.setenv("ROCKING_UNITS", "g")
-        bare = write(tmp_path / "bare.csv", "# a laser", T, U)
-        said = run("record", bare, "--from", "displacement", code=2).stderr
-        assert "does not say what unit its displacements are in" in said
-        assert run_json("record", moved, "--from", "displacement")["unit"] == "mm"
-        assert "no such file" in run("record", tmp_path / "none.txt", "--gain", "2g/V", code=2).stderr
-
     def test_the_command_says_what_differences_leave(self, moved):
         assert f"half of what is at {0.44295 / DT:.3g} Hz" in run("record", moved, "--from", "displacement").stderr
 

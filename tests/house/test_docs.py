@@ -19,12 +19,9 @@ from rocking_cli import Registry, core
 from rocking_cli.core import Angle, Length, Line, box
 from rocking_cli.core.mechanism_kinematics import Jointed, Kinematics
 from rocking_cli.core.released import released
-from rocking_cli.dynamics.model import Model
 from rocking_cli.plugins.rooms import commands
 from rocking_cli.plugins.rooms import names as verbs
 from rocking_cli.processing.intensity import IntensityMeasures
-from rocking_cli.questions.collapse.view import data
-from rocking_cli.questions.margin.study import Margin
 from rocking_cli.testing import contract
 from rocking_cli.views.mechanisms import fields
 from tests.conftest import PROJECT
@@ -86,13 +83,13 @@ def test_the_calculation_sheets_are_not_stale(made):
     assert made.make_sheets.stale({**every, "facade.html": page.replace("<p>", "<p class='other'>")}) == []
 
 
-@pytest.mark.docs
+@pytest.mark.rest
 def test_pages_of_a_sheet_are_drawn_the_same_each_time(made, tmp_path):
     drawn = [made.make_sheets.page_pictures(made.make_sheets.made("parapet"), 20) for _ in range(2)]
     assert drawn[0] == drawn[1] and all(each.startswith(b"\x89PNG") for each in drawn[0])
 
 
-@pytest.mark.docs
+@pytest.mark.rest
 def test_another_picture_is_not_alike(made, tmp_path):
     commands = {
         "pedestal": "rocking new block > pedestal.yaml",
@@ -114,14 +111,6 @@ def test_the_pictures_are_small():
     assert sum(sizes) < 9_000_000
 
 
-def test_every_kind_of_picture_is_in_the_gallery(made):
-    drawing = {what.split()[1] for kind, what in made.parts.asked(text_of("gallery.md"))}
-    assert drawing == {
-        "draw", "collapse", "error", "record", "respond", "animate", "margin", "overturning", "equivalent_pulses",
-        "spectrum", "fragility", "docs/make_figures.py", "report", "select", "import",
-    }  # fmt: skip
-
-
 @pytest.mark.parametrize(
     ("one", "other", "alike"),
     [
@@ -136,12 +125,6 @@ def test_every_kind_of_picture_is_in_the_gallery(made):
 )
 def test_outputs_are_compared_by_words_and_by_numbers(one, other, alike, made):
     assert made.parts.same(one, other) == alike
-
-
-def test_only_what_is_stale_is_written_anew(made):
-    page = "<!-- run: a -->\n\nwidth 1.001 m\n\n<!-- end -->\ntext\n<!-- run: b -->\n<!-- end -->\n"
-    anew = made.parts.renewed(page, lambda kind, what: "width 1.002 m")
-    assert anew == page.replace("<!-- run: b -->\n", "<!-- run: b -->\n\nwidth 1.002 m\n\n")
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
@@ -162,13 +145,6 @@ def test_every_command_is_explained(name, made):
     headings = re.findall(r"^## .*", text_of("commands.md"), re.M)
     assert any(re.search(rf"`rocking {name}\b", heading) for heading in headings), name
     assert f"\n## rocking {name}\n" in made.make_reference.command_line()
-
-
-def test_the_reference_has_every_option(made):
-    text = made.make_reference.command_line()
-    for option in ("--release TILT", "--with-pulse [best|sine|ricker|mavroeidis]", "-h, --help"):
-        assert f"- `{option}`: " in text
-    assert "    rocking respond arch.yaml --release 0.5\n" in text
 
 
 @pytest.mark.parametrize("name", MECHANISMS)
@@ -231,31 +207,6 @@ def test_every_class_that_a_verb_returns_is_documented_and_so_is_what_it_holds(m
             held = own & {*re.findall(r"\w+", " ".join([typed(texts[name])[0], *types]))}
             missing += [(name, each) for each in held - {*texts}]
     assert not missing
-
-
-def test_a_name_is_called_with_the_types_and_defaults_of_its_arguments(made):
-    called = made.make_reference.called
-    assert called("turned", rocking_cli.turned) == (
-        "turned(one: GroundMotion, other: GroundMotion, azimuth: float) -> GroundMotion"
-    )
-    assert ", *, a: float | None = None, omega" in called("pulse", rocking_cli.pulse)
-    assert called("first", Margin.first) == "first(level: float, *, unknown: bool = False) -> float | None"
-    assert "held: Reals = ..., ends_at_limit: tuple[bool, bool] = (False, False), " in called("Model", Model)
-    assert called("Mechanism", core.Mechanism) == "Mechanism"
-
-
-def test_the_reference_of_names_reads_as_it_stands_and_is_whole_on_the_site(made, documented):
-    page = text_of("api.md")
-    assert "eval-rst" not in page and "autofunction" not in page
-    for name in documented:
-        assert re.search(rf"^\| \[`{name.rpartition('.')[2]}`\]\(api/\w+\.md#rocking_cli\.{name}\) \| \S", page, re.M)
-    directives = made.make_reference.docstrings("respond ask.answer.Answer InputError")
-    for line in (
-        ".. autofunction:: rocking_cli.respond",
-        ".. autoclass:: rocking_cli.ask.answer.Answer\n   :members:",
-        ".. autoexception:: rocking_cli.InputError",
-    ):
-        assert line in directives
 
 
 def indented(section):
@@ -436,11 +387,3 @@ def test_what_is_refused_is_said_in_the_words_of_the_code(name):
         parts = re.split(r"\b[A-Z]\b(?:, [A-Z]\b)*|\.\.\.|[;:] |touches", f" {message} ")
         for words in (each.strip(" ,") for each in parts):
             assert words in code, (message, words)
-
-
-def test_the_json_of_collapse_is_what_the_page_says():
-    section = text_of("commands.md").partition("## `rocking collapse [FILE]`\n")[2].partition("\n## ")[0]
-    said = set(re.findall(r'"(\w+)"', section)) - {"directions", "positive", "negative", "name", "between", "at"}
-    found = data(rocking_cli.load_structure(PROJECT / "examples" / "assembly.yaml").collapse(core.Direction.POSITIVE))
-    assert said - {"joint", "force"} == set(found)
-    assert {*found["thrust"][0], *found["hinges"][0]} == {"joint", "at", "force", "name", "between"}

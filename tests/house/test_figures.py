@@ -9,6 +9,8 @@ from click.testing import CliRunner
 
 from tests.conftest import PROJECT, rows_of
 
+pytestmark = pytest.mark.rest
+
 
 @pytest.fixture(scope="module")
 def made():
@@ -40,7 +42,6 @@ def test_figure_5_the_right_column_has_the_larger_error_of_the_linearised_uplift
             assert np.abs(one - other)[-1] > np.abs(one - other)[1]
 
 
-@pytest.mark.rest
 def test_figures_12_and_13_kappa2_is_the_better_for_arches(made):
     first, second = made.FIGURES[12](), made.FIGURES[13]()
     for row in range(2):
@@ -49,7 +50,6 @@ def test_figures_12_and_13_kappa2_is_the_better_for_arches(made):
             assert all(np.abs(two - 1).max() < np.abs(one - 1).max() for one, two in pairs)
 
 
-@pytest.mark.rest
 def test_figure_11_errors_of_the_free_period_are_small_and_grow_for_less_slender_arches(made):
     """As the text has it: small in general, largest at the bottom right, where arches are the least slender."""
     worst = [
@@ -61,7 +61,6 @@ def test_figure_11_errors_of_the_free_period_are_small_and_grow_for_less_slender
     assert worst == sorted(worst) and worst[0] < 0.21
 
 
-@pytest.mark.every(4)
 @pytest.mark.parametrize("number", [7, 11, 12, 13])
 def test_a_curve_is_whole_or_the_caption_says_where_it_is_cut(made, number):
     paper = made.FIGURES[number]()
@@ -75,31 +74,6 @@ def test_a_curve_is_whole_or_the_caption_says_where_it_is_cut(made, number):
     assert cut == (number == 7) == ("cut off" in drawn.get_supxlabel())
 
 
-@pytest.mark.rest
-def test_a_legend_that_all_panels_share_is_on_none_of_them(made):
-    drawn = made.draw_paper_figure(made.FIGURES[13]())
-    assert not any(axes.get_legend() for axes in drawn.axes)
-    (legend,) = drawn.legends
-    assert next(text.get_text() for text in legend.get_texts()).startswith(r"$\beta$")
-    panels = made.draw_paper_figure(made.record_response()).subfigs[1].axes
-    assert all(axes.get_legend() for axes in panels)  # where they differ each has its own
-
-
-@pytest.mark.rest
-def test_curves_are_close_where_they_bend(made):
-    for curve in made.FIGURES[11]().panels[0][0].curves:
-        turn = np.diff(np.arctan2(np.diff(curve.y) / np.ptp(curve.y), np.diff(curve.x)))
-        assert np.abs(turn).max() < np.radians(15)  # between two chords of a panel as wide as high
-
-
-@pytest.mark.rest
-def test_figure_10_wider_and_thinner_arches_are_the_more_slender(made):
-    figure = made.FIGURES[10]()
-    for column in (0, 1):
-        by_thickness = list(curves(figure, 0, column).values())
-        assert all((np.diff(y) < 0).all() for y in by_thickness)
-
-
 def test_figure_14_the_linear_response_follows_the_nonlinear_one_through_the_pulse(made):
     figure = made.record_response()
     assert [len(row[0].curves) for row in figure.panels] == [2, 4]
@@ -110,7 +84,6 @@ def test_figure_14_the_linear_response_follows_the_nonlinear_one_through_the_pul
     assert "0.197 g positive" in figure.caption
 
 
-@pytest.mark.rest
 def test_figure_15_block_and_symmetric_frame_do_the_same_and_the_others_nearly(made):
     figure = made.equivalent_vulnerability()
     peaks = {curve.label: np.abs(curve.y).max() for curve in figure.panels[1][0].curves}

@@ -32,7 +32,7 @@ ASKED = {verb: (verb, given) for verb, given in QUESTIONS.items()} | {
 }
 WITHOUT = {"respond_each", "shares", "selfcheck", "results"}
 """Verbs whose answers have no plot, and `results`, whose plot is that of `fragility`."""
-FAST = {"margins", "respond"}
+FAST = {"margins"}
 
 
 @pytest.fixture
@@ -154,27 +154,6 @@ def test_in_a_figure_of_the_user(layout):
     assert key.get_window_extent().y1 < axes.xaxis.label.get_window_extent().y0 + 3
 
 
-@pytest.mark.rest
-def test_without_a_layout_that_makes_room_the_legend_is_in_the_axes():
-    answer = rk.margin(**ASKED["margins"][1])
-    figure, others, mine = grid(answer, layout=None)
-    places = [each.get_position().bounds for each in (*others, mine)]
-    answer.plot(ax=mine)
-    drawn(figure)
-    key = mine.get_legend().get_window_extent()
-    assert mine.bbox.contains(key.x0, key.y0) and mine.bbox.contains(key.x1, key.y1)
-    assert [each.get_position().bounds for each in (*others, mine)] == places
-
-
-@pytest.mark.rest
-def test_two_in_the_same_axes():
-    axes = Figure(layout="constrained").subplots()
-    for motion in (STRONG, PULSE):
-        rk.spectrum(BLOCK, motion, count=3).plot(ax=axes)
-    one, other = (lines(rk.spectrum(BLOCK, each, count=3).plot().axes[0]) for each in (STRONG, PULSE))
-    np.testing.assert_equal(lines(axes), one + other)
-
-
 def test_a_drawing_is_made_smaller_as_a_whole():
     """Half as wide: letters, lines and panels are half as large, and the middle of the drawing stays in the middle."""
     answer = rk.draw(BLOCK)
@@ -280,8 +259,3 @@ def test_names_with_dollars_are_broken_as_they_are():
     drawn(axes.figure)
     words = re.sub(r"\s+", " ", axes.get_legend().get_texts()[0].get_text())
     assert r"costs \$5 and \$6" in words
-
-
-def test_thirty_curves_have_thirty_looks():
-    looks = {tuple(style.distinct(k)[each] for each in ("color", "linestyle", "marker")) for k in range(30)}
-    assert len(looks) == 30 and style.distinct(0) != style.distinct(6)

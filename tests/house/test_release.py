@@ -91,7 +91,7 @@ class TestWorkflow:
         called = called - set(chosen) | {f"test-{each}" for each in self.matrix(VERSIONED)["versions"]}
         assert called <= targets()
         assert called == {
-            "test", "test-all", "test-newest", "test-oldest", "selfcheck", "lint", "type", "contracts", "docs",
+            "test", "test-all", "test-newest", "test-oldest", "selfcheck", "lint", "type", "contracts", "docs-check",
             "release", "same-kernels",
         }  # fmt: skip
 

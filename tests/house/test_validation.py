@@ -3,9 +3,12 @@
 import re
 import runpy
 
+import pytest
+
 from tests.conftest import PROJECT
 
 
+@pytest.mark.docs
 def test_the_page_is_not_stale():
     page = runpy.run_path(str(PROJECT / "docs" / "make_validation.py"))["page"]()
     assert page == (PROJECT / "docs" / "validation.md").read_text(encoding="utf-8"), "run make validation"

@@ -12,8 +12,7 @@ import numpy as np
 
 from rocking_cli.ask.answer import Answer, Answers, drawn
 from rocking_cli.ask.inputs import StructureLike, structure_of, structures_of
-from rocking_cli.ask.several import answers, are_several, ask_each, places_of
-from rocking_cli.ask.verbs import verb
+from rocking_cli.ask.verbs import answers, are_several, ask_each, places_of, verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, MechanismError, Problem, RockingError, named, of_structure
 from rocking_cli.processing.reading import Scaled

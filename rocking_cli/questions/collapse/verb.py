@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 
@@ -10,7 +11,7 @@ from rocking_cli.ask.inputs import structure_figure, structure_of
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.core import CollapseMechanism, Direction, Mechanism
-from rocking_cli.errors import InputError, Problem, RockingError
+from rocking_cli.errors import InputError, MechanismError, Problem, RockingError, of_structure
 from rocking_cli.questions.collapse.asked import CollapseAsked
 
 
@@ -43,7 +44,6 @@ def collapse(asked: CollapseAsked, watch: Watcher) -> MappingAnswer[Direction, C
     >>> round(answer[rk.Direction.POSITIVE].lambda_, 12)
     0.25
     """
-    from rocking_cli.questions.collapse.study import collapses
     from rocking_cli.questions.collapse.view import table, view
 
     mechanism = structure_of(asked.structure, watch).mechanism
@@ -57,6 +57,36 @@ def collapse(asked: CollapseAsked, watch: Watcher) -> MappingAnswer[Direction, C
 
     columns, figure = partial(table, mechanisms), partial(structure_figure, mechanism, mechanisms)
     return MappingAnswer("weakest mechanism", mechanisms, view(mechanism, mechanisms), columns, figure)
+
+
+def collapses(mechanism: Mechanism) -> Mapping[Direction, CollapseMechanism]:
+    """Return the weakest mechanism of a structure in each direction in which it can rock.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        A structure that searches for its mechanism, such as an `assembly`.
+
+    Raises
+    ------
+    InputError
+        If the mechanism of the structure is given, so that none is searched for.
+    MechanismError
+        If the structure has no mechanism in any direction.
+    """
+    mechanisms: dict[Direction, CollapseMechanism] = {}
+    for direction in mechanism.directions:
+        try:
+            weakest = mechanism.collapse(direction)
+        except MechanismError as error:
+            raise of_structure(error, mechanism.name or mechanism.mechanism) from error
+        if weakest is None:
+            hint = "`rocking new assembly` prints one; `rocking equiv` has the uplift of any structure"
+            raise InputError(
+                Problem(f"{mechanism.name} is not an assembly of blocks: its mechanism is given", hint=hint)
+            )
+        mechanisms[direction] = weakest
+    return mechanisms
 
 
 def _write(mechanism: Mechanism, out: Path) -> None:

@@ -7,8 +7,7 @@ from typing import Any
 
 from rocking_cli.ask.answer import Answer, Answers
 from rocking_cli.ask.inputs import structure_figure, structure_of, structures_of
-from rocking_cli.ask.several import answers
-from rocking_cli.ask.verbs import verb
+from rocking_cli.ask.verbs import answers, verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.core import Equivalence
 from rocking_cli.errors import MechanismError

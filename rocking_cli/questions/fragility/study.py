@@ -21,7 +21,7 @@ from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
-from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD, Pulse, parse_pulse
+from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD, SAMPLING, Pulse, parse_pulse
 from rocking_cli.excitation.records.opening import matching_files
 from rocking_cli.io.field_problems import by_meaning, say
 from rocking_cli.io.json_text import json_text

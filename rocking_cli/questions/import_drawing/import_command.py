@@ -10,8 +10,7 @@ import click
 from rocking_cli.ask.asked import no_effect
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.cli import terminal
-from rocking_cli.cli.command_line import command_line
-from rocking_cli.cli.made import Made
+from rocking_cli.cli.made import Made, command_line
 from rocking_cli.errors import InputError
 from rocking_cli.plugins.rooms import short_help
 from rocking_cli.questions.import_drawing.options import ImportDrawing
@@ -45,7 +44,7 @@ class _Imported(ImportDrawing, ImportMesh):
 class _Import(Made):
     def ask(self, given: Mapping[str, Any], usual: Mapping[str, Any], watch: Watcher) -> Any:
         """Make a structure of the file by the verb for what it has."""
-        from rocking_cli.ask.drawings import is_mesh
+        from rocking_cli.ask.read import is_mesh
         from rocking_cli.io.drawings.contract import DrawingError
         from rocking_cli.questions.import_drawing.verb import import_drawing
         from rocking_cli.questions.import_mesh.verb import import_mesh

@@ -10,7 +10,7 @@ from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from rocking_cli.ask.answer import Answer, drawn
-from rocking_cli.ask.drawings import read_drawing
+from rocking_cli.ask.read import read_drawing
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, Problem, RockingError, named

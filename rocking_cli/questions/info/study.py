@@ -1,12 +1,12 @@
-"""The installation: packages, plugins and compiled kernels on this machine, and which of them work."""
+"""The installation on this machine: packages, plugins and compiled kernels, which of them work, and their view."""
 
 from __future__ import annotations
 
 import os
 import platform
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
 from importlib.metadata import PackageNotFoundError, requires, version
 from typing import Any
 
@@ -19,10 +19,14 @@ from rocking_cli.excitation.records.formats import Readers
 from rocking_cli.plugins.registry import Plugins
 from rocking_cli.processing.intensity import IntensityMeasures
 from rocking_cli.verification.code import Codes
+from rocking_cli.views.column import table_of, text_columns
+from rocking_cli.views.view import View
 
 OWN_PACKAGE = "rocking-cli"
 IGNORED_EXTRAS = ("dev", "docs", "bench", "release")
 """Extras that add nothing to a command."""
+VARIABLES = ("ROCKING_DEBUG", "ROCKING_BROWSER", "ROCKING_KERNELS")
+"""Variables of the environment that the program reads."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +65,8 @@ class Installation:
         Why Python runs the kernels, which takes some sixty times longer; None if the shipped machine code is used.
     processors, threads : int
         Number of processors of the machine, and of threads that this process may use.
+    environment : mapping of str to str
+        Variables of the environment with the prefix of the program.
     """
 
     version: str
@@ -72,6 +78,7 @@ class Installation:
     slow_kernels: str | None
     processors: int
     threads: int
+    environment: Mapping[str, str]
 
 
 def examine() -> Installation:
@@ -94,6 +101,7 @@ def examine() -> Installation:
         _why_slow(),
         os.cpu_count() or 1,
         len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1,
+        {name: value for name, value in sorted(os.environ.items()) if name.startswith("ROCKING_")},
     )
 
 
@@ -132,3 +140,39 @@ def _broken(installed: Plugins[Any], name: str) -> str | None:
     except RockingError as error:
         return str(error)
     return None
+
+
+def view(found: Installation) -> View:
+    """Show what is installed, for users and for fault reports."""
+    slow, environment = found.slow_kernels, found.environment
+    rows = [
+        [OWN_PACKAGE, found.version],
+        ["Python", found.python],
+        ["platform", found.platform],
+        ["processors", f"{found.processors}, {found.threads} of them for this process"],
+        *([name, version or "missing"] for name, version in found.libraries.items()),
+        *(_extra(name, packages) for name, packages in found.extras.items()),
+        *(row for kind, plugins in found.plugins.items() for row in _plugin_rows(kind, plugins)),
+        ["kernels", "shipped machine code" if slow is None else f"in Python, some sixty times slower: {slow}"],
+    ]
+    if environment:
+        rows.append(["environment", " ".join(f"{name}={value}" for name, value in environment.items())])
+    unused = [name for name in environment if name not in VARIABLES]
+    sentences = [f"The environment variable {name} is not used by rocking." for name in unused]
+    return View(asdict(found), [table_of("", text_columns("what", "here"), rows), *sentences])
+
+
+def _extra(name: str, packages: Mapping[str, str | None]) -> list[str]:
+    missing = [package for package, version in packages.items() if version is None]
+    if missing:
+        return [f"extra {name}", f"no {', '.join(missing)}: pip install '{OWN_PACKAGE}[{name}]'"]
+    return [f"extra {name}", ", ".join(f"{package} {version}" for package, version in packages.items())]
+
+
+def _plugin_rows(kind: str, plugins: Sequence[Plugin]) -> list[list[str]]:
+    """Return a row for each package with its plugins, and one for each broken plugin."""
+    packages: dict[str, list[str]] = {}
+    for each in plugins:
+        packages.setdefault(each.package, []).append(each.name)
+    rows = [[kind, f"{', '.join(names)} ({package})"] for package, names in packages.items()]
+    return rows + [[f"broken: {each.name}", each.broken] for each in plugins if each.broken is not None]

@@ -57,7 +57,7 @@ def margin(asked: MarginAsked, watch: Watcher) -> MappingAnswer[str, Margin]:
     --------
     >>> import rocking_cli as rk
     >>> answer = rk.margin(rk.Block(width=0.7, height=2.8), "sine:0.4g:0.8s", polarity="1", neighbours=10)
-    >>> [round(found.uplift, 3) for found in answer.values()]
+    >>> [round(each.uplift, 3) for each in answer.values()]
     [0.625]
     """
     from rocking_cli.questions.margin import study

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rocking_cli.cli import complete, options, terminal
+from rocking_cli.cli import options, terminal
 from rocking_cli.cli.help import Command
 from rocking_cli.errors import InputError, MechanismError, RockingError
 from rocking_cli.io.files import check_writable
@@ -26,7 +26,7 @@ TEMPLATE_CHECK = "The file that `rocking new` prints is a structure."
 
 
 @click.command(cls=Command, short_help="List, describe or check the installed mechanisms.")
-@click.argument("name", required=False, shell_complete=complete.plugins(complete.MECHANISMS))
+@click.argument("name", required=False, shell_complete=options.completer(options.MECHANISMS))
 @click.argument("file", required=False, type=click.Path())
 @click.option(
     "--check",
@@ -35,7 +35,7 @@ TEMPLATE_CHECK = "The file that `rocking new` prints is a structure."
     help="Check NAME against the contract of mechanisms, on its examples or on FILE.",
 )
 @click.option(
-    "--plot", metavar="FILE.png", type=click.Path(path_type=Path), shell_complete=complete.files,
+    "--plot", metavar="FILE.png", type=click.Path(path_type=Path), shell_complete=options.completer("file"),
     help="Draw all mechanisms, small, to choose one (.png, .svg or .pdf).",
 )  # fmt: skip
 @options.as_json

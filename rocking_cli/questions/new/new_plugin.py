@@ -112,7 +112,8 @@ def write(name: str, out: str | None, kind: PluginKind, *, printed: Collection[s
         If the name is not valid, or the folder cannot be made.
     """
     from rocking_cli.io.files import write_folder
-    from rocking_cli.questions.new.plugin import view
+    from rocking_cli.views.column import table_of, text_columns
+    from rocking_cli.views.view import View
 
     check_name(name, kind, printed)
     folder = Path(f"rocking-{_hyphened(name)}" if out is None else out)
@@ -124,7 +125,10 @@ def write(name: str, out: str | None, kind: PluginKind, *, printed: Collection[s
     commands += [f'{python} -m pip install --editable ".[test]"']
     commands += [kind.named(each, name) for each in kind.commands] + [f"{python} -m pytest"]
     described = {kind.named(file, name): what for file, what in kind.files.items()}
-    terminal.show(view(name, kind.word, str(folder), described, commands), as_json=as_json)
+    title = f"{folder}: template of the {kind.word} {name}"
+    table = table_of(title, text_columns("file", "description"), list(described.items()))
+    data = {"plugin": name, "folder": str(folder), "files": list(described), "commands": commands}
+    terminal.show(View(data, [table]), as_json=as_json)
     if not as_json:
         terminal.sentence("Next:")
         for each in commands:

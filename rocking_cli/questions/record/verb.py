@@ -16,8 +16,7 @@ import numpy as np
 from rocking_cli.ask.answer import Answer, Answers, Dimensions, drawn
 from rocking_cli.ask.ground_motions import Motions, done, motion_of, unprocessed
 from rocking_cli.ask.kinds import STANDARD_OUTPUT
-from rocking_cli.ask.several import answers, are_several
-from rocking_cli.ask.verbs import verb, write_rows
+from rocking_cli.ask.verbs import answers, are_several, verb, write_rows
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion

@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from rocking_cli.ask.answer import Answers, Dimensions, MappingAnswer
 from rocking_cli.ask.inputs import doubts_of, structure_of
 from rocking_cli.ask.kinds import STANDARD_OUTPUT
-from rocking_cli.ask.several import answers, are_several, ask_each, places_of
-from rocking_cli.ask.verbs import verb, write_files
+from rocking_cli.ask.verbs import answers, are_several, ask_each, places_of, verb, write_files
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import MODELS, ModelName

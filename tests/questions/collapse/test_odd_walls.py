@@ -19,7 +19,7 @@ from mechanisms._assembly.displaced import DisplacedAssembly
 from mechanisms._assembly.friction import friction
 from mechanisms._assembly.problem import scaled
 from rocking_cli.ask.inputs import structure_of
-from rocking_cli.cli.watching import OnTerminal
+from rocking_cli.cli.terminal import OnTerminal
 from rocking_cli.core import Direction
 from rocking_cli.errors import InputError
 from rocking_cli.io import yaml_file

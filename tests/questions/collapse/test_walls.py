@@ -17,7 +17,7 @@ from rocking_cli.plotting import style
 from rocking_cli.plotting.structure import LINE_WEIGHT_SHARE, MIN_FORCE_SHARE, draw_structure, weight
 from rocking_cli.plotting.style import POINTS_PER_INCH
 from rocking_cli.questions.animate.picture import animation_page
-from rocking_cli.questions.collapse.study import collapses
+from rocking_cli.questions.collapse.verb import collapses
 from rocking_cli.questions.collapse.view import data, view
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.picture import MAX_SEPARATE_PARTS, START_SHARE, picture

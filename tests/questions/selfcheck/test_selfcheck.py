@@ -7,7 +7,6 @@ import shutil
 import sys
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from time import monotonic
 
 import numpy as np
@@ -321,12 +320,6 @@ class TestCommand:
         assert done.exit_code == 0, done.stdout
         assert found["quick"] and [each["check"] for each in found["checks"]] == list(CHECKS)
         assert [each.name for each in pickle.loads(pickle.dumps(run.CHECKS))] == list(CHECKS)
-
-    def test_broken_defaults_do_not_prevent_it(self, monkeypatch, tmp_path):
-        few(monkeypatch, one=0.0)
-        monkeypatch.chdir(tmp_path)
-        Path("rocking.toml").write_text("[", encoding="utf-8")
-        assert asked().exit_code == 0
 
 
 class TestHostilePlaces:
