@@ -10,7 +10,7 @@ from matplotlib.text import Text
 
 import rocking_cli as rk
 from rocking_cli.documents import sheet_page
-from rocking_cli.questions.report.words import language_of
+from rocking_cli.questions.report.view import language_of
 from rocking_cli.studies.conclusion import NextStep
 from tests.conftest import EXAMPLES
 from tests.questions.draw.test_hung import TIED_FILE
