@@ -15,10 +15,17 @@ from operator import itemgetter
 from pydantic import ValidationError
 
 from rocking_cli.codes.italian import capacity, clauses, remarks
-from rocking_cli.codes.italian.capacity import CapacityCurve, ExactCurve, StraightCurve, ends, with_elastic_branch
+from rocking_cli.codes.italian.capacity import (
+    CapacityCurve,
+    ExactCurve,
+    StraightCurve,
+    elastic,
+    ends,
+    lasting,
+    with_elastic_branch,
+)
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.demand import REFERENCE_DAMPING, DemandSpectrum
-from rocking_cli.codes.italian.displaced import elastic, lasting
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerification, ItalianVerified, LimitState
 from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, OF_STATE, RULES, THRESHOLDS, Rule

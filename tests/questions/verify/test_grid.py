@@ -57,7 +57,7 @@ def workbook(path, sheets):
     main, linked = f"{office}/spreadsheetml/2006/main", f"{office}/officeDocument/2006/relationships"
     parts = {"xl/workbook.xml": f'<workbook xmlns="{main}" xmlns:r="{linked}"><sheets>'}
     links = {"_rels/.rels": [("officeDocument", "xl/workbook.xml")], "xl/_rels/workbook.xml.rels": []}
-    for k, (name, rows) in enumerate(sheets.items(), 1):
+    for k, (name, rows) in enumerate(sheets.histories(), 1):
         parts["xl/workbook.xml"] += f'<sheet name="{name}" sheetId="{k}" r:id="rId{k}"/>'
         links["xl/_rels/workbook.xml.rels"].append(("worksheet", f"worksheets/sheet{k}.xml"))
         cells = [

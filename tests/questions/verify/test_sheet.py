@@ -19,7 +19,7 @@ import rocking_cli as rk
 from mechanisms.symmetric_frame import MAX_CHECKED_COLUMNS
 from rocking_cli.codes.italian import Italian
 from rocking_cli.codes.italian.remarks import EFFECTS, differences
-from rocking_cli.codes.italian.sheet import build, dynamic, site, steps, summary
+from rocking_cli.codes.italian.sheet import build, site, steps, summary
 from rocking_cli.core import Direction
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_file import parse_structure
@@ -126,7 +126,7 @@ CASES = {
 FIELDS = [site.OF_GROUND, site.OF_SITE, site.OF_FLOOR]
 TABLES = {
     text
-    for each in (build.DIRECTION_TITLES, dynamic.SETS, steps.TITLES, summary.METHOD_NAMES)
+    for each in (build.DIRECTION_TITLES, summary.SETS, steps.TITLES, summary.METHOD_NAMES)
     for text in each.values()
 } | {meaning for each in FIELDS for *_, meaning in each.values()}  # fmt: skip
 

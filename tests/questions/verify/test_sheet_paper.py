@@ -8,11 +8,10 @@ import pytest
 from matplotlib.figure import Figure
 
 from rocking_cli.codes.italian.chain import Chain
-from rocking_cli.codes.italian.ground import SiteGround
+from rocking_cli.codes.italian.ground import SiteGround, site_demand
 from rocking_cli.codes.italian.sheet import build, figures
 from rocking_cli.codes.italian.sheet.geometry import Composition
 from rocking_cli.codes.italian.site import of_structure
-from rocking_cli.codes.italian.site_demand import site_demand
 from rocking_cli.core import Direction
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_file import parse_structure

@@ -15,11 +15,10 @@ from mechanisms.cone import Cone
 from mechanisms.rigid_body import RigidBody
 from mechanisms.symmetric_frame import SymmetricFrame
 from rocking_cli.codes.italian import formulas
-from rocking_cli.codes.italian.capacity import ExactCurve
+from rocking_cli.codes.italian.capacity import DisplacedChain, ExactCurve
 from rocking_cli.codes.italian.chain import Chain
-from rocking_cli.codes.italian.displaced import DisplacedChain
 from rocking_cli.codes.italian.sheet import build
-from rocking_cli.codes.italian.sheet.centres import ChainCentres
+from rocking_cli.codes.italian.sheet.chain import ChainCentres
 from rocking_cli.codes.italian.sheet.geometry import SIZE_UNITS, Composition, ranges
 from rocking_cli.core import Direction
 from rocking_cli.core.equilibrium import NoCriticalRotation

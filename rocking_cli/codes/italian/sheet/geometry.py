@@ -26,7 +26,7 @@ from rocking_cli.verification.results import Evaluated, Formula
 KILO = 1e3
 MEGA = 1e6
 USUAL_DIGITS, SPARE_DIGITS, MAX_DIGITS = 9, 2, 15  # of coordinates; how many of them differences may lose; at most
-ROUNDING_SHARE = 1e-11  # share of the size of a structure below which a coordinate is zero
+SHARE_OF_ROUNDING = 1e-11  # share of the size of a structure below which a coordinate is zero
 SAME_SIZE = 1e-9  # relative difference of sizes of equal bodies
 SAME_MASS = 1e-9  # relative difference of the mass of a body and of the sum of its parts
 MAX_WRITTEN_CORNERS = 24  # corners of a polygon whose area is written out
@@ -343,7 +343,7 @@ def _in_marks(symbol: str) -> str:
 
 def cleared(at: complex, size: float) -> complex:
     """Return a point with coordinates that are zero but for rounding, over a size [m], set to zero."""
-    return complex(*(0.0 if abs(part) < ROUNDING_SHARE * size else part for part in (at.real, at.imag)))
+    return complex(*(0.0 if abs(part) < SHARE_OF_ROUNDING * size else part for part in (at.real, at.imag)))
 
 
 def sharpened(formula: Formula, loss: float) -> Formula:

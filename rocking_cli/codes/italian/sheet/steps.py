@@ -10,9 +10,8 @@ import numpy as np
 from markupsafe import Markup
 
 from rocking_cli.codes.italian import formulas as F
-from rocking_cli.codes.italian.capacity import BREAK, SEAT, ExactCurve, StraightCurve, ends
+from rocking_cli.codes.italian.capacity import BREAK, SEAT, DisplacedChain, ExactCurve, StraightCurve, ends, pulls
 from rocking_cli.codes.italian.demand import REFERENCE_DAMPING, DemandSpectrum, FloorSpectrum, GroundSpectrum
-from rocking_cli.codes.italian.displaced import DisplacedChain, pulls
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified, LimitState
 from rocking_cli.codes.italian.rules import (
@@ -26,9 +25,8 @@ from rocking_cli.codes.italian.rules import (
     Rule,
 )
 from rocking_cli.codes.italian.sheet import chain as chains
-from rocking_cli.codes.italian.sheet import site, spectra
-from rocking_cli.codes.italian.sheet.centres import ChainCentres
-from rocking_cli.codes.italian.sheet.chain import Rows, Scale
+from rocking_cli.codes.italian.sheet import site
+from rocking_cli.codes.italian.sheet.chain import ChainCentres, Rows, Scale
 from rocking_cli.codes.italian.sheet.site import hazard_at, is_close
 from rocking_cli.core.hung.attached import Spot
 from rocking_cli.core.hung.element import INTERLOCK_NAME
@@ -84,7 +82,7 @@ class MethodComparison:
     name: str
     capacity: float
     demand: str
-    at: spectra.At | None = None
+    at: site.At | None = None
 
 
 @dataclass(frozen=True)
@@ -366,7 +364,7 @@ class DirectionSteps:
         spectrum = self.ground.spectrum(s)
         if spectrum is None or at.demand is None or at.ratio is None:
             return
-        yield from spectra.displacement(spectrum, spectra.At(f"T_[{name}]", at.T, rule.damping))
+        yield from site.displacement(spectrum, site.At(f"T_[{name}]", at.T, rule.damping))
         yield F.RHO.line(at.ratio, names, d=at.d, demand=at.demand)
 
     def _on_line(self, rule: Rule) -> Iterator[Evaluated]:
@@ -392,7 +390,7 @@ class DirectionSteps:
         if name in RULE_OF_METHOD:
             rule: Rule = RULE_OF_METHOD[name]
             s, states = rule.state, self.found.straight_states if line else self.found.states
-            at = spectra.At(f"T_[{s}{more}]", states[s].T, rule.damping)
+            at = site.At(f"T_[{s}{more}]", states[s].T, rule.damping)
             return MethodComparison(s, f"d_[{s}]", states[s].d, f"S_[De](T_[{s}{more}])", at)
         return self._activation(STATE_OF_METHOD[name])
 
@@ -468,13 +466,13 @@ class DirectionSteps:
         """Yield the steps to the demand for the a_g or TR found by iteration, as a check against the capacity."""
         ground = spectrum.ground if isinstance(spectrum, FloorSpectrum) else spectrum
         if comparison.at is None or isinstance(spectrum, FloorSpectrum):
-            yield from spectra.peaks(spectrum, comparison.state)
+            yield from site.peaks(spectrum, comparison.state)
         elif isinstance(ground, GroundSpectrum):
-            yield from list(spectra.peaks(ground, comparison.state))[:2]
+            yield from list(site.peaks(ground, comparison.state))[:2]
         if comparison.at is not None:
-            yield from spectra.displacement(spectrum, comparison.at)
+            yield from site.displacement(spectrum, comparison.at)
         elif self.ground.site.own_period is not None:
-            yield from spectra.at_own_period(spectrum, self.ground.site.own_period, REFERENCE_DAMPING)
+            yield from site.ordinate_at_own_period(spectrum, self.ground.site.own_period, REFERENCE_DAMPING)
 
     def _lasts(self, method: ItalianMethod, comparison: MethodComparison, more: str) -> WithCheck:
         """Return the line to the capacity as a return period, and its check; empty without a hazard."""
