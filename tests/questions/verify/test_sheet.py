@@ -83,7 +83,6 @@ CASES = {
     "laden, on a hazard": (LADEN, HAZARD),
     "crossed": (CROSSED, SITE),
     "two bodies on a floor": (WALL, SITE + FLOOR + SLC),
-    "on a floor": (FACADE, SITE + FLOOR),
     "on a floor of its own period at each state": (
         FACADE,
         SITE + SLC + "floor: {z: 6, H: 9, T1: 0.6, xi1: 0.12, n: 3, SLD: {T1: 0.35, xi1: 0.05}, "
@@ -94,10 +93,6 @@ CASES = {
         SITE + "floor: {z: 6, H: 9, T1: 0.6, xi1: 0.12, n: 3, SLD: {T1: 0.35, xi1: 0.05}}\nT0: 0.08\n",
     ),
     "parapet": (PARAPET, SITE + SLC + "T0: 0.08\n"),
-    "parapet by its size": (
-        PARAPET,
-        SITE + SLC + "element: {kind: cantilever, L: 1.2, t: 0.25, w: 18000.0, E: 1.2e+9}\n",
-    ),
     "parapet by the size of the structure": (
         PARAPET,
         SITE + SLC + "element: {kind: cantilever, w: 18000.0, E: 1.2e+9}\n",
@@ -522,13 +517,12 @@ class Recomputed:
 @pytest.mark.every(4)
 @pytest.mark.parametrize("name", CASES)
 def test_every_step_gives_its_result_and_follows_from_those_above_it(name):
-    for by, least in ((FULL, 40), (build.SHEET, 20)):
-        items = items_of_case(name, by=by)
-        assert check_arithmetic(items) > least
-        assert Recomputed(items).count > 0.6 * least
+    items = items_of_case(name)
+    assert check_arithmetic(items) > 40
+    assert Recomputed(items).count > 24
 
 
-@pytest.mark.parametrize("name", ["on soil", "laden, on a hazard", "two bodies on a floor"])
+@pytest.mark.parametrize("name", ["on soil", "laden, on a hazard"])
 def test_the_appendix_has_the_lines_of_the_limit_state_that_decides(name):
     found, _ = verified(*CASES[name])
     state, shown = found.conclusion.limit_state, steps_of(items_of_case(name, by=build.SHEET))
@@ -591,16 +585,6 @@ def test_a_document_has_every_step_and_table(name, language, written):
     assert "G" in places
 
 
-def test_ties_have_force_and_elongation_on_the_sheet():
-    found, _ = verified(*CASES["tied"])
-    ties = data(found)["directions"]["positive"]["ties"]["bar"]
-    rows = [each[2] for each in items_of_case("tied") if isinstance(each, list) and each[0].startswith("Ties at")]
-    for (_, where, *numbers), state in zip(rows, ("SLV", "SLC"), strict=True):
-        wanted = [ties[f"force_{state}"] / 1e3, ties[f"elongation_{state}"], 100 * ties[f"strain_{state}"]]
-        assert where == f"d_[{state}]" and [*map(number, numbers)] == pytest.approx(wanted, rel=5e-3)
-        assert ties[f"strain_{state}"] == pytest.approx(ties[f"elongation_{state}"] / 5.7, rel=1e-9)
-
-
 def test_what_does_not_begin_to_rock_is_satisfied_at_collapse_too():
     found, given = verified(*CASES["wall that does not begin to rock"])
     assert found.directions[Direction.POSITIVE].passes("SLC")
@@ -613,14 +597,6 @@ def test_what_does_not_begin_to_rock_is_satisfied_at_collapse_too():
         "SLC: the verification is satisfied only if its conditions hold. ζ_[E] = 1.029; the onset of rocking governs"
         in words
     )
-
-
-def test_italian_has_the_same_numbers_with_a_comma():
-    english, italian = (items_of_case("tied", language) for language in ("en", "it"))
-    assert check_arithmetic(italian, comma=True) == check_arithmetic(english)
-    results = [[each.result for each in steps_of(items)] for items in (english, italian)]
-    assert [each.replace(".", ",") for each in results[0]] == results[1]
-    assert not any(re.search(r"\d\.\d", each.numbers + each.formula + each.result) for each in steps_of(italian))
 
 
 def test_sentences_write_numbers_as_tables_do():
@@ -647,24 +623,6 @@ def test_what_is_printed_is_what_the_command_finds():
     phi = found["φ_[SLV]"]
     assert found["d(φ_[SLV])"] == pytest.approx(4 * sin(phi) + 0.3 * (1 - cos(phi)), abs=2e-6)
     assert found["α(φ_[SLV])"] == pytest.approx((0.3 - 4 * np.tan(phi)) / (4 + 0.3 * np.tan(phi)), rel=2e-5)
-
-
-@pytest.mark.rest
-@pytest.mark.parametrize("language", ["en", "it"])
-@pytest.mark.parametrize("suffix", [".html", ".docx"])
-def test_hostile_names_break_nothing(suffix, language, written):
-    structure = HEAVY.replace("name: facade", 'name: "<b>&x_[0]{d}@"').replace("rebound: 0.4\n", (
-        'rebound: 0.4\nloads: [{name: "<i>&_[1]{x}", mass: 2 t, at: [0, 8]}]\n'
-    ))  # fmt: skip
-    head = ("--project", "</title><b>&\x07{a}@ _[0]", "--author", "]]>&#0;", "--place", "\ufffe")
-    out = written(structure, SITE + 'name: "<u>&{T}@"\n', suffix, *head, "--language", language)
-    if suffix == ".docx":
-        docx = pytest.importorskip("docx")
-        said = "\n".join(each.text for each in docx.Document(str(out)).paragraphs)
-    else:
-        said = read(out).words
-        assert "<b>" not in out.read_text(encoding="utf-8") and "<i>" not in out.read_text(encoding="utf-8")
-    assert "<b>&x_" in said and "{d}@" in said
 
 
 class TestAskingForIt:
@@ -759,9 +717,10 @@ def test_italian_has_all_texts_with_the_same_slots(package):
     assert len(used) > 20 and used <= known
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("name", CASES)
-def test_templates_of_both_languages_say_the_same(name):
-    """The same sections, with the same kinds of items, tables of the same shape, and the same numbers."""
+def test_both_languages_say_the_same_and_every_remark(name):
+    """The same sections, kinds of items, shapes of tables and numbers; and wherever it is shown, what limits it."""
 
     def skeleton(part):
         yield part.key
@@ -770,14 +729,24 @@ def test_templates_of_both_languages_say_the_same(name):
             yield type(item), [each.replace(",", ".") for each in numbers]
             if isinstance(item, Table):
                 yield len(item.columns), len(item.rows), [*item.numbers]
+            if isinstance(item, Steps):
+                yield [(row.numbers.replace(",", "."), row.value) for row in item.rows]
         for each in part.parts:
             yield from skeleton(each)
 
     found, given = verified(*CASES[name])
-    english, italian = (
-        [each for part in parts_of(found, given, language) for each in skeleton(part)] for language in ("en", "it")
-    )
+    remarks = [each for side in found.distinct for each in (*differences(side, found.first), *side.remarks)]
+    remarks += found.remarks
+    sheets = {language: parts_of(found, given, language) for language in ("en", "it")}
+    english, italian = ([each for part in parts for each in skeleton(part)] for parts in sheets.values())
     assert english == italian and len(english) > 60
+    for language, (first, second, *_) in sheets.items():
+        say = build.SHEET.language(language)
+        said = " ".join(item.text for part in (first, second) for item in part.items if isinstance(item, Sentence))
+        assert remarks and all(say(each) in said for each in remarks)
+        assert found.mechanism.caution == "" or say("Caution: {text}", text="").strip() in said
+    terminal = [each for each in view(found).parts if isinstance(each, str)]
+    assert all(steps.TERMINAL(each) in terminal for each in remarks)
 
 
 def test_every_text_has_a_user():
@@ -810,22 +779,6 @@ def test_every_text_has_a_user():
              if each.suffix in (".py", ".html", ".md")]  # fmt: skip
     written = "".join(each.read_text(encoding="utf-8") for each in files)
     assert not [key for key in keys - families if f'"{key}"' not in written and f"'{key}'" not in written]
-
-
-@pytest.mark.parametrize("language", ["en", "it"])
-@pytest.mark.parametrize("name", CASES)
-def test_every_remark_is_on_the_sheet_and_in_the_terminal(name, language):
-    """What limits a verification, and why its methods differ, is said wherever it is shown."""
-    found, given = verified(*CASES[name])
-    remarks = [each for side in found.distinct for each in (*differences(side, found.first), *side.remarks)]
-    remarks += found.remarks
-    say = build.SHEET.language(language)
-    summary, methods, *_ = parts_of(found, given, language)
-    said = " ".join(item.text for part in (summary, methods) for item in part.items if isinstance(item, Sentence))
-    assert remarks and all(say(each) in said for each in remarks)
-    assert found.mechanism.caution == "" or ("Caution: " if language == "en" else "Attenzione: ") in said
-    terminal = [each for each in view(found).parts if isinstance(each, str)]
-    assert all(steps.TERMINAL(each) in terminal for each in remarks)
 
 
 @pytest.mark.usefixtures("small_maps")

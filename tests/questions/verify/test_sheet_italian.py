@@ -208,10 +208,11 @@ def test_histories_are_italian(site, text_of):
     check(text_of(EXAMPLES / "verify" / "tied_facade.yaml", site, motions=["sine:0.09g:0.5s", "ricker:2g:1s"]))
 
 
-@pytest.mark.parametrize("word", ["the", "Capacity", "at rest", "demand by direction"])
-def test_an_english_word_is_noticed(word, text_of):
-    with pytest.raises(AssertionError, match=word.split()[0].lower()):
-        check(f"{text_of(*CASES['facade'])} {word}.")
+def test_an_english_word_is_noticed(text_of):
+    text = text_of(*CASES["facade"])
+    for word in ("the", "Capacity", "at rest", "demand by direction"):
+        with pytest.raises(AssertionError, match=word.split()[0].lower()):
+            check(f"{text} {word}.")
 
 
 def test_texts_of_mechanisms_are_recognised_whole_by_parts_and_otherwise_stay():
