@@ -15,7 +15,7 @@ from rocking_cli.core.plausible import doubts as doubts_about_size
 from rocking_cli.dynamics.verdict import disagree
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import peaks_over
-from rocking_cli.questions.equiv.view import EquivalentSide, is_symmetric, kappa_in_words, sentence, sides_of
+from rocking_cli.questions.equiv.view import is_symmetric, kappa_in_words, sentence, sides_of
 from rocking_cli.questions.error.view import trust
 from rocking_cli.questions.margin.view import in_words, margin_data
 from rocking_cli.questions.report.study import Assessment, MotionResult
@@ -107,6 +107,7 @@ def context(content: Assessment, say: Language, verified: Verification | None = 
     strong = mechanism.at_strength() if steel else None
     why_alone = (structure.why_no_block or structure.misleading or "").removeprefix(f"{content.name}: ")
     early = before_rocking(mechanism)
+    steps = {key: guarded(f"{_capital(say.texts.get(f'next_{key}', text))}.") for key, text in NEXT_STEPS.items()}
     cautions = map(printed, cautions_of(mechanism)) if is_english else map(guarded, cautions_of(mechanism, say))
     return {
         "language": say, "content": content, "verified": verified, "motions": motions,
@@ -125,7 +126,7 @@ def context(content: Assessment, say: Language, verified: Verification | None = 
         "alike": [each for each in motions if governs is not None and are_alike(each.result.conclusion, governs)],
         "restitution_by": structure.restitution_source,
         "force": dict(zip(("per", "unit"), force_unit(mechanism), strict=True)),
-        "step_texts": {step: _next_step(say.texts.get(f"next_{step}", text)) for step, text in NEXT_STEPS.items()},
+        "step_texts": steps,
         "sizes": doubts_about_size(mechanism),
         "why_alone": "" if is_english else guarded(say.recognised("reason", why_alone)),
         "early": [printed(each) if is_english else guarded(say.recognised("caution", each)) for each in early],
@@ -179,11 +180,6 @@ def _capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def _next_step(text: str) -> Markup:
-    """Return a next step as a sentence."""
-    return guarded(f"{_capital(text)}.")
-
-
 def _english(content: Assessment) -> dict[str, Any]:
     """Return sentences on a structure that other commands print."""
     structure, mechanism = content.structure, content.mechanism
@@ -198,17 +194,16 @@ def _english(content: Assessment) -> dict[str, Any]:
     if content.results:
         texts["counted"] = counted([each.conclusion for each in content.results], _over(content))
         texts["deviations"] = deviations(content.results[0].margin.around)
+    advice = [
+        kappa_in_words(side.block) if side.block is not None else _capital(sentence(side))
+        for side in sides_of(structure)
+    ]
     sizes = [each if each.endswith("?") else f"{each}." for each in doubts_about_size(mechanism)]
     return {
         **{key: printed(text) for key, text in texts.items()},
         "sizes": [*map(printed, sizes)],
-        "advice": [printed(_advice(side)) for side in sides_of(structure)],
+        "advice": [*map(printed, advice)],
     }
-
-
-def _advice(side: EquivalentSide) -> str:
-    """Return which kappa to prefer; without a block, why there is none."""
-    return kappa_in_words(side.block) if side.block is not None else _capital(sentence(side))
 
 
 def _english_of(content: Assessment, result: MotionResult) -> dict[str, Any]:

@@ -6,12 +6,20 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import isclose
+from operator import attrgetter
 from typing import Any, Literal
 
 import numpy as np
 
 from rocking_cli.codes.italian import formulas as F
-from rocking_cli.codes.italian.capacity import MIN_TURN, DisplacedChain, ForceWork, Moved, thickness_of_plate
+from rocking_cli.codes.italian.capacity import (
+    MIN_TURN,
+    DisplacedChain,
+    ExactCurve,
+    ForceWork,
+    Moved,
+    thickness_of_plate,
+)
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.sheet.geometry import SHARE_OF_ROUNDING, cleared, sharpened
 from rocking_cli.core import Joint
@@ -66,47 +74,147 @@ class Scale:
         return 0.0 if abs(value) < ROUNDING_SHARE * self.length else value
 
 
-def weights(chain: Chain, scale: Scale) -> Rows:
-    """Return a row for every mass that moves: name, block, x, y, M, w, h, and its shares in P and in P + Q."""
-    rows = []
-    for each in chain.weights:
-        block = next(k for k, block in enumerate(chain.blocks, 1) if each.spot.body in block.bodies)
-        numbers = [*map(scale.near, (each.spot.at.real, each.spot.at.imag)), each.mass, each.w, each.h]
-        forces = [scale.weight(each.carried), scale.weight(each.inertial)]
-        rows.append([BodyName(chain.mechanism.mechanism, each.name), block, *map(float, numbers), *forces])
-    return rows
+@dataclass(frozen=True)
+class ChainSteps:
+    """Lines and rows of the chain of a capacity curve, at rest and in other positions, in printed units.
 
+    Parameters
+    ----------
+    curve : ExactCurve
+        The capacity curve.
+    """
 
-def of_blocks(chain: Chain, scale: Scale) -> Iterator[Evaluated]:
-    """Yield steps for the weight of each block and its point of action."""
-    for k, block in enumerate(chain.blocks, 1):
-        weights = [each for each in chain.weights if each.spot.body in block.bodies]
-        carried, inertial = ([scale.weight(getattr(each, key)) for each in weights] for key in ("carried", "inertial"))
-        key, of = chain.mechanism.mechanism, [each.name for each in weights]
-        names: dict[str, Any] = {"k": k, "block": [BodyName(key, each) for each in block.bodies], "unit": scale.unit}
-        names |= {sign: [BodyName(key, each, symbol) for each in of] for sign, symbol in (("P", "P"), ("P+Q", "(P+Q)"))}
-        yield F.P.line(scale.weight(block.P), names, P=carried)
-        moved = F.PQ if chain.is_by_the_letter else replace(F.PQ, standing="ours")
-        yield moved.line(scale.weight(block.PQ), names, P=inertial)
-        for axis, at in (("x", block.at.real), ("y", block.at.imag)):
-            places = [scale.near(each.spot.at.real if axis == "x" else each.spot.at.imag) for each in weights]
-            yield F.G.line(scale.near(at), {**names, "axis": axis}, P=inertial if block.PQ else carried, x=places)
-        if block.P and block.P != block.PQ:
-            for axis, at in (("x", block.of_P.real), ("y", block.of_P.imag)):
+    curve: ExactCurve
+
+    @property
+    def chain(self) -> Chain:
+        """The moving blocks."""
+        return self.curve.chain
+
+    @cached_property
+    def scale(self) -> Scale:
+        """Unit of printed weights."""
+        return Scale.of(self.chain)
+
+    @cached_property
+    def rest(self) -> DisplacedChain:
+        """The chain at rest."""
+        return DisplacedChain(self.curve, 0.0)
+
+    @property
+    def weights(self) -> Rows:
+        """Row of every mass that moves: name, block, x, y, M, w, h, and its shares in P and in P + Q."""
+        chain, scale, rows = self.chain, self.scale, []
+        for each in chain.weights:
+            block = next(k for k, block in enumerate(chain.blocks, 1) if each.spot.body in block.bodies)
+            numbers = [*map(scale.near, (each.spot.at.real, each.spot.at.imag)), each.mass, each.w, each.h]
+            forces = [scale.weight(each.carried), scale.weight(each.inertial)]
+            rows.append([BodyName(chain.mechanism.mechanism, each.name), block, *map(float, numbers), *forces])
+        return rows
+
+    def of_blocks(self) -> Iterator[Evaluated]:
+        """Yield steps for the weight of each block and its point of action."""
+        chain, scale = self.chain, self.scale
+        for k, block in enumerate(chain.blocks, 1):
+            weights = [each for each in chain.weights if each.spot.body in block.bodies]
+            carried, inertial = (
+                [scale.weight(getattr(each, key)) for each in weights] for key in ("carried", "inertial")
+            )
+            key, of = chain.mechanism.mechanism, [each.name for each in weights]
+            names: dict[str, Any] = {
+                "k": k,
+                "block": [BodyName(key, each) for each in block.bodies],
+                "unit": scale.unit,
+            }
+            names |= {
+                sign: [BodyName(key, each, symbol) for each in of] for sign, symbol in (("P", "P"), ("P+Q", "(P+Q)"))
+            }
+            yield F.P.line(scale.weight(block.P), names, P=carried)
+            moved = F.PQ if chain.is_by_the_letter else replace(F.PQ, standing="ours")
+            yield moved.line(scale.weight(block.PQ), names, P=inertial)
+            for axis, at in (("x", block.at.real), ("y", block.at.imag)):
                 places = [scale.near(each.spot.at.real if axis == "x" else each.spot.at.imag) for each in weights]
-                yield F.GP.line(scale.near(at), {**names, "axis": axis}, P=carried, x=places)
+                yield F.G.line(scale.near(at), {**names, "axis": axis}, P=inertial if block.PQ else carried, x=places)
+            if block.P and block.P != block.PQ:
+                for axis, at in (("x", block.of_P.real), ("y", block.of_P.imag)):
+                    places = [scale.near(each.spot.at.real if axis == "x" else each.spot.at.imag) for each in weights]
+                    yield F.GP.line(scale.near(at), {**names, "axis": axis}, P=carried, x=places)
 
+    def at_work(self, position: DisplacedChain) -> Rows:
+        """Return a row for each block in a position: its displacement, barycentres, motion and angle."""
+        scale, rows = self.scale, []
+        for k, each in enumerate(position.blocks, 1):
+            lengths = [each.gone, each.at.real, each.at.imag, _x_of_P(position, each), each.dx, each.dy]
+            gone, x_G, y_G, x_P, dx, dy = map(scale.near, lengths)
+            turns = 0.0 if each.centre is None else each.turns
+            centre = (None, None) if each.centre is None else map(scale.near, (each.centre.real, each.centre.imag))
+            rows.append([k, gone, x_G, y_G, x_P, turns, *centre, dx, dy, *([each.angle] if position.phi else [])])
+        return rows
 
-def at_work(position: DisplacedChain, scale: Scale) -> Rows:
-    """Return a row for each block in a position: its displacement, barycentres, motion and angle."""
-    rows = []
-    for k, each in enumerate(position.blocks, 1):
-        lengths = [each.gone, each.at.real, each.at.imag, _x_of_P(position, each), each.dx, each.dy]
-        gone, x_G, y_G, x_P, dx, dy = map(scale.near, lengths)
-        turns = 0.0 if each.centre is None else each.turns
-        centre = (None, None) if each.centre is None else map(scale.near, (each.centre.real, each.centre.imag))
-        rows.append([k, gone, x_G, y_G, x_P, turns, *centre, dx, dy, *([each.angle] if position.phi else [])])
-    return rows
+    def centres(self, position: DisplacedChain) -> ChainCentres:
+        """Return the centres of rotation of the blocks in a position, from the joints."""
+        return ChainCentres(position)
+
+    def of_steel(self) -> Iterator[Evaluated]:
+        """Yield the lines to the strength of each tie of steel."""
+        mechanism = self.chain.mechanism
+        for tie in mechanism.ties or []:
+            if tie.is_steel:
+                yield from of_steel(tie, mechanism.depth)
+
+    def held(self, position: DisplacedChain) -> Rows:
+        """Return a row for each force or tie in a position: name, force, displacement along it, and work."""
+        scale = self.scale
+        return [
+            [each.name, scale.weight(each.force), scale.near(each.rate), scale.work(each)] for each in position.held
+        ]
+
+    def multiplier(self, position: DisplacedChain, at: str = "") -> Iterator[Evaluated]:
+        """Yield the lines to alpha in a position, of which `at` is the symbol in parentheses; at rest it has none."""
+        scale = self.scale
+        names, blocks = {"unit": scale.unit, "at": at}, position.blocks
+        carried, inertial = ([scale.weight(getattr(each.block, key)) for each in blocks] for key in ("P", "PQ"))
+        lifted, driven = (
+            _printed(position, scale, total, kind) for total, kind in ((position.lifted, "P"), (position.driven, "PQ"))
+        )
+        over = [F.PY.line(lifted, names, P=carried, y=[scale.near(each.dy) for each in blocks])]
+        if position.held:
+            works = [scale.work(each) for each in position.held]
+            forces = [scale.weight(each.force) for each in position.held]
+            arms = [work / force if force else 0.0 for work, force in zip(works, forces, strict=True)]
+            over.append(F.HELD.line(sum(works), names, N=forces, r=arms))
+        if position.rest:
+            over.append(F.V_M.line(scale.weight(position.rest), names))
+        under = [F.PQX.line(driven, names, P=inertial, x=[scale.near(each.dx) for each in blocks])]
+        if position.more:
+            under.append(F.B_M.line(scale.weight(position.more), names))
+        yield from (*over, *under)
+        largest = sum(abs(each.block.P) for each in blocks) * scale.length / abs(position.driven)
+        value = 0.0 if abs(position.alpha) < MIN_SHARE * largest else position.alpha
+        sides = {
+            key: " + ".join(line.formula.symbol.format(at=at) for line in lines)
+            for key, lines in (("over", over), ("under", under))
+        }
+        formula = F.ALPHA if at else F.ALPHA_0
+        yield formula.line(
+            value,
+            {"symbol": f"α{at or '_[0]'}", **sides},
+            V=[each.value for each in over],
+            B=[each.value for each in under],
+        )
+
+    def sums(self) -> Iterator[Evaluated]:
+        """Yield the lines to alpha0, e* and M*."""
+        chain, scale, rest = self.chain, self.scale, self.rest
+        yield from self.multiplier(rest)
+        names, inertial = {"unit": scale.unit}, [scale.weight(each.block.PQ) for each in rest.blocks]
+        first, total, second = (scale.weight(value) for value in (chain.first, chain.inertial, chain.second))
+        yield F.SUM_PQ.line(total, names, P=inertial)
+        yield F.PQXX.line(second, names, P=inertial, x=[scale.near(each.dx) for each in rest.blocks])
+        yield F.E_STAR.line(chain.e_star, first=first, PQ=total, second=second)
+        if chain.mechanism.has_mass:
+            g = chain.mechanism.gravity
+            yield F.M_STAR.line(chain.e_star * chain.inertial / g, e=chain.e_star, PQ=total, g=g)
 
 
 def _x_of_P(position: DisplacedChain, each: Moved) -> float:
@@ -148,62 +256,10 @@ def named(say: Language, name: str) -> str:
     return say(INTERLOCK_NAME) + name.removeprefix(INTERLOCK_NAME) if name.partition(",")[0] == INTERLOCK_NAME else name
 
 
-def held(position: DisplacedChain, scale: Scale) -> Rows:
-    """Return a row for each force or tie in a position: name, force, displacement along it, and work."""
-    return [[each.name, scale.weight(each.force), scale.near(each.rate), scale.work(each)] for each in position.held]
-
-
 def _printed(position: DisplacedChain, scale: Scale, total: float, kind: str) -> float:
     """Return a sum over the weights P or PQ of the blocks in printed units, without rounding errors about zero."""
     value, largest = scale.weight(total), sum(abs(getattr(each.block, kind)) for each in position.blocks)
     return 0.0 if abs(value) < MIN_SHARE * scale.weight(largest) * scale.length else value
-
-
-def multiplier(position: DisplacedChain, scale: Scale, at: str = "") -> Iterator[Evaluated]:
-    """Yield the lines to alpha in a position, of which `at` is the symbol in parentheses; at rest it has none."""
-    names, blocks = {"unit": scale.unit, "at": at}, position.blocks
-    carried, inertial = ([scale.weight(getattr(each.block, key)) for each in blocks] for key in ("P", "PQ"))
-    lifted, driven = (
-        _printed(position, scale, total, kind) for total, kind in ((position.lifted, "P"), (position.driven, "PQ"))
-    )
-    over = [F.PY.line(lifted, names, P=carried, y=[scale.near(each.dy) for each in blocks])]
-    if position.held:
-        works = [scale.work(each) for each in position.held]
-        forces = [scale.weight(each.force) for each in position.held]
-        arms = [work / force if force else 0.0 for work, force in zip(works, forces, strict=True)]
-        over.append(F.HELD.line(sum(works), names, N=forces, r=arms))
-    if position.rest:
-        over.append(F.V_M.line(scale.weight(position.rest), names))
-    under = [F.PQX.line(driven, names, P=inertial, x=[scale.near(each.dx) for each in blocks])]
-    if position.more:
-        under.append(F.B_M.line(scale.weight(position.more), names))
-    yield from (*over, *under)
-    largest = sum(abs(each.block.P) for each in blocks) * scale.length / abs(position.driven)
-    value = 0.0 if abs(position.alpha) < MIN_SHARE * largest else position.alpha
-    sides = {
-        key: " + ".join(line.formula.symbol.format(at=at) for line in lines)
-        for key, lines in (("over", over), ("under", under))
-    }
-    formula = F.ALPHA if at else F.ALPHA_0
-    yield formula.line(
-        value,
-        {"symbol": f"α{at or '_[0]'}", **sides},
-        V=[each.value for each in over],
-        B=[each.value for each in under],
-    )
-
-
-def sums(chain: Chain, rest: DisplacedChain, scale: Scale) -> Iterator[Evaluated]:
-    """Yield the lines to alpha0, e* and M*."""
-    yield from multiplier(rest, scale)
-    names, inertial = {"unit": scale.unit}, [scale.weight(each.block.PQ) for each in rest.blocks]
-    first, total, second = (scale.weight(value) for value in (chain.first, chain.inertial, chain.second))
-    yield F.SUM_PQ.line(total, names, P=inertial)
-    yield F.PQXX.line(second, names, P=inertial, x=[scale.near(each.dx) for each in rest.blocks])
-    yield F.E_STAR.line(chain.e_star, first=first, PQ=total, second=second)
-    if chain.mechanism.has_mass:
-        g = chain.mechanism.gravity
-        yield F.M_STAR.line(chain.e_star * chain.inertial / g, e=chain.e_star, PQ=total, g=g)
 
 
 LEADING_ROTATIONS = (0.2, 0.5)  # shares of the limit at which the leading block has turned by phi
@@ -370,7 +426,7 @@ class ChainCentres:
             return Rotation(j, driver.block, driver.turns)
         if abs(between.at - other.at) <= MIN_TURN * abs(between.at - first.at):
             return None
-        part = _larger(between.at - other.at)
+        _, part = _larger(between.at - other.at)
         return Rotation(j, driver.block, driver.turns * part(between.at - first.at) / part(between.at - other.at))
 
     @cached_property
@@ -425,9 +481,8 @@ class ChainCentres:
         elif between.is_at_infinity:
             yield F.TURNS_ALIKE.line(step.turns, names, t=driver.turns)
         else:
-            part = _larger(between.at - other.at)
+            axis, part = _larger(between.at - other.at)
             numbers = {key: part(each.at) for key, each in (("C", between), ("Oi", first), ("Ok", other))}
-            axis = "x" if part is _real else "y"
             far = max(map(abs, numbers.values()))
             arms = [abs(numbers["C"] - numbers[key]) or far for key in ("Oi", "Ok")]
             yield sharpened(F.TURNS, far / min(arms)).line(
@@ -435,22 +490,9 @@ class ChainCentres:
             )
 
 
-def _real(at: complex) -> float:
-    return at.real
-
-
-def _imag(at: complex) -> float:
-    return at.imag
-
-
-def _larger(arm: complex) -> Callable[[complex], float]:
-    """Return the part of complex numbers that is the larger one of an arm."""
-    return _real if abs(arm.real) > abs(arm.imag) else _imag
-
-
-def _points(locus: Locus) -> tuple[str, str]:
-    """Return the symbols of the first and last point of a line."""
-    return locus.through[0], locus.through[-1]
+def _larger(arm: complex) -> tuple[str, Callable[[complex], float]]:
+    """Return the axis along which an arm is the longer one, and what gives the part of complex numbers along it."""
+    return ("x", attrgetter("real")) if abs(arm.real) > abs(arm.imag) else ("y", attrgetter("imag"))
 
 
 def _located(centre: Centre, near: Callable[[complex], complex]) -> Iterator[Evaluated]:
@@ -459,7 +501,8 @@ def _located(centre: Centre, near: Callable[[complex], complex]) -> Iterator[Eva
     if one.is_at_infinity or other.is_at_infinity:
         return  # the block does not turn: the line of its rotation says so
     u, v = one.along, other.along
-    names = dict(zip("abcd", [*_points(one), *_points(other)], strict=True)) | {"O": centre.symbol}
+    points = [each.through[k] for each in (one, other) for k in (0, -1)]
+    names = dict(zip("abcd", points, strict=True)) | {"O": centre.symbol}
     a, c = one.at, other.at
     ends = {"ax": a.real, "ay": a.imag, "bx": (a + u).real, "by": (a + u).imag, "ux": u.real, "uy": u.imag}
     ends |= {"cx": c.real, "cy": c.imag, "dx": (c + v).real, "dy": (c + v).imag, "vx": v.real, "vy": v.imag}

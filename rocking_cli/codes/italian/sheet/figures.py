@@ -174,10 +174,6 @@ def _draw_weights(axes: Axes, weights: Sequence[DrawnWeight], panel: Panel, labe
         labels.write(str(k), spots, fontsize=style.LABEL, color=style.INK, zorder=8)
 
 
-def _name(say: Language, name: str) -> str:
-    return style.plain(style.fitted(named(say, name), hung.MAX_NAME_WIDTH, style.TICK))
-
-
 def _of_held(
     say: Language, drawing: Picture, position: DisplacedChain, scale: Scale, first: int
 ) -> dict[str, str]:  # fmt: skip
@@ -192,7 +188,8 @@ def _of_held(
             for each in of
         ]
         if sizes:
-            texts[name] = f"{first + len(texts)} {_name(say, name)}: {style.plain('; '.join(sizes))}"
+            shown = style.plain(style.fitted(named(say, name), hung.MAX_NAME_WIDTH, style.TICK))
+            texts[name] = f"{first + len(texts)} {shown}: {style.plain('; '.join(sizes))}"
     return texts
 
 

@@ -187,7 +187,11 @@ class Composition:
     def _solids(self) -> Mapping[str, Sequence[Solid]]:
         """The uniform parts of each body, by name; none if the mass of a body does not follow from them."""
         solids, bodies = self.mechanism.solids(), self.mechanism.weighed()
-        return {body.name: each if _agree(body, each := solids.get(body.name, ())) else () for body in bodies}
+        parts = {body.name: (body.mass, solids.get(body.name, ())) for body in bodies}
+        return {
+            name: solids if isclose(sum(each.mass for each in solids), mass, rel_tol=SAME_MASS) else ()
+            for name, (mass, solids) in parts.items()
+        }
 
     # Masses
 
@@ -350,11 +354,6 @@ def sharpened(formula: Formula, loss: float) -> Formula:
     """Return a formula with so many digits that five remain where its differences lose a factor `loss`."""
     digits = min(MAX_DIGITS, USUAL_DIGITS + max(0, ceil(log10(loss)) - SPARE_DIGITS))
     return replace(formula, numbers=formula.numbers.replace(f":{USUAL_DIGITS}}}", f":{digits}}}"), digits=digits)
-
-
-def _agree(body: Body, solids: Sequence[Solid]) -> bool:
-    """Return whether the mass of a body is that of its parts."""
-    return isclose(sum(each.mass for each in solids), body.mass, rel_tol=SAME_MASS)
 
 
 def _are_alike(one: Sequence[Solid], other: Sequence[Solid]) -> bool:

@@ -40,7 +40,7 @@ from rocking_cli.codes.italian.ground import (
 from rocking_cli.codes.italian.rules import FIRST_STATE, FURTHER_STATES, RULES, STATES
 from rocking_cli.codes.italian.sheet.chain import Rows
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.verification.results import Evaluated, Formula, Working
+from rocking_cli.verification.results import Evaluated, Formula
 from rocking_cli.views.sheet.language import Language
 
 OF_GROUND = {
@@ -93,7 +93,8 @@ def data(say: Language, ground: SiteGround, given_FC: float) -> Rows:
     FC has a second row if another one than in the file counts.
     """
     site = ground.site
-    FC, q, *modes = (_given(say.written(each)) for each in given(ground))
+    lines = map(say.written, given(ground))
+    FC, q, *modes = ([Markup(row.symbol), row.meaning, row.value, row.unit] for row in lines)
     replaced = [[FC[0], say("replaced_FC"), given_FC, ""]] if given_FC != site.FC else []
     rows = [*replaced, FC, q]
     for state in (FIRST_STATE, *FURTHER_STATES):
@@ -106,10 +107,6 @@ def data(say: Language, ground: SiteGround, given_FC: float) -> Rows:
     if ground.on_rock(FIRST_STATE) is not None:
         rows.append([Markup("`topography`"), say("topographic class"), site.topography, ""])
     return [*rows, *_values(say, site.floor, OF_FLOOR), *modes]
-
-
-def _given(row: Working) -> list[Any]:
-    return [Markup(row.symbol), row.meaning, row.value, row.unit]
 
 
 def _values(say: Language, part: object, fields: Mapping[str, tuple[str, str, str]], **names: str) -> list[list[Any]]:

@@ -26,7 +26,7 @@ from rocking_cli.codes.italian.rules import (
 )
 from rocking_cli.codes.italian.sheet import chain as chains
 from rocking_cli.codes.italian.sheet import site
-from rocking_cli.codes.italian.sheet.chain import ChainCentres, Rows, Scale
+from rocking_cli.codes.italian.sheet.chain import ChainSteps, Rows
 from rocking_cli.codes.italian.sheet.site import hazard_at, is_close
 from rocking_cli.core.hung.attached import Spot
 from rocking_cli.core.hung.element import INTERLOCK_NAME
@@ -182,15 +182,10 @@ class DirectionSteps:
         """The exact capacity curve."""
         return self.found.exact
 
-    @property
-    def scale(self) -> Scale:
-        """Unit of printed weights."""
-        return Scale.of(self.curve.chain)
-
     @cached_property
-    def rest(self) -> DisplacedChain:
-        """The chain at rest."""
-        return DisplacedChain(self.curve, 0.0)
+    def of_chain(self) -> ChainSteps:
+        """Lines and rows of the chain."""
+        return ChainSteps(self.curve)
 
     @cached_property
     def end(self) -> DisplacedChain:
@@ -202,47 +197,9 @@ class DirectionSteps:
         """Whether the direction is the positive one."""
         return self.found.direction > 0
 
-    @property
-    def weights(self) -> Rows:
-        """Row of each mass that moves."""
-        return chains.weights(self.curve.chain, self.scale)
-
-    @property
-    def of_blocks(self) -> list[Evaluated]:
-        """Lines to the weight of each block and its point of action."""
-        return list(chains.of_blocks(self.curve.chain, self.scale))
-
-    @property
-    def of_steel(self) -> list[Evaluated]:
-        """Lines to the strength of each tie of steel."""
-        mechanism = self.curve.chain.mechanism
-        return [line for tie in mechanism.ties or [] if tie.is_steel for line in chains.of_steel(tie, mechanism.depth)]
-
-    @property
-    def sums(self) -> list[Evaluated]:
-        """Lines to alpha0, e* and M*."""
-        return list(chains.sums(self.curve.chain, self.rest, self.scale))
-
-    def at_work(self, position: DisplacedChain) -> Rows:
-        """Return a row for each block in a position."""
-        return chains.at_work(position, self.scale)
-
-    def centres(self, position: DisplacedChain) -> ChainCentres:
-        """Return the centres of rotation of the blocks in a position, from the joints."""
-        return ChainCentres(position)
-
-    def held(self, position: DisplacedChain) -> Rows:
-        """Return a row for each force or tie in a position."""
-        return chains.held(position, self.scale)
-
     def ties(self, states: Sequence[str]) -> Rows:
         """Return a row for each tie at limit states."""
         return tie_rows(self.curve, {state: self.found.states[state] for state in states})
-
-    @property
-    def gravity(self) -> float:
-        """Gravitational acceleration [m/s2]."""
-        return self.curve.chain.mechanism.gravity
 
     @property
     def start(self) -> list[Evaluated]:
@@ -254,7 +211,7 @@ class DirectionSteps:
     def to_end(self) -> list[Evaluated]:
         """Lines to d0* from the position in which the capacity vanishes."""
         names = {"at": "φ_[0]", "symbol": "d_[0]^[*]"}
-        return [*chains.multiplier(self.end, self.scale, "(φ_[0])"), *self._moved(self.end, names, "d0")]
+        return [*self.of_chain.multiplier(self.end, "(φ_[0])"), *self._moved(self.end, names, "d0")]
 
     @property
     def states(self) -> list[StateSteps]:
@@ -278,22 +235,22 @@ class DirectionSteps:
 
     def _control(self) -> Evaluated:
         """Return the step for x_C' of the control point."""
-        scale, control = self.scale, self.curve.control
+        scale, control = self.of_chain.scale, self.curve.control
         chain = self.curve.chain
         dx = chain.sideways(control)
         if control.body is None:
             return F.X_C.line(dx, first=scale.weight(chain.first), PQ=scale.weight(chain.inertial))
         names = {"body": control.body, "x": control.at.real, "y": control.at.imag}
-        moved = next(each for each in self.rest.blocks if control.body in each.block.bodies)
+        moved = next(each for each in self.of_chain.rest.blocks if control.body in each.block.bodies)
         if moved.centre is None:
             return F.X_C_STRAIGHT.line(dx, names, x=moved.dx)
         return F.X_C_TURNS.line(dx, names, turns=moved.turns, y=control.at.imag, O=scale.near(moved.centre.imag))
 
     def _moved(self, position: DisplacedChain, names: Mapping[str, str], meaning: str) -> Iterator[Evaluated]:
         """Yield the steps to d_C and d in a position."""
-        curve, scale = self.curve, self.scale
+        curve, scale = self.curve, self.of_chain.scale
         chain, control = curve.chain, curve.control
-        d_C, total = chain.displacement_of_control(position.phi, control), scale.weight(chain.inertial)
+        d_C, total = float(chain.moved(np.array([position.phi]), control)[0]), scale.weight(chain.inertial)
         if control.body is None:
             weights, ways = (
                 [scale.weight(each.block.PQ) for each in position.blocks],
@@ -315,7 +272,7 @@ class DirectionSteps:
         names = {"state": s, "on": s, "at": f"φ_[{s}]", "symbol": f"d(φ_[{s}])"}
         phi = self.curve.rotation(at.d)
         position = DisplacedChain(self.curve, phi)
-        lines = [*self._moved(position, names, "d_again"), *chains.multiplier(position, self.scale, f"(φ_[{s}])")]
+        lines = [*self._moved(position, names, "d_again"), *self.of_chain.multiplier(position, f"(φ_[{s}])")]
         here = self.curve.acceleration_at(phi)
         lines.append(F.A_THERE.line(here, names, **self._accelerated(position.alpha)))
         lines += self._period_and_demand(rule, at, s, here)
@@ -343,7 +300,7 @@ class DirectionSteps:
             return
         spot = next(mass.spot for mass in chain.mechanism.hung.masses if mass.name == seat.load)
         x = [float(chain.mechanism.followed(np.array([each]), chain.direction)(spot).z[0].real) for each in (0.0, phi)]
-        low, high = map(self.scale.near, sorted(x))
+        low, high = map(self.of_chain.scale.near, sorted(x))
         names = {"name": as_subscript(seat.load), "load": seat.load, "state": state}
         yield F.SEAT_MOVED.line(abs(x[1] - x[0]), names, one=high, other=low)
 
