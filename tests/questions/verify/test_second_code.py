@@ -193,13 +193,8 @@ class NoExample(Demo):
     key, site = "no example", NoExampleSite
 
 
-class OwnStarter(Demo):
-    key, starter = "own_starter", "code: NTC2018\nFC: 1.35\nag: 0.2\nF0: 2.5\nTC: 0.4\nS: 1.2\n"
-
-
 EVERY = (
     Worked, Demo, Divides, Nothing, NoMethod, NoRatio, Unmade, Shown, NoShowing, BadSheet, Unknown, Strict, NoExample,
-    OwnStarter,
 )  # fmt: skip
 MODULE = "tests.questions.verify.test_second_code"
 HERE = r"\(.*test_second_code\.py:\d+\)"
@@ -582,13 +577,6 @@ class TestBadCodes:
         words = ("--vary", "width=0.3m:1m", "--until", "demo_number >= 1", "--points", 2, *demo, "--json")
         reasons = json.loads(run("design", "block.yaml", *words).stdout)["not_built"]
         assert "the code shown failed in its number demo_number: ZeroDivisionError" in reasons[0]["reason"]
-
-    def test_the_contract_finds_a_starter_of_another_code(self):
-        class Contract(CodeContract):
-            key = "own_starter"
-
-        with pytest.raises(AssertionError, match="a site of the code NTC2018, not of own_starter"):
-            Contract().test_its_starter_is_a_site_of_this_code()
 
     def test_the_contract_finds_a_verdict_that_contradicts_the_ratio(self, monkeypatch):
         monkeypatch.setattr(Verified, "passed", property(lambda each: False))

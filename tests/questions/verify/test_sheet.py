@@ -39,7 +39,6 @@ from rocking_cli.views.sheet.document import Sentence, Steps
 from rocking_cli.views.sheet.language import SIGNIFICANT_DIGITS, texts_of
 from rocking_cli.views.verification import data, view
 from rocking_cli.views.view import Table
-from tests.browser import launch
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 from tests.questions.report.test_report import read
@@ -634,20 +633,6 @@ class TestAskingForIt:
     @pytest.fixture
     def no_typst(self, monkeypatch):
         monkeypatch.setattr("rocking_cli.questions.verify.sheets.find_spec", lambda name: None)
-
-    @pytest.mark.rest
-    @pytest.mark.usefixtures("no_typst")
-    def test_without_typst_a_browser_prints_a_pdf(self, tmp_path):
-        found, driver = launch()  # skipped where there is none
-        found.close()
-        driver.stop()
-        self.asked(tmp_path, "--sheet", tmp_path / "o.pdf", code=0)
-        content = (tmp_path / "o.pdf").read_bytes()
-        assert content.startswith(b"%PDF-") and content.count(b"/Type /Page\n") + content.count(b"/Type/Page") > 3
-        (box,) = {tuple(map(float, each.split())) for each in re.findall(rb"/MediaBox ?\[([^]]*)\]", content)}
-        assert box == pytest.approx((0, 0, 210 / 25.4 * 72, 297 / 25.4 * 72), abs=0.5)  # A4
-        assert content.rstrip().endswith(b"%%EOF")
-        assert {each.name for each in tmp_path.iterdir()} == {"o.pdf", "s.yaml", "site.yaml"}
 
     @pytest.mark.usefixtures("no_typst")
     @pytest.mark.rest

@@ -101,15 +101,21 @@ def rest_of(page, *sources):
     return text
 
 
-@pytest.fixture
-def text_of(tmp_path, monkeypatch):
-    """Returns the text of the Italian sheet of a structure, with the texts of its figures, which are not rendered."""
+def figures_as_text(monkeypatch):
+    """Figures of pages are not rendered: their texts stand in their place."""
 
     def texts(figure, _):
         every = (each.get_text() for each in figure().findobj(Text) if each.get_visible())
         return Markup(" ").join(map(Markup.escape, every))
 
     monkeypatch.setattr(sheet_page, "inline_svg", texts)
+
+
+@pytest.fixture
+def text_of(tmp_path, monkeypatch):
+    """Returns the text of the Italian sheet of a structure, with the texts of its figures, which are not rendered."""
+
+    figures_as_text(monkeypatch)
     monkeypatch.chdir(tmp_path)
 
     def made(structure, site, **options):

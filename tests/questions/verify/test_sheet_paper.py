@@ -19,11 +19,11 @@ from rocking_cli.documents.figures import inline_svg, svg
 from rocking_cli.plotting.structure import draw_structure
 from rocking_cli.questions.selfcheck.study import CHECKS
 from rocking_cli.studies.picture import picture
-from rocking_cli.views.sheet.document import Steps
 from rocking_cli.views.view import Table
 from tests.browser import launch
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES, PROJECT
+from tests.questions.verify.printed import rows_in
 from tests.questions.verify.test_sheet import (
     CASES,
     CASES_WRITTEN,
@@ -214,7 +214,7 @@ def test_what_a_formula_stands_on_is_what_its_lines_are_marked_with(name, langua
     parts = parts_of(*verified(*CASES[name]), language)
     workings = next(each for each in parts if each.key == "workings")
     (table,) = [each for each in workings.parts[-1].items if isinstance(each, Table)]
-    lines = [line for part in workings.parts for line in lines_of(part) if line.clause and line.standing != "plain"]
+    lines = [line for line in rows_in(workings.parts) if line.clause and line.standing != "plain"]
     marks = {"transcription": "(*)", "code": "(†)", "ours": "(‡)"}
     assert {(row[0], re.search(r"\(.\)$", row[3])[0]) for row in table.rows} == {
         (line.clause, marks[line.standing]) for line in lines
@@ -223,13 +223,6 @@ def test_what_a_formula_stands_on_is_what_its_lines_are_marked_with(name, langua
     assert len({*formulas}) == len(formulas) > 15 and {row[2] for row in table.rows} <= {
         line.formula or "–" for line in lines
     }
-
-
-def lines_of(part):
-    for item in part.items:
-        yield from item.rows if isinstance(item, Steps) else ()
-    for each in part.parts:
-        yield from lines_of(each)
 
 
 def test_a_force_has_its_size_beside_it_and_a_block_of_many_weights_its_sum():
