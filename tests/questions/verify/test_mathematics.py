@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from rocking_cli.codes.italian.sheet import build
 from rocking_cli.documents import sheet_page, sheet_typst
-from rocking_cli.documents.mathematics import MAX_WIDTH, Node, Unreadable, pieces, width
+from rocking_cli.documents.mathematics import MAX_WIDTH, Unreadable, pieces, width
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
 from tests.questions.verify.printed import formula_of, rows_in, same, steps_of_document
@@ -258,11 +258,3 @@ class TestDocument:
         assert HOSTILE in out.paragraphs[0].text and len(steps_of_document(out)) > 30
         page = written(structure, ".html").read_text(encoding="utf-8")
         assert "</w:t>" not in page and "<b>" not in page and "&lt;/w:t&gt; \U0001f600" in page
-
-
-def test_a_node_holds_what_it_says():
-    (row,) = pieces("√(2)/d_[0]")
-    root, script = row.parts[0].parts
-    assert row.parts[0].kind == "fraction" and width(row) == pytest.approx(1.7)
-    assert root.parts == (Node("root", parts=(Node("row", parts=(Node("number", "2"),)),)),)
-    assert script.parts[0].parts[1].parts == (Node("number", "0"),)
