@@ -11,7 +11,6 @@ from importlib.resources import files as files_of
 from math import floor, log, log10, pi, sqrt
 from string import Formatter
 
-import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
@@ -41,6 +40,7 @@ from rocking_cli.views.verification import view
 from rocking_cli.views.view import Table
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
+from tests.oracle.test_sheets_by_hand import faults
 from tests.questions.report.test_report import read
 from tests.questions.verify.printed import Step, same, steps_of_document, steps_of_page
 
@@ -56,7 +56,6 @@ HAZARD = f"FC: 1.35\nVN: 50\nCU: 1.0\nsoil: B\nhazard: {TABLE_OF_HAZARD}\n"
 ON_ROCK = "SLO: {ag: 0.05, F0: 2.4, TC_star: 0.27}\nSLD: {ag: 0.07, F0: 2.42, TC_star: 0.28}\n"
 ON_ROCK += "SLV: {ag: 0.175, F0: 2.45, TC_star: 0.32}\nSLC: {ag: 0.225, F0: 2.48, TC_star: 0.34}\n"
 OF_STATES = [[45, 0.066, 2.36, 0.28], [75, 0.084, 2.35, 0.285], [712, 0.21, 2.42, 0.31], [1462, 0.265, 2.46, 0.32]]
-ROWS = {"a_[g]": 1, "F_[0]": 2, "T_[C]^[*]": 3}
 ORDINATES = [[0, 0.2], [0.1, 0.4], [0.5, 0.5], [1, 0.3], [2, 0.1], [3, 0.02], [6, 0.012], [20, 0.01]]
 TABLE = f"FC: 1.2\nspectrum: {ORDINATES}\n"
 FACADE = "mechanism: block\nname: facade\nwidth: 0.6\nheight: 8\n"
@@ -261,264 +260,28 @@ def check_arithmetic(items, *, comma=False):
     return len(steps_of(items))
 
 
-def rounding_of(turns, one, other, moved):
-    """What rounding may change of a rotation times a distance."""
-    half = {each: half_unit(repr(each)) for each in (turns, one, other, moved)}
-    return 1.01 * (abs(turns) * (half[one] + half[other]) + half[turns] * abs(one - other) + half[moved]) + 1e-9
-
-
-OF_STATE = ["a_[g]", "F_[0]", "T_[C]^[*]", "T_[C]", "S", "T_[B]", "T_[D]", "a_[g] S", "S_[Z]", "S_[e](T_[0])",
-            "S_[eZ](T_[0])", "T_[1]", "ξ_[1]"]  # fmt: skip
-OWN = {
-    "e^[*]": lambda v: v["first"] ** 2 / v["Σ(P+Q)"] / v["Σ(P+Q)x′^[2]"],
-    "M^[*]": lambda v: v["e^[*]"] * v["Σ(P+Q)"] * 1000 / G,
-    "a_[0]^[*]": lambda v: v["α_[0]"] * G / v["e^[*]"] / v["FC"],
-    "x_[C]′": lambda v: v["first"] / v["Σ(P+Q)"],
-    "T_[0]": lambda v: 6.2 * (1.2 / 0.25) * 1.2 * sqrt(18000 / (1.2e9 * G)),  # of the one site that gives an element
-    "T_[B]": lambda v: v["T_[C]"] / 3,
-    "T_[D]": lambda v: 4 * v["a_[g]"] + 1.6,
-    "V_[R]": lambda v: max(v["V_[N]"] * v["C_[U]"], 35),
-    "S_[S]": lambda v: min(max(1.4 - 0.4 * v["F_[0]"] * v["a_[g]"], 1), 1.2),
-    "C_[C]": lambda v: 1.1 * v["T_[C]^[*]"] ** -0.2,
-    "T_[C]": lambda v: v["C_[C]"] * v["T_[C]^[*]"],
-    "S": lambda v: v["S_[S]"] * v["S_T"],
-    "ψ": lambda v: v["z"] / v["H"],
-    "γ": lambda v: 3 * v["n"] / (2 * v["n"] + 1),
-    "S_[Z]": lambda v: v["S_[e](T_[1])"] * v["γ"] * v["ψ"] * sqrt(1 + 4 * v["ξ_[1]"] ** 2),
-    "a_[g,q]": lambda v: v["q"] * v["a_[g,0]"],
-}
-"""Formulas of the test's own that need nothing but what is printed above."""
-
-
-class Recomputed:
-    """Steps by formulas of the test's own, from numbers printed above them; `known` are the last ones."""
-
-    SOLVED = re.compile(
-        r"φ_|d_\[[at]\]$|t$|a_\[g,|T_\[R(,lin)?\]$|V_\[m\]|B_\[m\]"
-    )  # by trial, or as given: checked by what follows
-
-    def __init__(self, items):
-        self.known, self.given, self.state, self.count = {}, {}, None, 0
-        self.blocks, self.weights, self.method = [], [], None
-        for each in items:
-            {str: self.heading, list: self.grid, Step: self.step}[type(each)](each)
-
-    def heading(self, text):
-        if self.state and self.heading_of_site:
-            self.given[self.state].update(self.known)  # what the site of a limit state came to
-        found = re.search(r"SL[DVC]", text)
-        self.heading_of_site = text.startswith(("Ground at", "Azione sismica"))
-        if found or re.match("Linear", text):
-            self.state = found[0] if found else "SLV"
-            sizes = self.given.setdefault(self.state, {})
-            self.known.update({name: sizes[name] for name in OF_STATE if name in sizes})
-            if text.startswith("Linear"):
-                own = self.given.get("SLD", {})
-                self.known.update({name: own[name] for name in ("T_[1]", "ξ_[1]") if name in own})
-
-    heading_of_site = False
-
-    def grid(self, rows):
-        caption, heads, *rows = rows
-        if heads[:3] == ["symbol", "quantity", "value"]:
-            for symbol, meaning, value, _ in rows:
-                state = re.search(r"SL[DVC]$", meaning)
-                where = self.given.setdefault(state[0], {}) if state else self.known
-                if re.match(r"[−\d]", value):
-                    where[symbol] = number(value)
-                if "soil" in meaning:
-                    self.known["soil"] = value
-                if meaning == "topographic class":
-                    self.known["S_T"] = {"T1": 1.0, "T2": 1.2}[value]
-        elif heads[:2] == ["weight", "block"]:
-            self.weights = [[number(each) for each in row[1:]] for row in rows]
-            for _, _, _, M, w, h, P, PQ in self.weights:
-                assert pytest.approx(w * M * self.g(caption) / self.unit(heads), rel=2e-5) == P
-                assert pytest.approx(h * M * self.g(caption) / self.unit(heads), rel=2e-5) == PQ
-        elif "Δx [m]" in heads:
-            self.blocks = [[number(each) if each != "–" else None for each in row] for row in rows]
-            for k, _, _, y, x_P, turns, x_O, y_O, dx, dy, *_ in self.blocks:
-                for symbol, value in ((f"θ_[{k:g}]′", turns), (f"x_[O{k:g}]", x_O), (f"y_[O{k:g}]", y_O)):
-                    if value is not None:  # the lines above the table, if it has any
-                        assert value == pytest.approx(self.known.pop(symbol, value), rel=1e-5, abs=1e-8), symbol
-                if turns:
-                    sense = 1 if "(x_[O] − x_[P])" in caption else -1
-                    assert dx == pytest.approx(turns * (y - y_O), abs=rounding_of(turns, y, y_O, dx))
-                    assert dy == pytest.approx(sense * turns * (x_O - x_P), abs=rounding_of(turns, x_O, x_P, dy))
-        elif heads[0] == "force or tie":
-            self.known["works"] = [number(row[3]) for row in rows]
-            for row in rows:
-                F, r, work = (number(each) for each in row[1:])
-                assert abs(work) == pytest.approx(abs(F * r), rel=2e-5)
-
-    @staticmethod
-    def g(caption):
-        return number(re.search(r"g = ([\d.,]+)", caption)[1])
-
-    @staticmethod
-    def unit(heads):
-        return 1e3 if "P [kN]" in heads else 1.0
-
-    def step(self, each):
-        value = number(each.result)
-        own = self.formula(each)
-        if own is not None:
-            assert value == pytest.approx(own, rel=2e-5, abs=2e-5 * self.scale(each)), each
-            self.count += 1
-        else:
-            assert (self.SOLVED.match(each.symbol) and not each.numbers) or each.symbol.startswith(self.OTHERS), each
-        self.known[each.symbol] = value
-        if each.symbol in ("T_[R]", "T_[R,lin]"):
-            self.known["T_R"] = value
-        if each.symbol.startswith("a_[g,") and not each.numbers:
-            self.known["a_[g]"] = value  # the check that follows is by this one
-        if each.symbol.startswith("a_[g,"):
-            self.known["a_g of the method"] = value
-
-    OTHERS = (
-        "x_[G", "y_[G", "x_[P", "y_[P", "P_[", "PQ_[", "r", "M_[", "A_[", "t", "x_[O", "y_[O", "θ_[", "Δx_[",
-        *(f"{axis}_[{k}]′" for axis in "xy" for k in range(1, 10)),
-    )  # fmt: skip
-    """Symbols whose results are checked against their numbers only."""
-
-    def scale(self, each):
-        """What small differences are of: the terms of a sum."""
-        if each.symbol.startswith(("ΣPy", "α(φ_[0])")):
-            return sum(abs(block[5]) for block in self.weights for block in [(0, 0, 0, 0, 0, block[6])])
-        return 0.0
-
-    def force(self, k, which):
-        return self.known[f"{which}_[{k + 1}]"]
-
-    def sums(self, which, power=1):
-        column = 9 if which == "P" else 8
-        return sum(self.force(k, which) * block[column] ** power for k, block in enumerate(self.blocks))
-
-    def formula(self, each):
-        """The value of a step, or None where the test has no formula for it."""
-        v, name = self.known, each.symbol
-        eta = sqrt(10 / (5 + v.get("xi", 5)))
-        if name in OWN:
-            return OWN[name](v)
-        if re.fullmatch(r"L(\(φ_\[\w+\]\))?", name):
-            return sum(v["works"])
-        if re.fullmatch(r"ΣPy′(\(φ_\[\w+\]\))?", name):
-            return self.sums("P")
-        if re.fullmatch(r"Σ\(P\+Q\)x′(\(φ_\[\w+\]\))?", name):
-            return self.sums("PQ")
-        if name == "Σ(P+Q)":
-            v["first"] = v["Σ(P+Q)x′"]
-            return sum(self.force(k, "PQ") for k in range(len(self.blocks)))
-        if name == "Σ(P+Q)x′^[2]":
-            return self.sums("PQ", 2)
-        if name.startswith("α"):
-            at = name.removeprefix("α") if "φ" in name else ""
-            held = v[f"L{at}"] if " L" in each.formula else 0.0
-            more = v[f"V_[m]{at}"] if "V_[m]" in each.formula else 0.0
-            under = v[f"B_[m]{at}"] if "B_[m]" in each.formula else 0.0
-            return (v[f"ΣPy′{at}"] + held + more) / (v[f"Σ(P+Q)x′{at}"] + under)
-        if name.startswith("d_[C]"):
-            return sum(self.force(k, "PQ") * block[1] for k, block in enumerate(self.blocks)) / v["Σ(P+Q)"]
-        if name == "d_[0]^[*]" or name.startswith("d(φ"):
-            moved = [v[key] for key in v if key.startswith("d_[C]")][-1]
-            own = v.get(f"d_[{self.state}]") if name.startswith("d(φ") else None
-            d = v.pop([key for key in v if key.startswith("d_[C]")][-1]) / v["e^[*]"]
-            assert moved and (own is None or d == pytest.approx(own, rel=2e-5))
-            return d
-        if name in ("d_[SLV]", "d_[SLC]"):
-            share = {"d_[SLV]": 0.4, "d_[SLC]": 0.6}[name] * v["d_[0]^[*]"]
-            others = each.numbers.rstrip(")").split("; ")[1:] if "min" in each.formula else []
-            return min(share, *map(number, others)) if others else share
-        if name.startswith("a^[*]_"):
-            if "lin" in name:
-                return v["a_[0]^[*]"] * (1 - v[f"d_[{self.state}]"] / v["d_[0]^[*]"])
-            return v[f"α(φ_[{self.state}])"] * G / (v["e^[*]"] * v["FC"])
-        if name.startswith("a_[SL"):
-            return min(v[name.replace("a_", "a^[*]_")], 4 * pi**2 * v[f"d_[{self.state}]"] / v["T_[0]"] ** 2)
-        if name.startswith("T_[SL"):
-            a = v.get(name.replace("T_", "a_"), v.get(name.replace("T_", "a^[*]_")))
-            return {"SLV": 1.68, "SLC": 1.56}[self.state] * pi * sqrt(v[f"d_[{self.state}]"] / a)
-        return self.of_site(each, v, eta)
-
-    def of_site(self, each, v, eta):
-        name, period = each.symbol, re.search(r"\((T_\[.*?\]|t)\)", each.symbol)
-        T = v[period[1]] if period else None
-        if name == "a_[g] S":
-            return v["a_[g]"] * G * (1 if "S_[e](0)" in each.formula else v["S"])
-        if name in ROWS and not each.numbers:
-            v["table"] = OF_STATES
-            return next(row[ROWS[name]] for row in OF_STATES if row[0] == v["T_R"])
-        if name in ROWS:
-            x = log(v["T_R"])
-            return float(np.exp(np.interp(x, *np.log(np.array(v.get("table", TABLE_OF_HAZARD)).T[[0, ROWS[name]]]))))
-        if name == "T_[R]" and each.numbers:
-            return -v["V_[R]"] / log(1 - {"SLD": 0.63, "SLV": 0.1, "SLC": 0.05}[self.state])
-        if name == "S_[eZ](T_[0])" and "max" in each.formula:
-            return max(v["S_[eZ,1](T_[0])"], v["S_[e](T_[0])"])
-        if name.startswith("S_[5]"):
-            return float(np.interp(T, *np.array(ORDINATES).T)) * v["a_[g]"] / ORDINATES[0][1]
-        if name in ("η(t)", "η(T_[1])", "η(T_[0])"):
-            return 1 - (1 - eta) * T / 0.5
-        if name.startswith("S_[e](") and "S_[5]" in each.formula:
-            return v[name.replace("S_[e]", "S_[5]")] * (1 - (1 - eta) * min(T / 0.5, 1)) * G
-        if name.startswith("η(ξ"):
-            per_cent = {"SLV": 8, "SLC": 10, "SLD": 5}[self.state]
-            v["xi"] = 100 * v["ξ_[1]"] if name == "η(ξ_[1])" else 5 if self.heading_of_site else per_cent
-            if self.free_again(each):
-                v["xi"] = 5
-            return sqrt(10 / (5 + v["xi"]))
-        if name.startswith("S_[e](") and "S_[5]" not in each.formula:
-            TB, TC, TD = v["T_[B]"], v["T_[C]"], v["T_[D]"]
-            level = v["a_[g]"] * v["S"] * G * eta * v["F_[0]"]
-            rising = T / TB + (1 - T / TB) / (eta * v["F_[0]"])
-            return level * (rising if TB > T else 1 if TC > T else TC / T if TD > T else TC * TD / T**2)
-        if name == "A":
-            return 1.1 * eta / sqrt(v["ξ_[1]"])
-        if (name.startswith("S_[eZ](") and "max" not in each.formula) or name.startswith("S_[eZ,1]"):
-            A, x = v["A"], T / v["T_[1]"]
-            off = max(1 - x / 0.8, 0) ** 1.6 if x < 1 else max(x / 1.1 - 1, 0) ** 1.2
-            return A * v["S_[Z]"] / (1 + (A - 1) * off)
-        if name in ("d_[Z]", "d_[b]"):
-            T = v["T_[1]"] * 1.1 if name == "d_[b]" else v[re.search(r"\((T_.*?\])\)", each.formula)[1]]
-            S = v["A"] * v["S_[Z]"] if name == "d_[b]" else [v[key] for key in v if key.startswith("S_[eZ](")][-1]
-            S = v[re.search(r"S_\[eZ\]\(.*?\]\)", each.formula)[0]] if name == "d_[Z]" else S
-            return S * (T / (2 * pi)) ** 2
-        if name.startswith("S_[De]") or name == "d_[g]":
-            return self.displaced(each, v, eta)
-        if name.startswith("ρ"):
-            return v[f"d_[{self.state}]"] / v[f"S_[De](T_[{name[3:-1]}])"]
-        if name.startswith("ζ"):
-            state = "SLV" if "SLV" in each.formula else self.state
-            return v["a_g of the method"] / self.given[state]["a_[g]"]
-        if name.startswith("a_[g,") and each.numbers:
-            capacity, _, demand = each.formula.removeprefix("a_[g] · ").partition("/")
-            return self.given[self.state]["a_[g]"] * v[capacity] / v[demand.strip("()") if " " in demand else demand]
-        return None
-
-    def free_again(self, each):
-        return "5 + 5)" in each.numbers
-
-    def displaced(self, each, v, eta):
-        if each.formula.startswith("max("):
-            return max(v[key] for key in re.findall(r"d_\[.\]", each.formula))
-        squared = re.match(r"(S_\[e\]\((.*?)\)) ", each.formula)
-        if squared:
-            return v[squared[1]] * (v[squared[2]] / (2 * pi)) ** 2
-        T, (TE, TF) = (
-            v[re.search(r"\((T_\[.*?\])\)", each.symbol)[1]],
-            ({"A": 4.5, "B": 5.0, "C": 6.0}[v["soil"]], 10.0),
-        )
-        level = 0.025 * v["a_[g]"] * v["S"] * G * v["T_[C]"] * v["T_[D]"]
-        high = v["F_[0]"] * eta
-        return level * (high + (1 - high) * min((T - TE) / (TF - TE), 1))
-
-
 @pytest.mark.every(4)
 @pytest.mark.parametrize("name", CASES)
-def test_every_step_gives_its_result_and_follows_from_those_above_it(name):
-    items = items_of_case(name)
-    assert check_arithmetic(items) > 40
-    assert Recomputed(items).count > 24
+def test_every_step_gives_its_result_by_the_numbers_that_are_put_in(name):
+    assert check_arithmetic(items_of_case(name)) > 40
+
+
+LIVE = {
+    "two directions, a floor, an element": ("parapet", "roof", "en"),
+    "ties and seats": ("tied_facade", "site", "it"),
+    "several blocks": ("arch_on_piers", "site", "en"),
+}
+"""Structure, site and language of pages as they are written now; those that are kept are in tests/oracle."""
+
+
+@pytest.mark.parametrize("name", LIVE)
+def test_every_line_follows_from_what_is_printed_above_it_and_from_the_code(name, tmp_path, monkeypatch):
+    """By the oracle, which reads the page alone: symbols, numbers, tables, verdicts and sentences."""
+    monkeypatch.setattr(sheet_page, "figure_of", lambda *_: Figure(figsize=(1, 1)))
+    structure, site, language = LIVE[name]
+    files = (EXAMPLES / "verify" / f"{each}.yaml" for each in (structure, site))
+    rk.verify(*files, sheet=tmp_path / "o.html", language=language)
+    assert faults((tmp_path / "o.html").read_text(encoding="utf-8")) == []
 
 
 @pytest.mark.parametrize("name", ["on soil", "laden, on a hazard"])
@@ -541,8 +304,6 @@ def test_a_number_that_is_changed_is_found():
     items[k] = items[k]._replace(result="3.20087")
     with pytest.raises(AssertionError, match="T_"):
         check_arithmetic(items)
-    with pytest.raises(AssertionError):
-        Recomputed(items)
 
 
 CASES_WRITTEN = [("facade", "en"), ("tied", "it"), ("two bodies on a floor", "en"), ("laden, on a hazard", "it")]
