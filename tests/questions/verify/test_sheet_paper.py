@@ -32,7 +32,6 @@ from tests.questions.verify.test_sheet import (
     SLC,
     TABLE_OF_HAZARD,
     WALL,
-    Step,
     items_of,
     number,
     parts_of,
@@ -293,18 +292,6 @@ def test_what_it_would_be_without_ties_and_by_the_letter(control):
             assert number(rows[f"{state}: demand d [m]"][k]) == pytest.approx(at.demand, rel=5e-4)
     assert number(rows["α_[0]"][2]) == pytest.approx(own.alpha0, rel=5e-4)
     assert number(rows["a_[0]^[*] [m/s²]"][2]) == pytest.approx(own.alpha0 * G / (own.e_star * 1.35), rel=5e-4)
-
-
-def test_a_seat_is_followed_to_the_displacement_at_which_it_is_lost():
-    items = items_of(*verified(TIED_FACADE, SITE))
-    steps = [each for each in items if isinstance(each, Step)]
-    (lost, *_) = (each for each in steps if each.symbol == "d_[a]")
-    assert lost.formula == "Δx_[roof] = 0.25 m" and not lost.numbers
-    (moved, *_) = (each for each in steps if each.symbol == "Δx_[roof]")
-    high, low = map(number, moved.numbers.split(" − "))
-    phi = number(next(each for each in steps if each.symbol == "φ_[SLC]").result)
-    assert (number(moved.result), low) == (pytest.approx(0.25, rel=1e-6), 0.0)  # the load is 8 m above the corner
-    assert high == pytest.approx(8 * np.sin(phi) + 0.3 * (1 - np.cos(phi)), rel=1e-5)
 
 
 @pytest.mark.parametrize(("name", "rows"), [
