@@ -332,7 +332,7 @@ class Identity(AskedModel):
 
     def title(self, origin: str, language: str) -> TitleBlock:
         """Return the title block, with the date of today. Raises `InputError` if the logo cannot be used."""
-        from rocking_cli.documents.logo import embedded
+        from rocking_cli.documents.figures import embedded
         from rocking_cli.studies.provenance import TitleBlock
         from rocking_cli.views.sheet.language import Language
 

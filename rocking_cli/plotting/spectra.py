@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from rocking_cli.arrays import Reals
 from rocking_cli.plotting import style
-from rocking_cli.verification.spectra import LONGEST_FINE_PERIOD, StateSpectra
+from rocking_cli.verification.demand import LONGEST_FINE_PERIOD, StateSpectra
 
 QUANTITIES = (("acceleration", "spectral acceleration [g]"), ("displacement", "spectral displacement [m]"))
 BOLDEST = 2.4  # pt, of the limit state that decides

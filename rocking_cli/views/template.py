@@ -92,7 +92,8 @@ def _lines(
         symbol = f", {row['symbol']}" if row["symbol"] else ""
         limits = f" ({row['bounds']})" if row["bounds"] else ""
         used = row["required"] or row["field"] in needed
-        value = _plain(row["example"] if row["example"] is not None else row["default"])
+        value = row["example"] if row["example"] is not None else row["default"]
+        value = to_jsonable_python(value, exclude_none=True, by_alias=False, fallback=str)
         example = usual.get(row["field"], in_a_line(value))
         if used and row["field"] not in usual and row["example"] is None and row["default"] is None:
             missing.append(row["field"])
@@ -109,8 +110,3 @@ def _lines(
 
 def _in_a_line(text: str) -> str:
     return " ".join(text.split())
-
-
-def _plain(value: Any) -> Any:
-    """Return a value as plain data, without what is not given."""
-    return to_jsonable_python(value, exclude_none=True, by_alias=False, fallback=str)

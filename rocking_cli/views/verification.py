@@ -13,7 +13,7 @@ from rocking_cli.core import Direction, Mechanism
 from rocking_cli.errors import InputError, PluginError, Problem
 from rocking_cli.plugins.errors import guard
 from rocking_cli.verification.code import codes
-from rocking_cli.verification.results import Verification, Verified, Working, in_plain
+from rocking_cli.verification.results import Remark, Verification, Verified, Working, in_plain
 from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, table_of
 from rocking_cli.views.conclusion import conclusion_data, next_in_words, of_verification, uncounted_ties
@@ -118,7 +118,7 @@ class Showing(Generic[F, V]):
     def in_short(self, found: F, each: V, where: str) -> Iterable[Table | str]:
         """Return the tables and sentences of a direction without which its verdict cannot be judged; no remarks."""
         rows = [row for row in rows_of(found) if row.direction is each.direction]
-        return [table_of(f"{where}: capacity by method", METHODS, rows), verdict(each, where)]
+        return [table_of(f"{where}: capacity by method", METHODS, rows), verdict(self.say, each, where)]
 
     def compared(self, found: F, strengthened: F) -> Iterable[Table | str]:
         """Return the methods of the existing structure and of the strengthened one, in the directions that decide."""
@@ -247,7 +247,7 @@ def _in_full(
     for where, each in sides.items():
         yield from shown_by.of_direction(found, each, f"{where}{of}")
     if len(sides) > 1:
-        yield _which_direction(found)
+        yield _which_direction(shown_by.say, found)
     yield from map(shown_by.say, found.remarks)
 
 
@@ -278,28 +278,26 @@ def shown(found: Verification, say: Language = ENGLISH) -> dict[str, Any]:
     return {say(f"{one.direction.label.capitalize()} direction"): one for one in found.distinct}
 
 
-def _which_direction(found: Verification) -> str:
+def _which_direction(say: Language, found: Verification) -> str:
     """State which direction governs, with the ratios of both; empty if none does."""
     least = found.governs
     one, other = found.compared(least), found.compared(least.opposite)
     if found.alike or one is None or other is None:
         return ""
-    return (
-        f"The {least.label} direction governs: its ratio of capacity to demand is {one:.3g}, against {other:.3g} in "
-        "the other direction."
-    )
+    return say("direction_governs", way=say.recognised("shown", least.label), one=one, other=other)
 
 
-def verdict(each: Verified, where: str) -> str:
+def verdict(say: Language, each: Verified, where: str) -> str:
     """Return a sentence on whether a direction passes, and its margin."""
     counts = each.counts
     if each.passed is None or each.ratio is None:
-        return f"{where}: the site does not give what the code asks for."
-    return (
-        f"{where}: {'passes' if each.passed else 'fails'}. {counts.title[0].upper()}{counts.title[1:]} governs: "
-        f"capacity {number(counts.capacity, 4)}, demand {number(counts.demand, 4)} {counts.unit}".rstrip()
-        + f", ratio {each.ratio:.3g}."
-    )
+        return say("verdict_missing", where=where)
+    values = {"where": where, "method": f"{counts.title[0].upper()}{counts.title[1:]}", "ratio": each.ratio}
+    values |= {
+        "capacity": say.number(counts.capacity, 4),
+        "demand": f"{say.number(counts.demand, 4)} {counts.unit}".rstrip(),
+    }
+    return say("verdict_passes" if each.passed else "verdict_fails", **values)
 
 
 def _site(found: Verification, symbols: Sequence[str]) -> Table:
@@ -372,29 +370,24 @@ def standing(workings: Sequence[Working], notation: str | None = "", say: Langua
         {each.symbol: each.meaning for each in plain if each.standing == standing}
         for standing in ("ours", "code", "transcription", "print")
     )
-    sentences = []
+    sentences, symbols = [], {"printed": ", ".join(printed)}
     if notation is not None and (printed or transcribed or unchecked):
-        sentences.append(f"The clauses name the place of each formula in the code{notation}.")
+        sentences.append(say("standing_clauses", notation=say(notation)))
     if transcribed or unchecked:
-        which = f"Only {', '.join(printed)} of the formulas" if printed else "None of the formulas"
-        them = "the others" if printed else "them"
-        sentences.append(
-            f"{which} has been checked against the printed code{'' if printed else ' yet'}: have {them} checked before "
-            "you rely on a verdict."
-        )
+        sentences.append(say("standing_some" if printed else "standing_none", **symbols))
     elif printed:
-        sentences.append("Every formula has been checked against the printed code.")
+        sentences.append(say("standing_all"))
     if transcribed:
-        others = (
-            f", except for {', '.join(unchecked) if notation is not None else f'{len(unchecked)} of them'}"
-            if unchecked
-            else ""
-        )
-        which = "The others" if printed else "They"
-        sentences.append(f"{which} agree with a transcription of its text{others}.")
+        but: Remark | str = ""
+        if unchecked:
+            names = ", ".join(unchecked)
+            but = Remark.of(
+                "standing_but_some" if notation is None else "standing_but", names=names, count=len(unchecked)
+            )
+        sentences.append(say("standing_others_agree" if printed else "standing_agree", but=but))
     if ours and notation is None:
-        sentences.append(f"Our own choices: {', '.join(ours)}.")
+        sentences.append(say("standing_ours", names=", ".join(ours)))
     elif ours:
-        named = ", ".join(f"{symbol} ({say.recognised('shown', meaning)})" for symbol, meaning in ours.items())
-        sentences.append(f"Our own choices ('ours'), where the code is silent or we depart from its wording: {named}.")
+        named = (f"{symbol} ({say.recognised('shown', meaning)})" for symbol, meaning in ours.items())
+        sentences.append(say("standing_ours_named", names=", ".join(named)))
     return " ".join(sentences)

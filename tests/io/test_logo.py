@@ -6,7 +6,7 @@ import io
 import pytest
 from PIL import Image
 
-from rocking_cli.documents.logo import MAX_LOGO_SIZE, embedded
+from rocking_cli.documents.figures import MAX_LOGO_SIZE, embedded
 from rocking_cli.errors import InputError
 from tests.cli.test_cli import run
 

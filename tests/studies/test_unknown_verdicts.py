@@ -14,7 +14,7 @@ import pytest
 import rocking_cli as rk
 from rocking_cli.codes.italian import dynamic
 from rocking_cli.codes.italian.results import Dynamic, RecordPeak
-from rocking_cli.codes.italian.sheet import dynamic as sheets
+from rocking_cli.codes.italian.sheet import summary as sheets
 from rocking_cli.codes.italian.sheet.build import SHEET
 from rocking_cli.codes.italian.sheet.steps import ENGLISH
 from rocking_cli.core import Direction
@@ -227,7 +227,7 @@ class TestVerification:
             assert found.holds(confident=variant) == passes
             assert found.passed(confident=variant) == []  # nor is it known to pass d0*
             assert found.unknown(confident=variant) == ([] if passes else ["two"])
-        _, _, _, one, other, changes, _ = sheets.items(ENGLISH, found, 1.2)
+        _, _, _, one, other, changes, _ = sheets.histories(ENGLISH, found, 1.2)
         assert f"{state}: not satisfied. The outcome under two is unknown" in (one if confident else other).text
         assert f"{state}: satisfied." in (other if confident else one).text
         assert changes.text == f"The confidence factor FC changes the verdict at {state}."
@@ -236,7 +236,7 @@ class TestVerification:
         found = self.made(checked=False)
         assert found.holds(confident=True)
         assert any("the joints of this mechanism are not checked" in getattr(item, "text", "")
-                   for item in sheets.items(ENGLISH, found, 1.2))  # fmt: skip
+                   for item in sheets.histories(ENGLISH, found, 1.2))  # fmt: skip
 
     @pytest.mark.parametrize(
         ("language", "cell", "verdict"),
@@ -246,7 +246,7 @@ class TestVerification:
     @pytest.mark.parametrize("state", ["SLV", "SLC"])
     def test_the_sheet_says_so_for_each_state(self, language, cell, verdict, state):
         found = self.made(with_FC=3.5, checked=False, state=state)
-        _, _, grid, *said = sheets.items(SHEET.language(language), found, 1.2)
+        _, _, grid, *said = sheets.histories(SHEET.language(language), found, 1.2)
         assert grid.rows[1][2:] == [cell, "0,01" if language == "it" else "0.01"]
         failed = [item.text for item in said if verdict in item.text]
         assert len(failed) == 1 and state in failed[0]

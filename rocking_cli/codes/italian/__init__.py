@@ -9,11 +9,11 @@ from typing import Any, ClassVar
 
 from rocking_cli.codes.italian import method
 from rocking_cli.codes.italian.chain import Chain
+from rocking_cli.codes.italian.ground import site_demand
 from rocking_cli.codes.italian.method import EDITION, KEY, NAME
 from rocking_cli.codes.italian.results import ItalianVerification
 from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, NONLINEAR, STATES
 from rocking_cli.codes.italian.site import ItalianSite, of_each
-from rocking_cli.codes.italian.site_demand import site_demand
 from rocking_cli.core import Mechanism
 from rocking_cli.structure import Structure
 from rocking_cli.verification.code import Code, Number

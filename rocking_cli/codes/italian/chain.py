@@ -142,17 +142,11 @@ class Chain:
     @cached_property
     def blocks(self) -> Sequence[ChainBlock]:
         """The blocks of the chain; the division of a block into pieces that move together has no effect."""
-        pairs = zip(self._names_of_blocks, self._weights_of_blocks, strict=True)
-        return [self._block(names, weights) for names, weights in pairs]
-
-    @cached_property
-    def _names_of_blocks(self) -> Sequence[Sequence[str]]:
         numbers = parts(self.mechanism, self.direction)
-        return [[name for name, number in numbers.items() if number == k] for k in range(1, 1 + max(numbers.values()))]
-
-    @cached_property
-    def _weights_of_blocks(self) -> Sequence[Sequence[Weight]]:
-        return [[each for each in self.weights if each.spot.body in names] for names in self._names_of_blocks]
+        groups = [
+            [name for name, number in numbers.items() if number == k] for k in range(1, 1 + max(numbers.values()))
+        ]
+        return [self._block(names, [each for each in self.weights if each.spot.body in names]) for names in groups]
 
     def _block(self, names: Sequence[str], weights: Sequence[Weight]) -> ChainBlock:
         P, PQ = (sum(getattr(each, key) for each in weights) for key in ("carried", "inertial"))
@@ -215,9 +209,6 @@ class Chain:
         """Whether every weight carried has its full horizontal inertia, so that both wordings agree."""
         return all(each.carried <= each.inertial * (1 + 1e-12) for each in self.weights)
 
-    def _sideways(self, spot: Spot) -> float:
-        return self.direction * float(self._follow_at_rest(spot).dz[0].real)
-
     @property
     def e_star(self) -> float:
         """Participating mass ratio e*."""
@@ -230,7 +221,9 @@ class Chain:
 
     def sideways(self, control: Control) -> float:
         """Return x' of a control point at rest [m/rad]. Raises `InputError` if it does not move in the direction."""
-        dx = self.first / self.inertial if control.body is None else self._sideways(Spot(control.body, control.at))
+        dx = self.first / self.inertial
+        if control.body is not None:
+            dx = self.direction * float(self._follow_at_rest(Spot(control.body, control.at)).dz[0].real)
         if not dx > MIN_SIDEWAYS_SHARE * max(abs(block.dx) for block in self.blocks):
             raise InputError(
                 f"{named('control')} does not move in the {self.direction.label} direction: its virtual "
@@ -249,10 +242,6 @@ class Chain:
             way = self.direction * np.sum(ways, axis=0) / self.inertial
         farthest = max(abs(each) for each in (control.at, *(one.spot.at for one in self.weights)))
         return np.where(np.abs(way) < ROUNDING_SHARE * farthest, 0.0, way)
-
-    def displacement_of_control(self, phi: float, control: Control) -> float:
-        """Return d_C of a control point at one rotation [m]."""
-        return float(self.moved(np.array([phi]), control)[0])
 
     def displacement(self, phi: Reals, control: Control) -> Reals:
         """Return d of the equivalent oscillator at rotations, shape (n,) [m]."""

@@ -15,10 +15,17 @@ from operator import itemgetter
 from pydantic import ValidationError
 
 from rocking_cli.codes.italian import capacity, clauses, remarks
-from rocking_cli.codes.italian.capacity import CapacityCurve, ExactCurve, StraightCurve, ends, with_elastic_branch
+from rocking_cli.codes.italian.capacity import (
+    CapacityCurve,
+    ExactCurve,
+    StraightCurve,
+    elastic,
+    ends,
+    lasting,
+    with_elastic_branch,
+)
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.demand import REFERENCE_DAMPING, DemandSpectrum
-from rocking_cli.codes.italian.displaced import elastic, lasting
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerification, ItalianVerified, LimitState
 from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, OF_STATE, RULES, THRESHOLDS, Rule
@@ -227,7 +234,10 @@ def _verified(
     states = {rule.state: case.state(rule) for rule in RULES}
     on_line = {rule.state: line.state(rule) for rule in RULES}
     methods = case.methods(states)
-    governing = {state: _governs(methods, *pair) for state, pair in OF_STATE.items()}
+    governing = {}
+    for state, (damage, nonlinear) in OF_STATE.items():  # the onset of rocking, if that takes more
+        start, far = methods[damage].a_g, methods[nonlinear].a_g
+        governing[state] = damage if start is not None and far is not None and start > far else nonlinear
     moved = [
         state for state in states if state in ground.site.asked and states[state].demand is not None
         and governing[state] == OF_STATE[state][1]
@@ -265,12 +275,3 @@ def _verified(
         letter=letter,
     )
     return replace(verified, workings=Later(partial(workings_of_direction, ground, verified)))
-
-
-def _governs(methods: Mapping[str, ItalianMethod], damage: str, nonlinear: str) -> str:
-    """Return the key of the method that governs at a limit state, the damage method or the nonlinear one.
-
-    The damage method governs if its a_g, at which rocking starts, exceeds that of the nonlinear method.
-    """
-    start, moved = methods[damage].a_g, methods[nonlinear].a_g
-    return damage if start is not None and moved is not None and start > moved else nonlinear

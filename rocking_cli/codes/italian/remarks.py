@@ -8,11 +8,11 @@ from math import ceil, isclose
 
 import numpy as np
 
-from rocking_cli.codes.italian.capacity import BREAK, SEAT, ExactCurve
-from rocking_cli.codes.italian.chain import Chain
-from rocking_cli.codes.italian.demand import FloorSpectrum, GroundSpectrum, TableSpectrum
-from rocking_cli.codes.italian.displaced import (
+from rocking_cli.codes.italian.capacity import (
+    BREAK,
     MAX_OVERHANG_SHARE,
+    SEAT,
+    ExactCurve,
     beyond,
     elastic,
     furthest,
@@ -20,8 +20,9 @@ from rocking_cli.codes.italian.displaced import (
     strengths,
     thickness_of_plate,
 )
-from rocking_cli.codes.italian.grid import EARTH_RADIUS
-from rocking_cli.codes.italian.ground import SiteGround, bounded, return_period
+from rocking_cli.codes.italian.chain import Chain
+from rocking_cli.codes.italian.demand import FloorSpectrum, GroundSpectrum, TableSpectrum
+from rocking_cli.codes.italian.ground import SiteGround, bounded, of_ground, return_period
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerification, ItalianVerified, LimitState
 from rocking_cli.codes.italian.rules import (
     DAMAGE,
@@ -176,23 +177,6 @@ def _of_lives(ground: SiteGround) -> list[Remark]:
     return [
         Remark.of("bound", state=state, TR=TR, bound=bounded(TR)) for state, TR in exact.items() if bounded(TR) != TR
     ]
-
-
-def of_ground(ground: SiteGround) -> list[Remark]:
-    """Return remarks on how the ground follows from what the site file gives."""
-    site, remarks = ground.site, list[Remark]()
-    if site.TC_star is not None:
-        remarks.append(Remark.of("without_state", state=FIRST_STATE))
-    if (cell := site.cell) is not None:
-        way = Remark.of("on_node") if len(cell.corners) == 1 else Remark.of("between_nodes", radius=EARTH_RADIUS)
-        remarks.append(Remark.of("by_grid", way=way, unit=Remark.of(cell.unit)))
-    if site.VN is not None and site.use is not None and site.life != site.VN * site.use:
-        remarks.append(Remark.of("short_life", VR=site.VN * site.use, least=site.life))
-    if ground.hazard is not None and site.life is not None and (rows := ground.hazard.rounded(site.life)):
-        exact = {state: bounded(return_period(site.life, state)) for state in rows}
-        each = [Remark.of("row", state=state, row=row, TR=exact[state]) for state, row in rows.items()]
-        remarks.append(Remark.of("rows", rows=each))
-    return remarks
 
 
 def of_direction(

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.codes.italian import formulas as F
-from rocking_cli.codes.italian.displaced import pulls, strengths
+from rocking_cli.codes.italian.capacity import pulls, strengths
 from rocking_cli.codes.italian.remarks import differences
 from rocking_cli.codes.italian.results import (
     Dynamic,
@@ -16,9 +16,8 @@ from rocking_cli.codes.italian.results import (
     LimitState,
 )
 from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, OF_STATE, STATE_OF_METHOD
-from rocking_cli.codes.italian.sheet import dynamic
 from rocking_cli.codes.italian.sheet.steps import PACKAGE, TERMINAL, ties
-from rocking_cli.codes.italian.sheet.summary import METHOD_NAMES, comparison, methods, verdicts
+from rocking_cli.codes.italian.sheet.summary import METHOD_NAMES, comparison, histories, methods, verdicts
 from rocking_cli.studies.conclusion import Concluded
 from rocking_cli.verification.results import Verification, in_plain
 from rocking_cli.views.column import Column, frame_of, of
@@ -68,7 +67,7 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
         yield from verdicts(self.say, where, found, each)
         yield from map(self.say, [*differences(each, found.first), *each.remarks])
         for of_state in each.dynamic.values():
-            for item in dynamic.items(self.say, of_state, each.exact.confidence):
+            for item in histories(self.say, of_state, each.exact.confidence):
                 yield item.text if isinstance(item, Sentence) else item
 
     def in_short(self, found: ItalianVerification, each: ItalianVerified, where: str) -> Iterable[Table | str]:
@@ -83,7 +82,7 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
                 yield f"{where}: hinge at {number(extra.value, 4)} of the wall's height."
         texts = list(map(say, differences(each, found.first)))
         for of_state in each.dynamic.values():
-            items = dynamic.items(say, of_state, each.exact.confidence)
+            items = histories(say, of_state, each.exact.confidence)
             texts += [item.text for item in items if isinstance(item, Sentence)]
         if each.dynamic:
             yield _histories_in_short(each, where)

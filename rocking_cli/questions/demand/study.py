@@ -11,8 +11,7 @@ from rocking_cli.short_repr import short_repr
 from rocking_cli.verification.check import code_of
 from rocking_cli.verification.check import demand as demand_of
 from rocking_cli.verification.code import SiteFile
-from rocking_cli.verification.demand import SiteDemand
-from rocking_cli.verification.spectra import StateSpectra, spectra_at_states
+from rocking_cli.verification.demand import SiteDemand, StateSpectra, spectra_at_states
 
 
 @short_repr

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -29,13 +30,16 @@ def view(found: SpectraOfSite) -> View:
     say = showing_by(found.code).say
     states = list(found.states)
     values = [each.values for each in found.states.values()]
-    columns = [_parameter(*each) for each in found.demand.parameters]
+    columns = [
+        Column(each.key, itemgetter(each.key), each.unit, each.symbol, rounded(4), words=each.meaning)
+        for each in found.demand.parameters
+    ]
     after = {"unit": lambda column: column.unit, "": lambda column: column.words}
     parts: list[Table | str] = [say(found.demand.headline), table_across(title(found), columns, states, values, after)]
-    parts += [
-        table_of(each.title, [_column(k, key, unit) for k, (key, unit) in enumerate(each.columns.items())], each.rows)
-        for each in found.demand.tables
-    ]
+    for each in found.demand.tables:
+        heads = [f"{key}\n[{unit}]" if unit else key for key, unit in each.columns.items()]
+        shown = [only_shown(head, itemgetter(k), rounded(6)) for k, head in enumerate(heads)]
+        parts.append(table_of(each.title, shown, each.rows))
     parts += [*_ordinates(found), *map(say, found.demand.remarks)]
     return View(lambda: data(found), parts)
 
@@ -79,15 +83,6 @@ def table(found: SpectraOfSite) -> Columns:
 def _known(curve: Reals | None) -> list[float | None] | None:
     """Return the ordinates of a curve, None beyond its end; None without the curve."""
     return None if curve is None else [None if value != value else value for value in curve.tolist()]
-
-
-def _parameter(key: str, symbol: str, unit: str, meaning: str) -> Column[Any]:
-    return Column(key, lambda values: values[key], unit, symbol, rounded(4), words=meaning)
-
-
-def _column(place: int, key: str, unit: str) -> Column[Any]:
-    heading = f"{key}\n[{unit}]" if unit else key
-    return only_shown(heading, lambda row: row[place], rounded(6))
 
 
 def _ordinates(found: SpectraOfSite) -> Iterator[Table]:

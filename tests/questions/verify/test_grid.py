@@ -94,8 +94,10 @@ def by_hand(corners, lon, lat):
 
 
 class TestCells:
-    @pytest.mark.parametrize(("u", "v"), [(0.5, 0.5), (0.1, 0.9), (0.98, 0.02), (0.49, 0.51), (0.001, 0.3)])
-    @pytest.mark.parametrize(("i", "j"), [(0, 0), (1, 1), (2, 0)])
+    @pytest.mark.parametrize(
+        ("i", "j", "u", "v"),
+        [(0, 0, 0.5, 0.5), (1, 1, 0.1, 0.9), (1, 1, 0.98, 0.02), (2, 0, 0.49, 0.51), (2, 0, 0.001, 0.3)],
+    )
     def test_the_four_corners_by_the_inverse_of_their_distances(self, i, j, u, v, tmp_path):
         (lon, lat), (right, up) = NODES[i, j][:2], ((0.07, -0.002), (0.004, 0.05))
         lon, lat = lon + u * right[0] + v * up[0], lat + u * right[1] + v * up[1]

@@ -14,11 +14,10 @@ from matplotlib.figure import Figure
 
 from rocking_cli.codes.italian.sheet import build
 from rocking_cli.documents import sheet_page, sheet_typst
-from rocking_cli.documents.mathematics import MAX_WIDTH, Node, Unreadable, pieces, width
-from rocking_cli.views.sheet.document import Steps
+from rocking_cli.documents.mathematics import MAX_WIDTH, Unreadable, pieces, width
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
-from tests.questions.verify.printed import formula_of, same, steps_of_document
+from tests.questions.verify.printed import formula_of, rows_in, same, steps_of_document
 from tests.questions.verify.test_formulas import MORE
 from tests.questions.verify.test_sheet import CASES, FACADE, HEAVY, SITE, arithmetic, flat, parts_of, verified
 
@@ -30,17 +29,10 @@ HOSTILE = "#[]$_*\\ </w:t> \U0001f600 <b>&amp; `x` @y //"
 @cache
 def formulas(name, language):
     """The symbols, formulas and numbers on the sheet of a case."""
-    found, given = verified(*EVERY[name])
-
-    def of(part):
-        for item in part.items:
-            for row in item.rows if isinstance(item, Steps) else ():
-                yield from ((row.symbol, False), (row.formula, False), (row.numbers, True))
-        for each in part.parts:
-            yield from of(each)
-
-    parts = parts_of(found, given, language)
-    return {(text, is_numbers) for part in parts for text, is_numbers in of(part) if text}
+    rows = rows_in(parts_of(*verified(*EVERY[name]), language))
+    texts = {(text, False) for row in rows for text in (row.symbol, row.formula)}
+    texts |= {(row.numbers, True) for row in rows}
+    return {each for each in texts if each[0]}
 
 
 def read_back(text):
@@ -167,7 +159,7 @@ class TestPdf:
         assert not [each for each in signs if each not in normalize("NFKC", words)]  # italic letters as others
         found, given = verified(HEAVY, SITE)
         say = build.SHEET.language(language)
-        steps = [row for part in parts_of(found, given, language) for row in rows_of(part)]
+        steps = rows_in(parts_of(found, given, language))
         assert len(steps) > 40 and all(flat(say.number(each.value, each.digits)) in words for each in steps)
 
     @pytest.mark.rest
@@ -203,13 +195,6 @@ class TestPdf:
         loads = "".join(f"  - {{name: load {k}, mass: 10, at: [0, {k / 50}]}}\n" for k in range(1, 300))
         words = words_of(written(f"{HEAVY}loads:\n{loads}", ".pdf"))
         assert "name: load 150," in words and "load 299" in words
-
-
-def rows_of(part):
-    for item in part.items:
-        yield from item.rows if isinstance(item, Steps) else ()
-    for each in part.parts:
-        yield from rows_of(each)
 
 
 @pytest.fixture(scope="module")
@@ -273,11 +258,3 @@ class TestDocument:
         assert HOSTILE in out.paragraphs[0].text and len(steps_of_document(out)) > 30
         page = written(structure, ".html").read_text(encoding="utf-8")
         assert "</w:t>" not in page and "<b>" not in page and "&lt;/w:t&gt; \U0001f600" in page
-
-
-def test_a_node_holds_what_it_says():
-    (row,) = pieces("√(2)/d_[0]")
-    root, script = row.parts[0].parts
-    assert row.parts[0].kind == "fraction" and width(row) == pytest.approx(1.7)
-    assert root.parts == (Node("root", parts=(Node("row", parts=(Node("number", "2"),)),)),)
-    assert script.parts[0].parts[1].parts == (Node("number", "0"),)

@@ -83,7 +83,7 @@ def test_the_structure_before_is_judged_as_without_an_intervention():
 
 ASKED = [
     ({}, ["SLV"]),
-    *(({"class": use}, ["SLV"]) for use in ("I", "II", "III")),
+    ({"class": "III"}, ["SLV"]),
     ({"class": "IV"}, ["SLV", "SLD"]),
     ({"states": ["SLC"]}, ["SLC"]),
     ({"states": ["SLC"], "class": "IV"}, ["SLC"]),
@@ -216,7 +216,7 @@ def test_what_does_not_go_together_is_said(more, what):
     ],
 )
 def test_a_design_reaches_what_is_required(site, least):
-    found = rk.design(block(0.45), "width=0.1:0.6", "ratio >= required", site=SITE | site)
+    found = rk.design(block(0.45), "width=0.1:0.6", "ratio >= required", site=SITE | site, points=5)
     assert found.value == pytest.approx(block(least).width, rel=1e-6)
 
 
@@ -230,7 +230,7 @@ def test_a_design_reaches_what_is_required(site, least):
 )
 def test_a_design_without_one_value_required_says_so(aim, site, what):
     if "class" in site and site["class"] == "I":  # not lower than before is a value
-        assert rk.design(block(0.45), "width=0.1:0.6", aim, site=SITE | site).aim.level == pytest.approx(0.45)
+        assert rk.design(block(0.45), "width=0.1:0.6", aim, site=SITE | site, points=3).aim.level == pytest.approx(0.45)
         return
     with pytest.raises(InputError) as caught:
         rk.design(block(0.45), "width=0.1:0.6", aim, site=SITE | site)

@@ -193,13 +193,8 @@ class NoExample(Demo):
     key, site = "no example", NoExampleSite
 
 
-class OwnStarter(Demo):
-    key, starter = "own_starter", "code: NTC2018\nFC: 1.35\nag: 0.2\nF0: 2.5\nTC: 0.4\nS: 1.2\n"
-
-
 EVERY = (
     Worked, Demo, Divides, Nothing, NoMethod, NoRatio, Unmade, Shown, NoShowing, BadSheet, Unknown, Strict, NoExample,
-    OwnStarter,
 )  # fmt: skip
 MODULE = "tests.questions.verify.test_second_code"
 HERE = r"\(.*test_second_code\.py:\d+\)"
@@ -465,15 +460,12 @@ class TestStarter:
     def test_it_is_made_from_the_fields_and_works_as_it_is(self, demo):
         made = run("new", "site", "--code", "UNI-demo")
         assert made.stdout == STARTER and made.stderr == ""
-        Path("made.yaml").write_text(made.stdout, encoding="utf-8")
-        found = run_json("verify", "block.yaml", "--site", "made.yaml")
-        assert found["directions"]["positive"]["ratio"] == pytest.approx(0.1875 * G)
-
-    def test_so_do_the_lines_that_are_commented_out(self, demo):
         lines = [line.removeprefix("# ") if ": " in line else line for line in STARTER.splitlines()]
-        Path("made.yaml").write_text("\n".join(lines).replace("importance: 1.0", "importance: 1.5"), encoding="utf-8")
-        found = run_json("verify", "block.yaml", "--site", "made.yaml")
-        assert found["directions"]["positive"]["ratio"] == pytest.approx(0.125 * G)
+        with_all = "\n".join(lines).replace("importance: 1.0", "importance: 1.5")
+        for text, ratio in ((made.stdout, 0.1875), (with_all, 0.125)):  # as it is, and with what is commented out
+            Path("made.yaml").write_text(text, encoding="utf-8")
+            found = run_json("verify", "block.yaml", "--site", "made.yaml")
+            assert found["directions"]["positive"]["ratio"] == pytest.approx(ratio * G)
 
     @pytest.mark.parametrize("code", ["NTC2018", "UNI-demo"])
     def test_json_has_the_schema_of_the_fields(self, code):
@@ -585,13 +577,6 @@ class TestBadCodes:
         words = ("--vary", "width=0.3m:1m", "--until", "demo_number >= 1", "--points", 2, *demo, "--json")
         reasons = json.loads(run("design", "block.yaml", *words).stdout)["not_built"]
         assert "the code shown failed in its number demo_number: ZeroDivisionError" in reasons[0]["reason"]
-
-    def test_the_contract_finds_a_starter_of_another_code(self):
-        class Contract(CodeContract):
-            key = "own_starter"
-
-        with pytest.raises(AssertionError, match="a site of the code NTC2018, not of own_starter"):
-            Contract().test_its_starter_is_a_site_of_this_code()
 
     def test_the_contract_finds_a_verdict_that_contradicts_the_ratio(self, monkeypatch):
         monkeypatch.setattr(Verified, "passed", property(lambda each: False))

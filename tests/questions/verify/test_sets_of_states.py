@@ -15,7 +15,7 @@ from rocking_cli.codes.italian import dynamic as method
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import Dynamic, RecordPeak
-from rocking_cli.codes.italian.sheet import build, dynamic, dynamic_figures
+from rocking_cli.codes.italian.sheet import build, figures, summary
 from rocking_cli.codes.italian.sheet.steps import TERMINAL
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import follow
@@ -313,7 +313,7 @@ class TestSheet:
     def test_the_table_has_mean_largest_and_capacity(self):
         records = [RecordPeak("a", 0.02, 0.01, scale_factor=2.0), RecordPeak("b", 0.04, 0.03)]
         found = Dynamic("SLC", records, 0.3, 0.18, 7)
-        (table,) = (each for each in dynamic.items(TERMINAL, found, 1.35) if hasattr(each, "rows"))
+        (table,) = (each for each in summary.histories(TERMINAL, found, 1.35) if hasattr(each, "rows"))
         assert table.rows == [
             ["a", "2", "0.02", "0.01"], ["b", "1", "0.04", "0.03"], ["mean", "", "0.03", "0.02"],
             ["largest known", "", "0.04", "0.03"], ["capacity d_SLC", "", "0.18", "0.18"],
@@ -345,7 +345,7 @@ def test_spectra_of_motions_of_the_floor_are_compared_with_its_spectrum(folder):
     for on_floor, named in ((True, "the floor"), (False, "the ground")):
         found = rk.verify(FACADE, site, sets={"SLV": folder / "SLV"}, on_floor=on_floor)
         at = side_of(found).dynamic["SLV"]
-        lines = dynamic_figures.draw_spectra(say, at, ground, "").axes[0].get_lines()
+        lines = figures.draw_spectra(say, at, ground, "").axes[0].get_lines()
         assert lines[-1].get_label() == f"target: {named} at SLV"
         T, target = (each[40] for each in lines[-1].get_data())
         spectrum = ground.spectrum("SLV")

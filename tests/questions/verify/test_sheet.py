@@ -8,10 +8,9 @@ import sys
 from functools import cache, partial
 from importlib.metadata import version
 from importlib.resources import files as files_of
-from math import cos, floor, log, log10, pi, sin, sqrt
+from math import floor, log, log10, pi, sqrt
 from string import Formatter
 
-import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
@@ -19,7 +18,7 @@ import rocking_cli as rk
 from mechanisms.symmetric_frame import MAX_CHECKED_COLUMNS
 from rocking_cli.codes.italian import Italian
 from rocking_cli.codes.italian.remarks import EFFECTS, differences
-from rocking_cli.codes.italian.sheet import build, dynamic, site, steps, summary
+from rocking_cli.codes.italian.sheet import build, site, steps, summary
 from rocking_cli.core import Direction
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_file import parse_structure
@@ -37,11 +36,11 @@ from rocking_cli.views.sheet import template
 from rocking_cli.views.sheet.build import SIGNATURE_FIELDS, SheetOfCode, SheetSources, of_files
 from rocking_cli.views.sheet.document import Sentence, Steps
 from rocking_cli.views.sheet.language import SIGNIFICANT_DIGITS, texts_of
-from rocking_cli.views.verification import data, view
+from rocking_cli.views.verification import view
 from rocking_cli.views.view import Table
-from tests.browser import launch
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
+from tests.oracle.test_sheets_by_hand import faults
 from tests.questions.report.test_report import read
 from tests.questions.verify.printed import Step, same, steps_of_document, steps_of_page
 
@@ -57,7 +56,6 @@ HAZARD = f"FC: 1.35\nVN: 50\nCU: 1.0\nsoil: B\nhazard: {TABLE_OF_HAZARD}\n"
 ON_ROCK = "SLO: {ag: 0.05, F0: 2.4, TC_star: 0.27}\nSLD: {ag: 0.07, F0: 2.42, TC_star: 0.28}\n"
 ON_ROCK += "SLV: {ag: 0.175, F0: 2.45, TC_star: 0.32}\nSLC: {ag: 0.225, F0: 2.48, TC_star: 0.34}\n"
 OF_STATES = [[45, 0.066, 2.36, 0.28], [75, 0.084, 2.35, 0.285], [712, 0.21, 2.42, 0.31], [1462, 0.265, 2.46, 0.32]]
-ROWS = {"a_[g]": 1, "F_[0]": 2, "T_[C]^[*]": 3}
 ORDINATES = [[0, 0.2], [0.1, 0.4], [0.5, 0.5], [1, 0.3], [2, 0.1], [3, 0.02], [6, 0.012], [20, 0.01]]
 TABLE = f"FC: 1.2\nspectrum: {ORDINATES}\n"
 FACADE = "mechanism: block\nname: facade\nwidth: 0.6\nheight: 8\n"
@@ -83,7 +81,6 @@ CASES = {
     "laden, on a hazard": (LADEN, HAZARD),
     "crossed": (CROSSED, SITE),
     "two bodies on a floor": (WALL, SITE + FLOOR + SLC),
-    "on a floor": (FACADE, SITE + FLOOR),
     "on a floor of its own period at each state": (
         FACADE,
         SITE + SLC + "floor: {z: 6, H: 9, T1: 0.6, xi1: 0.12, n: 3, SLD: {T1: 0.35, xi1: 0.05}, "
@@ -94,10 +91,6 @@ CASES = {
         SITE + "floor: {z: 6, H: 9, T1: 0.6, xi1: 0.12, n: 3, SLD: {T1: 0.35, xi1: 0.05}}\nT0: 0.08\n",
     ),
     "parapet": (PARAPET, SITE + SLC + "T0: 0.08\n"),
-    "parapet by its size": (
-        PARAPET,
-        SITE + SLC + "element: {kind: cantilever, L: 1.2, t: 0.25, w: 18000.0, E: 1.2e+9}\n",
-    ),
     "parapet by the size of the structure": (
         PARAPET,
         SITE + SLC + "element: {kind: cantilever, w: 18000.0, E: 1.2e+9}\n",
@@ -126,7 +119,7 @@ CASES = {
 FIELDS = [site.OF_GROUND, site.OF_SITE, site.OF_FLOOR]
 TABLES = {
     text
-    for each in (build.DIRECTION_TITLES, dynamic.SETS, steps.TITLES, summary.METHOD_NAMES)
+    for each in (build.DIRECTION_TITLES, summary.SETS, steps.TITLES, summary.METHOD_NAMES)
     for text in each.values()
 } | {meaning for each in FIELDS for *_, meaning in each.values()}  # fmt: skip
 
@@ -267,268 +260,31 @@ def check_arithmetic(items, *, comma=False):
     return len(steps_of(items))
 
 
-def rounding_of(turns, one, other, moved):
-    """What rounding may change of a rotation times a distance."""
-    half = {each: half_unit(repr(each)) for each in (turns, one, other, moved)}
-    return 1.01 * (abs(turns) * (half[one] + half[other]) + half[turns] * abs(one - other) + half[moved]) + 1e-9
-
-
-OF_STATE = ["a_[g]", "F_[0]", "T_[C]^[*]", "T_[C]", "S", "T_[B]", "T_[D]", "a_[g] S", "S_[Z]", "S_[e](T_[0])",
-            "S_[eZ](T_[0])", "T_[1]", "ξ_[1]"]  # fmt: skip
-OWN = {
-    "e^[*]": lambda v: v["first"] ** 2 / v["Σ(P+Q)"] / v["Σ(P+Q)x′^[2]"],
-    "M^[*]": lambda v: v["e^[*]"] * v["Σ(P+Q)"] * 1000 / G,
-    "a_[0]^[*]": lambda v: v["α_[0]"] * G / v["e^[*]"] / v["FC"],
-    "x_[C]′": lambda v: v["first"] / v["Σ(P+Q)"],
-    "T_[0]": lambda v: 6.2 * (1.2 / 0.25) * 1.2 * sqrt(18000 / (1.2e9 * G)),  # of the one site that gives an element
-    "T_[B]": lambda v: v["T_[C]"] / 3,
-    "T_[D]": lambda v: 4 * v["a_[g]"] + 1.6,
-    "V_[R]": lambda v: max(v["V_[N]"] * v["C_[U]"], 35),
-    "S_[S]": lambda v: min(max(1.4 - 0.4 * v["F_[0]"] * v["a_[g]"], 1), 1.2),
-    "C_[C]": lambda v: 1.1 * v["T_[C]^[*]"] ** -0.2,
-    "T_[C]": lambda v: v["C_[C]"] * v["T_[C]^[*]"],
-    "S": lambda v: v["S_[S]"] * v["S_T"],
-    "ψ": lambda v: v["z"] / v["H"],
-    "γ": lambda v: 3 * v["n"] / (2 * v["n"] + 1),
-    "S_[Z]": lambda v: v["S_[e](T_[1])"] * v["γ"] * v["ψ"] * sqrt(1 + 4 * v["ξ_[1]"] ** 2),
-    "a_[g,q]": lambda v: v["q"] * v["a_[g,0]"],
-}
-"""Formulas of the test's own that need nothing but what is printed above."""
-
-
-class Recomputed:
-    """Steps by formulas of the test's own, from numbers printed above them; `known` are the last ones."""
-
-    SOLVED = re.compile(
-        r"φ_|d_\[[at]\]$|t$|a_\[g,|T_\[R(,lin)?\]$|V_\[m\]|B_\[m\]"
-    )  # by trial, or as given: checked by what follows
-
-    def __init__(self, items):
-        self.known, self.given, self.state, self.count = {}, {}, None, 0
-        self.blocks, self.weights, self.method = [], [], None
-        for each in items:
-            {str: self.heading, list: self.grid, Step: self.step}[type(each)](each)
-
-    def heading(self, text):
-        if self.state and self.heading_of_site:
-            self.given[self.state].update(self.known)  # what the site of a limit state came to
-        found = re.search(r"SL[DVC]", text)
-        self.heading_of_site = text.startswith(("Ground at", "Azione sismica"))
-        if found or re.match("Linear", text):
-            self.state = found[0] if found else "SLV"
-            sizes = self.given.setdefault(self.state, {})
-            self.known.update({name: sizes[name] for name in OF_STATE if name in sizes})
-            if text.startswith("Linear"):
-                own = self.given.get("SLD", {})
-                self.known.update({name: own[name] for name in ("T_[1]", "ξ_[1]") if name in own})
-
-    heading_of_site = False
-
-    def grid(self, rows):
-        caption, heads, *rows = rows
-        if heads[:3] == ["symbol", "quantity", "value"]:
-            for symbol, meaning, value, _ in rows:
-                state = re.search(r"SL[DVC]$", meaning)
-                where = self.given.setdefault(state[0], {}) if state else self.known
-                if re.match(r"[−\d]", value):
-                    where[symbol] = number(value)
-                if "soil" in meaning:
-                    self.known["soil"] = value
-                if meaning == "topographic class":
-                    self.known["S_T"] = {"T1": 1.0, "T2": 1.2}[value]
-        elif heads[:2] == ["weight", "block"]:
-            self.weights = [[number(each) for each in row[1:]] for row in rows]
-            for _, _, _, M, w, h, P, PQ in self.weights:
-                assert pytest.approx(w * M * self.g(caption) / self.unit(heads), rel=2e-5) == P
-                assert pytest.approx(h * M * self.g(caption) / self.unit(heads), rel=2e-5) == PQ
-        elif "Δx [m]" in heads:
-            self.blocks = [[number(each) if each != "–" else None for each in row] for row in rows]
-            for k, _, _, y, x_P, turns, x_O, y_O, dx, dy, *_ in self.blocks:
-                for symbol, value in ((f"θ_[{k:g}]′", turns), (f"x_[O{k:g}]", x_O), (f"y_[O{k:g}]", y_O)):
-                    if value is not None:  # the lines above the table, if it has any
-                        assert value == pytest.approx(self.known.pop(symbol, value), rel=1e-5, abs=1e-8), symbol
-                if turns:
-                    sense = 1 if "(x_[O] − x_[P])" in caption else -1
-                    assert dx == pytest.approx(turns * (y - y_O), abs=rounding_of(turns, y, y_O, dx))
-                    assert dy == pytest.approx(sense * turns * (x_O - x_P), abs=rounding_of(turns, x_O, x_P, dy))
-        elif heads[0] == "force or tie":
-            self.known["works"] = [number(row[3]) for row in rows]
-            for row in rows:
-                F, r, work = (number(each) for each in row[1:])
-                assert abs(work) == pytest.approx(abs(F * r), rel=2e-5)
-
-    @staticmethod
-    def g(caption):
-        return number(re.search(r"g = ([\d.,]+)", caption)[1])
-
-    @staticmethod
-    def unit(heads):
-        return 1e3 if "P [kN]" in heads else 1.0
-
-    def step(self, each):
-        value = number(each.result)
-        own = self.formula(each)
-        if own is not None:
-            assert value == pytest.approx(own, rel=2e-5, abs=2e-5 * self.scale(each)), each
-            self.count += 1
-        else:
-            assert (self.SOLVED.match(each.symbol) and not each.numbers) or each.symbol.startswith(self.OTHERS), each
-        self.known[each.symbol] = value
-        if each.symbol in ("T_[R]", "T_[R,lin]"):
-            self.known["T_R"] = value
-        if each.symbol.startswith("a_[g,") and not each.numbers:
-            self.known["a_[g]"] = value  # the check that follows is by this one
-        if each.symbol.startswith("a_[g,"):
-            self.known["a_g of the method"] = value
-
-    OTHERS = (
-        "x_[G", "y_[G", "x_[P", "y_[P", "P_[", "PQ_[", "r", "M_[", "A_[", "t", "x_[O", "y_[O", "θ_[", "Δx_[",
-        *(f"{axis}_[{k}]′" for axis in "xy" for k in range(1, 10)),
-    )  # fmt: skip
-    """Symbols whose results are checked against their numbers only."""
-
-    def scale(self, each):
-        """What small differences are of: the terms of a sum."""
-        if each.symbol.startswith(("ΣPy", "α(φ_[0])")):
-            return sum(abs(block[5]) for block in self.weights for block in [(0, 0, 0, 0, 0, block[6])])
-        return 0.0
-
-    def force(self, k, which):
-        return self.known[f"{which}_[{k + 1}]"]
-
-    def sums(self, which, power=1):
-        column = 9 if which == "P" else 8
-        return sum(self.force(k, which) * block[column] ** power for k, block in enumerate(self.blocks))
-
-    def formula(self, each):
-        """The value of a step, or None where the test has no formula for it."""
-        v, name = self.known, each.symbol
-        eta = sqrt(10 / (5 + v.get("xi", 5)))
-        if name in OWN:
-            return OWN[name](v)
-        if re.fullmatch(r"L(\(φ_\[\w+\]\))?", name):
-            return sum(v["works"])
-        if re.fullmatch(r"ΣPy′(\(φ_\[\w+\]\))?", name):
-            return self.sums("P")
-        if re.fullmatch(r"Σ\(P\+Q\)x′(\(φ_\[\w+\]\))?", name):
-            return self.sums("PQ")
-        if name == "Σ(P+Q)":
-            v["first"] = v["Σ(P+Q)x′"]
-            return sum(self.force(k, "PQ") for k in range(len(self.blocks)))
-        if name == "Σ(P+Q)x′^[2]":
-            return self.sums("PQ", 2)
-        if name.startswith("α"):
-            at = name.removeprefix("α") if "φ" in name else ""
-            held = v[f"L{at}"] if " L" in each.formula else 0.0
-            more = v[f"V_[m]{at}"] if "V_[m]" in each.formula else 0.0
-            under = v[f"B_[m]{at}"] if "B_[m]" in each.formula else 0.0
-            return (v[f"ΣPy′{at}"] + held + more) / (v[f"Σ(P+Q)x′{at}"] + under)
-        if name.startswith("d_[C]"):
-            return sum(self.force(k, "PQ") * block[1] for k, block in enumerate(self.blocks)) / v["Σ(P+Q)"]
-        if name == "d_[0]^[*]" or name.startswith("d(φ"):
-            moved = [v[key] for key in v if key.startswith("d_[C]")][-1]
-            own = v.get(f"d_[{self.state}]") if name.startswith("d(φ") else None
-            d = v.pop([key for key in v if key.startswith("d_[C]")][-1]) / v["e^[*]"]
-            assert moved and (own is None or d == pytest.approx(own, rel=2e-5))
-            return d
-        if name in ("d_[SLV]", "d_[SLC]"):
-            share = {"d_[SLV]": 0.4, "d_[SLC]": 0.6}[name] * v["d_[0]^[*]"]
-            others = each.numbers.rstrip(")").split("; ")[1:] if "min" in each.formula else []
-            return min(share, *map(number, others)) if others else share
-        if name.startswith("a^[*]_"):
-            if "lin" in name:
-                return v["a_[0]^[*]"] * (1 - v[f"d_[{self.state}]"] / v["d_[0]^[*]"])
-            return v[f"α(φ_[{self.state}])"] * G / (v["e^[*]"] * v["FC"])
-        if name.startswith("a_[SL"):
-            return min(v[name.replace("a_", "a^[*]_")], 4 * pi**2 * v[f"d_[{self.state}]"] / v["T_[0]"] ** 2)
-        if name.startswith("T_[SL"):
-            a = v.get(name.replace("T_", "a_"), v.get(name.replace("T_", "a^[*]_")))
-            return {"SLV": 1.68, "SLC": 1.56}[self.state] * pi * sqrt(v[f"d_[{self.state}]"] / a)
-        return self.of_site(each, v, eta)
-
-    def of_site(self, each, v, eta):
-        name, period = each.symbol, re.search(r"\((T_\[.*?\]|t)\)", each.symbol)
-        T = v[period[1]] if period else None
-        if name == "a_[g] S":
-            return v["a_[g]"] * G * (1 if "S_[e](0)" in each.formula else v["S"])
-        if name in ROWS and not each.numbers:
-            v["table"] = OF_STATES
-            return next(row[ROWS[name]] for row in OF_STATES if row[0] == v["T_R"])
-        if name in ROWS:
-            x = log(v["T_R"])
-            return float(np.exp(np.interp(x, *np.log(np.array(v.get("table", TABLE_OF_HAZARD)).T[[0, ROWS[name]]]))))
-        if name == "T_[R]" and each.numbers:
-            return -v["V_[R]"] / log(1 - {"SLD": 0.63, "SLV": 0.1, "SLC": 0.05}[self.state])
-        if name == "S_[eZ](T_[0])" and "max" in each.formula:
-            return max(v["S_[eZ,1](T_[0])"], v["S_[e](T_[0])"])
-        if name.startswith("S_[5]"):
-            return float(np.interp(T, *np.array(ORDINATES).T)) * v["a_[g]"] / ORDINATES[0][1]
-        if name in ("η(t)", "η(T_[1])", "η(T_[0])"):
-            return 1 - (1 - eta) * T / 0.5
-        if name.startswith("S_[e](") and "S_[5]" in each.formula:
-            return v[name.replace("S_[e]", "S_[5]")] * (1 - (1 - eta) * min(T / 0.5, 1)) * G
-        if name.startswith("η(ξ"):
-            per_cent = {"SLV": 8, "SLC": 10, "SLD": 5}[self.state]
-            v["xi"] = 100 * v["ξ_[1]"] if name == "η(ξ_[1])" else 5 if self.heading_of_site else per_cent
-            if self.free_again(each):
-                v["xi"] = 5
-            return sqrt(10 / (5 + v["xi"]))
-        if name.startswith("S_[e](") and "S_[5]" not in each.formula:
-            TB, TC, TD = v["T_[B]"], v["T_[C]"], v["T_[D]"]
-            level = v["a_[g]"] * v["S"] * G * eta * v["F_[0]"]
-            rising = T / TB + (1 - T / TB) / (eta * v["F_[0]"])
-            return level * (rising if TB > T else 1 if TC > T else TC / T if TD > T else TC * TD / T**2)
-        if name == "A":
-            return 1.1 * eta / sqrt(v["ξ_[1]"])
-        if (name.startswith("S_[eZ](") and "max" not in each.formula) or name.startswith("S_[eZ,1]"):
-            A, x = v["A"], T / v["T_[1]"]
-            off = max(1 - x / 0.8, 0) ** 1.6 if x < 1 else max(x / 1.1 - 1, 0) ** 1.2
-            return A * v["S_[Z]"] / (1 + (A - 1) * off)
-        if name in ("d_[Z]", "d_[b]"):
-            T = v["T_[1]"] * 1.1 if name == "d_[b]" else v[re.search(r"\((T_.*?\])\)", each.formula)[1]]
-            S = v["A"] * v["S_[Z]"] if name == "d_[b]" else [v[key] for key in v if key.startswith("S_[eZ](")][-1]
-            S = v[re.search(r"S_\[eZ\]\(.*?\]\)", each.formula)[0]] if name == "d_[Z]" else S
-            return S * (T / (2 * pi)) ** 2
-        if name.startswith("S_[De]") or name == "d_[g]":
-            return self.displaced(each, v, eta)
-        if name.startswith("ρ"):
-            return v[f"d_[{self.state}]"] / v[f"S_[De](T_[{name[3:-1]}])"]
-        if name.startswith("ζ"):
-            state = "SLV" if "SLV" in each.formula else self.state
-            return v["a_g of the method"] / self.given[state]["a_[g]"]
-        if name.startswith("a_[g,") and each.numbers:
-            capacity, _, demand = each.formula.removeprefix("a_[g] · ").partition("/")
-            return self.given[self.state]["a_[g]"] * v[capacity] / v[demand.strip("()") if " " in demand else demand]
-        return None
-
-    def free_again(self, each):
-        return "5 + 5)" in each.numbers
-
-    def displaced(self, each, v, eta):
-        if each.formula.startswith("max("):
-            return max(v[key] for key in re.findall(r"d_\[.\]", each.formula))
-        squared = re.match(r"(S_\[e\]\((.*?)\)) ", each.formula)
-        if squared:
-            return v[squared[1]] * (v[squared[2]] / (2 * pi)) ** 2
-        T, (TE, TF) = (
-            v[re.search(r"\((T_\[.*?\])\)", each.symbol)[1]],
-            ({"A": 4.5, "B": 5.0, "C": 6.0}[v["soil"]], 10.0),
-        )
-        level = 0.025 * v["a_[g]"] * v["S"] * G * v["T_[C]"] * v["T_[D]"]
-        high = v["F_[0]"] * eta
-        return level * (high + (1 - high) * min((T - TE) / (TF - TE), 1))
-
-
 @pytest.mark.every(4)
 @pytest.mark.parametrize("name", CASES)
-def test_every_step_gives_its_result_and_follows_from_those_above_it(name):
-    for by, least in ((FULL, 40), (build.SHEET, 20)):
-        items = items_of_case(name, by=by)
-        assert check_arithmetic(items) > least
-        assert Recomputed(items).count > 0.6 * least
+def test_every_step_gives_its_result_by_the_numbers_that_are_put_in(name):
+    assert check_arithmetic(items_of_case(name)) > 40
 
 
-@pytest.mark.parametrize("name", ["on soil", "laden, on a hazard", "two bodies on a floor"])
+LIVE = {
+    "two directions, a floor, an element": ("parapet", "roof", "en"),
+    "ties and seats": ("tied_facade", "site", "it"),
+    "several blocks": ("arch_on_piers", "site", "en"),
+}
+"""Structure, site and language of pages as they are written now; those that are kept are in tests/oracle."""
+
+
+@pytest.mark.parametrize("name", LIVE)
+def test_every_line_follows_from_what_is_printed_above_it_and_from_the_code(name, tmp_path, monkeypatch):
+    """By the oracle, which reads the page alone: symbols, numbers, tables, verdicts and sentences."""
+    monkeypatch.setattr(sheet_page, "figure_of", lambda *_: Figure(figsize=(1, 1)))
+    structure, site, language = LIVE[name]
+    files = (EXAMPLES / "verify" / f"{each}.yaml" for each in (structure, site))
+    rk.verify(*files, sheet=tmp_path / "o.html", language=language)
+    assert faults((tmp_path / "o.html").read_text(encoding="utf-8")) == []
+
+
+@pytest.mark.parametrize("name", ["on soil", "laden, on a hazard"])
 def test_the_appendix_has_the_lines_of_the_limit_state_that_decides(name):
     found, _ = verified(*CASES[name])
     state, shown = found.conclusion.limit_state, steps_of(items_of_case(name, by=build.SHEET))
@@ -548,8 +304,6 @@ def test_a_number_that_is_changed_is_found():
     items[k] = items[k]._replace(result="3.20087")
     with pytest.raises(AssertionError, match="T_"):
         check_arithmetic(items)
-    with pytest.raises(AssertionError):
-        Recomputed(items)
 
 
 CASES_WRITTEN = [("facade", "en"), ("tied", "it"), ("two bodies on a floor", "en"), ("laden, on a hazard", "it")]
@@ -564,7 +318,7 @@ def are_those(printed, items):
     )
 
 
-@pytest.mark.parametrize(("name", "language"), CASES_WRITTEN)
+@pytest.mark.parametrize(("name", "language"), CASES_WRITTEN[1:3])
 def test_a_page_has_every_step_and_table(name, language, written):
     items = items_of_case(name, language, by=build.SHEET)
     out = written(*CASES[name], ".html", "--language", language)
@@ -591,16 +345,6 @@ def test_a_document_has_every_step_and_table(name, language, written):
     assert "G" in places
 
 
-def test_ties_have_force_and_elongation_on_the_sheet():
-    found, _ = verified(*CASES["tied"])
-    ties = data(found)["directions"]["positive"]["ties"]["bar"]
-    rows = [each[2] for each in items_of_case("tied") if isinstance(each, list) and each[0].startswith("Ties at")]
-    for (_, where, *numbers), state in zip(rows, ("SLV", "SLC"), strict=True):
-        wanted = [ties[f"force_{state}"] / 1e3, ties[f"elongation_{state}"], 100 * ties[f"strain_{state}"]]
-        assert where == f"d_[{state}]" and [*map(number, numbers)] == pytest.approx(wanted, rel=5e-3)
-        assert ties[f"strain_{state}"] == pytest.approx(ties[f"elongation_{state}"] / 5.7, rel=1e-9)
-
-
 def test_what_does_not_begin_to_rock_is_satisfied_at_collapse_too():
     found, given = verified(*CASES["wall that does not begin to rock"])
     assert found.directions[Direction.POSITIVE].passes("SLC")
@@ -615,56 +359,11 @@ def test_what_does_not_begin_to_rock_is_satisfied_at_collapse_too():
     )
 
 
-def test_italian_has_the_same_numbers_with_a_comma():
-    english, italian = (items_of_case("tied", language) for language in ("en", "it"))
-    assert check_arithmetic(italian, comma=True) == check_arithmetic(english)
-    results = [[each.result for each in steps_of(items)] for items in (english, italian)]
-    assert [each.replace(".", ",") for each in results[0]] == results[1]
-    assert not any(re.search(r"\d\.\d", each.numbers + each.formula + each.result) for each in steps_of(italian))
-
-
 def test_sentences_write_numbers_as_tables_do():
     values = {"name": "roof", "length": 0.25, "d": -4.99e-5, "limited": "d"}
     said = {language: build.SHEET.language(language)("seat", **values) for language in ("en", "it")}
     assert "0.25 m at d = −4.99 · 10^[−5] m" in said["en"] and "0,25 m a d = −4,99 · 10^[−5] m" in said["it"]
     assert "0.25 m at d = -4.99e-05 m" in steps.TERMINAL("seat", **values)
-
-
-def test_what_is_printed_is_what_the_command_finds():
-    found = {}
-    for each in steps_of(items_of_case("facade")):
-        found.setdefault(each.symbol, number(each.result))
-    side = data(verified(*CASES["facade"])[0])["directions"]["positive"]
-    slv = side["states"]["SLV"]
-    for symbol, value in {
-        "α_[0]": side["alpha0"], "a_[0]^[*]": side["a0_star"], "d_[0]^[*]": side["d0_star"], "d_[SLV]": slv["d"],
-        "a^[*]_[SLV]": slv["a"], "T_[SLV]": slv["T"], "S_[De](T_[SLV])": slv["demand"], "ρ_[SLV]": slv["ratio"],
-        "a_[g,0]": side["a_g"]["damage"], "a_[g,q]": side["a_g"]["linear"],
-    }.items():  # fmt: skip
-        assert found[symbol] == pytest.approx(value, rel=5e-6), symbol
-    # A block that turns about its corner, by its own geometry.
-    assert found["φ_[0]"] == pytest.approx(np.arctan(0.6 / 8), rel=5e-6)
-    phi = found["φ_[SLV]"]
-    assert found["d(φ_[SLV])"] == pytest.approx(4 * sin(phi) + 0.3 * (1 - cos(phi)), abs=2e-6)
-    assert found["α(φ_[SLV])"] == pytest.approx((0.3 - 4 * np.tan(phi)) / (4 + 0.3 * np.tan(phi)), rel=2e-5)
-
-
-@pytest.mark.rest
-@pytest.mark.parametrize("language", ["en", "it"])
-@pytest.mark.parametrize("suffix", [".html", ".docx"])
-def test_hostile_names_break_nothing(suffix, language, written):
-    structure = HEAVY.replace("name: facade", 'name: "<b>&x_[0]{d}@"').replace("rebound: 0.4\n", (
-        'rebound: 0.4\nloads: [{name: "<i>&_[1]{x}", mass: 2 t, at: [0, 8]}]\n'
-    ))  # fmt: skip
-    head = ("--project", "</title><b>&\x07{a}@ _[0]", "--author", "]]>&#0;", "--place", "\ufffe")
-    out = written(structure, SITE + 'name: "<u>&{T}@"\n', suffix, *head, "--language", language)
-    if suffix == ".docx":
-        docx = pytest.importorskip("docx")
-        said = "\n".join(each.text for each in docx.Document(str(out)).paragraphs)
-    else:
-        said = read(out).words
-        assert "<b>" not in out.read_text(encoding="utf-8") and "<i>" not in out.read_text(encoding="utf-8")
-    assert "<b>&x_" in said and "{d}@" in said
 
 
 class TestAskingForIt:
@@ -676,20 +375,6 @@ class TestAskingForIt:
     @pytest.fixture
     def no_typst(self, monkeypatch):
         monkeypatch.setattr("rocking_cli.questions.verify.sheets.find_spec", lambda name: None)
-
-    @pytest.mark.rest
-    @pytest.mark.usefixtures("no_typst")
-    def test_without_typst_a_browser_prints_a_pdf(self, tmp_path):
-        found, driver = launch()  # skipped where there is none
-        found.close()
-        driver.stop()
-        self.asked(tmp_path, "--sheet", tmp_path / "o.pdf", code=0)
-        content = (tmp_path / "o.pdf").read_bytes()
-        assert content.startswith(b"%PDF-") and content.count(b"/Type /Page\n") + content.count(b"/Type/Page") > 3
-        (box,) = {tuple(map(float, each.split())) for each in re.findall(rb"/MediaBox ?\[([^]]*)\]", content)}
-        assert box == pytest.approx((0, 0, 210 / 25.4 * 72, 297 / 25.4 * 72), abs=0.5)  # A4
-        assert content.rstrip().endswith(b"%%EOF")
-        assert {each.name for each in tmp_path.iterdir()} == {"o.pdf", "s.yaml", "site.yaml"}
 
     @pytest.mark.usefixtures("no_typst")
     @pytest.mark.rest
@@ -759,9 +444,10 @@ def test_italian_has_all_texts_with_the_same_slots(package):
     assert len(used) > 20 and used <= known
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("name", CASES)
-def test_templates_of_both_languages_say_the_same(name):
-    """The same sections, with the same kinds of items, tables of the same shape, and the same numbers."""
+def test_both_languages_say_the_same_and_every_remark(name):
+    """The same sections, kinds of items, shapes of tables and numbers; and wherever it is shown, what limits it."""
 
     def skeleton(part):
         yield part.key
@@ -770,14 +456,24 @@ def test_templates_of_both_languages_say_the_same(name):
             yield type(item), [each.replace(",", ".") for each in numbers]
             if isinstance(item, Table):
                 yield len(item.columns), len(item.rows), [*item.numbers]
+            if isinstance(item, Steps):
+                yield [(row.numbers.replace(",", "."), row.value) for row in item.rows]
         for each in part.parts:
             yield from skeleton(each)
 
     found, given = verified(*CASES[name])
-    english, italian = (
-        [each for part in parts_of(found, given, language) for each in skeleton(part)] for language in ("en", "it")
-    )
+    remarks = [each for side in found.distinct for each in (*differences(side, found.first), *side.remarks)]
+    remarks += found.remarks
+    sheets = {language: parts_of(found, given, language) for language in ("en", "it")}
+    english, italian = ([each for part in parts for each in skeleton(part)] for parts in sheets.values())
     assert english == italian and len(english) > 60
+    for language, (first, second, *_) in sheets.items():
+        say = build.SHEET.language(language)
+        said = " ".join(item.text for part in (first, second) for item in part.items if isinstance(item, Sentence))
+        assert remarks and all(say(each) in said for each in remarks)
+        assert found.mechanism.caution == "" or say("Caution: {text}", text="").strip() in said
+    terminal = [each for each in view(found).parts if isinstance(each, str)]
+    assert all(steps.TERMINAL(each) in terminal for each in remarks)
 
 
 def test_every_text_has_a_user():
@@ -810,22 +506,6 @@ def test_every_text_has_a_user():
              if each.suffix in (".py", ".html", ".md")]  # fmt: skip
     written = "".join(each.read_text(encoding="utf-8") for each in files)
     assert not [key for key in keys - families if f'"{key}"' not in written and f"'{key}'" not in written]
-
-
-@pytest.mark.parametrize("language", ["en", "it"])
-@pytest.mark.parametrize("name", CASES)
-def test_every_remark_is_on_the_sheet_and_in_the_terminal(name, language):
-    """What limits a verification, and why its methods differ, is said wherever it is shown."""
-    found, given = verified(*CASES[name])
-    remarks = [each for side in found.distinct for each in (*differences(side, found.first), *side.remarks)]
-    remarks += found.remarks
-    say = build.SHEET.language(language)
-    summary, methods, *_ = parts_of(found, given, language)
-    said = " ".join(item.text for part in (summary, methods) for item in part.items if isinstance(item, Sentence))
-    assert remarks and all(say(each) in said for each in remarks)
-    assert found.mechanism.caution == "" or ("Caution: " if language == "en" else "Attenzione: ") in said
-    terminal = [each for each in view(found).parts if isinstance(each, str)]
-    assert all(steps.TERMINAL(each) in terminal for each in remarks)
 
 
 @pytest.mark.usefixtures("small_maps")

@@ -11,10 +11,9 @@ from hypothesis import strategies as st
 import rocking_cli as rk
 from mechanisms.block import Block
 from rocking_cli.codes.italian import demand, ground
-from rocking_cli.codes.italian.capacity import ExactCurve, root
+from rocking_cli.codes.italian.capacity import ExactCurve, pulls, root
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.demand import FloorSpectrum, GroundSpectrum, TableSpectrum
-from rocking_cli.codes.italian.displaced import pulls
 from rocking_cli.codes.italian.ground import Hazard, SiteGround
 from rocking_cli.core import Direction, box
 from rocking_cli.core.coefficients import coefficients

@@ -12,8 +12,8 @@ from rocking_cli.codes.italian import dynamic
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.results import Dynamic, RecordPeak
-from rocking_cli.codes.italian.sheet.dynamic import items
 from rocking_cli.codes.italian.sheet.steps import TERMINAL
+from rocking_cli.codes.italian.sheet.summary import histories as items
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import follow
 from rocking_cli.structure import Structure

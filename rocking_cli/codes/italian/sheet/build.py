@@ -9,15 +9,14 @@ from importlib.metadata import metadata
 from math import isclose
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rocking_cli.codes.italian.ground import SiteGround
+from rocking_cli.codes.italian.ground import SiteGround, site_demand
 from rocking_cli.codes.italian.results import Dynamic, ItalianVerification, ItalianVerified
 from rocking_cli.codes.italian.rules import STATES
-from rocking_cli.codes.italian.sheet import dynamic, site, summary
+from rocking_cli.codes.italian.sheet import site, summary
 from rocking_cli.codes.italian.sheet.chain import named
 from rocking_cli.codes.italian.sheet.geometry import Composition
 from rocking_cli.codes.italian.sheet.steps import PACKAGE, DirectionSteps, title
 from rocking_cli.codes.italian.site import ItalianSite, of_structure
-from rocking_cli.codes.italian.site_demand import site_demand
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.views.sheet.build import SheetOfCode
 from rocking_cli.views.sheet.language import Language
@@ -54,7 +53,7 @@ def context(
         "structures": {each["state"]: each["verification"] for each in subjects},
         "title": partial(title, say), "named": partial(named, say), "figures": SheetFigures(say, ground),
         "is_same": partial(isclose, rel_tol=SAME_MULTIPLIER),
-        "dynamic": dynamic, "outcome": partial(summary.outcome, say),
+        "histories": partial(summary.histories, say), "outcome": partial(summary.outcome, say),
         "given_FC": site_values.FC,
         "counts": [state for state in STATES if any(state in each["counts"] for each in subjects)], "in_full": in_full,
         "licence": metadata("rocking-cli")["License-Expression"],
@@ -127,12 +126,12 @@ class SheetFigures(NamedTuple):
 
     def history(self, side: DirectionSteps, at: Dynamic) -> Callable[[], Figure]:
         """Return what draws one history of a direction at a limit state."""
-        return _drawn("dynamic_figures", "draw_history", self.say, side.found, at, at.drawn)
+        return _drawn("figures", "draw_history", self.say, side.found, at, at.drawn)
 
     def records(self, at: Dynamic) -> Callable[[], Figure]:
         """Return what draws the spectra of the records of a limit state."""
         heading = self.say("Spectra of the records at {state}, 5 % damping", state=at.state)
-        return _drawn("dynamic_figures", "draw_spectra", self.say, at, self.ground, heading)
+        return _drawn("figures", "draw_spectra", self.say, at, self.ground, heading)
 
 
 def _drawn(module: str, function: str, *args: Any, **named: Any) -> Callable[[], Figure]:

@@ -1,4 +1,4 @@
-"""Figures of a verification by the Italian code: the forces on the chain, its capacity with the demand, the spectra."""
+"""Figures of a verification by the Italian code: forces on the chain, capacity with the demand, spectra, histories."""
 
 from __future__ import annotations
 
@@ -13,24 +13,25 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.text import Text
 
-from rocking_cli.codes.italian.capacity import SHARE, ExactCurve, ends
+from rocking_cli.codes.italian.capacity import SHARE, DisplacedChain, ExactCurve, ends
 from rocking_cli.codes.italian.demand import REFERENCE_DAMPING
-from rocking_cli.codes.italian.displaced import DisplacedChain
-from rocking_cli.codes.italian.ground import Hazard, SiteGround
-from rocking_cli.codes.italian.results import ItalianVerified
+from rocking_cli.codes.italian.dynamic import displacement_history
+from rocking_cli.codes.italian.ground import Hazard, SiteGround, site_demand
+from rocking_cli.codes.italian.results import Dynamic, ItalianVerified, RecordPeak
 from rocking_cli.codes.italian.rules import RULES, STATES
 from rocking_cli.codes.italian.sheet.chain import Scale, named
 from rocking_cli.codes.italian.sheet.site import states
 from rocking_cli.core import Length
 from rocking_cli.core.solids import Solid
+from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.plotting import dimensions, hung, style
 from rocking_cli.plotting.labels import MARK_COST, Labels
 from rocking_cli.plotting.panels import PANEL_GAP, Page, Panel, lay_out
 from rocking_cli.plotting.spectra import draw_spectra_of_site
 from rocking_cli.plotting.structure import LINE_HEIGHT, draw_ground, draw_parts, labels_of, weight
+from rocking_cli.processing.oscillator import response_spectrum
 from rocking_cli.studies.picture import Picture, box_around, picture
-from rocking_cli.verification.demand import SiteDemand, StateDemand
-from rocking_cli.verification.spectra import spectra_at_states
+from rocking_cli.verification.demand import SiteDemand, StateDemand, spectra_at_states
 from rocking_cli.views.sheet.language import Language
 
 MAX_WEIGHTS = 6  # of more masses, the blocks are drawn with the sums of their weights
@@ -173,10 +174,6 @@ def _draw_weights(axes: Axes, weights: Sequence[DrawnWeight], panel: Panel, labe
         labels.write(str(k), spots, fontsize=style.LABEL, color=style.INK, zorder=8)
 
 
-def _name(say: Language, name: str) -> str:
-    return style.plain(style.fitted(named(say, name), hung.MAX_NAME_WIDTH, style.TICK))
-
-
 def _of_held(
     say: Language, drawing: Picture, position: DisplacedChain, scale: Scale, first: int
 ) -> dict[str, str]:  # fmt: skip
@@ -191,7 +188,8 @@ def _of_held(
             for each in of
         ]
         if sizes:
-            texts[name] = f"{first + len(texts)} {_name(say, name)}: {style.plain('; '.join(sizes))}"
+            shown = style.plain(style.fitted(named(say, name), hung.MAX_NAME_WIDTH, style.TICK))
+            texts[name] = f"{first + len(texts)} {shown}: {style.plain('; '.join(sizes))}"
     return texts
 
 
@@ -336,3 +334,54 @@ def draw_site(say: Language, demand: SiteDemand, title: str) -> Figure:
     """Draw the spectra of the site at each limit state and 5 % damping."""
     periods, states = spectra_at_states(demand, REFERENCE_DAMPING)
     return in_language(say, draw_spectra_of_site(periods, states, demand.first, title, partial(say)))
+
+
+SHORTEST_OF_RECORDS, LONGEST_OF_RECORDS, PERIOD_COUNT = 0.05, 4.0, 80  # s, s, and number: of the spectra of records
+SMALL_SHARE = 0.05  # share of the displacement capacity up to which a peak would not be seen beside it
+MAX_OPAQUE_LINES = 12  # with more records, their lines are transparent
+
+
+def draw_history(say: Language, side: ItalianVerified, dynamic: Dynamic, record: RecordPeak) -> Figure:
+    """Draw the history with FC under a record in a direction, its peak, the displacement capacity and d0*."""
+    assert record.history is not None and record.with_confidence is not None  # the record has a known peak
+    t, d = displacement_history(side.exact, side.direction, record.history)
+    figure, axes = style.one_panel(3.2, f"{dynamic.state}, FC = {side.exact.confidence:g}")
+    style.draw_samples(axes, d, float(t[1]), color=style.INK, linewidth=style.MEDIUM, label="d")
+    peak = say("peak {d} m", d=say.number(record.with_confidence, 4))
+    axes.plot(t[d.argmax()], record.with_confidence, marker="o", linestyle="none", color=style.CURSOR, label=peak)
+    limits = {"capacity d_{state}": dynamic.allowed, "limit d_0*": dynamic.d0}
+    for k, (label, limit) in enumerate(limits.items(), 1):
+        look = {key: value for key, value in style.distinct(k).items() if key in ("color", "linestyle", "linewidth")}
+        axes.axhline(limit, label=f"{say(label, state=dynamic.state)} = {say.number(limit, 4)} m", **look)
+    axes.set_xlim(0.0, float(t[-1]))
+    highest = dynamic.d0 if record.with_confidence > SMALL_SHARE * dynamic.allowed else 0.0
+    axes.set_ylim(0.0, 1.08 * max(highest, record.with_confidence) or None)
+    style.tidy(axes, say("time t [s]"), "d [m]")
+    style.legend_below(figure, axes.get_legend_handles_labels()[0], 4)
+    return in_language(say, figure)
+
+
+def draw_spectra(say: Language, dynamic: Dynamic, ground: SiteGround, title: str) -> Figure:
+    """Draw the spectra of the scaled records, their mean, and the target of the site, of the ground or of the floor."""
+    demand, is_floor = site_demand(ground.site).states[dynamic.state], dynamic.motions.kind == "of_floor"
+    target = demand.floor if is_floor and demand.floor is not None else demand.ground
+    periods = np.geomspace(SHORTEST_OF_RECORDS, min(LONGEST_OF_RECORDS, demand.last * (1 - 1e-9)), PERIOD_COUNT)
+    each = np.array([response_spectrum(one.of_ground, periods, REFERENCE_DAMPING).sa for one in dynamic.scaled])
+    wanted = [target.acceleration(T, REFERENCE_DAMPING) / STANDARD_GRAVITY for T in periods.tolist()]
+    figure, axes = style.one_panel(3.8, title)
+    faint: dict[str, Any] = {
+        "color": style.FAINT,
+        "linewidth": style.CURVE,
+        "alpha": max(min(MAX_OPAQUE_LINES / len(each), 1.0), 0.2),
+    }
+    axes.plot(periods, each.T, **faint)
+    axes.plot([], [], label=say("each record, scaled"), **faint)
+    axes.plot(periods, each.mean(axis=0), color=style.INK, linewidth=style.BOLD, label=say("mean of the records"))
+    label = say("target: {support} at {state}", support=say("the floor" if is_floor else "the ground"),
+                state=dynamic.state)  # fmt: skip
+    axes.plot(periods, wanted, color=style.CURSOR, linestyle="--", linewidth=style.BOLD, label=label)
+    axes.set_xlim(0.0, float(periods[-1]))
+    axes.set_ylim(bottom=0.0)
+    style.tidy(axes, say("period T [s]"), say("spectral acceleration [g]"))
+    style.legend_below(figure, axes.get_legend_handles_labels()[0], 3)
+    return in_language(say, figure)

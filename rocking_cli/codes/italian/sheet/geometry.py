@@ -26,7 +26,7 @@ from rocking_cli.verification.results import Evaluated, Formula
 KILO = 1e3
 MEGA = 1e6
 USUAL_DIGITS, SPARE_DIGITS, MAX_DIGITS = 9, 2, 15  # of coordinates; how many of them differences may lose; at most
-ROUNDING_SHARE = 1e-11  # share of the size of a structure below which a coordinate is zero
+SHARE_OF_ROUNDING = 1e-11  # share of the size of a structure below which a coordinate is zero
 SAME_SIZE = 1e-9  # relative difference of sizes of equal bodies
 SAME_MASS = 1e-9  # relative difference of the mass of a body and of the sum of its parts
 MAX_WRITTEN_CORNERS = 24  # corners of a polygon whose area is written out
@@ -187,7 +187,11 @@ class Composition:
     def _solids(self) -> Mapping[str, Sequence[Solid]]:
         """The uniform parts of each body, by name; none if the mass of a body does not follow from them."""
         solids, bodies = self.mechanism.solids(), self.mechanism.weighed()
-        return {body.name: each if _agree(body, each := solids.get(body.name, ())) else () for body in bodies}
+        parts = {body.name: (body.mass, solids.get(body.name, ())) for body in bodies}
+        return {
+            name: solids if isclose(sum(each.mass for each in solids), mass, rel_tol=SAME_MASS) else ()
+            for name, (mass, solids) in parts.items()
+        }
 
     # Masses
 
@@ -343,18 +347,13 @@ def _in_marks(symbol: str) -> str:
 
 def cleared(at: complex, size: float) -> complex:
     """Return a point with coordinates that are zero but for rounding, over a size [m], set to zero."""
-    return complex(*(0.0 if abs(part) < ROUNDING_SHARE * size else part for part in (at.real, at.imag)))
+    return complex(*(0.0 if abs(part) < SHARE_OF_ROUNDING * size else part for part in (at.real, at.imag)))
 
 
 def sharpened(formula: Formula, loss: float) -> Formula:
     """Return a formula with so many digits that five remain where its differences lose a factor `loss`."""
     digits = min(MAX_DIGITS, USUAL_DIGITS + max(0, ceil(log10(loss)) - SPARE_DIGITS))
     return replace(formula, numbers=formula.numbers.replace(f":{USUAL_DIGITS}}}", f":{digits}}}"), digits=digits)
-
-
-def _agree(body: Body, solids: Sequence[Solid]) -> bool:
-    """Return whether the mass of a body is that of its parts."""
-    return isclose(sum(each.mass for each in solids), body.mass, rel_tol=SAME_MASS)
 
 
 def _are_alike(one: Sequence[Solid], other: Sequence[Solid]) -> bool:

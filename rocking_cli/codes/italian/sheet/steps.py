@@ -10,9 +10,8 @@ import numpy as np
 from markupsafe import Markup
 
 from rocking_cli.codes.italian import formulas as F
-from rocking_cli.codes.italian.capacity import BREAK, SEAT, ExactCurve, StraightCurve, ends
+from rocking_cli.codes.italian.capacity import BREAK, SEAT, DisplacedChain, ExactCurve, StraightCurve, ends, pulls
 from rocking_cli.codes.italian.demand import REFERENCE_DAMPING, DemandSpectrum, FloorSpectrum, GroundSpectrum
-from rocking_cli.codes.italian.displaced import DisplacedChain, pulls
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified, LimitState
 from rocking_cli.codes.italian.rules import (
@@ -26,9 +25,8 @@ from rocking_cli.codes.italian.rules import (
     Rule,
 )
 from rocking_cli.codes.italian.sheet import chain as chains
-from rocking_cli.codes.italian.sheet import site, spectra
-from rocking_cli.codes.italian.sheet.centres import ChainCentres
-from rocking_cli.codes.italian.sheet.chain import Rows, Scale
+from rocking_cli.codes.italian.sheet import site
+from rocking_cli.codes.italian.sheet.chain import ChainSteps, Rows
 from rocking_cli.codes.italian.sheet.site import hazard_at, is_close
 from rocking_cli.core.hung.attached import Spot
 from rocking_cli.core.hung.element import INTERLOCK_NAME
@@ -84,7 +82,7 @@ class MethodComparison:
     name: str
     capacity: float
     demand: str
-    at: spectra.At | None = None
+    at: site.At | None = None
 
 
 @dataclass(frozen=True)
@@ -184,15 +182,10 @@ class DirectionSteps:
         """The exact capacity curve."""
         return self.found.exact
 
-    @property
-    def scale(self) -> Scale:
-        """Unit of printed weights."""
-        return Scale.of(self.curve.chain)
-
     @cached_property
-    def rest(self) -> DisplacedChain:
-        """The chain at rest."""
-        return DisplacedChain(self.curve, 0.0)
+    def of_chain(self) -> ChainSteps:
+        """Lines and rows of the chain."""
+        return ChainSteps(self.curve)
 
     @cached_property
     def end(self) -> DisplacedChain:
@@ -204,47 +197,9 @@ class DirectionSteps:
         """Whether the direction is the positive one."""
         return self.found.direction > 0
 
-    @property
-    def weights(self) -> Rows:
-        """Row of each mass that moves."""
-        return chains.weights(self.curve.chain, self.scale)
-
-    @property
-    def of_blocks(self) -> list[Evaluated]:
-        """Lines to the weight of each block and its point of action."""
-        return list(chains.of_blocks(self.curve.chain, self.scale))
-
-    @property
-    def of_steel(self) -> list[Evaluated]:
-        """Lines to the strength of each tie of steel."""
-        mechanism = self.curve.chain.mechanism
-        return [line for tie in mechanism.ties or [] if tie.is_steel for line in chains.of_steel(tie, mechanism.depth)]
-
-    @property
-    def sums(self) -> list[Evaluated]:
-        """Lines to alpha0, e* and M*."""
-        return list(chains.sums(self.curve.chain, self.rest, self.scale))
-
-    def at_work(self, position: DisplacedChain) -> Rows:
-        """Return a row for each block in a position."""
-        return chains.at_work(position, self.scale)
-
-    def centres(self, position: DisplacedChain) -> ChainCentres:
-        """Return the centres of rotation of the blocks in a position, from the joints."""
-        return ChainCentres(position)
-
-    def held(self, position: DisplacedChain) -> Rows:
-        """Return a row for each force or tie in a position."""
-        return chains.held(position, self.scale)
-
     def ties(self, states: Sequence[str]) -> Rows:
         """Return a row for each tie at limit states."""
         return tie_rows(self.curve, {state: self.found.states[state] for state in states})
-
-    @property
-    def gravity(self) -> float:
-        """Gravitational acceleration [m/s2]."""
-        return self.curve.chain.mechanism.gravity
 
     @property
     def start(self) -> list[Evaluated]:
@@ -256,7 +211,7 @@ class DirectionSteps:
     def to_end(self) -> list[Evaluated]:
         """Lines to d0* from the position in which the capacity vanishes."""
         names = {"at": "φ_[0]", "symbol": "d_[0]^[*]"}
-        return [*chains.multiplier(self.end, self.scale, "(φ_[0])"), *self._moved(self.end, names, "d0")]
+        return [*self.of_chain.multiplier(self.end, "(φ_[0])"), *self._moved(self.end, names, "d0")]
 
     @property
     def states(self) -> list[StateSteps]:
@@ -280,22 +235,22 @@ class DirectionSteps:
 
     def _control(self) -> Evaluated:
         """Return the step for x_C' of the control point."""
-        scale, control = self.scale, self.curve.control
+        scale, control = self.of_chain.scale, self.curve.control
         chain = self.curve.chain
         dx = chain.sideways(control)
         if control.body is None:
             return F.X_C.line(dx, first=scale.weight(chain.first), PQ=scale.weight(chain.inertial))
         names = {"body": control.body, "x": control.at.real, "y": control.at.imag}
-        moved = next(each for each in self.rest.blocks if control.body in each.block.bodies)
+        moved = next(each for each in self.of_chain.rest.blocks if control.body in each.block.bodies)
         if moved.centre is None:
             return F.X_C_STRAIGHT.line(dx, names, x=moved.dx)
         return F.X_C_TURNS.line(dx, names, turns=moved.turns, y=control.at.imag, O=scale.near(moved.centre.imag))
 
     def _moved(self, position: DisplacedChain, names: Mapping[str, str], meaning: str) -> Iterator[Evaluated]:
         """Yield the steps to d_C and d in a position."""
-        curve, scale = self.curve, self.scale
+        curve, scale = self.curve, self.of_chain.scale
         chain, control = curve.chain, curve.control
-        d_C, total = chain.displacement_of_control(position.phi, control), scale.weight(chain.inertial)
+        d_C, total = float(chain.moved(np.array([position.phi]), control)[0]), scale.weight(chain.inertial)
         if control.body is None:
             weights, ways = (
                 [scale.weight(each.block.PQ) for each in position.blocks],
@@ -317,7 +272,7 @@ class DirectionSteps:
         names = {"state": s, "on": s, "at": f"φ_[{s}]", "symbol": f"d(φ_[{s}])"}
         phi = self.curve.rotation(at.d)
         position = DisplacedChain(self.curve, phi)
-        lines = [*self._moved(position, names, "d_again"), *chains.multiplier(position, self.scale, f"(φ_[{s}])")]
+        lines = [*self._moved(position, names, "d_again"), *self.of_chain.multiplier(position, f"(φ_[{s}])")]
         here = self.curve.acceleration_at(phi)
         lines.append(F.A_THERE.line(here, names, **self._accelerated(position.alpha)))
         lines += self._period_and_demand(rule, at, s, here)
@@ -345,7 +300,7 @@ class DirectionSteps:
             return
         spot = next(mass.spot for mass in chain.mechanism.hung.masses if mass.name == seat.load)
         x = [float(chain.mechanism.followed(np.array([each]), chain.direction)(spot).z[0].real) for each in (0.0, phi)]
-        low, high = map(self.scale.near, sorted(x))
+        low, high = map(self.of_chain.scale.near, sorted(x))
         names = {"name": as_subscript(seat.load), "load": seat.load, "state": state}
         yield F.SEAT_MOVED.line(abs(x[1] - x[0]), names, one=high, other=low)
 
@@ -366,7 +321,7 @@ class DirectionSteps:
         spectrum = self.ground.spectrum(s)
         if spectrum is None or at.demand is None or at.ratio is None:
             return
-        yield from spectra.displacement(spectrum, spectra.At(f"T_[{name}]", at.T, rule.damping))
+        yield from site.displacement(spectrum, site.At(f"T_[{name}]", at.T, rule.damping))
         yield F.RHO.line(at.ratio, names, d=at.d, demand=at.demand)
 
     def _on_line(self, rule: Rule) -> Iterator[Evaluated]:
@@ -392,7 +347,7 @@ class DirectionSteps:
         if name in RULE_OF_METHOD:
             rule: Rule = RULE_OF_METHOD[name]
             s, states = rule.state, self.found.straight_states if line else self.found.states
-            at = spectra.At(f"T_[{s}{more}]", states[s].T, rule.damping)
+            at = site.At(f"T_[{s}{more}]", states[s].T, rule.damping)
             return MethodComparison(s, f"d_[{s}]", states[s].d, f"S_[De](T_[{s}{more}])", at)
         return self._activation(STATE_OF_METHOD[name])
 
@@ -468,13 +423,13 @@ class DirectionSteps:
         """Yield the steps to the demand for the a_g or TR found by iteration, as a check against the capacity."""
         ground = spectrum.ground if isinstance(spectrum, FloorSpectrum) else spectrum
         if comparison.at is None or isinstance(spectrum, FloorSpectrum):
-            yield from spectra.peaks(spectrum, comparison.state)
+            yield from site.peaks(spectrum, comparison.state)
         elif isinstance(ground, GroundSpectrum):
-            yield from list(spectra.peaks(ground, comparison.state))[:2]
+            yield from list(site.peaks(ground, comparison.state))[:2]
         if comparison.at is not None:
-            yield from spectra.displacement(spectrum, comparison.at)
+            yield from site.displacement(spectrum, comparison.at)
         elif self.ground.site.own_period is not None:
-            yield from spectra.at_own_period(spectrum, self.ground.site.own_period, REFERENCE_DAMPING)
+            yield from site.ordinate_at_own_period(spectrum, self.ground.site.own_period, REFERENCE_DAMPING)
 
     def _lasts(self, method: ItalianMethod, comparison: MethodComparison, more: str) -> WithCheck:
         """Return the line to the capacity as a return period, and its check; empty without a hazard."""
