@@ -18,7 +18,6 @@ from matplotlib.transforms import ScaledTranslation
 from rocking_cli import names
 from rocking_cli.arrays import Integers, Reals
 from rocking_cli.plotting import style
-from rocking_cli.plotting.curve_names import name_curves
 from rocking_cli.questions.fragility.assess import Bivariate, Fragility
 from rocking_cli.questions.fragility.curves import FragilityCurve, Surface
 from rocking_cli.questions.fragility.definition import Limit
@@ -80,7 +79,6 @@ def draw_curves(drawn: Mapping[str, Fragility], label: str, title: str, *, of: s
     style.in_percent(axes.yaxis)
     style.tidy(axes, label, "probability of exceedance")
     unit = "".join(re.findall(r"(?<= \[)[^\]]+(?=\]$)", label))
-    named: list[Line2D] = []
     handles: list[Any] = []
     for k, (name, each) in enumerate(drawn.items()):
         look, both = style.distinct(k), edges(name, each)
@@ -90,9 +88,7 @@ def draw_curves(drawn: Mapping[str, Fragility], label: str, title: str, *, of: s
             curve, look = edge.curve, look | {"linewidth": weight}
             if curve.kind != "none":
                 x = _with_steps(fine, [curve])
-                (line,) = axes.plot(x, curve.probability(x), **look | {"marker": "none", "zorder": 3})
-                line.set_label(name)
-                named += [line] if edge is each or each.curve.kind == "none" else []
+                axes.plot(x, curve.probability(x), **look | {"marker": "none", "zorder": 3})
             without = {"linestyle": "none"} if curve.kind == "none" else {"marker": "none"} if curve.is_exact else {}
             words = _unbroken(f"{words}: {_in_words(curve, unit, stop)}")
             handles.append(Line2D([], [], label=words, **look | without | {"markerfacecolor": style.PAPER}))
@@ -101,8 +97,6 @@ def draw_curves(drawn: Mapping[str, Fragility], label: str, title: str, *, of: s
         _draw_observed(axes, each, style.distinct(k), place, len(observed))
         for place, (k, each) in enumerate(observed.items())
     ]
-    if len(named) > 1:
-        name_curves(axes, named)
     if shares := [f"{name} {names.percent(each.share or 0.0)}" for name, each in drawn.items() if each.is_band]:
         words = _unbroken(f"runs of {names.UNKNOWN} outcome: {', '.join(shares)}")
         handles.append(Patch(**style.UNKNOWN, label=words))

@@ -17,7 +17,6 @@ from rocking_cli import names
 from rocking_cli.arrays import Bools, Reals
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.plotting import style
-from rocking_cli.plotting.curve_names import name_curves
 from rocking_cli.questions.fragility.definition import SCALE
 from rocking_cli.questions.fragility.picture import (
     MIN_LOG_RATIO,
@@ -241,7 +240,7 @@ def draw_fractiles(axes: Axes, x: Reals, peaks: Reals, beyond: Bools) -> list[Li
         needs = f"records needed: {min(MIN_RECORDS)} for the median, {max(MIN_RECORDS)} for 16 and 84 %"
         needs = style.folded(needs, style.page_width() - style.MAX_SIDE_MARGIN, style.TICK)
         axes.set_xlabel(f"{axes.get_xlabel()}\n{needs}".strip(), fontsize=style.TICK)
-    return [] if lines and name_curves(axes, lines) else lines
+    return lines
 
 
 def _draw_shares(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:

@@ -15,7 +15,7 @@ from matplotlib.ticker import MaxNLocator
 
 from rocking_cli.arrays import Reals
 from rocking_cli.plotting import style
-from rocking_cli.plotting.mark_names import name_marks
+from rocking_cli.plotting.labels import name_marks
 from rocking_cli.questions.survey.coordinates import Coordinates
 from rocking_cli.questions.survey.picture import MAX_RANKED_LABELS, MAX_VECTOR_MARKS
 from rocking_cli.questions.survey.study import Survey

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rocking_cli.plotting import style
-from rocking_cli.plotting.mark_names import name_marks
+from rocking_cli.plotting.labels import name_marks
 from rocking_cli.questions.survey.study import Survey
 
 MAX_RANKED_LABELS = 10  # structures whose rank stands beside their mark
