@@ -188,7 +188,7 @@ UNTOLD = {
 }
 SAME = ("linkages/portico.yaml", "masonry/buttressed_arch.yaml", "rigid_body.yaml", "spanning_wall.yaml",
         "symmetric_frame.yaml", "walls/floor_wall.yaml", "walls/gable.yaml")  # fmt: skip
-QUICK = {"walls/gable.yaml", "spanning_wall.yaml"}
+QUICK, SLOW = {"walls/gable.yaml", "spanning_wall.yaml"}, pytest.mark.rest
 
 
 @pytest.mark.parametrize("name", UNTOLD)
