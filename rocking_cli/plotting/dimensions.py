@@ -103,7 +103,7 @@ def draw_outside(axes: Axes, rows: Rows, panel: Panel, low: complex, high: compl
                     short.append((text, ends, size))
     for text, ends, size in short:
         labels.keep_off(ends)
-        labels.write(text, labels.along(*ends, size), **TEXT_STYLE)
+        labels.write(text, labels.along(ends[0], ends[1], size), **TEXT_STYLE)
 
 
 def draw_inside(axes: Axes, lengths: Sequence[Length], angles: Sequence[Angle], panel: Panel, labels: Labels) -> None:

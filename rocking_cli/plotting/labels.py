@@ -27,6 +27,9 @@ CLEARANCE = 0.02  # inches around a label
 DISTANCE_COST = 8.0  # cost per inch between a label and its object; a covered point of a line costs LINE_COST
 OUTSIDE_COST = 1000.0  # cost per inch by which a label leaves the panel
 EDGE_COST, LINE_COST, MARK_COST, LABEL_COST = 1.0, 2.0, 6.0, 30.0  # cost per point of each kind that a label covers
+LEADING_DISTANCE = 0.15  # inches from which a line leads from a name to its mark
+LEADER = {"arrowstyle": "-", "color": style.INK, "linewidth": style.THIN, "shrinkA": 0, "shrinkB": 3}
+MARK_RADIUS = 0.07  # inches around a mark that names keep off: a name close to another mark would be taken for its
 SUBSCRIPTS = str.maketrans("₀₁₂₃₄₅₆₇₈₉₊₋", "0123456789+-")
 
 
@@ -103,12 +106,13 @@ class Labels:
         return cost
 
     def put(self, text: str, place: LabelPlace, size: complex, tip: complex | None = None, **look: Any) -> None:
-        """Write a label of a size [inches] at a place, with a line to a tip, and reserve its space."""
-        at = self._to_inches.inverted().transform((place.middle.real, place.middle.imag))
-        end = at if tip is None else (tip.real, tip.imag)
+        """Write a label of a size [inches] at a place, and reserve its space; a line leads to a tip that is far off."""
+        x, y = self._to_inches.inverted().transform((place.middle.real, place.middle.imag))
+        leads = tip is not None and abs(self.inches([tip])[0] - place.middle) > LEADING_DISTANCE + abs(size) / 2
         self._axes.annotate(
-            text, end, at, ha="center", va="center", rotation=place.turned, rotation_mode="anchor",
-            annotation_clip=False, path_effects=style.HALO, **look,
+            text, (tip.real, tip.imag) if leads and tip is not None else (x, y), (x, y), ha="center", va="center",
+            rotation=place.turned, rotation_mode="anchor", annotation_clip=False, path_effects=style.HALO,
+            arrowprops=LEADER if leads else None, **look,
         )  # fmt: skip
         across = np.linspace(-0.5, 0.5, 2 + int(size.real / POINT_SPACING)) * size.real
         up = np.linspace(-0.5, 0.5, 5) * size.imag
@@ -164,13 +168,14 @@ def name_marks(axes: Axes, points: Sequence[tuple[float, float, str]], marks: Re
         style.lay_out(axes.figure)
     labels, named = Labels(axes), np.array([complex(x, y) for x, y, _ in points])
     labels.reserve(labels.inches(marks @ np.array([1, 1j])), EDGE_COST)
-    labels.reserve(labels.inches(named), MARK_COST)
+    labels.reserve(
+        (labels.inches(named)[:, None] + MARK_RADIUS * np.exp(2j * np.pi * np.arange(8) / 8)).ravel(), MARK_COST
+    )
     for text in axes.texts:
         (x0, y0), (x1, y1) = text.get_window_extent().get_points() / axes.figure.dpi
         across, up = np.meshgrid(np.linspace(x0, x1, 12), np.linspace(y0, y1, 4))
         labels.reserve((across + 1j * up).ravel(), LABEL_COST)
     look: dict[str, Any] = {"fontsize": style.TICK, "color": style.INK, "zorder": 7}
-    line = {"arrowstyle": "-", "color": style.INK, "linewidth": style.THIN, "shrinkA": 0, "shrinkB": 3}
     for at, (*_, name) in zip(named.tolist(), points, strict=True):
-        places = labels.around(at, 1 + 1j, 0.05, style.size_of(name, style.TICK), 0.3)
-        labels.write(name, places, tip=at, arrowprops=line, **look)
+        places = labels.around(at, 1 + 1j, MARK_RADIUS, style.size_of(name, style.TICK), 0.3)
+        labels.write(name, places, tip=at, **look)

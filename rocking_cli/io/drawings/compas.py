@@ -12,8 +12,15 @@ import numpy as np
 
 from rocking_cli.arrays import Points, Reals
 from rocking_cli.errors import named
-from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnText, LineDrawing
-from rocking_cli.io.drawings.limits import MAX_NUMBER, check_content, inside
+from rocking_cli.io.drawings.contract import (
+    MAX_NUMBER,
+    DrawingError,
+    DrawnLine,
+    DrawnText,
+    LineDrawing,
+    check_content,
+    inside,
+)
 
 TITLE = "JSON of compas_dem"
 ENDINGS = (".json",)

@@ -18,8 +18,19 @@ from itertools import groupby
 import numpy as np
 
 from rocking_cli.errors import InputError
-from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnText, LineDrawing, OmittedKind
-from rocking_cli.io.drawings.limits import MAX_ELEMENTS, MAX_NUMBER, MAX_SIDES, check_content, check_count, inside
+from rocking_cli.io.drawings.contract import (
+    MAX_ELEMENTS,
+    MAX_NUMBER,
+    MAX_SIDES,
+    DrawingError,
+    DrawnLine,
+    DrawnText,
+    LineDrawing,
+    OmittedKind,
+    check_content,
+    check_count,
+    inside,
+)
 from rocking_cli.io.spreadsheet import NUMBER, decoded, unit_in
 from rocking_cli.text import cut
 from rocking_cli.units import KINDS

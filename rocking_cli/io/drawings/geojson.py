@@ -17,8 +17,20 @@ from typing import Any
 import numpy as np
 
 from rocking_cli.arrays import Points
-from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnPoint, DrawnText, LineDrawing, OmittedKind
-from rocking_cli.io.drawings.limits import MAX_ELEMENTS, MAX_NUMBER, MAX_SIDES, check_content, check_count, inside
+from rocking_cli.io.drawings.contract import (
+    MAX_ELEMENTS,
+    MAX_NUMBER,
+    MAX_SIDES,
+    DrawingError,
+    DrawnLine,
+    DrawnPoint,
+    DrawnText,
+    LineDrawing,
+    OmittedKind,
+    check_content,
+    check_count,
+    inside,
+)
 from rocking_cli.text import cut
 
 TITLE = "GeoJSON"

@@ -18,8 +18,18 @@ from xml.parsers import expat
 import numpy as np
 
 from rocking_cli.io.drawings import svg_paths as lines
-from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnText, LineDrawing, OmittedKind
-from rocking_cli.io.drawings.limits import MAX_ELEMENTS, MAX_NUMBER, MAX_SIDES, check_content, check_count
+from rocking_cli.io.drawings.contract import (
+    MAX_ELEMENTS,
+    MAX_NUMBER,
+    MAX_SIDES,
+    DrawingError,
+    DrawnLine,
+    DrawnText,
+    LineDrawing,
+    OmittedKind,
+    check_content,
+    check_count,
+)
 from rocking_cli.text import cut
 
 TITLE = "SVG"

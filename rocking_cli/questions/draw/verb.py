@@ -16,6 +16,7 @@ from rocking_cli.views.view import View, heading
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from rocking_cli.core import Angle, Length
     from rocking_cli.io.tables import Columns
     from rocking_cli.studies.picture import Picture
 
@@ -80,9 +81,9 @@ def _columns(found: Picture) -> Columns:
 
 def _view(picture: Picture) -> View:
     """Show the dimensions of a structure, and its drawing as plain data."""
+    measured: list[Length | Angle] = [*picture.sketch.lengths, *picture.sketch.angles]
     sentences = [
-        f"{each.text}{f' ({each.direction.label})' if each.direction is not None else ''}"
-        for each in (*picture.sketch.lengths, *picture.sketch.angles)
+        f"{each.text}{f' ({each.direction.label})' if each.direction is not None else ''}" for each in measured
     ]
     sentences += [f"load {each.name}, {each.text}" for each in picture.loads if each.name]
     sentences += [f"tie {each.name}" for each in picture.ties if each.name]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.arrays import Points, Reals
-from rocking_cli.io.drawings.arcs import STRAIGHT_BULGE, Sides, arc_circle, inner_points, level_count
+from rocking_cli.io.drawings.contract import STRAIGHT_BULGE, Sides, arc_circle, inner_points, level_count
 
 Number = TypeVar("Number", bound=np.generic)
 CHORD = 0.1  # share of the closing distance to which arcs are compared

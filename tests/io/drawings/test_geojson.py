@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rocking_cli.io.drawings import geojson
-from rocking_cli.io.drawings.limits import inside
+from rocking_cli.io.drawings.contract import inside
 
 RING = [[0, 0], [2, 0], [2, 3], [0, 3], [0, 0]]
 HOLE = [[0.5, 1], [1, 1], [1, 2], [0.5, 1]]

@@ -23,8 +23,7 @@ from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.plotting import style
 from rocking_cli.plotting.moving import asset
 from rocking_cli.plotting.panels import Page
-from rocking_cli.questions.animate.picture import _Stage, animation_page, frame_time
-from rocking_cli.questions.animate.video import write_mp4
+from rocking_cli.questions.animate.picture import _Stage, animation_page, frame_time, write_mp4
 from rocking_cli.studies.film import Film, Scene
 from rocking_cli.studies.picture import picture
 from rocking_cli.views.animation import fate, scale_in_words

@@ -14,10 +14,9 @@ from rocking_cli.cli.main import main
 from rocking_cli.core.polygons import fault_of
 from rocking_cli.io.drawings.contract import DrawingError, MeshSurface
 from rocking_cli.questions.import_mesh import solid
-from rocking_cli.questions.import_mesh.foot import settled
 from rocking_cli.questions.import_mesh.options import MeshOptions
-from rocking_cli.questions.import_mesh.page import MAX_DRAWN, drawn_triangles, scene
-from rocking_cli.questions.import_mesh.picture import draw_compass
+from rocking_cli.questions.import_mesh.picture import MAX_DRAWN, draw_compass, drawn_triangles, scene
+from rocking_cli.questions.import_mesh.solid import settled
 from rocking_cli.questions.import_mesh.study import imported
 from rocking_cli.questions.import_mesh.view import data, sentences
 from tests.browser import launch, opened
