@@ -15,10 +15,9 @@ from rocking_cli.core.hung.ties import Tie
 from rocking_cli.io.drawings.contract import DrawnLine, DrawnText, LineDrawing
 from rocking_cli.io.field_problems import of_arguments
 from rocking_cli.io.yaml_file import in_a_line
-from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, many
+from rocking_cli.questions.import_drawing.legend import DrawingFrame, ImportNote, Role, many, plain
 from rocking_cli.questions.import_drawing.outlines import DrawnBody, Sorted
 from rocking_cli.questions.import_drawing.rings import ArcRing, polygons_of
-from rocking_cli.questions.import_drawing.roles import Role, plain
 from rocking_cli.text import in_short, seen
 from rocking_cli.units import UnitError, read
 

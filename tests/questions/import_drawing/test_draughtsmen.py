@@ -10,8 +10,8 @@ import pytest
 from pytest import approx
 
 from rocking_cli.io.drawings.contract import DrawingError
+from rocking_cli.questions.import_drawing.legend import parse_layers
 from rocking_cli.questions.import_drawing.outlines import density_in
-from rocking_cli.questions.import_drawing.roles import parse_layers
 from rocking_cli.units import UnitError
 from tests.questions.import_drawing.sheets import box, imported, lambdas, line, outline, sides, words
 

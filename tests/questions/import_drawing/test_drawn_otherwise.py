@@ -9,8 +9,8 @@ import pytest
 import rocking_cli as rk
 from rocking_cli.errors import InputError
 from rocking_cli.io.drawings.contract import DrawingError
+from rocking_cli.questions.import_drawing.legend import DrawingFrame
 from rocking_cli.questions.import_drawing.mortar import close_gaps
-from rocking_cli.questions.import_drawing.notes import DrawingFrame
 from rocking_cli.questions.import_drawing.outlines import MAX_BODIES, MAX_CORNERS, MAX_MEETING, DrawnBody
 from rocking_cli.questions.import_drawing.rings import ArcRing
 from rocking_cli.questions.import_drawing.study import check_overlaps

@@ -14,8 +14,8 @@ import rocking_cli as rk
 from rocking_cli.core import Direction
 from rocking_cli.errors import InputError
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine
+from rocking_cli.questions.import_drawing.legend import role_of
 from rocking_cli.questions.import_drawing.rings import ArcRing
-from rocking_cli.questions.import_drawing.roles import role_of
 from tests.conftest import EXAMPLES
 from tests.questions.import_drawing.sheets import (
     box,
