@@ -88,7 +88,7 @@ def draw_curves(drawn: Mapping[str, Fragility], label: str, title: str, *, of: s
             curve, look = edge.curve, look | {"linewidth": weight}
             if curve.kind != "none":
                 x = _with_steps(fine, [curve])
-                axes.plot(x, curve.probability(x), **look | {"marker": "none", "zorder": 3})
+                axes.plot(x, curve.probability(x), label=name, **look | {"marker": "none", "zorder": 3})
             without = {"linestyle": "none"} if curve.kind == "none" else {"marker": "none"} if curve.is_exact else {}
             words = _unbroken(f"{words}: {_in_words(curve, unit, stop)}")
             handles.append(Line2D([], [], label=words, **look | without | {"markerfacecolor": style.PAPER}))

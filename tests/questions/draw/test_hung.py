@@ -303,7 +303,8 @@ class TestRespond:
         _, rotation, forces = figure.axes
         assert rotation.get_ylabel() == f"rotation [{unit}], clockwise up"
         np.testing.assert_allclose(rotation.lines[1].get_ydata(), factor * run.phi)
-        words = [text.get_text() for axes in figure.axes for text in axes.texts]
+        keys = [*figure.legends, *filter(None, [axes.get_legend() for axes in figure.axes])]
+        words = [text.get_text() for key in keys for text in key.get_texts()]
         assert any(each.startswith(f"peak {factor * run.furthest:.3g}") and unit in each for each in words)
         (line,) = (line for line in forces.lines if line.get_label() == "tendon")
         largest = Watched(mechanism).peaks(run).ties[0].force / 1000
