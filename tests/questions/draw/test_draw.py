@@ -19,7 +19,6 @@ from mechanisms.arch import Arch
 from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
 from mechanisms.cone import Cone
-from mechanisms.rigid_body import RigidBody
 from mechanisms.symmetric_frame import SymmetricFrame
 from mechanisms.wall import Wall
 from rocking_cli.core import Angle, Body, Direction, Hinge, Length, Mechanism, Sketch, box, rotation, three_digits
@@ -452,10 +451,6 @@ class TestFigure:
         assert [line.tolist() for line in _faces(np.array(corners), [beside + 1])] == [[0j, 4 + 0j]]
         assert [line.tolist() for line in _faces(np.array(corners), [beside])] == [[0j, 4 + 0j, 4 - 2j]]
         assert all((np.diff(line).real > 0).all() for line in picture(loaded(EXAMPLES / "masonry/portal.yaml")).ground)
-
-    def test_a_body_given_by_numbers_is_a_dashed_disc(self):
-        figure = draw_structure(picture(RigidBody(R=1.5, alpha_deg=14.0, inertia_ratio=4 / 3)), "numbers")
-        assert any(each.get_linestyle() not in ("-", "solid") and each.get_fill() for each in figure.axes[0].patches)
 
     def test_a_point_without_inertia_or_mass_can_be_drawn(self):
         class Point(Mechanism):
