@@ -89,15 +89,11 @@ def in_a_line(value: Any) -> str:
     if isinstance(value, list):
         return "[" + ", ".join(map(in_a_line, value)) + "]"
     if type(value) is float and isfinite(value):
-        return _with_point(repr(value))
+        digits = repr(value)  # YAML 1.1 reads a number without a point before its exponent as a text
+        return digits if "." in digits else digits.replace("e", ".0e")
     if isinstance(value, str) and NUMBERED_WORD.fullmatch(value):
         return value  # as most names of bodies are
     return _scalar(value)
-
-
-def _with_point(digits: str) -> str:
-    """Return a number with a point before its exponent, without which YAML 1.1 reads a text."""
-    return digits if "." in digits else digits.replace("e", ".0e")
 
 
 @lru_cache(maxsize=4096, typed=True)  # 1 and True are equal

@@ -257,12 +257,9 @@ def inner_points(start: complex, end: complex, bulge: float, count: Sides, *, ke
     turn = 4 * atan(bulge)
     centre, radius = arc_circle(start, end, bulge)
     n = count(radius, turn)
-    out = _area_kept(abs(turn), n) if keeps_area else 1.0
+    out = 1.0
+    if keeps_area:  # distance q of the inner points over the radius at which n sides have the area of the arc
+        right = abs(turn) / sin(abs(turn) / n)  # = (n - 2) q^2 + 2 q
+        out = right / 2 if n == 2 else (sqrt(1 + (n - 2) * right) - 1) / (n - 2)
     points: Points = centre + out * (start - centre) * np.exp(1j * turn * np.arange(1, n) / n)
     return points
-
-
-def _area_kept(turn: float, n: int) -> float:
-    """Return q, the distance of the inner points over the radius at which n sides have the area of the arc."""
-    right = turn / sin(turn / n)
-    return right / 2 if n == 2 else (sqrt(1 + (n - 2) * right) - 1) / (n - 2)  # (n - 2) q^2 + 2 q = right

@@ -34,7 +34,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from rocking_cli.arrays import Points, Reals
 from rocking_cli.errors import InputError, Problem, Refused
-from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.plotting import hung, style
 from rocking_cli.plotting.moving import (
     MAX_SHOWN_RATIO,
@@ -378,11 +378,13 @@ def _draw_traces(
 ) -> None:
     reach = 0.0
     for film, look in zip(scene.films, looks, strict=True):
-        time, ratio = ratio_trace(film)
-        upper.plot(time, ratio, **look)
+        ratio = film.history.ratio[np.isfinite(film.history.ratio)]
+        shown = style.visible(ratio)
+        upper.plot(film.history.time[shown], ratio[shown], **look)
         reach = max(reach, float(np.abs(ratio).max()))
-    t, ground = ground_trace(scene.films[0].motion)
-    lower.plot(t, ground, **style.TRACE)
+    motion = scene.films[0].motion.kept
+    ground = motion.acceleration / STANDARD_GRAVITY
+    style.draw_samples(lower, ground, motion.dt, **style.TRACE)
     at_limit = [each for film in scene.films for each in film.history.ends_at_limit]
     for axes, most, label in (
         (upper, min(reach, MAX_SHOWN_RATIO), style.over(at_limit, math=True)),
@@ -399,20 +401,6 @@ def _draw_traces(
         upper.axhline(level, color=style.FAINT, linewidth=style.THIN, linestyle=":")
     upper.tick_params(labelbottom=False)
     lower.set_xlabel("time [s]", fontsize=style.LABEL)
-
-
-def ratio_trace(film: Film) -> tuple[Reals, Reals]:
-    """Return times [s] and phi/phi_cr of a history, thinned to what is visible."""
-    ratio = film.history.ratio[np.isfinite(film.history.ratio)]
-    shown = style.visible(ratio)
-    return film.history.time[shown], ratio[shown]
-
-
-def ground_trace(motion: GroundMotion) -> tuple[Reals, Reals]:
-    """Return times [s] and accelerations [g] of a ground motion, thinned to what is visible."""
-    motion = motion.kept
-    shown = style.visible(motion.acceleration)
-    return shown.astype(np.float64) * motion.dt, motion.acceleration[shown] / STANDARD_GRAVITY
 
 
 def animation_page(films: Film | Sequence[Film], title: str, speed: float = 1.0) -> str:

@@ -159,11 +159,6 @@ class _Drawn:
         pairs = [(z.real, z.imag) for z in points[: len(points) - ends].tolist()]
         self.space.add_lwpolyline(pairs, close=bool(closed or ends), dxfattribs=self.on(layer))
 
-    def is_on_ground(self, at: complex) -> bool:
-        """Return whether a point is on a line of the ground."""
-        tolerance = SAME_SHARE * self.size
-        return any(distance(np.array([at]), line)[0] <= tolerance for line in self.ground)
-
     def spot(self, layer: str, at: complex) -> None:
         """Draw a point."""
         self.space.add_point((at.real, at.imag), dxfattribs=self.on(layer))
@@ -236,7 +231,8 @@ def _tie(drawn: _Drawn, drawing: Picture, tie: Strand) -> None:
         return
     drawn.line("TIES", ends)
     for end, other in ((ends[0], ends[1]), (ends[-1], ends[-2])):
-        if any(end == anchor.point for anchor in tie.ground) and not drawn.is_on_ground(complex(end)):
+        on_line = any(distance(np.array([end]), line)[0] <= SAME_SHARE * drawn.size for line in drawn.ground)
+        if any(end == anchor.point for anchor in tie.ground) and not on_line:
             away = ANCHOR_SHARE * drawn.size * (end - other) / abs(end - other)
             drawn.line("GROUND", np.array([end, end + away * (1 - 0.5j), end + away * (1 + 0.5j)]), closed=True)
     given = next((each for each in drawing.mechanism.ties or [] if each.name == tie.thing.name), None)
