@@ -93,8 +93,9 @@ class Labels:
     def _cost(self, places: Sequence[LabelPlace], size: complex) -> Reals:
         """Return what a label of a size [inches] costs at each place."""
         middles, turned, cost = (np.array(column) for column in zip(*places, strict=True))
-        near = np.abs(self._points - middles.mean()) < np.abs(middles - middles.mean()).max() + abs(size)
-        points, weights, half = self._points[near], self._costs[near], size / 2 + CLEARANCE * (1 + 1j)
+        reach = np.abs(middles - middles.mean()).max() + abs(size)
+        within = np.abs(self._points - middles.mean()) < reach
+        points, weights, half = self._points[within], self._costs[within], size / 2 + CLEARANCE * (1 + 1j)
         for angle in np.unique(turned):
             turn, here = np.exp(1j * np.radians(angle)), turned == angle
             away = (points - middles[here, None]) / turn
