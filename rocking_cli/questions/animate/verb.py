@@ -129,9 +129,8 @@ def _shot(asked: AnimateAsked, ready: Structure, given: Scaled) -> Animation:
 def _answer(ready: Structure, made: Animation, scene: Scene, file: _Written) -> Answer[Animation]:
     film, history = made.film, made.film.history
     shown = views.view(ready, film, scene, made.neighbours, file._asdict())
-    histories = {history.model: history}
-    draw = "questions.respond.picture.draw_history"
-    figure = drawn(draw, histories, film.motion, heading(ready.mechanism), structure=ready)
+    title, histories = heading(ready.mechanism), {history.model: history}
+    figure = drawn("questions.respond.picture.draw_history", histories, film.motion, title, structure=ready)
     return Answer("animation", made, shown, partial(_columns, film), figure)
 
 

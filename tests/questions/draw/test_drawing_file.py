@@ -137,6 +137,13 @@ def test_what_is_no_uniform_plate_is_told(tmp_path):
     assert on(drawing, "ASSUMED") and not on(drawing, "BLOCKS")
 
 
+def test_friction_of_crossing_walls_is_no_load(tmp_path):
+    courses = {"courses": 40, "overlap": 0.2, "thickness": 0.5, "walls": 1, "height": 8.0}
+    wall = rk.Block(width=0.6, height=8.0, density=2400, depth=1.0, interlock=courses)
+    with pytest.warns(rk.DoubtWarning, match="does not tell `interlock`"):
+        assert not texts(drawn(wall, tmp_path), "LOADS")
+
+
 def test_dxf_alone_writes_nothing_else(tmp_path):
     (tmp_path / "b.yaml").write_text("mechanism: block\nwidth: 1\nheight: 4\n")
     result = run("draw", "b.yaml", "--dxf", "b.dxf")
