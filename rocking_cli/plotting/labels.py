@@ -22,12 +22,13 @@ from rocking_cli.plotting.panels import Panel
 
 POINT_SPACING = 0.025  # inches between the points of a line that labels avoid
 GAPS = (0.03, 0.1, 0.18, 0.28, 0.45)  # inches between a label and what it names
+FAR_GAPS = (0.6, 0.8)  # and of a name in a crowd
 MAX_LINE_POINTS = 10_000  # limit, as a line may extend far beyond the picture
-CLEARANCE = 0.02  # inches around a label
+CLEARANCE = 0.035  # inches around a label, whose letters may be taller than it
 DISTANCE_COST = 8.0  # cost per inch between a label and its object; a covered point of a line costs LINE_COST
 OUTSIDE_COST = 1000.0  # cost per inch by which a label leaves the panel
 EDGE_COST, LINE_COST, MARK_COST, LABEL_COST = 1.0, 2.0, 6.0, 30.0  # cost per point of each kind that a label covers
-LEADING_DISTANCE = 0.15  # inches from which a line leads from a name to its mark
+LEADING_DISTANCE = 0.09  # inches from which a line leads from a name to its mark
 LEADER = {"arrowstyle": "-", "color": style.INK, "linewidth": style.THIN, "shrinkA": 0, "shrinkB": 3}
 MARK_RADIUS = 0.07  # inches around a mark that names keep off: a name close to another mark would be taken for its
 SUBSCRIPTS = str.maketrans("₀₁₂₃₄₅₆₇₈₉₊₋", "0123456789+-")
@@ -107,13 +108,14 @@ class Labels:
         return cost
 
     def put(self, text: str, place: LabelPlace, size: complex, tip: complex | None = None, **look: Any) -> None:
-        """Write a label of a size [inches] at a place, and reserve its space; a line leads to a tip that is far off."""
+        """Write a label of a size [inches] at a place, and reserve its space; a line leads to a far tip [inches]."""
         x, y = self._to_inches.inverted().transform((place.middle.real, place.middle.imag))
-        leads = tip is not None and abs(self.inches([tip])[0] - place.middle) > LEADING_DISTANCE + abs(size) / 2
+        end = self._to_inches.inverted().transform((tip.real, tip.imag)) if tip is not None else (x, y)
+        off = (tip if tip is not None else place.middle) - place.middle
+        leads = max(abs(off.real) - size.real / 2, abs(off.imag) - size.imag / 2) > LEADING_DISTANCE
         self._axes.annotate(
-            text, (tip.real, tip.imag) if leads and tip is not None else (x, y), (x, y), ha="center", va="center",
-            rotation=place.turned, rotation_mode="anchor", annotation_clip=False, path_effects=style.HALO,
-            arrowprops=LEADER if leads else None, **look,
+            text, tuple(end), (x, y), ha="center", va="center", rotation=place.turned, rotation_mode="anchor",
+            annotation_clip=False, path_effects=style.HALO, arrowprops=LEADER if leads else None, **look,
         )  # fmt: skip
         across = np.linspace(-0.5, 0.5, 2 + int(size.real / POINT_SPACING)) * size.real
         up = np.linspace(-0.5, 0.5, 5) * size.imag
@@ -141,14 +143,15 @@ class Labels:
                 yield LabelPlace(tip + out * reach, 0.0, 8.0 + DISTANCE_COST * gap)
 
     def around(
-        self, apex: complex, towards: complex, radius: float, size: complex, turning: float = 4.0
-    ) -> Iterator[LabelPlace]:
+        self, apex: complex, towards: complex, radius: float, size: complex, turning: float = 4.0,
+        gaps: Sequence[float] = GAPS,
+    ) -> Iterator[LabelPlace]:  # fmt: skip
         """Yield places for a label around a point, beyond a radius [inches], best in one direction."""
         (middle,) = self.inches([apex]).tolist()
         for turn in np.linspace(-np.pi, np.pi, 25)[1:].tolist():
             direction = towards / abs(towards) * np.exp(1j * turn)
             sides = size.real / 2 / max(abs(direction.real), 1e-9), size.imag / 2 / max(abs(direction.imag), 1e-9)
-            for gap in GAPS:
+            for gap in gaps:
                 cost = turning * abs(turn) + DISTANCE_COST * gap
                 yield LabelPlace(middle + (radius + gap + min(sides)) * direction, 0.0, cost)
 
@@ -168,15 +171,14 @@ def name_marks(axes: Axes, points: Sequence[tuple[float, float, str]], marks: Re
     if style.given() is None and isinstance(axes.figure, Figure):
         style.lay_out(axes.figure)
     labels, named = Labels(axes), np.array([complex(x, y) for x, y, _ in points])
+    inches = labels.inches(named)
     labels.reserve(labels.inches(marks @ np.array([1, 1j])), EDGE_COST)
-    labels.reserve(
-        (labels.inches(named)[:, None] + MARK_RADIUS * np.exp(2j * np.pi * np.arange(8) / 8)).ravel(), MARK_COST
-    )
+    labels.reserve((inches[:, None] + MARK_RADIUS * np.exp(2j * np.pi * np.arange(8) / 8)).ravel(), EDGE_COST)
     for text in axes.texts:
         (x0, y0), (x1, y1) = text.get_window_extent().get_points() / axes.figure.dpi
         across, up = np.meshgrid(np.linspace(x0, x1, 12), np.linspace(y0, y1, 4))
         labels.reserve((across + 1j * up).ravel(), LABEL_COST)
     look: dict[str, Any] = {"fontsize": style.TICK, "color": style.INK, "zorder": 7}
-    for at, (*_, name) in zip(named.tolist(), points, strict=True):
-        places = labels.around(at, 1 + 1j, MARK_RADIUS, style.size_of(name, style.TICK), 0.3)
-        labels.write(name, places, tip=at, **look)
+    for at, tip, (*_, name) in zip(named.tolist(), inches.tolist(), points, strict=True):
+        places = labels.around(at, 1 + 1j, MARK_RADIUS, style.size_of(name, style.TICK), 0.3, GAPS + FAR_GAPS)
+        labels.write(name, places, tip=tip, **look)
