@@ -193,11 +193,11 @@ def test_a_record_of_zeros_can_be_drawn():
 
 
 class TestThinning:
-    @pytest.mark.parametrize("size", [1, 2, BINS_ACROSS, 3 * BINS_ACROSS - 1])
+    @pytest.mark.parametrize("size", [1, 3 * BINS_ACROSS - 1])
     def test_a_short_curve_is_drawn_whole(self, size):
         np.testing.assert_array_equal(visible(np.sin(np.arange(size))), np.arange(size))
 
-    @pytest.mark.parametrize("size", [3 * BINS_ACROSS, 10 * BINS_ACROSS + 17, 1_000_003])
+    @pytest.mark.parametrize("size", [3 * BINS_ACROSS, 10 * BINS_ACROSS + 17])
     def test_a_long_one_keeps_its_ends_extremes_and_outline(self, size):
         values = np.random.default_rng(2).normal(size=size)
         shown = visible(values)
