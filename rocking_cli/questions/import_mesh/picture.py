@@ -7,11 +7,9 @@ from math import ceil
 from typing import Any
 
 import numpy as np
-from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from rocking_cli.arrays import Reals
-from rocking_cli.documents.figures import dark_figures, inline_svg, template
 from rocking_cli.plotting import style
 from rocking_cli.plotting.moving import as_script, asset
 from rocking_cli.questions.import_mesh.solid import Triangles, turned_to_least
@@ -122,6 +120,10 @@ def render(found: ImportedMesh, title: str, about: Sequence[str], north: float |
     north : float, optional
         Azimuth of the north [deg], see `draw_compass`.
     """
+    from markupsafe import Markup
+
+    from rocking_cli.documents.figures import dark_figures, inline_svg, template
+
     page = template("mesh.html").render(
         title=title,
         about=about,

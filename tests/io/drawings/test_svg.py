@@ -5,7 +5,7 @@ import gzip
 import numpy as np
 import pytest
 
-from rocking_cli.io.drawings import svg
+from rocking_cli.io.drawings import contract, svg
 from tests.conftest import EXAMPLES
 from tests.io.drawings.areas import area
 
@@ -181,7 +181,7 @@ def nested_uses(levels, count):
     ("<inkscape:g a:b='1'/>", "not_svg", "unbound prefix"),
 ])  # fmt: skip
 def test_bad_drawings_are_refused_with_class_and_place(content, refused, words, monkeypatch):
-    monkeypatch.setattr(svg, "MAX_ELEMENTS", 2000)
+    monkeypatch.setattr(contract, "MAX_ELEMENTS", 2000)
     with pytest.raises(svg.DrawingError, match=words) as caught:
         drawn(content)
     assert caught.value.refused == refused

@@ -93,6 +93,11 @@ def test_a_gap_is_not_closed_across_a_third_body():
     assert heights == [[0, 0.505], [0.505, 0.545], [0.545, 1.05]]
 
 
+def test_a_gap_above_the_ground_is_closed_by_the_body_alone():
+    found = imported(box(0, 0.008, 1, 1), line((-1, 0), (2, 0), "TERRENO"), merge_gap=0.012)
+    assert found.kind == "rigid_body" and found.fields["polygon"][2] == [1.0, 1.008]
+
+
 def test_a_gap_wider_than_mortar_is_refused(tmp_path):
     (tmp_path / "a.csv").write_text("0,0\n1,0\n1,3\n0,3\n")
     with pytest.raises(InputError, match=r"12 is outside the supported range: 0 to 0.2 m"):
