@@ -24,7 +24,7 @@ POINT_SPACING = 0.025  # inches between the points of a line that labels avoid
 GAPS = (0.03, 0.1, 0.18, 0.28, 0.45)  # inches between a label and what it names
 FAR_GAPS = (0.6, 0.8)  # and of a name in a crowd
 MAX_LINE_POINTS = 10_000  # limit, as a line may extend far beyond the picture
-CLEARANCE = 0.035  # inches around a label, whose letters may be taller than it
+CLEARANCE, NAME_CLEARANCE = 0.02, 0.035  # inches around a label, and around a name in a crowd
 DISTANCE_COST = 8.0  # cost per inch between a label and its object; a covered point of a line costs LINE_COST
 OUTSIDE_COST = 1000.0  # cost per inch by which a label leaves the panel
 EDGE_COST, LINE_COST, MARK_COST, LABEL_COST = 1.0, 2.0, 6.0, 30.0  # cost per point of each kind that a label covers
@@ -59,12 +59,12 @@ class Labels:
     Inches are those of the page of a panel to scale, or else those of the figure, whose layout must be final.
     """
 
-    def __init__(self, axes: Axes, panel: Panel | None = None) -> None:
+    def __init__(self, axes: Axes, panel: Panel | None = None, clearance: float = CLEARANCE) -> None:
         inches = axes.transData - axes.figure.dpi_scale_trans
         self._axes, self._to_inches = axes, Affine2D().scale(panel.scale) if panel is not None else inches
         corners = self.inches([complex(x, y) for x, y in zip(axes.get_xlim(), axes.get_ylim(), strict=True)])
         self._middle, self._size = corners.mean(), corners[1] - corners[0]
-        self._points, self._costs = np.empty(0, np.complex128), np.empty(0)
+        self._points, self._costs, self._clearance = np.empty(0, np.complex128), np.empty(0), clearance * (1 + 1j)
 
     def inches(self, z: Iterable[complex] | Points) -> Points:
         """Return points of the plane in inches."""
@@ -96,7 +96,7 @@ class Labels:
         middles, turned, cost = (np.array(column) for column in zip(*places, strict=True))
         reach = np.abs(middles - middles.mean()).max() + abs(size)
         within = np.abs(self._points - middles.mean()) < reach
-        points, weights, half = self._points[within], self._costs[within], size / 2 + CLEARANCE * (1 + 1j)
+        points, weights, half = self._points[within], self._costs[within], size / 2 + self._clearance
         for angle in np.unique(turned):
             turn, here = np.exp(1j * np.radians(angle)), turned == angle
             away = (points - middles[here, None]) / turn
@@ -170,7 +170,7 @@ def name_marks(axes: Axes, points: Sequence[tuple[float, float, str]], marks: Re
     """
     if style.given() is None and isinstance(axes.figure, Figure):
         style.lay_out(axes.figure)
-    labels, named = Labels(axes), np.array([complex(x, y) for x, y, _ in points])
+    labels, named = Labels(axes, clearance=NAME_CLEARANCE), np.array([complex(x, y) for x, y, _ in points])
     inches = labels.inches(named)
     labels.reserve(labels.inches(marks @ np.array([1, 1j])), EDGE_COST)
     labels.reserve((inches[:, None] + MARK_RADIUS * np.exp(2j * np.pi * np.arange(8) / 8)).ravel(), EDGE_COST)

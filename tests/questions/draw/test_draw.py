@@ -435,7 +435,7 @@ class TestFigure:
         places = [LabelPlace(3 * at, turned, 0.5) for at in z[:40] for turned in (0.0, 30.0)]
         for place, cost in zip(places, labels._cost(places, size), strict=True):
             local = (3 * z - place.middle) * np.exp(-1j * np.radians(place.turned))
-            hit = (np.abs(local.real) < 0.335) & (np.abs(local.imag) < 0.135)
+            hit = (np.abs(local.real) < 0.32) & (np.abs(local.imag) < 0.12)
             corners = place.middle + np.array([0.3 + 0.1j, 0.3 - 0.1j, -0.3 + 0.1j, -0.3 - 0.1j]) * np.exp(
                 1j * np.radians(place.turned)
             )

@@ -356,6 +356,7 @@ class TestFiles:
             ({"density": -1.0}, "`density` must be above 0"),
             ({"level": "-1 mm"}, "`level`: '-1 mm' is not positive"),
             ({"azimuth": "north"}, "`azimuth` is not a direction: 'north'"),
+            ({"azimuth": "90:0:10"}, "'90:0:10' is not increasing"),
             ({"azimuth": "0:350:0.01"}, "has more than 720 directions"),
             ({"azimuth": "inf"}, "or not finite ones"),
         ],
