@@ -16,7 +16,7 @@ import ezdxf.path
 import numpy as np
 
 from rocking_cli.plotting import style
-from rocking_cli.questions.import_drawing.roles import Role, role_of
+from rocking_cli.questions.import_drawing.legend import Role, role_of
 
 LOOKS: dict[Role, dict[str, Any]] = {
     Role.BODIES: {"color": style.INK, "linewidth": style.MEDIUM},

@@ -19,7 +19,6 @@ from rocking_cli.core.hung.element import Question
 from rocking_cli.dynamics.model import MODELS, Model, ModelName, build, no_restitution
 from rocking_cli.errors import InputError, MechanismError, Problem, named, of_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.io.dotted import put, words
 from rocking_cli.io.field_problems import (
     by_meaning,
     fields_at,
@@ -31,7 +30,7 @@ from rocking_cli.io.field_problems import (
     types_at,
     unit_at,
 )
-from rocking_cli.io.yaml_file import Place, placed
+from rocking_cli.io.yaml_file import Place, placed, put, words
 from rocking_cli.names import OPENING
 from rocking_cli.short_repr import short_repr
 from rocking_cli.text import cut, did_you_mean

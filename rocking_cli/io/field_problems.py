@@ -156,6 +156,13 @@ BOUNDS = {
 }
 
 
+OF_TYPE = {
+    **dict.fromkeys(("int_type", "int_parsing", "int_from_float"), "a whole number"),
+    **dict.fromkeys(("model_type", "model_attributes_type", "dict_type"), "a mapping"),
+    "finite_number": "a finite number", "string_type": "text", "list_type": "a list",
+}  # fmt: skip
+
+
 def _got(value: Any) -> str:
     if value is None:
         return "got nothing"
@@ -190,7 +197,8 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
         if word in fields:  # a second name of a field that is there
             return f"is the same field as {fields[word].validation_alias.choices[0]}: give one of the two", None
         similar = word.replace("*", "_star")  # T_C* is not T_C, of which it would be a misspelling
-        meant = _meanings_at(model, place[:-1]).get(word.lower())
+        meanings = [getattr(each, "meanings", {}) for each in _models_at(model, place[:-1])]
+        meant = next((known[word.lower()] for known in reversed(meanings) if word.lower() in known), None)
         hint = f"did you mean {meant}?" if meant is not None else by_meaning(word, fields)
         if word.isdecimal() and value is None:  # {S: 1,2} has a key 2
             hint = DECIMAL_POINT
@@ -198,18 +206,17 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
     if kind in BOUNDS:
         key, words = BOUNDS[kind]
         is_yield = unit == " Pa" and key == "ge" and ctx[key] == MIN_YIELD_STRESS and value > 0
-        hint = f"did you mean {value:g} {_unit_of_yield(value)}?" if is_yield else None
+        hint = None
+        if is_yield:  # that of a steel is some hundreds of MPa
+            meant = "MPa" if value < 2e3 else "kg/cm2" if value < 2e4 else "kPa"
+            hint = f"did you mean {value:g} {meant}?"
         return f"must be {words} {ctx[key]:g}{unit}, {got}", hint
-    if kind == "finite_number":
-        return f"must be a finite number, {got}", None
     if kind == "float_type" and isinstance(value, int) and not isinstance(value, bool):
         return f"is outside the range of floating-point numbers, {got}", None  # an int may be larger than any float
     if kind in ("float_type", "float_parsing"):
         return f"must be a number{f' in{unit}' if unit else ''}, {got}", _of_comma(value)
-    if kind in ("int_type", "int_parsing", "int_from_float"):
-        return f"must be a whole number, {got}", None
-    if kind == "string_type":
-        return f"must be text, {got}", "put it in quotes"
+    if kind in OF_TYPE:
+        return f"must be {OF_TYPE[kind]}, {got}", "put it in quotes" if kind == "string_type" else None
     if kind == "literal_error":
         number = f"a number{f' in{unit}' if unit else ''}, or " if info and float in get_args(info.annotation) else ""
         close = did_you_mean(value, re.findall("'(.*?)'", ctx["expected"])) if isinstance(value, str) else None
@@ -222,10 +229,6 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
         has = ctx["actual_length"]
         has = len(value) if has is None and isinstance(value, dict) else has  # pydantic may not count them
         return f"must have {wanted} {count} entr{'y' if count == 1 else 'ies'}, has {has}", None
-    if kind == "list_type":
-        return f"must be a list, {got}", None
-    if kind in ("model_type", "model_attributes_type", "dict_type"):
-        return f"must be a mapping, {got}", None
     if kind == "value_error":
         return str(ctx["error"]), _of_comma(value)
     return f"{error['msg'][0].lower()}{error['msg'][1:]}", None
@@ -235,11 +238,6 @@ def _of_comma(value: Any) -> str | None:
     """Return a hint for a text that is a number with a decimal comma, with or without a unit; None for others."""
     comma = isinstance(value, str) and re.fullmatch(r"\s*[-+]?\d+(,\d+)+\s*\D*", value)
     return DECIMAL_POINT if comma else None
-
-
-def _unit_of_yield(value: float) -> str:
-    """Return the unit in which the yield stress of a steel, some hundreds of MPa, has about this number."""
-    return next((unit for unit, most in {"MPa": 2e3, "kg/cm2": 2e4}.items() if value < most), "kPa")
 
 
 MEANINGS = {
@@ -298,11 +296,6 @@ def _leaves(annotation: Any) -> list[Any]:
 def fields_at(model: type[BaseModel], place: Place) -> dict[str, Any]:
     """Return the fields allowed at a place, of all models allowed there, by the names that users write."""
     return {name: info for each in _models_at(model, place) for name, info in _spelt(each).items()}
-
-
-def _meanings_at(model: type[BaseModel], place: Place) -> dict[str, str]:
-    """Return what the models at a place know of words that are not their fields."""
-    return {word: name for each in _models_at(model, place) for word, name in getattr(each, "meanings", {}).items()}
 
 
 def _models_at(model: type[BaseModel], place: Place) -> list[type[BaseModel]]:

@@ -18,7 +18,6 @@ ROW_SPACING = 0.26  # inches from a dimension line to the next
 FIRST_ROW_OFFSET = 0.27  # inches from the structure to the first dimension line, beyond the ground
 EDGE_TOLERANCE = 0.02  # share of the size within which a length lies at an edge, and is drawn outside of it
 MAX_ARC_RADIUS = 0.42  # inches
-LABEL_OFFSET = 0.13  # inches from a dimension line to a label that is longer than the line
 TEXT_STYLE: dict[str, Any] = {"fontsize": style.LABEL, "color": style.MEASURE, "zorder": 6}
 TEXT_BACKGROUND = {"facecolor": style.PAPER, "edgecolor": "none", "pad": 0.6}  # interrupts the line below a label
 SIDE_MARGIN, TEXT_MARGIN = 0.16, 0.85  # inches at a side without dimension lines, and at one with labels
@@ -101,31 +100,10 @@ def draw_outside(axes: Axes, rows: Rows, panel: Panel, low: complex, high: compl
                     labels.put(text, place, size, bbox=TEXT_BACKGROUND, **TEXT_STYLE)
                     labels.keep_off(ends)
                 else:
-                    short.append((text, out, ends, middle, size))
-    for text, out, ends, middle, size in short:
+                    short.append((text, ends, size))
+    for text, ends, size in short:
         labels.keep_off(ends)
-        labels.write(text, _beside(out, middle, 0.5 * abs(ends[1] - ends[0]) * panel.scale, size), **TEXT_STYLE)
-
-
-def _beside(out: complex, middle: complex, half: float, size: complex) -> list[LabelPlace]:
-    """Return places for a label next to a dimension line that is too short for it, of half-length `half` [inches]."""
-    upright = out.imag == 0
-    along, turned = (1j, 90.0) if upright else (1 + 0j, 0.0)
-    slack = 0.5 * size.real + half + 0.06
-    places = [  # places beside the line, shifted along it and past its ends
-        LabelPlace(
-            middle + beyond * out + shift * slack * along, turned, 2 * abs(shift) + 10 * abs(beyond - LABEL_OFFSET)
-        )
-        for beyond in (LABEL_OFFSET, 0.2, 0.36, 0.0, -LABEL_OFFSET)
-        for shift in (0.0, 0.3, -0.3, 0.6, -0.6, 1.0, -1.0)
-    ]
-    if upright:  # also places for a horizontal label, beside the line or past its ends
-        places += [
-            LabelPlace(middle + (size.real / 2 + 0.08) * out + 1j * up, 0.0, 2.0) for up in (0.0, 0.1, -0.1, 0.2)
-        ]
-        ends = [side * 1j * (half + 0.12) for side in (1, -1)]
-        places += [LabelPlace(middle + aside * out + end, 0.0, 4.0) for aside in (0.0, 0.2, -0.2) for end in ends]
-    return places
+        labels.write(text, labels.along(ends[0], ends[1], size), **TEXT_STYLE)
 
 
 def draw_inside(axes: Axes, lengths: Sequence[Length], angles: Sequence[Angle], panel: Panel, labels: Labels) -> None:

@@ -1,28 +1,36 @@
-"""Placement of labels in a drawing: next to what they name, off the lines, and within their panel."""
+"""Placement of labels in a drawing: next to what they name, off the lines, and within their panel.
+
+Each label stands at the cheapest of several places. Curves have legends instead: a legend cannot name a length at its
+dimension line, and no library places labels that are turned along lines and keep off other lines.
+"""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
+from matplotlib.figure import Figure
+from matplotlib.transforms import Affine2D
 
+from rocking_cli.arrays import Points, Reals
 from rocking_cli.core import Angle, Length
 from rocking_cli.plotting import style
 from rocking_cli.plotting.panels import Panel
 
-Points = NDArray[np.complex128]
 POINT_SPACING = 0.025  # inches between the points of a line that labels avoid
-LABEL_GAPS = (0.03, 0.1, 0.18, 0.28, 0.45)  # inches between a label and a line
+GAPS = (0.03, 0.1, 0.18, 0.28, 0.45)  # inches between a label and what it names
+FAR_GAPS = (0.6, 0.8)  # and of a name in a crowd
 MAX_LINE_POINTS = 10_000  # limit, as a line may extend far beyond the picture
-CLEARANCE = 0.02  # inches around a label
+CLEARANCE, NAME_CLEARANCE = 0.02, 0.035  # inches around a label, and around a name in a crowd
 DISTANCE_COST = 8.0  # cost per inch between a label and its object; a covered point of a line costs LINE_COST
 OUTSIDE_COST = 1000.0  # cost per inch by which a label leaves the panel
 EDGE_COST, LINE_COST, MARK_COST, LABEL_COST = 1.0, 2.0, 6.0, 30.0  # cost per point of each kind that a label covers
+LEADING_DISTANCE = 0.09  # inches from which a line leads from a name to its mark
+LEADER = {"arrowstyle": "-", "color": style.INK, "linewidth": style.THIN, "shrinkA": 0, "shrinkB": 3}
+MARK_RADIUS = 0.07  # inches around a mark that names keep off: a name close to another mark would be taken for its
 SUBSCRIPTS = str.maketrans("₀₁₂₃₄₅₆₇₈₉₊₋", "0123456789+-")
 
 
@@ -37,8 +45,7 @@ def mathematics(each: Length | Angle) -> str:
     return f"${letter}{below}$" + number
 
 
-@dataclass(frozen=True)
-class LabelPlace:
+class LabelPlace(NamedTuple):
     """A candidate position of a label: its middle [inches], its angle [degrees], and its cost."""
 
     middle: complex
@@ -47,112 +54,131 @@ class LabelPlace:
 
 
 class Labels:
-    """The labels of one panel, each placed where it covers least of the drawing."""
+    """The labels of one panel, each placed where it covers least of the drawing.
 
-    def __init__(self, axes: Axes, panel: Panel) -> None:
-        self._axes, self._scale = axes, panel.scale
-        (left, right), (below, above) = axes.get_xlim(), axes.get_ylim()
-        self._low, self._high = complex(left, below) * self._scale, complex(right, above) * self._scale
-        self._points: list[Points] = [np.empty(0, np.complex128)]
-        self._costs: list[NDArray[np.float64]] = [np.empty(0)]
+    Inches are those of the page of a panel to scale, or else those of the figure, whose layout must be final.
+    """
+
+    def __init__(self, axes: Axes, panel: Panel | None = None, clearance: float = CLEARANCE) -> None:
+        inches = axes.transData - axes.figure.dpi_scale_trans
+        self._axes, self._to_inches = axes, Affine2D().scale(panel.scale) if panel is not None else inches
+        corners = self.inches([complex(x, y) for x, y in zip(axes.get_xlim(), axes.get_ylim(), strict=True)])
+        self._middle, self._size = corners.mean(), corners[1] - corners[0]
+        self._points, self._costs, self._clearance = np.empty(0, np.complex128), np.empty(0), clearance * (1 + 1j)
+
+    def inches(self, z: Iterable[complex] | Points) -> Points:
+        """Return points of the plane in inches."""
+        plane = np.asarray(z if isinstance(z, np.ndarray) else list(z), np.complex128)
+        points: Points = self._to_inches.transform(np.column_stack([plane.real, plane.imag])) @ np.array([1, 1j])
+        return points
 
     def keep_off(self, z: Iterable[complex] | Points, cost: float = LINE_COST) -> None:
-        """Reserve the space of a line through points [m], or of a single point, against labels."""
-        ends = np.asarray(z if isinstance(z, np.ndarray) else list(z), np.complex128) * self._scale
+        """Reserve the space of a line through points of the plane, or of a single point, against labels."""
+        ends = self.inches(z)
         reach = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(ends)))])
         count = min(int(reach[-1] / POINT_SPACING) + 1 + (reach[-1] > 0), MAX_LINE_POINTS)
         along = np.linspace(0.0, reach[-1], count)
-        self._note(np.interp(along, reach, ends.real) + 1j * np.interp(along, reach, ends.imag), cost)
+        self.reserve(np.interp(along, reach, ends.real) + 1j * np.interp(along, reach, ends.imag), cost)
 
-    def _note(self, points: Points, cost: float) -> None:
-        self._points.append(points)
-        self._costs.append(np.full(points.size, cost))
+    def reserve(self, points: Points, cost: float) -> None:
+        """Reserve the space of points [inches] against labels."""
+        self._points = np.append(self._points, points)
+        self._costs = np.append(self._costs, np.full(points.size, cost))
 
     def write(self, text: str, places: Iterable[LabelPlace], **look: Any) -> None:
         """Write a label at the best of several places."""
-        size = style.size_of(text, float(look["fontsize"]), str(look.get("fontweight", "normal")))
         places = list(places)
-        self.put(text, places[int(np.argmin(self._cost(places, size)))], size, **look)
+        size = style.size_of(text, float(look["fontsize"]), str(look.get("fontweight", "normal")))
+        self.put(text, places[int(self._cost(places, size).argmin())], size, **look)
 
-    def _cost(self, places: Sequence[LabelPlace], size: complex) -> NDArray[np.float64]:
+    def _cost(self, places: Sequence[LabelPlace], size: complex) -> Reals:
         """Return what a label of a size [inches] costs at each place."""
-        self._points, self._costs = [np.concatenate(self._points)], [np.concatenate(self._costs)]
-        (points,), (costs,) = self._points, self._costs
-        cost: NDArray[np.float64] = np.array([each.cost for each in places])
-        turned = np.array([each.turned for each in places])
-        middles = np.array([each.middle for each in places])
-        half = size / 2 + CLEARANCE * (1 + 1j)
+        middles, turned, cost = (np.array(column) for column in zip(*places, strict=True))
+        reach = np.abs(middles - middles.mean()).max() + abs(size)
+        within = np.abs(self._points - middles.mean()) < reach
+        points, weights, half = self._points[within], self._costs[within], size / 2 + self._clearance
         for angle in np.unique(turned):
-            turn = np.exp(1j * np.radians(angle))
-            here = np.flatnonzero(turned == angle)
-            at, every = middles[here] / turn, points / turn
-            low, high = at.imag.min() - half.imag, at.imag.max() + half.imag
-            nearby = np.flatnonzero((low < every.imag) & (every.imag < high))
-            nearby = nearby[np.argsort(every.real[nearby])]  # so that a label covers points between two indices
-            along, up, of_point = every.real[nearby], every.imag[nearby], costs[nearby]
-            starts = np.searchsorted(along, at.real - half.real, "right")
-            ends = np.searchsorted(along, at.real + half.real, "left")
-            for k, level, start, end in zip(here, at.imag, starts, ends, strict=True):
-                cost[k] += of_point[start:end][np.abs(up[start:end] - level) < half.imag].sum()
-            # Half of the upright box around the rotated label.
-            box = complex(abs(turn.real), abs(turn.imag)) * size.real / 2
-            box += complex(abs(turn.imag), abs(turn.real)) * size.imag / 2
-            above, below = middles[here] + box - self._high, self._low - (middles[here] - box)
-            over = np.maximum(0.0, np.maximum(above.real, below.real)) + np.maximum(
-                0.0, np.maximum(above.imag, below.imag)
-            )
-            cost[here] += OUTSIDE_COST * over
+            turn, here = np.exp(1j * np.radians(angle)), turned == angle
+            away = (points - middles[here, None]) / turn
+            cost[here] += ((np.abs(away.real) < half.real) & (np.abs(away.imag) < half.imag)) @ weights
+            corners = middles[here, None] + turn * np.array([size, -size, size.conjugate(), -size.conjugate()]) / 2
+            off = corners - self._middle
+            out = [(np.abs(off.real) - self._size.real / 2).max(1), (np.abs(off.imag) - self._size.imag / 2).max(1)]
+            cost[here] += OUTSIDE_COST * np.maximum(0.0, out).sum(0)
         return cost
 
-    def put(self, text: str, place: LabelPlace, size: complex | None = None, **look: Any) -> None:
-        """Write a label at a place, and reserve its space against other labels."""
-        size = style.size_of(text, float(look["fontsize"])) if size is None else size
-        at = place.middle / self._scale
+    def put(self, text: str, place: LabelPlace, size: complex, tip: complex | None = None, **look: Any) -> None:
+        """Write a label of a size [inches] at a place, and reserve its space; a line leads to a far tip [inches]."""
+        x, y = self._to_inches.inverted().transform((place.middle.real, place.middle.imag))
+        end = self._to_inches.inverted().transform((tip.real, tip.imag)) if tip is not None else (x, y)
+        off = (tip if tip is not None else place.middle) - place.middle
+        leads = max(abs(off.real) - size.real / 2, abs(off.imag) - size.imag / 2) > LEADING_DISTANCE
         self._axes.annotate(
-            text, (at.real, at.imag), ha="center", va="center", rotation=place.turned, rotation_mode="anchor",
-            annotation_clip=False, path_effects=style.HALO, **look,
+            text, tuple(end), (x, y), ha="center", va="center", rotation=place.turned, rotation_mode="anchor",
+            annotation_clip=False, path_effects=style.HALO, arrowprops=LEADER if leads else None, **look,
         )  # fmt: skip
         across = np.linspace(-0.5, 0.5, 2 + int(size.real / POINT_SPACING)) * size.real
         up = np.linspace(-0.5, 0.5, 5) * size.imag
         turn = np.exp(1j * np.radians(place.turned))
-        self._note((place.middle + turn * (across[:, None] + 1j * up)).ravel(), LABEL_COST)
+        self.reserve((place.middle + turn * (across[:, None] + 1j * up)).ravel(), LABEL_COST)
 
     def along(self, start: complex, end: complex, size: complex) -> Iterator[LabelPlace]:
-        """Yield places for a label next to a line [m]: along it if the label fits, otherwise at its sides."""
-        start, end = start * self._scale, end * self._scale
+        """Yield places for a label next to a line: along it if the label fits, at its sides, and beyond its ends."""
+        start, end = self.inches([start, end]).tolist()
         length = abs(end - start)
         unit = (end - start) / length if length > 0 else 1 + 0j
         turned = (float(np.degrees(np.angle(unit))) + 90 + 1e-6) % 180 - 90  # read from below or from the right
-        for share in np.linspace(0.15, 0.85, 15):
-            at, off_middle = start + share * (end - start), 3 * abs(share - 0.5)
-            for gap in LABEL_GAPS:
-                if min(share, 1 - share) * 2 * length > size.real:
-                    for side in (1j, -1j):
-                        yield LabelPlace(
-                            at + side * unit * (gap + size.imag / 2), turned, off_middle + DISTANCE_COST * gap
-                        )
+        for gap in GAPS:
+            for share in np.linspace(0.15, 0.85, 11).tolist():
+                at, cost = start + share * (end - start), 3 * abs(share - 0.5) + DISTANCE_COST * gap
                 for side in (1.0, -1.0):
-                    reach = gap + size.real / 2 + abs(unit.real) * size.imag / 2
-                    yield LabelPlace(at + side * reach, 0.0, 1.5 + off_middle + DISTANCE_COST * gap)
-                    reach = gap + size.imag / 2 + abs(unit.imag) * size.real / 2
-                    yield LabelPlace(at + 1j * side * reach, 0.0, 2.0 + off_middle + DISTANCE_COST * gap)
-        for tip, out in ((start, -unit), (end, unit)):
-            for gap in LABEL_GAPS:
+                    if min(share, 1 - share) * 2 * length > size.real:
+                        yield LabelPlace(at + 1j * side * unit * (gap + size.imag / 2), turned, cost)
+                    aside = gap + size.real / 2 + abs(unit.real) * size.imag / 2
+                    yield LabelPlace(at + side * aside, 0.0, 1.5 + cost)
+                    above = gap + size.imag / 2 + abs(unit.imag) * size.real / 2
+                    yield LabelPlace(at + 1j * side * above, 0.0, 2.0 + cost)
+            for tip, out in ((start, -unit), (end, unit)):
                 reach = gap + abs(out.real) * size.real / 2 + abs(out.imag) * size.imag / 2
                 yield LabelPlace(tip + out * reach, 0.0, 8.0 + DISTANCE_COST * gap)
 
     def around(
-        self, apex: complex, towards: complex, radius: float, size: complex, turning: float = 4.0
-    ) -> Iterator[LabelPlace]:
-        """Yield places for a label around a point [m], beyond a radius [inches], best in one direction."""
-        apex *= self._scale
-        for turn in np.linspace(-np.pi, np.pi, 25)[1:]:
+        self, apex: complex, towards: complex, radius: float, size: complex, turning: float = 4.0,
+        gaps: Sequence[float] = GAPS,
+    ) -> Iterator[LabelPlace]:  # fmt: skip
+        """Yield places for a label around a point, beyond a radius [inches], best in one direction."""
+        (middle,) = self.inches([apex]).tolist()
+        for turn in np.linspace(-np.pi, np.pi, 25)[1:].tolist():
             direction = towards / abs(towards) * np.exp(1j * turn)
-            for gap in (0.03, 0.08, 0.15, 0.25, 0.4):
-                # Distance from the point to the nearest edge of the label.
-                reach = min(
-                    size.real / 2 / max(abs(direction.real), 1e-9), size.imag / 2 / max(abs(direction.imag), 1e-9)
-                )
-                yield LabelPlace(
-                    apex + (radius + gap + reach) * direction, 0.0, turning * abs(float(turn)) + DISTANCE_COST * gap
-                )
+            sides = size.real / 2 / max(abs(direction.real), 1e-9), size.imag / 2 / max(abs(direction.imag), 1e-9)
+            for gap in gaps:
+                cost = turning * abs(turn) + DISTANCE_COST * gap
+                yield LabelPlace(middle + (radius + gap + min(sides)) * direction, 0.0, cost)
+
+
+def name_marks(axes: Axes, points: Sequence[tuple[float, float, str]], marks: Reals) -> None:
+    """Write a name beside each of some points of a finished panel, with a line to a point that is farther off.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        The panel; its limits and scales must be final.
+    points : sequence of (float, float, str)
+        Place [data] and name of each point, the most important first.
+    marks : ndarray, shape (n, 2)
+        Places of all marks [data].
+    """
+    if style.given() is None and isinstance(axes.figure, Figure):
+        style.lay_out(axes.figure)
+    labels, named = Labels(axes, clearance=NAME_CLEARANCE), np.array([complex(x, y) for x, y, _ in points])
+    inches = labels.inches(named)
+    labels.reserve(labels.inches(marks @ np.array([1, 1j])), EDGE_COST)
+    labels.reserve((inches[:, None] + MARK_RADIUS * np.exp(2j * np.pi * np.arange(8) / 8)).ravel(), EDGE_COST)
+    for text in axes.texts:
+        (x0, y0), (x1, y1) = text.get_window_extent().get_points() / axes.figure.dpi
+        across, up = np.meshgrid(np.linspace(x0, x1, 12), np.linspace(y0, y1, 4))
+        labels.reserve((across + 1j * up).ravel(), LABEL_COST)
+    look: dict[str, Any] = {"fontsize": style.TICK, "color": style.INK, "zorder": 7}
+    for at, tip, (*_, name) in zip(named.tolist(), inches.tolist(), points, strict=True):
+        places = labels.around(at, 1 + 1j, MARK_RADIUS, style.size_of(name, style.TICK), 0.3, GAPS + FAR_GAPS)
+        labels.write(name, places, tip=tip, **look)

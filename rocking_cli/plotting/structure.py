@@ -62,7 +62,9 @@ def draw_structure(picture: Picture, title: str, ratio: float | None = None, say
     picture = picture.grouped
     ratios = picture.usual if ratio is None else dict.fromkeys(picture.directions, ratio)
     turned = {side: side * times * picture.reference[side] for side, times in ratios.items()}
-    low, high = _box_at_rest(picture)
+    measured = [z for each in picture.sketch.lengths for z in (each.start, each.end)]
+    measured += [each.apex for each in picture.sketch.angles]
+    low, high = box_around([np.array([*picture.extent, *measured])])
     lengths = [each for each in picture.sketch.lengths if _is_at_rest(picture, each) and not each.derived]
     lengths = [*dimensions.heights(picture, lengths), *lengths]  # the lowest is the nearest to the structure
     rows, inside = dimensions.in_rows(lengths, low, high)
@@ -162,13 +164,6 @@ def draw_at_rest(axes: Axes, picture: Picture, title: str) -> None:
     axes.set_ylim(low.imag - 0.05 * up, high.imag + 0.05 * up)
     if title:
         axes.set_title(title, fontsize=style.TICK)
-
-
-def _box_at_rest(picture: Picture) -> tuple[complex, complex]:
-    """Return the box around the structure and all its dimensions [m]."""
-    measured = [z for each in picture.sketch.lengths for z in (each.start, each.end)]
-    measured += [each.apex for each in picture.sketch.angles]
-    return box_around([np.array([*picture.extent, *measured])])
 
 
 def _rest_panel(

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.files import read_at_most, read_bytes
-from rocking_cli.io.spreadsheets import sheets_of
+from rocking_cli.io.spreadsheet import sheets_of
 from rocking_cli.text import cut, one_line
 
 EARTH_RADIUS = 6371.0  # km

@@ -15,7 +15,7 @@ from weakref import WeakKeyDictionary, WeakSet
 
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.io.files import read_at_most, read_bytes
-from rocking_cli.io.spreadsheets import OLE, sheets_of
+from rocking_cli.io.spreadsheet import OLE, sheets_of
 from rocking_cli.text import regex
 
 STANDARD_INPUT = "-"

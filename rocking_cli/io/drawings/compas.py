@@ -12,8 +12,8 @@ import numpy as np
 
 from rocking_cli.arrays import Points, Reals
 from rocking_cli.errors import named
+from rocking_cli.io.drawings import contract
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnText, LineDrawing
-from rocking_cli.io.drawings.limits import MAX_NUMBER, check_content, inside
 
 TITLE = "JSON of compas_dem"
 ENDINGS = (".json",)
@@ -30,7 +30,7 @@ def sniff(data: bytes, ending: str) -> bool:
 
 def read(data: bytes, file: str, plane: str = "xz") -> LineDrawing:
     """Return the sections of the blocks in a plane; supports are ground. Raises `DrawingError`."""
-    check_content(data, MAX_BYTES, file)
+    contract.check_content(data, MAX_BYTES, file)
     chains, labels, ends = list[DrawnLine](), list[DrawnText](), list[Reals]()
     try:
         model = json.loads(data)["data"]
@@ -56,7 +56,7 @@ def read(data: bytes, file: str, plane: str = "xz") -> LineDrawing:
             chains += [DrawnLine(z, np.zeros(len(z)), True, layer, "block", guid, shape) for z in rings]
             stone = (model.get("materials") or {}).get(of.get("material"))
             texts = [] if is_support else [label, f"{stone['data']['density']} kg/m3" if stone else ""]
-            labels += [DrawnText(text, inside(rings), layer, "block", guid) for text in texts if text]
+            labels += [DrawnText(text, contract.inside(rings), layer, "block", guid) for text in texts if text]
     except (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError) as error:
         what = f"cannot be read as {TITLE}: {type(error).__name__} {error}"
         raise DrawingError("damaged", what, file) from None
@@ -87,8 +87,8 @@ def _section(mesh: Mapping[str, Any], moved: Reals, axes: list[int]) -> tuple[li
     faces = [np.array([points[str(key)] for key in face]) for face in mesh["face"].values()]
     least, most = (way(np.concatenate(faces), axis=0) for way in (np.min, np.max))
     ends, tolerance = np.array([least[2], most[2]]), SAME_PLACE * float((most - least).max())
-    if not max(most.max(), -least.min()) < MAX_NUMBER:
-        raise ValueError(f"a coordinate is not a number below {MAX_NUMBER:g}")
+    if not max(most.max(), -least.min()) < contract.MAX_NUMBER:
+        raise ValueError(f"a coordinate is not a number below {contract.MAX_NUMBER:g}")
     flat = shapely.make_valid([shapely.Polygon(face[:, :2]) for face in faces])
     at_end = np.array([[np.abs(face[:, 2] - end).max() <= tolerance for face in faces] for end in ends])
     low, high = (shapely.union_all(flat[at]) for at in at_end)

@@ -4,13 +4,14 @@ A reader is a module, or any object, with a `TITLE` (the name of its format), th
 functions `sniff` and `read` of `DrawingReader`; a reader of meshes has `MESH = True`, one of models in space the names
 of their `PLANES`, of which its `read` takes one as `plane`. Points of a drawing are complex
 numbers x + iy, x to the right and y up, in the unit of the drawing. A bulge is tan(turn/4) of an arc that turns
-anticlockwise by `turn`; 0 is a straight side.
+anticlockwise by `turn`; 0 is a straight side. Limits of files and the geometry of arcs are here too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import atan, cbrt, ceil, pi, sin, sqrt, tan
 from typing import Protocol
 
 import numpy as np
@@ -198,3 +199,67 @@ class DrawingReader(Protocol):
     def read(self, data: bytes, file: str, /) -> LineDrawing | MeshSurface:
         """Read a file of this format; `file` is its name in messages. Raises `DrawingError`."""
         ...
+
+
+MAX_NUMBER = 1e12
+"""Coordinates beyond this are refused."""
+MAX_SIDES = 1_000_000
+"""Sides of a drawing, at most."""
+MAX_ELEMENTS = 60_000
+"""Lines, outlines and other elements of a drawing, at most."""
+
+
+def check_content(data: bytes, most: int, file: str) -> None:
+    """Raise `DrawingError` if a text is blank or has more than `most` bytes."""
+    if not data.strip(b"\0 \t\r\n\xef\xbb\xbf\xff\xfe"):
+        raise DrawingError("empty", "the file is empty", file)
+    if len(data) > most:
+        raise DrawingError("too_large", f"the drawing has more than {most / 1e6:g} MB", file)
+
+
+def check_count(count: int, most: int, what: str, file: str, line: int | None = None) -> None:
+    """Raise `DrawingError` if a drawing has more than `most` of something."""
+    if count > most:
+        raise DrawingError("too_large", f"the drawing has more than {most:,} {what}", file, line=line)
+
+
+def inside(rings: Sequence[Points]) -> complex:
+    """Return a point within a polygon, given by its corners and those of its holes; the middle of a line."""
+    import shapely
+
+    if len(rings[0]) < 3:
+        return complex(rings[0].mean())
+    shell, *holes = (np.stack([z.real, z.imag], axis=1) for z in rings if len(z) > 2)
+    at = shapely.point_on_surface(shapely.Polygon(shell, holes))
+    return complex(at.x, at.y)
+
+
+SIDES_PER_HALF_TURN = 128  # with the area kept: 1e-6 in lambda, phi_cr and inertia, even if all sides are arcs
+STRAIGHT_BULGE = 1e-9  # bulge up to which a side counts as straight
+Sides = Callable[[float, float], int]
+"""Function that gives the number of straight sides of an arc from its radius and its turn [rad]."""
+
+
+def arc_circle(start: complex, end: complex, bulge: float) -> tuple[complex, float]:
+    """Return the centre and the radius of an arc."""
+    centre = (start + end) / 2 + 1j * (end - start) * (1 - bulge**2) / (4 * bulge)
+    return centre, abs(start - centre)
+
+
+def level_count(_: float, turn: float) -> int:
+    """Return the number of sides of an arc that keep its area: 128 a half turn, and more for flat arcs."""
+    share = min(cbrt(abs(tan(turn / 4))), 1.0)
+    return max(ceil(SIDES_PER_HALF_TURN * abs(turn) / pi), ceil(SIDES_PER_HALF_TURN * share), 2)
+
+
+def inner_points(start: complex, end: complex, bulge: float, count: Sides, *, keeps_area: bool = False) -> Points:
+    """Return points along an arc between its ends; `count` gives the number of sides from radius and turn."""
+    turn = 4 * atan(bulge)
+    centre, radius = arc_circle(start, end, bulge)
+    n = count(radius, turn)
+    out = 1.0
+    if keeps_area:  # distance q of the inner points over the radius at which n sides have the area of the arc
+        right = abs(turn) / sin(abs(turn) / n)  # = (n - 2) q^2 + 2 q
+        out = right / 2 if n == 2 else (sqrt(1 + (n - 2) * right) - 1) / (n - 2)
+    points: Points = centre + out * (start - centre) * np.exp(1j * turn * np.arange(1, n) / n)
+    return points

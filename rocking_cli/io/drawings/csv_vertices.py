@@ -18,8 +18,8 @@ from itertools import groupby
 import numpy as np
 
 from rocking_cli.errors import InputError
+from rocking_cli.io.drawings import contract
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnText, LineDrawing, OmittedKind
-from rocking_cli.io.drawings.limits import MAX_ELEMENTS, MAX_NUMBER, MAX_SIDES, check_content, check_count, inside
 from rocking_cli.io.spreadsheet import NUMBER, decoded, unit_in
 from rocking_cli.text import cut
 from rocking_cli.units import KINDS
@@ -43,7 +43,7 @@ def sniff(data: bytes, ending: str) -> bool:
 
 def read(data: bytes, file: str) -> LineDrawing:
     """Return the drawing in a file. Raises `DrawingError`."""
-    check_content(data, MAX_BYTES, file)
+    contract.check_content(data, MAX_BYTES, file)
     try:
         text, _ = decoded(data, file)
     except InputError as error:
@@ -56,7 +56,7 @@ def read(data: bytes, file: str) -> LineDrawing:
         if name in done:
             raise _fault(f"the outline `{cut(name)}` begins a second time", file, lines[0])
         done.add(name)
-        check_count(len(done), MAX_ELEMENTS, "outlines", file)
+        contract.check_count(len(done), contract.MAX_ELEMENTS, "outlines", file)
         for line, layer in zip(lines, layers, strict=True):
             if layer != layers[0]:
                 what = f"the outline is on two layers, `{cut(layers[0])}` and `{cut(layer)}`"
@@ -67,7 +67,7 @@ def read(data: bytes, file: str) -> LineDrawing:
         z, turns, handle = np.array(points[:count]), np.array(bulges[:count]), name.lstrip("\n")
         chains.append(DrawnLine(z, turns, count > 2 or bool(turns.any()), layers[0], "outline", handle))
         if handle:
-            labels.append(DrawnText(handle, inside([z]), layers[0], "name"))
+            labels.append(DrawnText(handle, contract.inside([z]), layers[0], "name"))
     if not chains:
         raise DrawingError("empty", "the file has no rows of numbers", file)
     return LineDrawing(TITLE, chains, labels, (), left)
@@ -99,7 +99,7 @@ def _corners(text: str, file: str, left: list[OmittedKind]) -> Iterator[tuple[st
             if is_head:
                 continue
         count += 1
-        check_count(count, MAX_SIDES, "sides", file)
+        contract.check_count(count, contract.MAX_SIDES, "sides", file)
         cells += [""] * (width - len(cells))
         if any(cells[width:]):
             hint = "separate cells with semicolons if numbers have decimal commas; more columns need headings"
@@ -109,8 +109,8 @@ def _corners(text: str, file: str, left: list[OmittedKind]) -> Iterator[tuple[st
         for column, number in numbers.items():
             if number is None and (column != "bulge" or given.get(column)):
                 raise _fault(f"{column} is `{cut(given[column])}`, which is not a number", file, line)
-            if number is not None and not abs(number) < MAX_NUMBER:
-                raise DrawingError("number", f"{column} is beyond {MAX_NUMBER:g}", file, line=line)
+            if number is not None and not abs(number) < contract.MAX_NUMBER:
+                raise DrawingError("number", f"{column} is beyond {contract.MAX_NUMBER:g}", file, line=line)
         x, y, bulge = (number or 0.0 for number in numbers.values())
         yield given.get("outline", blanks), line, given.get("layer", ""), complex(x, y), bulge
 

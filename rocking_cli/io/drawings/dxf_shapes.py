@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rocking_cli.arrays import Points, Reals
-from rocking_cli.io.drawings.arcs import STRAIGHT_BULGE, inner_points, level_count
+from rocking_cli.io.drawings.contract import STRAIGHT_BULGE, inner_points, level_count
 
 FULL_TURN = 1e-6  # rad that a full circle may be short of
 SAME_SHARE = 1e-9  # share of its size within which points of a line coincide, and a placing keeps circles

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from rocking_cli.arrays import Points
+from rocking_cli.io.drawings import contract
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnPoint, DrawnText, LineDrawing, OmittedKind
-from rocking_cli.io.drawings.limits import MAX_ELEMENTS, MAX_NUMBER, MAX_SIDES, check_content, check_count, inside
 from rocking_cli.text import cut
 
 TITLE = "GeoJSON"
@@ -47,7 +47,7 @@ def read(data: bytes, file: str) -> LineDrawing:
     import shapely
     from shapely.geometry import shape
 
-    check_content(data, MAX_BYTES, file)
+    contract.check_content(data, MAX_BYTES, file)
     whole, sides = _parsed(data, file), 0
     chains, labels, spots = list[DrawnLine](), list[DrawnText](), list[DrawnPoint]()
     left = Counter[tuple[str, str, str]]()
@@ -78,11 +78,11 @@ def read(data: bytes, file: str) -> LineDrawing:
                     straight = np.zeros(len(points))
                     chains.append(DrawnLine(points, straight, is_closed, layer, kind, handle, of, heights=levels))
             if name := _property(feature, "name"):
-                at = inside(outlines) if is_closed else complex(first[: 2 - ("Point" in kind)].mean())
+                at = contract.inside(outlines) if is_closed else complex(first[: 2 - ("Point" in kind)].mean())
                 labels.append(DrawnText(name, at, layer, "name", handle))
             sides += sum(map(len, outlines))
-            check_count(sides, MAX_SIDES, "sides", file)
-            check_count(len(chains), MAX_ELEMENTS, "lines", file)
+            contract.check_count(sides, contract.MAX_SIDES, "sides", file)
+            contract.check_count(len(chains), contract.MAX_ELEMENTS, "lines", file)
     _check_degrees(np.concatenate([*(each.points for each in chains), [each.at for each in spots]]), whole, file)
     omitted = [OmittedKind(kind, layer, why, count) for (kind, layer, why), count in left.items()]
     return LineDrawing(TITLE, chains, labels, spots, omitted)
@@ -142,8 +142,8 @@ def _positions(kind: str, value: Any, lists: int, file: str) -> list[Any]:
         return [_positions(kind, each, lists - 1, file) for each in value if lists < 2 or each != []]
     if not (isinstance(value, list) and len(value) >= 2 and all(type(x) is float for x in value)):
         raise _fault(f"a `{kind}` has the position `{cut(str(value))}`: give two or three numbers", file)
-    if not all(abs(x) < MAX_NUMBER for x in value):
-        raise DrawingError("number", f"a `{kind}` has a coordinate beyond {MAX_NUMBER:g}", file)
+    if not all(abs(x) < contract.MAX_NUMBER for x in value):
+        raise DrawingError("number", f"a `{kind}` has a coordinate beyond {contract.MAX_NUMBER:g}", file)
     return [*value, 0.0][:3]
 
 

@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.arrays import Integers
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.io.drawings.contract import DrawingError, MeshSurface
-from rocking_cli.io.drawings.limits import MAX_NUMBER
+from rocking_cli.io.drawings.contract import MAX_NUMBER, DrawingError, MeshSurface
 
 TITLE = "OBJ, PLY or STL mesh"
 MESH = True

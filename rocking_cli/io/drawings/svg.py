@@ -17,9 +17,9 @@ from xml.parsers import expat
 
 import numpy as np
 
+from rocking_cli.io.drawings import contract
 from rocking_cli.io.drawings import svg_paths as lines
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnText, LineDrawing, OmittedKind
-from rocking_cli.io.drawings.limits import MAX_ELEMENTS, MAX_NUMBER, MAX_SIDES, check_content, check_count
 from rocking_cli.text import cut
 
 TITLE = "SVG"
@@ -110,7 +110,7 @@ def read(data: bytes, file: str) -> LineDrawing:
     """Return the drawing in a file. Raises `DrawingError`."""
     if data[:2] == b"\x1f\x8b":
         data = _unpacked(data, file)
-    check_content(data, MAX_BYTES, file)
+    contract.check_content(data, MAX_BYTES, file)
     return _SvgReader(_parsed(data, file), file).drawing()
 
 
@@ -137,7 +137,7 @@ def _parsed(data: bytes, file: str) -> SvgElement:
         nonlocal count
         count += 1
         line = parser.CurrentLineNumber
-        check_count(count, MAX_ELEMENTS, "elements", file)
+        contract.check_count(count, contract.MAX_ELEMENTS, "elements", file)
         if len(open_nodes) > MAX_DEPTH:
             raise DrawingError("too_large", f"elements are nested more than {MAX_DEPTH} deep", file, line=line)
         node = SvgElement(name.removeprefix(_SVG) if " " not in name or name.startswith(_SVG) else "", given, line)
@@ -210,7 +210,9 @@ class _SvgReader:
 
     def _counted(self, node: SvgElement, depth: int = 0) -> None:
         self.count += 1
-        check_count(self.count, MAX_ELEMENTS, "elements, with those that are used again", self.file, node.line)
+        contract.check_count(
+            self.count, contract.MAX_ELEMENTS, "elements, with those that are used again", self.file, node.line
+        )
         if depth > MAX_DEPTH:
             message = f"elements are nested more than {MAX_DEPTH} deep"
             raise DrawingError("too_large", message, self.file, line=node.line)
@@ -253,8 +255,8 @@ class _SvgReader:
         given = node.get("transform")
         if given:
             place = place._replace(to=place.to.after(lines.transform(given)))
-            if not max(map(abs, place.to)) < MAX_NUMBER:
-                raise ValueError(f"has a transform beyond {MAX_NUMBER:g}")
+            if not max(map(abs, place.to)) < contract.MAX_NUMBER:
+                raise ValueError(f"has a transform beyond {contract.MAX_NUMBER:g}")
         if style.get("transform", "none") not in ("none", given.strip()) or node.get("transform-origin"):
             raise ValueError("has a transform in its style, which is not read: put it into the attribute")
         if (visibility := style.get("visibility", "inherit")) != "inherit":
@@ -344,16 +346,16 @@ class _SvgReader:
         for track in tracks:
             self.sides += len(track.pieces)
             self.curves += sum(not isinstance(piece, complex) for piece in track.pieces)
-        check_count(self.curves, MAX_CURVES, "curves", self.file)
-        check_count(self.sides, MAX_SIDES, "sides", self.file)
+        contract.check_count(self.curves, MAX_CURVES, "curves", self.file)
+        contract.check_count(self.sides, contract.MAX_SIDES, "sides", self.file)
         bents = list(lines.bent(tracks, place.to))
         self.shapes += 1
         shape = f"{node.tag} {self.shapes}" if len(bents) > 1 else ""
         self.sides += sum(len(each.points) for each in bents if each.is_straightened)
-        check_count(self.sides, MAX_SIDES, "sides", self.file)
+        contract.check_count(self.sides, contract.MAX_SIDES, "sides", self.file)
         for each in bents:
-            if not max(map(abs, each.points)) <= MAX_NUMBER:
-                raise ValueError(f"has a point beyond {MAX_NUMBER:g}")
+            if not max(map(abs, each.points)) <= contract.MAX_NUMBER:
+                raise ValueError(f"has a point beyond {contract.MAX_NUMBER:g}")
             self.chains.append(DrawnLine(
                 np.array(each.points), np.array(each.bulges), each.closed, place.layer, node.tag,
                 place.used_as or node.get("id"), shape,
@@ -407,7 +409,7 @@ def _length(node: SvgElement, name: str, whole: float, default: str = "0") -> fl
     if not length:
         raise ValueError(f"has {name} `{cut(text)}`, which is not a length")
     number, unit = float(length[1]), length[2]
-    if abs(number) > MAX_NUMBER:
+    if abs(number) > contract.MAX_NUMBER:
         raise ValueError(f"has {name} `{cut(text)}`, which is too large")
     return number / 100 * whole if unit == "%" else number * (METRES[unit] / METRES["px"])
 
@@ -467,7 +469,7 @@ def _paper(root: SvgElement, box: list[float]) -> tuple[float | None, str, float
     known = [(float(size[1]), size[2], side) for size, side in zip(sizes, box[2:], strict=True)
              if size and size[2] != "%" and float(size[1]) > 0]  # fmt: skip
     scales = [number / side * METRES[unit] for number, unit, side in known]
-    if not all(1 / MAX_NUMBER < scale < MAX_NUMBER for scale in scales):
+    if not all(1 / contract.MAX_NUMBER < scale < contract.MAX_NUMBER for scale in scales):
         raise ValueError("has a size that is out of range")
     _, across, up = _fitted(root, scales or [1.0])
     in_px = [unit in (None, "px") for _, unit, _ in known]

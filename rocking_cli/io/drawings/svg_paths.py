@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rocking_cli.io.drawings.limits import MAX_NUMBER
+from rocking_cli.io.drawings.contract import MAX_NUMBER
 from rocking_cli.text import cut
 
 FLATNESS = 1e-6  # distance of a curve from its straight sides, over the size of its path

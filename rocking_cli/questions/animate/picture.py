@@ -1,17 +1,24 @@
-"""Animation of structures under a ground motion, with time histories below: as frames, and as an HTML page.
+"""Animation of structures under a ground motion, with time histories below: as frames, their files, and an HTML page.
 
 What stands still in the frames is drawn once. Only the structures, their ground and the cursor are drawn again for each
-frame, by matplotlib's renderer, which smooths them.
+frame, by matplotlib's renderer, which smooths them. Videos are made by ffmpeg, which must be installed: H.264 in the
+form that slides and browsers play.
 """
 
 from __future__ import annotations
 
 import html
+import pathlib
 import re
+import shutil
+import subprocess
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from functools import cache
 from io import BytesIO
+from itertools import chain
 from math import ceil
+from tempfile import TemporaryDirectory, TemporaryFile
 from typing import Any, BinaryIO
 
 import matplotlib
@@ -26,7 +33,8 @@ from matplotlib.transforms import Affine2D, Bbox, IdentityTransform
 from PIL import Image, ImageDraw, ImageFont
 
 from rocking_cli.arrays import Points, Reals
-from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.errors import InputError, Problem, Refused
+from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.plotting import hung, style
 from rocking_cli.plotting.moving import (
     MAX_SHOWN_RATIO,
@@ -40,7 +48,7 @@ from rocking_cli.plotting.moving import (
 from rocking_cli.plotting.panels import PANEL_GAP, Page, Panel, place_row
 from rocking_cli.plotting.structure import colour, draw_scale, hatches, weight
 from rocking_cli.studies.film import Film, Scene
-from rocking_cli.text import printable
+from rocking_cli.text import one_line, printable
 from rocking_cli.views.animation import fate, scale_in_words, verdict_of, why_it_ends
 
 DOTS_PER_INCH = 100
@@ -370,11 +378,13 @@ def _draw_traces(
 ) -> None:
     reach = 0.0
     for film, look in zip(scene.films, looks, strict=True):
-        time, ratio = ratio_trace(film)
-        upper.plot(time, ratio, **look)
+        ratio = film.history.ratio[np.isfinite(film.history.ratio)]
+        shown = style.visible(ratio)
+        upper.plot(film.history.time[shown], ratio[shown], **look)
         reach = max(reach, float(np.abs(ratio).max()))
-    t, ground = ground_trace(scene.films[0].motion)
-    lower.plot(t, ground, **style.TRACE)
+    motion = scene.films[0].motion.kept
+    ground = motion.acceleration / STANDARD_GRAVITY
+    style.draw_samples(lower, ground, motion.dt, **style.TRACE)
     at_limit = [each for film in scene.films for each in film.history.ends_at_limit]
     for axes, most, label in (
         (upper, min(reach, MAX_SHOWN_RATIO), style.over(at_limit, math=True)),
@@ -391,20 +401,6 @@ def _draw_traces(
         upper.axhline(level, color=style.FAINT, linewidth=style.THIN, linestyle=":")
     upper.tick_params(labelbottom=False)
     lower.set_xlabel("time [s]", fontsize=style.LABEL)
-
-
-def ratio_trace(film: Film) -> tuple[Reals, Reals]:
-    """Return times [s] and phi/phi_cr of a history, thinned to what is visible."""
-    ratio = film.history.ratio[np.isfinite(film.history.ratio)]
-    shown = style.visible(ratio)
-    return film.history.time[shown], ratio[shown]
-
-
-def ground_trace(motion: GroundMotion) -> tuple[Reals, Reals]:
-    """Return times [s] and accelerations [g] of a ground motion, thinned to what is visible."""
-    motion = motion.kept
-    shown = style.visible(motion.acceleration)
-    return shown.astype(np.float64) * motion.dt, motion.acceleration[shown] / STANDARD_GRAVITY
 
 
 def animation_page(films: Film | Sequence[Film], title: str, speed: float = 1.0) -> str:
@@ -438,3 +434,66 @@ def animation_page(films: Film | Sequence[Film], title: str, speed: float = 1.0)
     }
     # One pass for all parts: a name in one part must not be replaced as a placeholder of another.
     return printable(re.sub(f"@({'|'.join(parts)})@", lambda match: parts[match[1]], asset("animation.html")))
+
+
+# The sides must be even. Whatever plays the file can start before all of it is there.
+OUTPUT = ("-c:v", "h264", "-pix_fmt", "yuv420p", "-movflags", "+faststart")
+MAX_MESSAGE = 300  # characters
+
+
+def ffmpeg(file: pathlib.Path) -> str:
+    """Return the path of ffmpeg. Raises `InputError`, which names the file to write, if it is not installed."""
+    program = shutil.which("ffmpeg")
+    if program is None:
+        hint = "install it from ffmpeg.org or by your package manager, or give a name that ends in .gif or .html"
+        raise InputError(Problem("an MP4 video requires the program ffmpeg, which is not found", str(file), hint=hint))
+    return program
+
+
+def write_mp4(stream: BinaryIO, program: str, drawn: Iterator[Image.Image], fps: float) -> None:
+    """Write a video.
+
+    Parameters
+    ----------
+    stream : binary file
+        Stream to write to.
+    program : str
+        Path of ffmpeg.
+    drawn : iterator of Image
+        The frames, all of one size.
+    fps : float
+        Frames per second.
+
+    Raises
+    ------
+    Refused
+        If ffmpeg fails or is ended.
+    """
+    first = next(drawn)
+    pad = f"pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white,tpad=stop_mode=clone:stop_duration={LAST_FRAME_DURATION}"
+    # An MP4 is not written in one pass, so it cannot come through a pipe.
+    with TemporaryDirectory() as folder, TemporaryFile() as messages:
+        made = pathlib.Path(folder) / "video.mp4"
+        size = f"{first.width}x{first.height}"
+        given = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-video_size", size, "-framerate", f"{fps:g}", "-i", "pipe:0"]
+        command = [program, "-nostdin", "-loglevel", "error", *given, "-vf", pad, *OUTPUT, str(made)]
+        process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=messages)
+        assert process.stdin is not None
+        try:
+            for each in chain([first], drawn):
+                try:
+                    process.stdin.write(each.tobytes())
+                except OSError:  # ffmpeg no longer reads: its exit code and its messages tell why
+                    break
+            with suppress(OSError):
+                process.stdin.close()
+            code = process.wait()
+        finally:
+            process.kill()
+            process.wait()
+        if code != 0 or not made.exists():
+            messages.seek(0)
+            why = one_line(messages.read().decode(errors="replace").strip())[-MAX_MESSAGE:]
+            raise Refused(f"ffmpeg did not write the video (exit code {code}){f': {why}' if why else ''}")
+        with made.open("rb") as video:
+            shutil.copyfileobj(video, stream)

@@ -22,6 +22,7 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies.film import Film, Scene
 from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.text import in_short
+from rocking_cli.views import animation as views
 from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
@@ -84,107 +85,99 @@ def animate(asked: AnimateAsked, watch: Watcher) -> Answer[Animation] | Answers[
     >>> f"{answer.film.history.peak_ratio:.4g}"
     '0.1315'
     """
+    check_program(asked.out)
+    structures: Any = asked.structures
+    if isinstance(structures, list | tuple):
+        return _side_by_side(asked, watch, structures)
+    ready = structure_of(structures, watch, asked.opening)
+    motions = asked.ground_motions
+    chosen = motions.gather(ready.growth, watch)
+    if not are_several(asked.motions, motions):
+        return _alone(asked, watch, ready, chosen[0], asked.out)
+    places = places_of("out", asked.out, chosen, [ready.file, *(record.path for record in motions.records)])
+    rows, films = list[views.FilmRow](), list[Film]()
+
+    def filmed(given: Scaled, k: int) -> Answer[Animation]:
+        answer = _alone(asked, watch, ready, given, places[k] or asked.out)
+        rows.append(views.row(answer.film.motion.name, answer.film, answer.neighbours))
+        films.append(answer.film)
+        return answer
+
+    responses, _ = ask_each(chosen, filmed, watch)
+    table = views.several(heading(ready.mechanism), "under", asked.model, rows, views.notes(ready, films[-1]))
+    return answers("animations", "motion", responses, table.parts)
+
+
+def _shot(asked: AnimateAsked, ready: Structure, given: Scaled) -> Animation:
+    """Return the motion of a structure under a ground motion, and the outcomes of its neighbours."""
     from rocking_cli.studies.conditions import Conditions
     from rocking_cli.studies.contact import Contacts
     from rocking_cli.studies.engines import follow
-    from rocking_cli.studies.neighbours import neighbours as outcomes
+    from rocking_cli.studies.neighbours import neighbours
     from rocking_cli.studies.picture import picture
-    from rocking_cli.views import animation as views
 
-    path, motions, (sign,) = asked.out, asked.ground_motions, asked.signs
-    check_program(path)
-    around = asked.neighbourhood(asked.neighbours)
+    (sign,), around = asked.signs, asked.neighbourhood(asked.neighbours)
+    scaled = given.motion.scaled(sign * given.factor)
+    history = follow(ready, scaled, model=asked.model)
+    nonlinear = asked.model == "nonlinear"
+    assumed = Contacts(ready.mechanism).check(history, scaled).assumed_friction if nonlinear else None
+    outcomes = neighbours(Conditions(ready, [asked.model], around=around), scaled) if around.count else None
+    return Animation(Film(picture(ready.mechanism), history, scaled, assumed), outcomes)
 
-    def shot(ready: Structure, given: Scaled) -> Animation:
-        scaled = given.motion.scaled(sign * given.factor)
-        history = follow(ready, scaled, model=asked.model)
-        assumed = (
-            Contacts(ready.mechanism).check(history, scaled).assumed_friction if asked.model == "nonlinear" else None
-        )
-        neighbourhood = outcomes(Conditions(ready, [asked.model], around=around), scaled) if around.count else None
-        return Animation(Film(picture(ready.mechanism), history, scaled, assumed), neighbourhood)
 
-    def of(ready: Structure, made: Animation, scene: Scene, file: _Written) -> Answer[Animation]:
-        film, history = made.film, made.film.history
-        shown = views.view(ready, film, scene, made.neighbours, file._asdict())
-        figure = drawn(
-            "questions.respond.picture.draw_history",
-            {history.model: history},
-            film.motion,
-            heading(ready.mechanism),
-            structure=ready,
-        )
-        return Answer("animation", made, shown, partial(_columns, film), figure)
+def _answer(ready: Structure, made: Animation, scene: Scene, file: _Written) -> Answer[Animation]:
+    film, history = made.film, made.film.history
+    shown = views.view(ready, film, scene, made.neighbours, file._asdict())
+    title, histories = heading(ready.mechanism), {history.model: history}
+    figure = drawn("questions.respond.picture.draw_history", histories, film.motion, title, structure=ready)
+    return Answer("animation", made, shown, partial(_columns, film), figure)
 
-    def beside(many: Sequence[StructureLike]) -> Answers[Answer[Animation]]:
-        """Animate several structures in one file."""
-        if not 0 < len(many) <= MAX_STRUCTURES:
-            raise InputError(
-                Problem(f"takes 1 to {MAX_STRUCTURES} structures, got {len(many)}", field=named("structures"))
-            )
-        usable = structures_of(many, watch, asked.opening)
-        fastest = max(usable, key=lambda each: each.growth)
-        given, *others = motions.gather(fastest.growth, watch, fastest.name)
-        if others:
-            what = f"several structures are animated under one motion, and {1 + len(others)} are given"
-            raise InputError(Problem(what, field=named("motions"), hint="give one, or ask once for each motion"))
-        made, refused = dict[str, Animation](), list[RockingError]()
-        for ready in usable:
-            try:
-                made[ready.name] = shot(ready, given)
-            except RockingError as error:
-                refused.append(of_structure(error, ready.name) if isinstance(error, MechanismError) else error)
-                if len(refused) == len(usable):
-                    raise
-        for each in refused:
-            watch.leave_out(each)
-        scene = Scene(tuple(each.film for each in made.values()))
-        under = scene.films[0].motion.name
-        written = write_film(
-            path, scene, in_short(list(made), most=MAX_STRUCTURES), under, asked.speed, asked.fps, watch
-        )
-        shown = [ready for ready in usable if ready.name in made]
-        by_name = {ready.name: of(ready, made[ready.name], scene, written) for ready in shown}
-        for answer in by_name.values():
-            watch.take(answer)
-        rows = [views.row(key, each.film, each.neighbours) for key, each in made.items()]
-        notes = [f"{ready.name}: {note}" for ready in shown for note in views.notes(ready, made[ready.name].film)]
-        table = views.several(f"under {under}", "structure", asked.model, rows, [views.scale_in_words(scene), *notes])
-        return answers("animations", "structure", by_name, table.parts)
 
-    structures: Any = asked.structures
-    if isinstance(structures, list | tuple):
-        return beside(structures)
-    ready = structure_of(structures, watch, asked.opening)
-    chosen = motions.gather(ready.growth, watch)
+def _alone(asked: AnimateAsked, watch: Watcher, ready: Structure, given: Scaled, place: Path) -> Answer[Animation]:
+    """Animate a structure under one motion."""
+    made = _shot(asked, ready, given)
+    scene, under = Scene((made.film,)), made.film.motion.name
+    file = write_film(place, scene, heading(ready.mechanism), under, asked.speed, asked.fps, watch)
+    return _answer(ready, made, scene, file)
 
-    def one(given: Scaled, place: Path) -> Answer[Animation]:
-        made = shot(ready, given)
-        scene, title = Scene((made.film,)), heading(ready.mechanism)
-        return of(
-            ready, made, scene, write_film(place, scene, title, made.film.motion.name, asked.speed, asked.fps, watch)
-        )
 
-    if not are_several(asked.motions, motions):
-        return one(chosen[0], path)
-    rows, last = list[views.FilmRow](), list[Film]()
-    places = places_of("out", path, chosen, [ready.file, *(each.path for each in motions.records)])
-
-    def row(given: Scaled, k: int) -> Answer[Animation]:
-        answer = one(given, places[k] or path)
-        rows.append(views.row(answer.film.motion.name, answer.film, answer.neighbours))
-        last[:] = [answer.film]
-        return answer
-
-    responses, _ = ask_each(chosen, row, watch)
-    table = views.several(heading(ready.mechanism), "under", asked.model, rows, views.notes(ready, last[0]))
-    return answers("animations", "motion", responses, table.parts)
+def _side_by_side(asked: AnimateAsked, watch: Watcher, many: Sequence[StructureLike]) -> Answers[Answer[Animation]]:
+    """Animate several structures in one file."""
+    if not 0 < len(many) <= MAX_STRUCTURES:
+        raise InputError(Problem(f"takes 1 to {MAX_STRUCTURES} structures, got {len(many)}", field=named("structures")))
+    usable = structures_of(many, watch, asked.opening)
+    fastest = max(usable, key=lambda ready: ready.growth)
+    given, *others = asked.ground_motions.gather(fastest.growth, watch, fastest.name)
+    if others:
+        what = f"several structures are animated under one motion, and {1 + len(others)} are given"
+        raise InputError(Problem(what, field=named("motions"), hint="give one, or ask once for each motion"))
+    made, refused = dict[str, Animation](), list[RockingError]()
+    for ready in usable:
+        try:
+            made[ready.name] = _shot(asked, ready, given)
+        except RockingError as error:
+            refused.append(of_structure(error, ready.name) if isinstance(error, MechanismError) else error)
+            if len(refused) == len(usable):
+                raise
+    for problem in refused:
+        watch.leave_out(problem)
+    scene = Scene(tuple(shot.film for shot in made.values()))
+    under, title = scene.films[0].motion.name, in_short(list(made), most=MAX_STRUCTURES)
+    written = write_film(asked.out, scene, title, under, asked.speed, asked.fps, watch)
+    shown = [ready for ready in usable if ready.name in made]
+    by_name = {ready.name: _answer(ready, made[ready.name], scene, written) for ready in shown}
+    for answer in by_name.values():
+        watch.take(answer)
+    rows = [views.row(name, shot.film, shot.neighbours) for name, shot in made.items()]
+    notes = [f"{ready.name}: {note}" for ready in shown for note in views.notes(ready, made[ready.name].film)]
+    table = views.several(f"under {under}", "structure", asked.model, rows, [views.scale_in_words(scene), *notes])
+    return answers("animations", "structure", by_name, table.parts)
 
 
 def check_program(file: Path | None) -> None:
     """Raise `InputError` if a video is requested and the program that makes it is missing."""
     if file is not None and file.suffix.lower() == ".mp4":
-        from rocking_cli.questions.animate.video import ffmpeg
+        from rocking_cli.questions.animate.picture import ffmpeg
 
         ffmpeg(file)
 
@@ -227,10 +220,8 @@ def write_film(
         if ending == ".gif":
             write_whole(file, lambda stream: picture.write_gif(stream, frames, times.size, fps))
         else:
-            from rocking_cli.questions.animate.video import ffmpeg, write_mp4
-
-            program = ffmpeg(file)
-            write_whole(file, lambda stream: write_mp4(stream, program, frames, fps))
+            program = picture.ffmpeg(file)
+            write_whole(file, lambda stream: picture.write_mp4(stream, program, frames, fps))
     watch.note(f"wrote {file}")
     return _Written(pace, int(times.size), str(file))
 

@@ -17,7 +17,6 @@ from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import percent
 from rocking_cli.plotting import style
-from rocking_cli.plotting.curve_names import name_points
 from rocking_cli.questions.crosscheck.study import PARTED, Crosscheck
 from rocking_cli.studies.engines.free import MOVED
 from rocking_cli.studies.film import SECONDS_AFTER, SECONDS_BEFORE
@@ -71,8 +70,7 @@ def draw_crosscheck(found: Crosscheck, title: str) -> Figure:
     free = found.exact.ends_at_limit
     style.tidy(axes, "time [s]", f"rotation {style.over(free, math=True)}, clockwise up")
     lines = list(_times(panels, found))
-    unnamed = name_points({axes: marks})[axes]
-    style.legend_below(figure, [*curves, *lines, *unnamed])
+    style.legend_below(figure, [*curves, *lines, *marks])
     return figure
 
 

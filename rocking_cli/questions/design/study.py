@@ -16,7 +16,7 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.hung.element import Spring
 from rocking_cli.core.hung.steel import BAR_DIAMETERS, STEELS, SteelName, TieStrength, circle, tie_strength
 from rocking_cli.errors import InputError, MechanismError, Problem, SolverError
-from rocking_cli.io.dotted import words
+from rocking_cli.io.yaml_file import words
 from rocking_cli.names import percent
 from rocking_cli.questions.design.metrics import Excitation, Metric, metric, required
 from rocking_cli.short_repr import short_repr

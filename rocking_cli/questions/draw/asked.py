@@ -44,6 +44,6 @@ class DrawAsked(OfStructure):
         "Output file", on_terminal=_picture, usual="FILE with .png, in this folder; none with JSON or DXF"
     )
     dxf: Path | None = option(
-        "Write the drawing as DXF, in metres, from which `rocking import` makes the structure again; needs ezdxf.",
+        "Write the drawing as DXF, in metres, which `rocking import` reads; needs ezdxf.",
         output(".dxf"),
     )

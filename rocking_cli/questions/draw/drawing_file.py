@@ -5,25 +5,22 @@ from __future__ import annotations
 import io
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
-from math import isclose
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from rocking_cli.arrays import Points
-from rocking_cli.core import Body, Direction, Mechanism
+from rocking_cli.core import Body
 from rocking_cli.core.hung.element import Load, Stretched
 from rocking_cli.core.hung.ties import Tie
 from rocking_cli.core.kinematics import distance
-from rocking_cli.errors import RockingError, named
+from rocking_cli.errors import named
 from rocking_cli.io.drawings import dxf
 from rocking_cli.io.field_problems import unit_at
 from rocking_cli.questions.import_drawing.attached import LOAD_FIELDS, TIE_FIELDS
-from rocking_cli.questions.import_drawing.options import ImportOptions
 from rocking_cli.questions.import_drawing.rings import ArcRing, PlaneMoments
-from rocking_cli.questions.import_drawing.study import structure_from
 from rocking_cli.studies.hung import Carried, Strand
-from rocking_cli.studies.picture import DrawnPart, Picture, picture
+from rocking_cli.studies.picture import DrawnPart, Picture
 from rocking_cli.text import in_short
 
 METRES, CIRCLED = 6, 33  # $INSUNITS; $PDMODE, a dot in a circle
@@ -31,7 +28,6 @@ TEXT_AROUND, TEXT_ABOVE, TEXT_BELOW = 5, 7, 1  # attachment of texts: around a p
 COLOURS = {"BLOCKS": 7, "OPENINGS": 5, "GROUND": 34, "HINGES": 1, "SUPPORTS": 34, "LOADS": 6, "TIES": 4, "NAMES": 3,
            "ASSUMED": 9, "DISPLACED": 8, "THRUST": 30}  # fmt: skip
 """Colours of the layers, by the first word of their names: numbers of AutoCAD."""
-READ_AS = "the drawing"  # in messages of its import
 TEXT_SHARE, ARROW_SHARE, ANCHOR_SHARE = 0.02, 0.15, 0.02  # sizes of texts, arrows and anchorages over the size
 SAME_SHARE = 1e-6  # relative difference of equal numbers; that of equal points, over the size
 UNSAID = ("friction", "friction_of", "restitution", "one_sided", "rebound", "crushing", "interlock", "corner_radius",
@@ -43,18 +39,13 @@ DRAWN_FIELDS = {*LOAD_FIELDS, *TIE_FIELDS, "yield_stress", "name", "mass", "mass
 
 
 class _Plate(NamedTuple):
-    """A uniform plate: its edge and openings [m], a point inside, and its mass per area [kg/m2]."""
+    """A uniform plate: edge and openings [m], a point inside, area and moments, and mass per area [kg/m2]."""
 
     edge: Points
     openings: Sequence[Points]
     inside: complex
+    moments: PlaneMoments
     per_area: float = 0.0
-
-    @property
-    def moments(self) -> PlaneMoments:
-        """Area, centroid and polar moment."""
-        outer, *inner = (ArcRing.of(ring, np.zeros(len(ring))).moments for ring in (self.edge, *self.openings))
-        return PlaneMoments.of_sum([outer, *(each.negative() for each in inner)])
 
 
 def drawn_file(drawing: Picture, ratio: float | None) -> tuple[bytes, str, str]:
@@ -73,8 +64,8 @@ def drawn_file(drawing: Picture, ratio: float | None) -> tuple[bytes, str, str]:
         The file.
     options : str
         The options that its import needs, in words.
-    doubt : str
-        What the file does not tell, and how its import differs from the structure; empty if it is the same.
+    untold : str
+        What the file does not tell of the structure, in words; empty if nothing is missing.
 
     Raises
     ------
@@ -87,10 +78,8 @@ def drawn_file(drawing: Picture, ratio: float | None) -> tuple[bytes, str, str]:
     document.ezdxf_metadata().discard("CREATED_BY_EZDXF")  # with the moment
     drawn = _Drawn(document, abs(drawing.reach[1] - drawing.reach[0]))
     searched = any(mechanism.collapse(side) for side in drawing.directions) or bool(drawing.sketch.lines)
-    given = (
-        len(weighed) > 1 and not searched
-    )  # the hinges: they are not the feet of a body, and no search has found them
-    links = drawing.links.values() if given else ()
+    has_hinges = len(weighed) > 1 and not searched  # they are not the feet of a body, and no search has found them
+    links = drawing.links.values() if has_hinges else ()
     still = {part.name for part in drawing.parts if links and all(each[part.name] is None for each in links)}
     plates = [_plates(part, weighed[part.name], drawing) for part in drawing.parts]
     per_area = [plate.per_area for each, _ in plates for plate in each if plate.per_area]
@@ -100,7 +89,7 @@ def drawn_file(drawing: Picture, ratio: float | None) -> tuple[bytes, str, str]:
     _bodies(drawn, drawing, [each for each, _ in plates], still, depth if counts else None)
     for line in drawing.sketch.ground or drawing.ground:
         drawn.line("GROUND", np.asarray(line, np.complex128))
-    _joints(drawn, drawing, "HINGES" if given else "")
+    _joints(drawn, drawing, "HINGES" if has_hinges else "")
     for load in drawing.loads:
         if drawing.parts[load.part].name not in still:
             _load(drawn, drawing, load)
@@ -119,54 +108,14 @@ def drawn_file(drawing: Picture, ratio: float | None) -> tuple[bytes, str, str]:
         document.write(stream := io.StringIO())
     finally:
         ezdxf.options.write_fixed_meta_data_for_testing = dated
-    content: bytes = document.encode(stream.getvalue())
-    kind = "rigid_body" if len(weighed) == 1 and len(plates[0][0]) > 1 else None
-    options = ImportOptions(depth=depth if counts else None, kind=kind)
     odd = [part.name for part, (_, fits) in zip(drawing.parts, plates, strict=True) if not fits and not part.assumed]
-    difference, lost = _compared(drawing, content, options)
-    untold = "; ".join([*_unsaid(drawing, odd, still), *lost])
-    doubt = f"does not tell {untold}" if untold else "does not hold the same structure" if difference else ""
-    doubt += f": {difference or 'add it to the structure that you import'}" if doubt else ""
-    needed = [f"{named('kind')} rigid_body"] * (kind is not None) + [f"{named('depth')} {depth!r} m"] * counts
-    return content, " and ".join(needed), doubt
+    untold = _untold(drawing, odd, still)
+    needed = [f"{named('kind')} rigid_body"] if len(weighed) == 1 and len(plates[0][0]) > 1 else []
+    needed += [f"{named('depth')} {depth!r} m"] if counts else []
+    return document.encode(stream.getvalue()), " and ".join(needed), untold
 
 
-def _compared(drawing: Picture, content: bytes, options: ImportOptions) -> tuple[str, list[str]]:
-    """Return how the import of a file differs from the structure, and which names and which meaning of phi it loses."""
-    mechanism, sides = drawing.mechanism, drawing.directions
-    try:
-        again = picture(structure_from(dxf.read(content, READ_AS), options, "drawn", READ_AS).structure)
-        lambdas = {side: again.mechanism.uplift(side) for side in sides}
-    except RockingError as error:
-        return f"`rocking import` refuses it ({' '.join(str(error).split()).removeprefix(f'{READ_AS}: ')})", []
-    names = [body.name for body in mechanism.bodies()]
-    lost = sorted(set(names) - {body.name for body in again.mechanism.bodies()}) if len(names) > 1 else []
-    words = [f"the name of {in_short([f'`{name}`' for name in lost])}"] if lost else []
-    for side in sides:
-        numbers = [("lambda", "g", mechanism.uplift(side), lambdas[side])]
-        numbers += [("phi_cr", "rad", drawing.phi_cr[side] or 0.0, again.phi_cr[side] or 0.0)]
-        differ = [
-            f"{symbol} = " + " instead of ".join(f"{each:.6g} {unit}" if each else "none" for each in (other, one))
-            for symbol, unit, one, other in numbers if not isclose(one, other, rel_tol=SAME_SHARE)
-        ]  # fmt: skip
-        if differ:
-            leads = [_leads(each, side) for each in (mechanism, again.mechanism)]
-            if len(names) > 1 and leads[0] and not set(leads[0]) & set(leads[1]):
-                words.append(f"that phi is the rotation of `{leads[0][0]}`")
-            return f"its import has {' and '.join(differ)} in the {side.label} direction", words
-    return "", words
-
-
-def _leads(mechanism: Mechanism, side: Direction) -> list[str]:
-    """Return the bodies whose rotation is phi."""
-    motions = mechanism.motion(np.zeros(1), side)
-    return [
-        body.name for body, motion in zip(mechanism.bodies(), motions, strict=True)
-        if isclose(motion.dpsi[0], -side, rel_tol=SAME_SHARE)
-    ]  # fmt: skip
-
-
-def _unsaid(drawing: Picture, odd: Sequence[str], still: Collection[str]) -> list[str]:
+def _untold(drawing: Picture, odd: Sequence[str], still: Collection[str]) -> str:
     """Return what a drawing does not tell of a structure, in words."""
     mechanism = drawing.mechanism
     guides = [each for side in drawing.directions for each in mechanism.contacts(side) or () if each.held == "slide"]
@@ -182,7 +131,9 @@ def _unsaid(drawing: Picture, odd: Sequence[str], still: Collection[str]) -> lis
         "the tie ": [tie.name for tie in drawing.ties if tie.name and _path(tie) is None],
         "the further data of ": [each.name for each in given if each.model_fields_set - DRAWN_FIELDS],
     }
-    return [what + in_short([f"`{name}`" for name in dict.fromkeys(names)]) for what, names in groups.items() if names]
+    return "; ".join(
+        what + in_short([f"`{name}`" for name in dict.fromkeys(names)]) for what, names in groups.items() if names
+    )
 
 
 class _Drawn:
@@ -207,11 +158,6 @@ class _Drawn:
             self.ground.append(points)
         pairs = [(z.real, z.imag) for z in points[: len(points) - ends].tolist()]
         self.space.add_lwpolyline(pairs, close=bool(closed or ends), dxfattribs=self.on(layer))
-
-    def is_on_ground(self, at: complex) -> bool:
-        """Return whether a point is on a line of the ground."""
-        tolerance = SAME_SHARE * self.size
-        return any(distance(np.array([at]), line)[0] <= tolerance for line in self.ground)
 
     def spot(self, layer: str, at: complex) -> None:
         """Draw a point."""
@@ -285,7 +231,8 @@ def _tie(drawn: _Drawn, drawing: Picture, tie: Strand) -> None:
         return
     drawn.line("TIES", ends)
     for end, other in ((ends[0], ends[1]), (ends[-1], ends[-2])):
-        if any(end == anchor.point for anchor in tie.ground) and not drawn.is_on_ground(complex(end)):
+        on_line = any(distance(np.array([end]), line)[0] <= SAME_SHARE * drawn.size for line in drawn.ground)
+        if any(end == anchor.point for anchor in tie.ground) and not on_line:
             away = ANCHOR_SHARE * drawn.size * (end - other) / abs(end - other)
             drawn.line("GROUND", np.array([end, end + away * (1 - 0.5j), end + away * (1 + 0.5j)]), closed=True)
     given = next((each for each in drawing.mechanism.ties or [] if each.name == tie.thing.name), None)
@@ -350,10 +297,10 @@ def _enclosed(outlines: Sequence[Points]) -> list[_Plate]:
         z: Points = shapely.get_coordinates(ring) @ np.array([1.0, 1.0j])
         return z
 
-    return [
-        _Plate(
-            corners(each.exterior)[:-1], [corners(hole)[:-1] for hole in each.interiors],
-            complex(corners(each.representative_point())[0]),
-        )
-        for each in united if each.geom_type == "Polygon"
-    ]  # fmt: skip
+    plates = []
+    for each in (piece for piece in united if piece.geom_type == "Polygon"):
+        edge, *openings = rings = [corners(ring)[:-1] for ring in (each.exterior, *each.interiors)]
+        outer, *inner = (ArcRing.of(ring, np.zeros(len(ring))).moments for ring in rings)
+        moments = PlaneMoments.of_sum([outer, *(hole.negative() for hole in inner)])
+        plates.append(_Plate(edge, openings, complex(corners(each.representative_point())[0]), moments))
+    return plates

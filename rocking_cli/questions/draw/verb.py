@@ -11,11 +11,12 @@ from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.questions.draw.asked import DrawAsked
-from rocking_cli.views.view import heading
+from rocking_cli.views.view import View, heading
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from rocking_cli.core import Angle, Length
     from rocking_cli.io.tables import Columns
     from rocking_cli.studies.picture import Picture
 
@@ -47,7 +48,6 @@ def draw(asked: DrawAsked, watch: Watcher) -> Answer[Picture]:
     >>> [length.text for length in answer.sketch.lengths]
     ['2b = 0.7 m', '2h = 2.8 m', 'R = 1.44 m']
     """
-    from rocking_cli.questions.draw.view import view
     from rocking_cli.studies.picture import picture
 
     at, ready = asked.at, structure_of(asked.structure, watch)
@@ -60,7 +60,7 @@ def draw(asked: DrawAsked, watch: Watcher) -> Answer[Picture]:
     if asked.dxf is not None:
         _write(asked.dxf, drawing, at, watch)
     figure = drawn("plotting.structure.draw_structure", drawing, heading(ready.mechanism), at)
-    return Answer("drawing", drawing, view(drawing), partial(_columns, drawing), figure)
+    return Answer("drawing", drawing, _view(drawing), partial(_columns, drawing), figure)
 
 
 def _write(file: Path, drawing: Picture, at: float | None, watch: Watcher) -> None:
@@ -68,12 +68,26 @@ def _write(file: Path, drawing: Picture, at: float | None, watch: Watcher) -> No
     from rocking_cli.io.files import write_whole
     from rocking_cli.questions.draw.drawing_file import drawn_file
 
-    content, options, doubt = drawn_file(drawing, at)
-    if doubt:
-        watch.warn(f"{file} {doubt}")
+    content, options, untold = drawn_file(drawing, at)
+    if untold:
+        watch.warn(f"{file} does not tell {untold}: add it to the structure that you import")
     write_whole(file, lambda stream: stream.write(content))
     watch.note(f"wrote {file}" + (f": import it with {options}" if options else ""))
 
 
 def _columns(found: Picture) -> Columns:
     return {"length": [each.text for each in found.sketch.lengths]}
+
+
+def _view(picture: Picture) -> View:
+    """Show the dimensions of a structure, and its drawing as plain data."""
+    measured: list[Length | Angle] = [*picture.sketch.lengths, *picture.sketch.angles]
+    sentences = [
+        f"{each.text}{f' ({each.direction.label})' if each.direction is not None else ''}" for each in measured
+    ]
+    sentences += [f"load {each.name}, {each.text}" for each in picture.loads if each.name]
+    sentences += [f"tie {each.name}" for each in picture.ties if each.name]
+    sentences += [f"rocks in the {side} direction only" for side in [picture.mechanism.one_sided] if side]
+    return View(
+        picture.as_dict, [heading(picture.mechanism), *(f"  {each}" for each in [*sentences, *picture.sketch.notes])]
+    )

@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rocking_cli.plotting import style
-from rocking_cli.plotting.curve_names import name_curves
 from rocking_cli.questions.error.study import Linearisation, preferred
 
 Reals = NDArray[np.float64]
@@ -65,9 +64,8 @@ def draw_linearisation(curves: Sequence[Linearisation], asked: Sequence[Linearis
             style.in_percent(axes.yaxis)
             style.tidy(axes, x, y)
     style.heading_of_all(figure, title)
-    kappas = [[each for each in right.lines if each.get_label().startswith("$")] for _, right in panels]
-    if not all(name_curves(right, each) for (_, right), each in zip(panels, kappas, strict=True)):
-        style.legend_below(figure, kappas[0])
+    for _, right in panels:  # the preferred one may differ
+        right.legend(loc="best", **style.LEGEND)
     return figure
 
 

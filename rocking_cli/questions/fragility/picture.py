@@ -20,7 +20,6 @@ from rocking_cli import names
 from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.plotting import style
-from rocking_cli.plotting.curve_names import name_curves
 from rocking_cli.questions.fragility.assess import Bivariate, Fragility
 from rocking_cli.questions.fragility.curves import FragilityCurve, Surface
 from rocking_cli.questions.fragility.definition import SCALE, Definition, Limit
@@ -88,7 +87,6 @@ def draw_curves(drawn: Mapping[str, Fragility], across: str, title: str, *, of: 
     style.in_percent(axes.yaxis)
     style.tidy(axes, across, "probability of exceedance")
     unit = "".join(re.findall(r"(?<= \[)[^\]]+(?=\]$)", across))
-    named: list[Line2D] = []
     handles: list[Any] = []
     for k, (name, each) in enumerate(drawn.items()):
         look, both = style.distinct(k), edges(name, each)
@@ -98,16 +96,12 @@ def draw_curves(drawn: Mapping[str, Fragility], across: str, title: str, *, of: 
             curve, look = edge.curve, look | {"linewidth": weight}
             if curve.kind != "none":
                 x = _with_steps(fine, [curve])
-                (line,) = axes.plot(x, curve.probability(x), **look | {"marker": "none", "zorder": 3})
-                line.set_label(name)
-                named += [line] if edge is each or each.curve.kind == "none" else []
+                axes.plot(x, curve.probability(x), label=name, **look | {"marker": "none", "zorder": 3})
             without = {"linestyle": "none"} if curve.kind == "none" else {"marker": "none"} if curve.is_exact else {}
             words = _unbroken(f"{words}: {_in_words(curve, unit, stop)}")
             handles.append(Line2D([], [], label=words, **look | without | {"markerfacecolor": style.PAPER}))
     observed = [(each, style.distinct(k)) for k, each in enumerate(drawn.values()) if not each.curve.is_exact]
     merged = [_draw_observed(axes, *each, place, len(observed)) for place, each in enumerate(observed)]
-    if len(named) > 1:
-        name_curves(axes, named)
     if shares := [f"{name} {names.percent(each.share or 0.0)}" for name, each in drawn.items() if each.is_band]:
         words = _unbroken(f"runs of {names.UNKNOWN} outcome: {', '.join(shares)}")
         handles.append(Patch(**style.UNKNOWN, label=words))
@@ -526,7 +520,7 @@ def draw_fractiles(axes: Axes, x: Reals, peaks: Reals, beyond: Bools) -> list[Li
 
     A quantile that too few records give is NaN; the label of the axis then says how many are needed. A line ends with a
     mark from where `beyond` lasts to the largest intensity: its run overturns or is of unknown outcome. Returns the
-    lines for a legend; none if they are named at the curves.
+    lines for a legend.
     """
     axes.fill_between(x, peaks[0], peaks[2], color=style.INK, alpha=QUANTILE_OPACITY, linewidth=0.0)
     lines: list[Line2D] = []
@@ -547,7 +541,7 @@ def draw_fractiles(axes: Axes, x: Reals, peaks: Reals, beyond: Bools) -> list[Li
         needs = f"records needed: {min(MIN_RECORDS)} for the median, {max(MIN_RECORDS)} for 16 and 84 %"
         needs = style.folded(needs, style.page_width() - style.MAX_SIDE_MARGIN, style.TICK)
         axes.set_xlabel(f"{axes.get_xlabel()}\n{needs}".strip(), fontsize=style.TICK)
-    return [] if lines and name_curves(axes, lines) else lines
+    return lines
 
 
 def _draw_shares(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:

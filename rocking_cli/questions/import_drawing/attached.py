@@ -15,10 +15,9 @@ from rocking_cli.core.hung.ties import Tie
 from rocking_cli.io.drawings.contract import DrawnLine, DrawnText, LineDrawing
 from rocking_cli.io.field_problems import of_arguments
 from rocking_cli.io.yaml_file import in_a_line
-from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, many
+from rocking_cli.questions.import_drawing.legend import DrawingFrame, ImportNote, Role, many, plain
 from rocking_cli.questions.import_drawing.outlines import DrawnBody, Sorted
 from rocking_cli.questions.import_drawing.rings import ArcRing, polygons_of
-from rocking_cli.questions.import_drawing.roles import Role, plain
 from rocking_cli.text import in_short, seen
 from rocking_cli.units import UnitError, read
 
@@ -84,14 +83,6 @@ class BodyFinder:
         away = self.away(self.solid, z)
         return [self.names[k] for k in np.argsort(away, kind="stable").tolist() if away[k] <= self.close]
 
-    def on_edges(self, z: complex) -> list[str]:
-        """Return the bodies on whose edge a point is [m]."""
-        return [self.names[k] for k in np.flatnonzero(self.away(self.edges, z) <= self.close).tolist()]
-
-    def is_ground(self, z: complex) -> bool:
-        """Return whether a point is in or on the ground."""
-        return bool((self.away(self.ground, z) <= self.close).any())
-
     def require(self, holds: object, kind: str, what: str, z: complex) -> None:
         """Raise `DrawingError` on something at a point of the drawing if a condition does not hold."""
         if not holds:
@@ -137,7 +128,8 @@ def _spots(drawing: LineDrawing, of: Sorted, role: Role) -> list[tuple[complex, 
 
 def _hinges(drawing: LineDrawing, of: Sorted, places: BodyFinder, made: DrawnAttachments) -> None:
     for at, layer in _spots(drawing, of, Role.HINGES):
-        on = places.on_edges(z := places.at(at))
+        z = places.at(at)
+        on = [places.names[k] for k in np.flatnonzero(places.away(places.edges, z) <= places.close).tolist()]
         places.require(on, "hinge", "the hinge is on no edge of a body", at)
         places.require(len(on) <= 2, "hinge", "the hinge is on more than two bodies", at)
         made.hinges.append((z, tuple(on), direction_of(layer)))
@@ -254,7 +246,9 @@ def _ties(of: Sorted, places: BodyFinder, made: DrawnAttachments) -> None:
     for k, chain in enumerate(chains):
         ends = [_end_of_tie(complex(z), places) for z in chain.points]
         text = seen(texts[k].text) if k in texts else ""
-        fields, others = _fields_in(_spelled_out(text), TIE_FIELDS)
+        # Bars and steel in words: `2\u00d816 S235` is `bars 2, diameter 16 mm, steel S235`.
+        in_words = BARS.sub(lambda bars: f"bars {bars[1] or 1}, diameter {bars[2]} mm, ", text)
+        fields, others = _fields_in(STEEL.sub(r", steel \1", in_words), TIE_FIELDS)
         name, *unread = others or [""]
         tie: dict[str, Any] = {"name": name or f"tie {k + 1}"}
         tie |= {"from": ends[0], "to": ends[1]} if len(ends) == 2 else {"path": ends}
@@ -267,12 +261,6 @@ def _ties(of: Sorted, places: BodyFinder, made: DrawnAttachments) -> None:
             made.notes.append(ImportNote("tie", 1, f"the tie {tie['name']} {fault}: it is a comment in the file", [at]))
         else:
             made.ties.append(tie | fields)
-
-
-def _spelled_out(text: str) -> str:
-    """Return a text with bars and steel in words: `2\u00d816 S235` as `bars 2, diameter 16 mm, steel S235`."""
-    text = BARS.sub(lambda bars: f"bars {bars[1] or 1}, diameter {bars[2]} mm, ", text)
-    return STEEL.sub(r", steel \1", text)
 
 
 def _fault_of(tie: dict[str, Any], described: bool) -> str:
@@ -294,5 +282,6 @@ def _end_of_tie(at: complex, places: BodyFinder) -> dict[str, Any]:
     z = places.at(at)
     if on := places.bodies(z):
         return {"body": on[0], "at": rounded(z)}
-    places.require(places.is_ground(z), "tie", "a tie ends on no body and not on the ground", at)
+    is_ground = (places.away(places.ground, z) <= places.close).any()
+    places.require(is_ground, "tie", "a tie ends on no body and not on the ground", at)
     return {"ground": rounded(z)}

@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 
 from rocking_cli.arrays import Points, Reals
 from rocking_cli.errors import named
-from rocking_cli.io.drawings.arcs import arc_circle, inner_points
-from rocking_cli.io.drawings.contract import DrawingError, DrawnLine
-from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, length_in_words, many
+from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, arc_circle, inner_points
+from rocking_cli.questions.import_drawing.legend import DrawingFrame, ImportNote, length_in_words, many
 from rocking_cli.questions.import_drawing.rings import CHORD, ArcRing, chord_count, following, polygons_of
 
 Integers = NDArray[np.intp]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.arrays import Points
 from rocking_cli.core.polygons import nearby
-from rocking_cli.io.drawings.arcs import arc_circle
+from rocking_cli.io.drawings.contract import arc_circle
 from rocking_cli.questions.import_drawing.loops import edges_of
 from rocking_cli.questions.import_drawing.rings import ArcRing, following, polygons_of
 

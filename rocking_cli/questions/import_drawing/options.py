@@ -25,7 +25,7 @@ def _densities(value: Any) -> dict[str, float]:
 
 
 def _layers(value: Any) -> Mapping[str, Sequence[str]]:
-    from rocking_cli.questions.import_drawing.roles import parse_layers
+    from rocking_cli.questions.import_drawing.legend import parse_layers
 
     return value if isinstance(value, Mapping) else parse_layers([value] if isinstance(value, str) else value)
 

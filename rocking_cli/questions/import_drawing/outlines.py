@@ -14,10 +14,18 @@ import numpy as np
 
 from rocking_cli.errors import named
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, DrawnPoint, DrawnText, LineDrawing
+from rocking_cli.questions.import_drawing.legend import (
+    DrawingFrame,
+    ImportNote,
+    Role,
+    Roles,
+    counted,
+    length_in_words,
+    many,
+    proposed,
+)
 from rocking_cli.questions.import_drawing.loops import Loop, Placed, curves_of, edges_of, loops
-from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, length_in_words, many
 from rocking_cli.questions.import_drawing.rings import ArcRing, PlaneMoments, polygons_of
-from rocking_cli.questions.import_drawing.roles import Role, Roles, counted, proposed
 from rocking_cli.text import cut, in_short, seen
 from rocking_cli.units import UnitError, mass_of_weight, read
 

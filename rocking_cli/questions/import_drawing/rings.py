@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.arrays import Points, Reals
-from rocking_cli.io.drawings.arcs import STRAIGHT_BULGE, Sides, arc_circle, inner_points, level_count
+from rocking_cli.io.drawings.contract import STRAIGHT_BULGE, Sides, arc_circle, inner_points, level_count
 
 Number = TypeVar("Number", bound=np.generic)
 CHORD = 0.1  # share of the closing distance to which arcs are compared
@@ -131,7 +131,8 @@ class ArcRing:
             return self
         turn = 4 * np.arctan(b)
         for k in np.flatnonzero((b != 0) & (np.roll(b, 1) != 0)).tolist():  # each arc takes the turn of the next one
-            if self._goes_on(k):
+            (centre, radius), (other, _) = (arc_circle(*self._arc(j)) for j in (k, (k - 1) % len(z)))
+            if b[k] * b[k - 1] > 0 and abs(centre - other) < SAME_CIRCLE * radius:  # of one circle and one sense
                 previous = next(j % len(z) for j in range(k - 1, k - 1 - len(z), -1) if not spare[j % len(z)])
                 if abs(turn[previous] + turn[k]) < MAX_TURN:
                     turn[previous] += turn[k]
@@ -139,12 +140,6 @@ class ArcRing:
         if np.count_nonzero(~spare) < 2 or (np.count_nonzero(~spare) == 2 and not b.any()):
             return self  # it encloses nothing
         return ArcRing(z[~spare], np.tan(turn / 4)[~spare]) if spare.any() else self
-
-    def _goes_on(self, k: int) -> bool:
-        """Return whether the arc from a corner has the circle and the sense of the one before."""
-        n = len(self.z)
-        (centre, radius), (other, _) = (arc_circle(*self._arc(j)) for j in (k, (k - 1) % n))
-        return bool(self.bulges[k] * self.bulges[k - 1] > 0 and abs(centre - other) < SAME_CIRCLE * radius)
 
     def _arc(self, k: int) -> tuple[complex, complex, float]:
         return complex(self.z[k]), complex(self.z[(k + 1) % len(self.z)]), float(self.bulges[k])

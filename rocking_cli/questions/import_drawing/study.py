@@ -18,8 +18,16 @@ from rocking_cli.errors import MechanismError, StructureError, named
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine, LineDrawing
 from rocking_cli.questions.import_drawing import mortar
 from rocking_cli.questions.import_drawing.attached import DECIMALS, BodyFinder, DrawnAttachments, attached, rounded
+from rocking_cli.questions.import_drawing.legend import (
+    DrawingFrame,
+    ImportNote,
+    Role,
+    Roles,
+    length_in_words,
+    many,
+    metres_per_unit,
+)
 from rocking_cli.questions.import_drawing.loops import joined_lines
-from rocking_cli.questions.import_drawing.notes import DrawingFrame, ImportNote, length_in_words, many
 from rocking_cli.questions.import_drawing.options import ImportOptions
 from rocking_cli.questions.import_drawing.outlines import (
     AT_A_TIME,
@@ -33,8 +41,6 @@ from rocking_cli.questions.import_drawing.outlines import (
     placed,
 )
 from rocking_cli.questions.import_drawing.rings import ArcRing, following, polygons_of
-from rocking_cli.questions.import_drawing.roles import Role, Roles
-from rocking_cli.questions.import_drawing.scaling import metres_per_unit
 from rocking_cli.text import in_short
 
 GROUND_ROOM = 0.1  # depth of the ground below its lowest point, and its room at the sides, over the size drawn

@@ -1,4 +1,4 @@
-"""A mesh as a rigid body that rocks about the edges of its foot."""
+"""A mesh as a rigid body that rocks about the edges of its foot, and its silhouette in the plane in which it rocks."""
 
 from __future__ import annotations
 
@@ -9,37 +9,94 @@ from typing import Any
 
 import numpy as np
 
-from rocking_cli.arrays import Reals
+from rocking_cli.arrays import Points, Reals
 from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
 from rocking_cli.errors import named
 from rocking_cli.io.drawings.contract import DrawingError, MeshSurface
-from rocking_cli.questions.import_mesh.foot import (
+from rocking_cli.questions.import_mesh.options import MeshOptions
+from rocking_cli.questions.import_mesh.solid import (
     AzimuthRow,
     FootEdge,
     LevelRow,
-    edges_of,
-    foot_of,
-    glued,
-    levels_of,
-    settled,
-    towards,
-    weakest_of,
-)
-from rocking_cli.questions.import_mesh.options import MeshOptions
-from rocking_cli.questions.import_mesh.silhouette import Cuts, cuts_of, silhouette
-from rocking_cli.questions.import_mesh.solid import (
     MeshNote,
     Moments,
     Triangles,
     closed,
+    edges_of,
+    foot_of,
+    glued,
     hull_of,
+    levels_of,
     merged,
     moments,
+    settled,
     solid,
+    towards,
+    weakest_of,
 )
 from rocking_cli.short_repr import short_repr
 from rocking_cli.units import KINDS
+
+MAX_HEIGHTS = 80  # heights at which the ends are taken; those of the corners if they are fewer
+BESIDE = 1e-6  # distance from these heights to the cuts below and above them, over the size
+LEAST_WIDTH = 1e-6  # over the size, so that its two sides do not touch
+FLAT = 1e-4  # distance of the polygon from the silhouette, over the size
+
+
+@dataclass(frozen=True, eq=False)
+class Cuts:
+    """Level cuts through a body: their heights [m], the ends of their lines, shape (n, 3) each, and the size [m]."""
+
+    heights: Reals
+    ends: Sequence[Reals]
+    size: float
+
+
+def cuts_of(points: Reals, triangles: Triangles) -> Cuts:
+    """Return cuts above the lowest corner, below and above the next, ..., below the highest."""
+    from trimesh import Trimesh
+    from trimesh.intersections import mesh_plane
+
+    size = float(np.ptp(points, axis=0).max())
+    body = Trimesh(points / size, triangles, process=False)
+    z: Reals = points[:, 2] / size
+    heights = np.unique(z)
+    heights = heights[np.diff(heights, prepend=-1) > 4 * BESIDE]
+    if heights.size > MAX_HEIGHTS:
+        heights = np.linspace(heights[0], heights[-1], MAX_HEIGHTS)
+    heights = np.repeat(heights, 2)[1:-1]
+    ends = [
+        size * mesh_plane(body, [0, 0, 1], [0, 0, height], cached_dots=z - height).reshape(-1, 3)
+        for height in heights + BESIDE * (-1) ** np.arange(len(heights))
+    ]
+    return Cuts(size * heights, ends, size)
+
+
+def silhouette(cuts: Cuts, azimuth: float) -> Points:
+    """Return the silhouette of a body as a polygon x + iy [m], anticlockwise; hollows that show sideways are filled.
+
+    Parameters
+    ----------
+    cuts : Cuts
+        Cuts through it.
+    azimuth : float
+        Direction of x in plan [rad].
+    """
+    import shapely
+
+    along, level = np.array([np.cos(azimuth), np.sin(azimuth), 0]), cuts.heights
+    spans = [((x := each @ along).min(), x.max()) if len(each) else (np.nan, np.nan) for each in cuts.ends]
+    left, right = np.array(spans).T
+    gap = np.isnan(left)  # between parts that do not touch
+    for each in (left, right):
+        each[gap] = np.interp(level[gap], level[~gap], each[~gap])
+    middle, half = (left + right) / 2, np.maximum(right - left, LEAST_WIDTH * cuts.size) / 2
+    ring = np.stack([[*(middle + half), *(middle - half)[::-1]], [*level, *level[::-1]]], axis=1)
+    plain = shapely.simplify(shapely.linearrings(ring), FLAT * cuts.size, preserve_topology=False)
+    outline: Points = shapely.get_coordinates(plain)[:-1] @ np.array([1, 1j])
+    return outline
+
 
 UPWARDS = {"z": np.eye(3), "y": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])}
 """Turns from the axes of a file to z upwards, by the axis that points upwards there."""

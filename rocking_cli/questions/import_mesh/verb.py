@@ -18,7 +18,7 @@ from rocking_cli.questions.import_mesh.options import ImportMesh
 from rocking_cli.text import one_line
 
 if TYPE_CHECKING:
-    from rocking_cli.questions.import_mesh.foot import AzimuthRow
+    from rocking_cli.questions.import_mesh.solid import AzimuthRow
     from rocking_cli.questions.import_mesh.study import ImportedMesh
 
 COMMENT_WIDTH = 110
@@ -93,7 +93,7 @@ def import_mesh(asked: ImportMesh, watch: Watcher) -> Answer[ImportedMesh]:
         lines = [line for each in head for line in wrap(one_line(each), COMMENT_WIDTH, break_on_hyphens=False)]
         written += _write(place, structure_text(structure, *lines), watch)
     if asked.page is not None:
-        from rocking_cli.questions.import_mesh.page import render
+        from rocking_cli.questions.import_mesh.picture import render
 
         written += _write(asked.page, render(body, f"{name} as a rocking body", [origin], asked.north), watch)
     title = f"{name}: foot from below the centre of mass, over its height"

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rocking_cli.errors import named
-from rocking_cli.questions.import_mesh.foot import AzimuthRow, FootEdge, LevelRow
+from rocking_cli.questions.import_mesh.solid import AzimuthRow, FootEdge, LevelRow
 from rocking_cli.questions.import_mesh.study import ImportedMesh
 from rocking_cli.text import one_line
 from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, rounded, table_of

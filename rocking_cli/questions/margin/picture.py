@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from rocking_cli.plotting import style
-from rocking_cli.plotting.curve_names import name_curves
 from rocking_cli.questions.margin.study import SHARE_LEVELS, Margin
 from rocking_cli.text import cut
 
@@ -43,7 +42,7 @@ def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
         look = style.distinct(k) | {"marker": "", "linewidth": style.BOLD}
         colour = look["color"]
         axes.fill_between(each.factors, *each.interval, color=colour, alpha=0.15, linewidth=0)
-        label = style.plain(f"{cut(name, MAX_NAME_LENGTH)}\nPGA {each.pga_g:.3g} g{_uplift(each, ', ')}")
+        label = style.plain(f"{cut(name, MAX_NAME_LENGTH)}, PGA {each.pga_g:.3g} g{_uplift(each, ', ')}")
         curves += axes.plot(each.factors, each.overturned, label=label, **look)
         axes.plot(1.0, each.share.lowest, color=colour, clip_on=False, **style.STAR)
         if each.unknown.any():
@@ -72,9 +71,7 @@ def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
     polarities = POLARITIES.get(tuple(first.polarities))
     y = f"share of neighbours that overturn{f', {polarities}' if polarities else ''}"
     style.tidy(axes, f"scale factor ({'; '.join(filter(None, legend))})", style.folded(y, 2.6, style.LABEL))
-    if not alone and not name_curves(axes, curves):
-        for curve in curves:
-            curve.set_label(str(curve.get_label()).replace("\n", ", "))
+    if not alone:
         style.legend_below(figure, curves, handlelength=3.5)
     return figure
 

@@ -15,15 +15,12 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
 
-from rocking_cli.arrays import Integers, Points, Reals
+from rocking_cli.arrays import Points, Reals
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.plotting import style
-from rocking_cli.plotting.curve_names import name_curves
-from rocking_cli.plotting.region_names import name_regions
 from rocking_cli.questions.overturning.study import CONTOUR_LEVELS, Comparison, OutcomeKind, OverturningMap
 
 LABELS, FILLS = list(style.REGIONS), list(style.REGIONS.values())  # by `OutcomeKind`
-DARK_KINDS = OutcomeKind.AFTER_MORE, OutcomeKind.WITHOUT_IMPACT
 GRID_POINTS = 250  # number of points along either axis on which boundaries are traced
 EQUAL_RATIOS = 1e-6  # relative difference of the steps of a logarithmic axis
 TICKS = (1.0, 2.0, 3.0, 5.0, 7.0)  # multiples of powers of ten along logarithmic axes
@@ -78,16 +75,14 @@ def draw_map(
     else:
         style.tidy(axes, "period of the pulse [s]", "amplitude of the pulse [g]")
     axes.grid(False)
-    named = name_regions(axes, partial(_regions_at, found, across, up), dict(enumerate(LABELS)), DARK_KINDS)
     keys = [
         Patch(
             facecolor=FILLS[kind], edgecolor=style.FAINT, label=LABELS[kind],
             hatch=style.UNKNOWN["hatch"] if kind == OutcomeKind.UNKNOWN else None,
         )
-        for kind in OutcomeKind if kind not in named and (found.kinds == kind).any()
+        for kind in OutcomeKind if (found.kinds == kind).any()
     ]  # fmt: skip
-    if keys or handles:
-        style.legend_below(figure, [*keys, *handles])
+    style.legend_below(figure, [*keys, *handles])
     return figure
 
 
@@ -165,13 +160,6 @@ def _draw_boundaries(axes: Axes, found: OverturningMap, *, dimensionless: bool) 
     return drawn
 
 
-def _regions_at(found: OverturningMap, across: Reals, up: Reals, x: Reals, y: Reals) -> Integers:
-    """Return the kind of the nearest point of the map, for each y and x on the axes."""
-    nearest = [np.abs(np.log(of) - np.log(to)[:, None]).argmin(axis=1) for of, to in ((up, y), (across, x))]
-    kinds: Integers = found.kinds[np.ix_(*nearest)]
-    return kinds
-
-
 def draw_comparison(found: Comparison, title: str) -> Figure:
     """Plot the least amplitude that overturns each structure against the period of the pulse.
 
@@ -198,11 +186,10 @@ def draw_comparison(found: Comparison, title: str) -> Figure:
         style.note(axes, "no structure overturns")
     axes.set_xlim(float(found.periods[0]), float(found.periods[-1]))
     style.tidy(axes, "period of the pulse [s]", "least amplitude that overturns [g]")
-    handles: list[Line2D | Patch] = [] if name_curves(axes, curves) else [*curves]
+    handles: list[Line2D | Patch] = [*curves]
     if found.doubtful.any():
         handles.append(Patch(label="hatched down to the thin line: unknown outcome", **style.UNKNOWN))
-    if handles:
-        style.legend_below(figure, handles, handlelength=4)
+    style.legend_below(figure, handles, handlelength=4)
     return figure
 
 

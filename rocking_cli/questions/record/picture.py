@@ -8,14 +8,12 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.measures import Measures, arias_build_up
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.plotting import style
-from rocking_cli.plotting.curve_names import name_points
 from rocking_cli.processing.oscillator import DAMPING, ResponseSpectrum, response_spectrum
 
 SPECTRUM_PERIODS = np.geomspace(0.02, 10.0, 120)  # s; periods of a spectrum
@@ -23,7 +21,7 @@ MAX_BEFORE_RATIO = 3.0  # the series before processing is cut off at this multip
 BEFORE_STYLE: dict[str, Any] = {"color": style.RECORD_COLOUR, "linewidth": style.CURVE}
 AFTER_STYLE: dict[str, Any] = {"color": style.INK, "linewidth": style.MEDIUM}
 POINT: dict[str, Any] = {"marker": "o", "markersize": 4.5, "color": style.INK, "linestyle": "none"}
-ROOM = 0.25  # margin above and below a curve, over its height, for the name of its peak
+ROOM = 0.25  # margin above and below a curve, over its height, for the legend of its peak
 MIN_PULSE_DURATIONS = 2.0  # time shown after a pulse, over its duration
 PULSE_POINTS = 2000
 
@@ -36,7 +34,7 @@ def draw_record(motion: GroundMotion, measures: Measures) -> Figure:
     motion : GroundMotion
         The scaled motion.
     measures : Measures
-        Its measures: the peaks are named at the curves, the significant duration is shaded.
+        Its measures: the peaks are marked on the curves, the significant duration is shaded.
 
     Returns
     -------
@@ -47,15 +45,15 @@ def draw_record(motion: GroundMotion, measures: Measures) -> Figure:
     style.heading(panels[0], motion.name)
     style.time_axis(panels[3], 0.0, motion.duration)
     peaks = f"PGA {measures.pga_g:.3g} g", f"PGV {measures.pgv:.3g} m/s", f"PGD {measures.pgd:.3g} m"
-    points: dict[Axes, list[Line2D]] = {}
     for axes, (label, values), peak in zip(panels, _quantities(motion), peaks, strict=False):
         style.draw_samples(axes, values, motion.dt, color=style.INK, linewidth=style.CURVE)
         axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
         axes.margins(y=ROOM)
         k = int(np.abs(values).argmax())
-        points[axes] = axes.plot(k * motion.dt, values[k], label=peak, **POINT)
+        axes.plot(k * motion.dt, values[k], label=peak, **POINT)
+        axes.legend(loc="upper right", borderaxespad=0.1, **style.LEGEND)
         style.tidy(axes, y=label)
-    points[panels[3]] = _draw_build_up(panels[3], motion, measures)
+    _draw_build_up(panels[3], motion, measures)
     style.tidy(panels[3], "time [s]", f"Arias intensity\n[% of {measures.arias:.3g} m/s]")
     if measures.t_5 is not None and measures.t_95 is not None:
         shade = {"color": style.SHADE, "linewidth": 0, "zorder": 0}
@@ -63,9 +61,6 @@ def draw_record(motion: GroundMotion, measures: Measures) -> Figure:
         spans[0].set_label(f"from 5 to 95 % of the Arias intensity: {measures.t_95 - measures.t_5:.4g} s")
         style.legend_below(figure, spans[:1])
     figure.align_ylabels(panels)
-    for axes, unnamed in name_points(points).items():
-        for point in unnamed:
-            style.note(axes, str(point.get_label()), 0.96 if axes is not panels[3] else 0.2)
     return figure
 
 
@@ -77,16 +72,18 @@ def _quantities(motion: GroundMotion) -> list[tuple[str, NDArray[np.float64]]]:
     ]
 
 
-def _draw_build_up(axes: Axes, motion: GroundMotion, measures: Measures) -> list[Line2D]:
-    """Draw the Husid plot; return marks at 5 and 95 % with labels, none if the motion is zero."""
+def _draw_build_up(axes: Axes, motion: GroundMotion, measures: Measures) -> None:
+    """Draw the Husid plot with marks at 5 and 95 %, none if the motion is zero."""
     axes.set_ylim(-20.0, 120.0)  # room for labels
     axes.set_yticks([0, 50, 100])
     if measures.t_5 is None or measures.t_95 is None:
-        return []
+        return
     built = 100 * arias_build_up(motion) / measures.arias
     style.draw_samples(axes, built, motion.dt, color=style.INK, linewidth=style.MEDIUM)
     times = {5: measures.t_5, 95: measures.t_95}
-    return [axes.plot(at, of, label=f"{of} % at {at:.4g} s", **POINT)[0] for of, at in times.items()]
+    for share, time in times.items():
+        axes.plot(time, share, label=f"{share} % at {time:.4g} s", **POINT)
+    axes.legend(loc="lower right", **style.LEGEND)
 
 
 def draw_before_and_after(before: GroundMotion, after: GroundMotion, shift: float) -> Figure:

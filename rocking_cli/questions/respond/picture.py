@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import chain
 from math import inf, isfinite, isnan
 from textwrap import shorten
 from typing import Any, NamedTuple
@@ -22,7 +21,6 @@ from rocking_cli.dynamics.verdict import known_until, peak_time
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.plotting import style
-from rocking_cli.plotting.curve_names import name_curves, name_points
 from rocking_cli.structure import Structure
 from rocking_cli.studies.contact import ContactDemand
 from rocking_cli.studies.film import SECONDS_AFTER, SECONDS_BEFORE
@@ -61,7 +59,7 @@ def draw_history(
     ----------
     histories : mapping of str to History
         One curve each: signed rotation over the critical rotation of its direction; the first uplift, the peak and the
-        outcome of the nonlinear model, or else of the first, are named beside its curve, those of others in the legend.
+        outcome of the nonlinear model, or else of the first, are marked on its curve; the legend has the numbers.
     motion : GroundMotion, optional
         The ground motion, plotted above in g.
     title : str
@@ -106,14 +104,12 @@ def draw_history(
         if structure is not None:
             keys[0][1].extend(_draw_uplift(panels[0], structure, motion))
     scale = _scale_of(responses, until)
-    marks: dict[Axes, list[Line2D]] = {}
     below = panels[shaken : shaken + len(each_has) * len(responses)]
     for axes, (what, each) in zip(below[:: len(each_has)], responses.items(), strict=True):
         if what:
             axes.set_title(what, loc="left", fontsize=style.LABEL, color=style.INK)
         _hatch_unknown(axes, until[what], (start, end))
-        curves, marks[axes] = _draw_responses(axes, each, scale, until[what], watched)
-        keys.append((axes, curves))
+        keys.append((axes, _draw_responses(axes, each, scale, until[what], watched)))
     if watched is not None and tied:
         for axes, (what, each) in zip(below[1::2], responses.items(), strict=True):
             _hatch_unknown(axes, until[what], (start, end))
@@ -122,10 +118,7 @@ def draw_history(
         keys.append((panels[-1], _draw_slips(panels[-1], slides) if slides else _draw_contacts(panels[-1], contacts)))
         _hatch_unknown(panels[-1], max(list(until.values())[: len(contacts)]), (start, end))
     figure.align_ylabels(panels)  # not those of others in a figure of the user
-    unnamed = name_points(marks)
-    for mark in chain(*unnamed.values()):
-        mark.set_label(str(mark.get_label()).replace("\n", ", "))
-    style.legends_below(figure, [(axes, [*curves, *unnamed.get(axes, [])]) for axes, curves in keys])
+    style.legends_below(figure, keys)
     return figure
 
 
@@ -299,10 +292,8 @@ def _scale_of(responses: Mapping[str, Runs], until: Mapping[str, float]) -> _Sca
     return scale._replace(low=low - LANES * room, high=high + room)
 
 
-def _draw_responses(
-    axes: Axes, histories: Runs, scale: _Scale, until: float, watched: Watched | None
-) -> tuple[list[Line2D], list[Line2D]]:
-    """Draw the rotations of the models, with marks on the best one; return the curves, and the marks to be named."""
+def _draw_responses(axes: Axes, histories: Runs, scale: _Scale, until: float, watched: Watched | None) -> list[Line2D]:
+    """Draw the rotations of the models, with marks on the best one; return the curves and the marks."""
     best = best_model(histories)
     free = histories[best].ends_at_limit
     axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
@@ -324,7 +315,7 @@ def _draw_responses(
     over = style.over(free, math=True) if scale.factor is None else f"[{scale.unit.strip()}]"
     style.tidy(axes, y=f"rotation {over}, clockwise up")
     curves += _draw_impacts(axes, histories[best], until, len(histories))
-    return curves, [*points, *limits[:1]]
+    return [*curves, *points, *limits[:1]]
 
 
 def _draw_run(axes: Axes, run: History, scale: _Scale, until: float, *, told: bool) -> Line2D:
@@ -379,7 +370,7 @@ def _points(axes: Axes, run: History, scale: _Scale, until: float, watched: Watc
     if watched is not None:
         point = next(each for each in watched.peaks(run).points if each.name == watched.control)
         moved, unit = (point.horizontal, "m") if point.horizontal > 1 else (1000 * point.horizontal, "mm")
-        words += "" if isnan(moved) else f"\n{point.name} {moved:.3g} {unit}"
+        words += "" if isnan(moved) else f", {point.name} {moved:.3g} {unit}"
     k = _peak(run)
     yield mark(float(run.time[k]), float(scale.of(run)[k]), words, "o")
     if not run.at_rest:
@@ -448,4 +439,4 @@ def _draw_forces(axes: Axes, histories: Runs, watched: Watched) -> list[Line2D]:
         curves += axes.plot([], [], linestyle="none", label=f"the {MAX_TIES} strongest of {len(forces)} ties")
     axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
     style.tidy(axes, y="tie force [kN],\ntension up")
-    return [] if name_curves(axes, curves) else curves
+    return curves

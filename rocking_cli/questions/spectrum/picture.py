@@ -19,7 +19,6 @@ from rocking_cli import names
 from rocking_cli.arrays import Reals
 from rocking_cli.names import MIN_MOTIONS
 from rocking_cli.plotting import style
-from rocking_cli.plotting.curve_names import name_curves
 from rocking_cli.questions.spectrum.study import Spectrum
 
 MAX_NAME_LENGTH = 40  # characters of a structure's name in the legend
@@ -97,8 +96,7 @@ def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title:
     panels[-1].set_xlabel(style.folded(words, room, style.LABEL), fontsize=style.LABEL)
     _second_axis(panels[0], spectra, sizes, ends)
     handles = _legend(spectra, (low, high) if shaded else None, many=many)
-    named = name_curves(panels[0], curves)
-    style.legend_below(figure, handles if named else [*curves, *handles], handlelength=3.5)
+    style.legend_below(figure, [*curves, *handles], handlelength=3.5)
     return figure
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.arrays import Reals
 from rocking_cli.plotting import style
-from rocking_cli.plotting.mark_names import name_marks
+from rocking_cli.plotting.labels import name_marks
 from rocking_cli.questions.survey.structure_table import Coordinates
 from rocking_cli.questions.survey.study import Survey
 

@@ -21,10 +21,9 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_file import TEMPLATE_HINT, of_document
 from rocking_cli.errors import InputError, MechanismError, Problem, named
-from rocking_cli.io.dotted import closed, put, replace_at, words
 from rocking_cli.io.field_problems import by_meaning, fields_at, lists_models, types_at
 from rocking_cli.io.spreadsheet import DECIMAL_COMMA, NUMBER, THOUSANDS, Row, Spreadsheet, unit_in
-from rocking_cli.io.yaml_file import Document, Place, parse, read_text, spell
+from rocking_cli.io.yaml_file import Document, Place, closed, parse, put, read_text, replace_at, spell, words
 from rocking_cli.text import cut, did_you_mean, one_line
 
 if TYPE_CHECKING:
@@ -50,7 +49,7 @@ class FieldColumn:
     heading : str
         Heading of the column in the table.
     path : tuple of str
-        The field, see `rocking_cli.io.dotted`.
+        The field, see `rocking_cli.io.yaml_file`.
     unit : str
         Unit of numbers in the column that are given without a unit; empty for the unit of the field.
     """

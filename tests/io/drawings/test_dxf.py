@@ -12,6 +12,7 @@ from ezdxf.xclip import XClip
 
 from rocking_cli.io.drawings import dxf
 from rocking_cli.io.drawings.contract import DrawingError, OmittedKind
+from tests.io.drawings.areas import area
 
 HALF = 1.0  # bulge of half a circle
 QUARTER = tan(pi / 8)
@@ -55,15 +56,6 @@ def near(chain, points, bulges=None, closed=None):
     assert closed is None or chain.closed is closed
 
 
-def area(chain):
-    """Of corners and circular segments: of an arc r^2 (t - sin t)/2."""
-    z, side = chain.points, np.roll(chain.points, -1) - chain.points
-    turn = 4 * np.arctan(chain.bulges)
-    curved = np.abs(turn) > 0
-    radius = np.abs(side[curved]) / (2 * np.sin(np.abs(turn[curved]) / 2))
-    return 0.5 * (z.conj() * np.roll(z, -1)).imag.sum() + (radius**2 * (turn - np.sin(turn))[curved] / 2).sum()
-
-
 def refused(data, kind, words):
     with pytest.raises(DrawingError, match=words) as error:
         dxf.read(data, "wall.dxf")
@@ -71,8 +63,9 @@ def refused(data, kind, words):
     assert "wall.dxf: " in str(error.value)
 
 
-@pytest.mark.parametrize("binary", [False, True])
-@pytest.mark.parametrize("version", ["R12", "R2000", "R2004", "R2007", "R2010", "R2013", "R2018"])
+@pytest.mark.parametrize(
+    ("version", "binary"), [("R12", False), ("R12", True), ("R2000", True), ("R2007", False), ("R2018", True)]
+)
 def test_every_version_is_read_ascii_and_binary(version, binary):
     document, space = new(version)
     document.layers.add("Età di pietra")
@@ -190,13 +183,6 @@ class TestCurves:
         off = (chain.points.real - 3) ** 2 / 4 + (chain.points.imag - 1) ** 2 / 0.25
         assert np.abs(off - 1).max() < 5e-4
 
-    def test_part_of_an_ellipse_has_its_ends(self):
-        document, space = new()
-        space.add_ellipse((0, 0), (0, 2), 0.5, 0, pi / 2)
-        chain = only(read(document))
-        np.testing.assert_allclose([chain.points[0], chain.points[-1]], [2j, -1], atol=1e-12)
-        assert not chain.closed
-
     def test_an_ellipse_of_equal_axes_is_an_arc(self):
         document, space = new()
         space.add_ellipse((1, 0), (0, 2), 1, 0, pi / 2)
@@ -272,18 +258,6 @@ class TestHatches:
         assert [each.is_straightened for each in chains] == [False, False, True, True]
         assert sorted(np.abs(chains[0].bulges)) == pytest.approx([0, 0, 0, HALF])
         assert len(chains[0].points) == 4
-
-    def test_many_edges_in_disorder_make_one_loop(self):
-        """A circle of 2,000 edges, shuffled and turned round."""
-        random = np.random.default_rng(1)
-        z = np.exp(2j * pi * np.arange(2_001) / 2_000).tolist()
-        document, space = new()
-        path = space.add_hatch().paths.add_edge_path()
-        for k in random.permutation(2_000):
-            start, end = (z[k], z[k + 1]) if random.random() < 0.5 else (z[k + 1], z[k])
-            path.add_line((start.real, start.imag), (end.real, end.imag))
-        chain = only(read(document))
-        assert len(chain.points) == 2_000 and abs(area(chain)) == pytest.approx(pi, rel=1e-5)
 
 
 class TestInserts:
@@ -419,16 +393,9 @@ class TestTexts:
         data = written(*aligned, *aligned, "72 1", *aligned, "73 2", *aligned, "72 5")
         assert [each.at for each in dxf.read(data, "wall.dxf").labels] == [1 + 2j, 3 + 4j, 3 + 4j, 1 + 2j]
 
-    def test_markup_and_control_characters_stay(self):
-        data = written("0 LINE", "8 <b>\x1b[31m", "10 0", "20 0", "11 1", "21 0", "0 TEXT", "8 &x", "1 <script>\x07")
-        drawing = dxf.read(data, "wall.dxf")
-        assert only(drawing).layer == "<b>\x1b[31m" and drawing.labels[0].text == "<script>\x07"
-
     @pytest.mark.parametrize("page, encoding, name", [
         ("ANSI_1251", "cp1251", "\u043a\u0430\u043c\u0435\u043d\u044c"),
-        ("none", "cp1252", "città"),
         ("dos850", "cp850", "GEWÖLBE città"),
-        ("DOS866", "cp866", "\u043a\u0430\u043c\u0435\u043d\u044c"),
     ])  # fmt: skip
     def test_texts_are_in_the_code_page_of_the_file(self, page, encoding, name):
         head = ["0 SECTION", "2 HEADER", "9 $ACADVER", "1 AC1015", "9 $DWGCODEPAGE", f"3 {page}", "0 ENDSEC"]
@@ -437,9 +404,7 @@ class TestTexts:
 
 
 class TestUnits:
-    @pytest.mark.parametrize(
-        "number, unit", [(0, None), (1, "in"), (2, "ft"), (4, "mm"), (5, "cm"), (6, "m"), (14, "dm")]
-    )
+    @pytest.mark.parametrize("number, unit", [(0, None), (2, "ft"), (5, "cm"), (14, "dm")])
     def test_the_unit_is_that_of_the_file(self, number, unit):
         drawing = read(new(INSUNITS=number, MEASUREMENT=0)[0])
         assert (drawing.unit, drawing.doubt) == (unit, "")

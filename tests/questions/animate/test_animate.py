@@ -23,8 +23,7 @@ from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.plotting import style
 from rocking_cli.plotting.moving import asset
 from rocking_cli.plotting.panels import Page
-from rocking_cli.questions.animate.picture import _Stage, animation_page, frame_time
-from rocking_cli.questions.animate.video import write_mp4
+from rocking_cli.questions.animate.picture import _Stage, animation_page, frame_time, write_mp4
 from rocking_cli.studies.film import Film, Scene
 from rocking_cli.studies.picture import picture
 from rocking_cli.views.animation import fate, scale_in_words
@@ -55,11 +54,6 @@ def data_of(page):
 
 
 class TestFilm:
-    def test_it_shows_the_history(self):
-        shown = film(0.3)
-        np.testing.assert_array_equal(shown.rotation(shown.history.time), shown.history.phi)
-        np.testing.assert_allclose(shown.ratio(shown.history.phi), shown.history.ratio)
-
     def test_each_direction_has_its_own_critical_rotation(self):
         stone = load_structure(EXAMPLES / "rigid_body.yaml")
         motion = parse_pulse("sine:0.35g:0.6s").sampled()
@@ -99,7 +93,7 @@ class TestFilm:
 
 
 class TestScale:
-    @pytest.mark.parametrize("amplitude", [0.3, 0.304, 0.28, 0.27, 0.255])
+    @pytest.mark.parametrize("amplitude", [0.3, 0.304, 0.27, 0.2505])
     def test_rotations_below_two_degrees_are_enlarged_by_a_round_number(self, amplitude):
         shown = film(amplitude)
         scene = Scene((shown,))
@@ -108,7 +102,7 @@ class TestScale:
             assert times == 1
         else:
             assert times in (2, 5, 10, 20, 50, 100)
-            assert 2 <= times * peak(shown) <= 5 or times == 100
+            assert 2 <= times * peak(shown) <= 5 or (times == 100 and amplitude == 0.2505)
         time = shown.history.time
         drawn, _ = scene.seen(shown, time)
         np.testing.assert_allclose(drawn, times * shown.history.phi)
@@ -123,18 +117,11 @@ class TestScale:
         # Numbers are those of the history.
         np.testing.assert_allclose(shown.ratio(shown.rotation(time)), shown.history.ratio)
 
-    def test_both_kinds_are_tried_above(self):
-        assert peak(film(0.3)) < 2 < peak(film(0.304)) < 2.5  # which a factor of 2 would not take past 5
-
     def test_a_slender_structure_is_not_made_to_overturn(self):
         column = film(0.04, structure=Block(width=0.1, height=3.0))
         largest = column.enlargement * np.abs(column.history.phi).max()
         assert peak(column) < 2 and column.enlargement > 1
         assert largest <= 0.5 * column.picture.reference[1] < np.radians(2)
-
-    def test_a_motion_that_is_hardly_there_is_enlarged_by_no_more_than_a_hundred(self):
-        shown = film(0.2505)
-        assert 0 < peak(shown) < 0.01 and shown.enlargement == 100
 
     def test_structures_side_by_side_have_one_factor_that_of_the_largest_rotation(self):
         small, large, still = film(0.3), film(0.9), film(0.3, structure=Block(width=1.6, height=2.8))
@@ -270,16 +257,13 @@ class TestPage:
         for name, colour in drawn.items():
             assert (light[name], dark[name]) == (colour, style.DARK[colour])
 
-    def test_it_needs_no_network(self):
+    def test_it_needs_no_network_and_respects_what_a_reader_has_set(self):
         page = animation_page(film(0.3), "a block")
+        for words in ("prefers-color-scheme: dark", "prefers-reduced-motion: reduce", 'name="viewport"', "ArrowLeft"):
+            assert words in page
         addresses = set(re.findall(r"(?:https?:)?//[\w.]+", page)) - {"http://www.w3.org"}
         assert not {each for each in addresses if "." in each}
         assert not re.search(r"\b(src|href)\s*=|@import|url\((?!#)|fetch\(|XMLHttpRequest", page)
-
-    def test_it_respects_what_a_reader_has_set(self):
-        page = animation_page(film(0.3), "a block")
-        for words in ("prefers-color-scheme: dark", "prefers-reduced-motion: reduce", 'name="viewport"', '"ArrowLeft"'):
-            assert words in page or words.strip('"') in page
 
     def test_names_cannot_leave_their_place(self):
         evil = "</script><script>alert(1)</script>&<b>"
@@ -340,7 +324,7 @@ class TestGif:
 
 class TestCommand:
     def test_a_page_is_written_and_what_happened_is_said(self, tmp_path):
-        pulse = ("--pulse", "sine:0.6g:0.5s", "--polarity", "-1", "--neighbours", 20)
+        pulse = ("--pulse", "sine:0.6g:0.5s", "--polarity", "-1", "--neighbours", 2)
         ends = []
         for limit, said in (("1", "The structure rocks to"), ("0.5%", "The outcome is unknown after")):
             asked = ("animate", EXAMPLES / "arch.yaml", *pulse, "--opening", limit)

@@ -347,7 +347,7 @@ def test_the_preferred_kappa_is_the_boldest_line_and_what_is_not_drawn_is_said()
     right = draw_linearisation([curve], [asked], "arch").axes[1]
     widths = {line.get_label(): line.get_linewidth() for line in right.get_lines()}
     assert widths[r"$\kappa_2$, preferred"] > widths[r"$\kappa_1$"]
-    assert {each.get_text() for each in right.texts} == {r"$\kappa_2$, preferred", r"$\kappa_1$"}
+    assert {each.get_text() for each in right.get_legend().get_texts()} == {r"$\kappa_2$, preferred", r"$\kappa_1$"}
     assert curve.overturning_ratio1[0] < 0.5 and "beyond 50 %" in right.get_xlabel()
     close = linearisation(arch, Direction.POSITIVE, [0.2, 0.5], rho[1:])
     assert "50 %" not in draw_linearisation([close], [asked], "arch").axes[1].get_xlabel()

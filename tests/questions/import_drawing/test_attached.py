@@ -64,6 +64,12 @@ def test_a_tie_on_one_body_is_a_comment_and_one_that_nothing_stretches_has_a_hin
         )  # fmt: skip
 
 
+def test_a_mass_drawn_as_an_arrow_is_refused():
+    arrow, words_beside = line((2, 4.5), (2, 3.6), "CARICHI"), text("roof 3 t", 2, 4.5, "CARICHI")
+    with pytest.raises(DrawingError, match="3 t is a mass: draw it as a point, not as an arrow"):
+        imported(*PORTAL, arrow, labels=[words_beside], **WEIGHTS)
+
+
 def test_a_support_on_no_body_is_told_by_the_end_next_to_one():
     with pytest.raises(DrawingError, match=r"its nearer end is at \(5, 2.5\)") as caught:
         imported(*PORTAL, line((6, 2.5), (5, 2.5), "SOLAI"))

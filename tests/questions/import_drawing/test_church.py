@@ -11,7 +11,7 @@ from pytest import approx
 import rocking_cli as rk
 from rocking_cli import Registry
 from rocking_cli.core import Direction
-from rocking_cli.questions.import_drawing.roles import Role, role_of
+from rocking_cli.questions.import_drawing.legend import Role, role_of
 from tests.conftest import EXAMPLES, PROJECT
 
 CHURCH = EXAMPLES / "drawings" / "church.dxf"

@@ -10,8 +10,8 @@ import pytest
 from pytest import approx
 
 from rocking_cli.io.drawings.contract import DrawingError
+from rocking_cli.questions.import_drawing.legend import parse_layers
 from rocking_cli.questions.import_drawing.outlines import density_in
-from rocking_cli.questions.import_drawing.roles import parse_layers
 from rocking_cli.units import UnitError
 from tests.questions.import_drawing.sheets import box, imported, lambdas, line, outline, sides, words
 
@@ -105,7 +105,7 @@ def spoilt(way, seed):
 
 
 @pytest.mark.parametrize("way", WAYS)
-@pytest.mark.parametrize("seed", [*range(2), *(pytest.param(k, marks=pytest.mark.rest) for k in range(2, 25))])
+@pytest.mark.parametrize("seed", [0, *(pytest.param(k, marks=pytest.mark.rest) for k in range(1, 15))])
 def test_a_spoilt_section_keeps_its_lambda(way, seed):
     good, found, said = spoilt(way, seed)
     assert found == approx(good, rel=1e-6 if way not in LOOSE else 5e-3)

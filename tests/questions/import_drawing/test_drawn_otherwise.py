@@ -9,9 +9,10 @@ import pytest
 import rocking_cli as rk
 from rocking_cli.errors import InputError
 from rocking_cli.io.drawings.contract import DrawingError
+from rocking_cli.questions.import_drawing import outlines
+from rocking_cli.questions.import_drawing.legend import DrawingFrame
 from rocking_cli.questions.import_drawing.mortar import close_gaps
-from rocking_cli.questions.import_drawing.notes import DrawingFrame
-from rocking_cli.questions.import_drawing.outlines import MAX_BODIES, MAX_CORNERS, MAX_MEETING, DrawnBody
+from rocking_cli.questions.import_drawing.outlines import DrawnBody
 from rocking_cli.questions.import_drawing.rings import ArcRing
 from rocking_cli.questions.import_drawing.study import check_overlaps
 from tests.questions.import_drawing.sheets import box, imported, line, outline, text, words
@@ -92,6 +93,11 @@ def test_a_gap_is_not_closed_across_a_third_body():
     assert heights == [[0, 0.505], [0.505, 0.545], [0.545, 1.05]]
 
 
+def test_a_gap_above_the_ground_is_closed_by_the_body_alone():
+    found = imported(box(0, 0.008, 1, 1), line((-1, 0), (2, 0), "TERRENO"), merge_gap=0.012)
+    assert found.kind == "rigid_body" and {y for _, y in found.fields["polygon"]} == {-0.008, 1.0}
+
+
 def test_a_gap_wider_than_mortar_is_refused(tmp_path):
     (tmp_path / "a.csv").write_text("0,0\n1,0\n1,3\n0,3\n")
     with pytest.raises(InputError, match=r"12 is outside the supported range: 0 to 0.2 m"):
@@ -138,10 +144,12 @@ def test_without_shapely_the_package_to_install_is_named(monkeypatch, tmp_path):
     assert "rocking-cli[drawing]" in str(caught.value)
 
 
-def test_more_than_a_structure_file_holds_is_refused_at_once():
-    many = [box(0.01 * k, 0, 0.009, 1) for k in range(MAX_BODIES + 1)]
-    round_ = np.exp(2j * pi * np.arange(MAX_CORNERS + 1) / (MAX_CORNERS + 1))
-    for drawn, what in ((many, "10,001 outlines"), ([outline([(z.real, z.imag) for z in round_])], "10,001 corners")):
+def test_more_than_a_structure_file_holds_is_refused_at_once(monkeypatch):
+    for limit in ("MAX_BODIES", "MAX_CORNERS"):
+        monkeypatch.setattr(outlines, limit, 20)
+    many = [box(0.01 * k, 0, 0.009, 1) for k in range(21)]
+    round_ = np.exp(2j * pi * np.arange(21) / 21)
+    for drawn, what in ((many, "21 outlines"), ([outline([(z.real, z.imag) for z in round_])], "21 corners")):
         with pytest.raises(DrawingError, match=what) as caught:
             imported(*drawn)
         assert caught.value.refused == "too_large"
@@ -153,11 +161,12 @@ def test_lines_across_one_another_and_outlines_about_one_centre_are_refused_at_o
         imported(*(line((a.real, a.imag), (b.real, b.imag)) for a, b in ends))
     assert caught.value.refused == "too_large"
     with pytest.raises(DrawingError, match="lies within"):
-        imported(*(box(0.001 * k, 0.001 * k, 9 - 0.002 * k, 9 - 0.002 * k) for k in range(2000)))
+        imported(*(box(0.001 * k, 0.001 * k, 9 - 0.002 * k, 9 - 0.002 * k) for k in range(300)))
 
 
-def test_so_many_open_lines_that_they_are_not_searched_are_asked_about():
-    lines = [line((k, 0), (k + 0.5, 1), "RILIEVO") for k in range(MAX_MEETING + 1)]
+def test_so_many_open_lines_that_they_are_not_searched_are_asked_about(monkeypatch):
+    monkeypatch.setattr(outlines, "MAX_MEETING", 40)
+    lines = [line((k, 0), (k + 0.5, 1), "RILIEVO") for k in range(41)]
     with pytest.raises(DrawingError, match="RILIEVO"):
         imported(WALL, *lines)
     assert "left out" in words(imported(WALL, *lines[:20]))

@@ -14,8 +14,8 @@ import rocking_cli as rk
 from rocking_cli.core import Direction
 from rocking_cli.errors import InputError
 from rocking_cli.io.drawings.contract import DrawingError, DrawnLine
+from rocking_cli.questions.import_drawing.legend import role_of
 from rocking_cli.questions.import_drawing.rings import ArcRing
-from rocking_cli.questions.import_drawing.roles import role_of
 from tests.conftest import EXAMPLES
 from tests.questions.import_drawing.sheets import (
     box,
@@ -150,7 +150,7 @@ def test_a_flat_arc_adds_two_thirds_of_its_rise():
     assert ring.moments.area - 2 == approx(2 / 3 * 2 * 1e-5, rel=1e-9)
 
 
-@pytest.mark.parametrize("bulge", [0.01, 0.1, 0.4, 1.0, 2.5, -0.02, -0.3])
+@pytest.mark.parametrize("bulge", [0.01, 1.0, 2.5, -0.3])
 def test_moments_are_those_of_corners_and_segments(bulge):
     ring = ArcRing.of(np.array([0, 2, 2.2 + 1.5j, 0.3 + 1.2j]), np.array([0, bulge, 0, bulge / 2]))
     area, centroid, polar = moments_by_parts(ring)
@@ -165,12 +165,6 @@ def test_moments_are_those_of_corners_and_segments(bulge):
     level = ArcRing(ring.level(), np.zeros(len(ring.level())))
     assert level.moments.area == approx(ring.moments.area, rel=1e-12)
     assert level.moments.polar == approx(ring.moments.polar, rel=2e-6)
-
-
-def test_arcs_need_a_density_and_that_is_said():
-    with pytest.raises(DrawingError, match="has arcs") as caught:
-        imported(ROUND_TOP, box(0, -1, 1, 1))
-    assert caught.value.refused == "density"
 
 
 class TestLayers:
@@ -224,28 +218,6 @@ class TestMended:
         found = imported(box(0, 0, 0.25, 0.055), box(0, 0.0541, 0.25, 0.055))
         assert "2 sides moved to close gaps or overlaps of 0.9 mm" in words(found)
         assert found.bodies[0].ring.z.imag.max() == approx(0.05455) == found.bodies[1].ring.z.imag.min()
-
-    @pytest.mark.rest
-    def test_voussoirs_with_mortar_keep_their_arcs(self):
-        found = oppenheims_arch()
-        shrunk = []
-        for k in range(7):
-            chain = voussoir(k)
-            a, b = (radians(168.75 - 22.5 * j) for j in (k, k + 1))
-            z = chain.points.copy()
-            for j, at in ((0, a), (1, a), (2, b), (3, b)):
-                inwards = -1j * np.exp(1j * at) * (1 if at == a else -1)
-                radius = abs(z[j])
-                foot = z[j] + 0.005 * inwards
-                z[j] = foot / abs(foot) * radius
-            bulges = np.array([0.0, *[np.tan(np.angle(z[2] / z[1]) / 4)], 0.0, -np.tan(np.angle(z[3] / z[0]) / 4)])
-            shrunk.append(DrawnLine(z, bulges, True, "CONCI", "LWPOLYLINE"))
-        closed = imported(
-            *shrunk, springing(168.75), springing(11.25), density={"": 2400.0}, depth=1.0, merge_gap=0.012
-        )
-        assert lambdas(closed) == approx(lambdas(found), rel=1e-4)
-        areas = [body.moments.area for body in closed.bodies]
-        assert areas == approx([5.890486225] * 7, rel=2e-5)
 
 
 class TestAttached:

@@ -14,10 +14,9 @@ from rocking_cli.cli.main import main
 from rocking_cli.core.polygons import fault_of
 from rocking_cli.io.drawings.contract import DrawingError, MeshSurface
 from rocking_cli.questions.import_mesh import solid
-from rocking_cli.questions.import_mesh.foot import settled
 from rocking_cli.questions.import_mesh.options import MeshOptions
-from rocking_cli.questions.import_mesh.page import MAX_DRAWN, drawn_triangles, scene
-from rocking_cli.questions.import_mesh.picture import draw_compass
+from rocking_cli.questions.import_mesh.picture import MAX_DRAWN, draw_compass, drawn_triangles, scene
+from rocking_cli.questions.import_mesh.solid import settled
 from rocking_cli.questions.import_mesh.study import imported
 from rocking_cli.questions.import_mesh.view import data, sentences
 from tests.browser import launch, opened
@@ -203,11 +202,9 @@ def stack(*boxes):
      "would have lambda = 0.2 (0.64 m3 from 1 m above the ground)"),  # .2/1
     (stack(0.6, 0.2, 0.6), "2 parts rest on others and count as glued to them: the weakest alone, with all it carries, "
      "would not stand (0.64 m3"),  # on .2 m, with its centre of mass at .25 m
-    (several(stack(0.6), box((0.0, 0.0, 1.0009), (0.4, 0.8, 2.0009))), "lambda = 0.4 (0.32 m3 from 1 m"),
     (several(box((0, 0, 0), (0.4, 0.8, 1)), box((2, 0, 0), (2.4, 0.8, 1)), box((0, 0, 1), (2.4, 0.8, 1.5))),
      "lambda = 1.6 (0.96 m3"),  # a lintel, .4/.25 across
     (several(stack(0.6), box((0.0, 0.0, 1.01), (0.4, 0.8, 2.01))), None),
-    (several(stack(0.6), box((0.6, 0.0, 0.0), (1.0, 0.8, 2.0))), None),  # beside it
     (several(stack(0.6, 0.6), inwards(box((0.1, 0.1, 1.1), (0.5, 0.7, 1.5)))),
      f"lambda = {0.3 / ((0.48 * 0.5 - 0.096 * 0.3) / 0.384):.3g} (0.384 m3"),  # the upper one is hollow
 ])  # fmt: skip
@@ -220,14 +217,6 @@ def test_solids_that_rest_on_each_other_are_glued_and_the_upper_one_is_told(mesh
         assert words is None or words in said[0]
         assert ("parts" in kinds(found)) is bool(len(mesh[0]) > 8)
         assert found.whole.volume == pytest.approx(solid.moments(*mesh).volume)
-
-
-def test_points_of_no_face_do_not_count():
-    below = np.vstack([STATUE[0], [[0.0, 0.0, -0.5]]]), STATUE[1]
-    for options in ({}, {"hull": True}):
-        found = taken(below, **options)
-        assert (found.weakest.lambda_, found.whole.volume) == (pytest.approx(0.25), pytest.approx(1.152))
-        assert "1 point of no face is left out" in found.notes[0].words
 
 
 def test_shells_may_touch_but_not_cross():
@@ -354,14 +343,6 @@ class TestFiles:
         assert (len(names), names[:2], names[-1]) == (36, ["s-000.yaml", "s-010.yaml"], "s-350.yaml")
         assert rk.equiv("s-090.yaml").positive.lambda_ == pytest.approx(1 / 3, rel=1e-7)
 
-    def test_nothing_is_written_if_it_is_refused(self):
-        Path("open.obj").write_bytes(obj((STATUE[0], STATUE[1][1:])))
-        for path, options in (("open.obj", {"units": "m"}), ("statue.obj", {}), ("statue.obj", {"units": "m"})):
-            density = {"density": 2000.0} if path == "open.obj" else {}
-            with pytest.raises(DrawingError):
-                rk.import_mesh(path, out="o.yaml", page="o.html", **options, **density)
-        assert not [*Path().glob("o.*")]
-
     def test_units_are_needed_and_told_with_the_sizes(self):
         with pytest.raises(DrawingError) as caught:
             rk.import_mesh("statue.obj")
@@ -372,18 +353,12 @@ class TestFiles:
         ("options", "words"),
         [
             ({"units": "foot"}, "`units` must be one of m, mm"),
-            ({"up": "x"}, "`up` must be z or y"),
             ({"density": -1.0}, "`density` must be above 0"),
             ({"level": "-1 mm"}, "`level`: '-1 mm' is not positive"),
-            ({"level": "2 kg"}, "`level`"),
             ({"azimuth": "north"}, "`azimuth` is not a direction: 'north'"),
-            ({"azimuth": "90:0:10"}, "`azimuth`"),
+            ({"azimuth": "90:0:10"}, "'90:0:10' is not increasing"),
             ({"azimuth": "0:350:0.01"}, "has more than 720 directions"),
-            ({"azimuth": "0:1e6:1"}, "has more than 720 directions"),
             ({"azimuth": "inf"}, "or not finite ones"),
-            ({"azimuth": "0:inf:1"}, "`azimuth`"),
-            ({"page": "a.pdf"}, "does not end in .html"),
-            ({"out": "statue.obj"}, "does not end in .yaml or .yml"),
         ],
     )
     def test_wrong_arguments_are_refused_by_name(self, options, words):

@@ -167,7 +167,7 @@ class TestMap:
         (hatch,) = [each for each in axes.patches if each.get_hatch()]
         grey = [each for each in axes.patches if to_hex(each.get_facecolor()) == style.REGIONS["unknown"]]
         assert [each.get_path() for each in grey] == [hatch.get_path()]
-        assert "unknown" in [text.get_text() for text in axes.texts]
+        assert "unknown" in [text.get_text() for text in figure.legends[0].get_texts()]
         places = np.stack(np.meshgrid(plane.omega[1:-1], plane.a[1:-1]), axis=-1).reshape(-1, 2)
         inside = hatch.get_path().contains_points(places).reshape(plane.a.size - 2, -1)
         np.testing.assert_array_equal(inside, plane.outcome.unknown[1:-1, 1:-1])

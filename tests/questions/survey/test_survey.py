@@ -16,8 +16,8 @@ import pytest
 import rocking_cli as rk
 from rocking_cli.dynamics.parallel import in_processes
 from rocking_cli.errors import InputError, Refused
-from rocking_cli.io.dotted import HOLE, closed, put, words
 from rocking_cli.io.spreadsheet import parse_sheet
+from rocking_cli.io.yaml_file import HOLE, closed, put, words
 from rocking_cli.names import percent
 from rocking_cli.questions.survey.structure_table import StructureTable
 from rocking_cli.questions.survey.study import MadeStructure, SurveyResponse, survey
