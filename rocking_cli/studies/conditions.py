@@ -40,7 +40,10 @@ class Conditions:
     around : Neighbourhood
         The neighbours of every motion; a count of 0 for none.
     engine : {"exact", "blocks", "auto"}
-        Who simulates the motions.
+        Who simulates the motions: one degree of freedom, free blocks, or these where the former tells no outcome. Under
+        a single motion the former is simulated beside free blocks, as far as it can be.
+    goes_on : bool
+        Whether free blocks go on unasked where the outcome of a single motion is unknown, within `MOST_UNASKED_STEPS`.
     """
 
     structure: Structure
@@ -53,6 +56,7 @@ class Conditions:
     with_pulse: str | None = None
     around: Neighbourhood = field(default_factory=Neighbourhood)
     engine: EngineName = "exact"
+    goes_on: bool = False
 
     @cached_property
     def by(self) -> Engine:

@@ -28,7 +28,11 @@ MIN_OPENING = 1e-6  # share of D_cr: a smaller opening is reported as none
 # SMALL_PEAK_OPENING of D_cr.
 SMALL_PEAK, SMALL_PEAK_OPENING, SMALL_PEAK_ERROR = 0.02, 0.001, 0.2
 NEXT_STEP = "Next: {}`rocking margin` shows up to which scale factor the outcome is known. Under this motion, {}."
-CROSSCHECK = "`rocking crosscheck` simulates what happens from then on, as free blocks; "
+GO_ON = "`rocking respond` with the engine `auto` simulates what happens from then on, as free blocks; "
+ONE_SAMPLE = (
+    "`rocking margin` with the engine `{}` gives shares of neighbouring motions, as one history is one sample of a "
+    "chaotic motion."
+)
 OVERTURNS = "assume that it overturns"
 REMEDIES = {
     "hinge_at_joint": f"describe the structure as a linkage that hinges at the joint that opens, or {OVERTURNS}",
@@ -53,7 +57,9 @@ def unchecked(name: str = "", why: str = "it does not say which of them stay clo
     return f"Caution: {of}the joints of this mechanism are not checked: {why}."
 
 
-def joints_in_words(history: History, assumed_friction: float | None = None) -> str:
+def joints_in_words(
+    history: History, assumed_friction: float | None = None, blocks: History | None = None
+) -> str:  # fmt: skip
     """Return whether the joints hold in a nonlinear history, in words; empty if none could open, or none is checked.
 
     Parameters
@@ -63,6 +69,8 @@ def joints_in_words(history: History, assumed_friction: float | None = None) -> 
     assumed_friction : float, optional
         Friction that the joints require, if the structure gives none and it is more than masonry usually has. The
         result is then not called valid.
+    blocks : History, optional
+        History of free blocks, which go on where the outcome is unknown.
 
     Returns
     -------
@@ -73,9 +81,12 @@ def joints_in_words(history: History, assumed_friction: float | None = None) -> 
     check = history.check
     slides = [] if assumed_friction is None else [ASSUMED.format(assumed_friction, MASONRY_FRICTION)]
     if history.unmeasured:
-        return f"{_until(history)} Next: {REMEDIES[remedy(history)]}."
+        return f"{_until(history, blocks)} Next: {REMEDIES[remedy(history)]}."
+    if history.unknown and blocks is not None:
+        following = f"Next: {ONE_SAMPLE.format('auto')} By one degree of freedom alone, {REMEDIES[remedy(history)]}."
+        return " ".join([_until(history, blocks), *slides, following])
     if history.unknown:
-        following = NEXT_STEP.format(CROSSCHECK * history.witness, REMEDIES[remedy(history)])
+        following = NEXT_STEP.format(GO_ON * history.witness, REMEDIES[remedy(history)])
         return " ".join([_until(history), *slides, following])
     if check is None or history.slip:
         return " ".join(slides)
@@ -132,14 +143,19 @@ def why_unknown(history: History) -> str | None:
     return f"the joint between {check.joint} {does} {_small(check.limit * check.reach, 'm')} ({limit})"
 
 
-def unknown_after(history: History) -> str:
-    """Return the sentence that an outcome is unknown: until when it is known, and why not beyond."""
-    return f"The outcome is unknown after {history.known_to:.4g} s: then {why_unknown(history)}."
+def unknown_after(history: History, blocks: History | None = None) -> str:
+    """Return the sentence that an outcome is unknown: until when it is known, why not beyond, and what blocks do."""
+    sentence = f"The outcome is unknown after {history.known_to:.4g} s: then {why_unknown(history)}"
+    return f"{sentence}." if blocks is None else f"{sentence}; as free blocks, the structure {blocks_do(blocks)}."
 
 
-def _until(history: History) -> str:
+def _until(history: History, blocks: History | None = None) -> str:
     """Return until when a history is valid and why not beyond, in words, with the lower bound of the peak."""
-    sentence = f"{unknown_after(history)} The structure may overturn."
+    sentence = (
+        unknown_after(history, blocks)
+        if blocks is not None
+        else f"{unknown_after(history)} The structure may overturn."
+    )
     over = "its kinematic limit" if any(history.ends_at_limit) else "its critical rotation"
     if not history.peak_ratio:
         return f"{sentence} Until then it does not uplift."
@@ -176,17 +192,19 @@ def verdict(
     str
         A few sentences.
     """
-    if "blocks" in histories:
-        others: dict[ModelName, History] = {name: run for name, run in histories.items() if name != "blocks"}
-        first = [verdict(others, agreed, assumed_friction)] if others else []
-        run = histories["blocks"]
-        return " ".join([*first, f"As free blocks, the structure {blocks_do(run)}."])
+    blocks = histories.get("blocks")
+    histories = {name: run for name, run in histories.items() if name != "blocks"}
+    if not histories:
+        assert blocks is not None
+        return f"As free blocks, the structure {blocks_do(blocks)}."
     best: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
     run = histories[best]
     by = "" if best == "nonlinear" or len(histories) == 1 else f"By {best} the"
     sentences = [] if run.unknown else [f"{by or 'The'} structure {ends(run)}."]
     if run.unknown or (best == "nonlinear" and run.check is not None):
-        sentences += filter(None, [joints_in_words(run, assumed_friction)])
+        sentences += filter(None, [joints_in_words(run, assumed_friction, blocks)])
+    if blocks is not None and not run.unknown:
+        sentences.append(f"As free blocks, it {blocks_do(blocks)}.")
     if (run.unknown or run.slip) and len(histories) > 1:
         sentences += [NO_JOINTS] if run.bound is None else []
     else:

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, ClassVar, Literal, TypedDict, Unpack
 
 from rocking_cli.arrays import Reals
 from rocking_cli.dynamics.batch import Runs
-from rocking_cli.dynamics.history import History
-from rocking_cli.dynamics.model import Model, ModelName
+from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.excitation.base import GroundMotion
 
 if TYPE_CHECKING:
-    from rocking_cli.studies.conditions import Conditions
+    pass
 
 EngineName = Literal["exact", "blocks", "auto"]
 
@@ -33,23 +32,6 @@ class Engine(ABC):
     """An engine: who simulates the motion of a structure."""
 
     name: ClassVar[EngineName]
-
-    @abstractmethod
-    def respond(self, conditions: Conditions, motion: GroundMotion | None = None) -> Mapping[ModelName, History]:
-        """Simulate models of a structure under a motion; errors are those of `exact.follow`.
-
-        Parameters
-        ----------
-        conditions : Conditions
-            The structure and the conditions of the run.
-        motion : GroundMotion, optional
-            The motion, scaled and reversed; None for a release alone.
-
-        Returns
-        -------
-        mapping of str to History
-            History of each model, in their order; that of free blocks has the model "blocks".
-        """
 
     @abstractmethod
     def outcomes(

@@ -12,7 +12,7 @@ from rocking_cli.core import Direction
 from rocking_cli.dynamics import history
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import History
-from rocking_cli.dynamics.model import MODELS, Model, ModelName
+from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
@@ -22,7 +22,7 @@ from rocking_cli.studies.engines.contract import Engine, EngineName, RunOptions
 from rocking_cli.studies.engines.free_blocks import free_blocks
 
 if TYPE_CHECKING:
-    from rocking_cli.studies.conditions import Conditions
+    pass
 
 
 def follow(
@@ -96,17 +96,6 @@ class Exact(Engine):
     """The engine of one degree of freedom."""
 
     name: ClassVar[EngineName] = "exact"
-
-    def respond(self, conditions: Conditions, motion: GroundMotion | None = None) -> dict[ModelName, History]:
-        """Simulate models of a structure, each by `follow`."""
-        models, of = conditions.models, conditions
-        unknown = [name for name in models if name not in MODELS]
-        if unknown or not models:
-            raise InputError(f"models must be of {', '.join(MODELS)}, got {', '.join(unknown) or 'none'}")
-        return {
-            name: follow(of.structure, motion, model=name, release=of.release, tail=of.tail, rtol=of.rtol)
-            for name in models
-        }
 
     def outcomes(
         self,

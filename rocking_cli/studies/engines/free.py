@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from hashlib import sha256
-from math import nan
+from math import inf, nan
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, ClassVar, Unpack
+from typing import Any, ClassVar, Unpack
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from rocking_cli.arrays import Bools, Reals
 from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.batch import Runs
 from rocking_cli.dynamics.history import BlockPeaks, History, contact_lost
-from rocking_cli.dynamics.model import Model, ModelName
+from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcome, Outcomes
 from rocking_cli.dynamics.parallel import MAX_PROCESSES, in_processes
 from rocking_cli.dynamics.sliding import Slid
@@ -25,21 +25,28 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.names import TAIL_SECONDS
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import memory
-from rocking_cli.studies.engines.blocks import SUNK, BlockModel, BlockMotion
+from rocking_cli.studies.engines.blocks import STEPS, SUNK, BlockModel, BlockMotion, time_constant
 from rocking_cli.studies.engines.contract import Engine, EngineName, RunOptions
 from rocking_cli.studies.engines.exact import EXACT, check_motion
 from rocking_cli.studies.engines.free_blocks import FreeBlocks, free_blocks
 from rocking_cli.studies.engines.scene import engine_version
-
-if TYPE_CHECKING:
-    from rocking_cli.studies.conditions import Conditions
 
 FINER = (1.0, 2.0, 4.0)  # by how much contacts are stiffer than by the rule: the next if a body sank too deep
 MEASURED = 1.0  # s of a motion that are simulated to measure how long the others will take
 MOVED = 1e-3  # rotation over the critical one from which a structure has uplifted
 
 
-def simulate(free: FreeBlocks, models: dict[float, BlockModel], motion: GroundMotion | None, **how: Any) -> BlockMotion:
+class TooLong(SolverError):
+    """More steps than a simulation may take."""
+
+
+def simulate(
+    free: FreeBlocks,
+    models: dict[float, BlockModel],
+    motion: GroundMotion | None,
+    most_steps: float = inf,
+    **how: Any,
+) -> BlockMotion:
     """Simulate free blocks, with stiffer contacts if a body sinks too deep.
 
     Parameters
@@ -48,15 +55,29 @@ def simulate(free: FreeBlocks, models: dict[float, BlockModel], motion: GroundMo
         The blocks.
     models : dict of float to BlockModel
         Models of these blocks by the stiffness of their contacts, which this call adds to.
+    most_steps : float
+        Largest number of time steps, times the number of blocks, of all attempts together.
     motion, **how
         See `BlockModel.simulate`.
+
+    Raises
+    ------
+    TooLong
+        If it takes more steps.
     """
+    lasts = motion.duration if motion is not None else 0.0
     for finer in FINER:
+        seconds = most_steps / len(free.bodies) * time_constant(free) / (finer * STEPS)
+        if lasts > seconds:
+            raise TooLong("a simulation takes too many steps")
         if finer not in models:
             models[finer] = BlockModel(free, finer)
-        moved = models[finer].simulate(motion, **how)
+        moved = models[finer].simulate(motion, most=seconds, **how)
+        if moved.ended_early:
+            raise TooLong("a simulation takes too many steps")
         if not moved.failed:
             break
+        most_steps *= 1 - float(moved.time[-1]) / seconds
     return moved
 
 
@@ -153,16 +174,6 @@ class Blocks(Engine):
         engine_version()
         self.mechanisms = tuple(mechanisms)
 
-    def respond(self, conditions: Conditions, motion: GroundMotion | None = None) -> dict[ModelName, History]:
-        """Simulate one motion of a structure as free blocks, which are one model and need no tolerance.
-
-        Restitution is what contact gives: that of the structure has no effect.
-        """
-        structure, release, tail = conditions.structure, conditions.release, conditions.tail
-        check_motion(structure, motion, release, tail)
-        history, _, _ = self.follow(structure, motion, release=release, tail=tail)
-        return {"blocks": history}
-
     def follow(
         self,
         structure: Structure,
@@ -170,22 +181,28 @@ class Blocks(Engine):
         *,
         release: float | None = None,
         tail: float = TAIL_SECONDS,
-        progress: Callable[[float], None] | None = None,
+        most_steps: float = inf,
     ) -> tuple[History, BlockMotion, FreeBlocks]:
         """Return the history of a structure as free blocks, with the motion of the blocks, and the blocks.
+
+        They are one model and need no tolerance; restitution is what contact gives, and that of the structure has no
+        effect. Parameters are those of `exact.follow` and `simulate`.
 
         Raises
         ------
         InputError
-            If the structure has something that free blocks cannot have.
+            As `exact.follow`, or if the structure has something that free blocks cannot have.
+        TooLong
+            If it takes more than `most_steps`.
         SolverError
             If the blocks do not stand by themselves, a step diverges, or a body sinks too deep into another.
         """
+        check_motion(structure, motion, release, tail)
         with structure.named():
             free = free_blocks(structure.mechanism)
             model = structure.model("nonlinear") if structure.no_model is None else None
             start = _start(structure.mechanism, free, model.phi_cr, release or 0.0) if model is not None else None
-            moved = simulate(free, {}, motion, start=start, tail=tail, friction=True, progress=progress)
+            moved = simulate(free, {}, motion, most_steps, start=start, tail=tail, friction=True)
         if moved.failed:
             raise SolverError(f"{structure.name}: free blocks failed at {moved.time[-1]:.4g} s: {moved.failed}")
         return history_of(moved, free, model, motion), moved, free
@@ -234,13 +251,6 @@ class Auto(Engine):
 
     def __init__(self, mechanisms: Sequence[Mechanism] = ()) -> None:
         self.free = Blocks(mechanisms)
-
-    def respond(self, conditions: Conditions, motion: GroundMotion | None = None) -> Mapping[ModelName, History]:
-        """Simulate models of a structure, and free blocks if the outcome of the nonlinear one is unknown."""
-        histories = EXACT.respond(conditions, motion)
-        if "nonlinear" not in histories or not histories["nonlinear"].unknown:
-            return histories
-        return {**histories, **self.free.respond(conditions, motion)}
 
     def outcomes(
         self,

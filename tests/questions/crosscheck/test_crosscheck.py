@@ -7,14 +7,14 @@ from math import cos, isnan, nan, sin
 import numpy as np
 import pytest
 from PIL import Image
+from rocking_cli.questions.crosscheck.film import scene_of
+from rocking_cli.questions.crosscheck.study import joints_of
 
 import rocking_cli as rk
 from rocking_cli.ask.inputs import structure_of
 from rocking_cli.core import Direction
 from rocking_cli.questions.crosscheck import study
-from rocking_cli.questions.crosscheck.film import scene_of
 from rocking_cli.questions.crosscheck.picture import draw_crosscheck
-from rocking_cli.questions.crosscheck.study import joints_of
 from rocking_cli.questions.crosscheck.view import verdict
 from rocking_cli.studies.engines import scene as engine
 from rocking_cli.studies.engines.blocks import BlockMotion
