@@ -93,7 +93,7 @@ FOR_KEYS = (
     "selfcheck --quick --json",
     "completion bash --json",
     "new block --json",
-    "crosscheck examples/masonry/portal.yaml --pulse sine:0.6g:0.2s --json",
+    "respond examples/masonry/portal.yaml --pulse sine:0.6g:0.2s --engine blocks --json",
     "animate examples/block.yaml --pulse ricker:0.4g:1s --out moving.html --json",
     "select examples/accel.csv --target examples/target.csv --count 1 --band 0.2:2 --json",
     "overturning examples/block.yaml --points 5 --json",

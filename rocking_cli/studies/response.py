@@ -9,6 +9,8 @@ from functools import cached_property
 from math import inf, isnan
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.dynamics.verdict import Agreement, agreements, remedy
@@ -234,11 +236,14 @@ def histories(
     from rocking_cli.studies.engines.free import Blocks, TooLong
 
     unasked = engine == "exact"
-    most = MOST_UNASKED_STEPS / len(conditions.signs) if unasked else inf
+    most, tail = MOST_UNASKED_STEPS / len(conditions.signs) if unasked else inf, conditions.tail
+    if nonlinear is not None:  # they are followed until they are at rest, and as long as what is known of the other
+        last = float(nonlinear.time[np.isfinite(nonlinear.phi)][-1])
+        tail = max(0.0, last - (motion.duration if motion is not None else 0.0))
     try:
         with working("simulating free blocks"):
             blocks, moved, free = Blocks().follow(
-                structure, motion, release=conditions.release, tail=0.0 if unasked else conditions.tail, most_steps=most
+                structure, motion, release=conditions.release, tail=tail, most_steps=most
             )
     except (InputError, SolverError) as error:
         if not unasked:

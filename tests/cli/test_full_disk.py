@@ -28,7 +28,6 @@ LINES = {
     "select": f"{ACCEL} {ACROSS} --target {EXAMPLES / 'target.csv'} --band 0.2:2 --count 1",
     "respond": f"{BLOCK} {PULSE} --neighbours 0",
     "margin": f"{BLOCK} {PULSE} --neighbours 2",
-    "crosscheck": f"{BLOCK} {PULSE}",
     "verify": f"{BLOCK} --site {SITE}",
     "demand": f"{SITE}",
     "survey": "survey.csv",

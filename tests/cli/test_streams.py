@@ -45,7 +45,6 @@ LINES = {
     "margin": f"{BLOCK_FILE} --record {ACCEL} --neighbours 3",
     "report": f"{BLOCK_FILE} --out r.html",
     "": "--help",
-    "crosscheck": f"{BLOCK_FILE} --record gone.csv",
     "spectrum": f"{UNDER}",
 }
 """A command line of each command, those that take longest in short."""

@@ -8,7 +8,6 @@ import time
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
-from importlib.util import find_spec
 from pkgutil import resolve_name
 
 import numpy as np
@@ -199,10 +198,6 @@ FRAMES = {
         "model; azimuth [deg]; pga_g [g]; peak_ratio; overturned; unknown; known_to [s]",
         {"pga_g [g]": lambda _, data: data["pga_g"]},
     ),
-    "crosscheck": (
-        "engine; t [s]; a_g [g]; phi [rad]; phi_ratio",
-        {"phi [rad]": lambda answer, _: [*answer.extended(answer.exact.phi), *answer.of_blocks.phi]},
-    ),
     "animate": ("t [s]; phi [rad]", {"phi [rad]": lambda answer, _: answer.film.history.phi}),
     "pulse": (
         "polarity; model; peak_ratio; outcome",
@@ -321,8 +316,6 @@ def name_of(head):
 def test_every_frame_has_its_columns_and_the_numbers_of_its_answer(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for verb, (heads, numbers) in FRAMES.items():
-        if verb == "crosscheck" and find_spec("mujoco") is None:
-            continue
         kept = {"store": "in.runs"} if verb == "fragility" else {}  # for `results`
         answer = getattr(rk, verb)(**QUESTIONS[verb], **kept)
         frame, data = answer.to_frame(), answer.to_dict()
@@ -349,7 +342,7 @@ def test_every_frame_has_its_columns_and_the_numbers_of_its_answer(tmp_path, mon
 
 GRIDS = {
     "respond": {"model", "t"}, "respond_each": {"model", "structure", "motion", "scale"},
-    "respond_around": {"model", "azimuth"}, "crosscheck": {"engine", "t"}, "spectrum": {"structure", "motion", "size"},
+    "respond_around": {"model", "azimuth"}, "spectrum": {"structure", "motion", "size"},
     "overturning_map": {"ag", "period"}, "overturning": {"ag", "period"}, "overturning_curves": {"structure", "period"},
     "margin": {"motion", "scale"}, "error": {"direction", "kappa", "amplitude", "acceleration"},
     "equivalent_pulses": {"structure", "p_t"}, "response_spectrum": {"motion", "period"}, "demand": {"state", "period"},
@@ -362,8 +355,6 @@ GRIDS = {
 @pytest.mark.parametrize("verb", GRIDS)
 def test_every_grid_is_its_frame_as_labelled_arrays(verb, tmp_path, monkeypatch):
     pytest.importorskip("xarray")
-    if verb == "crosscheck":
-        pytest.importorskip("mujoco", reason="free blocks need mujoco")
     monkeypatch.chdir(tmp_path)
     answer = getattr(rk, verb)(**QUESTIONS[verb])
     frame, arrays = answer.runs() if verb == "fragility" else answer.to_frame(), answer.to_xarray()
@@ -607,8 +598,6 @@ MODULES = (
 @pytest.mark.parametrize("name", MODULES)
 def test_examples_in_docstrings_run(name, monkeypatch):
     monkeypatch.chdir(PROJECT)
-    if "crosscheck" in name:
-        pytest.importorskip("mujoco", reason="free blocks need mujoco")
     found = doctest.testmod(import_module(f"rocking_cli{name}"))
     assert found.attempted > 0 and found.failed == 0
 

@@ -23,8 +23,8 @@ from rocking_cli.questions.margin.study import FACTORS, SHARE_LEVELS, Margin, ma
 from rocking_cli.questions.margin.view import in_words
 from rocking_cli.structure import Structure, build_models
 from rocking_cli.studies.conditions import Conditions
-from rocking_cli.studies.engines import EXACT
 from rocking_cli.studies.neighbours import Neighbourhood
+from rocking_cli.studies.response import of_one_degree
 from tests.cli.test_cli import run, run_json, some
 from tests.conftest import EXAMPLES
 from tests.following import build_model, conditions
@@ -46,7 +46,7 @@ def alone(mechanism, motion, factor, slender, etas):
         given = {"positive_to_negative": etas[0], "negative_to_positive": etas[1]}
         data = {**mechanism.model_dump(), "restitution": given}
         SINGLE[key] = Structure(type(mechanism).model_validate(data))
-    return EXACT.respond(Conditions(SINGLE[key], ("nonlinear",)), motion.scaled(factor / slender))["nonlinear"]
+    return of_one_degree(Conditions(SINGLE[key], ("nonlinear",)), motion.scaled(factor / slender))["nonlinear"]
 
 
 def share(mechanism, motion, factor, polarities, around=AROUND):

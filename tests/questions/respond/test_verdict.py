@@ -410,7 +410,7 @@ def test_a_release_without_a_known_restitution_ends_at_its_first_impact(block):
     phi = start * (1 - s**2)  # in s the integrand 1/rate has no singularity
     time = float(np.sum(weight * 2 * start * s / rate(phi)))
 
-    answer = rk.respond(block, release=0.5)
+    answer = rk.respond(block, release=0.5, engine="exact")
     assert list(answer.result) == ["nonlinear"]  # linear blocks have no first impact to stop at
     found = answer["nonlinear"]
     assert found.unknown and found.unmeasured and not found.apart and found.impact_count == 1
@@ -421,7 +421,7 @@ def test_a_release_without_a_known_restitution_ends_at_its_first_impact(block):
     said = " ".join(each for each in answer.view.parts if isinstance(each, str))
     assert f"unknown after {time:.4g} s: then it has an impact, and its restitution is not known." in said
     assert "Next: give a measured `restitution` (or `rebound`)." in said and "rocking margin" not in said
-    assert answer.to_dict()["conclusion"]["next"] == ["give_restitution", "crosscheck"]
+    assert answer.to_dict()["conclusion"]["next"] == ["give_restitution", "free_blocks"]
     with pytest.raises(rk.InputError, match=r"restitution|rebound"):  # a ground motion goes on after impacts
         rk.respond(block, "sine:0.5g:0.5s", neighbours=0)
     with pytest.raises(rk.InputError, match=r"restitution|rebound"):
