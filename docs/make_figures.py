@@ -37,8 +37,8 @@ from rocking_cli.plotting import style
 from rocking_cli.plotting.structure import draw_at_rest
 from rocking_cli.questions.error.study import linearisation
 from rocking_cli.structure import Structure
-from rocking_cli.studies.conditions import Conditions
 from rocking_cli.studies.engines import EXACT
+from rocking_cli.studies.neighbours import Conditions
 from rocking_cli.studies.picture import picture
 
 Reals = NDArray[np.float64]

@@ -2,7 +2,7 @@
 
 from rocking_cli.names import OPENING
 from rocking_cli.structure import Structure
-from rocking_cli.studies.conditions import Conditions
+from rocking_cli.studies.neighbours import Conditions
 from rocking_cli.studies.response import histories, of_one_degree
 
 _recent: list[Structure] = []

@@ -10,7 +10,7 @@ from pandas import factorize
 from xarray import Dataset, Variable, merge
 
 from rocking_cli.io.tables import column_of
-from rocking_cli.views.long_names import long_name
+from rocking_cli.views.column import long_name
 
 Parted = tuple[Mapping[str, Any], Mapping[str, str]]
 """Columns by name, and the units of those that have one."""

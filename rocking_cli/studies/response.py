@@ -28,10 +28,9 @@ from rocking_cli.studies.conclusion import (
     are_alike,
     worst,
 )
-from rocking_cli.studies.conditions import Conditions
 from rocking_cli.studies.contact import ContactDemand, Contacts
 from rocking_cli.studies.engines import follow
-from rocking_cli.studies.neighbours import Neighbours, neighbours
+from rocking_cli.studies.neighbours import Conditions, Neighbours, neighbours
 
 if TYPE_CHECKING:
     from rocking_cli.studies.both_engines import BothEngines
@@ -136,8 +135,8 @@ class Response(Mapping[ModelName, History]):
         The pulse fitted to the motion, and the response to this pulse alone.
     engines : mapping of int to BothEngines
         The comparison of both engines, under each polarity with free blocks beside one degree of freedom.
-    missing : mapping of int to str
-        Why one of both engines is missing though the other is not enough, under each polarity where this is so.
+    no_blocks : mapping of int to str
+        Why free blocks did not go on where the outcome is unknown, under each polarity where this is so.
     """
 
     given: Scaled | None
@@ -148,7 +147,7 @@ class Response(Mapping[ModelName, History]):
     fit: PulseFit | None = None
     to_pulse: Response | None = None
     engines: Mapping[int, BothEngines] = field(default_factory=dict)
-    missing: Mapping[int, str] = field(default_factory=dict)
+    no_blocks: Mapping[int, str] = field(default_factory=dict)
 
     @cached_property
     def conclusions(self) -> Mapping[int, Conclusion]:
@@ -217,17 +216,10 @@ def histories(
     BothEngines or None
         The comparison of both engines, if both simulated the motion.
     str
-        Why one of them is missing though the other is not enough; empty if it is not.
+        Why free blocks did not go on where the outcome is unknown; empty if they did, or need not.
     """
     structure, engine = conditions.structure, conditions.engine
-    exact, why = dict[ModelName, History](), ""
-    if engine == "exact" or structure.no_model is None:
-        try:
-            exact = of_one_degree(conditions, motion)
-        except InputError as error:  # such as that its restitution is not known, which has no effect on free blocks
-            if engine != "blocks":
-                raise
-            why = f"one degree of freedom cannot be simulated: {error}"
+    exact = of_one_degree(conditions, motion) if engine == "exact" or structure.no_model is None else {}
     nonlinear = exact.get("nonlinear")
     unknown = nonlinear is not None and nonlinear.unknown
     if (engine == "exact" and not (unknown and conditions.goes_on)) or (engine == "auto" and exact and not unknown):
@@ -251,7 +243,7 @@ def histories(
         failed = f"free blocks fail: {error}" if isinstance(error, SolverError) else ""
         return exact, None, f"free blocks take more than {most:,.0f} steps" if isinstance(error, TooLong) else failed
     both = compare(structure.mechanism, nonlinear, blocks, moved, free) if nonlinear is not None else None
-    return {**exact, "blocks": blocks}, both, why
+    return {**exact, "blocks": blocks}, both, ""
 
 
 def response_of(
@@ -285,5 +277,5 @@ def response_of(
     return Response(
         given=scaled, first=first, runs=runs, neighbours=neighbours_of, contacts=checked(runs, under), fit=fit,
         to_pulse=to_pulse, engines={sign: both for sign, (_, both, _) in simulated.items() if both is not None},
-        missing={sign: why for sign, (_, _, why) in simulated.items() if why},
+        no_blocks={sign: why for sign, (_, _, why) in simulated.items() if why},
     )  # fmt: skip

@@ -21,19 +21,17 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.structure import Structure
-from rocking_cli.studies.conditions import Conditions
 from rocking_cli.studies.movements import Movements, PointPeak, TiePeak, Watched
+from rocking_cli.studies.neighbours import Conditions
 from rocking_cli.studies.response import ByPolarity, Histories, Response
-from rocking_cli.views import processing
 from rocking_cli.views.cautions import bound_data, cautions_of
 from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
 from rocking_cli.views.conclusion import conclusion_data, governing_polarity, headline, next_in_words
-from rocking_cli.views.contact import contact_data, contact_words
 from rocking_cli.views.engines import agreement, engines_data, engines_in_words, joints_across, joints_shown
 from rocking_cli.views.neighbours import neighbours_data, neighbours_in_words
 from rocking_cli.views.restitution import restitution_data, restitution_used
-from rocking_cli.views.verdict import ONE_SAMPLE, SENSE, unchecked, verdict, why_unknown
-from rocking_cli.views.view import Table, View, force_unit, in_degrees, number
+from rocking_cli.views.verdict import ONE_SAMPLE, SENSE, contact_data, contact_words, unchecked, verdict, why_unknown
+from rocking_cli.views.view import Table, View, force_unit, in_degrees, number, processing_data
 
 Reals = NDArray[np.float64]
 MAX_LISTED_IMPACTS = 12  # number of impacts of a model in its table; the data have all
@@ -82,7 +80,7 @@ def _motion_data(motion: GroundMotion) -> dict[str, Any]:
         "unit": motion.source_unit,
         "pga_g": motion.of_ground.pga_g,
         "format": motion.format,
-        **processing.data(motion),
+        **processing_data(motion),
     }
 
 
@@ -129,7 +127,7 @@ def runs_data(
         for sign, data in each.items():
             both_engines = found.engines.get(int(sign))
             data["engines"] = both_engines and engines_data(both_engines, found.contacts[int(sign)], structure)
-            data["missing_engine"] = found.missing.get(int(sign))
+            data["no_blocks"] = found.no_blocks.get(int(sign))
     both = {"polarities": each, "governs": found.conclusion.polarity}
     return {"conclusion": conclusion_data(found.conclusion)} | (each.popitem()[1] if len(each) == 1 else both)
 
@@ -423,8 +421,8 @@ def _tables(
             if not both.exact.unknown:
                 parts.append(f"Next: {ONE_SAMPLE.format('blocks')}")
             parts += [] if conditions.goes_on else joints_shown(both, conditions.structure.opening)
-        if sign in found.missing:
-            parts.append(f"{found.missing[sign][:1].upper()}{found.missing[sign][1:]}.")
+        if sign in found.no_blocks:
+            parts.append(f"{found.no_blocks[sign][:1].upper()}{found.no_blocks[sign][1:]}.")
         if sign in found.neighbours:
             following = "" if end.remedy else next_in_words(end)
             parts.append(f"{neighbours_in_words(found.neighbours[sign])} {following}".rstrip())

@@ -21,7 +21,7 @@ from rocking_cli.dynamics.tables import DirectionTable
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import Structure, build_models
-from rocking_cli.studies.conditions import Conditions
+from rocking_cli.studies.neighbours import Conditions
 from rocking_cli.studies.response import of_one_degree
 from tests.following import respond
 from tests.reference_history import Linear, Nonlinear

@@ -590,7 +590,7 @@ MODULES = (
     ".structure",
     ".units",
     ".views.column",
-    ".views.long_names",
+    ".views.column",
 )
 
 

@@ -297,10 +297,10 @@ def test_a_design_by_the_code_uses_the_limit_state_that_governs_and_no_mechanism
 def test_every_next_step_has_words_and_says_what_the_result_needs():
     assert set(NEXT_STEPS) == {*NextStep}
     unknown = Conclusion(concluded=Concluded.UNKNOWN, remedy=NextStep.HOLD_JOINT, witness=True)
-    assert unknown.next == [NextStep.HOLD_JOINT, NextStep.CROSSCHECK, NextStep.MARGIN]
+    assert unknown.next == [NextStep.HOLD_JOINT, NextStep.FREE_BLOCKS, NextStep.MARGIN]
     assert replace(unknown, ratio=1.2).next == [
         NextStep.HOLD_JOINT,
-        NextStep.CROSSCHECK,
+        NextStep.FREE_BLOCKS,
     ]  # a margin need not name itself
     assert replace(unknown, witness=False).next == [NextStep.HOLD_JOINT, NextStep.MARGIN]
     fails = Conclusion(concluded=Concluded.NOT_SATISFIED, method="nonlinear", ratio=0.8)

@@ -18,8 +18,7 @@ from rocking_cli.core.structure_file import load_structure
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies import contact
 from rocking_cli.studies.contact import Contacts, _stretches
-from rocking_cli.views.contact import contact_columns, contact_words
-from rocking_cli.views.verdict import joints_in_words
+from rocking_cli.views.verdict import contact_columns, contact_words, joints_in_words
 from rocking_cli.views.view import number
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES

@@ -10,8 +10,7 @@ import pytest
 from rocking_cli import GroundMotion, Registry
 from rocking_cli.errors import InputError
 from rocking_cli.structure import Structure
-from rocking_cli.studies.conditions import Conditions
-from rocking_cli.studies.neighbours import Neighbourhood, neighbours
+from rocking_cli.studies.neighbours import Conditions, Neighbourhood, neighbours
 from rocking_cli.views.neighbours import deviations
 
 NORMAL = NormalDist()

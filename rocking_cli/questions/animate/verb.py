@@ -85,9 +85,9 @@ def animate(asked: AnimateAsked, watch: Watcher) -> Answer[Animation] | Answers[
     >>> f"{answer.film.history.peak_ratio:.4g}"
     '0.1315'
     """
-    from rocking_cli.studies.conditions import Conditions
     from rocking_cli.studies.contact import Contacts
     from rocking_cli.studies.engines import follow
+    from rocking_cli.studies.neighbours import Conditions
     from rocking_cli.studies.neighbours import neighbours as outcomes
     from rocking_cli.studies.picture import picture
     from rocking_cli.views import animation as views

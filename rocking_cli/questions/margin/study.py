@@ -18,10 +18,9 @@ from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.conclusion import LEAST_SHARE, Conclusion, NeighbourShare
-from rocking_cli.studies.conditions import Conditions
 from rocking_cli.studies.engines import EngineName
 from rocking_cli.studies.intervals import wilson
-from rocking_cli.studies.neighbours import Draws, Neighbourhood, least_uplift, simulate_neighbours
+from rocking_cli.studies.neighbours import Conditions, Draws, Neighbourhood, least_uplift, simulate_neighbours
 from rocking_cli.studies.response import concluded, histories
 
 SHARE_LEVELS = (LEAST_SHARE, 0.5, 0.9)

@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rocking_cli.questions.record import response_spectrum_view as spectra
 from rocking_cli.short_repr import short_repr
-from rocking_cli.views import processing
 from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
-from rocking_cli.views.view import ABSENT, Table, number
+from rocking_cli.views.view import ABSENT, Table, number, processing_data
 
 if TYPE_CHECKING:
     from rocking_cli.excitation.base import Doubt, GroundMotion
@@ -93,7 +92,7 @@ MEASURED: tuple[Column[Examined], ...] = (
 
 def data(record: Examined) -> dict[str, Any]:
     """Return a record as plain data."""
-    entry = data_of(AS_READ, record) | processing.data(record.motion) | data_of(MEASURED, record)
+    entry = data_of(AS_READ, record) | processing_data(record.motion) | data_of(MEASURED, record)
     entry["warnings"] = [doubt._asdict() for doubt in record.doubts]
     if record.pulses:
         from rocking_cli.questions.record.pulse_fits import fits_data

@@ -23,7 +23,7 @@ from rocking_cli.questions.overturning.study import OverturningMap, overturning_
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Conclusion, worst
-from rocking_cli.studies.conditions import Conditions
+from rocking_cli.studies.neighbours import Conditions
 from rocking_cli.studies.picture import Picture, picture
 from rocking_cli.studies.provenance import File, TitleBlock, file_of_motion, versions
 from rocking_cli.studies.response import Response, of_one_degree, response_of

@@ -61,7 +61,7 @@ def report(asked: ReportAsked, watch: Watcher) -> Answer[Assessment]:
     from rocking_cli.questions.report.study import count_steps, gather
     from rocking_cli.questions.report.view import view
     from rocking_cli.questions.verify import sheets
-    from rocking_cli.studies.conditions import Conditions
+    from rocking_cli.studies.neighbours import Conditions
     from rocking_cli.verification.check import refuse
     from rocking_cli.verification.results import Histories
     from rocking_cli.views.sheet.build import sheet_of

@@ -14,13 +14,13 @@ from rocking_cli.questions.report.words import PACKAGE, context, language_of
 from rocking_cli.studies.conclusion import worst
 from rocking_cli.studies.movements import Watched
 from rocking_cli.verification.results import Verification
-from rocking_cli.views import processing, verification
+from rocking_cli.views import verification
 from rocking_cli.views.conclusion import conclusion_data, headline, of_verification
 from rocking_cli.views.response import fit_data, runs_data
 from rocking_cli.views.sheet import template
 from rocking_cli.views.sheet.document import Sentence, SheetPart
 from rocking_cli.views.sheet.language import Language
-from rocking_cli.views.view import View
+from rocking_cli.views.view import View, processing_data
 
 
 def view(content: Assessment, verified: Verification | None = None, language: str = "en") -> View:
@@ -61,7 +61,7 @@ def view(content: Assessment, verified: Verification | None = None, language: st
                 "sha256": each.file.checksum if each.file else None,
                 "factor": each.given.factor,
                 "pga_g": each.pga_of_ground,
-                **processing.data(each.motion),
+                **processing_data(each.motion),
                 "headline": f"{headline(each.conclusion, over)}{' (close)' if each.close else ''}",
                 "unknown": each.unknown,
                 "answers": _by_heading(said("answers", result=each, key="")),

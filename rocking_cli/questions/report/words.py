@@ -30,12 +30,11 @@ from rocking_cli.text import in_short
 from rocking_cli.verification.results import MINUS, Verification
 from rocking_cli.views.cautions import before_rocking, cautions_of
 from rocking_cli.views.conclusion import NEXT_STEPS, counted, does, headline, next_in_words
-from rocking_cli.views.contact import contact_words
 from rocking_cli.views.neighbours import deviations, neighbours_in_words
 from rocking_cli.views.restitution import restitution_used
 from rocking_cli.views.sheet.language import Language, plain
 from rocking_cli.views.sheet.template import guarded
-from rocking_cli.views.verdict import blocks_in_words, ends, joints_in_words, why_unknown
+from rocking_cli.views.verdict import blocks_in_words, contact_words, ends, joints_in_words, why_unknown
 from rocking_cli.views.view import force_unit
 
 PACKAGE = "rocking_cli.questions.report"

@@ -25,7 +25,7 @@ from rocking_cli.io.tables import stacked
 from rocking_cli.questions.respond.asked import RespondEachAsked
 from rocking_cli.questions.respond.each import FAILED, OUTCOMES, RunGrid, columns, labelled_columns
 from rocking_cli.studies.intervals import fractile
-from rocking_cli.views.long_names import long_name
+from rocking_cli.views.column import long_name
 from rocking_cli.views.view import View
 
 if TYPE_CHECKING:

@@ -14,21 +14,19 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import digits_apart, peaks_over
 from rocking_cli.studies.conclusion import Conclusion
-from rocking_cli.studies.conditions import Conditions
 from rocking_cli.studies.contact import ContactDemand
 from rocking_cli.studies.movements import Movements, Watched
-from rocking_cli.studies.neighbours import Neighbourhood, Neighbours
+from rocking_cli.studies.neighbours import Conditions, Neighbourhood, Neighbours
 from rocking_cli.studies.response import Histories, Response, best_model
 from rocking_cli.text import in_short
 from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.column import Column, frame_of, of, only_shown, table_of
 from rocking_cli.views.conclusion import MAX_NAMED_MOTIONS, counted
-from rocking_cli.views.contact import contact_words
 from rocking_cli.views.engines import engines_in_words
 from rocking_cli.views.neighbours import deviations, neighbour_columns
 from rocking_cli.views.response import apart, model_heads, models_used
 from rocking_cli.views.restitution import heading_of_run, restitution_used
-from rocking_cli.views.verdict import GO_ON, unchecked, unknown_after
+from rocking_cli.views.verdict import GO_ON, contact_words, unchecked, unknown_after
 from rocking_cli.views.view import ABSENT, Table, number
 
 

@@ -22,8 +22,7 @@ from rocking_cli.questions.respond.asked import NOT_OF_BLOCKS, WITH_BLOCKS, Resp
 from rocking_cli.questions.respond.history_table import GROUND
 from rocking_cli.questions.respond.motion_verbs import all_directions, with_vertical
 from rocking_cli.structure import Structure
-from rocking_cli.studies.conditions import Conditions
-from rocking_cli.studies.neighbours import Neighbourhood
+from rocking_cli.studies.neighbours import Conditions, Neighbourhood
 from rocking_cli.studies.response import Response, response_of
 from rocking_cli.views.restitution import heading_of_run
 from rocking_cli.views.view import Table
@@ -103,8 +102,10 @@ def _prepared(asked: RespondAsked, watch: Watcher) -> _Run:
     if engine in WITH_BLOCKS and structure.no_model is not None:
         asked.refuse(f"as {structure.no_model}", NOT_OF_BLOCKS)
         engine, around = "blocks", Neighbourhood(0)
-    else:
-        models = ("nonlinear",) if engine in WITH_BLOCKS else asked.models(()) or usual_models(structure, watch)
+    models: tuple[ModelName, ...] = ("nonlinear",)
+    if engine == "exact":
+        models = asked.models(()) or usual_models(structure, watch)
+    if structure.no_model is None or engine == "exact":
         structure.models(models)
     conditions = Conditions(
         structure, models, asked.signs, asked.ratio(structure), getattr(asked.release, "is_angle", False), asked.tail,

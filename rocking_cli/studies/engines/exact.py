@@ -1,13 +1,15 @@
-"""The engine of one degree of freedom: the joints of the mechanism open and close, all others are only checked."""
+"""The contract of engines, and that of one degree of freedom, whose joints but those that open are only checked."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from math import isfinite
-from typing import TYPE_CHECKING, ClassVar, Unpack
+from typing import ClassVar, Literal, TypedDict, Unpack
 
+from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction
 from rocking_cli.dynamics import history
 from rocking_cli.dynamics.batch import Runs, respond_many
@@ -18,11 +20,35 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.names import RTOL, TAIL_SECONDS
 from rocking_cli.structure import Structure
-from rocking_cli.studies.engines.contract import Engine, EngineName, RunOptions
 from rocking_cli.studies.engines.free_blocks import free_blocks
 
-if TYPE_CHECKING:
-    pass
+EngineName = Literal["exact", "blocks", "auto"]
+
+
+class RunOptions(TypedDict, total=False):
+    """Options of many motions, see `respond_many`."""
+
+    release: float | Reals | None
+    threads: int | None
+    rtol: float
+    only_peaks: bool
+    progress: Callable[[int], None] | None
+
+
+class Engine(ABC):
+    """An engine: who simulates the motion of a structure."""
+
+    name: ClassVar[EngineName]
+
+    @abstractmethod
+    def outcomes(
+        self,
+        models: Sequence[Model],
+        motions: Sequence[GroundMotion | None],
+        runs: Runs,
+        **options: Unpack[RunOptions],
+    ) -> Outcomes:
+        """Simulate many motions; parameters and errors are those of `respond_many`."""
 
 
 def follow(

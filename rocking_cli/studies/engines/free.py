@@ -26,8 +26,7 @@ from rocking_cli.names import TAIL_SECONDS
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import memory
 from rocking_cli.studies.engines.blocks import STEPS, SUNK, BlockModel, BlockMotion, time_constant
-from rocking_cli.studies.engines.contract import Engine, EngineName, RunOptions
-from rocking_cli.studies.engines.exact import EXACT, check_motion
+from rocking_cli.studies.engines.exact import EXACT, Engine, EngineName, RunOptions, check_motion
 from rocking_cli.studies.engines.free_blocks import FreeBlocks, free_blocks
 from rocking_cli.studies.engines.scene import engine_version
 

@@ -22,8 +22,7 @@ from rocking_cli.questions.margin.picture import draw_margins
 from rocking_cli.questions.margin.study import FACTORS, SHARE_LEVELS, Margin, margin
 from rocking_cli.questions.margin.view import in_words
 from rocking_cli.structure import Structure, build_models
-from rocking_cli.studies.conditions import Conditions
-from rocking_cli.studies.neighbours import Neighbourhood
+from rocking_cli.studies.neighbours import Conditions, Neighbourhood
 from rocking_cli.studies.response import of_one_degree
 from tests.cli.test_cli import run, run_json, some
 from tests.conftest import EXAMPLES
