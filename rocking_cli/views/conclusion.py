@@ -293,7 +293,10 @@ def conclusion_data(end: Conclusion) -> dict[str, Any]:
     data = {key: list(each) if key in lists else None if each == "" else each for key, each in asdict(end).items()}
     data["left_out"] = [each._asdict() for each in end.left_out]
     data["share"] = end.share._asdict() if end.share is not None else None
-    data["blocks"] = end.blocks._asdict() if end.blocks is not None else None
+    if end.blocks is None:
+        del data["blocks"]
+    else:
+        data["blocks"] = end.blocks._asdict()
     data["limits"] = [{"key": each.key, "effect": each.effect, "text": limit_in_words(each)} for each in end.limits]
     del data["remedy"], data["witness"]
     data["next"] = list(end.next)
