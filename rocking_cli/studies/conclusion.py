@@ -92,11 +92,7 @@ OF_VERIFICATION = {
     Concluded.UNKNOWN: NextStep.RESPOND,
     Concluded.NOT_CHECKED: NextStep.SITE_VALUES,
 }
-OF_LEFT_OUT = {
-    "tie": NextStep.YIELD_FORCE,
-    "motion": NextStep.MORE_MOTIONS,
-    "mechanism": NextStep.FIRST_MECHANISM,
-}
+OF_LEFT_OUT = {"tie": NextStep.YIELD_FORCE, "motion": NextStep.MORE_MOTIONS, "mechanism": NextStep.FIRST_MECHANISM}
 
 
 class LeftOut(NamedTuple):

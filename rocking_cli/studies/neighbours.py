@@ -117,9 +117,7 @@ class Neighbourhood:
             for eta, most in zip(model.eta, model.most_eta, strict=True)
         ]
         return Draws(
-            np.exp(self.amplitude * _normal(amplitude)),
-            1 + model.weight_share * (wide - 1),
-            np.stack(etas, axis=-1),
+            np.exp(self.amplitude * _normal(amplitude)), 1 + model.weight_share * (wide - 1), np.stack(etas, axis=-1)
         )
 
 

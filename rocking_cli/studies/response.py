@@ -19,15 +19,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulse_fit import FITTED, PulseFit, fit_pulses
 from rocking_cli.processing.listed import Scaled
 from rocking_cli.short_repr import short_repr
-from rocking_cli.studies.conclusion import (
-    ByBlocks,
-    Concluded,
-    Conclusion,
-    NeighbourShare,
-    NextStep,
-    are_alike,
-    worst,
-)
+from rocking_cli.studies.conclusion import ByBlocks, Concluded, Conclusion, NeighbourShare, NextStep, are_alike, worst
 from rocking_cli.studies.contact import ContactDemand, Contacts
 from rocking_cli.studies.engines import follow
 from rocking_cli.studies.neighbours import Conditions, Neighbours, neighbours
@@ -194,9 +186,7 @@ def of_one_degree(conditions: Conditions, motion: GroundMotion | None = None) ->
 
 
 def histories(
-    conditions: Conditions,
-    motion: GroundMotion | None = None,
-    working: Working = lambda what: nullcontext(),
+    conditions: Conditions, motion: GroundMotion | None = None, working: Working = lambda what: nullcontext()
 ) -> tuple[Histories, BothEngines | None, str]:
     """Simulate one motion by the engines that are asked for, or needed.
 
@@ -247,9 +237,7 @@ def histories(
 
 
 def response_of(
-    conditions: Conditions,
-    scaled: Scaled | None,
-    working: Working = lambda what: nullcontext(),
+    conditions: Conditions, scaled: Scaled | None, working: Working = lambda what: nullcontext()
 ) -> Response:
     """Simulate models of a structure under a motion, or freely from a release, and return all results.
 

@@ -14,6 +14,7 @@ from typing import Any, Generic, TypeVar
 from rocking_cli.views.view import ABSENT, Table, number
 
 R = TypeVar("R")
+P = TypeVar("P")
 of = attrgetter
 LONG_NAMES = {
     "a": "amplitude of the pulse over the uplift acceleration",
@@ -112,6 +113,15 @@ def only_shown(
 ) -> Column[R]:
     """Return a column that only terminals and pages have; `how` has `text` and `words`."""
     return Column(None, of, unit, head, form, None, **how)
+
+
+def of_part(columns: Iterable[Column[P]], part: Callable[[R], P | None]) -> list[Column[R]]:
+    """Return the columns of a part of rows as columns of the rows, as they are shown; a row may have no such part."""
+
+    def value_in(column: Column[P]) -> Callable[[R], Any]:
+        return lambda row: None if (there := part(row)) is None else column.of(there)
+
+    return [only_shown(each.head, value_in(each), each.form, each.unit, text=each.text) for each in columns]
 
 
 def text_columns(*heads: str) -> list[Column[Sequence[str]]]:

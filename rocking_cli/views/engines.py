@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from math import isnan, nan
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -16,7 +16,7 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies.contact import ContactDemand
 from rocking_cli.studies.engines import Engine, EngineName
 from rocking_cli.studies.engines.free_blocks import COLLAPSE
-from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_of
+from rocking_cli.views.column import Column, data_of, of, of_part, only_shown, rounded, table_of
 from rocking_cli.views.verdict import ends, unknown_after
 from rocking_cli.views.view import Table, number
 
@@ -147,15 +147,10 @@ def _joints_of(both: BothEngines, demand: ContactDemand) -> dict[EngineName, Joi
     }
 
 
-def joints_across(both: BothEngines, demand: ContactDemand) -> Iterator[Column[History]]:
-    """Yield the columns of what each engine finds at the joints, in a table of histories."""
+def joints_across(both: BothEngines, demand: ContactDemand) -> list[Column[History]]:
+    """Return the columns of what each engine finds at the joints, in a table of histories."""
     sides = _joints_of(both, demand)
-
-    def of_run(column: Column[JointsOfEngine]) -> Callable[[History], Any]:
-        return lambda run: column.of(sides["blocks" if run.by_blocks else "exact"])
-
-    for column in OF_ENGINE:
-        yield only_shown(column.head, of_run(column), column.form, column.unit, text=column.text)
+    return of_part(OF_ENGINE, lambda run: sides["blocks" if run.by_blocks else "exact"])
 
 
 def _length(value: float, reach: float) -> str:

@@ -25,7 +25,7 @@ from rocking_cli.studies.movements import Movements, PointPeak, TiePeak, Watched
 from rocking_cli.studies.neighbours import Conditions
 from rocking_cli.studies.response import ByPolarity, Histories, Response
 from rocking_cli.views.cautions import bound_data, cautions_of
-from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
+from rocking_cli.views.column import Column, data_of, of, of_part, only_shown, rounded, table_across, table_of
 from rocking_cli.views.conclusion import conclusion_data, governing_polarity, headline, next_in_words
 from rocking_cli.views.engines import agreement, engines_data, engines_in_words, joints_across, joints_shown
 from rocking_cli.views.neighbours import neighbours_data, neighbours_in_words
@@ -245,14 +245,22 @@ def _columns(*, unknown: bool = False, slides: bool = False, over: str = "phi_cr
     ]
 
 
+def _in_degrees(phi: float) -> str:
+    return number(degrees(phi), 4)
+
+
+def _in_millimetres(moved: float) -> str:
+    return number(1e3 * moved, 4)
+
+
 BLOCKS: tuple[Column[BlockPeaks], ...] = (
     Column("falls", lambda blocks: blocks.fell or None),
     Column("falls_off", lambda blocks: blocks.off or None),
-    Column("rotation", lambda blocks: blocks.turned[0], "rad"),
+    Column("rotation", lambda blocks: blocks.turned[0], "deg", "peak rotation of a block", _in_degrees),
     Column("rotation_of", lambda blocks: blocks.turned[1]),
-    Column("displacement", lambda blocks: blocks.moved[0], "m"),
+    Column("displacement", lambda blocks: blocks.moved[0], "mm", "displacement of a block", _in_millimetres),
     Column("displacement_of", lambda blocks: blocks.moved[1]),
-    Column("residual", lambda blocks: blocks.left[0], "m"),
+    Column("residual", lambda blocks: blocks.left[0], "mm", "its displacement at rest", _in_millimetres),
     Column("residual_of", lambda blocks: blocks.left[1] or None),
 )
 POINTS: tuple[Column[PointPeak], ...] = (
@@ -265,10 +273,7 @@ SLIP: tuple[Column[Slid], ...] = (
     Column("residual", of("residual"), "m", "slip at the end", rounded(4)),
     Column("path", of("path"), "m", "length of the path of the slip", rounded(4)),
 )
-TIES: tuple[Column[TiePeak], ...] = (
-    Column("peak_force", of("force")),
-    Column("peak_elongation", of("elongation")),
-)
+TIES: tuple[Column[TiePeak], ...] = (Column("peak_force", of("force")), Column("peak_elongation", of("elongation")))
 
 
 class Impact(NamedTuple):
@@ -295,14 +300,7 @@ def _impacts(impacts: Reals, etas: tuple[float, float]) -> Iterator[Impact]:
         yield Impact(time, Direction(int(sign)), rate, etas[0 if sign > 0 else 1] * rate)
 
 
-def view(
-    found: Response,
-    conditions: Conditions,
-    title: str,
-    doubts: Sequence[str] = (),
-    *,
-    impacts: bool,
-) -> View:
+def view(found: Response, conditions: Conditions, title: str, doubts: Sequence[str] = (), *, impacts: bool) -> View:
     """Show the responses to one motion.
 
     Parameters
@@ -448,9 +446,9 @@ def outcome_table(
     slides = any(run.slip for run in runs)
     columns = [
         *_columns(unknown=unknown, slides=slides, over=over),
-        *(_slips() if slides else ()),
+        *(of_part(SLIP, of("slid")) if slides else ()),
         *_movements({run.model: watched.peaks(run) for run in runs if run.model != "blocks"}),
-        *(_of_blocks() if any(run.blocks is not None for run in runs) else ()),
+        *(of_part(BLOCKS, of("blocks")) if any(run.blocks is not None for run in runs) else ()),
     ]
     if sign in found.contacts:
         per, unit = force_unit(watched.mechanism)
@@ -466,16 +464,6 @@ def outcome_table(
         for head, run in zip(model_heads(found.runs[sign], unknown=unknown), runs, strict=True)
     ]
     return table_across(title, columns, heads, runs)
-
-
-def _slips() -> Iterator[Column[History]]:
-    """Yield the columns of the slip of a body that only slides."""
-
-    def of_run(column: Column[Slid]) -> Callable[[History], float | None]:
-        return lambda run: column.of(run.slid) if run.slid is not None else None
-
-    for column in SLIP:
-        yield only_shown(column.head, of_run(column), column.form, column.unit)
 
 
 def model_heads(models: Iterable[str], *, unknown: bool) -> list[str]:
@@ -504,17 +492,6 @@ def _movements(moved: Mapping[str, Movements]) -> Iterator[Column[History]]:
     for k, tie in enumerate(any_model.ties):
         yield only_shown(f"{tie.name}, force", peak("ties", k, "force", 1e-3), rounded(4), "kN")
         yield only_shown(f"{tie.name}, elongation", peak("ties", k, "elongation", 1e3), rounded(4), "mm")
-
-
-def _of_blocks() -> Iterator[Column[History]]:
-    """Yield the columns of the largest movements of free blocks."""
-
-    def cell(show: Callable[[BlockPeaks], float]) -> Callable[[History], float | None]:
-        return lambda run: None if run.blocks is None else show(run.blocks)
-
-    yield only_shown("peak rotation of a block", cell(lambda blocks: degrees(blocks.turned[0])), rounded(4), "deg")
-    yield only_shown("displacement of a block", cell(lambda blocks: 1e3 * blocks.moved[0]), rounded(4), "mm")
-    yield only_shown("its displacement at rest", cell(lambda blocks: 1e3 * blocks.left[0]), rounded(4), "mm")
 
 
 def _impact_table(title: str, history: History, etas: tuple[float, float]) -> list[Table | str]:

@@ -186,9 +186,7 @@ def _small(value: float, unit: str) -> str:
 
 
 def verdict(
-    histories: Mapping[ModelName, History],
-    agreed: Mapping[ModelName, Agreement],
-    assumed_friction: float | None = None,
+    histories: Mapping[ModelName, History], agreed: Mapping[ModelName, Agreement], assumed_friction: float | None = None
 ) -> str:
     """Return whether a structure uplifts, how far it rocks, whether it overturns, and which model to trust, in words.
 

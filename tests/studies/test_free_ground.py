@@ -111,8 +111,7 @@ def test_plinth_and_vase_slide_and_stay(file):
 @pytest.mark.rest
 @needs_findings
 @pytest.mark.parametrize(
-    ("amplitude", "period"),
-    [(0.5, 2), (1, 1), (1.5, 1), (0.7, 2), (1, 2), (0.3, 2), (0.5, 1), (0.7, 1), (1, 0.5)],
+    ("amplitude", "period"), [(0.5, 2), (1, 1), (1.5, 1), (0.7, 2), (1, 2), (0.3, 2), (0.5, 1), (0.7, 1), (1, 0.5)]
 )
 def test_the_cube_slides_as_far_as_the_pulse_carries_it(amplitude, period):
     structure, motion = structure_of(FINDINGS / "cube.yaml"), sine(amplitude, period)

@@ -160,11 +160,7 @@ def view(structure: Structure, found: AzimuthResponses, doubts: Iterable[str] = 
         f"{found.azimuths[1] - found.azimuths[0]:g} degrees. PGA {found.pga_g.min():.3g} to {found.pga_g.max():.3g} g, "
         f"the largest at {found.azimuths[found.pga_g.argmax()]:g} degrees."
     )
-    parts: list[Table | str] = [
-        heading_of_run(structure),
-        sentence,
-        table_of("", models, rows),
-    ]
+    parts: list[Table | str] = [heading_of_run(structure), sentence, table_of("", models, rows)]
     parts += [f"{name}: {in_words(found, each)}" for name, each in found.outcomes.items()]
     parts += [restitution_used(structure)] if structure.restitution is not None else []
     parts += [] if found.checked else [unchecked(why=structure.mechanism.unchecked)]

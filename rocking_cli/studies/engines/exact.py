@@ -42,11 +42,7 @@ class Engine(ABC):
 
     @abstractmethod
     def outcomes(
-        self,
-        models: Sequence[Model],
-        motions: Sequence[GroundMotion | None],
-        runs: Runs,
-        **options: Unpack[RunOptions],
+        self, models: Sequence[Model], motions: Sequence[GroundMotion | None], runs: Runs, **options: Unpack[RunOptions]
     ) -> Outcomes:
         """Simulate many motions; parameters and errors are those of `respond_many`."""
 
@@ -124,11 +120,7 @@ class Exact(Engine):
     name: ClassVar[EngineName] = "exact"
 
     def outcomes(
-        self,
-        models: Sequence[Model],
-        motions: Sequence[GroundMotion | None],
-        runs: Runs,
-        **options: Unpack[RunOptions],
+        self, models: Sequence[Model], motions: Sequence[GroundMotion | None], runs: Runs, **options: Unpack[RunOptions]
     ) -> Outcomes:
         """Simulate many motions, see `respond_many`."""
         return respond_many(models, motions, runs, **options)

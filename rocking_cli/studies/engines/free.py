@@ -40,11 +40,7 @@ class TooLong(SolverError):
 
 
 def simulate(
-    free: FreeBlocks,
-    models: dict[float, BlockModel],
-    motion: GroundMotion | None,
-    most_steps: float = inf,
-    **how: Any,
+    free: FreeBlocks, models: dict[float, BlockModel], motion: GroundMotion | None, most_steps: float = inf, **how: Any
 ) -> BlockMotion:
     """Simulate free blocks, with stiffer contacts if a body sinks too deep.
 
@@ -207,11 +203,7 @@ class Blocks(Engine):
         return history_of(moved, free, model, motion), moved, free
 
     def outcomes(
-        self,
-        models: Sequence[Model],
-        motions: Sequence[GroundMotion | None],
-        runs: Runs,
-        **options: Unpack[RunOptions],
+        self, models: Sequence[Model], motions: Sequence[GroundMotion | None], runs: Runs, **options: Unpack[RunOptions]
     ) -> Outcomes:
         """Simulate many motions in processes; those that fail are of unknown outcome.
 
@@ -252,11 +244,7 @@ class Auto(Engine):
         self.free = Blocks(mechanisms)
 
     def outcomes(
-        self,
-        models: Sequence[Model],
-        motions: Sequence[GroundMotion | None],
-        runs: Runs,
-        **options: Unpack[RunOptions],
+        self, models: Sequence[Model], motions: Sequence[GroundMotion | None], runs: Runs, **options: Unpack[RunOptions]
     ) -> Outcomes:
         """Simulate many motions; each outcome states its engine."""
         progress, release = options.pop("progress", None), options.get("release")

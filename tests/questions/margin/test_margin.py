@@ -107,9 +107,7 @@ def test_a_reversed_motion_is_followed_only_where_it_can_add_something(monkeypat
     followed, done = [], []
     simulate = margins.simulate_neighbours
     monkeypatch.setattr(
-        margins,
-        "simulate_neighbours",
-        lambda *a, **k: followed.append(len(a[2].amplitude)) or simulate(*a, **k),
+        margins, "simulate_neighbours", lambda *a, **k: followed.append(len(a[2].amplitude)) or simulate(*a, **k)
     )
     motion = parse_pulse("sine:0.8g:0.5s").sampled()
     around = Neighbourhood(20, 0.02, 0.02, 0.0)
