@@ -10,7 +10,8 @@ import rocking_cli as rk
 from rocking_cli.ask.inputs import structure_of
 from rocking_cli.dynamics.batch import Runs
 from rocking_cli.errors import KeptWarning
-from rocking_cli.studies.engines import blocks, engine_of, memory, scene
+from rocking_cli.studies.engines import blocks, engine_of, scene
+from rocking_cli.studies.engines import free as memory
 from rocking_cli.studies.engines.free_blocks import free_blocks
 from rocking_cli.views.view import Table
 from tests.conftest import EXAMPLES

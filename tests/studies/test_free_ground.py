@@ -11,7 +11,8 @@ import rocking_cli as rk
 from rocking_cli.ask.inputs import structure_of
 from rocking_cli.dynamics.batch import Runs
 from rocking_cli.errors import StructureError
-from rocking_cli.studies.engines import blocks, engine_of, memory
+from rocking_cli.studies.engines import blocks, engine_of
+from rocking_cli.studies.engines import free as memory
 from rocking_cli.studies.engines.blocks import BlockModel
 from rocking_cli.studies.engines.free_blocks import FARTHEST_GROUND, HalfPlane, free_blocks
 from tests.conftest import EXAMPLES, RECORDS, SHARED

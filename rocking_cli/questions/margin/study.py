@@ -19,7 +19,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.conclusion import LEAST_SHARE, Conclusion, NeighbourShare
 from rocking_cli.studies.engines import EngineName
-from rocking_cli.studies.intervals import wilson
+from rocking_cli.studies.fit import wilson
 from rocking_cli.studies.neighbours import Conditions, Draws, Neighbourhood, least_uplift, simulate_neighbours
 from rocking_cli.studies.response import concluded, histories
 

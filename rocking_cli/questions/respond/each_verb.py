@@ -24,7 +24,7 @@ from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.io.tables import stacked
 from rocking_cli.questions.respond.asked import RespondEachAsked
 from rocking_cli.questions.respond.each import FAILED, OUTCOMES, RunGrid, columns, labelled_columns
-from rocking_cli.studies.intervals import fractile
+from rocking_cli.studies.fit import fractile
 from rocking_cli.views.column import long_name
 from rocking_cli.views.view import View
 
