@@ -34,7 +34,7 @@ ByPolarity = Mapping[int, Histories]
 
 # Word that requests the best-fitting pulse.
 BEST_PULSE = "best"
-MOST_UNASKED_STEPS = 650_000  # steps of free blocks, times their number, that are simulated without being asked for
+MOST_UNASKED_STEPS = 650_000  # steps of free blocks, times their number, that are simulated without a request
 
 
 def concluded(runs: ByPolarity, neighbours: Mapping[int, Neighbours], motion: str = "") -> Conclusion:
@@ -188,7 +188,7 @@ def of_one_degree(conditions: Conditions, motion: GroundMotion | None = None) ->
 def histories(
     conditions: Conditions, motion: GroundMotion | None = None, working: Working = lambda what: nullcontext()
 ) -> tuple[Histories, BothEngines | None, str]:
-    """Simulate one motion by the engines that are asked for, or needed.
+    """Simulate one motion by the engines that are requested, or needed.
 
     Parameters
     ----------

@@ -114,7 +114,7 @@ def _near(given: Mapping[str, Any], *, as_json: bool) -> int:
 
 WITH_BLOCKS = ("blocks", "auto")
 NOT_BY_ENGINES = ("model", "with_pulse")
-"""Fields that have no effect with free blocks that were asked for."""
+"""Fields that have no effect with free blocks that were requested."""
 NOT_OF_BLOCKS = (
     *NOT_BY_ENGINES, "rtol", "opening", "impacts", "contact", "each_block", "restitution", "restitution_deviation",
     "neighbours", "out", "plot", "animate",

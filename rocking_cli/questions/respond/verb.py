@@ -94,7 +94,7 @@ def respond(asked: RespondAsked, watch: Watcher) -> ResponseAnswer | Answers[Res
     return _of_several(run, chosen)
 
 
-def _prepared(asked: RespondAsked, watch: Watcher) -> _Run:
+def _prepared(asked: RespondAsked, watch: Watcher) -> _Answering:
     """Return what all motions of a question share: the structure, its models and the conditions of the run."""
     structure = structure_of(asked.structure, watch, asked.opening, asked.restitution)
     structure = structure if asked.ground_motions else structure.released()
@@ -112,11 +112,11 @@ def _prepared(asked: RespondAsked, watch: Watcher) -> _Run:
         asked.rtol, asked.with_pulse, around, engine,
         goes_on=asked.engine is None and not are_several(asked.motions, asked.ground_motions),
     )  # fmt: skip
-    return _Run(asked, watch, conditions, heading_of_run(structure) if asked.title is None else asked.title)
+    return _Answering(asked, watch, conditions, heading_of_run(structure) if asked.title is None else asked.title)
 
 
 @dataclass(frozen=True)
-class _Run:
+class _Answering:
     """A question about a structure, and the conditions under which each motion is simulated."""
 
     asked: RespondAsked
@@ -181,7 +181,7 @@ class _Run:
         return draw_history(first, response.first, title, reversed_, pulse, structure, checked, parted)
 
 
-def _of_several(run: _Run, chosen: list[Scaled]) -> Answers[ResponseAnswer]:
+def _of_several(run: _Answering, chosen: list[Scaled]) -> Answers[ResponseAnswer]:
     """Answer a question about several motions."""
     from rocking_cli.questions.respond.several import Several
 
