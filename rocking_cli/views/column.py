@@ -53,9 +53,9 @@ def plainly(value: Any) -> str:
     return number(value, 4) if isinstance(value, float) else str(value)
 
 
-def rounded(digits: int) -> Callable[[float], str]:
-    """Return a format of numbers with some digits; a dash for those that do not exist."""
-    return lambda value: number(value, digits)
+def rounded(digits: int, factor: float = 1.0) -> Callable[[float], str]:
+    """Return a format of numbers, times a factor, with some digits; a dash for those that do not exist."""
+    return lambda value: number(factor * value, digits)
 
 
 @dataclass(frozen=True)

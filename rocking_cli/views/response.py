@@ -245,22 +245,14 @@ def _columns(*, unknown: bool = False, slides: bool = False, over: str = "phi_cr
     ]
 
 
-def _in_degrees(phi: float) -> str:
-    return number(degrees(phi), 4)
-
-
-def _in_millimetres(moved: float) -> str:
-    return number(1e3 * moved, 4)
-
-
 BLOCKS: tuple[Column[BlockPeaks], ...] = (
     Column("falls", lambda blocks: blocks.fell or None),
     Column("falls_off", lambda blocks: blocks.off or None),
-    Column("rotation", lambda blocks: blocks.turned[0], "deg", "peak rotation of a block", _in_degrees),
+    Column("rotation", lambda blocks: blocks.turned[0], "deg", "peak rotation of a block", rounded(4, degrees(1))),
     Column("rotation_of", lambda blocks: blocks.turned[1]),
-    Column("displacement", lambda blocks: blocks.moved[0], "mm", "displacement of a block", _in_millimetres),
+    Column("displacement", lambda blocks: blocks.moved[0], "mm", "displacement of a block", rounded(4, 1e3)),
     Column("displacement_of", lambda blocks: blocks.moved[1]),
-    Column("residual", lambda blocks: blocks.left[0], "mm", "its displacement at rest", _in_millimetres),
+    Column("residual", lambda blocks: blocks.left[0], "mm", "its displacement at rest", rounded(4, 1e3)),
     Column("residual_of", lambda blocks: blocks.left[1] or None),
 )
 POINTS: tuple[Column[PointPeak], ...] = (

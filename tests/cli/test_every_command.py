@@ -297,7 +297,7 @@ def check_page(place):
 def test_the_walk_sees_a_pass(command):
     """With a weak motion, and a limit that no opening passes, the walk finds what it would else not see."""
     Path("site.yaml").write_text(SITE.replace("ag: 0.9", "ag: 0.01"), encoding="utf-8")
-    (line,) = (line for line in HISTORIES if line.startswith(command))
+    line = next(line for line in HISTORIES if line.startswith(command))
     done, screens = walked(f"{unwritten(line)} --opening 1 --scale 0.25 --json", A=A, R=R)
     found = json.loads(done.stdout)
     assert not HISTORIES[line](found)

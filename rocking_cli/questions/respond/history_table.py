@@ -73,11 +73,6 @@ def of_each_block(response: Response, structure: Structure) -> Iterator[Columns]
         }  # fmt: skip
 
 
-def of_each_block_whole(response: Response, structure: Structure) -> Columns:
-    """Return the motion of each block in one table."""
-    return stacked(of_each_block(response, structure))
-
-
 def impacts(response: Response) -> Columns:
     """Return the impacts of all histories, a row for each."""
     rows = [

@@ -20,7 +20,7 @@ from rocking_cli.studies.neighbours import Conditions, Neighbourhood, Neighbours
 from rocking_cli.studies.response import Histories, Response, best_model
 from rocking_cli.text import in_short
 from rocking_cli.views.cautions import cautions_of
-from rocking_cli.views.column import Column, frame_of, of, only_shown, table_of
+from rocking_cli.views.column import Column, frame_of, of, only_shown, rounded, table_of
 from rocking_cli.views.conclusion import MAX_NAMED_MOTIONS, counted
 from rocking_cli.views.engines import engines_in_words
 from rocking_cli.views.neighbours import deviations, neighbour_columns
@@ -121,10 +121,10 @@ class Several:
     def _peaks(self) -> Iterator[Column[MotionRow]]:
         """Yield the columns of the peak displacement of the control point, and of the largest force of each tie."""
         at = [*self._watched.points].index(self._watched.control)
-        how = partial(_in, 1e3), f"{self._watched.control}, horizontal displacement"
+        how = rounded(4, 1e3), f"{self._watched.control}, horizontal displacement"
         yield Column(None, partial(_peak, "points", at, "horizontal"), "m", f"{self._watched.control}\n[mm]", *how)
         for k, tie in enumerate(self._watched.ties):
-            how = partial(_in, 1e-3), f"{tie.name}, force"
+            how = rounded(4, 1e-3), f"{tie.name}, force"
             yield Column(None, partial(_peak, "ties", k, "force"), "N", f"{tie.name}\n[kN]", *how)
 
     def columns(self) -> Columns:
@@ -197,10 +197,6 @@ def _fate_of(model: ModelName, row: MotionRow) -> str:
 def _peak(kind: str, place: int, of: str, row: MotionRow) -> float | None:
     """Return a peak of a row, such as that of a tie; None if the outcome of the row is unknown."""
     return None if row.moved is None else getattr(getattr(row.moved, kind)[place], of)
-
-
-def _in(factor: float, value: float) -> str:
-    return number(factor * value, 4)
 
 
 def _fate(history: History) -> str:

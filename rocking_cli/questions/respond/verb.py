@@ -17,6 +17,7 @@ from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.io.tables import stacked
 from rocking_cli.processing.listed import Scaled
 from rocking_cli.questions.respond.asked import NOT_OF_BLOCKS, WITH_BLOCKS, RespondAsked
 from rocking_cli.questions.respond.history_table import GROUND
@@ -77,35 +78,32 @@ def respond(asked: RespondAsked, watch: Watcher) -> ResponseAnswer | Answers[Res
     """
     from rocking_cli.questions.animate.verb import check_program
 
+    structure = structure_of(asked.structure, watch, asked.opening, asked.restitution)
     if asked.all_around:
-        around = all_directions(structure_of(asked.structure, watch, asked.opening), asked, watch)
+        around = all_directions(structure, asked, watch)
         write_files(around, asked, watch)
         return around  # type: ignore[return-value]
     check_program(asked.animate)
-    run, motions = _prepared(asked, watch), asked.ground_motions
-    structure = run.conditions.structure
-    chosen = list[Scaled]()
+    motions, chosen = asked.ground_motions, list[Scaled]()
+    if asked.engine in WITH_BLOCKS and structure.no_model is not None:
+        asked.refuse(f"as {structure.no_model}", NOT_OF_BLOCKS)
     if motions:
-        growth = structure.growth if structure.no_model is None else 0.0
+        growth = 0.0 if asked.engine in WITH_BLOCKS and structure.no_model is not None else structure.growth
         chosen = motions.gather(growth, watch, with_vertical=asked.vertical is not None)
         chosen = [with_vertical(asked, motion, watch) for motion in chosen]
+    run = _prepared(structure if motions else structure.released(), asked, watch)
     if not are_several(asked.motions, motions):
         return run.answer(chosen[0] if chosen else None, run.title, asked)
     return _of_several(run, chosen)
 
 
-def _prepared(asked: RespondAsked, watch: Watcher) -> _Answering:
+def _prepared(structure: Structure, asked: RespondAsked, watch: Watcher) -> _Answering:
     """Return what all motions of a question share: the structure, its models and the conditions of the run."""
-    structure = structure_of(asked.structure, watch, asked.opening, asked.restitution)
-    structure = structure if asked.ground_motions else structure.released()
-    engine, around = asked.engine or "exact", asked.neighbourhood(0)
-    if engine in WITH_BLOCKS and structure.no_model is not None:
-        asked.refuse(f"as {structure.no_model}", NOT_OF_BLOCKS)
+    engine, around, models = asked.engine or "exact", asked.neighbourhood(0), asked.models(("nonlinear",))
+    if engine != "exact" and structure.no_model is not None:
         engine, around = "blocks", Neighbourhood(0)
-    models: tuple[ModelName, ...] = ("nonlinear",)
-    if engine == "exact":
-        models = asked.models(()) or usual_models(structure, watch)
-    if structure.no_model is None or engine == "exact":
+    else:
+        models = models if engine != "exact" or asked.model else usual_models(structure, watch)
         structure.models(models)
     conditions = Conditions(
         structure, models, asked.signs, asked.ratio(structure), getattr(asked.release, "is_angle", False), asked.tail,
@@ -144,7 +142,7 @@ class _Answering:
             )
         shown = view(response, conditions, title, doubts_of(structure.mechanism), impacts=asked.impacts)
         wide = history_table.of_each_block if asked.each_block else history_table.wide
-        long = history_table.of_each_block_whole if asked.each_block else history_table.long
+        long = (lambda *given: stacked(wide(*given))) if asked.each_block else history_table.long
         under = ("pulse_alone",) * (asked.with_pulse is not None) + ("polarity",) * (len(conditions.signs) > 1)
         answer = ResponseAnswer(
             "response", response, shown, partial(long, response, structure), partial(self._figure, response, title),

@@ -226,7 +226,8 @@ class BlockModel:
             rates.append(data.qvel[:count].reshape(-1, 3) * scale / self.scene.unit_of_time)
             if friction:
                 self._note_friction(data, frictions)
-            fallen = self._fallen(now)
+            down = (now[:, 1] < -FALL * self.free.height) | (np.abs(now[:, 2]) > TURN)
+            fallen = int(down.argmax()) if down.any() else None
             if fallen is not None:
                 break
             time = k * sample
@@ -278,11 +279,6 @@ class BlockModel:
         if contacts and at.size:
             braked = data.efc_KBIP[at + 1, 1] * np.sqrt(velocity[at + 1] ** 2 + velocity[at + 2] ** 2)
             data.efc_aref[at] -= data.contact.friction[data.contact.dim > 1, 0] * braked
-
-    def _fallen(self, moved: Reals) -> int | None:
-        """Return the number of a block that has fallen, or None."""
-        fallen = (moved[:, 1] < -FALL * self.free.height) | (np.abs(moved[:, 2]) > TURN)
-        return int(fallen.argmax()) if fallen.any() else None
 
     @cached_property
     def _limits(self) -> Reals:

@@ -50,7 +50,7 @@ class TestRespond:
         def refuse(*_, **__):
             raise InputError("no answer")
 
-        monkeypatch.setattr("rocking_cli.studies.response.response_of", refuse)
+        monkeypatch.setattr("rocking_cli.questions.respond.verb.response_of", refuse)
         result = run("respond", BLOCK, "--record", "bad.csv", "--record", "r/east.csv", code=InputError.exit_code)
         assert result.stdout == "" and "bad.csv" in result.stderr and "east.csv: no answer" in result.stderr
 
