@@ -160,7 +160,7 @@ def why_unknown(history: History) -> str | None:
 def unknown_after(history: History, blocks: History | None = None) -> str:
     """Return the sentence that an outcome is unknown: until when it is known, why not beyond, and what blocks do."""
     sentence = f"The outcome is unknown after {history.known_to:.4g} s: then {why_unknown(history)}"
-    return f"{sentence}." if blocks is None else f"{sentence}; as free blocks, the structure {blocks_do(blocks)}."
+    return f"{sentence}." if blocks is None else f"{sentence}; as free blocks, it {blocks_do(blocks)}."
 
 
 def _until(history: History, blocks: History | None = None) -> str:

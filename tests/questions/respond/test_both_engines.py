@@ -211,9 +211,7 @@ class TestParting:
         other = changed(found, until=0.51, by=3.0, unknown=True)
         assert other.compared_to == 0.5 and isnan(other.parted)
         assert other.peaks[1] == np.abs(found.of_blocks.ratio[:51]).max()
-        assert "never differ" in agreement(other) and "as free blocks, the structure rocks" in verdict(
-            runs_of(other), {}
-        )
+        assert "never differ" in agreement(other) and "as free blocks, it rocks" in verdict(runs_of(other), {})
 
     def test_a_history_at_rest_stays_at_rest(self, found):
         later = replace(found.of_blocks, time=np.arange(900) * 0.01, ratio=np.zeros(900), phi=np.zeros(900))
