@@ -53,7 +53,9 @@ def respond(asked: RespondAsked, watch: Watcher) -> ResponseAnswer | Answers[Res
         after the end of the shorter polarity. The written table has a row for each time, with the histories beside each
         other. `frames["impacts"]` has the impacts. For several motions, `Answers` with one for each, by its name,
         and `frames["peaks"]` with the peak displacement and tie forces under each; for all azimuths, the answer of
-        `respond_around`. The history of free blocks has the model "blocks"; their impacts lose what contact takes.
+        `respond_around`. Where the outcome of a single motion is unknown, free blocks go on if they are installed and
+        take few steps: their history has the model "blocks", and `engines` compares both by polarity (`finding`,
+        `parted`, `joints`). Restitution is what their contacts give; what is concluded stays that of the other models.
 
     Raises
     ------
