@@ -126,6 +126,7 @@ def test_beyond_the_bound_it_is_told_who_goes_on(unasked, monkeypatch):
     steps = max(unasked.first.duration, moved.time[-1]) / engine.BlockModel(free).step
     monkeypatch.setattr(study, "MOST_UNASKED_STEPS", 1.01 * steps)
     assert "blocks" in rk.respond(SMOOTH, STRONG)
+    assert "blocks" not in rk.respond(SMOOTH, STRONG, polarity="both")  # which share the bound
     monkeypatch.setattr(study, "MOST_UNASKED_STEPS", 0.99 * steps)
     left = rk.respond(SMOOTH, STRONG)
     told = left.to_dict()
@@ -133,7 +134,6 @@ def test_beyond_the_bound_it_is_told_who_goes_on(unasked, monkeypatch):
     assert told["conclusion"]["concluded"] == "unknown" and "free_blocks" in told["conclusion"]["next"]
     said = " ".join(left.sentences)
     assert told["no_blocks"][1:] in said and "`rocking respond` with the engine `auto`" in said
-    assert "blocks" not in rk.respond(SMOOTH, STRONG, polarity="both")  # which share the bound
     assert "blocks" in rk.respond(SMOOTH, STRONG, engine="auto")
 
 
