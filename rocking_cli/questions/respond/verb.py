@@ -78,14 +78,15 @@ def respond(asked: RespondAsked, watch: Watcher) -> ResponseAnswer | Answers[Res
     >>> answer["nonlinear"].words
     'rocks'
     """
-    from rocking_cli.questions.animate.verb import check_program
-
     structure = structure_of(asked.structure, watch, asked.opening, asked.restitution)
     if asked.all_around:
         around = all_directions(structure, asked, watch)
         write_files(around, asked, watch)
         return around  # type: ignore[return-value]
-    check_program(asked.animate)
+    if asked.animate is not None:
+        from rocking_cli.questions.animate.verb import check_program
+
+        check_program(asked.animate)
     motions, chosen = asked.ground_motions, list[Scaled]()
     if asked.engine in WITH_BLOCKS and structure.no_model is not None:
         asked.refuse(f"as {structure.no_model}", NOT_OF_BLOCKS)
