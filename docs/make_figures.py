@@ -37,9 +37,9 @@ from rocking_cli.plotting import style
 from rocking_cli.plotting.structure import draw_at_rest
 from rocking_cli.questions.error.study import linearisation
 from rocking_cli.structure import Structure
-from rocking_cli.studies.conditions import Conditions
-from rocking_cli.studies.engines import EXACT
+from rocking_cli.studies.neighbours import Conditions
 from rocking_cli.studies.picture import picture
+from rocking_cli.studies.response import of_one_degree
 
 Reals = NDArray[np.float64]
 RECORD = Path(__file__).parents[1] / "examples" / "accel.csv"  # of Figure 14
@@ -354,7 +354,7 @@ def record_response(record: Path = RECORD) -> PaperFigure:
     response = PaperPanel("response", "time [s]", OVER)
     for what, shaking in (("record", motion), ("its pulse", alone)):
         conditions = Conditions(Structure(frame), ("nonlinear", "linear2"), tail=0.0)
-        for name, run in EXACT.respond(conditions, shaking).items():
+        for name, run in of_one_degree(conditions, shaking).items():
             response.curves.append(_followed(f"{LABELS[name]}, {what}", run))
     caption = (
         f"An asymmetric frame with the paper's uplift accelerations (0.197 g positive, 0.241 g negative) under "

@@ -29,7 +29,7 @@ from rocking_cli import Block, GroundMotion, __version__, parse_pulse, score
 from rocking_cli.questions.score.study import Scored, Stated, score_tests, scored
 from rocking_cli.questions.score.table import ObservedTest
 from rocking_cli.structure import Structure
-from rocking_cli.studies.engines import memory
+from rocking_cli.studies.engines import free as memory
 from rocking_cli.studies.neighbours import Neighbourhood
 
 DOCS = Path(__file__).resolve().parent

@@ -44,6 +44,7 @@ _MODULES = {name: module for module, names in _HOME.items() for name in names}
 _MOVED = {
     "Model": "rocking_cli.dynamics.model.Model",
     "Runs": "rk.respond_each, or rocking_cli.dynamics.batch.Runs",
+    "crosscheck": 'rk.respond with engine="blocks"',
     "build_models": "rk.respond, or rocking_cli.structure.build_models",
     "equivalent": "rk.equivalent_pulses",
     "equivalent_block": "rk.equiv, or rocking_cli.core.equivalent_block",

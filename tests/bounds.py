@@ -348,7 +348,7 @@ def ask(number: int) -> tuple[Verdict, str]:
 
     given = case(number)
     try:
-        answer = rk.respond(_made(given), model="nonlinear", neighbours=NEIGHBOURS, **given.ask)
+        answer = rk.respond(_made(given), model="nonlinear", neighbours=NEIGHBOURS, engine="exact", **given.ask)
     except rk.RockingError as error:
         return Verdict(refused=str(error)), ""
     share = answer.conclusion.share

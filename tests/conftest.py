@@ -95,7 +95,7 @@ def _no_histories_of_a_user(tmp_path_factory):
     """No test takes the histories of free blocks that whoever runs it has simulated, or leaves its own there."""
     file = tmp_path_factory.getbasetemp() / "user" / f"blocks{next(_MADE)}.sqlite"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("rocking_cli.studies.engines.memory.place", lambda: file)
+        patch.setattr("rocking_cli.studies.engines.free.place", lambda: file)
         yield
 
 

@@ -2,8 +2,8 @@
 
 from rocking_cli.names import OPENING
 from rocking_cli.structure import Structure
-from rocking_cli.studies.conditions import Conditions
-from rocking_cli.studies.engines import EXACT
+from rocking_cli.studies.neighbours import Conditions
+from rocking_cli.studies.response import histories, of_one_degree
 
 _recent: list[Structure] = []
 
@@ -19,7 +19,12 @@ def structure_of(mechanism, opening=OPENING):
 
 
 def respond(mechanism, motion=None, opening=OPENING, **how):
-    return EXACT.respond(Conditions(structure_of(mechanism, opening), **how), motion)
+    return of_one_degree(Conditions(structure_of(mechanism, opening), **how), motion)
+
+
+def free(structure, motion, engine="blocks"):
+    """The history of a structure as free blocks."""
+    return histories(Conditions(structure, ("nonlinear",), engine=engine), motion)[0]["blocks"]
 
 
 def conditions(mechanism, around=None, opening=OPENING, model="nonlinear", **how):

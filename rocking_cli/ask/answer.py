@@ -382,7 +382,7 @@ def _arrays(dimensions: Dimensions, parted: Parted, elsewhere: Collection[str]) 
     from xarray import Dataset, Variable
 
     from rocking_cli.io.tables import column_of
-    from rocking_cli.views.long_names import long_name
+    from rocking_cli.views.column import long_name
 
     columns, units = {name: column_of(values) for name, values in parted[0].items()}, parted[1]
     names = dimensions.names

@@ -23,8 +23,7 @@ from rocking_cli.excitation.records.opening import allow_again, matching_files
 from rocking_cli.processing.reading import LIST_FILE, Listed, Reading, Scaled, is_list, reading_of
 from rocking_cli.processing.reading_options import READING, SCALING
 from rocking_cli.processing.steps import Resample, process
-from rocking_cli.views.processing import in_words
-from rocking_cli.views.view import MAX_DETAILED_MOTIONS
+from rocking_cli.views.view import MAX_DETAILED_MOTIONS, processing_in_words
 
 Motion = GroundMotion | Pulse | Scaled | str | Path | NDArray[Any]
 """Ground motion or pulse, file of a record, pulse as text such as `sine:0.6g:0.8s`, or samples in an array."""
@@ -336,7 +335,7 @@ def each_of(given: Any) -> list[Any]:
 
 def done(motion: GroundMotion) -> str:
     """Return what was done to a motion, as the continuation of a sentence."""
-    return f"; {steps}" if (steps := in_words(motion)) else ""
+    return f"; {steps}" if (steps := processing_in_words(motion)) else ""
 
 
 def introduce(what: str, one: Scaled, watch: Watcher) -> None:

@@ -43,8 +43,8 @@ if TYPE_CHECKING:  # the stub of verbs finds their types here
     from rocking_cli.processing.steps import Step as Step
     from rocking_cli.structure import Structure
     from rocking_cli.studies.neighbours import Neighbourhood
+    from rocking_cli.studies.neighbours import Release as Release
     from rocking_cli.studies.provenance import TitleBlock
-    from rocking_cli.studies.release import Release as Release
 else:  # heavy to import, and not checked by the model
     SiteLike = StructureLike = Motion = Motions = Release = Any
 

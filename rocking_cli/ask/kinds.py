@@ -183,7 +183,7 @@ def word(*known: str, what: str = "word") -> Kind:
 
 
 def _tilt(value: Any) -> Any:
-    from rocking_cli.studies.release import Release
+    from rocking_cli.studies.neighbours import Release
 
     return value if isinstance(value, Release) else Release.of(value if isinstance(value, str) else number(value))
 

@@ -20,6 +20,8 @@ from rocking_cli.plugins.rooms import commands, short_help
 from rocking_cli.text import cut, keeps_formulas, one_line, printable
 
 NO_MEMORY = "Could not allocate memory", "can't start new thread"  # of MuJoCo, and of Python
+GONE = {"crosscheck": "`rocking respond --engine blocks` compares both engines"}
+"""Commands that are gone, and what does their work."""
 MAX_EPOCH_DIGITS = 11  # number of digits of SOURCE_DATE_EPOCH, up to the year 5138
 
 
@@ -82,6 +84,8 @@ class LazyGroup(click.Group):
         """Resolve a command; if it does not exist, suggest a similar name."""
         from difflib import get_close_matches
 
+        if args[0] in GONE:
+            raise click.UsageError(f"No such command '{args[0]}': {GONE[args[0]]}", ctx)
         close = get_close_matches(args[0], commands(), n=1)
         if args[0] not in commands() and close and not ctx.resilient_parsing and not args[0].startswith("-"):
             raise click.UsageError(f"No such command '{args[0]}': did you mean {close[0]}?", ctx)

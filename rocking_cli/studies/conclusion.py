@@ -82,7 +82,7 @@ class NextStep(StrEnum):
     SITE_VALUES = "give_site_values"
     RESTITUTION = "give_restitution"
     RESPOND = "respond"
-    CROSSCHECK = "crosscheck"
+    FREE_BLOCKS = "free_blocks"
     DESIGN = "design"
 
 
@@ -92,11 +92,7 @@ OF_VERIFICATION = {
     Concluded.UNKNOWN: NextStep.RESPOND,
     Concluded.NOT_CHECKED: NextStep.SITE_VALUES,
 }
-OF_LEFT_OUT = {
-    "tie": NextStep.YIELD_FORCE,
-    "motion": NextStep.MORE_MOTIONS,
-    "mechanism": NextStep.FIRST_MECHANISM,
-}
+OF_LEFT_OUT = {"tie": NextStep.YIELD_FORCE, "motion": NextStep.MORE_MOTIONS, "mechanism": NextStep.FIRST_MECHANISM}
 
 
 class LeftOut(NamedTuple):
@@ -134,6 +130,18 @@ class NeighbourShare(NamedTuple):
     lowest: float
     highest: float
     of: int
+
+
+class ByBlocks(NamedTuple):
+    """What free blocks do beside one degree of freedom: the outcome, peak over phi_cr, slip [m], time of the fall [s].
+
+    Numbers that do not exist are None.
+    """
+
+    concluded: Concluded
+    peak_ratio: float | None
+    slip: float | None
+    time: float | None
 
 
 @short_repr
@@ -176,6 +184,8 @@ class Conclusion:
         What to do about the joint at which the response that governs ends; None if all of it is known.
     witness : bool
         Whether free blocks can simulate what follows then.
+    blocks : ByBlocks or None
+        What free blocks do, if they were simulated beside one degree of freedom, by which all else is concluded.
     limits : sequence of Limit
         The remarks that limit it: replaced numbers, conditions under which it holds, or why it is not decided.
     """
@@ -201,6 +211,7 @@ class Conclusion:
     left_out: Sequence[LeftOut] = ()
     remedy: NextStep | None = None
     witness: bool = False
+    blocks: ByBlocks | None = None
     limits: Sequence[Limit] = ()
 
     def limited(self, limits: Sequence[Limit]) -> Conclusion:
@@ -211,14 +222,24 @@ class Conclusion:
         return replace(self, concluded=concluded, limits=[each for each in limits if each.stands_with(concluded)])
 
     @property
+    def told(self) -> Conclusion:
+        """What is concluded by free blocks, if one degree of freedom does not tell the outcome; else itself."""
+        if self.blocks is None or self.concluded is not Concluded.UNKNOWN:
+            return self
+        concluded, peak, slip, _ = self.blocks
+        return replace(
+            self, concluded=concluded, peak_ratio=peak, slip=slip, known_until=None, joint="", remedy=None, blocks=None
+        )
+
+    @property
     def next(self) -> Sequence[NextStep]:
         """What to do next, the most useful step first."""
         steps = [] if self.remedy is None else [self.remedy]
-        if self.concluded in (Concluded.FALLS_OFF, Concluded.OVERTURNS):
+        if self.told.concluded in (Concluded.FALLS_OFF, Concluded.OVERTURNS):
             steps.append(NextStep.STRENGTHEN)
         neighbours_differ = self.share is not None and self.share.highest > 0 and self.share.lowest < 1
-        if self.witness:
-            steps.append(NextStep.CROSSCHECK)
+        if self.witness and self.blocks is None:
+            steps.append(NextStep.FREE_BLOCKS)
         if self.ratio is None and (self.remedy not in (None, NextStep.RESTITUTION) or neighbours_differ):
             steps.append(NextStep.MARGIN)
         steps += dict.fromkeys(OF_LEFT_OUT[each.what] for each in self.left_out)
@@ -258,9 +279,11 @@ def are_alike(one: Conclusion, other: Conclusion) -> bool:
     return all(isclose(a, b, rel_tol=SAME_RATIO) for a, b in zip(severity(one), severity(other), strict=True))
 
 
-def severity(conclusion: Conclusion) -> tuple[int, float, float, float, float]:
-    """Return how bad a conclusion is, to compare it with others."""
+def severity(conclusion: Conclusion) -> tuple[int, int, float, float, float, float]:
+    """Return how bad a conclusion is, to compare it with others: of unknown outcomes, that of free blocks decides."""
+    told = conclusion.told
     share = conclusion.share.highest if conclusion.share is not None else 0.0
     # Without a ratio, a motion takes the structure past its capacity: this is the worst.
     ratio = 0.0 if conclusion.ratio is None else -conclusion.ratio
-    return SEVERITY.index(conclusion.concluded), share, ratio, conclusion.peak_ratio or 0.0, conclusion.slip or 0.0
+    places = SEVERITY.index(conclusion.concluded), SEVERITY.index(told.concluded)
+    return *places, share, ratio, told.peak_ratio or 0.0, told.slip or 0.0

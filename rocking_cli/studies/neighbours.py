@@ -1,4 +1,4 @@
-"""Neighbours of a ground motion: rocking near overturning is fractal, so that one history is only one sample.
+"""The conditions of a run, and its neighbours: rocking near overturning is fractal, so that one history is one sample.
 
 Two nearly identical boulders on one shake table overturned together in only 88 of 100 tests. So a history is judged
 together with its neighbours: the same motion a little stronger or weaker, with a little more or less restitution.
@@ -8,24 +8,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
+from math import pi
 from statistics import NormalDist
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 
 from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.batch import Runs
-from rocking_cli.dynamics.model import Model, ModelName
+from rocking_cli.dynamics.model import MODELS, Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError, Problem, SolverError
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.names import MAX_NEIGHBOURS, peaks_over
+from rocking_cli.names import MAX_NEIGHBOURS, RTOL, TAIL_SECONDS, peaks_over
 from rocking_cli.short_repr import short_repr
-from rocking_cli.studies.engines import EXACT, Engine
-
-if TYPE_CHECKING:
-    from rocking_cli.studies.conditions import Conditions
+from rocking_cli.structure import Structure
+from rocking_cli.studies.engines import EXACT, Engine, EngineName, engine_of
+from rocking_cli.units import UnitError, read, split
 
 FRACTILES = (0.16, 0.50, 0.84)
 MIN_AGREEMENT = 0.9  # share of neighbours with the outcome of the history; below it the outcome is sensitive
@@ -33,6 +34,7 @@ LEAST_ETA = 1e-3  # lower restitutions are raised to it, as an impact leaves som
 SEED = 1963
 STANDARD_NORMAL = NormalDist()
 MIN_PROBABILITY = 1e-300  # replaces 0, which has no normal quantile
+TILT_EXAMPLE = "give a fraction of phi_cr such as 0.5, or an angle such as 0.05rad"
 
 
 class Draws(NamedTuple):
@@ -118,9 +120,7 @@ class Neighbourhood:
             for eta, most in zip(model.eta, model.most_eta, strict=True)
         ]
         return Draws(
-            np.exp(self.amplitude * _normal(amplitude)),
-            1 + model.weight_share * (wide - 1),
-            np.stack(etas, axis=-1),
+            np.exp(self.amplitude * _normal(amplitude)), 1 + model.weight_share * (wide - 1), np.stack(etas, axis=-1)
         )
 
 
@@ -352,3 +352,130 @@ def least_uplift(model: Model, motion: GroundMotion) -> float | None:
     )
     push = float(max(pushes))
     return 1 / push if push > 0 else None
+
+
+@short_repr
+@dataclass(frozen=True, eq=False)
+class Conditions:
+    """All on which a run depends, besides its ground motion.
+
+    Parameters
+    ----------
+    structure : Structure
+        The structure as the run has it: restitution and opening of its joints are those given for the run.
+    models : sequence of {"nonlinear", "linear1", "linear2"}
+        The models that are simulated.
+    signs : sequence of int
+        The polarities: 1, -1 or both.
+    release : float or None
+        Fraction of phi_cr at which the structure starts at rest; None: phi = 0.
+    release_is_angle : bool
+        Whether the release was given as an angle, which stays the same if the slenderness of neighbours varies.
+    tail : float
+        Duration of the history after the end of the record [s].
+    rtol : float
+        Relative local error of a step.
+    with_pulse : str or None
+        Shape of the pulse under which the response is computed as well, or "best"; None for no pulse.
+    around : Neighbourhood
+        The neighbours of every motion; a count of 0 for none.
+    engine : {"exact", "blocks", "auto"}
+        Who simulates the motions: one degree of freedom, free blocks, or these where the former tells no outcome. Under
+        a single motion the former is simulated beside free blocks, as far as it can be.
+    goes_on : bool
+        Whether free blocks go on unasked where the outcome of a single motion is unknown, within `MOST_UNASKED_STEPS`.
+    """
+
+    structure: Structure
+    models: Sequence[ModelName] = MODELS
+    signs: Sequence[int] = (1,)
+    release: float | None = None
+    release_is_angle: bool = False
+    tail: float = TAIL_SECONDS
+    rtol: float = RTOL
+    with_pulse: str | None = None
+    around: Neighbourhood = field(default_factory=Neighbourhood)
+    engine: EngineName = "exact"
+    goes_on: bool = False
+
+    @cached_property
+    def by(self) -> Engine:
+        """Who simulates the motions. Raises `InputError` as `engine_of`."""
+        return engine_of(self.engine, [self.structure.mechanism])
+
+    @property
+    def model(self) -> Model:
+        """The model whose neighbours are simulated: the structure itself, or else the first of its blocks."""
+        return self.structure.model("nonlinear" if "nonlinear" in self.models else self.models[0])
+
+    @property
+    def polarity(self) -> str:
+        """The polarities as users give them: "1", "-1" or "both"."""
+        return "both" if len(self.signs) > 1 else f"{self.signs[0]}"
+
+
+@dataclass(frozen=True)
+class Release:
+    """A tilt at rest; negative tilts are anticlockwise.
+
+    Parameters
+    ----------
+    text : str
+        The tilt as it was written.
+    size : float
+        Fraction of the critical rotation, or angle [rad].
+    is_angle : bool
+        Whether `size` is an angle.
+    """
+
+    text: str
+    size: float
+    is_angle: bool
+
+    def __str__(self) -> str:
+        return self.text
+
+    @classmethod
+    def of(cls, tilt: float | str) -> Self:
+        """Read a fraction between -1 and 1, or a text such as `0.5`, `0.05rad` or `3 deg`. Raises `InputError`."""
+        text = tilt.strip() if isinstance(tilt, str) else f"{tilt:g}"
+        parts = split(tilt) if isinstance(tilt, str) else (repr(float(tilt)), "")
+        if parts is None:
+            raise InputError(Problem(f"{text!r} is not a valid tilt: {TILT_EXAMPLE}", field="release"))
+        if not parts[1]:
+            fraction = float(parts[0])
+            if not 0 < abs(fraction) < 1:
+                message = f"must be a fraction of phi_cr between 0 and 1 (or 0 and -1), got {text}"
+                raise InputError(Problem(message, field="release"))
+            return cls(text, fraction, is_angle=False)
+        try:
+            angle = read(text, "rad")
+        except UnitError as error:
+            raise InputError(Problem(error.message, field="release", hint=TILT_EXAMPLE)) from None
+        if not 0 < abs(angle) < pi:
+            raise InputError(Problem(f"{text!r} is not an angle between 0 and half a turn", field="release"))
+        return cls(text, angle, is_angle=True)
+
+    def ratio(self, structure: Structure) -> float:
+        """Return the tilt as a fraction of phi_cr of a structure, or of the kinematic limit if there is no phi_cr.
+
+        Raises
+        ------
+        InputError
+            If the structure does not rock in this direction, the tilt exceeds this rotation, or a fraction has no
+            reference.
+        """
+        direction = Direction.NEGATIVE if self.size < 0 else Direction.POSITIVE
+        if direction not in structure.mechanism.directions:
+            side = structure.mechanism.one_sided
+            raise InputError(Problem(f"it rocks in the {side} direction only, got {self.text}", field="release"))
+        statics = structure.statics[0 if direction > 0 else 1]
+        if not self.is_angle:
+            if statics.phi_cr is None:
+                why = "a fraction needs a critical rotation, and this direction has none"
+                raise InputError(Problem(f"{self.text}: {why}", field="release", hint="give an angle, such as 0.05rad"))
+            return self.size
+        if not abs(self.size) < statics.reference:
+            end = "its kinematic limit" if statics.phi_cr is None else "its critical rotation"
+            raise InputError(Problem(f"{self.text} is beyond {end}, {statics.reference:.4g} rad", field="release"))
+        return self.size / statics.reference

@@ -25,7 +25,7 @@ from rocking_cli.testing.mechanism import _demand
 from rocking_cli.verification.check import site_in, verify
 from rocking_cli.verification.code import Code, SiteFile, codes
 from rocking_cli.verification.results import CAPACITY_TOLERANCE, Verification, Verified
-from rocking_cli.views.template import starter
+from rocking_cli.views.mechanisms import starter
 from rocking_cli.views.verification import showing, table, view
 
 UNKNOWN_FIELD = "no_field_of_any_code"

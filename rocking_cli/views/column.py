@@ -14,7 +14,38 @@ from typing import Any, Generic, TypeVar
 from rocking_cli.views.view import ABSENT, Table, number
 
 R = TypeVar("R")
+P = TypeVar("P")
 of = attrgetter
+LONG_NAMES = {
+    "a": "amplitude of the pulse over the uplift acceleration",
+    "a_g": "ground acceleration",
+    "ag": "amplitude of the pulse",
+    "acceleration": "constant acceleration over the uplift acceleration",
+    "amplitude": "amplitude over the critical rotation",
+    "kappa": "linearisation coefficient of the equivalent block",
+    "known_to": "time until which the outcome is known",
+    "lambda": "uplift acceleration",
+    "least": "smallest amplitude known to overturn",
+    "omega": "frequency of the pulse over the frequency parameter",
+    "opening": "largest opening of a joint over D_cr",
+    "overturned": "whether, or by which share, it overturns",
+    "peak_lower_bound": "lower bound of the peak ratio",
+    "peak_ratio": "peak rotation over the critical rotation",
+    "pga_g": "peak ground acceleration",
+    "pgv": "peak ground velocity",
+    "phi": "rotation",
+    "phi_dot": "rate of rotation",
+    "phi_ratio": "rotation over the critical rotation",
+    "possible": "smallest amplitude that overturns or has an unknown outcome",
+    "restitution": "coefficient of restitution as given",
+    "scale": "scale factor",
+    "size": "size, 2 pi/p",
+    "t": "time",
+    "target_pga": "peak ground acceleration after scaling",
+    "unknown": "whether, or by which share, the outcome is unknown",
+    "v_g": "vertical ground acceleration",
+}
+"""Meanings of names that are not words themselves."""
 
 
 def plainly(value: Any) -> str:
@@ -22,9 +53,9 @@ def plainly(value: Any) -> str:
     return number(value, 4) if isinstance(value, float) else str(value)
 
 
-def rounded(digits: int) -> Callable[[float], str]:
-    """Return a format of numbers with some digits; a dash for those that do not exist."""
-    return lambda value: number(value, digits)
+def rounded(digits: int, factor: float = 1.0) -> Callable[[float], str]:
+    """Return a format of numbers, times a factor, with some digits; a dash for those that do not exist."""
+    return lambda value: number(factor * value, digits)
 
 
 @dataclass(frozen=True)
@@ -84,6 +115,15 @@ def only_shown(
     return Column(None, of, unit, head, form, None, **how)
 
 
+def of_part(columns: Iterable[Column[P]], part: Callable[[R], P | None]) -> list[Column[R]]:
+    """Return the columns of a part of rows as columns of the rows, as they are shown; a row may have no such part."""
+
+    def value_in(column: Column[P]) -> Callable[[R], Any]:
+        return lambda row: None if (there := part(row)) is None else column.of(there)
+
+    return [only_shown(each.head, value_in(each), each.form, each.unit, text=each.text) for each in columns]
+
+
 def text_columns(*heads: str) -> list[Column[Sequence[str]]]:
     """Return the columns of rows whose cells are texts already."""
     return [only_shown(head, itemgetter(k), text=True) for k, head in enumerate(heads)]
@@ -141,3 +181,14 @@ def table_across(
         if column.head is not None
     ]
     return Table(title, ["", *heads, *after], lines, numbers=range(1, len(rows) + 1))
+
+
+def long_name(name: str) -> str:
+    """Return what a column stands for; its name in words if that is enough.
+
+    Examples
+    --------
+    >>> long_name("peak_ratio"), long_name("uplift_time")
+    ('peak rotation over the critical rotation', 'uplift time')
+    """
+    return LONG_NAMES.get(name, name.replace("_", " "))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from math import isfinite
 from typing import Any
 
@@ -11,6 +11,7 @@ from rocking_cli import names
 from rocking_cli.names import percent
 from rocking_cli.studies.conclusion import (
     LEAST_SHARE,
+    ByBlocks,
     Concluded,
     Conclusion,
     Effect,
@@ -24,7 +25,7 @@ from rocking_cli.studies.conclusion import (
 from rocking_cli.text import in_short
 from rocking_cli.verification.results import Remark, Verification
 from rocking_cli.views.sheet.language import ENGLISH, Language
-from rocking_cli.views.verdict import REMEDIES
+from rocking_cli.views.verdict import GO_ON, REMEDIES
 
 MAX_DIGITS = 9
 POLARITIES = {1: "as given", -1: "reversed"}
@@ -38,7 +39,7 @@ NEXT_STEPS: Mapping[str, str] = {
     NextStep.FIRST_MECHANISM: "describe the mechanism that starts first as a structure, and verify that structure",
     NextStep.SITE_VALUES: "give the values that the code requires in the site file (`rocking new site` prints one)",
     NextStep.RESPOND: "`rocking respond` under this motion names the joint that opens or slides, and when",
-    NextStep.CROSSCHECK: "`rocking crosscheck` simulates what happens from then on, as free blocks",
+    NextStep.FREE_BLOCKS: GO_ON.removesuffix("; "),
     NextStep.DESIGN: "`rocking design` finds the value of a field at which the ratio reaches what is required",
 }
 
@@ -231,7 +232,19 @@ def does(end: Conclusion, over: str) -> str:
         itself = f"the structure does not overturn and slides by up to {end.slip:.3g} m"
     else:
         itself = f"the structure {end.concluded.value.replace('_', ' ')}"
+    if end.blocks is not None:
+        itself += f"{' and' if end.share is None else ','} as free blocks it {blocks_end(end.blocks, over)}"
     return itself if end.share is None else f"{itself}, and {_of_neighbours(end.share)}"
+
+
+def blocks_end(blocks: ByBlocks, over: str) -> str:
+    """Return what free blocks do, in a few words that follow "it"; peaks are divided by `over`, such as "phi_cr"."""
+    words = blocks.concluded.value.replace("_", " ")
+    if blocks.time is not None:
+        return f"{words} at {blocks.time:.4g} s"
+    if blocks.concluded is Concluded.ROCKS and blocks.peak_ratio is not None:
+        return f"{words} to {blocks.peak_ratio:.3g} {over}"
+    return f"{words} by up to {blocks.slip:.3g} m" if blocks.slip is not None else words
 
 
 def _of_neighbours(share: NeighbourShare) -> str:
@@ -254,6 +267,8 @@ def headline(end: Conclusion, over: str) -> str:
 
     Peaks are divided by `over`, such as "phi_cr".
     """
+    if end.blocks is not None:
+        return f"{headline(replace(end, blocks=None), over)}; as free blocks it {blocks_end(end.blocks, over)}"
     if end.known_until is not None:
         return f"{names.UNKNOWN} after {end.known_until:.4g} s"
     if end.concluded is Concluded.ROCKS and end.peak_ratio is not None:
@@ -278,6 +293,10 @@ def conclusion_data(end: Conclusion) -> dict[str, Any]:
     data = {key: list(each) if key in lists else None if each == "" else each for key, each in asdict(end).items()}
     data["left_out"] = [each._asdict() for each in end.left_out]
     data["share"] = end.share._asdict() if end.share is not None else None
+    if end.blocks is None:
+        del data["blocks"]
+    else:
+        data["blocks"] = end.blocks._asdict()
     data["limits"] = [{"key": each.key, "effect": each.effect, "text": limit_in_words(each)} for each in end.limits]
     del data["remedy"], data["witness"]
     data["next"] = list(end.next)

@@ -20,19 +20,18 @@ from rocking_cli.dynamics.verdict import Agreement
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.excitation.pulses import Pulse
-from rocking_cli.studies.conditions import Conditions
+from rocking_cli.structure import Structure
 from rocking_cli.studies.movements import Movements, PointPeak, TiePeak, Watched
+from rocking_cli.studies.neighbours import Conditions
 from rocking_cli.studies.response import ByPolarity, Histories, Response
-from rocking_cli.views import processing
 from rocking_cli.views.cautions import bound_data, cautions_of
-from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
+from rocking_cli.views.column import Column, data_of, of, of_part, only_shown, rounded, table_across, table_of
 from rocking_cli.views.conclusion import conclusion_data, governing_polarity, headline, next_in_words
-from rocking_cli.views.contact import contact_data, contact_words
-from rocking_cli.views.engines import engines_in_words
+from rocking_cli.views.engines import agreement, engines_data, engines_in_words, joints_across, joints_shown
 from rocking_cli.views.neighbours import neighbours_data, neighbours_in_words
 from rocking_cli.views.restitution import restitution_data, restitution_used
-from rocking_cli.views.verdict import SENSE, unchecked, verdict, why_unknown
-from rocking_cli.views.view import Table, View, force_unit, in_degrees, number
+from rocking_cli.views.verdict import ONE_SAMPLE, SENSE, contact_data, contact_words, unchecked, verdict, why_unknown
+from rocking_cli.views.view import Table, View, force_unit, in_degrees, number, processing_data
 
 Reals = NDArray[np.float64]
 MAX_LISTED_IMPACTS = 12  # number of impacts of a model in its table; the data have all
@@ -81,7 +80,7 @@ def _motion_data(motion: GroundMotion) -> dict[str, Any]:
         "unit": motion.source_unit,
         "pga_g": motion.of_ground.pga_g,
         "format": motion.format,
-        **processing.data(motion),
+        **processing_data(motion),
     }
 
 
@@ -94,7 +93,9 @@ AGREEMENT: tuple[Column[Agreement], ...] = (
 )
 
 
-def runs_data(found: Response, watched: Watched, etas: tuple[float, float] | None = None) -> dict[str, Any]:
+def runs_data(
+    found: Response, watched: Watched, etas: tuple[float, float] | None = None, structure: Structure | None = None
+) -> dict[str, Any]:
     """Return responses, neighbours and the conclusion as plain data, by polarity if there are two.
 
     Parameters
@@ -105,8 +106,10 @@ def runs_data(found: Response, watched: Watched, etas: tuple[float, float] | Non
         Points and ties of the structure, whose movement is listed.
     etas : tuple of float, optional
         Restitution of impacts that end positive and negative motion; with it the impacts are listed.
+    structure : Structure, optional
+        The structure: with it, both engines are compared.
     """
-    each = {
+    each: dict[str, dict[str, Any]] = {
         str(sign): {
             "responses": histories_data(found, sign, watched, etas),
             # An equivalent block has no joints, and is not compared with unknown outcomes.
@@ -120,6 +123,11 @@ def runs_data(found: Response, watched: Watched, etas: tuple[float, float] | Non
         }
         for sign, histories in found.runs.items()
     }
+    if structure is not None:
+        for sign, data in each.items():
+            both_engines = found.engines.get(int(sign))
+            data["engines"] = both_engines and engines_data(both_engines, found.contacts[int(sign)], structure)
+            data["no_blocks"] = found.no_blocks.get(int(sign))
     both = {"polarities": each, "governs": found.conclusion.polarity}
     return {"conclusion": conclusion_data(found.conclusion)} | (each.popitem()[1] if len(each) == 1 else both)
 
@@ -240,11 +248,11 @@ def _columns(*, unknown: bool = False, slides: bool = False, over: str = "phi_cr
 BLOCKS: tuple[Column[BlockPeaks], ...] = (
     Column("falls", lambda blocks: blocks.fell or None),
     Column("falls_off", lambda blocks: blocks.off or None),
-    Column("rotation", lambda blocks: blocks.turned[0], "rad"),
+    Column("rotation", lambda blocks: blocks.turned[0], "deg", "peak rotation of a block", rounded(4, degrees(1))),
     Column("rotation_of", lambda blocks: blocks.turned[1]),
-    Column("displacement", lambda blocks: blocks.moved[0], "m"),
+    Column("displacement", lambda blocks: blocks.moved[0], "mm", "displacement of a block", rounded(4, 1e3)),
     Column("displacement_of", lambda blocks: blocks.moved[1]),
-    Column("residual", lambda blocks: blocks.left[0], "m"),
+    Column("residual", lambda blocks: blocks.left[0], "mm", "its displacement at rest", rounded(4, 1e3)),
     Column("residual_of", lambda blocks: blocks.left[1] or None),
 )
 POINTS: tuple[Column[PointPeak], ...] = (
@@ -257,10 +265,7 @@ SLIP: tuple[Column[Slid], ...] = (
     Column("residual", of("residual"), "m", "slip at the end", rounded(4)),
     Column("path", of("path"), "m", "length of the path of the slip", rounded(4)),
 )
-TIES: tuple[Column[TiePeak], ...] = (
-    Column("peak_force", of("force")),
-    Column("peak_elongation", of("elongation")),
-)
+TIES: tuple[Column[TiePeak], ...] = (Column("peak_force", of("force")), Column("peak_elongation", of("elongation")))
 
 
 class Impact(NamedTuple):
@@ -287,14 +292,7 @@ def _impacts(impacts: Reals, etas: tuple[float, float]) -> Iterator[Impact]:
         yield Impact(time, Direction(int(sign)), rate, etas[0 if sign > 0 else 1] * rate)
 
 
-def view(
-    found: Response,
-    conditions: Conditions,
-    title: str,
-    doubts: Sequence[str] = (),
-    *,
-    impacts: bool,
-) -> View:
+def view(found: Response, conditions: Conditions, title: str, doubts: Sequence[str] = (), *, impacts: bool) -> View:
     """Show the responses to one motion.
 
     Parameters
@@ -321,17 +319,17 @@ def view(
         "record": record_data(given.motion, given.factor, conditions.polarity, given.pulse) if given else None,
         "release": conditions.release,
         "restitution": restitution_data(structure) if structure.no_model is None else None,
-        **runs_data(found, watched, etas),
+        **runs_data(found, watched, etas, structure),
     }
     if found.fit is None or found.to_pulse is None:
-        parts = _tables(title, found, watched, etas)
+        parts = _tables(title, found, conditions, watched, etas)
     else:
         pulse = found.fit.pulse.title
         data |= {"pulse": fit_data(found.fit), "pulse_responses": histories_data(found.to_pulse, 1, watched, etas)}
         parts = [
-            *_tables(f"{title}, under the record", found, watched, etas),
+            *_tables(f"{title}, under the record", found, conditions, watched, etas),
             "",
-            *_tables(f"{title}, under the {pulse} alone", found.to_pulse, watched, etas),
+            *_tables(f"{title}, under the {pulse} alone", found.to_pulse, conditions, watched, etas),
             share_of_pulse(found, found.to_pulse, pulse),
         ]
     first = next(iter(found.runs.values()))
@@ -344,7 +342,9 @@ def view(
     caution += not_checked(mechanism, first.values())
     joints = ["Joints are named as in `rocking draw`."] if any(each.joint for each in found.contacts.values()) else []
     restitution = [restitution_used(structure)] if "nonlinear" in first else []
-    restitution += engines_in_words(conditions.engine, sum("blocks" in runs for runs in found.runs.values()), mechanism)
+    by_blocks = sum("blocks" in runs for runs in found.runs.values())
+    engine = "auto" if by_blocks and conditions.goes_on else conditions.engine
+    restitution += engines_in_words(engine, by_blocks, mechanism)
     sentences = [*parts, *joints, *models_used(first), *restitution, *notes, *caution]
     return View({**data, "notes": [*doubts, *notes, *caution]}, sentences)
 
@@ -393,16 +393,26 @@ def vertical_notes(motion: GroundMotion | None, gravity: float, until: float = i
 
 
 def _tables(
-    title: str, found: Response, watched: Watched, etas: tuple[float, float] | None = None
+    title: str, found: Response, conditions: Conditions, watched: Watched, etas: tuple[float, float] | None = None
 ) -> list[Table | str]:
-    """Return a table and sentences for each polarity, and which of two governs."""
+    """Return a table and sentences for each polarity, and which of two governs; joints of free blocks if requested."""
     parts: list[Table | str] = []
     free = next(iter(found.values())).ends_at_limit
     for sign, histories in found.runs.items():
         under = f"{title}, polarity {sign}" if len(found.runs) > 1 else title
         end = found.conclusions[sign]
-        parts.append(outcome_table(f"{under} ({headline(end, names.peaks_over(free))})", found, sign, watched))
+        both = found.engines.get(sign)
+        compared = joints_across(both, found.contacts[sign]) if both is not None and not conditions.goes_on else ()
+        heading = f"{under} ({headline(end, names.peaks_over(free))})"
+        parts.append(outcome_table(heading, found, sign, watched, compared))
         parts.append(verdict(histories, found.agreement[sign], found.assumed_friction(sign)))
+        if both is not None:
+            parts.append(agreement(both))
+            if not both.exact.unknown:
+                parts.append(f"Next: {ONE_SAMPLE.format('blocks')}")
+            parts += [] if conditions.goes_on else joints_shown(both, conditions.structure.opening)
+        if sign in found.no_blocks:
+            parts.append(f"{found.no_blocks[sign][:1].upper()}{found.no_blocks[sign][1:]}.")
         if sign in found.neighbours:
             following = "" if end.remedy else next_in_words(end)
             parts.append(f"{neighbours_in_words(found.neighbours[sign])} {following}".rstrip())
@@ -417,8 +427,10 @@ def _tables(
     return parts
 
 
-def outcome_table(title: str, found: Response, sign: int, watched: Watched) -> Table:
-    """Return a table of outcomes, peaks and times under one polarity, with a column for each model."""
+def outcome_table(
+    title: str, found: Response, sign: int, watched: Watched, more: Iterable[Column[History]] = ()
+) -> Table:  # fmt: skip
+    """Return a table of outcomes, peaks and times under one polarity, with a column for each model, and more rows."""
     runs = list(found.runs[sign].values())
     unknown = any(run.unknown for run in runs)
     free = runs[0].ends_at_limit
@@ -426,9 +438,9 @@ def outcome_table(title: str, found: Response, sign: int, watched: Watched) -> T
     slides = any(run.slip for run in runs)
     columns = [
         *_columns(unknown=unknown, slides=slides, over=over),
-        *(_slips() if slides else ()),
+        *(of_part(SLIP, of("slid")) if slides else ()),
         *_movements({run.model: watched.peaks(run) for run in runs if run.model != "blocks"}),
-        *(_of_blocks() if any(run.blocks is not None for run in runs) else ()),
+        *(of_part(BLOCKS, of("blocks")) if any(run.blocks is not None for run in runs) else ()),
     ]
     if sign in found.contacts:
         per, unit = force_unit(watched.mechanism)
@@ -438,21 +450,12 @@ def outcome_table(title: str, found: Response, sign: int, watched: Watched) -> T
                 "base shear, without impacts", lambda run: shear if run.model == "nonlinear" else None, rounded(4), unit
             )
         )
+    columns += more
     heads = [
         f"{head},\nuntil {number(run.known_to, 4)} s" if run.unknown else head
         for head, run in zip(model_heads(found.runs[sign], unknown=unknown), runs, strict=True)
     ]
     return table_across(title, columns, heads, runs)
-
-
-def _slips() -> Iterator[Column[History]]:
-    """Yield the columns of the slip of a body that only slides."""
-
-    def of_run(column: Column[Slid]) -> Callable[[History], float | None]:
-        return lambda run: column.of(run.slid) if run.slid is not None else None
-
-    for column in SLIP:
-        yield only_shown(column.head, of_run(column), column.form, column.unit)
 
 
 def model_heads(models: Iterable[str], *, unknown: bool) -> list[str]:
@@ -481,17 +484,6 @@ def _movements(moved: Mapping[str, Movements]) -> Iterator[Column[History]]:
     for k, tie in enumerate(any_model.ties):
         yield only_shown(f"{tie.name}, force", peak("ties", k, "force", 1e-3), rounded(4), "kN")
         yield only_shown(f"{tie.name}, elongation", peak("ties", k, "elongation", 1e3), rounded(4), "mm")
-
-
-def _of_blocks() -> Iterator[Column[History]]:
-    """Yield the columns of the largest movements of free blocks."""
-
-    def cell(show: Callable[[BlockPeaks], float]) -> Callable[[History], float | None]:
-        return lambda run: None if run.blocks is None else show(run.blocks)
-
-    yield only_shown("peak rotation of a block", cell(lambda blocks: degrees(blocks.turned[0])), rounded(4), "deg")
-    yield only_shown("displacement of a block", cell(lambda blocks: 1e3 * blocks.moved[0]), rounded(4), "mm")
-    yield only_shown("its displacement at rest", cell(lambda blocks: 1e3 * blocks.left[0]), rounded(4), "mm")
 
 
 def _impact_table(title: str, history: History, etas: tuple[float, float]) -> list[Table | str]:

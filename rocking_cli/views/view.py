@@ -11,6 +11,7 @@ from rocking_cli.short_repr import short_repr
 
 if TYPE_CHECKING:
     from rocking_cli.core import Mechanism
+    from rocking_cli.excitation.base import GroundMotion
 
 ABSENT = "-"
 MAX_DETAILED_MOTIONS = 3  # motions or records with lines of their own; more are listed in a table
@@ -81,3 +82,28 @@ def number(value: float | None, digits: int = 6) -> str:
 def in_degrees(phi: float) -> str:
     """Format a rotation given in rad in degrees; a dash if it does not exist."""
     return number(degrees(phi), 5)
+
+
+def processing_in_words(motion: GroundMotion) -> str:
+    """Return the processing steps of a motion, and the file that was prepared by them, in a few words, if any."""
+    from rocking_cli.excitation.records import record_units
+
+    steps = list(motion.processing)
+    for quantity in record_units.QUANTITIES:
+        if (step := record_units.differentiation_step(quantity)) in steps:
+            steps[steps.index(step)] += f" ({record_units.in_words(quantity, motion.of_ground.dt)})"
+    parts = [f"processed: {', '.join(steps)}"] if steps else []
+    return "; ".join(parts + ([f"prepared from {motion.prepared_from}"] if motion.prepared_from else []))
+
+
+def processing_data(motion: GroundMotion) -> dict[str, Any]:
+    """Return the processing steps of a motion in order, as options spell them; for a floor also its peak [g].
+
+    For a prepared record also its file.
+    """
+    entry: dict[str, Any] = {"processing": list(motion.processing)}
+    if motion.prepared_from:
+        entry["prepared_from"] = motion.prepared_from
+    if motion.ground is not None:
+        entry["floor_pga"] = motion.pga_g
+    return entry

@@ -170,8 +170,8 @@ HISTORIES = {
     "margin A --record R --neighbours 2 --plot p.svg": (
         lambda found: found["motions"][0]["unknown"][-1] == 1 and found["motions"][0]["levels"]["50"]["first"] is None
     ),
-    "crosscheck A --record R --plot p.svg --out h.csv --animate film.html": lambda found: (
-        found["histories"]["exact"]["outcome"] == found["finding"].removeprefix("exact_") == "unknown"
+    "respond A --record R --engine blocks --plot p.svg --out h.csv --animate film.html": lambda found: (
+        found["responses"]["nonlinear"]["outcome"] == found["engines"]["finding"].removeprefix("exact_") == "unknown"
     ),
     "verify A --site site.yaml --record R --sheet sheet.html": lambda found: all(
         side["dynamic"]["SLV"][FC]["unknown"] == [R]
@@ -245,7 +245,7 @@ def offences(data, at=""):
 
 
 def needs_mujoco(line):
-    if line.startswith("crosscheck"):
+    if "--engine blocks" in line:
         pytest.importorskip("mujoco", reason="free blocks need mujoco")
 
 
@@ -297,7 +297,7 @@ def check_page(place):
 def test_the_walk_sees_a_pass(command):
     """With a weak motion, and a limit that no opening passes, the walk finds what it would else not see."""
     Path("site.yaml").write_text(SITE.replace("ag: 0.9", "ag: 0.01"), encoding="utf-8")
-    (line,) = (line for line in HISTORIES if line.startswith(command))
+    line = next(line for line in HISTORIES if line.startswith(command))
     done, screens = walked(f"{unwritten(line)} --opening 1 --scale 0.25 --json", A=A, R=R)
     found = json.loads(done.stdout)
     assert not HISTORIES[line](found)

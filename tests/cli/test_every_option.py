@@ -23,7 +23,7 @@ import rocking_cli as rk
 import rocking_cli.questions.report.study
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.processing.reading_options import READING, SCALING
-from tests.conftest import EXAMPLES, NEEDS_MUJOCO
+from tests.conftest import EXAMPLES
 from tests.meshes import box, obj, ply
 
 BLOCK = rk.Block(width=0.7, height=2.8, name="block", friction=0.6)
@@ -101,7 +101,7 @@ CALLS = {
         {"structure": BLOCK, "motions": PULSE, "model": "nonlinear", "polarity": "both", "vertical": RECORD,
          "vertical_dt": 0.1, "vertical_channel": "2", "with_pulse": "sine", "release": 0.2,
          "opening": 0.0, "restitution": 0.8, "engine": "auto", "impacts": True, "each_block": True, "title": "odd",
-         "plot": "p.svg"} | AROUND | TABLE,
+         "animate": "b.html", "plot": "p.svg"} | AROUND | TABLE,
     ),
     "respond_each": (
         {"structures": WEAK, "motions": STRONG},
@@ -117,11 +117,6 @@ CALLS = {
         {"structures": WEAK, "motions": STRONG, "out": "a.html", "neighbours": 2},
         {"structures": BLOCK, "motions": PULSE, "out": "b.html", "model": "linear2", "polarity": -1, "speed": 3.0,
          "fps": 0.1, "opening": 1.0} | AROUND,
-    ),
-    "crosscheck": (
-        {"structure": SHORT, "motions": BRIEF},
-        {"structure": OTHER, "motions": BRIEF.scaled(0.5), "polarity": -1, "release": 0.3, "opening": 0.1,
-         "animate": "b.html", "out": "o.csv", "separator": ";", "decimal": ",", "plot": "p.svg"},
     ),
     "pulse": (
         {"structure": WEAK, "ag": 0.9, "period": 0.5},
@@ -333,10 +328,7 @@ def here(tmp_path, monkeypatch):
 @pytest.mark.every(4)
 @pytest.mark.parametrize(
     "name",
-    [
-        pytest.param(each, marks=[NEEDS_MUJOCO] if each == "crosscheck" else [pytest.mark.rest] * (each in LONG))
-        for each in CALLS
-    ],
+    [pytest.param(each, marks=[pytest.mark.rest] * (each in LONG)) for each in CALLS],
 )
 def test_every_argument_has_an_effect_or_is_refused(name):
     verb, (call, odd) = getattr(rk, name), CALLS[name]

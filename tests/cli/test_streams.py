@@ -29,7 +29,7 @@ OTHERS = {
     "completion": "completion bash",
 }
 """Commands that print alone."""
-SLOW = {"calibrate", "crosscheck", "select", "survey", "sheets"}
+SLOW = {"calibrate", "select", "survey", "sheets"}
 
 
 def cases(names):

@@ -41,7 +41,7 @@ from rocking_cli.errors import MechanismError, PluginError
 from rocking_cli.plugins.errors import own_traceback
 from rocking_cli.questions.equiv.view import hung_data, hung_in_words
 from rocking_cli.testing import CHECKS, MechanismContract, contract
-from rocking_cli.views.template import template
+from rocking_cli.views.mechanisms import template
 from tests.conftest import EXAMPLES
 
 BUILT_IN = {

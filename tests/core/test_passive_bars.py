@@ -278,4 +278,4 @@ def test_what_is_advised_where_it_yields():
     assert list(answer.conclusion.next) == ["stronger_bar", "margin"]
     said = " ".join(answer.sentences)
     assert f"The outcome is unknown after {known_to:.4g} s: then the tie bar yields at {at:.4g} rad." in said
-    assert "give the tie a section or a steel with which it does not yield" in said and "crosscheck" not in said
+    assert "give the tie a section or a steel with which it does not yield" in said and "free blocks" not in said

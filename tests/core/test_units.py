@@ -16,7 +16,7 @@ from rocking_cli.core.mechanism import extent
 from rocking_cli.core.plausible import doubts
 from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.units import KINDS, UnitError, kind_of, read, units_of
-from rocking_cli.views.template import template
+from rocking_cli.views.mechanisms import template
 from tests.cli.test_cli import run
 from tests.conftest import PROJECT
 

@@ -81,7 +81,7 @@ def by_hand(motion, stop, restitution, until):
 def test_a_history_ends_at_the_moment_at_which_its_bound_is_met(gap):
     bound = math.asin(gap / 2.2)
     _, (met, *_) = by_hand(PUSH, bound, None, 3.0)
-    history = rk.respond(block(gap), PUSH, neighbours=0)["nonlinear"]
+    history = rk.respond(block(gap), PUSH, neighbours=0, engine="exact")["nonlinear"]
     assert history.unknown and history.overturned is None
     assert history.known_to == pytest.approx(met, abs=1e-7)
     assert history.peak_positive == pytest.approx(bound, rel=1e-9)

@@ -21,8 +21,8 @@ from rocking_cli.dynamics.tables import DirectionTable
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import Structure, build_models
-from rocking_cli.studies.conditions import Conditions
-from rocking_cli.studies.engines import EXACT
+from rocking_cli.studies.neighbours import Conditions
+from rocking_cli.studies.response import of_one_degree
 from tests.following import respond
 from tests.reference_history import Linear, Nonlinear
 from tests.unchecked import UncheckedArch
@@ -686,7 +686,7 @@ def test_random_motions_are_consistent_and_never_fail(start, monkeypatch):
             # Where the joints of an elastic arch are open, twenty thousand impacts take seconds.
             most = MAX_IMPACTS // (10 if type(kind) is Arch else 1)
             monkeypatch.setitem(run_deck.__kwdefaults__, "most_impacts", most)
-            for model, history in EXACT.respond(
+            for model, history in of_one_degree(
                 Conditions(made_ready(kind, name), release=release, tail=2.0), motion
             ).items():
                 unknown += history.unknown

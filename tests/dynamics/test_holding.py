@@ -16,8 +16,7 @@ from rocking_cli.dynamics.resting import FEET_PLACE
 from rocking_cli.structure import build_models
 from rocking_cli.studies.contact import Contacts
 from rocking_cli.views.animation import verdict_of
-from rocking_cli.views.contact import contact_words
-from rocking_cli.views.verdict import joints_in_words
+from rocking_cli.views.verdict import contact_words, joints_in_words
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 from tests.dynamics.test_rest import CRACKS, of

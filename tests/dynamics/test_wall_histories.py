@@ -17,7 +17,7 @@ from rocking_cli.core.released import ONE, PUSH, RATE, Pieces, Undetermined, _ch
 from rocking_cli.dynamics.joints import joints_of
 from rocking_cli.dynamics.modes import _Placed, _thrown, modes, stuck
 from rocking_cli.dynamics.tables import tabulate
-from rocking_cli.views.contact import contact_words
+from rocking_cli.views.verdict import contact_words
 from tests.conftest import EXAMPLES
 from tests.studies.test_contact import checked, shaking
 

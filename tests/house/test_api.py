@@ -182,10 +182,6 @@ FRAMES = {
         "model; azimuth [deg]; pga_g [g]; peak_ratio; overturned; unknown; known_to [s]",
         {"pga_g [g]": lambda _, data: data["pga_g"]},
     ),
-    "crosscheck": (
-        "engine; t [s]; a_g [g]; phi [rad]; phi_ratio",
-        {"phi [rad]": lambda answer, _: [*answer.extended(answer.exact.phi), *answer.of_blocks.phi]},
-    ),
     "animate": ("t [s]; phi [rad]", {"phi [rad]": lambda answer, _: answer.film.history.phi}),
     "pulse": (
         "polarity; model; peak_ratio; outcome",
@@ -301,7 +297,7 @@ def name_of(head):
 
 GRIDS = {
     "respond": {"model", "t"}, "respond_each": {"model", "structure", "motion", "scale"},
-    "respond_around": {"model", "azimuth"}, "crosscheck": {"engine", "t"}, "spectrum": {"structure", "motion", "size"},
+    "respond_around": {"model", "azimuth"}, "spectrum": {"structure", "motion", "size"},
     "overturning_map": {"ag", "period"}, "overturning": {"ag", "period"}, "overturning_curves": {"structure", "period"},
     "margin": {"motion", "scale"}, "error": {"direction", "kappa", "amplitude", "acceleration"},
     "equivalent_pulses": {"structure", "p_t"}, "response_spectrum": {"motion", "period"}, "demand": {"state", "period"},
@@ -314,8 +310,6 @@ GRIDS = {
 @pytest.mark.filterwarnings("ignore::rocking_cli.DoubtWarning")
 @pytest.mark.parametrize("verb", FRAMES)
 def test_an_answer_has_its_columns_and_numbers_and_shows_itself(verb, tmp_path, monkeypatch):
-    if verb == "crosscheck":
-        pytest.importorskip("mujoco", reason="free blocks need mujoco")
     monkeypatch.chdir(tmp_path)
     heads, numbers = FRAMES[verb]
     if verb == "results":
@@ -514,7 +508,7 @@ MODULES = (
     ".structure",
     ".units",
     ".views.column",
-    ".views.long_names",
+    ".views.column",
 )
 
 
@@ -522,8 +516,6 @@ MODULES = (
 @pytest.mark.parametrize("name", MODULES)
 def test_examples_in_docstrings_run(name, monkeypatch):
     monkeypatch.chdir(PROJECT)
-    if "crosscheck" in name:
-        pytest.importorskip("mujoco", reason="free blocks need mujoco")
     found = doctest.testmod(import_module(f"rocking_cli{name}"))
     assert found.attempted > 0 and found.failed == 0
 

@@ -10,7 +10,7 @@ from rocking_cli.errors import InputError, KeptWarning
 from rocking_cli.io import files
 from rocking_cli.questions.select import set_folder
 from rocking_cli.questions.survey.pages import LIST_HEADER, SheetFolder
-from rocking_cli.studies.engines import memory
+from rocking_cli.studies.engines import free as memory
 
 OUTCOME = {"overturned": False, "peak": 0.25, "slip": None}
 LIST = f"{sha256(b'x').hexdigest()}  a.csv\n{sha256(b'x').hexdigest()}  ../mine.csv\n\nodd\n"

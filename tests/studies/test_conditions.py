@@ -93,22 +93,6 @@ def test_it_is_said_that_it_was_given_for_the_run(name):
     assert "eta = 0.9" in both.view.parts[0]
 
 
-def test_curves_and_several_motions_have_it():
-    block = STRUCTURES["block"]
-    asked = {"compare": True, "points": 2, "period": (0.5, 1.5), "ag": (0.1, 3.0)}
-    ours, theirs, own = (
-        rk.overturning([each, STRUCTURES["frame"]], **asked, **more).least[0].tolist()
-        for each, more in ((block, {"restitution": ETA}), (with_file_value(block), {}), (block, {}))
-    )
-    assert ours == theirs != own
-    several = {"neighbours": 3, "model": "nonlinear"}
-    ours, theirs = (
-        plain(str(rk.respond(each, [PULSE, "sine:0.3g:1s"], **several, **more).view.parts))
-        for each, more in ((block, {"restitution": ETA}), (with_file_value(block), {}))
-    )
-    assert ours == theirs
-
-
 def test_in_all_directions_too():
     motions = [rk.parse_pulse(each).sampled() for each in (PULSE, "sine:0.2g:0.9s")]
     block = STRUCTURES["block"]
@@ -136,7 +120,7 @@ def test_one_that_the_structure_cannot_have_is_refused_by_the_name_of_the_option
 def test_free_blocks_refuse_it_by_name_and_auto_says_what_they_do():
     pytest.importorskip("mujoco")
     block = EXAMPLES / "block.yaml"
-    asked = (("respond", "--pulse", PULSE), ("margin", "--pulse", PULSE), ("overturning", "--points", 3))
+    asked = (("margin", "--pulse", PULSE), ("overturning", "--points", 3))
     for words in asked:
         refused = run(*words, block, "--restitution", ETA, "--engine", "blocks", code=2).stderr
         assert "--restitution has no effect with free blocks" in refused

@@ -18,9 +18,7 @@ from rocking_cli.core.structure_file import load_structure
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies import contact
 from rocking_cli.studies.contact import Contacts, _stretches
-from rocking_cli.views.contact import contact_columns, contact_words
-from rocking_cli.views.verdict import joints_in_words
-from rocking_cli.views.view import number
+from rocking_cli.views.verdict import contact_columns, contact_words, joints_in_words
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 from tests.following import respond
@@ -217,12 +215,6 @@ def test_a_history_ends_where_nothing_holds_the_structure_down():
     assert "nothing holds the structure down" in joints_in_words(history)
 
 
-def test_until_it_overturns_and_no_longer():
-    history, found = checked(BLOCK, shaking(1.5))
-    assert history.overturned
-    assert found.times.max() <= history.overturning_time < history.time[np.isfinite(history.phi)][-1]
-
-
 def test_a_release_is_checked_from_its_first_moment():
     history, found = checked(BLOCK, None, release=0.6)
     phi = history.phi[0]
@@ -231,15 +223,6 @@ def test_a_release_is_checked_from_its_first_moment():
     eta, alpha = 1 - 1.5 * sin(atan2(1, 5)) ** 2, atan2(1, 5)
     assert found.impact_friction == pytest.approx((1 - eta) / ((1 + eta) * np.tan(alpha)))
     assert found.least_normal <= normal
-
-
-def test_masses_scale_forces_and_nothing_else():
-    motion = shaking()
-    _, bare = checked(BLOCK, motion)
-    _, heavy = checked(BLOCK.model_copy(update={"mass": 7000.0}), motion)
-    assert heavy.friction_needed == pytest.approx(bare.friction_needed)
-    assert heavy.least_normal == pytest.approx(7000 * bare.least_normal)
-    assert heavy.impact_friction == pytest.approx(bare.impact_friction)
 
 
 def test_strength_is_that_of_each_contact():
@@ -328,18 +311,6 @@ def test_a_beam_without_mass_asks_nothing_of_its_joint():
     assert bare.impact_friction == pytest.approx(column.impact_friction)
 
 
-def test_of_several_motions_those_are_named_under_which_joints_do_not_hold(tmp_path):
-    file = tmp_path / "block.yaml"
-    asked = (file, "--pulse", "sine:0.4g:0.8s", "--pulse", "sine:0.1g:0.8s", "--neighbours", 0)
-    text = (EXAMPLES / "block.yaml").read_text(encoding="utf-8")
-    file.write_text(text + "friction: 0.27\n", encoding="utf-8")
-    said = " ".join(run("respond", *asked).stdout.split())
-    assert said.count("Sliding would start") == 1 and "sine:0.4g:0.8s: Sliding would start at joint" in said
-    assert "sine:0.1g:0.8s:" not in said
-    file.write_text(text, encoding="utf-8")
-    assert " ".join(run("respond", *asked).stdout.split()).count("requires a coefficient of friction of") == 1
-
-
 def test_an_impact_that_throws_a_joint_apart_loses_contact():
     """The joints that open next would have to pull at the impact of a thin half circle."""
     arch = Arch(radius=10.0, thickness=1.1, inclusion_angle_deg=180)
@@ -411,12 +382,3 @@ def test_forces_in_a_row_are_in_kN_as_they_are_in_sentences():
         _, found = checked(structure, shaking(0.4))
         row = [column.cell(found) for column in contact_columns(structure)]
         assert row[5] == f"{found.base_shear / per:.4g} {unit}" and row[6] == f"{found.least_normal / per:.4g} {unit}"
-
-
-def test_no_number_is_minus_nothing():
-    assert number(-0.0) == "0" and number(-0.0, 3) == "0" and number(-1e-9) == "-1e-09"
-
-
-def test_the_name_of_a_structure_begins_a_message_once():
-    for text in ("pier: it locks", "it locks"):
-        assert str(errors.of_structure(errors.MechanismError(text), "pier")) == "pier: it locks"

@@ -3,7 +3,7 @@
 import pytest
 
 import rocking_cli as rk
-from rocking_cli.studies.engines import memory
+from rocking_cli.studies.engines import free as memory
 
 pytest.importorskip("mujoco", reason="free blocks need mujoco")
 

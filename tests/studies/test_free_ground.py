@@ -11,11 +11,12 @@ import rocking_cli as rk
 from rocking_cli.ask.inputs import structure_of
 from rocking_cli.dynamics.batch import Runs
 from rocking_cli.errors import StructureError
-from rocking_cli.studies.conditions import Conditions
-from rocking_cli.studies.engines import blocks, engine_of, memory
+from rocking_cli.studies.engines import blocks, engine_of
+from rocking_cli.studies.engines import free as memory
 from rocking_cli.studies.engines.blocks import BlockModel
 from rocking_cli.studies.engines.free_blocks import FARTHEST_GROUND, HalfPlane, free_blocks
 from tests.conftest import EXAMPLES, RECORDS, SHARED
+from tests.following import free
 
 pytest.importorskip("mujoco", reason="free blocks need mujoco")
 
@@ -102,7 +103,7 @@ def test_the_smallest_object_rocks_as_the_largest_in_longer_time():
 @pytest.mark.parametrize("file", ["plinth", "vase"])
 def test_plinth_and_vase_slide_and_stay(file):
     structure = structure_of(FINDINGS / f"{file}.yaml")
-    history = engine_of("blocks").respond(Conditions(structure), rk.read_record(RINALDI))["blocks"]
+    history = free(structure, rk.read_record(RINALDI))
     assert not history.fell and history.at_rest and not history.lifted
     assert 0.4 < history.blocks.moved[0] < 0.46 and history.blocks.turned[0] < 1e-4
     assert history.blocks.fell == history.blocks.off == ""
@@ -111,12 +112,11 @@ def test_plinth_and_vase_slide_and_stay(file):
 @pytest.mark.rest
 @needs_findings
 @pytest.mark.parametrize(
-    ("amplitude", "period"),
-    [(0.5, 2), (1, 1), (1.5, 1), (0.7, 2), (1, 2), (0.3, 2), (0.5, 1), (0.7, 1), (1, 0.5)],
+    ("amplitude", "period"), [(0.5, 2), (1, 1), (1.5, 1), (0.7, 2), (1, 2), (0.3, 2), (0.5, 1), (0.7, 1), (1, 0.5)]
 )
 def test_the_cube_slides_as_far_as_the_pulse_carries_it(amplitude, period):
     structure, motion = structure_of(FINDINGS / "cube.yaml"), sine(amplitude, period)
-    history = engine_of("blocks").respond(Conditions(structure), motion)["blocks"]
+    history = free(structure, motion)
     exact = slip(motion, 0.2, 3.0 * period)
     assert history.at_rest and not history.fell
     assert history.blocks.moved[0] == pytest.approx(np.abs(exact).max(), rel=0.005)
@@ -137,7 +137,7 @@ def test_a_block_falls_off_an_edge_only_where_one_is_drawn_within_its_reach(sign
     assert 0.5 + 0.5 < reach < 3.0  # half of the block is over the edge after .5 + .5 m
     left, right = (edge, 9.0) if sign > 0 else (9.0, edge)
     cube = assembly({"cube": box(0, 1, 0, 1)}, {"podium": box(-left, 1 + right, -1, 0)}, 0.2)
-    history = engine_of("blocks").respond(Conditions(structure_of(cube)), motion)["blocks"]
+    history = free(structure_of(cube), motion)
     assert (history.fell, history.off_edge) == (off, off)
     assert history.blocks.off == ("podium" if off else "")
     assert history.words == ("falls off the edge of podium" if off else "does not overturn; slides")
@@ -175,7 +175,7 @@ def test_what_slides_is_said_to_slide_with_its_slip(sign, monkeypatch, tmp_path)
 
 def test_a_stele_that_overturns_at_an_edge_does_not_fall_off_it():
     stele = assembly({"stele": box(0, 0.4, 0, 2.4)}, {"podium": box(-0.05, 0.45, -1, 0)}, 0.8)
-    history = engine_of("blocks").respond(Conditions(structure_of(stele)), sine(0.6, 1.0))["blocks"]
+    history = free(structure_of(stele), sine(0.6, 1.0))
     assert history.fell and history.blocks.fell == "stele" and not history.off_edge
     assert history.words == "overturns"
 

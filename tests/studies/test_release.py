@@ -5,7 +5,7 @@ import pytest
 import rocking_cli as rk
 from rocking_cli.errors import InputError
 from rocking_cli.structure import Structure
-from rocking_cli.studies.release import Release
+from rocking_cli.studies.neighbours import Release
 
 BLOCK = Structure(rk.Block(width=0.7, height=2.8))
 PHI_CR = 0.24497866312686414  # atan(0.7/2.8)

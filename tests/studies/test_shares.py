@@ -1,6 +1,5 @@
 """Shares of neighbours: how they are drawn, and what they are where that is known exactly."""
 
-from dataclasses import replace
 from math import log, sqrt
 from statistics import NormalDist
 
@@ -10,8 +9,7 @@ import pytest
 from rocking_cli import GroundMotion, Registry
 from rocking_cli.errors import InputError
 from rocking_cli.structure import Structure
-from rocking_cli.studies.conditions import Conditions
-from rocking_cli.studies.neighbours import Neighbourhood, neighbours
+from rocking_cli.studies.neighbours import Conditions, Neighbourhood, neighbours
 from rocking_cli.views.neighbours import deviations
 
 NORMAL = NormalDist()
@@ -56,26 +54,6 @@ def test_of_two_directions_the_weaker_says_what_the_weight_holds():
     assert made.weight_share == pytest.approx(own / weak, rel=1e-9)
 
 
-def test_restitution_is_drawn_from_what_no_impact_exceeds():
-    made = model()
-    drawn = Neighbourhood(4000, restitution=0.05).drawn(made).eta
-    assert drawn.max() < 1
-    mean, top = made.eta[0], (1 - made.eta[0]) / 0.05
-    ratio = NORMAL.pdf(top) / NORMAL.cdf(top)
-    assert drawn.mean() == pytest.approx(mean - 0.05 * ratio, abs=1e-4)
-    assert drawn.var() == pytest.approx(0.05**2 * (1 - top * ratio - ratio**2), rel=1e-2)
-    assert (drawn[:, 0] == drawn[:, 1]).all()  # of both directions the same
-
-
-def test_amplitude_and_slenderness_are_lognormal():
-    drawn = Neighbourhood(4000).drawn(model())
-    for values, deviation in ((drawn.amplitude, 0.04), (drawn.slender, 0.10)):
-        assert np.log(values).mean() == pytest.approx(0, abs=1e-4)
-        assert np.log(values).std() == pytest.approx(deviation, rel=1e-2)
-    logs = np.log([drawn.amplitude, drawn.slender])
-    assert abs(np.corrcoef(logs)[0, 1]) < 0.04
-
-
 def test_deviations_come_from_the_file_and_options_win():
     plain, given = model(), model("block", width=0.7, height=2.8, restitution=0.9)
     measured = model("block", width=0.7, height=2.8, uncertainty={"slenderness": 0.03, "restitution": 0.01})
@@ -90,18 +68,3 @@ def test_deviations_come_from_the_file_and_options_win():
     assert Neighbourhood(slenderness=0.07).of(measured).slenderness == 0.07
     with pytest.raises(InputError, match="slenderness_deviation must be from 0 to below 1"):
         Neighbourhood(slenderness=-0.1)
-
-
-def test_without_deviations_all_neighbours_are_the_motion_itself():
-    motion = held(1.2 * model().lambda_[0])
-    around = Neighbourhood(50, amplitude=0.0, restitution=0.0, slenderness=0.0)
-    found = neighbours(Conditions(structure(), around=around), motion)
-    assert found.as_itself == 1
-
-
-def test_a_release_stays_a_share_of_phi_cr_or_an_angle():
-    share = Conditions(structure("block", width=0.7, height=2.8, restitution=0.5), release=0.9)
-    share, angle = (neighbours(replace(share, release_is_angle=each), None) for each in (False, True))
-    assert share.overturned == 0
-    # An angle of 0.9 phi_cr overturns whatever is less slender than 0.9 of the nominal.
-    assert angle.overturned == pytest.approx(NORMAL.cdf(log(0.9) / 0.10), abs=0.02)

@@ -22,17 +22,16 @@ from rocking_cli.dynamics.outcome import Outcome
 from rocking_cli.questions.design.metrics import METRICS, Excitation
 from rocking_cli.questions.margin import view as margin_views
 from rocking_cli.questions.margin.study import Margin
-from rocking_cli.questions.respond import azimuths_view as azimuth_views
+from rocking_cli.questions.respond import azimuths as azimuth_views
 from rocking_cli.questions.respond.azimuths import AzimuthResponses
-from rocking_cli.questions.respond.azimuths_picture import draw_azimuths
+from rocking_cli.questions.respond.each_picture import draw_azimuths
 from rocking_cli.questions.survey import view as survey_views
 from rocking_cli.questions.survey.picture import draw_survey
 from rocking_cli.questions.survey.study import ORDERS, Survey, Surveyed, SurveyResponse
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Concluded, Conclusion
-from rocking_cli.studies.conditions import Conditions
 from rocking_cli.studies.movements import Watched, largest
-from rocking_cli.studies.neighbours import Neighbourhood, Neighbours
+from rocking_cli.studies.neighbours import Conditions, Neighbourhood, Neighbours
 from rocking_cli.views.conclusion import does
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES

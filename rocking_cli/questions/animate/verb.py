@@ -110,10 +110,9 @@ def animate(asked: AnimateAsked, watch: Watcher) -> Answer[Animation] | Answers[
 
 def _shot(asked: AnimateAsked, ready: Structure, given: Scaled) -> Animation:
     """Return the motion of a structure under a ground motion, and the outcomes of its neighbours."""
-    from rocking_cli.studies.conditions import Conditions
     from rocking_cli.studies.contact import Contacts
     from rocking_cli.studies.engines import follow
-    from rocking_cli.studies.neighbours import neighbours
+    from rocking_cli.studies.neighbours import Conditions, neighbours
     from rocking_cli.studies.picture import picture
 
     (sign,), around = asked.signs, asked.neighbourhood(asked.neighbours)

@@ -17,9 +17,8 @@ from rocking_cli.plugins.errors import blame
 from rocking_cli.plugins.registry import leave_out
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
-from rocking_cli.studies.conditions import Conditions
 from rocking_cli.studies.movements import centroid_moved, drifts, largest_on_the_way, largest_tie_force
-from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
+from rocking_cli.studies.neighbours import Conditions, Neighbourhood, Neighbours, neighbours
 from rocking_cli.text import cut, did_you_mean
 from rocking_cli.verification.check import code_of, verify
 from rocking_cli.verification.code import Number, SiteFile, codes

@@ -20,7 +20,7 @@ from rocking_cli.io.files import read_bytes
 from rocking_cli.questions.fragility.curves import FragilityCurve
 from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE
 from rocking_cli.short_repr import short_repr
-from rocking_cli.studies.points_file import MAX_BYTES, read_points
+from rocking_cli.studies.file_part import MAX_BYTES, read_points
 
 NODES_PER_PIECE = 16  # nodes of Gauss's rule in a piece
 PIECE_WIDTH = 0.05  # width of a piece in ln x: a curve of dispersion 0.02 is still smooth within it

@@ -12,8 +12,7 @@ import numpy as np
 
 from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.short_repr import short_repr
-from rocking_cli.studies.fit import MAX_ETA, Brackets, Counts, Fit, cumulative, density, standardised, totals
-from rocking_cli.studies.intervals import wilson
+from rocking_cli.studies.fit import MAX_ETA, Brackets, Counts, Fit, cumulative, density, standardised, totals, wilson
 
 # Relative difference of equal intensities: far above rounding, far below a change of shaking.
 INTENSITY_TOLERANCE = 1e-9

@@ -18,11 +18,10 @@ from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.conclusion import LEAST_SHARE, Conclusion, NeighbourShare
-from rocking_cli.studies.conditions import Conditions
 from rocking_cli.studies.engines import EngineName
-from rocking_cli.studies.intervals import wilson
-from rocking_cli.studies.neighbours import Draws, Neighbourhood, least_uplift, simulate_neighbours
-from rocking_cli.studies.response import concluded
+from rocking_cli.studies.fit import wilson
+from rocking_cli.studies.neighbours import Conditions, Draws, Neighbourhood, least_uplift, simulate_neighbours
+from rocking_cli.studies.response import concluded, histories
 
 SHARE_LEVELS = (LEAST_SHARE, 0.5, 0.9)
 FACTOR_TOLERANCE = 1e-9  # relative difference of equal factors
@@ -199,7 +198,7 @@ def conclusion(conditions: Conditions, motion: GroundMotion, found: Margin) -> C
     found : Margin
         The margin.
     """
-    runs = {sign: conditions.by.respond(conditions, motion.scaled(sign)) for sign in conditions.signs}
+    runs = {sign: histories(conditions, motion.scaled(sign))[0] for sign in conditions.signs}
     from_factor = found.first(LEAST_SHARE, unknown=True)
     ratio = inf if from_factor is None else from_factor
-    return replace(concluded(runs, {}, motion.name), share=found.share, ratio=ratio)
+    return replace(concluded(runs, {}, motion.name).told, share=found.share, ratio=ratio)

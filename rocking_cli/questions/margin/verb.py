@@ -17,9 +17,8 @@ from rocking_cli.io.tables import stacked
 from rocking_cli.names import percent
 from rocking_cli.questions.margin.asked import MarginAsked, SharesAsked
 from rocking_cli.studies.conclusion import Concluding, worst
-from rocking_cli.studies.conditions import Conditions
 from rocking_cli.studies.engines import FREE_NEIGHBOURS
-from rocking_cli.studies.neighbours import Neighbourhood
+from rocking_cli.studies.neighbours import Conditions, Neighbourhood
 from rocking_cli.studies.neighbours import neighbours as neighbours_of
 from rocking_cli.views.engines import cost_in_words
 from rocking_cli.views.restitution import heading_of_run

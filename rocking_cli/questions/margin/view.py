@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from rocking_cli.names import peaks_over, percent
 from rocking_cli.questions.margin.study import SHARE_LEVELS, Margin
 from rocking_cli.studies.conclusion import Conclusion
-from rocking_cli.studies.conditions import Conditions
+from rocking_cli.studies.neighbours import Conditions
 from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.column import Column, of, only_shown, rounded, table_of
 from rocking_cli.views.conclusion import conclusion_data, of_margin

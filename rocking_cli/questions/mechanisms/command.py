@@ -109,7 +109,7 @@ def drawing(name: str, registry: Registry) -> Picture | None:
     from rocking_cli.core.structure_file import parse_structure
     from rocking_cli.io.starters import STARTERS, starter
     from rocking_cli.studies.picture import picture
-    from rocking_cli.views.template import template
+    from rocking_cli.views.mechanisms import template
 
     # The later ones are of less regular shape.
     common = (text for text in map(starter, reversed(STARTERS)) if f"mechanism: {name}\n" in text)
@@ -160,7 +160,7 @@ def check(name: str, file: str | None, registry: Registry, as_json: bool) -> Non
 def _verdicts(name: str, file: str | None, registry: Registry) -> list[Verdict]:
     from rocking_cli.core.structure_file import load_structure, parse_structure
     from rocking_cli.testing import contract, verdict
-    from rocking_cli.views.template import template
+    from rocking_cli.views.mechanisms import template
 
     built: list[Mechanism] = []
 

@@ -121,7 +121,7 @@ def _made(word: str, code: str | None, *, as_json: bool) -> dict[str, Any]:
     from rocking_cli.core.registry import Registry
     from rocking_cli.core.structure_file import parse_structure
     from rocking_cli.errors import InputError, Problem, RockingError
-    from rocking_cli.views.template import template
+    from rocking_cli.views.mechanisms import template
 
     registry = Registry()
     if name not in registry and name in find(options.CODES):
@@ -145,7 +145,7 @@ def _site(asked: str | None, *, as_json: bool) -> dict[str, Any]:
     from rocking_cli.questions.new.new_plugin import quoted
     from rocking_cli.verification.check import site_in
     from rocking_cli.verification.code import DEFAULT_CODE, SITE_HINT, codes
-    from rocking_cli.views.template import starter as site_file
+    from rocking_cli.views.mechanisms import starter as site_file
 
     key = DEFAULT_CODE if asked is None else asked
     code = codes()[key]

@@ -14,10 +14,9 @@ import numpy as np
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulse_fit import CRITERIA, PulseFit
 from rocking_cli.short_repr import short_repr
-from rocking_cli.views import processing
 from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
 from rocking_cli.views.response import fit_data, pulse_data
-from rocking_cli.views.view import ABSENT, Table, View, number
+from rocking_cli.views.view import ABSENT, Table, View, number, processing_data
 
 if TYPE_CHECKING:
     from rocking_cli.excitation.base import Doubt, GroundMotion
@@ -98,7 +97,7 @@ MEASURED: tuple[Column[Examined], ...] = (
 
 def data(record: Examined) -> dict[str, Any]:
     """Return a record as plain data."""
-    entry = data_of(AS_READ, record) | processing.data(record.motion) | data_of(MEASURED, record)
+    entry = data_of(AS_READ, record) | processing_data(record.motion) | data_of(MEASURED, record)
     entry["warnings"] = [doubt._asdict() for doubt in record.doubts]
     if record.pulses:
         entry["pulses"] = fits_data(record.pulses)

@@ -23,10 +23,10 @@ from rocking_cli.questions.overturning.study import OverturningMap, overturning_
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Conclusion, worst
-from rocking_cli.studies.conditions import Conditions
+from rocking_cli.studies.neighbours import Conditions
 from rocking_cli.studies.picture import Picture, picture
 from rocking_cli.studies.provenance import File, TitleBlock, file_of_motion, versions
-from rocking_cli.studies.response import Response, response_of
+from rocking_cli.studies.response import Response, of_one_degree, response_of
 from rocking_cli.studies.under_pulses import parse_shape, pulsed_model
 
 # Values of phi/phi_cr, and multiples of the uplift acceleration, at which errors of the block are stated.
@@ -268,7 +268,7 @@ def _result(conditions: Conditions, given: Scaled) -> MotionResult:
     fits = _fits(given, scaled)
     if fits:
         alone = fits[0].alone(scaled)
-        runs = {sign: alike.by.respond(alike, alone.scaled(sign)) for sign in alike.signs}
+        runs = {sign: of_one_degree(alike, alone.scaled(sign)) for sign in alike.signs}
         response = replace(response, to_pulse=Response(given=None, first=alone, runs=runs, neighbours={}, contacts={}))
     return MotionResult(
         **vars(response),

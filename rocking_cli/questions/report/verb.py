@@ -52,7 +52,7 @@ def report(asked: ReportAsked, watch: Watcher) -> Answer[Assessment]:
     from rocking_cli.questions.report.study import gather
     from rocking_cli.questions.report.view import view
     from rocking_cli.questions.verify import sheets
-    from rocking_cli.studies.conditions import Conditions
+    from rocking_cli.studies.neighbours import Conditions
     from rocking_cli.verification.check import refuse, with_histories
     from rocking_cli.verification.check import verify as study
     from rocking_cli.verification.results import Histories

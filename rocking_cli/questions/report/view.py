@@ -22,7 +22,7 @@ from rocking_cli.questions.report.study import Assessment, MotionResult
 from rocking_cli.studies.conclusion import are_alike, worst
 from rocking_cli.studies.movements import Movements, Watched, largest
 from rocking_cli.verification.results import Verification
-from rocking_cli.views import processing, verification
+from rocking_cli.views import verification
 from rocking_cli.views.cautions import before_rocking, cautions_of
 from rocking_cli.views.conclusion import (
     NEXT_STEPS,
@@ -33,7 +33,6 @@ from rocking_cli.views.conclusion import (
     next_in_words,
     of_verification,
 )
-from rocking_cli.views.contact import contact_words
 from rocking_cli.views.neighbours import deviations, neighbours_in_words
 from rocking_cli.views.response import fit_data, runs_data
 from rocking_cli.views.restitution import restitution_used
@@ -41,8 +40,8 @@ from rocking_cli.views.sheet import template
 from rocking_cli.views.sheet.document import Sentence, SheetPart
 from rocking_cli.views.sheet.language import Language, plain, texts_of
 from rocking_cli.views.sheet.template import guarded
-from rocking_cli.views.verdict import blocks_in_words, ends, joints_in_words, why_unknown
-from rocking_cli.views.view import View, force_unit
+from rocking_cli.views.verdict import blocks_in_words, contact_words, ends, joints_in_words, why_unknown
+from rocking_cli.views.view import View, force_unit, processing_data
 
 PACKAGE = "rocking_cli.questions.report"
 SYMBOLS = {
@@ -250,7 +249,7 @@ def view(content: Assessment, verified: Verification | None = None, language: st
                 "sha256": result.file.checksum if result.file else None,
                 "factor": result.given.factor,
                 "pga_g": result.pga_of_ground,
-                **processing.data(result.motion),
+                **processing_data(result.motion),
                 "headline": _headline(content, result),
                 "unknown": result.unknown,
                 "answers": {part.heading: " ".join(_sentences([part])) for part in answers},

@@ -13,7 +13,7 @@ from rocking_cli.ask.groups import (
     ANY_MOTIONS,
     DEVIATIONS,
     Around,
-    ByEngine,
+    EngineName,
     Excited,
     FromTilt,
     ModelName,
@@ -29,7 +29,7 @@ from rocking_cli.ask.groups import (
     plot_file,
     table_file,
 )
-from rocking_cli.ask.kinds import FILE, INTERVAL, NUMBER, POSITIVE, TAIL, WHOLE, each, several, word
+from rocking_cli.ask.kinds import FILE, INTERVAL, NUMBER, POSITIVE, TAIL, WHOLE, each, output, several, word
 from rocking_cli.errors import InputError, named
 from rocking_cli.names import FINEST_RTOL, RTOL, TAIL_SECONDS
 from rocking_cli.processing.reading_options import ALL_AZIMUTHS
@@ -108,18 +108,22 @@ class Shown(AskedModel):
 
 
 def _near(given: Mapping[str, Any], *, as_json: bool) -> int:
-    """Return the number of neighbours of a command: with free blocks none, as each of them takes long."""
-    return NEIGHBOURS_ON_TERMINAL if given.get("engine", "exact") == "exact" else 0
+    """Return the number of neighbours of a command: by free blocks none, as each of them takes long."""
+    return 0 if given.get("engine") in WITH_BLOCKS else NEIGHBOURS_ON_TERMINAL
 
 
-NOT_OF_BLOCKS = ("rtol", "opening", "impacts", "contact", "each_block", "restitution", "restitution_deviation")
-"""Fields that have no effect if free blocks alone simulate."""
+WITH_BLOCKS = ("blocks", "auto")
 NOT_BY_ENGINES = ("model", "with_pulse")
-"""Fields that have no effect with any free blocks."""
+"""Fields that have no effect with free blocks that were requested."""
+NOT_OF_BLOCKS = (
+    *NOT_BY_ENGINES, "rtol", "opening", "impacts", "contact", "each_block", "restitution", "restitution_deviation",
+    "neighbours", "out", "plot", "animate",
+)  # fmt: skip
+"""Fields that have no effect if free blocks alone simulate."""
 
 
 class RespondAsked(
-    OfStructure, Excited, OfOneMotion, OfModels, ByTolerance, OfRestitution, ByEngine, OfJoints, Around,
+    OfStructure, Excited, OfOneMotion, OfModels, ByTolerance, OfRestitution, OfJoints, Around,
     Shown, WithTable,
 ):  # fmt: skip
     """Compute the rocking response of a structure to a ground motion, a release from a tilt, or both.
@@ -128,6 +132,13 @@ class RespondAsked(
     positive rotation is clockwise and is started by a ground acceleration to the left. Every motion is simulated,
     beyond the end of the record if necessary, until the structure is at rest or certain to overturn. With --polarity
     both, the responses to the two polarities are computed one after the other.
+
+    Where the outcome of a single motion is unknown, free blocks go on by themselves: the same bodies with contact and
+    friction, simulated by MuJoCo (pip install 'rocking-cli[blocks]'). If they would take longer than some seconds, only
+    --engine auto lets them; --engine exact leaves them out; --engine blocks simulates them always. The output then has
+    the outcome and the peak by each engine, when their rotations part, the friction that each requires, and how far the
+    joints open that the mechanism keeps closed. Restitution has no effect on free blocks: it is what their contacts
+    give. They overturn when a block falls by 0.15 of the structure's height, or turns by 0.8 rad.
 
     With several motions, the output has one row per motion (with --json, one object per line), and --out and --plot
     write one file per motion, with its name in the file name. A motion that cannot be used is reported and skipped, and
@@ -144,11 +155,16 @@ class RespondAsked(
       rocking respond column.yaml --release 0.05rad
       rocking respond frame.yaml --pulse ricker:0.4g:1.2s --polarity both
       rocking respond frame.yaml --record accel.csv --with-pulse --plot response.png
-      rocking respond arch.yaml --record accel.csv --engine auto
+      rocking respond arch.yaml --record accel.csv --scale 2 --engine blocks --animate both.html
     """
 
     writes_each: ClassVar[bool] = True
     motions: Motion | Sequence[Motion] | Motions | None = option(ANY_MOTIONS, where="input")  # type: ignore[assignment]
+    engine: EngineName | None = option(
+        "Engine: exact (one degree of freedom), blocks (free blocks beside it), or auto (blocks beside it if exact "
+        "tells no outcome).",
+        usual="auto for a single motion, as far as free blocks are installed and take few steps; otherwise exact",
+    )
     tail: float = option("Length of output after the end of the record.", TAIL, default=TAIL_SECONDS)
     # Whoever reads one answer on a terminal should see how close it is; a program asks often, and for speed.
     neighbours: int = neighbours(
@@ -158,6 +174,11 @@ class RespondAsked(
     )
     out: Path | None = table_file("Write the time histories (.csv or .parquet).", ".csv", ".parquet")
     plot: Path | None = plot_file("Plot the time histories")
+    animate: Path | None = option(
+        "Animate both engines side by side: .gif, .mp4 (requires ffmpeg), or .html, a self-contained page with a "
+        "slider.",
+        output(".html", ".gif", ".mp4"),
+    )
     idle = (
         Idle(
             "with {azimuth} all: give one angle", lambda asked: asked.all_around,
@@ -165,17 +186,23 @@ class RespondAsked(
         ),
         Idle(
             "without a ground motion: give {motions}", lambda asked: not asked.ground_motions,
-            ("polarity", "vertical", "vertical_dt", "vertical_channel", "neighbours"),
+            ("polarity", "vertical", "vertical_dt", "vertical_channel", "neighbours", "animate"),
         ),
         Idle("without a record", lambda asked: not asked.ground_motions.has_records, ("with_pulse",)),
-        Idle("with {polarity} both: give one polarity", lambda asked: asked.polarity == "both", ("with_pulse",)),
+        Idle(
+            "with {polarity} both: give one polarity", lambda asked: asked.polarity == "both", ("with_pulse", "animate")
+        ),
         Idle("without {vertical}", lambda asked: asked.vertical is None, ("vertical_dt", "vertical_channel")),
         Idle(
             "with several motions: give the one to which it belongs", lambda asked: asked.ground_motions.count > 1,
-            ("vertical",),
+            ("vertical", "animate"),
         ),
-        Idle("with free blocks", lambda asked: asked.engine != "exact", NOT_BY_ENGINES),
-        Idle("with free blocks", lambda asked: asked.engine == "blocks", NOT_OF_BLOCKS),
+        Idle("with free blocks", lambda asked: asked.engine in WITH_BLOCKS, NOT_BY_ENGINES),
+        Idle("for free blocks", lambda asked: asked.engine == "blocks", ("restitution_deviation",)),
+        Idle(
+            "without free blocks: give {engine} blocks or auto", lambda asked: asked.engine not in WITH_BLOCKS,
+            ("animate",),
+        ),
         Idle(
             "on linear blocks, which have no joints", lambda asked: "nonlinear" not in asked.models(("nonlinear",)),
             ("opening", "contact", "each_block"),

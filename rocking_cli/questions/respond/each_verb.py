@@ -24,8 +24,8 @@ from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.io.tables import stacked
 from rocking_cli.questions.respond.asked import RespondEachAsked
 from rocking_cli.questions.respond.each import FAILED, OUTCOMES, RunGrid, columns, labelled_columns
-from rocking_cli.studies.intervals import fractile
-from rocking_cli.views.long_names import long_name
+from rocking_cli.studies.fit import fractile
+from rocking_cli.views.column import long_name
 from rocking_cli.views.view import View
 
 if TYPE_CHECKING:
@@ -248,10 +248,7 @@ def respond_each(asked: RespondEachAsked, watch: Watcher) -> EachAnswer:
     return EachAnswer(
         "responses",
         outcomes,
-        View(
-            partial(_data, outcomes),
-            [_sentence(chosen[0], outcomes[chosen[0]]), _kept(grid) if asked.histories else ""],
-        ),
+        View(partial(_data, outcomes), _sentences(grid, chosen[0], outcomes[chosen[0]], kept=asked.histories)),
         partial(columns, grid, outcomes),
         partial(_figure, grid, outcomes),
         dims=[Dimensions(runs[2:4], MEASURES, table), Dimensions(runs, table=table)],
@@ -268,13 +265,11 @@ def _figure(
     return draw_each(grid, outcomes, x, y)
 
 
-def _sentence(model: ModelName, found: Outcomes) -> str:
+def _sentences(grid: RunGrid, model: ModelName, found: Outcomes, *, kept: bool) -> list[str]:
     many = f"By the {model} model {int(found.fell.sum())} of {found.fell.size} runs overturn"
-    return many + (f", and the outcome of {int(found.unknown.sum())} is unknown." if found.unknown.any() else ".")
-
-
-def _kept(grid: RunGrid) -> str:
-    return f"Their rotations are kept at {grid.time.size:,} times, until {grid.time[-1]:.4g} s."
+    doubt = f", and the outcome of {int(found.unknown.sum())} is unknown" if found.unknown.any() else ""
+    times = f"Their rotations are kept at {grid.time.size:,} times, until {grid.time[-1]:.4g} s." if kept else ""
+    return [f"{many}{doubt}.", times]
 
 
 def _data(outcomes: Mapping[ModelName, Outcomes]) -> dict[str, Any]:

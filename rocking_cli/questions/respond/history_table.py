@@ -1,4 +1,4 @@
-"""Histories as a table in blocks of rows, so that a long one is never in memory twice."""
+"""Histories as tables: in blocks of rows, so that a long one is never in memory twice, or a row for each sample."""
 
 from __future__ import annotations
 
@@ -6,15 +6,83 @@ from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.io.tables import Columns, stacked
+from rocking_cli.structure import Structure
+from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.movements import Watched
+from rocking_cli.studies.response import Response
 
-Reals = NDArray[np.float64]
+GROUND = ("a_g", "v_g")
+"""Columns of a history that are those of the ground."""
 ROWS_PER_BLOCK = 25_000
+
+
+def wide(response: Response, structure: Structure) -> Iterator[dict[str, Reals]]:
+    """Yield the histories of the first polarity, then those of the second, or those under the pulse alone."""
+    first, *others = response.runs.values()
+    runs: dict[str, History] = dict(first.items())
+    runs |= {f"reversed {name}": run for other in others for name, run in other.items()}
+    runs |= {f"pulse {name}": run for name, run in (response.to_pulse or {}).items()}
+    contacts = Contacts(structure.mechanism)
+    shear = {"nonlinear": contacts.base_shear(first["nonlinear"], response.first)} if "nonlinear" in first else {}
+    yield from blocks(runs, response.first, watched=Watched(structure.mechanism), base_shear=shear)
+
+
+def long(response: Response, structure: Structure) -> Columns:
+    """Return the histories with a row for each sample of each, and what it is of."""
+    first, fit, contacts = response.first, response.fit, Contacts(structure.mechanism)
+    under: list[tuple[dict[str, int], GroundMotion | None, Mapping[ModelName, History]]] = [({}, first, response)]
+    if first is not None and len(response.runs) > 1:
+        motions = (first, first.scaled(-1))
+        under = [
+            ({"polarity": sign}, motion, runs)
+            for (sign, runs), motion in zip(response.runs.items(), motions, strict=True)
+        ]
+    elif first is not None and fit is not None and response.to_pulse is not None:
+        under = [({"pulse_alone": 0}, first, response), ({"pulse_alone": 1}, fit.alone(first), response.to_pulse)]
+
+    def tables() -> Iterator[dict[str, object]]:
+        for of, motion, runs in under:
+            shear = {"nonlinear": contacts.base_shear(runs["nonlinear"], motion)} if "nonlinear" in runs else {}
+            watched = Watched(structure.mechanism)
+            wide = stacked(blocks(runs, motion, watched=watched, base_shear=shear))
+            common = {head: values for head, values in wide.items() if head.partition(" ")[0] in ("t", *GROUND)}
+            for model in runs:
+                start = f"{model} "
+                moved = {head.removeprefix(start): each for head, each in wide.items() if head.startswith(start)}
+                yield {**of, "model": model, **common, **moved}
+
+    return stacked(tables())
+
+
+def of_each_block(response: Response, structure: Structure) -> Iterator[Columns]:
+    """Yield the motion of each block, a row for each sample and block, of one polarity after the other."""
+    for sign, runs in response.runs.items():
+        run = runs["nonlinear"]
+        names, places, turns = zip(*Watched(structure.mechanism).bodies(run), strict=True)
+        z = np.stack(places, axis=1).ravel()
+        polarity = {"polarity": np.full(z.size, sign)} if len(response.runs) > 1 else {}
+        yield {
+            **polarity, "t [s]": np.repeat(run.time, len(names)), "block": np.tile(names, run.time.size),
+            "x [m]": z.real, "z [m]": z.imag, "rotation [rad]": np.stack(turns, axis=1).ravel(),
+        }  # fmt: skip
+
+
+def impacts(response: Response) -> Columns:
+    """Return the impacts of all histories, a row for each."""
+    rows = [
+        (sign, name, *impact)
+        for sign, runs in response.runs.items()
+        for name, run in runs.items()
+        for impact in run.impacts.tolist()
+    ]
+    heads = "polarity", "model", "t [s]", "direction", "phi_dot before [rad/s]"
+    return {head: [row[k] for row in rows] for k, head in enumerate(heads)}
 
 
 def blocks(

@@ -97,8 +97,7 @@ def respond_around(asked: RespondAroundAsked, watch: Watcher) -> Answer[AzimuthR
     SolverError
         If a motion cannot be simulated.
     """
-    from rocking_cli.questions.respond.azimuths import all_around
-    from rocking_cli.questions.respond.azimuths_view import columns, view
+    from rocking_cli.questions.respond.azimuths import all_around, columns, view
 
     ready = structure_of(asked.structure)
     pair, models = (motion_of(asked.one), motion_of(asked.other)), asked.models(ready.default_models)

@@ -50,6 +50,7 @@ def draw_history(
     pulse: tuple[PulseFit, Runs] | None = None,
     structure: Structure | None = None,
     contacts: Sequence[ContactDemand] = (),
+    parted: Sequence[float] = (),
 ) -> Figure:
     """Plot histories against time, as long as something moves.
 
@@ -74,6 +75,8 @@ def draw_history(
     contacts : sequence of ContactDemand
         Contact checks of the nonlinear history under the motion, and under the reversed one: the friction required is
         plotted in a panel below.
+    parted : sequence of float
+        Time at which the motions by both engines part, under the motion and under the reversed one [s]; NaN if never.
 
     Returns
     -------
@@ -110,6 +113,10 @@ def draw_history(
             axes.set_title(what, loc="left", fontsize=style.LABEL, color=style.INK)
         _hatch_unknown(axes, until[what], (start, end))
         keys.append((axes, _draw_responses(axes, each, scale, until[what], watched)))
+    for (axes, curves), time in zip(keys[shaken:], parted, strict=False):
+        if start < time < end:
+            look = {"color": style.CURSOR, "linewidth": style.MEDIUM, "linestyle": (0, (1, 1.5))}
+            curves.append(axes.axvline(time, label=f"both engines part at {time:.4g} s", **look))
     if watched is not None and tied:
         for axes, (what, each) in zip(below[1::2], responses.items(), strict=True):
             _hatch_unknown(axes, until[what], (start, end))
@@ -294,7 +301,7 @@ def _scale_of(responses: Mapping[str, Runs], until: Mapping[str, float]) -> _Sca
 
 def _draw_responses(axes: Axes, histories: Runs, scale: _Scale, until: float, watched: Watched | None) -> list[Line2D]:
     """Draw the rotations of the models, with marks on the best one; return the curves and the marks."""
-    best = best_model(histories)
+    best: ModelName = "blocks" if "blocks" in histories else best_model(histories)
     free = histories[best].ends_at_limit
     axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
     axes.set_ylim(scale.low, scale.high)

@@ -14,22 +14,19 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import digits_apart, peaks_over
 from rocking_cli.studies.conclusion import Conclusion
-from rocking_cli.studies.conditions import Conditions
 from rocking_cli.studies.contact import ContactDemand
-from rocking_cli.studies.engines import EngineName
 from rocking_cli.studies.movements import Movements, Watched
-from rocking_cli.studies.neighbours import Neighbourhood, Neighbours
+from rocking_cli.studies.neighbours import Conditions, Neighbourhood, Neighbours
 from rocking_cli.studies.response import Histories, Response, best_model
 from rocking_cli.text import in_short
 from rocking_cli.views.cautions import cautions_of
-from rocking_cli.views.column import Column, frame_of, of, only_shown, table_of
+from rocking_cli.views.column import Column, frame_of, of, only_shown, rounded, table_of
 from rocking_cli.views.conclusion import MAX_NAMED_MOTIONS, counted
-from rocking_cli.views.contact import contact_words
 from rocking_cli.views.engines import engines_in_words
 from rocking_cli.views.neighbours import deviations, neighbour_columns
 from rocking_cli.views.response import apart, model_heads, models_used
 from rocking_cli.views.restitution import heading_of_run, restitution_used
-from rocking_cli.views.verdict import CROSSCHECK, unchecked, unknown_after
+from rocking_cli.views.verdict import GO_ON, contact_words, unchecked, unknown_after
 from rocking_cli.views.view import ABSENT, Table, number
 
 
@@ -63,9 +60,9 @@ class Several:
         rocks = structure.no_model is None
         self._free = [side.phi_cr is None for side in structure.statics] if rocks else [False]
         self._restitution = restitution_used(structure) if rocks else ""
-        by_engine: Mapping[EngineName, Sequence[ModelName]] = {"blocks": ["blocks"], "auto": ["nonlinear", "blocks"]}
+        with_blocks: Sequence[ModelName] = ["nonlinear", "blocks"] if rocks else ["blocks"]
         self._engine, self._by_blocks = engine, 0
-        self._models = by_engine.get(engine, models)
+        self._models = models if engine == "exact" else with_blocks
         self._rows: list[MotionRow] = []
         self._ends: list[Conclusion] = []
         self._asked = asked
@@ -89,11 +86,11 @@ class Several:
             name = f"{found.given.motion.name}{reversed_}"
             self._row(name, pga, histories, neighbours)
             run = histories[best_model(histories)]
-            self._by_blocks += run.by_blocks
+            self._by_blocks += "blocks" in histories
             self._doubtful |= neighbours is not None and bool(neighbours.unknown)
             if run.unknown:
-                self._until[name] = unknown_after(run).replace("The", "the", 1)
-                self._witness &= run.witness
+                self._until[name] = unknown_after(run, histories.get("blocks")).replace("The", "the", 1)
+                self._witness &= run.witness and "blocks" not in histories
             self._checked &= run.model != "nonlinear" or run.check is not None
             self._around = neighbours.around if neighbours is not None else None
             if sign in found.contacts:
@@ -101,7 +98,7 @@ class Several:
         if found.fit is not None and found.to_pulse is not None:
             fitted = found.fit.pulse
             self._row(f"  its {fitted.name} pulse alone", fitted.amplitude / STANDARD_GRAVITY, found.to_pulse, None)
-        self._ends.append(found.conclusion)
+        self._ends.append(found.conclusion.told)
         for text in apart(self._watched, found.runs):
             self._torn.setdefault(text, []).append(found.given.motion.name)
 
@@ -116,7 +113,7 @@ class Several:
         yield only_shown("PGA\n[g]", of("pga"))
         for model, head in zip(self._models, model_heads(self._models, unknown=bool(self._until)), strict=True):
             yield only_shown(head, partial(_fate_of, model))
-        if self._engine != "blocks":  # which do not move as the mechanism does
+        if "nonlinear" in self._models or self._engine == "exact":  # free blocks do not move as the mechanism does
             yield from self._peaks()
         if self._around is not None:
             yield from neighbour_columns(of("near"), doubtful=self._doubtful)
@@ -124,10 +121,10 @@ class Several:
     def _peaks(self) -> Iterator[Column[MotionRow]]:
         """Yield the columns of the peak displacement of the control point, and of the largest force of each tie."""
         at = [*self._watched.points].index(self._watched.control)
-        how = partial(_in, 1e3), f"{self._watched.control}, horizontal displacement"
+        how = rounded(4, 1e3), f"{self._watched.control}, horizontal displacement"
         yield Column(None, partial(_peak, "points", at, "horizontal"), "m", f"{self._watched.control}\n[mm]", *how)
         for k, tie in enumerate(self._watched.ties):
-            how = partial(_in, 1e-3), f"{tie.name}, force"
+            how = rounded(4, 1e-3), f"{tie.name}, force"
             yield Column(None, partial(_peak, "ties", k, "force"), "N", f"{tie.name}\n[kN]", *how)
 
     def columns(self) -> Columns:
@@ -137,8 +134,10 @@ class Several:
 
     def parts(self, left_out: Sequence[str] = ()) -> Iterator[Table | str]:
         """Yield how many motions overturn the structure, which governs and which are left out, and the table."""
-        best = "free blocks" if self._engine == "blocks" else f"the {best_model(self._models)} model"
-        by = "the nonlinear model, and free blocks where it does not tell" if self._engine == "auto" else best
+        best = best_model(self._models)
+        by = "free blocks" if best == "blocks" else f"the {best} model"
+        if self._engine != "exact" and best != "blocks":
+            by = "the nonlinear model, and free blocks where it does not tell"
         yield f"By {by}, {counted(self._ends, peaks_over(self._free))}"
         if (lost := self._asked - len(self._ends)) > 0:
             named = f" ({in_short(left_out, most=MAX_NAMED_MOTIONS)})" if left_out else ""
@@ -148,8 +147,7 @@ class Several:
             yield f"Neighbours: {self._around.count} neighbouring motions for each motion, {deviations(self._around)}."
         yield from self._joints()
         yield from models_used(self._models)
-        if self._engine != "blocks":
-            yield self._restitution
+        yield from [self._restitution] * bool(self._restitution)
         yield from engines_in_words(self._engine, self._by_blocks, self._mechanism)
         yield from (f"Caution: {text}" for text in self._cautions)
         yield from (
@@ -166,7 +164,7 @@ class Several:
         for name, until in self._until.items():
             yield f"{name}: {until}"
         if self._until:
-            yield f"Next: {CROSSCHECK * self._witness}`rocking margin` shows up to which factor the outcomes are known."
+            yield f"Next: {GO_ON * self._witness}`rocking margin` shows up to which factor the outcomes are known."
         asks = {name: demand for name, demand in self._contacts.items() if demand.friction_needed >= 0}
         order = sorted(asks, key=lambda name: -asks[name].friction_needed)
         if len(order) > 1:
@@ -199,10 +197,6 @@ def _fate_of(model: ModelName, row: MotionRow) -> str:
 def _peak(kind: str, place: int, of: str, row: MotionRow) -> float | None:
     """Return a peak of a row, such as that of a tie; None if the outcome of the row is unknown."""
     return None if row.moved is None else getattr(getattr(row.moved, kind)[place], of)
-
-
-def _in(factor: float, value: float) -> str:
-    return number(factor * value, 4)
 
 
 def _fate(history: History) -> str:

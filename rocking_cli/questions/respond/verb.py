@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import nullcontext
+from dataclasses import dataclass
 from functools import partial
+from math import nan
 from typing import TYPE_CHECKING
-
-import numpy as np
-from numpy.typing import NDArray
 
 from rocking_cli.ask.answer import Answers, Dimensions, MappingAnswer
 from rocking_cli.ask.inputs import doubts_of, structure_of
@@ -18,24 +15,20 @@ from rocking_cli.ask.watcher import Watcher
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.errors import InputError, Problem, named
-from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.tables import stacked
 from rocking_cli.processing.reading import Scaled
-from rocking_cli.questions.respond.asked import NOT_BY_ENGINES, NOT_OF_BLOCKS, RespondAsked
+from rocking_cli.questions.respond.asked import NOT_OF_BLOCKS, WITH_BLOCKS, RespondAsked
+from rocking_cli.questions.respond.history_table import GROUND
 from rocking_cli.questions.respond.motion_verbs import all_directions, with_vertical
 from rocking_cli.structure import Structure
-from rocking_cli.studies.neighbours import Neighbourhood
-from rocking_cli.studies.response import Response
+from rocking_cli.studies.neighbours import Conditions, Neighbourhood
+from rocking_cli.studies.response import Response, response_of
 from rocking_cli.views.restitution import heading_of_run
 from rocking_cli.views.view import Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from rocking_cli.io.tables import Columns
-
-GROUND = ("a_g", "v_g")
-"""Columns of a history that are those of the ground."""
 
 
 class ResponseAnswer(MappingAnswer[ModelName, History]):
@@ -59,7 +52,9 @@ def respond(asked: RespondAsked, watch: Watcher) -> ResponseAnswer | Answers[Res
         after the end of the shorter polarity. The written table has a row for each time, with the histories beside each
         other. `frames["impacts"]` has the impacts. For several motions, `Answers` with one for each, by its name,
         and `frames["peaks"]` with the peak displacement and tie forces under each; for all azimuths, the answer of
-        `respond_around`. The history of free blocks has the model "blocks"; their impacts lose what contact takes.
+        `respond_around`. Where the outcome of a single motion is unknown, free blocks go on if they are installed and
+        take few steps: their history has the model "blocks", and `engines` compares both by polarity (`finding`,
+        `parted`, `joints`). Restitution is what their contacts give; what is concluded stays that of the other models.
 
     Raises
     ------
@@ -82,84 +77,132 @@ def respond(asked: RespondAsked, watch: Watcher) -> ResponseAnswer | Answers[Res
     >>> answer["nonlinear"].words
     'rocks'
     """
-    from rocking_cli.questions.respond.several import Several
-    from rocking_cli.studies.conditions import Conditions
-    from rocking_cli.studies.response import response_of
-    from rocking_cli.views.engines import cost_in_words
-    from rocking_cli.views.response import view
-
-    ready = structure_of(asked.structure, watch, asked.opening, asked.restitution)
-    motions, signs, engine = asked.ground_motions, asked.signs, asked.engine
+    structure = structure_of(asked.structure, watch, asked.opening, asked.restitution)
     if asked.all_around:
-        around = all_directions(ready, asked, watch)
+        around = all_directions(structure, asked, watch)
         write_files(around, asked, watch)
         return around  # type: ignore[return-value]
-    rocks = engine == "exact" or ready.no_model is None
-    if not rocks:
-        asked.refuse(f"as {ready.no_model}", (*NOT_BY_ENGINES, *NOT_OF_BLOCKS, "neighbours", "out", "plot"))
-        engine = "blocks"
-    chosen: list[Scaled] = []
-    if motions:
-        chosen = motions.gather(ready.growth if rocks else 0.0, watch, with_vertical=asked.vertical is not None)
-        chosen = [with_vertical(asked, each, watch) for each in chosen]
-    else:
-        ready = ready.released()
-    names = ("nonlinear",) if engine != "exact" else asked.models(()) or usual_models(ready, watch)
-    if rocks:
-        ready.models(names)
-    conditions = Conditions(
-        ready, names, signs, asked.ratio(ready), getattr(asked.release, "is_angle", False), asked.tail,
-        asked.rtol, asked.with_pulse, asked.neighbourhood(0) if rocks else Neighbourhood(0), engine,
-    )  # fmt: skip
-    title, doubts = heading_of_run(ready) if asked.title is None else asked.title, doubts_of(ready.mechanism)
-    contact = asked.contact or ready.mechanism.friction is not None
-    under = ("pulse_alone",) * (asked.with_pulse is not None) + ("polarity",) * (len(signs) > 1)
-    dims = [Dimensions((*under, "t"), GROUND), Dimensions((*under, "block" if asked.each_block else "model", "t"))]
+    if asked.animate is not None:
+        from rocking_cli.questions.animate.verb import check_program
 
-    def one(given: Scaled | None, title: str, files: RespondAsked) -> ResponseAnswer:
-        count = conditions.around.count * len(signs)
-        if count and given is not None and (cost := cost_in_words(conditions.by, ready, given.motion, count)):
+        check_program(asked.animate)
+    motions, chosen = asked.ground_motions, list[Scaled]()
+    if asked.engine in WITH_BLOCKS and structure.no_model is not None:
+        asked.refuse(f"as {structure.no_model}", NOT_OF_BLOCKS)
+    if motions:
+        growth = 0.0 if asked.engine in WITH_BLOCKS and structure.no_model is not None else structure.growth
+        chosen = motions.gather(growth, watch, with_vertical=asked.vertical is not None)
+        chosen = [with_vertical(asked, motion, watch) for motion in chosen]
+    run = _prepared(structure if motions else structure.released(), asked, watch)
+    if not are_several(asked.motions, motions):
+        return run.answer(chosen[0] if chosen else None, run.title, asked)
+    return _of_several(run, chosen)
+
+
+def _prepared(structure: Structure, asked: RespondAsked, watch: Watcher) -> _Answering:
+    """Return what all motions of a question share: the structure, its models and the conditions of the run."""
+    engine, around, models = asked.engine or "exact", asked.neighbourhood(0), asked.models(("nonlinear",))
+    if engine != "exact" and structure.no_model is not None:
+        engine, around = "blocks", Neighbourhood(0)
+    else:
+        models = models if engine != "exact" or asked.model else usual_models(structure, watch)
+        structure.models(models)
+    conditions = Conditions(
+        structure, models, asked.signs, asked.ratio(structure), getattr(asked.release, "is_angle", False), asked.tail,
+        asked.rtol, asked.with_pulse, around, engine,
+        goes_on=asked.engine is None and not are_several(asked.motions, asked.ground_motions),
+    )  # fmt: skip
+    return _Answering(asked, watch, conditions, heading_of_run(structure) if asked.title is None else asked.title)
+
+
+@dataclass(frozen=True)
+class _Answering:
+    """A question about a structure, and the conditions under which each motion is simulated."""
+
+    asked: RespondAsked
+    watch: Watcher
+    conditions: Conditions
+    title: str
+
+    def answer(self, given: Scaled | None, title: str, files: RespondAsked) -> ResponseAnswer:
+        """Simulate one motion, or a release alone, and write the files of its answer."""
+        from rocking_cli.questions.respond import history_table
+        from rocking_cli.views.engines import cost_in_words
+        from rocking_cli.views.response import view
+
+        conditions, asked, watch = self.conditions, self.asked, self.watch
+        structure = conditions.structure
+        count = conditions.around.count * len(conditions.signs)
+        if count and given is not None and (cost := cost_in_words(conditions.by, structure, given.motion, count)):
             watch.note(cost)
-        with watch.working("simulating free blocks") if engine != "exact" else nullcontext():
-            response = response_of(conditions, given)
-        _note_pulse(response, watch)
-        shown = view(response, conditions, title, doubts, impacts=asked.impacts)
-        figure = partial(_figure, response, ready, title, contact=contact)
-        blocks = partial(_of_each_block if asked.each_block else _blocks, response, ready)
-        columns = partial(_columns, blocks) if asked.each_block else partial(_long_columns, response, ready)
-        more = {"impacts": partial(_impact_columns, response)}
-        answer = ResponseAnswer("response", response, shown, columns, figure, blocks, more, dims)
+        response = response_of(conditions, given, watch.working)
+        if (fit := response.fit) is not None:
+            watch.note(
+                f"pulse: {fit.pulse.title}, a_p = {fit.pulse.amplitude / STANDARD_GRAVITY:.4g} g, "
+                f"T_p = {fit.pulse.period:.4g} s, from {fit.start:.4g} s, sign {fit.sign:+d}: "
+                f"{100 * fit.captured:.0f} % of the energy of the velocity"
+            )
+        shown = view(response, conditions, title, doubts_of(structure.mechanism), impacts=asked.impacts)
+        wide = history_table.of_each_block if asked.each_block else history_table.wide
+        long = (lambda *given: stacked(wide(*given))) if asked.each_block else history_table.long
+        under = ("pulse_alone",) * (asked.with_pulse is not None) + ("polarity",) * (len(conditions.signs) > 1)
+        answer = ResponseAnswer(
+            "response", response, shown, partial(long, response, structure), partial(self._figure, response, title),
+            partial(wide, response, structure), {"impacts": partial(history_table.impacts, response)},
+            [
+                Dimensions((*under, "t"), GROUND),
+                Dimensions((*under, "block" if asked.each_block else "model", "t")),
+            ],
+        )  # fmt: skip
         write_files(answer, files, watch)
+        if files.animate is not None and given is not None:
+            from rocking_cli.questions.animate.verb import FRAMES_PER_SECOND, write_film
+            from rocking_cli.questions.respond.film import scene_of
+
+            scene = scene_of(structure, response)
+            write_film(files.animate, scene, title, given.motion.name, None, FRAMES_PER_SECOND, watch)
         return answer
 
-    if not are_several(asked.motions, motions):
-        return one(chosen[0] if chosen else None, title, asked)
+    def _figure(self, response: Response, title: str) -> Figure:
+        from rocking_cli.names import peaks_over
+        from rocking_cli.questions.respond.picture import draw_history
+        from rocking_cli.views.conclusion import headline
+
+        structure = self.conditions.structure
+        contact = self.asked.contact or structure.mechanism.friction is not None
+        first, *others = response.runs.values()
+        fit, alone = response.fit, response.to_pulse
+        pulse = (fit, alone) if fit is not None and alone is not None else None
+        checked = list(response.contacts.values()) if contact else []
+        over = peaks_over(next(iter(first.values())).ends_at_limit).replace("phi_cr", "φcr")
+        title = f"{title} ({headline(response.conclusion, over)})"
+        parted = [response.engines[sign].parted if sign in response.engines else nan for sign in response.runs]
+        reversed_ = others[0] if others else None
+        return draw_history(first, response.first, title, reversed_, pulse, structure, checked, parted)
+
+
+def _of_several(run: _Answering, chosen: list[Scaled]) -> Answers[ResponseAnswer]:
+    """Answer a question about several motions."""
+    from rocking_cli.questions.respond.several import Several
+
+    asked, motions = run.asked, run.asked.ground_motions
     if str(asked.out) == STANDARD_OUTPUT:
         raise InputError(Problem("- takes the table of a single motion: for several, give a file", field=named("out")))
-    table, details = Several(conditions, motions.count), list[Table | str]()
-    read = [ready.file, *(each.path for each in motions.records)]
+    table, details = Several(run.conditions, motions.count), list[Table | str]()
+    read = [run.conditions.structure.file, *(record.path for record in motions.records)]
     outs, plots = places_of("out", asked.out, chosen, read), places_of("plot", asked.plot, chosen, read)
 
     def row(given: Scaled, k: int) -> ResponseAnswer:
         files = asked.model_copy(update={"out": outs[k], "plot": plots[k]})
-        answer = one(given, f"{title}, under {given.motion.name}", files)
+        answer = run.answer(given, f"{run.title}, under {given.motion.name}", files)
         table.add(answer.result)
         details.extend(["", *answer.view.parts] if asked.impacts else [])
         return answer
 
-    responses, left_out = ask_each(chosen, row, watch)
-    unread = [each.path.name for each in motions.records if all(each is not one.record for one in chosen)]
+    responses, left_out = ask_each(chosen, row, run.watch)
+    unread = [record.path.name for record in motions.records if all(record is not each.record for each in chosen)]
     parts = [*table.parts([*unread, *left_out]), *details]
     return answers("responses", "motion", responses, parts, tables={"peaks": table.columns})
-
-
-def _note_pulse(response: Response, watch: Watcher) -> None:
-    if (fit := response.fit) is not None:
-        watch.note(
-            f"pulse: {fit.pulse.title}, a_p = {fit.pulse.amplitude / STANDARD_GRAVITY:.4g} g, "
-            f"T_p = {fit.pulse.period:.4g} s, from {fit.start:.4g} s, sign {fit.sign:+d}: "
-            f"{100 * fit.captured:.0f} % of the energy of the velocity"
-        )
 
 
 def usual_models(structure: Structure, watch: Watcher) -> tuple[ModelName, ...]:
@@ -168,93 +211,3 @@ def usual_models(structure: Structure, watch: Watcher) -> tuple[ModelName, ...]:
         why = structure.why_no_block or structure.misleading or "the restitution is not known"
         watch.note(f"nonlinear history only: {why}")
     return structure.default_models
-
-
-def _blocks(response: Response, structure: Structure) -> Iterator[dict[str, NDArray[np.float64]]]:
-    """Yield the histories of the first polarity, then those of the second, or those under the pulse alone."""
-    from rocking_cli.questions.respond import history_table
-    from rocking_cli.studies.contact import Contacts
-    from rocking_cli.studies.movements import Watched
-
-    first, *others = response.runs.values()
-    runs: dict[str, History] = dict(first.items())
-    runs |= {f"reversed {name}": run for other in others for name, run in other.items()}
-    runs |= {f"pulse {name}": run for name, run in (response.to_pulse or {}).items()}
-    contacts = Contacts(structure.mechanism)
-    shear = {"nonlinear": contacts.base_shear(first["nonlinear"], response.first)} if "nonlinear" in first else {}
-    yield from history_table.blocks(runs, response.first, watched=Watched(structure.mechanism), base_shear=shear)
-
-
-def _long_columns(response: Response, structure: Structure) -> Columns:
-    """Return the histories with a row for each sample of each, and what it is of."""
-    from rocking_cli.questions.respond import history_table
-    from rocking_cli.studies.contact import Contacts
-    from rocking_cli.studies.movements import Watched
-
-    first, fit, contacts = response.first, response.fit, Contacts(structure.mechanism)
-    under: list[tuple[dict[str, int], GroundMotion | None, Mapping[ModelName, History]]] = [({}, first, response)]
-    if first is not None and len(response.runs) > 1:
-        motions = (first, first.scaled(-1))
-        under = [
-            ({"polarity": sign}, motion, runs)
-            for (sign, runs), motion in zip(response.runs.items(), motions, strict=True)
-        ]
-    elif first is not None and fit is not None and response.to_pulse is not None:
-        under = [({"pulse_alone": 0}, first, response), ({"pulse_alone": 1}, fit.alone(first), response.to_pulse)]
-
-    def tables() -> Iterator[dict[str, object]]:
-        for of, motion, runs in under:
-            shear = {"nonlinear": contacts.base_shear(runs["nonlinear"], motion)} if "nonlinear" in runs else {}
-            watched = Watched(structure.mechanism)
-            wide = stacked(history_table.blocks(runs, motion, watched=watched, base_shear=shear))
-            common = {head: values for head, values in wide.items() if head.partition(" ")[0] in ("t", *GROUND)}
-            for model in runs:
-                start = f"{model} "
-                moved = {head.removeprefix(start): each for head, each in wide.items() if head.startswith(start)}
-                yield {**of, "model": model, **common, **moved}
-
-    return stacked(tables())
-
-
-def _of_each_block(response: Response, structure: Structure) -> Iterator[Columns]:
-    """Yield the motion of each block, a row for each sample and block, of one polarity after the other."""
-    from rocking_cli.studies.movements import Watched
-
-    for sign, runs in response.runs.items():
-        run = runs["nonlinear"]
-        names, places, turns = zip(*Watched(structure.mechanism).bodies(run), strict=True)
-        z = np.stack(places, axis=1).ravel()
-        polarity = {"polarity": np.full(z.size, sign)} if len(response.runs) > 1 else {}
-        yield {
-            **polarity, "t [s]": np.repeat(run.time, len(names)), "block": np.tile(names, run.time.size),
-            "x [m]": z.real, "z [m]": z.imag, "rotation [rad]": np.stack(turns, axis=1).ravel(),
-        }  # fmt: skip
-
-
-def _columns(blocks: Callable[[], Iterator[Columns]]) -> Columns:
-    return stacked(blocks())
-
-
-def _impact_columns(response: Response) -> Columns:
-    rows = [
-        (sign, name, *impact)
-        for sign, runs in response.runs.items()
-        for name, run in runs.items()
-        for impact in run.impacts.tolist()
-    ]
-    heads = "polarity", "model", "t [s]", "direction", "phi_dot before [rad/s]"
-    return {head: [row[k] for row in rows] for k, head in enumerate(heads)}
-
-
-def _figure(response: Response, structure: Structure, title: str, *, contact: bool) -> Figure:
-    from rocking_cli.names import peaks_over
-    from rocking_cli.questions.respond.picture import draw_history
-    from rocking_cli.views.conclusion import headline
-
-    first, *others = response.runs.values()
-    fit, alone = response.fit, response.to_pulse
-    pulse = (fit, alone) if fit is not None and alone is not None else None
-    checked = list(response.contacts.values()) if contact else []
-    over = peaks_over(next(iter(first.values())).ends_at_limit).replace("phi_cr", "φcr")
-    title = f"{title} ({headline(response.conclusion, over)})"
-    return draw_history(first, response.first, title, others[0] if others else None, pulse, structure, checked)

@@ -15,7 +15,7 @@ from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.records.record_units import header_units
 from rocking_cli.short_repr import short_repr
-from rocking_cli.studies.points_file import read_points, separator_in
+from rocking_cli.studies.file_part import read_points, separator_in
 from rocking_cli.text import did_you_mean
 from rocking_cli.units import CHOICES, UNITS, header_unit
 from rocking_cli.verification.check import demand

@@ -35,7 +35,7 @@ from rocking_cli.processing.steps import parse_step, process
 from rocking_cli.questions.selfcheck.study import NotRun
 from rocking_cli.structure import Structure
 from rocking_cli.studies import neighbours as near
-from rocking_cli.studies.conditions import Conditions
+from rocking_cli.studies.neighbours import Conditions
 from rocking_cli.units import KINDS, read
 
 GRAVITY = 9.80665  # m/s2, repeated here as are all expected values

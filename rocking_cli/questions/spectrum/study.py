@@ -23,7 +23,7 @@ from rocking_cli.io.field_problems import of_arguments
 from rocking_cli.names import MIN_MOTIONS, OPENING
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
-from rocking_cli.studies.intervals import fractile
+from rocking_cli.studies.fit import fractile
 from rocking_cli.studies.under_pulses import Progress, PulsedModel, parse_shape, pulsed_model, uplift
 
 Respond = Callable[[Sequence[Model], Sequence[GroundMotion], Runs], Outcomes]

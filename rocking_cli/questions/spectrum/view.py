@@ -16,10 +16,9 @@ from rocking_cli.processing.reading import Scaled
 from rocking_cli.questions.overturning.view import NO_JOINTS, numbers, source_of, spaced
 from rocking_cli.questions.spectrum.study import Spectrum
 from rocking_cli.short_repr import short_repr
-from rocking_cli.views import processing
 from rocking_cli.views.column import Column, only_shown, rounded, table_of
 from rocking_cli.views.verdict import INVALID_REASON, unchecked
-from rocking_cli.views.view import ABSENT, Table, View
+from rocking_cli.views.view import ABSENT, Table, View, processing_data
 
 MAX_TABLE_ROWS = 12  # rows of a table, besides that of the structure as given; --out and --json have the whole curves
 SCALING_NOTE = (
@@ -76,7 +75,7 @@ def _all(results: ShownSpectra) -> dict[str, Any]:
         "fractiles": list(results.fractiles),
         "motions": [
             {"name": motion.name, "format": motion.format, "npts": motion.npts, "dt": motion.dt}
-            | {"pga_g": motion.of_ground.pga_g, "scale": factor, **processing.data(motion)}
+            | {"pga_g": motion.of_ground.pga_g, "scale": factor, **processing_data(motion)}
             for motion, factor, *_ in results.motions
         ],
         "spectra": [_data(results, each) for each in results.spectra],

@@ -26,8 +26,7 @@ from rocking_cli.names import OPENING
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure, check_opening
 from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare
-from rocking_cli.studies.conditions import Conditions
-from rocking_cli.studies.neighbours import Neighbourhood, neighbours
+from rocking_cli.studies.neighbours import Conditions, Neighbourhood, neighbours
 from rocking_cli.verification.check import code_of, of_each, questioned, row_numbers, verify
 from rocking_cli.verification.code import SiteFile
 

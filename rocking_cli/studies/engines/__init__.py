@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 from rocking_cli.core import Mechanism
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.studies.engines.contract import Engine as Engine
-from rocking_cli.studies.engines.contract import EngineName as EngineName
 from rocking_cli.studies.engines.exact import EXACT as EXACT
+from rocking_cli.studies.engines.exact import Engine as Engine
+from rocking_cli.studies.engines.exact import EngineName as EngineName
 from rocking_cli.studies.engines.exact import follow as follow
 
 FREE_NEIGHBOURS = 20  # number of neighbours by default if free blocks are simulated

@@ -6,7 +6,7 @@ of the contact. This time, and the step, follow from the blocks; docs/free_block
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import ceil, inf, nan, sqrt
@@ -62,6 +62,8 @@ class BlockMotion:
         Why the simulation is no answer, a clause; empty if it is one.
     at_rest : bool
         Whether all blocks came to rest in the end.
+    ended_early : bool
+        Whether it was ended at the time after which blocks are not followed.
     friction : mapping of tuple of str to float
         Largest shear over normal force of each pair of blocks that touch, at the samples; "" is the ground. Empty if it
         was not looked at.
@@ -75,6 +77,7 @@ class BlockMotion:
     off: str = ""
     failed: str = ""
     at_rest: bool = False
+    ended_early: bool = False
     friction: Mapping[tuple[str, str], float] = field(default_factory=dict)
 
 
@@ -149,7 +152,6 @@ class BlockModel:
         tail: float = 0.0,
         most: float = inf,
         friction: bool = False,
-        progress: Callable[[float], None] | None = None,
     ) -> BlockMotion:
         """Simulate the blocks until they are at rest after the motion, or one of them has fallen.
 
@@ -167,8 +169,6 @@ class BlockModel:
             Time after which they are not followed [s].
         friction : bool
             Whether to look at the friction of all pairs that touch.
-        progress : callable, optional
-            Called with the time reached [s].
 
         Raises
         ------
@@ -226,12 +226,11 @@ class BlockModel:
             rates.append(data.qvel[:count].reshape(-1, 3) * scale / self.scene.unit_of_time)
             if friction:
                 self._note_friction(data, frictions)
-            fallen = self._fallen(now)
+            down = (now[:, 1] < -FALL * self.free.height) | (np.abs(now[:, 2]) > TURN)
+            fallen = int(down.argmax()) if down.any() else None
             if fallen is not None:
                 break
             time = k * sample
-            if progress is not None:
-                progress(time)
             if self._kinetic(data) >= REST_ENERGY:
                 moving = k
             at_rest = time >= ended and (k - moving) * sample >= self.scene.unit_of_time
@@ -240,6 +239,7 @@ class BlockModel:
         return BlockMotion(
             time=sample * np.arange(len(moved), dtype=np.float64), moved=np.array(moved), rates=np.array(rates),
             collapsed=k * sample if fallen is not None else nan, failed=failed, at_rest=at_rest, friction=frictions,
+            ended_early=not failed and fallen is None and not at_rest and k * sample >= most,
             block=self.names[fallen] if fallen is not None else "",
             off=self.free.edge_passed(self.names[fallen], moved[-1]) if fallen is not None else "",
         )  # fmt: skip
@@ -279,11 +279,6 @@ class BlockModel:
         if contacts and at.size:
             braked = data.efc_KBIP[at + 1, 1] * np.sqrt(velocity[at + 1] ** 2 + velocity[at + 2] ** 2)
             data.efc_aref[at] -= data.contact.friction[data.contact.dim > 1, 0] * braked
-
-    def _fallen(self, moved: Reals) -> int | None:
-        """Return the number of a block that has fallen, or None."""
-        fallen = (moved[:, 1] < -FALL * self.free.height) | (np.abs(moved[:, 2]) > TURN)
-        return int(fallen.argmax()) if fallen.any() else None
 
     @cached_property
     def _limits(self) -> Reals:

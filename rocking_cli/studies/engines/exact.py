@@ -1,28 +1,50 @@
-"""The engine of one degree of freedom: the joints of the mechanism open and close, all others are only checked."""
+"""The contract of engines, and that of one degree of freedom, whose joints but those that open are only checked."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from math import isfinite
-from typing import TYPE_CHECKING, ClassVar, Unpack
+from typing import ClassVar, Literal, TypedDict, Unpack
 
+from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction
 from rocking_cli.dynamics import history
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import History
-from rocking_cli.dynamics.model import MODELS, Model, ModelName
+from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.names import RTOL, TAIL_SECONDS
 from rocking_cli.structure import Structure
-from rocking_cli.studies.engines.contract import Engine, EngineName, RunOptions
 from rocking_cli.studies.engines.free_blocks import free_blocks
 
-if TYPE_CHECKING:
-    from rocking_cli.studies.conditions import Conditions
+EngineName = Literal["exact", "blocks", "auto"]
+
+
+class RunOptions(TypedDict, total=False):
+    """Options of many motions, see `respond_many`."""
+
+    release: float | Reals | None
+    threads: int | None
+    rtol: float
+    only_peaks: bool
+    progress: Callable[[int], None] | None
+
+
+class Engine(ABC):
+    """An engine: who simulates the motion of a structure."""
+
+    name: ClassVar[EngineName]
+
+    @abstractmethod
+    def outcomes(
+        self, models: Sequence[Model], motions: Sequence[GroundMotion | None], runs: Runs, **options: Unpack[RunOptions]
+    ) -> Outcomes:
+        """Simulate many motions; parameters and errors are those of `respond_many`."""
 
 
 def follow(
@@ -97,23 +119,8 @@ class Exact(Engine):
 
     name: ClassVar[EngineName] = "exact"
 
-    def respond(self, conditions: Conditions, motion: GroundMotion | None = None) -> dict[ModelName, History]:
-        """Simulate models of a structure, each by `follow`."""
-        models, of = conditions.models, conditions
-        unknown = [name for name in models if name not in MODELS]
-        if unknown or not models:
-            raise InputError(f"models must be of {', '.join(MODELS)}, got {', '.join(unknown) or 'none'}")
-        return {
-            name: follow(of.structure, motion, model=name, release=of.release, tail=of.tail, rtol=of.rtol)
-            for name in models
-        }
-
     def outcomes(
-        self,
-        models: Sequence[Model],
-        motions: Sequence[GroundMotion | None],
-        runs: Runs,
-        **options: Unpack[RunOptions],
+        self, models: Sequence[Model], motions: Sequence[GroundMotion | None], runs: Runs, **options: Unpack[RunOptions]
     ) -> Outcomes:
         """Simulate many motions, see `respond_many`."""
         return respond_many(models, motions, runs, **options)

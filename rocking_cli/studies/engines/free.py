@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Callable, Mapping, Sequence
+import sqlite3
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import closing, suppress
 from dataclasses import replace
 from hashlib import sha256
-from math import nan
+from math import inf, nan
+from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, ClassVar, Unpack
+from typing import Any, ClassVar, Unpack
 
 import numpy as np
 
@@ -16,30 +20,34 @@ from rocking_cli.arrays import Bools, Reals
 from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.batch import Runs
 from rocking_cli.dynamics.history import BlockPeaks, History, contact_lost
-from rocking_cli.dynamics.model import Model, ModelName
+from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcome, Outcomes
 from rocking_cli.dynamics.parallel import MAX_PROCESSES, in_processes
 from rocking_cli.dynamics.sliding import Slid
-from rocking_cli.errors import SolverError
+from rocking_cli.errors import KeptWarning, SolverError, warn
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.io.json_text import json_text
 from rocking_cli.names import TAIL_SECONDS
 from rocking_cli.structure import Structure
-from rocking_cli.studies.engines import memory
-from rocking_cli.studies.engines.blocks import SUNK, BlockModel, BlockMotion
-from rocking_cli.studies.engines.contract import Engine, EngineName, RunOptions
-from rocking_cli.studies.engines.exact import EXACT, check_motion
+from rocking_cli.studies.engines.blocks import STEPS, SUNK, BlockModel, BlockMotion, time_constant
+from rocking_cli.studies.engines.exact import EXACT, Engine, EngineName, RunOptions, check_motion
 from rocking_cli.studies.engines.free_blocks import FreeBlocks, free_blocks
 from rocking_cli.studies.engines.scene import engine_version
-
-if TYPE_CHECKING:
-    from rocking_cli.studies.conditions import Conditions
 
 FINER = (1.0, 2.0, 4.0)  # by how much contacts are stiffer than by the rule: the next if a body sank too deep
 MEASURED = 1.0  # s of a motion that are simulated to measure how long the others will take
 MOVED = 1e-3  # rotation over the critical one from which a structure has uplifted
+DAMAGED = (sqlite3.SQLITE_ERROR, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
+"""Errors of a file that has no such tables, or is no database; others, as of a locked file, may pass."""
 
 
-def simulate(free: FreeBlocks, models: dict[float, BlockModel], motion: GroundMotion | None, **how: Any) -> BlockMotion:
+class TooLong(SolverError):
+    """More steps than a simulation may take."""
+
+
+def simulate(
+    free: FreeBlocks, models: dict[float, BlockModel], motion: GroundMotion | None, most_steps: float = inf, **how: Any
+) -> BlockMotion:
     """Simulate free blocks, with stiffer contacts if a body sinks too deep.
 
     Parameters
@@ -48,15 +56,29 @@ def simulate(free: FreeBlocks, models: dict[float, BlockModel], motion: GroundMo
         The blocks.
     models : dict of float to BlockModel
         Models of these blocks by the stiffness of their contacts, which this call adds to.
+    most_steps : float
+        Largest number of time steps, times the number of blocks, of all attempts together.
     motion, **how
         See `BlockModel.simulate`.
+
+    Raises
+    ------
+    TooLong
+        If it takes more steps.
     """
+    lasts = motion.duration if motion is not None else 0.0
     for finer in FINER:
+        seconds = most_steps / len(free.bodies) * time_constant(free) / (finer * STEPS)
+        if lasts > seconds:
+            raise TooLong("a simulation takes too many steps")
         if finer not in models:
             models[finer] = BlockModel(free, finer)
-        moved = models[finer].simulate(motion, **how)
+        moved = models[finer].simulate(motion, most=seconds, **how)
+        if moved.ended_early:
+            raise TooLong("a simulation takes too many steps")
         if not moved.failed:
             break
+        most_steps *= 1 - float(moved.time[-1]) / seconds
     return moved
 
 
@@ -153,16 +175,6 @@ class Blocks(Engine):
         engine_version()
         self.mechanisms = tuple(mechanisms)
 
-    def respond(self, conditions: Conditions, motion: GroundMotion | None = None) -> dict[ModelName, History]:
-        """Simulate one motion of a structure as free blocks, which are one model and need no tolerance.
-
-        Restitution is what contact gives: that of the structure has no effect.
-        """
-        structure, release, tail = conditions.structure, conditions.release, conditions.tail
-        check_motion(structure, motion, release, tail)
-        history, _, _ = self.follow(structure, motion, release=release, tail=tail)
-        return {"blocks": history}
-
     def follow(
         self,
         structure: Structure,
@@ -170,32 +182,34 @@ class Blocks(Engine):
         *,
         release: float | None = None,
         tail: float = TAIL_SECONDS,
-        progress: Callable[[float], None] | None = None,
+        most_steps: float = inf,
     ) -> tuple[History, BlockMotion, FreeBlocks]:
         """Return the history of a structure as free blocks, with the motion of the blocks, and the blocks.
+
+        They are one model and need no tolerance; restitution is what contact gives, and that of the structure has no
+        effect. Parameters are those of `exact.follow` and `simulate`.
 
         Raises
         ------
         InputError
-            If the structure has something that free blocks cannot have.
+            As `exact.follow`, or if the structure has something that free blocks cannot have.
+        TooLong
+            If it takes more than `most_steps`.
         SolverError
             If the blocks do not stand by themselves, a step diverges, or a body sinks too deep into another.
         """
+        check_motion(structure, motion, release, tail)
         with structure.named():
             free = free_blocks(structure.mechanism)
             model = structure.model("nonlinear") if structure.no_model is None else None
             start = _start(structure.mechanism, free, model.phi_cr, release or 0.0) if model is not None else None
-            moved = simulate(free, {}, motion, start=start, tail=tail, friction=True, progress=progress)
+            moved = simulate(free, {}, motion, most_steps, start=start, tail=tail, friction=True)
         if moved.failed:
             raise SolverError(f"{structure.name}: free blocks failed at {moved.time[-1]:.4g} s: {moved.failed}")
         return history_of(moved, free, model, motion), moved, free
 
     def outcomes(
-        self,
-        models: Sequence[Model],
-        motions: Sequence[GroundMotion | None],
-        runs: Runs,
-        **options: Unpack[RunOptions],
+        self, models: Sequence[Model], motions: Sequence[GroundMotion | None], runs: Runs, **options: Unpack[RunOptions]
     ) -> Outcomes:
         """Simulate many motions in processes; those that fail are of unknown outcome.
 
@@ -204,7 +218,7 @@ class Blocks(Engine):
         progress = options.get("progress")
         work = _Work(self.mechanisms, [model.phi_cr for model in models], motions, runs, options.get("release"))
         keys = work.keys()
-        known = memory.recall(keys)
+        known = recall(keys)
         left = [k for k, key in enumerate(keys) if key not in known]
         if progress is not None:
             progress(len(runs) - len(left))
@@ -216,7 +230,7 @@ class Blocks(Engine):
             else ((k, work(k, k + 1)) for k in range(len(left)))
         )
         for k, outcome in parts:
-            memory.remember([(keys[left[k]], outcome)])
+            remember([(keys[left[k]], outcome)])
             known[keys[left[k]]] = outcome
             if progress is not None:
                 progress(1)
@@ -235,19 +249,8 @@ class Auto(Engine):
     def __init__(self, mechanisms: Sequence[Mechanism] = ()) -> None:
         self.free = Blocks(mechanisms)
 
-    def respond(self, conditions: Conditions, motion: GroundMotion | None = None) -> Mapping[ModelName, History]:
-        """Simulate models of a structure, and free blocks if the outcome of the nonlinear one is unknown."""
-        histories = EXACT.respond(conditions, motion)
-        if "nonlinear" not in histories or not histories["nonlinear"].unknown:
-            return histories
-        return {**histories, **self.free.respond(conditions, motion)}
-
     def outcomes(
-        self,
-        models: Sequence[Model],
-        motions: Sequence[GroundMotion | None],
-        runs: Runs,
-        **options: Unpack[RunOptions],
+        self, models: Sequence[Model], motions: Sequence[GroundMotion | None], runs: Runs, **options: Unpack[RunOptions]
     ) -> Outcomes:
         """Simulate many motions; each outcome states its engine."""
         progress, release = options.pop("progress", None), options.get("release")
@@ -346,3 +349,69 @@ def _digest(motion: GroundMotion | None) -> str:
         if each is not None:
             digest.update(repr(each.dt).encode() + np.ascontiguousarray(each.acceleration).tobytes())
     return digest.hexdigest()
+
+
+# Histories that were simulated before, so that a study that was interrupted goes on where it stopped. The file is read
+# as one of a stranger: a row is taken if its checksum, of key and outcome, is right.
+
+
+def place() -> Path:
+    """Return the file of the histories, in the user's cache."""
+    import platformdirs
+
+    return platformdirs.user_cache_path("rocking-cli", appauthor=False) / "blocks.sqlite"
+
+
+def recall(keys: Sequence[str]) -> dict[str, Any]:
+    """Return what is known of histories, by their keys; nothing if the file cannot be read."""
+    outcomes: dict[str, Any] = {}
+    if not os.path.isfile(place()):  # noqa: PTH113 - pathlib raises where a folder may not be entered
+        return outcomes
+    rows, bad = list[tuple[str, Any]](), 0
+
+    def ask(known: sqlite3.Connection) -> None:
+        (fault,) = known.execute("PRAGMA quick_check(1)").fetchone()
+        if fault != "ok":
+            raise sqlite3.DatabaseError(fault)
+        for key in keys:
+            rows.extend((key, kept) for (kept,) in known.execute("SELECT outcome FROM kept WHERE key = ?", (key,)))
+
+    _opened(ask)
+    for key, kept in rows:
+        checksum, _, text = str(kept).partition(" ")
+        if checksum == _checksum(key, text):
+            outcomes[key] = {name: nan if value is None else value for name, value in json.loads(text).items()}
+        else:
+            bad += 1
+    if bad:
+        warn(KeptWarning(f"{place()}: rows that are damaged and are simulated again: {bad}"))
+    return outcomes
+
+
+def remember(outcomes: Iterable[tuple[str, Any]]) -> None:
+    """Keep outcomes of histories by their keys; in vain if the file cannot be written."""
+    texts = [(key, json_text(outcome)) for key, outcome in outcomes]
+    rows = [(key, f"{_checksum(key, text)} {text}") for key, text in texts]
+    _opened(lambda known: known.executemany("INSERT OR REPLACE INTO kept VALUES (?, ?)", rows))
+
+
+def _checksum(key: str, text: str) -> str:
+    return sha256(f"{key} {text}".encode(errors="replace")).hexdigest()
+
+
+def _opened(use: Callable[[sqlite3.Connection], object]) -> None:
+    """Use the file, as far as that is possible; one that is damaged is removed, so that the next call makes it anew."""
+    try:
+        place().parent.mkdir(parents=True, exist_ok=True)
+        with closing(sqlite3.connect(place(), timeout=10.0)) as known, known:
+            known.text_factory = lambda text: text.decode(errors="replace")
+            known.execute("CREATE TABLE IF NOT EXISTS kept (key TEXT PRIMARY KEY, outcome TEXT) WITHOUT ROWID")
+            use(known)
+    except OSError:
+        pass
+    except (sqlite3.Error, UnicodeDecodeError) as error:  # the second by `sqlite3`, of a damaged name of a column
+        if getattr(error, "sqlite_errorcode", sqlite3.SQLITE_CORRUPT) & 0xFF in DAMAGED:
+            for ending in ("-journal", "-wal", "-shm", ""):
+                with suppress(OSError):
+                    Path(f"{place()}{ending}").unlink()
+            warn(KeptWarning(f"{place()}: damaged, and made anew: {error}"))

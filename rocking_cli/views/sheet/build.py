@@ -16,10 +16,10 @@ from rocking_cli.studies.provenance import File, TitleBlock
 from rocking_cli.verification.check import code_of
 from rocking_cli.verification.code import Code, SiteFile
 from rocking_cli.verification.results import Verification
+from rocking_cli.views.mechanisms import comments
 from rocking_cli.views.sheet import template
 from rocking_cli.views.sheet.document import Sheet
 from rocking_cli.views.sheet.language import SIGNIFICANT_DIGITS, Language, texts_of
-from rocking_cli.views.template import comments
 
 MAX_LISTED_LINES = 200  # lines of a file that a sheet shows
 SIGNATURE_FIELDS = ("Place and date", "Name", "Signature", "Stamp")

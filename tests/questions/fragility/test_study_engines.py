@@ -97,8 +97,8 @@ def test_the_output_names_the_engine_of_each_run(whole, tmp_path):
 
 @NEEDS_BLOCKS
 def test_free_blocks_that_fail_are_of_unknown_outcome(tmp_path, monkeypatch):
-    monkeypatch.setattr("rocking_cli.studies.engines.memory.recall", lambda keys: {})
-    monkeypatch.setattr("rocking_cli.studies.engines.memory.remember", lambda outcomes: None)
+    monkeypatch.setattr("rocking_cli.studies.engines.free.recall", lambda keys: {})
+    monkeypatch.setattr("rocking_cli.studies.engines.free.remember", lambda outcomes: None)
     monkeypatch.setattr("rocking_cli.studies.engines.blocks.BlockModel._fault", lambda *state: "a step diverged")
     monkeypatch.setattr("rocking_cli.studies.engines.free.FINER", (1.0,))
     answer = rk.fragility(write(tmp_path), jobs=1)
@@ -110,7 +110,7 @@ def test_free_blocks_that_fail_are_of_unknown_outcome(tmp_path, monkeypatch):
 
 @NEEDS_BLOCKS
 def test_runs_that_slide_and_runs_that_fall_off_an_edge_are_told_apart(tmp_path, monkeypatch):
-    monkeypatch.setattr("rocking_cli.studies.engines.memory.place", lambda: tmp_path / "blocks.sqlite")
+    monkeypatch.setattr("rocking_cli.studies.engines.free.place", lambda: tmp_path / "blocks.sqlite")
     podium = "podium: {polygon: [[-0.3, -1], [9, -1], [9, 0], [-0.3, 0]]}"
     cube = "cube: {polygon: [[0, 0], [1, 0], [1, 1], [0, 1]]}"
     structure = f"mechanism: assembly\nname: cube\ndensity: 2000\ndepth: 1\nfriction: 0.2\nblocks: {{{cube}}}\n"

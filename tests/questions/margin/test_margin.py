@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import re
 from contextlib import nullcontext
 
 import numpy as np
@@ -22,10 +20,9 @@ from rocking_cli.questions.margin.picture import draw_margins
 from rocking_cli.questions.margin.study import FACTORS, SHARE_LEVELS, Margin, margin
 from rocking_cli.questions.margin.view import in_words
 from rocking_cli.structure import Structure, build_models
-from rocking_cli.studies.conditions import Conditions
-from rocking_cli.studies.engines import EXACT
-from rocking_cli.studies.neighbours import Neighbourhood
-from tests.cli.test_cli import run, run_json, some
+from rocking_cli.studies.neighbours import Conditions, Neighbourhood
+from rocking_cli.studies.response import of_one_degree
+from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 from tests.following import build_model, conditions
 
@@ -46,7 +43,7 @@ def alone(mechanism, motion, factor, slender, etas):
         given = {"positive_to_negative": etas[0], "negative_to_positive": etas[1]}
         data = {**mechanism.model_dump(), "restitution": given}
         SINGLE[key] = Structure(type(mechanism).model_validate(data))
-    return EXACT.respond(Conditions(SINGLE[key], ("nonlinear",)), motion.scaled(factor / slender))["nonlinear"]
+    return of_one_degree(Conditions(SINGLE[key], ("nonlinear",)), motion.scaled(factor / slender))["nonlinear"]
 
 
 def share(mechanism, motion, factor, polarities, around=AROUND):
@@ -110,9 +107,7 @@ def test_a_reversed_motion_is_followed_only_where_it_can_add_something(monkeypat
     followed, done = [], []
     simulate = margins.simulate_neighbours
     monkeypatch.setattr(
-        margins,
-        "simulate_neighbours",
-        lambda *a, **k: followed.append(len(a[2].amplitude)) or simulate(*a, **k),
+        margins, "simulate_neighbours", lambda *a, **k: followed.append(len(a[2].amplitude)) or simulate(*a, **k)
     )
     motion = parse_pulse("sine:0.8g:0.5s").sampled()
     around = Neighbourhood(20, 0.02, 0.02, 0.0)
@@ -138,10 +133,6 @@ def test_symmetric_structures_are_known(name, alike):
     assert {each.name: each.symmetric for each in models} == dict.fromkeys(("nonlinear", "linear1", "linear2"), alike)
 
 
-def test_sixty_factors_from_a_fifth_to_five():
-    assert FACTORS.size == 60 and FACTORS[0] == pytest.approx(0.2) and FACTORS[-1] == pytest.approx(5)
-
-
 def made(*shares, unknown=None) -> Margin:
     doubtful = np.zeros(len(shares)) if unknown is None else np.array(unknown, dtype=float)
     factors = np.arange(1.0, len(shares) + 1)
@@ -149,12 +140,6 @@ def made(*shares, unknown=None) -> Margin:
 
 
 class TestLevels:
-    def test_first_and_last(self):
-        found = made(0.0, 0.2, 0.6, 0.3, 0.6, 1.0)
-        assert [found.first(level) for level in SHARE_LEVELS] == [2.0, 3.0, 6.0]
-        assert [found.last_below(level) for level in SHARE_LEVELS] == [1.0, 4.0, 5.0]
-        assert found.islands(0.5) == [(3.0, 3.0), (5.0, 6.0)]
-
     def test_none_and_all(self):
         assert made(0, 0).first(0.1) is None and made(0, 0).last_below(0.1) == 2.0
         assert made(1, 1).first(0.9) == 1.0 and made(1, 1).last_below(0.9) is None
@@ -195,20 +180,6 @@ class TestWords:
         assert all(each in words for each in said)
         assert ("always worse" in words) == any("always worse" in each or "only 30 %" in each for each in said)
         assert ("unknown" in words) == (unknown is not None)
-
-    def test_the_numbers_are_those_of_the_shares(self):
-        motion = parse_pulse("ricker:0.7g:0.9s").sampled()
-        found = margin(conditions(BLOCK, AROUND, signs=(1, -1)), motion)
-        words = in_words(found).split("; the factors")[0]
-        said = re.findall(
-            r"(\d+) % (?:[a-z ]* first overturn the structure )?at (?:a factor of )?([\d.]+) \((?:PGA )?([\d.]+) g\)",
-            words,
-        )
-        assert [level for level, *_ in said] == ["10", "50", "90"]
-        for level, factor, pga in said:
-            k = int(np.abs(found.factors - float(factor)).argmin())
-            assert float(pga) == pytest.approx(0.7 * found.factors[k], rel=5e-3)
-            assert found.overturned[k] >= int(level) / 100 > found.overturned[:k].max()
 
 
 @pytest.mark.parametrize("polarities", [(1,), (-1,), (1, -1)])
@@ -299,13 +270,6 @@ class TestCommand:
         wider, less = np.array(known["unknown"]), np.array(ours["unknown"])
         assert (wider <= less).all() and wider.sum() < less.sum() - 1
 
-    def test_a_scaled_motion_is_the_motion(self):
-        one, two = (
-            run_json("margin", self.BLOCK, "--pulse", f"sine:{ag}g:0.8s", *scale, "--neighbours", 5, "--polarity", 1)
-            for ag, scale in ((0.6, ()), (0.3, ("--scale", 2)))
-        )
-        np.testing.assert_allclose(one["motions"][0]["shares"], two["motions"][0]["shares"])
-
     @pytest.mark.parametrize(
         ("words", "fragment"),
         [
@@ -320,12 +284,6 @@ class TestCommand:
     )
     def test_wrong_input(self, words, fragment):
         assert fragment in run("margin", self.BLOCK, *words, code=2).stderr
-
-
-def test_a_missing_record_of_several_leaves_the_others():
-    records = ("--record", EXAMPLES / "accel.csv", "--record", "no.AT2")
-    result = some("margin", EXAMPLES / "block.yaml", *records, "--neighbours", 5, "--json")
-    assert "no.AT2" in result.stderr and len(json.loads(result.stdout)["motions"]) == 1
 
 
 def shown(uplift=0.5, shares=0.0, unknown=0.0, polarities=(1, -1)) -> Margin:
@@ -382,15 +340,6 @@ def test_one_motion_is_named_and_has_an_axis_of_its_pga():
     assert axes.get_title(loc="left") == "wall, a.csv" and top.get_xlabel() == "PGA [g]"
     axes.figure.draw_without_rendering()
     np.testing.assert_allclose(top.get_xlim(), 0.4 * np.array(axes.get_xlim()))
-
-
-@pytest.mark.parametrize(
-    ("polarities", "said"), [((1, -1), "worse of both polarities"), ((-1,), "motion reversed"), ((1,), None)]
-)
-def test_the_axis_names_the_polarities_that_were_simulated(polarities, said):
-    (axes,) = draw_margins({"a": shown(polarities=polarities)}, "").axes
-    words = axes.get_ylabel().replace("\n", " ")
-    assert words == "share of neighbours that overturn" + (f", {said}" if said else "")
 
 
 @pytest.mark.parametrize("narrow", [False, True])

@@ -11,7 +11,7 @@ from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.errors import InputError
 from rocking_cli.io.starters import STARTERS, in_italian, italian, starter, template_of
 from rocking_cli.questions.new.command import SITE, STUDY
-from rocking_cli.views.template import template
+from rocking_cli.views.mechanisms import template
 from tests.cli.test_cli import run
 
 TEMPLATES = {**{name: starter(name) for name in STARTERS}, **{name: template(cls) for name, cls in Registry().items()}}

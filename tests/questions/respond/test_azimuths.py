@@ -5,8 +5,7 @@ import pytest
 
 import rocking_cli as rk
 from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, UNCHECKED_FIELDS, Outcome
-from rocking_cli.questions.respond.azimuths import AzimuthResponses
-from rocking_cli.questions.respond.azimuths_view import columns, view
+from rocking_cli.questions.respond.azimuths import AzimuthResponses, columns, view
 from rocking_cli.structure import Structure
 from rocking_cli.views.view import Table
 

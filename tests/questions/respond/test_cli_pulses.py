@@ -2,7 +2,6 @@
 
 import csv
 import json
-from dataclasses import replace
 from typing import get_args
 
 import numpy as np
@@ -61,14 +60,6 @@ class TestInPlaceOfARecord:
         assert "0.5" in run("respond", "--pulse", SINE, "--target-pgv", "0.5").stderr
         assert run_json("respond", "--pulse", SINE, "--release", "0.3")["release"] == 0.3
 
-    def test_a_vertical_component_goes_with_it_at_its_own_interval(self, tmp_path):
-        (tmp_path / "up.txt").write_text("\n".join(["0", *["0.3", "-0.3"] * 200]) + "\n", encoding="utf-8")
-        data = run_json("respond", FRAME, "--pulse", SINE, "--vertical", "up.txt", "--dt", "0.01", "--units", "g")
-        up = read_record(tmp_path / "up.txt", dt=0.01, units="g")
-        history = respond(load_structure(FRAME), replace(parse_pulse(SINE).sampled(), vertical=up))["nonlinear"]
-        assert data["responses"]["nonlinear"]["peak_ratio"] == history.peak_ratio
-        assert data["record"]["vertical"]["dt"] == 0.01
-
     @pytest.mark.parametrize(
         ("options", "words"),
         [
@@ -113,16 +104,6 @@ class TestInARecord:
             sine = fits["sine"]
             assert (sine["sign"], sine["amplitude"]) == (-1, pytest.approx(0.8, rel=0.03))
             assert (sine["start"], sine["period"]) == (pytest.approx(2, abs=0.03), pytest.approx(0.8, rel=0.03))
-
-    def test_the_tables_say_what_is_maximised(self, made):
-        text = run("record", made, "--fit-pulse").stdout
-        assert "fitted in acceleration" in " ".join(text.split()) and "fitted in velocity" in " ".join(text.split())
-        assert "1 - sum (r - s)^2 / sum r^2" in " ".join(text.split())
-        for fits in run_json("record", made, "--fit-pulse")["pulses"].values():
-            for found in fits.values():
-                assert f"{100 * found['captured']:.1f}" in text
-                assert all(f"{found[key]:.4g}" in text for key in ("amplitude", "period", "start", "centre"))
-                assert all(f"{found[key]:.4g}" in text for key in ("phase", "cycles") if key in found)
 
     def test_several_files_and_one_without_a_pulse(self, made, tmp_path):
         (tmp_path / "zero.csv").write_text("t,accel_g\n" + "".join(f"{k},0\n" for k in range(40)), encoding="utf-8")

@@ -50,7 +50,7 @@ class TestRespond:
         def refuse(*_, **__):
             raise InputError("no answer")
 
-        monkeypatch.setattr("rocking_cli.studies.response.response_of", refuse)
+        monkeypatch.setattr("rocking_cli.questions.respond.verb.response_of", refuse)
         result = run("respond", BLOCK, "--record", "bad.csv", "--record", "r/east.csv", code=InputError.exit_code)
         assert result.stdout == "" and "bad.csv" in result.stderr and "east.csv: no answer" in result.stderr
 
@@ -111,22 +111,6 @@ class TestRespond:
             data = each.to_dict()["responses"]["nonlinear"]
             assert (data["points"]["top"]["horizontal"], data["ties"]["bar"]["peak_force"]) == tuple(row[2:])
         assert frame.iloc[2, 2] == frame.iloc[2, 3] == 0.0 < frame.iloc[0, 2] < frame.iloc[1, 2]
-
-    def test_a_wall_held_at_its_top_has_millimetres_of_its_hinge(self):
-        wall = rk.Wall(thickness=0.3, height=3.0)
-        answer = rk.respond(wall, ["sine:0.7g:0.3s", "sine:0.65g:0.3s"], model="nonlinear")
-        columns = answer.frames["peaks"]
-        assert "joint_B_horizontal_displacement" in columns
-        for name, each in answer.items():
-            # The lower half turns about one foot or the other, and takes its upper corner along.
-            corner, run = wall.joints(rk.Direction.POSITIVE)[1].point, each["nonlinear"]
-            assert abs(corner.real) == 0.15 and corner.imag == 1.5 and run.peak_positive > 0 < run.peak_negative
-            turned = [
-                foot + ((corner - foot) * cmath.exp(-1j * phi)).real
-                for foot, phi in ((0.15, run.peak_positive), (-0.15, -run.peak_negative))
-            ]
-            moved = columns.set_index("motion").loc[name, "joint_B_horizontal_displacement"]
-            assert moved == pytest.approx(max(abs(each - corner.real) for each in turned), rel=1e-6)
 
     def test_both_polarities_and_the_pulses_in_them_have_rows_of_their_own(self, records):
         both = run("respond", FRAME, "--record", records, "--polarity", "both").stdout
@@ -220,16 +204,6 @@ class TestAnimate:
         assert "does not uplift" in text and "overturns" in text
 
 
-class TestOthers:
-    def test_a_report_takes_a_pattern_and_leaves_bad_ones_out(self, records):
-        found = lines(
-            "report", "--neighbours", 20, BLOCK, "--record", records, "--record", "bad.csv", "--polarity", "1", code=5
-        )
-        assert [each["name"] for each in found[0]["motions"]] == ["east.csv", "north.csv", "west.csv"]
-        assert run("report", "--neighbours", 20, BLOCK, "--record", "no*.csv", "-o", "r.html", code=2).stdout == ""
-        assert not Path("r.html").exists()
-
-
 def test_what_governs_is_over_the_limit_where_nothing_is_critical(tmp_path):
     """A tie that holds a block up to its limit: there is no phi_cr to speak of."""
     file = tmp_path / "tied.yaml"
@@ -273,16 +247,6 @@ class TestPython:
             found.plot()
         with pytest.raises(InputError, match=r"bad.csv:3"):
             rk.respond(FRAME, ["bad.csv", records])
-
-    def test_animations(self, records):
-        found = rk.animate(BLOCK, ["r/east.csv", "r/north.csv"], out="m.html", neighbours=0)
-        assert [Path(each.to_dict()["file"]).name for each in found.values()] == ["m-east.html", "m-north.html"]
-        assert all(Path(each.to_dict()["file"]).is_file() for each in found.values())
-
-    def test_structures(self):
-        found = rk.equiv([FRAME, BLOCK])
-        assert list(found.to_dict().values()) == lines("equiv", FRAME, BLOCK)
-        assert len(found.to_frame()) == sum(len(rk.equiv(each).to_frame()) for each in (FRAME, BLOCK))
 
     def test_all_azimuths(self, records):
         pair = {"other": "r/west.csv", "azimuth": "all", "model": "nonlinear"}

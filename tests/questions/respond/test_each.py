@@ -193,13 +193,6 @@ def test_quantiles_rank_what_overturns_above_every_peak():
         runs.quantiles(16)
 
 
-def test_quantiles_leave_out_what_failed():
-    runs = rk.respond_each(block(), ["sine:0.3g:0.5s", "sine:0.5g:0.5s", "sine:0.5g:2s"], model="nonlinear")
-    runs["nonlinear"].failed[0, 2, 0] = True
-    found = runs.quantiles(1.0)
-    assert found.runs.tolist() == [2] and found.peak_ratio.tolist() == runs["nonlinear"].peak_ratio[0, 1:2, 0].tolist()
-
-
 def test_samples_files_and_patterns_are_motions(tmp_path):
     shaking = np.stack([0.5 * np.sin(np.arange(300) / 10), 0.3 * np.cos(np.arange(300) / 9)])
     many = rk.respond_each(block(), shaking, dt=0.01, units="g", model="nonlinear")
@@ -305,9 +298,3 @@ def test_a_plot_is_of_any_two_columns(answer):
         rk.InputError, match="`y` must be a column of numbers, got 'peak_ration'\n  did you mean peak_ratio"
     ):
         drawn(y="peak_ration")
-
-
-def test_a_structure_whose_name_begins_with_an_underscore_is_in_the_legend():
-    block = rk.Block(width=0.7, height=2.8, name="_$1")
-    figure = rk.respond_each(block, "sine:0.4g:0.8s", model="nonlinear", scale=[0.1, 0.5, 4]).figure()
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == [r"_\$1", "above the line: overturns"]

@@ -18,7 +18,7 @@ from rocking_cli.views.response import known_data
 from rocking_cli.views.restitution import restitution_used
 from rocking_cli.views.verdict import NO_JOINTS, OVERTURNS, joints_in_words, verdict
 from tests.cli.test_cli import run
-from tests.conftest import EXAMPLES, record, rows_of
+from tests.conftest import EXAMPLES, rows_of
 from tests.following import respond
 
 RESTED = respond(Block(width=0.7, height=2.8), release=0.4, models=("nonlinear",))["nonlinear"]
@@ -227,20 +227,25 @@ def test_every_sentence_is_that_of_its_own_numbers(structure, motion, tmp_path):
     check(STRUCTURES[structure], motion, tmp_path, 1 if structure == "closed-arch" else 0.005)
 
 
-@pytest.mark.every(3)
-@pytest.mark.parametrize("scale", ["0.5", "1"])
-@pytest.mark.parametrize("structure", ["valley", "frame", "arch"])
-def test_under_a_real_record_too(structure, scale, tmp_path):
-    place = record("RSN6_IMPVALL.I_I-ELC180.AT2")
-    check(STRUCTURES[structure], ["--record", str(place), "--scale", scale], tmp_path)
-
-
 def check(text, motion, folder, opening=0.005):
     """Recompute the grades and read the sentences, from the JSON and the table of the histories alone."""
     file, table = folder / "s.yaml", folder / "h.csv"
     file.write_text(text, encoding="utf-8")
     data = json.loads(
-        run("respond", file, *motion, "--neighbours", 0, "--opening", opening, "--json", "--out", table).stdout
+        run(
+            "respond",
+            file,
+            *motion,
+            "--neighbours",
+            0,
+            "--opening",
+            opening,
+            "--engine",
+            "exact",
+            "--json",
+            "--out",
+            table,
+        ).stdout
     )
     block = json.loads(run("equiv", file, "--json").stdout)["directions"]
     rows = rows_of(table)
@@ -318,33 +323,7 @@ def check(text, motion, folder, opening=0.005):
     assert not re.search(r"\de\+", said)
 
 
-def test_the_frame_whose_linear_motions_die_out_is_not_said_to_agree(tmp_path):
-    place = record("RSN6_IMPVALL.I_I-ELC180.AT2")
-    data = json.loads(run("respond", EXAMPLES / "frame.yaml", "--record", place, "--json").stdout)
-    for name in ("linear1", "linear2"):
-        found = data["agreement"][name]
-        assert abs(found["peak_error"]) < 0.05 and found["rms_difference"] > 0.8 and found["grade"] == "disregard"
-    asked = ("report", "--neighbours", 20, EXAMPLES / "frame.yaml", "--record", place, "--polarity", "1", "--json")
-    answer = json.loads(run(*asked).stdout)["motions"][0]["answers"]["Which model to trust?"]
-    assert answer.startswith("The nonlinear model, ")
-
-
 # --- one vocabulary
-
-
-@pytest.mark.parametrize(
-    ("facts", "word"),
-    [
-        ({"uplifts": False, "overturned": False}, names.NO_UPLIFT),
-        ({"uplifts": True, "overturned": False}, names.ROCKS),
-        ({"uplifts": True, "overturned": True}, names.OVERTURNS),
-        ({"uplifts": True, "overturned": False, "still_rocking": True}, names.STILL_ROCKING),
-        ({"uplifts": True, "overturned": False, "unknown": True}, names.UNKNOWN),
-        ({"uplifts": False, "overturned": False, "unknown": True}, names.UNKNOWN),
-    ],
-)
-def test_an_outcome_has_one_name(facts, word):
-    assert names.outcome(**facts) == word
 
 
 @pytest.mark.every(2)
@@ -363,7 +342,7 @@ def test_every_command_calls_an_outcome_the_same(structure, pulse, word, tmp_pat
     _, amplitude, period = pulse.split(":")
     smaller = run("spectrum", block, "--pulse", pulse, "--sizes", "5:6", "--count", "2").stdout
     texts = {
-        "respond": run("respond", block, "--pulse", pulse, "--neighbours", 0).stdout,
+        "respond": run("respond", block, "--pulse", pulse, "--neighbours", 0, "--engine", "exact").stdout,
         "animate": run("animate", block, "--pulse", pulse, "--neighbours", 0, "--out", tmp_path / "a.html").stdout,
         "report": run("report", "--neighbours", 2, block, "--pulse", pulse, "-o", tmp_path / "r.html").stdout,
         "spectrum": re.findall(r" s: (it.*?\w)\.", smaller)[0],
@@ -410,7 +389,7 @@ def test_a_release_without_a_known_restitution_ends_at_its_first_impact(block):
     phi = start * (1 - s**2)  # in s the integrand 1/rate has no singularity
     time = float(np.sum(weight * 2 * start * s / rate(phi)))
 
-    answer = rk.respond(block, release=0.5)
+    answer = rk.respond(block, release=0.5, engine="exact")
     assert list(answer.result) == ["nonlinear"]  # linear blocks have no first impact to stop at
     found = answer["nonlinear"]
     assert found.unknown and found.unmeasured and not found.apart and found.impact_count == 1
@@ -421,7 +400,7 @@ def test_a_release_without_a_known_restitution_ends_at_its_first_impact(block):
     said = " ".join(each for each in answer.view.parts if isinstance(each, str))
     assert f"unknown after {time:.4g} s: then it has an impact, and its restitution is not known." in said
     assert "Next: give a measured `restitution` (or `rebound`)." in said and "rocking margin" not in said
-    assert answer.to_dict()["conclusion"]["next"] == ["give_restitution", "crosscheck"]
+    assert answer.to_dict()["conclusion"]["next"] == ["give_restitution", "free_blocks"]
     with pytest.raises(rk.InputError, match=r"restitution|rebound"):  # a ground motion goes on after impacts
         rk.respond(block, "sine:0.5g:0.5s", neighbours=0)
     with pytest.raises(rk.InputError, match=r"restitution|rebound"):

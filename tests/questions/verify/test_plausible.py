@@ -14,7 +14,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.io.starters import STARTERS, starter
 from rocking_cli.structure import Structure
 from rocking_cli.verification.check import questioned
-from rocking_cli.views.template import template
+from rocking_cli.views.mechanisms import template
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
 

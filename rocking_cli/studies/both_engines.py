@@ -1,8 +1,8 @@
-"""Both engines side by side: the mechanism with one degree of freedom, and the same bodies as free blocks."""
+"""One motion by both engines: the mechanism with one degree of freedom, and the same bodies as free blocks."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from math import nan
@@ -13,13 +13,9 @@ import numpy as np
 from rocking_cli.arrays import Bools, Points, Reals
 from rocking_cli.core import Contact, Direction, Mechanism
 from rocking_cli.dynamics.history import History
-from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.short_repr import short_repr
-from rocking_cli.structure import Structure
-from rocking_cli.studies.contact import ContactDemand, Contacts
-from rocking_cli.studies.engines import follow
 from rocking_cli.studies.engines.blocks import BlockMotion
-from rocking_cli.studies.engines.free import MOVED, Blocks
+from rocking_cli.studies.engines.free import MOVED
 from rocking_cli.studies.engines.free_blocks import FreeBlocks
 
 SAME_PEAKS = 0.05  # largest relative difference of peaks that agree
@@ -53,31 +49,25 @@ class BlockJoint:
 
 @short_repr
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Crosscheck:
+class BothEngines:
     """The motion of a structure by both engines.
 
     Parameters
     ----------
     exact, of_blocks : History
         The history by the exact engine, and that of the same rotation by free blocks.
-    demand : ContactDemand
-        Check of the contacts in the exact history.
     moved : BlockMotion
         The motion of the free blocks.
     free : FreeBlocks
         The blocks.
-    motion : GroundMotion or None
-        The ground motion, as scaled; None for a free release.
     joints : sequence of BlockJoint
         The joints that the mechanism keeps closed, those that open or slide most first; empty if they are not known.
     """
 
     exact: History
     of_blocks: History
-    demand: ContactDemand
     moved: BlockMotion
     free: FreeBlocks
-    motion: GroundMotion | None
     joints: list[BlockJoint]
 
     @property
@@ -142,45 +132,13 @@ class Crosscheck:
         return np.append(values, np.full(max(0, self.of_blocks.time.size - values.size), after))
 
 
-def crosscheck(
-    structure: Structure,
-    motion: GroundMotion | None,
-    *,
-    release: float | None = None,
-    progress: Callable[[float], None] | None = None,
-) -> Crosscheck:
-    """Simulate the motion of a structure by both engines.
-
-    Parameters
-    ----------
-    structure : Structure
-        The structure.
-    motion : GroundMotion or None
-        The ground motion, as scaled.
-    release : float, optional
-        Start at rest from this fraction of phi_cr.
-    progress : callable, optional
-        Called with the time that free blocks have reached [s].
-
-    Raises
-    ------
-    InputError
-        If MuJoCo is not installed, or the structure has something that free blocks cannot have.
-    SolverError
-        If a motion cannot be simulated to its end.
-    """
-    engine = Blocks()
-    exact = follow(structure, motion, release=release)
-    lasts = motion.duration if motion is not None else 0.0
-    # Free blocks are followed until they are at rest, and at least as long as the samples of the exact history.
-    tail = max(0.0, float(exact.time[np.isfinite(exact.phi)][-1]) - lasts)
-    blocks, moved, free = engine.follow(structure, motion, release=release, tail=tail, progress=progress)
+def compare(
+    mechanism: Mechanism, exact: History, of_blocks: History, moved: BlockMotion, free: FreeBlocks
+) -> BothEngines:
+    """Return the comparison of a nonlinear history with the motion of free blocks; parameters as of `BothEngines`."""
     limit = exact.check.limit * exact.check.reach if exact.check is not None else nan
-    demand = Contacts(structure.mechanism).check(exact, motion)
-    joints = joints_of(structure.mechanism, free, moved, limit)
-    return Crosscheck(
-        exact=exact, of_blocks=blocks, demand=demand, moved=moved, free=free, motion=motion, joints=joints
-    )
+    joints = joints_of(mechanism, free, moved, limit)
+    return BothEngines(exact=exact, of_blocks=of_blocks, moved=moved, free=free, joints=joints)
 
 
 def joints_of(mechanism: Mechanism, free: FreeBlocks, moved: BlockMotion, limit: float) -> list[BlockJoint]:

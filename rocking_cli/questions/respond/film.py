@@ -10,14 +10,15 @@ import numpy as np
 
 from rocking_cli.arrays import Bools, Points, Reals
 from rocking_cli.core import Direction
-from rocking_cli.questions.crosscheck.study import Crosscheck
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
+from rocking_cli.studies.both_engines import BothEngines
 from rocking_cli.studies.engines.free import MOVED
 from rocking_cli.studies.engines.free_blocks import FreeBlocks
 from rocking_cli.studies.film import Film, Scene
 from rocking_cli.studies.hung import End, TiePiece
 from rocking_cli.studies.picture import DrawnPart, Picture, box_around, picture
+from rocking_cli.studies.response import Response
 
 NODE_INTERVAL = 0.02  # s between the positions of a page
 
@@ -116,15 +117,17 @@ class BlockFilm(Film):
         return self.picture.covered
 
 
-def scene_of(structure: Structure, found: Crosscheck) -> Scene:
-    """Return the films of both engines under the ground motion, which must exist, side by side."""
-    assert found.motion is not None
-    drawn = picture(structure.mechanism)
-    exact = Film(drawn, found.exact, found.motion, found.demand.assumed_friction, "exact engine")
-    return Scene((exact, BlockFilm(_of_blocks(drawn, found), found.of_blocks, found.motion, called="free blocks")))
+def scene_of(structure: Structure, response: Response) -> Scene:
+    """Return the films of the first polarity, by one degree of freedom and by free blocks as far as there are both."""
+    sign, motion, drawn = next(iter(response.runs)), response.first, picture(structure.mechanism)
+    assert motion is not None
+    exact = Film(drawn, response["nonlinear"], motion, response.assumed_friction(sign), "exact engine")
+    if (both := response.engines.get(sign)) is None:
+        return Scene((exact,))
+    return Scene((exact, BlockFilm(_of_blocks(drawn, both), both.of_blocks, motion, called="free blocks")))
 
 
-def _of_blocks(drawn: Picture, found: Crosscheck) -> BlockPicture:
+def _of_blocks(drawn: Picture, found: BothEngines) -> BlockPicture:
     """Return the drawing of a structure with its free blocks in place of the bodies of the mechanism."""
     free, mechanism = found.free, drawn.mechanism
     parts = tuple(

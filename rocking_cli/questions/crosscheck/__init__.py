@@ -1,3 +1,0 @@
-"""Compare the exact engine with free blocks."""
-
-PLACE = 75
