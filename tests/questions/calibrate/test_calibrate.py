@@ -1,9 +1,7 @@
-"""Restitution from traces and from tests: against traces integrated here, and as a user runs the command."""
+"""Restitution from traces: against traces integrated here, and as a user runs the command."""
 
-import csv
-import runpy
 import warnings
-from math import atan, cos, degrees, hypot, sin, sqrt
+from math import atan, cos, degrees, hypot, sqrt
 
 import numpy as np
 import pytest
@@ -16,19 +14,14 @@ from rocking_cli.core import Direction
 from rocking_cli.errors import InputError
 from rocking_cli.io.yaml_file import with_fields
 from rocking_cli.questions.calibrate.free_rocking import MechanismSide, ScaledSide, free_rocking
-from rocking_cli.questions.calibrate.picture import LOWER, draw_region
-from rocking_cli.questions.calibrate.region import JointRegion, joint_region
 from rocking_cli.questions.calibrate.study import fit_trace, pool
 from rocking_cli.questions.calibrate.trace import Trace, read_trace
-from rocking_cli.questions.calibrate.view import region_view, trace_view
-from rocking_cli.questions.score.table import parse_columns
+from rocking_cli.questions.calibrate.view import trace_view
 from rocking_cli.structure import Structure
-from rocking_cli.studies.neighbours import Neighbourhood
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
-from tests.elsewhere import PROJECT
+from validation.traces import simulate  # by Runge and Kutta
 
-simulate = runpy.run_path(str(PROJECT / "docs" / "make_traces.py"))["simulate"]  # by Runge and Kutta
 BLOCK = rk.Block(width=0.1, height=0.5)
 ALPHA, P = atan(0.2), sqrt(3 * 9.80665 / (2 * hypot(0.1, 0.5)))
 P_OTHER = sqrt(3 * 9.80665 / (2 * hypot(0.103, 0.49)))
@@ -102,7 +95,7 @@ class TestFit:
     @pytest.mark.rest
     @pytest.mark.parametrize("drift", [0.0, 0.01])
     def test_the_bars_of_accuracy_are_met(self, clean, drift):
-        """Bias below .0002 and deviation below .0003; docs/make_traces.py has 200 traces."""
+        """Bias below .0002 and deviation below .0003; validation/traces.py has 200 traces."""
         found = [fit_trace(Structure(BLOCK), trace(clean[0], drift=drift, seed=k)).eta for k in range(5)]
         values = np.array([each.value for each in found])
         assert abs(values.mean() - ETA) < 0.0002 and values.std(ddof=1) < 0.0003
@@ -321,13 +314,6 @@ class TestRefusals:
         (tmp_path / "t.csv").write_text(text, encoding="utf-8")
         assert said in run("calibrate", EXAMPLES / "block.yaml", "--free", tmp_path / "t.csv", code=2).stderr
 
-    def test_ways_that_do_not_fit_together(self, tmp_path):
-        block = EXAMPLES / "block.yaml"
-        assert "either --free" in run("calibrate", block, code=2).stderr
-        assert "either --free" in run("calibrate", block, "--free", "a", "--tests", "b", code=2).stderr
-        both = ("--tests", EXAMPLES / "tests.csv", "--out", tmp_path / "new.yaml")
-        assert "--out has no effect without a trace" in run("calibrate", block, *both, code=2).stderr
-
 
 class TestCommand:
     @pytest.fixture
@@ -408,96 +394,3 @@ def test_a_copy_keeps_all_but_the_fields():
     assert with_fields("a: 1\r\nb: 2\r\n", {"a": "3"}, "f") == "a: 3\r\nb: 2\r\n"
     with pytest.raises(InputError, match="in braces"):
         with_fields("{a: 1}", {"a": "2"}, "f")
-
-
-GRID = {"slenderness": (0.8, 1.25), "restitution": (0.32, 0.98), "points": 3, "neighbours": 20}
-SCATTER = {"restitution": 0.05, "slenderness": 0.03}
-
-
-@pytest.fixture(scope="module")
-def outcomes():
-    """Outcomes drawn by the shares of a block with eta .65."""
-    block = rk.Block(width=0.7, height=2.8, restitution=0.65, uncertainty=SCATTER)
-    pulses = [f"sine:{level:g}g:{period:g}s" for level in np.arange(0.3, 0.6, 0.03) for period in (0.6, 0.9, 1.3)]
-    shares = np.array([rk.shares(block, pulse, neighbours=20).overturned for pulse in pulses])
-    assert 5 < shares.sum() < shares.size - 5
-    return {
-        "structure": ["x"] * 30, "record": pulses, "polarity": [1] * 30,
-        "overturned": (np.random.default_rng(1).random(30) < shares).astype(int).tolist(),
-        "cluster": [f"c{k // 2}" for k in range(30)],
-    }  # fmt: skip
-
-
-class TestRegion:
-    @pytest.mark.rest
-    def test_the_likelihood_is_that_of_shares(self, outcomes):
-        block = rk.Block(width=0.7, height=2.8, uncertainty=SCATTER)
-        found = rk.calibrate(block, tests=outcomes, **GRID)
-        assert found.best == pytest.approx((1, 0.65))
-        # Once more at another point: its shares one by one, and the formula written out.
-        other = rk.Block(width=0.7, height=2.8, restitution=0.98, uncertainty=SCATTER)
-        shares = np.array([rk.shares(other, each, neighbours=20).overturned for each in outcomes["record"]])
-        held = np.clip(shares, 0.5 / 21, 1 - 0.5 / 21)
-        total = np.log(np.where(np.array(outcomes["overturned"]) == 1, held, 1 - held)).sum()
-        assert (found.tests, found.clusters) == (30, 15)
-        assert found.likelihood[1, 2] == pytest.approx(total * 15 / 30, rel=1e-9)
-        assert found.inside[1, 1] and not found.inside.all()
-        (low, high), (least, most) = found.ranges
-        assert low <= found.best[0] <= high and least <= found.best[1] <= most
-
-    @pytest.mark.rest
-    def test_a_factor_on_slenderness_is_a_structure_made_anew(self, outcomes):
-        """Of twice the slenderness, the same uplift is twice the acceleration: by scaling, and by another block."""
-        tests = parse_columns(outcomes).tests
-        motions = {test.record: rk.parse_pulse(test.record).sampled() for test in tests}
-        block = rk.Block(width=0.7, height=2.8, restitution=0.65, uncertainty=SCATTER)
-        grid = np.array([0.5, 1.0, 1.5]), np.array([0.5, 0.65, 0.8])
-        found = joint_region(tests, Structure(block), motions.__getitem__, Neighbourhood(20), *grid)
-        size, alpha = hypot(0.7, 2.8), 1.5 * atan(0.25)
-        wide = rk.Block(width=size * sin(alpha), height=size * cos(alpha), restitution=0.65, uncertainty=SCATTER)
-        shares = np.array([rk.shares(wide, each, neighbours=20).overturned for each in outcomes["record"]])
-        assert found.likelihood[2, 1] == pytest.approx(
-            np.log(np.where(np.array(outcomes["overturned"]) == 1, shares, 1 - shares).clip(0.5 / 21, 1)).sum() / 2,
-            rel=0.1,
-        )
-
-    @pytest.mark.rest
-    def test_a_best_point_on_the_edge_is_refused(self, outcomes):
-        grid = {**GRID, "restitution": (0.65, 0.98)}
-        with pytest.raises(InputError, match=r"lies on its edge \(restitution 0\.65\)"):
-            rk.calibrate(rk.Block(width=0.7, height=2.8, uncertainty=SCATTER), tests=outcomes, **grid)
-
-    @pytest.mark.rest
-    def test_the_command_and_its_words(self, tmp_path, outcomes):
-        (tmp_path / "block.yaml").write_text(
-            "mechanism: block\nwidth: 0.7\nheight: 2.8\nuncertainty: {slenderness: 0.03}\n", encoding="utf-8"
-        )
-        with (tmp_path / "tests.csv").open("w", newline="", encoding="utf-8") as stream:
-            table = csv.writer(stream)
-            table.writerow(outcomes)
-            table.writerows(zip(*({**outcomes, "structure": ["block.yaml"] * 30}).values(), strict=True))
-        asked = ["calibrate", tmp_path / "block.yaml", "--tests", tmp_path / "tests.csv", "--points", 3]
-        asked += ["--slenderness", "0.8:1.25", "--restitution", "0.32:0.98", "--neighbours", 10]
-        data = run_json(*asked, "--plot", tmp_path / "region.png")
-        assert data["tests"] == 30 and data["clusters"] == 15
-        assert np.shape(data["grid"]["log_likelihood"]) == (3, 3)
-        assert data["region"]["probability"] == 0.9
-        text = run(*asked).stdout
-        assert f"restitution {data['best']['restitution']:.3g}" in text and "30 of 30 tests are of" in text
-        assert (tmp_path / "region.png").read_bytes().startswith(b"\x89PNG")
-        said = run("calibrate", EXAMPLES / "block.yaml", "--tests", tmp_path / "tests.csv", code=2).stderr
-        assert "no test is of" in said and "its structures are block.yaml" in said
-
-    @pytest.mark.parametrize(("drop", "wide"), [(1.0, True), (9.0, False)])
-    def test_a_region_that_reaches_the_edge_is_said_to(self, drop, wide):
-        likelihood = np.full((3, 3), -drop)
-        likelihood[1, 1] = 0.0
-        found = JointRegion(
-            Neighbourhood(9), np.array([0.8, 1, 1.2]), np.array([0.8, 0.9, 0.95]), likelihood, 5, 4, 0.0
-        )
-        text = " ".join(part for part in region_view(found, "a", "f", 5).parts if isinstance(part, str))
-        assert ("the region reaches the edge" in text) == wide
-        assert found.inside.sum() == (9 if wide else 1)
-        axes = draw_region(found, "a").axes[0]  # levels that the likelihood does not reach are left out
-        labels = {text.get_text() for text in axes.texts}
-        assert labels == (set() if wide else {f"{level:g}" for level in LOWER if level > -drop})
