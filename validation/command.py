@@ -43,13 +43,13 @@ class Alone(LazyGroup):
 
     def __init__(self, command: Command) -> None:
         super().__init__("", params=rocking.params, callback=rocking.callback)
-        self.command = command
+        self.only = command
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """Return the one command."""
-        return self.command.name, self.command, args[1:]
+        return self.only.name, self.only, args[1:]
 
 
 def run(command: Command) -> None:

@@ -33,7 +33,6 @@ LINES = {
     "demand": f"{SITE}",
     "survey": "survey.csv",
     "design": f"{BLOCK} --vary width=0.5:0.9 --until 'lambda>=0.2'",
-    "score": "tests.csv --neighbours 2",
     "calibrate": f"{EXAMPLES / 'calibrate' / 'block.yaml'} --free {EXAMPLES / 'calibrate' / 'trace.csv'}",
     "animate": f"{BLOCK} {PULSE}",
     "overturning": f"{BLOCK} --points 3",

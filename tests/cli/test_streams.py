@@ -27,7 +27,6 @@ LINES = {
     "demand": f"{SITE}",
     "survey": f"{EXAMPLES / 'survey' / 'parapets.csv'} --record {ACCEL} --neighbours 0",
     "design": f"{UNDER} --vary width=0.5:0.9 --until 'lambda>=0.2'",
-    "score": f"{EXAMPLES / 'tests.csv'} --neighbours 3",
     "calibrate": f"{TRACED} --free {EXAMPLES / 'calibrate' / 'trace.csv'}",
     "animate": f"{UNDER} --out film.html --neighbours 0",
     "pulse": f"{BLOCK_FILE} --ag 0.3g --period 0.5",

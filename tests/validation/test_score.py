@@ -409,6 +409,17 @@ class TestWords:
         assert "the motions of 1 test are those commanded, not those recorded" in text
 
 
+def test_opening_and_reading_of_records_are_those_of_the_tool(tmp_path):
+    arch = "mechanism: arch\nradius: 6\nthickness: 0.8\ninclusion_angle_deg: 150\nvoussoirs: 7\n"
+    (tmp_path / "arch.yaml").write_text(arch)
+    table = write(tmp_path, ["arch.yaml,sine:0.6g:0.4s,0"])
+    for opening in (0.0, 1000.0):
+        (typed,) = run_json(command, table, "--neighbours", "2", "--opening", opening)["tests"]
+        assert typed["unknown"] == (opening == 0)
+    table = write(tmp_path, [f"{BLOCK},{EXAMPLES / 'accel.csv'},0"])
+    assert "--channel: there is no" in run(command, table, "--channel", "abc", "--neighbours", 2, code=5).stderr
+
+
 class TestBadInput:
     def test_all_wrong_cells_are_named_at_once(self, tmp_path):
         rows = [f"{BLOCK},,2,0.5,,,,", ",a.csv,0,3 kg,1,up,-3,1.2", f"{BLOCK},a.csv,,,maybe,,abc,50%"]
