@@ -23,7 +23,7 @@ import yaml
 import rocking_cli as rk
 import rocking_cli.questions.report.study
 import rocking_cli.questions.selfcheck.study
-import rocking_cli.questions.selfcheck.view
+import rocking_cli.questions.selfcheck.verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.processing.reading_options import READING, SCALING
 from rocking_cli.views.view import View
@@ -373,7 +373,7 @@ def test_a_quick_selfcheck_computes_less(monkeypatch):
     monkeypatch.setattr(
         rocking_cli.questions.selfcheck.study, "run_checks", lambda *_, quick, **more: asked.append(quick) or none
     )
-    monkeypatch.setattr(rocking_cli.questions.selfcheck.view, "view", lambda found: View({}, []))
+    monkeypatch.setattr(rocking_cli.questions.selfcheck.verb, "_view", lambda found: View({}, []))
     for quick in (False, True):
         rk.selfcheck(quick=quick)
     assert asked == [False, True]

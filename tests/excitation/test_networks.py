@@ -162,4 +162,4 @@ def test_reading_a_file_imports_the_reader_of_no_other_format(name, tmp_path):
 def test_the_made_files_are_in_the_check_of_the_installation():
     from rocking_cli.questions.selfcheck import checks
 
-    assert set(networks.MADE) <= set(checks.FILES)
+    assert set(networks.MADE) <= set(checks.EXPECTED["records"])
