@@ -19,8 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli import Block, InputError
-from rocking_cli.questions.calibrate.study import fit_trace
-from rocking_cli.questions.calibrate.trace import Trace
+from rocking_cli.questions.calibrate.study import Trace, fit_trace
 from rocking_cli.structure import Structure
 
 Reals = NDArray[np.float64]

@@ -11,7 +11,7 @@ from rocking_cli.ask.kinds import FILE, output
 
 if TYPE_CHECKING:
     from rocking_cli.ask.inputs import StructureLike
-    from rocking_cli.questions.calibrate.trace import Trace
+    from rocking_cli.questions.calibrate.study import Trace
 else:  # heavy to import, and not checked by the model
     StructureLike = Trace = Any
 

@@ -37,8 +37,7 @@ def calibrate(asked: CalibrateAsked, watch: Watcher) -> Answer[TraceFit]:
     MechanismError
         If the structure has no critical rotation.
     """
-    from rocking_cli.questions.calibrate.study import fit_trace
-    from rocking_cli.questions.calibrate.trace import Trace, read_trace
+    from rocking_cli.questions.calibrate.study import Trace, fit_trace, read_trace
     from rocking_cli.questions.calibrate.view import trace_columns, trace_view
 
     structure = structure_of(asked.structure, watch)

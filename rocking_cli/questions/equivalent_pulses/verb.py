@@ -295,14 +295,10 @@ def judge(found: EquivalentResponses) -> list[str]:
     if not peaks:
         verdict += ", and so do all structures"
     elif fallen:
-        verdict += (
-            f"; the equivalence breaks: {', '.join(fallen)} overturn{'s' * (len(fallen) == 1)}, others do not"
-        )
+        verdict += f"; the equivalence breaks: {', '.join(fallen)} overturn{'s' * (len(fallen) == 1)}, others do not"
     elif not relative <= MAX_APPROXIMATE_SPREAD:
         far = max(peaks, key=lambda name: abs(peaks[name] - alone.peak_ratio))
-        verdict += (
-            f"; the equivalence breaks: {'no structure does' if isnan(relative) else f'{far} is the farthest'}"
-        )
+        verdict += f"; the equivalence breaks: {'no structure does' if isnan(relative) else f'{far} is the farthest'}"
     else:
         how = "" if relative <= MAX_SPREAD else "approximately "
         verdict += f"; the peaks of the structures lie within {100 * relative:.2g} % of that: they are {how}equivalent"

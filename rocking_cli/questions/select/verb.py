@@ -76,7 +76,7 @@ def select(asked: SelectAsked, watch: Watcher) -> Answer[RecordSet]:
     unusable = [str(each.path) for each in motions.records if all(each is not one.record for one in chosen)]
     results = ShownSet(result, spectrum, files, unusable)
 
-    figure = drawn("questions.select.picture.draw_record_set", result, title(results))
+    figure = drawn("questions.select.view.draw_record_set", result, title(results))
     if asked.out is not None:
         used = [chosen[k] for k in result.chosen.tolist()]
         readings = [None if str(each.file) == STANDARD_INPUT else each.reading for each in used]

@@ -14,8 +14,7 @@ from rocking_cli.core import Direction
 from rocking_cli.errors import InputError
 from rocking_cli.io.yaml_file import with_fields
 from rocking_cli.questions.calibrate.free_rocking import MechanismSide, ScaledSide, free_rocking
-from rocking_cli.questions.calibrate.study import fit_trace, pool
-from rocking_cli.questions.calibrate.trace import Trace, read_trace
+from rocking_cli.questions.calibrate.study import Trace, fit_trace, pool, read_trace
 from rocking_cli.questions.calibrate.view import trace_view
 from rocking_cli.structure import Structure
 from tests.cli.test_cli import run, run_json

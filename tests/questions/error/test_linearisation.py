@@ -23,9 +23,8 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.names import percent
 from rocking_cli.questions.equiv.view import kappa_in_words
-from rocking_cli.questions.error.picture import draw_linearisation
 from rocking_cli.questions.error.study import linearisation, preferred, velocity_ratios
-from rocking_cli.questions.error.view import trust
+from rocking_cli.questions.error.view import draw_linearisation, trust
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 from tests.following import respond

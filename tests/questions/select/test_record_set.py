@@ -11,7 +11,6 @@ from rocking_cli.excitation.base import GroundMotion, Origin
 from rocking_cli.plotting import style
 from rocking_cli.processing.oscillator import response_spectrum
 from rocking_cli.questions.select import subsets
-from rocking_cli.questions.select.picture import draw_record_set
 from rocking_cli.questions.select.study import (
     Candidates,
     SetRequirements,
@@ -22,7 +21,7 @@ from rocking_cli.questions.select.study import (
     periods_of,
 )
 from rocking_cli.questions.select.target_spectrum import TargetSpectrum, read_target
-from rocking_cli.questions.select.view import ShownSet, ratio_in_words, view
+from rocking_cli.questions.select.view import ShownSet, draw_record_set, ratio_in_words, view
 
 BAND = (0.2, 2.0)
 CODE = TargetSpectrum("code", np.array([0.0, 0.15, 0.5, 1.0, 2.0, 4.0]), np.array([0.3, 0.75, 0.75, 0.375, 0.19, 0.05]))
