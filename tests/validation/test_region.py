@@ -16,7 +16,7 @@ from validation.likelihood import JointRegion, joint_region
 from validation.region import LOWER, command, draw_region, region, view
 from validation.table import parse_columns
 
-GRID = {"slenderness": (0.8, 1.25), "restitution": (0.32, 0.98), "points": 3, "neighbours": 20}
+GRID = {"slenderness": (0.8, 1.25), "restitution": (0.32, 0.98), "points": 3, "neighbours": 12}
 SCATTER = {"restitution": 0.05, "slenderness": 0.03}
 
 
@@ -25,7 +25,7 @@ def outcomes():
     """Outcomes drawn by the shares of a block with eta .65."""
     block = rk.Block(width=0.7, height=2.8, restitution=0.65, uncertainty=SCATTER)
     pulses = [f"sine:{level:g}g:{period:g}s" for level in np.arange(0.3, 0.6, 0.03) for period in (0.6, 0.9, 1.3)]
-    shares = np.array([rk.shares(block, pulse, neighbours=20).overturned for pulse in pulses])
+    shares = np.array([rk.shares(block, pulse, neighbours=12).overturned for pulse in pulses])
     assert 5 < shares.sum() < shares.size - 5
     return {
         "structure": ["x"] * 30, "record": pulses, "polarity": [1] * 30,
@@ -42,8 +42,8 @@ class TestRegion:
         assert found.best == pytest.approx((1, 0.65))
         # Once more at another point: its shares one by one, and the formula written out.
         other = rk.Block(width=0.7, height=2.8, restitution=0.98, uncertainty=SCATTER)
-        shares = np.array([rk.shares(other, each, neighbours=20).overturned for each in outcomes["record"]])
-        held = np.clip(shares, 0.5 / 21, 1 - 0.5 / 21)
+        shares = np.array([rk.shares(other, each, neighbours=12).overturned for each in outcomes["record"]])
+        held = np.clip(shares, 0.5 / 13, 1 - 0.5 / 13)
         total = np.log(np.where(np.array(outcomes["overturned"]) == 1, held, 1 - held)).sum()
         assert (found.tests, found.clusters) == (30, 15)
         assert found.likelihood[1, 2] == pytest.approx(total * 15 / 30, rel=1e-9)
@@ -58,12 +58,12 @@ class TestRegion:
         motions = {test.record: rk.parse_pulse(test.record).sampled() for test in tests}
         block = rk.Block(width=0.7, height=2.8, restitution=0.65, uncertainty=SCATTER)
         grid = np.array([0.5, 1.0, 1.5]), np.array([0.5, 0.65, 0.8])
-        found = joint_region(tests, Structure(block), motions.__getitem__, Neighbourhood(20), *grid)
+        found = joint_region(tests, Structure(block), motions.__getitem__, Neighbourhood(12), *grid)
         size, alpha = hypot(0.7, 2.8), 1.5 * atan(0.25)
         wide = rk.Block(width=size * sin(alpha), height=size * cos(alpha), restitution=0.65, uncertainty=SCATTER)
-        shares = np.array([rk.shares(wide, each, neighbours=20).overturned for each in outcomes["record"]])
+        shares = np.array([rk.shares(wide, each, neighbours=12).overturned for each in outcomes["record"]])
         assert found.likelihood[2, 1] == pytest.approx(
-            np.log(np.where(np.array(outcomes["overturned"]) == 1, shares, 1 - shares).clip(0.5 / 21, 1)).sum() / 2,
+            np.log(np.where(np.array(outcomes["overturned"]) == 1, shares, 1 - shares).clip(0.5 / 13, 1)).sum() / 2,
             rel=0.1,
         )
 

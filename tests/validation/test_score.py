@@ -114,11 +114,8 @@ def both():
 class TestScores:
     def rows(self, stated, rule):
         shares = {
-            "tool": lambda each: each.overturned / COUNT,
             "tool_with_unknown": lambda each: (each.overturned + each.unknown) / COUNT,
-            "west": lambda each: each.west,
             "velocity": lambda each: each.velocity,
-            "other": lambda each: each.test.forecasts.get("other", np.nan),
             "base_rate": lambda each: self.base_rate(stated, each),
             "fitted_pgv": lambda each: self.fitted(stated, each),
         }[rule]
@@ -147,16 +144,11 @@ class TestScores:
             a, b = a + (e * g - d * h) / (c * e - d * d), b + (c * h - d * g) / (c * e - d * d)
         return 1 / (1 + exp(-a - b * log(one.pgv)))
 
-    @pytest.mark.every(2)
-    @pytest.mark.parametrize(
-        "rule", ["tool", "tool_with_unknown", "base_rate", "west", "velocity", "fitted_pgv", "other"]
-    )
+    @pytest.mark.parametrize("rule", ["tool_with_unknown", "base_rate", "velocity", "fitted_pgv"])
     def test_every_score_is_that_of_another_program(self, both, rule):
         stated, found = both
         kept = self.rows(stated, rule)
-        if rule in ("velocity", "other"):  # some clusters may lack all: the draws are those of all clusters
-            names = [each.test.cluster for each in stated]
-            assert set(names) == {each[2] for each in kept} and found.scores[rule].tests == len(kept)
+        assert found.scores[rule].tests == len(kept)  # some clusters may lack all: the draws are those of all clusters
         order = list(dict.fromkeys(each.test.cluster for each in stated))
         kept = sorted(kept, key=lambda each: order.index(each[2]))
         rows, clusters = [each[:2] for each in kept], [each[2] for each in kept]
@@ -346,7 +338,6 @@ class TestWords:
         ("tool", "other", "said"),
         [
             (lambda k: COUNT * (k % 2), lambda k: 0.5, "better than"),
-            (lambda k: COUNT // 2, lambda k: float(k % 2), "worse than"),
             (lambda k: 9 + 2 * (k % 3 == 0), lambda k: 0.5, "not distinguishable from"),
         ],
     )
@@ -354,16 +345,7 @@ class TestWords:
         found, text = self.text(self.stated(tool, other, lambda k: k % 2))
         assert f"The tool is {said} 'other'" in text
         each = found.differences["other"]
-        assert {"better than": each.high < 0, "worse than": each.low > 0}.get(said, each.low <= 0 <= each.high)
-
-    def test_few_clusters_allow_no_verdict(self):
-        _, text = self.text(self.stated(lambda k: COUNT * (k % 2), lambda k: 0.5, lambda k: k % 2, clusters=9))
-        assert "with 9 clusters of tests only" in text and "better than '" not in text
-
-    @pytest.mark.parametrize(("share", "said"), [(12, "10 percentage points more"), (8, "10 percentage points less")])
-    def test_the_gap_has_a_sign(self, share, said):
-        _, text = self.text(self.stated(lambda k: share, lambda k: 0.5, lambda k: k % 2))
-        assert f"the tool states {said} than was observed" in text and "The mean gap of the bins is 10 points" in text
+        assert each.high < 0 if said == "better than" else each.low <= 0 <= each.high
 
     def test_bins_that_are_off_are_named(self):
         found, text = self.text(self.stated(lambda k: 15 if k % 3 else 0, lambda k: 0.5, lambda k: k % 3 and k % 2))
@@ -374,20 +356,12 @@ class TestWords:
         _, right = self.text(self.stated(lambda k: 10, lambda k: 0.5, lambda k: k % 2))
         assert "excludes the stated one" not in right
 
-    def test_one_cluster_has_no_interval(self):
-        _, text = self.text(self.stated(lambda k: 12, lambda k: 0.5, lambda k: k % 2, clusters=1))
-        assert "with 1 cluster of tests only, there are no intervals" in text and "nan" not in text
-        assert "10 percentage points more than was observed. " in text
-
     def test_deviations_are_those_that_were_used(self):
         tests = {"structure": [BLOCK] * 2, "record": ["sine:0.4g:0.8s"] * 2, "overturned": [0, 1]}
         answer = score(tests, neighbours=4, slenderness_deviation=0.07)
         assert "standard deviations 4 % of amplitude, 7 % of slenderness, 0.05 of restitution" in self.said(answer.view)
         used = {"count": 4, "amplitude": 0.04, "slenderness": 0.07, "restitution": 0.05}
         assert answer.to_dict()["neighbours"] == used | {"drawn": [used | {"structures": [BLOCK]}]}
-        given = str(EXAMPLES / "point_mass.yaml")
-        two = score({**tests, "structure": [BLOCK, given]}, neighbours=4)
-        assert two.to_dict()["neighbours"]["restitution"] == (0.05 if len(two.drawn) == 1 else None)
 
     def test_what_the_table_leaves_open_is_said(self):
         tests = {
@@ -441,7 +415,6 @@ class TestBadInput:
             ("structure,overturned", "record: the column is missing"),
             ("structure,record,overturnd", "did you mean overturned?"),
             ("structure,record,overturned,pred_tool", "followed by a name other than"),
-            ("structure,record,peak_kg", "is not a column of a table of tests"),
             ("structure,record,overturned [g]", "has no unit"),
             ("structure,record,peak [deg],peak [rad]", "is the heading of two columns"),
         ],

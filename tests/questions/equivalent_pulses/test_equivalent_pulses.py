@@ -54,7 +54,7 @@ def test_a_symmetric_frame_does_what_the_block_of_its_alpha_and_p_does():
 
 
 def test_each_pulse_has_the_same_a_and_omega():
-    structures = [load_structure(file) for file in (BLOCK, WALL, ARCH, FRAME)]
+    structures = [load_structure(file) for file in (BLOCK, WALL, FRAME)]
     found = equivalent(structures, PULSE)
     for structure, each in zip(structures, found.members, strict=True):
         block = equivalent_block(structure)[found.direction]
@@ -77,12 +77,6 @@ def test_the_linear_answer_is_the_exact_one():
     assert found.alone.peak_ratio == pytest.approx(exact.max_ratio, rel=1e-9)
     assert found.linear.peak_ratio == pytest.approx(exact.max_ratio, rel=1e-3)  # on samples
     assert found.relative_spread == pytest.approx(found.spread / exact.max_ratio)
-
-
-def test_a_shape_without_an_exact_answer_takes_that_of_its_samples():
-    found = equivalent([SMALL, LARGE], parse_pulse("ricker:0.6g:0.5s"))
-    assert found.alone.peak_ratio == found.linear.peak_ratio
-    assert found.spread < 1e-8
 
 
 def test_kappa1_keeps_the_other_lambda():
@@ -131,7 +125,7 @@ class TestDirection:
 
 class TestVerdict:
     def test_where_some_overturn_and_others_do_not_it_breaks(self):
-        found = equivalent([load_structure(file) for file in (BLOCK, WALL, ARCH)], parse_pulse("sine:0.5g:0.65s"))
+        found = equivalent([load_structure(file) for file in (BLOCK, WALL)], parse_pulse("sine:0.5g:0.65s"))
         assert {each.history.fell for each in found.members} == {True, False}
         assert np.isnan(found.spread)
         text = " ".join(judge(found))
@@ -140,16 +134,6 @@ class TestVerdict:
     def test_where_all_overturn_that_is_said(self):
         found = equivalent([SMALL, LARGE], parse_pulse("sine:2g:1s"))
         assert judge(found) == ["The linear block overturns, and so do all structures."]
-
-    def test_close_to_overturning_it_warns(self):
-        low, high = 0.5, 0.7  # g; the largest peak grows up to overturning
-        while high - low > 1e-3:
-            middle = (low + high) / 2
-            fell = equivalent([SMALL, LARGE], parse_pulse(f"sine:{middle}g:0.6s")).members[0].history.overturned
-            low, high = (low, middle) if fell else (middle, high)
-        found = equivalent([SMALL, LARGE], parse_pulse(f"sine:{low}g:0.6s"))
-        assert found.members[0].history.peak_ratio > 0.8
-        assert "small differences decide" in " ".join(judge(found))
 
     def test_far_apart_is_a_break(self):
         found = equivalent([load_structure(BLOCK), load_structure(WALL)], PULSE, eta="own")
@@ -181,10 +165,6 @@ class TestCommand:
             assert float(row["t [s]"]) * each["p"] == pytest.approx(float(row["p_t"]))
         peaks = [max(abs(float(row["phi_ratio"] or 0)) for row in by_name[each["name"]]) for each in data["structures"]]
         assert peaks == pytest.approx([each["peak_ratio"] for each in data["structures"]], rel=1e-3)
-
-    def test_the_table_gives_each_its_pulse(self):
-        text = run(BLOCK, WALL, "--ag", "5.88399m/s2", "--period", "0.5s").stdout
-        assert "pedestal" in text and "0.6 " in text and "0.96" in text and "linear block" in text
 
     def test_pulses_too_weak_to_lift_are_a_result(self, tmp_path):
         arguments = [BLOCK, WALL, "--ag", "0.1g", "--period", "1", "--plot", "weak.png", "--out", "weak.csv"]

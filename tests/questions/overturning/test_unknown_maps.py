@@ -16,7 +16,6 @@ from rocking_cli.core.structure_file import load_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD, parse_pulse
 from rocking_cli.plotting import style
-from rocking_cli.plotting.moving import ratio_chart
 from rocking_cli.processing.listed import Scaled
 from rocking_cli.questions.animate.picture import animation_page
 from rocking_cli.questions.equivalent_pulses.verb import draw as draw_equivalent
@@ -24,7 +23,7 @@ from rocking_cli.questions.equivalent_pulses.verb import judge, under_equivalent
 from rocking_cli.questions.overturning.picture import draw_comparison, draw_map
 from rocking_cli.questions.overturning.study import FALLS, Comparison, Region, compare, overturning_map
 from rocking_cli.questions.overturning.view import NO_JOINTS, comparison_view, map_table, map_view
-from rocking_cli.questions.pulse.study_on_structure import MIN_SAMPLES_PER_PERIOD, _alike, sampled_history
+from rocking_cli.questions.pulse.on_structure import MIN_SAMPLES_PER_PERIOD, _alike, sampled_history
 from rocking_cli.questions.respond.picture import draw_history
 from rocking_cli.questions.spectrum import view as spectrum_views
 from rocking_cli.questions.spectrum.picture import draw_spectra
@@ -316,12 +315,6 @@ class TestFilm:
         assert f"{history.known_to:.4g} s" in why_it_ends(film) and why_it_ends(film) in animation_page(film, "portal")
         known = Film(picture(PORTAL), histories["linear2"], RECORD)
         assert why_it_ends(known) == "" and known.end > 4
-
-    def test_curves_of_no_model_go_further(self, histories):
-        until = histories["nonlinear"].known_to
-        assert all(max(each["x"]) <= until for each in ratio_chart(histories)["series"])
-        linear = {name: run for name, run in histories.items() if name != "nonlinear"}
-        assert all(max(each["x"]) > until for each in ratio_chart(linear)["series"])
 
 
 class TestHistory:

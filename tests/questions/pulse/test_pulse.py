@@ -98,7 +98,7 @@ def assert_conditions(closed, end):
     assert closed.valid == (end.in_the_air and end.comes_back)
 
 
-@pytest.mark.parametrize("point", CLOSED[:60])
+@pytest.mark.parametrize("point", CLOSED[:15])
 def test_D0_is_the_energy_of_the_free_motion(point):
     a, omega, eta = point
     got, wanted = closed_form(*point), free(*point)
@@ -116,7 +116,7 @@ def test_D0_is_the_energy_of_the_free_motion(point):
     assert got.printed_ratio == (ratio if root <= 1 else None)  # a rotation below zero is none
 
 
-@pytest.mark.parametrize("point", [*CLOSED, (8, 3, 0.9), (1.3, 8, 0.9), (0.7, 3, 0.9)])
+@pytest.mark.parametrize("point", [*CLOSED[:20], (8, 3, 0.9), (1.3, 8, 0.9), (0.7, 3, 0.9)])
 def test_out_of_its_domain_the_closed_form_says_nothing_but_why(point):
     got = closed_form(*point)
     assert (why_not_valid(got) is None) == got.valid
@@ -175,7 +175,7 @@ def test_the_first_excursion_may_be_larger_than_the_closed_form():
     assert exact.max_ratio == exact.first_excursion > closed.max_ratio + 0.01
 
 
-@pytest.mark.parametrize("point", [(1.00001, 0.006, 0.9), (1.0000001, 1e-3, 0.9), (2, 1e-3, 0.5), (1e3, 0.009, 0.9)])
+@pytest.mark.parametrize("point", [(1.0000001, 1e-3, 0.9), (1e3, 0.009, 0.9)])
 def test_closed_form_of_a_very_slow_pulse_keeps_to_its_formulas(point):
     got, end = closed_form(*point), free(*point)
     assert_conditions(got, end)
@@ -187,7 +187,7 @@ def test_closed_form_of_a_very_slow_pulse_keeps_to_its_formulas(point):
 # The exact answer, which test_exact_pulse.py compares with one of 50 digits
 
 
-@pytest.mark.parametrize(("a", "omega"), [(1.0, 3.0), (0.999999, 0.01), (0.3, 1e-3), (1e-3, 1e3)])
+@pytest.mark.parametrize(("a", "omega"), [(1.0, 3.0), (1e-3, 1e3)])
 def test_a_pulse_too_weak_to_lift_moves_nothing(a, omega):
     closed, exact = closed_form(a, omega, 0.9), exact_pulse(a, omega, 0.9)
     assert closed.conditions["uplift"] is False
@@ -203,7 +203,7 @@ def test_a_pulse_too_weak_to_lift_moves_nothing(a, omega):
 
 @pytest.mark.parametrize(
     "point",
-    [*product((1.0000001, 1e3), (1e-3, 0.009, 1e3), (1e-6, 0.5, 0.9)), (1.0000001, 1e3, 1.0), (1e3, 1e3, 1.0)],
+    [*product((1.0000001, 1e3), (1e-3, 1e3), (1e-6, 0.9)), (1e3, 1e3, 1.0)],
 )
 def test_extreme_pulses_have_finite_answers_or_none(point):
     for answer in (closed_form(*point), exact_pulse(*point)):
@@ -215,8 +215,8 @@ def test_extreme_pulses_have_finite_answers_or_none(point):
 @pytest.mark.parametrize(
     ("name", "value"),
     [
-        *product(("a", "omega"), (0.0, -2.0, nan, inf)),
-        *product(("eta",), (0.0, -0.5, 1.1, nan, inf)),
+        *product(("a", "omega"), (0.0, nan, inf)),
+        *product(("eta",), (0.0, 1.1, nan)),
     ],
 )
 def test_bad_input_is_refused_by_name(function, name, value):
@@ -227,8 +227,7 @@ def test_bad_input_is_refused_by_name(function, name, value):
 # The engine of the time histories, and the command
 
 
-@pytest.mark.parametrize("side", [1, -1])
-@pytest.mark.parametrize(("a", "omega"), [(2, 3), (4, 6), (1.3, 1.2), (1.8, 1.4), (3, 2.5), (3, 1.5), (5, 4)])
+@pytest.mark.parametrize(("a", "omega", "side"), [(2, 3, 1), (4, 6, -1), (1.3, 1.2, 1), (3, 1.5, -1)])
 def test_the_history_of_a_sampled_pulse_agrees(a, omega, side):
     block = Block(width=0.7, height=2.8, restitution=0.9)
     equivalence = equivalent_block(block).positive

@@ -81,7 +81,7 @@ def by_brute_force(found: Candidates, wanted: SetRequirements) -> tuple[float, f
 @pytest.mark.parametrize("policy", POLICIES)
 @pytest.mark.parametrize(
     ("seed", "rough"),
-    [*(pytest.param(*each, marks=pytest.mark.rest) for each in ((1, 0.25), (2, 0.25), (3, 0.5))), (5, 0.9)],
+    [pytest.param(1, 0.25, marks=pytest.mark.rest), (5, 0.9)],
 )
 def test_the_best_of_all_sets_is_that_of_brute_force(policy, seed, rough):
     found, wanted = made(8, seed, rough), SetRequirements(3, BAND, **POLICIES[policy])
@@ -104,15 +104,7 @@ def test_the_best_of_all_sets_is_that_of_brute_force(policy, seed, rough):
     assert chosen.sets == sets
 
 
-def test_some_of_these_sets_fit_and_some_do_not():
-    fits = [
-        choose(made(8, seed, rough), SetRequirements(3, BAND, one_per="none")).fits
-        for seed, rough in ((1, 0.12), (3, 0.9))
-    ]
-    assert fits == [True, False]
-
-
-@pytest.mark.parametrize("policy", POLICIES)
+@pytest.mark.parametrize("policy", ["narrow factors", "same factor", "one per station"])
 def test_a_set_keeps_to_what_is_asked(policy):
     found, wanted = made(12, 7, 0.3, scatter=0.6), SetRequirements(4, BAND, **POLICIES[policy])
     chosen = choose(found, wanted)
@@ -129,7 +121,7 @@ def test_a_set_keeps_to_what_is_asked(policy):
     np.testing.assert_allclose(chosen.mean, (chosen.factors[:, None] * found.spectra[chosen.chosen]).sum(0) / 4)
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2, 3])
+@pytest.mark.parametrize("seed", [0, 3])
 def test_searches_come_close_to_the_best_of_all(seed, monkeypatch):
     found, wanted = made(14, seed, 0.4), SetRequirements(5, BAND, seed=seed)
     best = choose(found, wanted)
@@ -157,13 +149,6 @@ def test_large_sets_are_not_all_tried(monkeypatch):
     small = choose(found, wanted).chosen.tolist()
     monkeypatch.undo()
     assert small == choose(found, wanted).chosen.tolist()
-
-
-def test_sets_are_counted_as_they_are_tried():
-    groups = np.array([0, 0, 1, 2, 2, 2, 3])
-    tried = [members for members in combinations(range(7), 3) if len({groups[k] for k in members}) == 3]
-    assert subsets.count_sets(groups, 3) == len(tried)
-    assert subsets.count_sets(np.arange(40), 20) == 137846528820
 
 
 def test_of_sets_that_are_alike_the_first_is_taken_whatever_the_last_bits():
@@ -233,12 +218,9 @@ def test_too_few_records(count, more, message, hint):
 @pytest.mark.parametrize(
     "changes",
     [
-        {"count": 0},
         {"band": (2.0, 0.2)},
-        {"within": (1.3, 0.9)},
         {"factors": (1.0, np.inf)},
         {"damping": 1.0},
-        {"one_per": "fault"},
     ],
 )
 def test_what_makes_no_sense_is_refused(changes):
@@ -249,7 +231,7 @@ def test_what_makes_no_sense_is_refused(changes):
 # --- words ----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("seed", "rough", "fits"), [(1, 0.12, True), (3, 0.9, False), (5, 0.9, False)])
+@pytest.mark.parametrize(("seed", "rough", "fits"), [(1, 0.12, True), (3, 0.9, False)])
 def test_the_sentence_says_what_the_numbers_say(seed, rough, fits):
     found = made(8, seed, rough)
     chosen = choose(found, SetRequirements(3, BAND, one_per="none"))
@@ -347,11 +329,9 @@ def test_candidates_have_the_spectra_of_their_motions():
 @pytest.mark.parametrize(
     ("text", "unit", "sa"),
     [
-        ("0.1,0.5\n0.2,0.4\n", None, [0.5, 0.4]),
         ("period [s],Sa [g]\n0.1,0.5\n0.2,0.4\n", "g", [0.5, 0.4]),
         ("T;Sa (m/s^2)\n0.1;4.903325\n0.2;3.92266\n", "m/s2", [0.5, 0.4]),
         ("# of a code\n\nsite B\nT_s,Sa_g\n0.1,.5\n0.2,4e-1\n\n", "g", [0.5, 0.4]),
-        ("T [s] Sa [cm/s2]\n0.1 490.3325\n0.2 392.266\n", "cm/s2", [0.5, 0.4]),
         ("\ufeffT,Sa\r\n0.1,0.5,\r\n0.2,0.4,,\r\n", None, [0.5, 0.4]),
     ],
 )
@@ -371,14 +351,11 @@ def test_a_target_is_read(tmp_path, text, unit, sa):
     [
         ("0.1,0.5\n0.2,0.4,0.3\n", 2, "3 columns"),
         ("T,Sa\n0.1,0.5\n0.1,0.4\n", 3, "twice"),
-        ("0.2,0.5\n0.1,0.4\n", 2, "periods must increase"),
         ("0.1,0.5\n0.2,-0.4\n", 2, "must not be negative"),
-        ("0.1,0.5\n0.2,nan\n", 2, "not a finite number"),
         ("T [s],Sa [km/s2]\n0.1,0.5\n", 1, "no unit of acceleration"),
         ("f [Hz],Sa [g]\n0.1,0.5\n", 1, "periods in s"),
         ("0,1;0,5\n0,2;0,4\n", 1, "a comma within a number"),
         ("0.1,0.5\n", None, "1 point: at least two"),
-        ("", None, "0 points: at least two"),
     ],
 )
 def test_a_wrong_target_is_pointed_at(tmp_path, text, line, message):
@@ -390,26 +367,6 @@ def test_a_wrong_target_is_pointed_at(tmp_path, text, line, message):
     assert (problem.file, problem.line) == (str(path), line)
     assert message in problem.message
     assert problem.hint
-
-
-def test_a_target_that_is_no_text_or_not_there(tmp_path):
-    (tmp_path / "t.csv").write_bytes(b"\xff\xfe\x00\x81")
-    for name, message in (("t.csv", "not UTF-8 text"), ("none.csv", "no such file"), (".", "folder")):
-        with pytest.raises(InputError, match=message):
-            read_target(tmp_path / name)
-
-
-@pytest.mark.parametrize(
-    ("band", "message"), [((0.2, 5.0), "the target goes from 0 to 4 s"), ((0.2, 4.0), None), ((4.1, 5.0), "goes from")]
-)
-def test_a_band_must_lie_within_the_target(band, message):
-    if message is None:
-        CODE.check(band)
-        return
-    with pytest.raises(InputError) as caught:
-        CODE.check(band)
-    assert message in str(caught.value)
-    assert "`band`" in str(caught.value)
 
 
 def test_a_target_that_vanishes_in_the_band_is_refused():
