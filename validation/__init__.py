@@ -1,1 +1,1 @@
-"""What the tool says, held against shake-table tests, simulated traces and another engine. No part of the package."""
+"""What the tool says, compared with shake-table tests, simulated traces and another engine. No part of the package."""

@@ -1,4 +1,4 @@
-"""Hold `rocking calibrate --free` against simulated traces of known restitution: docs/trust/traces.md.
+"""Compare `rocking calibrate --free` with simulated traces of known restitution: docs/trust/traces.md.
 
     python -m validation.traces [COUNT]     # traces of each case, 200
 

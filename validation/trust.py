@@ -1,4 +1,4 @@
-"""Write docs/how_far_to_trust_it.md: what the tool says, held against shake-table tests and simulated traces.
+"""Write docs/how_far_to_trust_it.md: what the tool says, compared with shake-table tests and simulated traces.
 
     python -m validation.trust EXPERIMENTS [--check]     # or make trust, with its parts; make trust-check
 

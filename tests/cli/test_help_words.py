@@ -19,6 +19,8 @@ DIFFERENT = {
     "--count": "of `select` records, of `spectrum` sizes",
     "--check": "`fragility` shows a plan, `mechanisms` checks a mechanism",
     "--language": "of `verify` that of the sheet, of `new` that of the comments of a template",
+    "--points": "of `design` the values of a scan, of `overturning` the points of an axis",
+    "--neighbours": "of a motion, of each structure of a table, or of each value that is tried",
     "--pulse": "of `equivalent_pulses` it is sized, of the others a motion",
     "--site": "of `survey` each structure is verified and ranked there",
     "--out": "the text names what is written",

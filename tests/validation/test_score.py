@@ -347,6 +347,12 @@ class TestWords:
         each = found.differences["other"]
         assert each.high < 0 if said == "better than" else each.low <= 0 <= each.high
 
+    @pytest.mark.parametrize(("share", "said"), [(12, "10 percentage points more"), (8, "10 percentage points less")])
+    def test_the_gap_has_a_sign_and_few_clusters_allow_no_verdict(self, share, said):
+        _, text = self.text(self.stated(lambda k: share, lambda k: 0.5, lambda k: k % 2, clusters=9))
+        assert f"the tool states {said} than was observed" in text and "The mean gap of the bins is 10 points" in text
+        assert "with 9 clusters of tests only" in text and "The tool is" not in text
+
     def test_bins_that_are_off_are_named(self):
         found, text = self.text(self.stated(lambda k: 15 if k % 3 else 0, lambda k: 0.5, lambda k: k % 3 and k % 2))
         (off,) = [each for each in found.bins if each.outside]

@@ -164,10 +164,11 @@ def equivalent_pulses(asked: EquivalentPulsesAsked, watch: Watcher) -> Answer[Eq
     first = structure_of(asked.structures[0], watch, asked.opening)
     structures = structures_of([first, *asked.structures[1:]], watch, asked.opening, least=2)
     kappa: Literal[1, 2] = 1 if asked.kappa == "1" else 2
-    found = under_equivalent_pulses(structures, pulse, int(asked.polarity), kappa, asked.restitution)
+    responses = under_equivalent_pulses(structures, pulse, int(asked.polarity), kappa, asked.restitution)
     warn_misleading(structures, watch)
     dims = [Dimensions(("structure", "p_t"))]
-    return Answer("equivalent pulses", found, view(found), partial(_table, found), partial(draw, found), dims=dims)
+    table, figure = partial(_table, responses), partial(draw, responses)
+    return Answer("equivalent pulses", responses, view(responses), table, figure, dims=dims)
 
 
 def under_equivalent_pulses(
@@ -205,12 +206,12 @@ def under_equivalent_pulses(
         check_eta(eta, "eta")
     members = []
     for each in structures:
-        own, g = each.equivalence[direction], each.mechanism.gravity
-        scaled = replace(pulse, amplitude=a * g * uplift(own, scaling), period=2 * pi / (omega * own.p))
-        used = own.eta if eta == "own" else block.eta if eta == "first" else float(eta)
+        itself, g = each.equivalence[direction], each.mechanism.gravity
+        scaled = replace(pulse, amplitude=a * g * uplift(itself, scaling), period=2 * pi / (omega * itself.p))
+        used = itself.eta if eta == "own" else block.eta if eta == "first" else float(eta)
         shaken = each if eta == "own" else each.under(restitution=used)
-        history = engines.follow(shaken, scaled.sampled().scaled(polarity), tail=_tail(scaled, own.p))
-        members.append(PulsedStructure(each, own, scaled, used, history))
+        history = engines.follow(shaken, scaled.sampled().scaled(polarity), tail=_tail(scaled, itself.p))
+        members.append(PulsedStructure(each, itself, scaled, used, history))
     both = replace(block, eta=members[0].eta)
     linear = follow(linear_model("linear block", scaling, (both, both), gravity), ground, tail=_tail(pulse, block.p))
     alone: OneOutcome = linear
@@ -285,8 +286,8 @@ def judge(found: EquivalentResponses) -> list[str]:
         return [*sentences, "Whether the structures are equivalently vulnerable to these pulses is not known."]
     if sentences:
         sentences.append(f"What follows is about the other {len(members)}.")
-        found = replace(found, members=tuple(members))
-    relative, fallen = found.relative_spread, [each.name for each in members if each.history.fell]
+    relative = replace(found, members=tuple(members)).relative_spread
+    fallen = [each.name for each in members if each.history.fell]
     peaks = {each.name: each.history.peak_ratio for each in members if not each.history.fell}
     reached = f"{names.ROCKS} to {alone.peak_ratio:.4g} of phi_cr" if alone.peak_ratio else names.NO_UPLIFT
     verdict = f"The linear block {names.OVERTURNS if alone.fell else reached}"

@@ -109,8 +109,8 @@ def histories(quick: bool) -> float:
 
     def difference(width: float, height: float, motion: int, name: Any, times: list[float]) -> float:
         history = follow(made(width=width, height=height).model(name), MOTIONS[motion])
-        found = [history.uplift_time, *history.impacts[:6, 0]]  # the times of later impacts depend on rounding
-        return largest_difference(found + [history.overturning_time] * history.fell, times)
+        compared = [history.uplift_time, *history.impacts[:6, 0]]  # the times of later impacts depend on rounding
+        return largest_difference(compared + [history.overturning_time] * history.fell, times)
 
     return _largest("histories", quick, difference)
 

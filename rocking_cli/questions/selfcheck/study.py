@@ -44,12 +44,12 @@ class Check(NamedTuple):
     def run(self, *, quick: bool) -> Checked:
         """Run the check; its errors become part of the result."""
         began = monotonic()
-        found, error = None, None
+        largest, error = None, None
         try:
-            found = deviation(self.name, quick)
+            largest = deviation(self.name, quick)
         except Exception as raised:  # any fault of the installation
             error = raised
-        return Checked(self, found, error, monotonic() - began)
+        return Checked(self, largest, error, monotonic() - began)
 
 
 def deviation(name: str, quick: bool) -> float:
