@@ -193,7 +193,8 @@ def under_equivalent_pulses(
     lifts = {d: -d * ground.acceleration > first[d].lambda_ * gravity for d in Direction}
     lifted = [d for d in Direction if lifts[d].any()] or [weakest_direction(first, pulse, (polarity,))]
     direction = min(lifted, key=lambda d: int(lifts[d].argmax()))
-    block, scaling = first[direction], ("linear1" if kappa == 1 else "linear2")
+    block = first[direction]
+    scaling: ModelName = "linear1" if kappa == 1 else "linear2"
     a = pulse.amplitude / (gravity * uplift(block, scaling))  # Eq. 40
     omega = 2 * pi / (pulse.period * block.p)  # Eq. 40
     if eta == "first" and not 0 < block.eta <= 1:

@@ -130,9 +130,8 @@ def blocks(quick: bool) -> float:
 def neighbours(quick: bool) -> float:
     """Return the largest deviation of a share: of two under held accelerations, and of three of restitutions."""
     structure, shares = made(), []
-    for x, fixed in ((1.02, "slenderness"), (1.06, "amplitude")):
+    for x, around in ((1.02, near.Neighbourhood(slenderness=0.0)), (1.06, near.Neighbourhood(amplitude=0.0))):
         held = _motion(0.5, np.full(20, x * 0.25 * GRAVITY))
-        around = replace(near.Neighbourhood(), **{fixed: 0.0})
         shares.append(near.neighbours(Conditions(structure, around=around), held).overturned)
     drawn = near.Neighbourhood().drawn(structure.model("nonlinear")).eta[:, 0]
     shares += [float((drawn < eta).mean()) for eta in (0.85, 0.9, 0.95)]
@@ -198,7 +197,8 @@ SAMPLES = [sign * 0.25 * ((37 * k) % 79 - 39) for sign in (1, -1) for k in range
 
 def records(quick: bool) -> float:
     """Return the largest deviation of a sample, over the largest one, of all formats and of text in all units."""
-    text, in_units = (FOLDER / "records" / "text").read_text(encoding="utf-8"), {}
+    text = (FOLDER / "records" / "text").read_text(encoding="utf-8")
+    in_units: dict[str, Any] = {}
     with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         for unit, size in EXPECTED["units"]["acceleration"].items():
             name = f"text in {unit}".replace("/", " per ")
