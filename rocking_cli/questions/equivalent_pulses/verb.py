@@ -18,7 +18,7 @@ from rocking_cli.ask.watcher import Watcher
 from rocking_cli.core import Direction, Equivalence, EquivalentBlock
 from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.dynamics.history import History, follow
-from rocking_cli.dynamics.model import linear_model
+from rocking_cli.dynamics.model import ModelName, linear_model
 from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.verdict import NEAR_OVERTURNING
 from rocking_cli.errors import InputError, Problem, named
