@@ -1,6 +1,7 @@
 """`rocking pulse` on a structure, and its messages if it cannot do what is requested."""
 
 import json
+import re
 
 import pytest
 from click.testing import CliRunner
@@ -53,6 +54,10 @@ def test_every_answer_is_that_of_the_library(block):
         assert said["off_peak_ratio"] == approx(closed.printed_ratio - bare.max_ratio, abs=1e-10)
         assert found["over_nonlinear"] == found["peak_ratio"] / got["responses"]["nonlinear"]["peak_ratio"]
     assert not got["responses"]["nonlinear"]["exact"]
+    words = " ".join(run(block, "--ag", "392gal", "--period", 0.5).stdout.split())
+    for name in ("linear1", "linear2"):
+        way = "higher" if got["responses"][name]["over_nonlinear"] > 1 else "lower"
+        assert re.search(rf"By {name} its peak is [\d.]+ % {way}", words)
     fine = respond(structure, pulse.sampled(20_000), models=("nonlinear",), tail=0.0)["nonlinear"]
     assert got["responses"]["nonlinear"]["peak_ratio"] == approx(fine.peak_ratio, rel=1e-6)
 
