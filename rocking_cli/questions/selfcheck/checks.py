@@ -1,7 +1,7 @@
 """The checks of an installation: results against values of other programs, which `expected.json` holds.
 
-The values are by quadrature, formulas and a general solver; the programs (tests/questions/selfcheck/expected.py) share
-no code with the package. Only `threads` and `kernels` compare two results of the same code.
+The values are by quadrature, formulas and a general solver; the programs (validation/selfcheck.py) share no code with
+the package. Only `threads` and `kernels` compare two results of the same code.
 """
 
 from __future__ import annotations

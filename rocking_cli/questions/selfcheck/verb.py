@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 from time import monotonic
 
 from rocking_cli.ask.answer import Answer, no_plot
@@ -37,7 +36,7 @@ def selfcheck(asked: SelfcheckAsked, watch: Watcher) -> Answer[study.SelfCheck]:
     for each in results.failed:
         watch.fail(each.error)
     figure = no_plot("the checks of an installation have no plot", "`to_frame` has them as a table")
-    return Answer("selfcheck", results, _view(results), partial(frame_of, COLUMNS, results.checks), figure)
+    return Answer("selfcheck", results, _view(results), lambda: frame_of(COLUMNS, results.checks), figure)
 
 
 VERDICTS = {True: "passed", False: "FAILED", None: "not run"}

@@ -7,7 +7,6 @@ from math import asin, exp, log, pi, sqrt
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from matplotlib.path import Path as Path2D
 
 from mechanisms.block import Block
@@ -18,7 +17,6 @@ from rocking_cli.dynamics.exact import closed_form, exact_response
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD
-from rocking_cli.plotting import style
 from rocking_cli.questions.overturning.edges import FREE_POINTS, edges_of
 from rocking_cli.questions.overturning.picture import draw_comparison, draw_map
 from rocking_cli.questions.overturning.study import (
@@ -293,10 +291,6 @@ class TestCompare:
 
 
 class TestShape:
-    def test_it_is_of_unit_size(self):
-        shape = parse_shape("mavroeidis:90deg:3")
-        assert (shape.amplitude, shape.period, shape.phase, shape.cycles) == (1.0, 1.0, 90.0, 3.0)
-
     def test_the_weakest_pulse_lifts_the_weaker_direction(self):
         frame = equivalent_block(load_structure(FRAME))
         weaker = min(Direction, key=lambda d: frame[d].lambda_)
@@ -546,13 +540,6 @@ class TestPictures:
         for part in (found, replace(high, a=found.a[-5:])):
             paths = list(draw_map(part, "", dimensionless=True).axes[0].patches)
             assert len(paths) == len(set(part.kinds.ravel().tolist()) - {0})
-
-    def test_a_name_that_begins_with_an_underscore_is_shown(self, curves):
-        hidden = replace(curves, structures=[replace(each, name=f"_{each.name}") for each in curves.structures])
-        names, given = {each.name for each in hidden.structures}, Figure().subplots()
-        with style.drawing_in(given):
-            draw_comparison(hidden, "sine")
-        assert names <= {text.get_text() for text in given.get_legend().get_texts()}
 
     def test_curves_differ_by_dash_and_mark(self, curves):
         (axes,) = draw_comparison(curves, "sine").axes

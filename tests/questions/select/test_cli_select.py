@@ -93,20 +93,6 @@ def test_the_numbers_are_those_of_the_written_records():
     assert found["fits"] == (ratio.min() >= 0.9 and ratio.max() <= 1.3)
 
 
-def test_the_table_says_the_same_as_json():
-    words = ("select", "r*.AT2", *ASKED, "--count", 2, "--factors", "0.5:3")
-    found, text = run_json(*words), run(*words).stdout
-    assert found["verdict"] in text
-    for each in found["records"]:
-        row = next(line for line in text.splitlines() if each["name"] in line)
-        assert f"{each['factor']:.4g}" in row
-        assert f"{each['pga_g']:.3g}" in row
-        assert each["event"] in row
-        assert each["station"] in row
-    for each in found["left_out"]:
-        assert f"{each['name']}: {each['why']}" in text
-
-
 def test_the_list_gives_the_same_motions_as_the_folder():
     run("select", "r*.AT2", *ASKED, "--count", 3, "-o", "out/set")
     listed = listed_in("out/set/set.yaml")

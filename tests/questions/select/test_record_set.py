@@ -5,7 +5,6 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-import rocking_cli as rk
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion, Origin
 from rocking_cli.plotting import style
@@ -215,19 +214,6 @@ def test_too_few_records(count, more, message, hint):
     assert problem.field == "`count`"
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"band": (2.0, 0.2)},
-        {"factors": (1.0, np.inf)},
-        {"damping": 1.0},
-    ],
-)
-def test_what_makes_no_sense_is_refused(changes):
-    with pytest.raises(InputError, match=f"^`{next(iter(changes))}`"):
-        rk.select("r.csv", "code.csv", **{"count": 3, "band": BAND} | changes)
-
-
 # --- words ----------------------------------------------------------------------------------------------------------
 
 
@@ -374,8 +360,3 @@ def test_a_target_that_vanishes_in_the_band_is_refused():
     target.check((0.1, 1.9))
     with pytest.raises(InputError, match="zero at 2 s"):
         target.check((0.1, 2.0))
-
-
-def test_ordinates_that_no_code_asks_for_are_doubtful(tmp_path):
-    (tmp_path / "t.csv").write_text("0.1,5\n0.2,25\n")
-    assert read_target(tmp_path / "t.csv").highest_if_odd == 25

@@ -7,8 +7,8 @@ import pytest
 
 from rocking_cli.dynamics.exact import closed_form
 from tests.mechanisms.test_arch import Scan
-from tests.questions.selfcheck import expected
 from tests.reference_mechanics import Voussoirs
+from validation import selfcheck as expected
 
 
 def numbers(value):

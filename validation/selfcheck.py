@@ -1,19 +1,18 @@
 """Values that `rocking selfcheck` compares with, by programs that share no code with the package.
 
-python -m tests.questions.selfcheck.expected     # writes rocking_cli/questions/selfcheck/expected.json
+python -m validation.selfcheck     # writes rocking_cli/questions/selfcheck/expected.json
 """
 
 import json
 from itertools import pairwise, product
 from math import asin, atan, cos, erf, exp, hypot, log, nan, pi, sin, sqrt, tan
+from pathlib import Path
 
 import numpy as np
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
-from tests.conftest import PROJECT
-
-FILE = PROJECT / "rocking_cli" / "questions" / "selfcheck" / "expected.json"
+FILE = Path(__file__).resolve().parents[1] / "rocking_cli" / "questions" / "selfcheck" / "expected.json"
 GRAVITY = 9.80665
 MOTIONS = (
     (0.1, (0, 2, 4, 3, -1, -4, -3, 0)),
@@ -158,7 +157,7 @@ def histories():
 
 OPPENHEIM = {"lambda_": 0.370009738022, "phi_cr": 0.069064693539, "kappa1": 0.280404501561, "p": 1.841795997344}
 """Oppenheim's arch, r = 10 m: lambda by the static theorem (linear programme of the line of thrust), the others by
-Eq. 39 and a four-bar linkage that Newton's method follows; test_selfcheck.py has the programs."""
+Eq. 39 and a four-bar linkage that Newton's method follows: see tests/questions/selfcheck/test_expected.py."""
 
 
 def blocks():
