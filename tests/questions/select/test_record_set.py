@@ -17,6 +17,7 @@ from rocking_cli.questions.select.study import (
     choose,
     coarse,
     log_weights,
+    own_factors,
     periods_of,
 )
 from rocking_cli.questions.select.target_spectrum import TargetSpectrum, read_target
@@ -172,6 +173,13 @@ def test_the_better_set_is_within_the_limits_first_then_near_then_first():
     assert not best(0.0, 0.1, 3, 4).better(best(1e-12, 0.1 + 1e-12, 1, 2))
     assert best(1e-12, 0.1 + 1e-12, 1, 2).better(best(0.0, 0.1, 3, 4))
     assert not best(0.0, 0.1, 3, 4).better(best(0.0, 0.1, 3, 4))
+
+
+def test_each_record_is_the_target_on_logarithmic_average():
+    found = made(5, 1, 0.9)
+    factors, left_out = own_factors(found, SetRequirements(3, BAND, factors=(0.01, 100.0)))
+    off = np.trapezoid(np.log(factors[:, None] * found.spectra / found.target), np.log(found.periods), axis=-1)
+    assert not left_out and off == pytest.approx(0, abs=1e-9)
 
 
 def test_a_record_out_of_reach_is_left_out_and_said():
