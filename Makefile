@@ -129,15 +129,15 @@ free-blocks: setup  ## Write the evidence of docs/free_blocks.md anew, ten minut
 
 EXPERIMENTS := $(or $(ROCKING_EXPERIMENTS),../shared/experiments)
 scoreboard: setup  ## Write the lines of this version into docs/scoreboard.md; ROCKING_EXPERIMENTS is the folder of the tests
-	$(BIN)/python docs/make_scoreboard.py "$(EXPERIMENTS)"
+	$(BIN)/python -m validation.scoreboard "$(EXPERIMENTS)"
 
 trust: setup  ## Write docs/how_far_to_trust_it.md and its parts anew, an hour
-	$(BIN)/python docs/make_traces.py
-	$(BIN)/python scripts/middle_of_the_scale.py "$(EXPERIMENTS)"
-	$(BIN)/python docs/make_trust.py "$(EXPERIMENTS)"
+	$(BIN)/python -m validation.traces
+	$(BIN)/python -m validation.middle "$(EXPERIMENTS)"
+	$(BIN)/python -m validation.trust "$(EXPERIMENTS)"
 
 trust-check: setup  ## Whether that page is stale, two minutes; without the tests nothing is checked
-	$(BIN)/python docs/make_trust.py "$(EXPERIMENTS)" --check
+	$(BIN)/python -m validation.trust "$(EXPERIMENTS)" --check
 
 KERNELS := out/kernels
 kernels:  ## Compile the kernels that are shipped, rocking_cli/dynamics/ready; PYTHON up to 3.13, READY=FOLDER for another place

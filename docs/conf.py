@@ -72,6 +72,7 @@ NAME = re.compile(r"\[`(\w+)`\]\(api/\w+\.md#([\w.]+)\)")
 WHOLE = {
     "changelog": "```{include} ../CHANGELOG.md\n```\n",
     "contributing": "```{include} ../CONTRIBUTING.md\n:relative-docs: docs/\n```\n",
+    "scoring": "```{include} ../validation/README.md\n:relative-docs: ../docs/\n```\n",
 }
 
 

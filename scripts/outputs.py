@@ -67,8 +67,6 @@ ONCE = (
     f"respond examples/frame.yaml {ACCEL} --with examples/accel_transverse.csv --azimuth all --json",
     f"respond examples/block.yaml {ACCEL} --floor T1=0.4,xi=0.05,z/H=0.67,gamma=1.29 --json",
     f"respond examples/block.yaml {ACCEL} --release 0.05 --json",
-    "score examples/tests.csv --neighbours 20 --json --out shares.csv",
-    "score examples/tests.csv --neighbours 20",
     "calibrate examples/calibrate/block.yaml --free examples/calibrate/trace.csv --json -o measured.yaml",
     "calibrate examples/calibrate/block.yaml --free examples/calibrate/trace.csv",
     "pulse --a 2 --omega 3 --json",

@@ -156,7 +156,6 @@ def hostile(tmp_path):
         "site.yaml": SITE,
         "study.yaml": STUDY,
         "table.csv": "file\nn.yaml\n",
-        "tests.csv": "structure,record,overturned\nn.yaml,r.csv,1\n",
     }
     for name, text in files.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
@@ -179,7 +178,6 @@ HISTORIES = {
         for FC in ("with_FC", "without_FC")
     ),
     "survey table.csv --record R --out out.csv": lambda found: found["rows"][0]["unknown"] == 1,
-    "score tests.csv --neighbours 2": lambda found: found["tests"][0]["unknown"] == 1,
     "design A --record R --neighbours 2 --points 2 --vary thickness=0.79:0.8 --until overturned<1": lambda found: (
         found["scan"]["unknown"] == [1, 1]
         and (found["holds"], found["value"], found["everywhere"]) == ([], None, False)
@@ -209,8 +207,7 @@ WITHOUT_HISTORY = (
     "record R --plot p.svg",
 )  # fmt: skip
 AS_TEXT = ("record R --fit-pulse --plot p.svg", "equiv A N -o -")
-# These follow no history; `selfcheck` follows those of its blocks. `calibrate` judges no structure: the outcomes of its
-# tests were observed.
+# These follow no history; `selfcheck` follows those of its blocks. `calibrate` judges no structure.
 WITHOUT = {
     "calibrate", "draw", "equiv", "collapse", "error", "record", "select", "demand", "mechanisms", "measures", "new",
     "info", "selfcheck", "completion", "import",

@@ -42,7 +42,6 @@ SITE = EXAMPLES / "verify" / "site.yaml"
 ACCEL, ACROSS, BLOCK_FILE = EXAMPLES / "accel.csv", EXAMPLES / "accel_transverse.csv", EXAMPLES / "block.yaml"
 CODE = np.array([[0.1, 0.3], [0.5, 0.7], [1.0, 0.4], [4.0, 0.1]]).T
 CANDIDATES = [rk.GroundMotion(f"r{k}", 0.01, RECORD.acceleration * np.cos(k * TIME), unit="m/s2") for k in range(6)]
-TESTS = {"structure": ["in.yaml"] * 3, "record": [PULSE, STRONG, "in.txt"], "overturned": [0, 1, 0]}
 TRACED = EXAMPLES / "calibrate" / "block.yaml"
 NTC = {**yaml.safe_load(SITE.read_text("utf-8")), "FC": 1.2}
 STUDY = {
@@ -191,15 +190,9 @@ CALLS = {
          "state": "SLC", "damping": 0.1, "factors": (0.5, 1.0), "one_per": "event", "same_factor": True, "seed": 4,
          "out": "odd"} | PLOT,
     ),
-    "score": (
-        {"tests": TESTS, "neighbours": 4},
-        {"tests": TESTS | {"overturned": [1, 1, 0]}, "opening": 1.0, "out": "o.csv", "plot": "p.svg", "separator": ";",
-         "decimal": ","} | AROUND,
-    ),
     "calibrate": (
         {"structure": TRACED, "free": EXAMPLES / "calibrate" / "trace.csv"},
-        {"structure": BLOCK, "free": "gone.csv", "tests": TESTS, "free_geometry": True, "slenderness": (0.9, 1.2),
-         "restitution": (0.8, 0.9), "points": 4, "neighbours": 3, "out": "o.yaml", "plot": "p.svg"},
+        {"structure": BLOCK, "free": "gone.csv", "free_geometry": True, "out": "o.yaml", "plot": "p.svg"},
     ),
     "verify": (
         {"structure": WEAK, "site": SITE, "motions": RECORD.scaled(2.0), "sheet": "s.html", "opening": 1.0},
@@ -238,13 +231,6 @@ LONG = "report", "verify", "calibrate", "survey", "fragility", "overturning_map"
 """Verbs whose questions take longer: they are asked with the rest."""
 OF_A_KNOWN_MOTION = {"structure": OTHER, "motions": "sine:0.3g:0.2s"}, {"contact": True, "tail": 0.05, "rtol": 1e-5}
 """Arguments of `respond` that change nothing where friction is given, or where the outcome is unknown."""
-OF_TESTS = (
-    {"structure": BLOCK_FILE, "tests": OBSERVED, "points": 5, "neighbours": 6,
-     "slenderness": (0.5, 2.0), "restitution": (0.2, 1.0)},
-    {"tests": "gone.csv", "slenderness": (0.4, 2.2), "restitution": (0.1, 1.0),
-     "points": 6, "neighbours": 7, "out": "o.yaml", "free_geometry": True},
-)  # fmt: skip
-"""Arguments of `calibrate` for the outcomes of tests."""
 WITHOUT_EFFECT = {"watch", "jobs"}
 """Arguments that change no answer: the watcher, and how many processors work on it."""
 
@@ -351,11 +337,6 @@ def without_effect(verb, call, odd):
 
 def test_arguments_of_a_motion_that_is_known_to_its_end_have_an_effect():
     assert not list(without_effect(rk.respond, *OF_A_KNOWN_MOTION))
-
-
-@pytest.mark.rest
-def test_arguments_of_the_outcomes_of_tests_have_an_effect():
-    assert not list(without_effect(rk.calibrate, *OF_TESTS))
 
 
 def test_arguments_of_a_store_have_an_effect():

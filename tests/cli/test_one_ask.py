@@ -15,8 +15,6 @@ from rocking_cli.units import UNITS
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
 
-FLOOR = "T1=0.4,xi=0.05,z/H=0.67,gamma=1.29"
-
 
 def test_an_argument_that_is_none_or_has_no_effect_is_refused():
     block = rk.Block(width=0.7, height=2.8)
@@ -127,19 +125,9 @@ def test_a_word_for_a_field_of_the_structure_is_an_argument_where_there_is_one()
         rk.shares(EXAMPLES / "block.yaml", "sine:0.3g:0.5s", eta=0.9)
 
 
-def test_of_a_trace_or_a_table_an_option_without_effect_is_refused():
-    block, trace = EXAMPLES / "calibrate" / "block.yaml", EXAMPLES / "calibrate" / "trace.csv"
-    for given in ({"units": "g"}, {"neighbours": 41}, {"points": 8}, {"slenderness": (0.8, 1.2)}, {"floor": FLOOR}):
-        (name,) = given
-        with pytest.raises(rk.InputError, match=f"`{name}` has no effect on a trace"):
-            rk.calibrate(block, free=trace, **given)
-    for ask in (
-        lambda: rk.calibrate(block, tests=EXAMPLES / "tests.csv", scale=2),
-        lambda: rk.score(EXAMPLES / "tests.csv", scale=2),
-        lambda: rk.select("none.csv", EXAMPLES / "target.csv", band=(0.2, 2), count=1, scale=2),
-    ):
-        with pytest.raises(rk.InputError, match="`scale` is not an argument\n  the motions of this question are not"):
-            ask()
+def test_an_option_of_motions_that_are_not_scaled_is_refused():
+    with pytest.raises(rk.InputError, match="`scale` is not an argument\n  the motions of this question are not"):
+        rk.select("none.csv", EXAMPLES / "target.csv", band=(0.2, 2), count=1, scale=2)
 
 
 def test_an_array_in_another_unit_is_converted_once():
@@ -213,9 +201,8 @@ def test_numbers_of_numpy_are_numbers_and_a_tilt_is_its_text_in_what_was_given()
     assert rk.respond(BLOCK, release=0.05).to_dict()["given"] == {"release": "0.05"}
 
 
-def test_options_of_records_are_named_as_they_are_typed_in_threads_too():
-    record, tests = EXAMPLES / "accel.csv", EXAMPLES / "tests.csv"
+def test_options_of_records_are_named_as_they_are_typed():
+    record = EXAMPLES / "accel.csv"
     assert "--azimuth requires" in (said := run("record", record, "--azimuth", 30, code=2).stderr)
     assert "with --with" in said
     assert "error: --units describes" in run("respond", "--pulse", PULSE, "--units", "g", code=2).stderr
-    assert "--channel: there is no" in run("score", tests, "--channel", "abc", "--neighbours", 2, code=5).stderr

@@ -17,7 +17,7 @@ from rocking_cli.dynamics.history import follow
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
-from rocking_cli.questions.equivalent_pulses.study import equivalent_pulses
+from rocking_cli.questions.equivalent_pulses.verb import under_equivalent_pulses
 from rocking_cli.questions.spectrum.study import Sizes, shape_of
 from rocking_cli.structure import Structure, build_models
 from rocking_cli.studies.neighbours import Neighbourhood, neighbours
@@ -231,7 +231,7 @@ def test_a_restitution_for_all_that_a_structure_cannot_have_is_refused(eta):
     with pytest.raises(InputError, match=r"must be at most 0\.99"):
         Structure(frame).under(restitution=eta)
     with pytest.raises(InputError, match=r"must be at most 0\.99"):
-        equivalent_pulses([Structure(frame)], parse_pulse("sine:0.5g:1s"), eta=eta)
+        under_equivalent_pulses([Structure(frame)], parse_pulse("sine:0.5g:1s"), eta=eta)
     asked = ("overturning", EXAMPLES / "frame.yaml", "--restitution", eta, "--points", 3)
     said = " ".join(run(*asked, code=2).stderr.split())
     assert "--restitution: valley bridge" in said and "would add energy at an impact" in said
@@ -289,7 +289,7 @@ class TestWithoutARebound:
 def test_what_rocks_to_one_side_is_equivalent_to_no_block_of_two(order):
     pair = [made("block", width=0.6, height=8.0, one_sided="positive"), made("block", width=0.7, height=2.8)]
     with pytest.raises(InputError, match="rocks in the positive direction only"):
-        equivalent_pulses([Structure(each) for each in pair[::order]], parse_pulse("sine:0.5g:1s"))
+        under_equivalent_pulses([Structure(each) for each in pair[::order]], parse_pulse("sine:0.5g:1s"))
 
 
 def test_a_rebound_of_nothing_stays_where_it_hits():

@@ -25,7 +25,7 @@ from tests.crash.calls import NEED_ROOM, Call, Ended, State, losses, run
 from tests.meshes import box, obj
 
 UNDER = f"--record {EXAMPLES}/accel.csv --neighbours 2"
-BLOCK, SITE, TESTS = f"{EXAMPLES}/block.yaml", f"{EXAMPLES}/verify/site.yaml", f"{EXAMPLES}/tests.csv"
+BLOCK, SITE = f"{EXAMPLES}/block.yaml", f"{EXAMPLES}/verify/site.yaml"
 STUDY = f"{EXAMPLES}/study/pedestal.yaml"
 LINES = {
     "draw": f"draw {BLOCK} --plot p.svg --dxf d.dxf",
@@ -43,7 +43,6 @@ LINES = {
     "survey": f"survey INPUTS/table.csv {UNDER} --out o.csv --page p.html --map m.png --plot p.png",
     "sheets": f"survey INPUTS/table.csv --site {SITE} --sheets folder",
     "design": f"design {BLOCK} --vary width=0.5:0.9 --until lambda>=0.2 --points 3 --out o.csv --plot p.png",
-    "score": f"score {TESTS} --neighbours 2 --out o.csv --plot p.png",
     "calibrate": f"calibrate {EXAMPLES}/calibrate/block.yaml --free INPUTS/trace.csv --out o.yaml --plot p.png",
     "animate": f"animate {BLOCK} --pulse sine:0.5g:0.3s --neighbours 0 --speed 9 --out a.gif",
     "overturning": f"overturning {BLOCK} --points 3 --out o.csv --plot p.png",

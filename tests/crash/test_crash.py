@@ -10,7 +10,7 @@ from rocking_cli.plugins.rooms import commands
 from tests.crash.attacks import LINES, attack
 from tests.crash.calls import Call, losses, why_not
 
-READ = {"--with", "--structure", "--target", "--vertical", "--site", "--strengthened", "--logo", "--free", "--tests"}
+READ = {"--with", "--structure", "--target", "--vertical", "--site", "--strengthened", "--logo", "--free"}
 READ |= {"--record", "--set", "--verify"}
 """Options that name files that are read."""
 

@@ -158,3 +158,9 @@ def test_reading_a_file_imports_the_reader_of_no_other_format(name, tmp_path):
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=PROJECT)
     own = [] if name == "text" else [getattr(formats, name).module]
     assert done.stdout == f"{own} False\n", done.stderr
+
+
+def test_the_made_files_are_in_the_check_of_the_installation():
+    from rocking_cli.questions.selfcheck import checks
+
+    assert set(networks.MADE) <= set(checks.EXPECTED["records"])

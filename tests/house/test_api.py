@@ -249,10 +249,6 @@ FRAMES = {
         "lower_robust_low; lower_robust_high",
         {"probability": lambda answer, _: answer.curve.probability(answer.to_frame()["intensity"])},
     ),
-    "score": (
-        "line; structure; record; cluster; share; unknown; overturned; doubtful; pgv; error",
-        {"pgv": lambda _, data: [each["pgv"] for each in data["tests"]]},
-    ),
     "report": (
         "motion; peak_ratio; overturned; unknown",
         {"motion": lambda _, data: [each["name"] for each in data["motions"]],
@@ -274,7 +270,6 @@ FRAMES["results"] = FRAMES["fragility"]
 """The columns of the frame of each verb, and numbers of some as answer or data have them."""
 QUESTIONS = {verb: given for verb, (given, _) in CALLS.items()} | {
     "verify": {"structure": CALLS["equiv"][0]["structures"], "site": SITE},
-    "score": {"tests": EXAMPLES / "tests.csv", "neighbours": 2},
     "results": {"store": "in.runs"},
     "selfcheck": {"quick": True},
 }  # fmt: skip

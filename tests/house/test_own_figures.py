@@ -15,7 +15,7 @@ import rocking_cli as rk
 from rocking_cli.ask.answer import Answer
 from rocking_cli.plotting import style
 from rocking_cli.views.view import View
-from tests.cli.test_every_option import BLOCK, OF_TESTS, OTHER, PULSE, RECORD, STRONG, WEAK, here  # noqa: F401
+from tests.cli.test_every_option import BLOCK, OTHER, PULSE, RECORD, STRONG, WEAK, here  # noqa: F401
 from tests.house.test_api import QUESTIONS
 
 ASKED = {verb: (verb, given) for verb, given in QUESTIONS.items()} | {
@@ -24,7 +24,6 @@ ASKED = {verb: (verb, given) for verb, given in QUESTIONS.items()} | {
     "fitted": ("record", {"motions": RECORD, "fit_pulse": True}),
     "one spectrum": ("spectrum", {"structures": BLOCK, "motions": PULSE, "count": 4}),
     "margins": ("margin", {"structure": WEAK, "motions": [STRONG, PULSE], "neighbours": 4}),
-    "region": ("calibrate", OF_TESTS[0]),
     "one side": (
         "verify",
         {"structure": rk.Wall(thickness=0.3, height=3.0, one_sided="positive"), "site": QUESTIONS["verify"]["site"]},

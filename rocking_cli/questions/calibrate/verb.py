@@ -1,14 +1,11 @@
-"""`rk.calibrate`: find the restitution of a structure from a trace of free rocking, or from shake-table tests."""
+"""`rk.calibrate`: find the restitution of a structure from a trace of its free rocking."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import partial
 from math import cos, sin
 from pathlib import Path
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from rocking_cli.ask.answer import Answer, drawn
 from rocking_cli.ask.inputs import structure_of
@@ -17,75 +14,43 @@ from rocking_cli.ask.watcher import Watcher
 from rocking_cli.dynamics.model import MEASURED_SPREAD
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.questions.calibrate.asked import CalibrateAsked
-from rocking_cli.questions.score.verb import motions_of, tests_of
-from rocking_cli.studies.neighbours import Neighbourhood
 
 if TYPE_CHECKING:
-    from rocking_cli.questions.calibrate.region import JointRegion
     from rocking_cli.questions.calibrate.study import TraceFit
-    from rocking_cli.questions.score.table import ObservedTest, TableOfTests
     from rocking_cli.structure import Structure
 
 
 @verb(CalibrateAsked)
-def calibrate(asked: CalibrateAsked, watch: Watcher) -> Answer[TraceFit] | Answer[JointRegion]:
-    """Find the restitution of a structure from a trace of free rocking, or its joint region from shake-table tests.
+def calibrate(asked: CalibrateAsked, watch: Watcher) -> Answer[TraceFit]:
+    """Find the restitution of a structure from a trace of its free rocking.
 
     Returns
     -------
-    Answer of TraceFit or JointRegion
-        From a trace: `eta`, its `scatter` from impact to impact, `etas`, `release`, `offset`, `drift`. From tests:
-        the log-likelihood over the grid, the `best` point and the `ranges` of the joint region of 90 %.
+    Answer of TraceFit
+        `eta`, its `scatter` from impact to impact, `etas`, `release`, `offset`, `drift`.
 
     Raises
     ------
     InputError
-        If neither or both of `free` and `tests` are given, if a file is not valid, or if what is given does not
-        determine the restitution: fewer than three impacts above the noise, a best point on the edge of the grid, ...
+        If a file is not valid, or if the trace does not determine the restitution, such as by fewer than three impacts
+        above the noise.
     MechanismError
         If the structure has no critical rotation.
     """
-    ready = structure_of(asked.structure, watch)
-    source = Path(ready.file) if ready.file is not None else None
-    return _of_tests(ready, source, asked, watch) if asked.free is None else _of_trace(ready, source, asked, watch)
-
-
-def _of_tests(ready: Structure, source: Path | None, asked: CalibrateAsked, watch: Watcher) -> Answer[JointRegion]:
-    """Return the joint region of the outcomes of tests."""
-    from rocking_cli.questions.calibrate.region import joint_region
-    from rocking_cli.questions.calibrate.view import region_columns, region_view
-
-    assert asked.tests is not None
-    table = tests_of(asked.tests)
-    kept = _of_structure(table, source)
-    grid = np.geomspace(*asked.slenderness, asked.points), np.linspace(*asked.restitution, asked.points)
-    with watch.progress(len(kept), "tests") as advance:
-        region = joint_region(
-            kept, ready, motions_of(table, asked), Neighbourhood(asked.neighbours), *grid,
-            threads=asked.jobs, progress=advance,
-        )  # fmt: skip
-    shown = region_view(region, ready.name, table.file, len(table.tests))
-    figure = drawn("questions.calibrate.picture.draw_region", region, ready.name)
-    return Answer("calibrate", region, shown, partial(region_columns, region), figure)
-
-
-def _of_trace(ready: Structure, source: Path | None, asked: CalibrateAsked, watch: Watcher) -> Answer[TraceFit]:
-    """Fit a trace, and write the structure with what was fitted."""
-    from rocking_cli.questions.calibrate.study import fit_trace
-    from rocking_cli.questions.calibrate.trace import Trace, read_trace
+    from rocking_cli.questions.calibrate.study import Trace, fit_trace, read_trace
     from rocking_cli.questions.calibrate.view import trace_columns, trace_view
 
-    assert asked.free is not None
+    structure = structure_of(asked.structure, watch)
     trace = asked.free if isinstance(asked.free, Trace) else read_trace(Path(asked.free))
-    fit = fit_trace(ready, trace, free_geometry=asked.free_geometry)
-    ready.under(restitution=fit.eta.value)  # raises an error if the structure cannot have this restitution
+    fit = fit_trace(structure, trace, free_geometry=asked.free_geometry)
+    structure.under(restitution=fit.eta.value)  # raises an error if the structure cannot have this restitution
     if asked.out is not None:
-        if source is None:
+        if structure.file is None:
             raise InputError(Problem("needs the file of the structure, of which it is a copy", field=named("out")))
-        _write(ready, source, asked.out, fit)
+        _write(structure, Path(structure.file), asked.out, fit)
         watch.note(f"wrote {asked.out}")
-    figure = drawn("questions.calibrate.picture.draw_trace", fit, ready.name)
-    return Answer("calibrate", fit, trace_view(fit, ready), partial(trace_columns, fit), figure)
+    figure = drawn("questions.calibrate.view.draw_trace", fit, structure.name)
+    return Answer("calibrate", fit, trace_view(fit, structure), partial(trace_columns, fit), figure)
 
 
 def _write(structure: Structure, source: Path, out: Path, found: TraceFit) -> None:
@@ -120,15 +85,3 @@ def _write(structure: Structure, source: Path, out: Path, found: TraceFit) -> No
                     Problem(f"{what}{found.alpha.value:.4g} rad with the other fields", field=named("out"))
                 )
     write_whole(out, lambda file: file.write(text.encode("utf-8")))
-
-
-def _of_structure(table: TableOfTests, source: Path | None) -> Sequence[ObservedTest]:
-    """Return the tests of a structure: those that name its file, or all of a structure without a file."""
-    if source is None:
-        return table.tests
-    kept = [each for each in table.tests if (table.folder / each.structure).resolve() == source.resolve()]
-    if not kept:
-        names = list(dict.fromkeys(each.structure for each in table.tests))
-        what = f"no test is of {source}: its structures are {', '.join(names[:5])}{', ...' * (len(names) > 5)}"
-        raise InputError(Problem(what, table.file))
-    return kept

@@ -1,19 +1,24 @@
-"""Views of a calibrated restitution, as text and as data."""
+"""A calibrated restitution as text, as data and as a plot."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from math import degrees
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
+from rocking_cli.arrays import Reals
 from rocking_cli.dynamics.model import MEASURED_SPREAD
 from rocking_cli.names import percent
-from rocking_cli.questions.calibrate.region import REGION_PROBABILITY, JointRegion
-from rocking_cli.questions.calibrate.study import MAX_RESIDUAL_TO_NOISE, Estimated, TraceFit
+from rocking_cli.questions.calibrate.study import MAX_RESIDUAL_TO_NOISE, MIN_GAP_RATIO, Estimated, TraceFit
 from rocking_cli.structure import Structure
 from rocking_cli.views.column import Column, of, only_shown, rounded, table_of
 from rocking_cli.views.view import Table, View, heading
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 class ImpactRow(NamedTuple):
@@ -128,84 +133,54 @@ def _trace_data(found: TraceFit, structure: Structure) -> dict[str, Any]:
         "drift_deviation": found.drift.deviation,
         "offset": found.offset.value,
         "offset_deviation": found.offset.deviation,
-        "release": found.release,
-        "release_time": found.release_time,
-        "noise": found.noise,
-        "residual": found.residual,
-        "own_residual": found.own_residual,
+        **{name: getattr(found, name) for name in ("release", "release_time", "noise", "residual", "own_residual")},
         "patterned": found.patterned,
         "sides": None if found.sides is None else found.sides._asdict(),
         "geometry": block,
     }
 
 
-def region_view(found: JointRegion, name: str, file: str, count: int) -> View:
-    """Show the joint region of slenderness and restitution; `count` is the number of tests in the table."""
-    return View(lambda: _region_data(found, name), [*_region_parts(found, name, file, count)])
+def draw_trace(found: TraceFit, name: str) -> Figure:
+    """Draw a trace of free rocking, its fit and impacts, and below the residuals of both fits.
+
+    Parameters
+    ----------
+    found : TraceFit
+        The fit.
+    name : str
+        Name of the structure.
+    """
+    from rocking_cli.plotting import style
+
+    figure, ((axes,), (below,)) = style.panels(5.6, 2, sharex=True, height_ratios=(2.2, 1))
+    style.heading(axes, f"{name}: free rocking, eta = {found.eta.value:.4f}, scatter {found.scatter:.2g}")
+    times = found.trace.times
+    start, end = found.part
+    # Lifting and holding may take much longer than rocking.
+    axes.set_xlim(start - 0.15 * (end - start), end + 0.02 * (end - start))
+    dots = {"color": style.RECORD_COLOUR, "marker": ".", "markersize": 3, "linestyle": "none"}
+    axes.plot(times, np.degrees(found.trace.angles), label="trace", **dots)
+    fitted = _broken(times, np.degrees(found.fitted))
+    axes.plot(*fitted, color=style.INK, linewidth=style.MEDIUM, label="fit with one eta")
+    rest = np.degrees(found.offset.value + found.drift.value * times)
+    axes.plot(times, rest, color=style.FAINT, linewidth=style.THIN, linestyle="--", label="at rest")
+    at_impact = np.degrees(found.offset.value + found.drift.value * found.impacts)
+    axes.plot(found.impacts, at_impact, label="impacts", linestyle="none", **{**style.MARKED, "markersize": 5})
+    for values, look, label in (
+        (found.fitted, {"color": style.INK, "linewidth": style.THIN}, "one eta"),
+        (found.own, {"color": style.EXCEEDED, "linewidth": style.THIN, "linestyle": "--"}, "an eta for each impact"),
+    ):
+        below.plot(*_broken(times, np.degrees(found.trace.angles - values)), label=label, **look)
+    noise = np.degrees(found.noise)
+    below.axhspan(-2 * noise, 2 * noise, color=style.SHADE, zorder=0, label="twice the noise")
+    style.tidy(axes, y="angle [deg]")
+    style.tidy(below, "time [s]", "residual [deg]")
+    style.legends_below(figure, [(each, each.get_legend_handles_labels()[0]) for each in (axes, below)], ncols=4)
+    return figure
 
 
-def region_columns(found: JointRegion) -> dict[str, list[Any]]:
-    """Return the points of the grid as columns by name."""
-    points = [(i, k) for i in range(found.slenderness.size) for k in range(found.restitution.size)]
-    return {
-        "slenderness": [float(found.slenderness[i]) for i, _ in points],
-        "restitution": [float(found.restitution[k]) for _, k in points],
-        "log_likelihood": [float(found.likelihood[i, k]) for i, k in points],
-        "inside": [bool(found.inside[i, k]) for i, k in points],
-    }
-
-
-def _region_parts(found: JointRegion, name: str, file: str, count: int) -> Iterator[Table | str]:
-    yield (
-        f"{file}: {found.tests} of {count} tests are of {name} and have an outcome, in {found.clusters} clusters. Grid "
-        f"of {found.slenderness.size} x {found.restitution.size} points, {found.around.count} neighbours of each test "
-        "at each."
-    )
-    slender, eta = found.best
-    (low, high), (least, most) = found.ranges
-    points = int(found.inside.sum())
-    yield (
-        f"Likeliest: slenderness times {slender:.3g}, restitution {eta:.3g}. Joint region of "
-        f"{percent(REGION_PROBABILITY)}, "
-        f"{points} of {found.inside.size} points: slenderness times {low:.3g} to {high:.3g}, restitution {least:.3g} "
-        f"to {most:.3g}. Not every pair of values from these ranges is in it."
-    )
-    inside = found.inside
-    if inside[[0, -1]].any() or inside[:, [0, -1]].any():
-        yield "Caution: the region reaches the edge of the grid, and is wider than the grid shows."
-    above = found.likelihood - found.likelihood.max()
-    cells = [
-        [f"{value:.1f}{'*' * bool(within)}" for value, within in zip(*row, strict=True)]
-        for row in zip(above.T, inside.T, strict=True)
-    ]
-    grid = [
-        only_shown("slenderness", lambda i: f"x {found.slenderness[i]:.3g}", text=True),
-        *(only_shown(f"{eta:.3g}", column.__getitem__) for eta, column in zip(found.restitution, cells, strict=True)),
-    ]
-    title = "Log-likelihood less the largest, over restitution; * in the region"
-    yield table_of(title, grid, range(found.slenderness.size))
-    if found.unknown:
-        yield (
-            f"Caution: at the likeliest point, the outcome of {percent(found.unknown)} of the neighbours is unknown, "
-            "and counted as not overturning."
-        )
-
-
-def _region_data(found: JointRegion, name: str) -> dict[str, Any]:
-    slenderness, restitution = found.best
-    ranges = dict(zip(("slenderness", "restitution"), map(list, found.ranges), strict=True))
-    return {
-        "structure": name,
-        "tests": found.tests,
-        "clusters": found.clusters,
-        "neighbours": found.around.count,
-        "best": {"slenderness": slenderness, "restitution": restitution},
-        "region": {"probability": REGION_PROBABILITY, **ranges},
-        "grid": {
-            "slenderness": found.slenderness.tolist(),
-            "restitution": found.restitution.tolist(),
-            "log_likelihood": found.likelihood.tolist(),
-            "inside": found.inside.tolist(),
-        },
-        "unknown": found.unknown,
-    }
+def _broken(times: Reals, values: Reals) -> tuple[Reals, Reals]:
+    """Return a curve with breaks where the trace has gaps."""
+    steps = np.diff(times)
+    gaps = np.flatnonzero(steps > MIN_GAP_RATIO * np.median(steps)) + 1
+    return np.insert(times, gaps, np.nan), np.insert(values, gaps, np.nan)

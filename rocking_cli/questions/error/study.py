@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,7 +18,7 @@ from numpy.typing import ArrayLike
 from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, equivalent_block
 from rocking_cli.core.advice import Grade, grade, preferred_kappa
-from rocking_cli.errors import InputError, SolverError
+from rocking_cli.errors import SolverError
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 
@@ -124,18 +125,12 @@ def linearisation(
 
     Raises
     ------
-    InputError
-        If an amplitude or an acceleration is out of range.
     MechanismError
         If the structure has no critical rotation or no uplift acceleration.
     SolverError
         If an integral does not converge, or the mechanism does not overturn under an acceleration.
     """
     r, rho = np.atleast_1d(np.asarray(amplitude, float)), np.atleast_1d(np.asarray(acceleration, float))
-    for values, why_not in ((r, why_no_amplitude), (rho, why_no_acceleration)):
-        for value in values:
-            if why := why_not(value):
-                raise InputError(why)
     block = (equivalence or equivalent_block(mechanism))[direction]
     period = free_period(mechanism, direction, r)
     time = overturning_time(mechanism, direction, rho, block.lambda_)
@@ -174,8 +169,7 @@ def compare(
     return of(np.linspace(0.01, 0.99, CURVE_POINTS), np.geomspace(1.02, strongest, CURVE_POINTS)), marks
 
 
-@dataclass(frozen=True)
-class Errors:
+class Errors(NamedTuple):
     """Largest errors of an equivalent block at the requested amplitudes, in the worse of the two directions.
 
     Parameters

@@ -59,7 +59,7 @@ def error(asked: ErrorAsked, watch: Watcher) -> Answer[list[Linearisation]]:
     with ready.named():
         curves, marks = compare(ready, asked.at, asked.a)
     shown = view(ready.mechanism, ready.equivalence, curves, marks)
-    figure = drawn("questions.error.picture.draw_linearisation", curves, marks, heading(ready.mechanism))
+    figure = drawn("questions.error.view.draw_linearisation", curves, marks, heading(ready.mechanism))
     columns = partial(ratios, ready.name, marks, ready.mechanism.gravity)
     dims = [
         Dimensions(("direction", *kappa, *along), (name,), partial(of_quantity, columns, quantity))

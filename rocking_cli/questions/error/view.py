@@ -1,13 +1,14 @@
-"""View of the errors of the equivalent block of a structure, as text and as data."""
+"""The errors of the equivalent block of a structure as text, as data and as a plot."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import inf, isfinite, isnan, nan
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from rocking_cli.arrays import Reals
 from rocking_cli.core import Equivalence, Mechanism
 from rocking_cli.core.advice import SMALL_ERROR, Grade
 from rocking_cli.io.tables import Columns, stacked
@@ -17,8 +18,14 @@ from rocking_cli.views.column import Column, of, only_shown, table_of
 from rocking_cli.views.verdict import uplift_in_words
 from rocking_cli.views.view import ABSENT, View, heading
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 NEVER_UPLIFTS = "infinite (it never uplifts)"
 UPLIFT_TOLERANCE = 1e-9  # error of the uplift acceleration that counts as zero
+PREFERRED_STYLE, OTHER_STYLE = {"linestyle": "-", "linewidth": 2.0}, {"linestyle": "--", "linewidth": 1.3}
+MAX_SHOWN_ERROR = 0.5  # largest error that is drawn, of either sign
 PREFERRED_KAPPA = {None: None, 0: "either", 1: "kappa1", 2: "kappa2"}
 
 
@@ -198,3 +205,61 @@ def _ranges(curves: Sequence[Linearisation], kappa: int) -> list[str]:
             where = "at every acceleration"
         sentences.append(f"The overturning time with kappa{kappa} is off by more than {percent(SMALL_ERROR)} {where}.")
     return sentences
+
+
+def draw_linearisation(curves: Sequence[Linearisation], asked: Sequence[Linearisation], title: str) -> Figure:
+    """Plot the errors of the equivalent block, a row of panels for each direction.
+
+    Parameters
+    ----------
+    curves : sequence of Linearisation
+        The ratios over their ranges, one for each direction that differs.
+    asked : sequence of Linearisation
+        The same directions at the amplitudes and accelerations to mark.
+    title : str
+        Heading.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    from rocking_cli.plotting import style
+
+    best = preferred(asked)
+    dots = {"marker": "o", "linestyle": "none", "color": style.INK, "markersize": 4}
+    bold = best or 2  # if both are equally good, kappa 2, which is exact at uplift
+    figure, panels = style.panels(2.9 * len(curves) + 0.3, len(curves), 2, sharey="col")
+    for (left, right), curve, marks in zip(panels, curves, asked, strict=True):
+        _draw_error(left, curve.amplitude, curve.period_ratio, {"label": "either kappa"} | style.LINES["nonlinear"])
+        _draw_error(left, marks.amplitude, marks.period_ratio, dots)
+        left.set_xlim(0.0, 1.0)
+        for kappa in (1, 2):
+            ratio = getattr(curve, f"overturning_ratio{kappa}")
+            label = rf"$\kappa_{kappa}$" + (", preferred" if kappa == best else "")
+            look = style.LINES[f"linear{kappa}"] | (PREFERRED_STYLE if kappa == bold else OTHER_STYLE)
+            _draw_error(right, curve.acceleration, ratio, {"label": label} | look)
+            _draw_error(right, marks.acceleration, getattr(marks, f"overturning_ratio{kappa}"), dots)
+        right.set_xscale("log")
+        right.set_xticks([1, 2, 5, 10], ["1", "2", "5", "10"])
+        right.minorticks_off()
+        right.set_xlim(1.0, curve.acceleration.max())
+        ratios = np.concatenate([curve.overturning_ratio1, curve.overturning_ratio2])
+        beyond = (np.abs(ratios - 1) > MAX_SHOWN_ERROR).any()
+        cut = f" (not drawn: beyond {100 * MAX_SHOWN_ERROR:g} %)" if beyond else ""
+        for axes, x, y in (
+            (left, r"amplitude $\phi/\phi_{cr}$ (dots: as in the table)", "error of the free period"),
+            (right, rf"constant acceleration $a/\lambda${cut}", "error of the overturning time"),
+        ):
+            if len(curves) > 1:
+                axes.set_title(f"{curve.direction.label} direction", fontsize=style.LABEL, loc="left")
+            axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
+            style.in_percent(axes.yaxis)
+            style.tidy(axes, x, y)
+    style.heading_of_all(figure, title)
+    for _, right in panels:  # the preferred one may differ
+        right.legend(loc="best", **style.LEGEND)
+    return figure
+
+
+def _draw_error(axes: Axes, x: Reals, ratio: Reals, look: Mapping[str, Any]) -> None:
+    axes.plot(x, np.where(np.abs(ratio - 1) <= MAX_SHOWN_ERROR, ratio - 1, np.nan), **look)

@@ -48,7 +48,8 @@ def draw_map(
     figure, axes = style.one_panel(6.0, title)
     across, up = (found.omega, found.a) if dimensionless else (found.periods, found.ag)
     for axis, values in ((axes.xaxis, across), (axes.yaxis, up)):
-        if _at_equal_ratios(values):
+        steps = np.diff(np.log(values))
+        if np.ptp(steps) < EQUAL_RATIOS * np.abs(steps).max():
             style.logarithmic(axis, TICKS)
     axes.set_xlim(float(across.min()), float(across.max()))
     axes.set_ylim(float(up.min()), float(up.max()))
@@ -84,12 +85,6 @@ def draw_map(
     ]  # fmt: skip
     style.legend_below(figure, [*keys, *handles])
     return figure
-
-
-def _at_equal_ratios(values: Reals) -> bool:
-    """Return whether the values of an axis are at equal ratios."""
-    steps = np.diff(np.log(values))
-    return bool(np.ptp(steps) < EQUAL_RATIOS * np.abs(steps).max())
 
 
 def _place(found: OverturningMap, line: Points, *, dimensionless: bool) -> Reals:

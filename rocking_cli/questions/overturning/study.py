@@ -390,20 +390,12 @@ def _least(
     """Return for each period the least amplitude known to overturn, and the least that may overturn [m/s2]."""
     beyond = np.full(periods.size, top * STANDARD_GRAVITY / structure.unit - 1)  # a - 1 at the end of the search
     search = _OverturningSearch(structure, shape, periods, polarities, progress)
-    least = search.least(beyond, np.full(periods.size, np.nan), _overturns)
+    least = search.least(beyond, np.full(periods.size, np.nan), lambda tried: tried.fell)
     possible = least
     if structure.may_open:
-        possible = search.least(np.fmin(least, beyond), least, _may_overturn)
+        possible = search.least(np.fmin(least, beyond), least, lambda tried: tried.fell | tried.unknown)
         possible = np.where(possible >= least * (1 - TIE_TOLERANCE), least, possible)
     return (1 + least) * structure.unit, (1 + possible) * structure.unit
-
-
-def _overturns(found: Outcomes) -> Bools:
-    return found.fell
-
-
-def _may_overturn(found: Outcomes) -> Bools:
-    return found.fell | found.unknown
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rocking_cli.io.tables import Columns
-    from rocking_cli.questions.pulse.study_on_structure import Answer
+    from rocking_cli.questions.pulse.on_structure import Answer
     from rocking_cli.structure import Structure
 
 
@@ -55,8 +55,7 @@ def pulse(asked: PulseAsked, watch: Watcher) -> MappingAnswer[Any, Any]:
         hint = f"give one, or {named('a')} and {named('omega')} for the dimensionless block"
         raise InputError(Problem("is missing", field=named("structure"), hint=hint))
     from rocking_cli.ask.inputs import sized_pulse, structure_figure, structure_of
-    from rocking_cli.questions.pulse.study_on_structure import closed_forms, with_conclusion
-    from rocking_cli.questions.pulse.view_on_structure import view
+    from rocking_cli.questions.pulse.on_structure import closed_forms, view, with_conclusion
 
     sized = sized_pulse(asked.shape, asked.ag, asked.period)
     ready = structure_of(asked.structure, watch, asked.opening)
@@ -94,7 +93,7 @@ def _on_block(asked: PulseAsked) -> MappingAnswer[Any, Any]:
 
 def _answers(structure: Structure, given: Any, polarity: int, watch: Watcher) -> dict[str, Answer]:
     """Return the responses of the models; warn of those that do not converge with the sampling."""
-    from rocking_cli.questions.pulse.study_on_structure import SampledHistory, answers
+    from rocking_cli.questions.pulse.on_structure import SampledHistory, answers
 
     responses = answers(structure, given, polarity)
     for name, run in responses.items():
@@ -104,7 +103,7 @@ def _answers(structure: Structure, given: Any, polarity: int, watch: Watcher) ->
 
 
 def _columns(found: Mapping[int, Mapping[str, Answer]]) -> Columns:
-    from rocking_cli.questions.pulse.study_on_structure import outcome
+    from rocking_cli.questions.pulse.on_structure import outcome
 
     runs = [(sign, name, outcome(one)) for sign, models in found.items() for name, one in models.items()]
     return {

@@ -15,8 +15,8 @@ from rocking_cli.core.advice import Grade
 from rocking_cli.plotting.language import in_language
 from rocking_cli.plotting.moving import ground_chart, moving, ratio_chart
 from rocking_cli.questions.equiv.view import PARAMETERS, EquivalentSide
-from rocking_cli.questions.error.picture import draw_linearisation
 from rocking_cli.questions.error.study import errors, preferred
+from rocking_cli.questions.error.view import draw_linearisation
 from rocking_cli.questions.margin.picture import draw_margins
 from rocking_cli.questions.overturning.picture import draw_map
 from rocking_cli.questions.report.study import Assessment, MotionResult, PulseMap, amplitude_in_g

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking_cli.ask.answer import Answer, Dimensions, drawn
-from rocking_cli.ask.ground_motions import Motions, Source
+from rocking_cli.ask.ground_motions import Motions
 from rocking_cli.ask.inputs import site_of
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
@@ -76,7 +76,7 @@ def select(asked: SelectAsked, watch: Watcher) -> Answer[RecordSet]:
     unusable = [str(each.path) for each in motions.records if all(each is not one.record for one in chosen)]
     results = ShownSet(result, spectrum, files, unusable)
 
-    figure = drawn("questions.select.picture.draw_record_set", result, title(results))
+    figure = drawn("questions.select.view.draw_record_set", result, title(results))
     if asked.out is not None:
         used = [chosen[k] for k in result.chosen.tolist()]
         readings = [None if str(each.file) == STANDARD_INPUT else each.reading for each in used]
@@ -89,16 +89,17 @@ def _without(target: object, motions: Motions, watch: Watcher) -> Motions:
     """Return the motions without the target, which a pattern may also match."""
     if not isinstance(target, str | Path) or not Path(target).exists():
         return motions
-    kept = replace(motions, sources=tuple(each for each in motions.sources if not _is_of(each, Path(target))))
+    others = [
+        source
+        for source in motions.sources
+        if not (isinstance(source, Listed) and source.path.exists() and source.path.samefile(Path(target)))
+    ]
+    kept = replace(motions, sources=tuple(others))
     if kept.count < motions.count:
         if not kept:
             raise InputError(f"no records to choose from: {target} is the target; add the files of records")
         watch.note(f"{target} is the target spectrum and is not used as a record")
     return kept
-
-
-def _is_of(source: Source, file: Path) -> bool:
-    return isinstance(source, Listed) and source.path.exists() and source.path.samefile(file)
 
 
 def _target(asked: SelectAsked, watch: Watcher) -> TargetSpectrum:

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from functools import partial
 from importlib import import_module
 from math import isfinite
 from time import monotonic
+from typing import NamedTuple
 
 from rocking_cli.errors import RockingError
 from rocking_cli.short_repr import short_repr
@@ -22,45 +21,47 @@ class NotRun(Exception):
 
 
 @short_repr
-@dataclass(frozen=True)
-class Check:
+class Check(NamedTuple):
     """A check of the installation.
 
     Parameters
     ----------
     name : str
-        Name of the check.
+        Name of the check: that of a function of `checks`.
     meaning : str
         What is compared with what.
     unit : str
         Unit of the deviation; empty if it is dimensionless.
     limit : float
         Largest deviation with which the check passes.
-    deviation : callable
-        Function of `quick`, whether to compute a few cases only, that returns the largest deviation. It may raise any
-        error, with which the check fails, or `NotRun`.
     """
 
     name: str
     meaning: str
     unit: str
     limit: float
-    deviation: Callable[[bool], float]
 
     def run(self, *, quick: bool) -> Checked:
         """Run the check; its errors become part of the result."""
         began = monotonic()
-        deviation, error = None, None
+        largest, error = None, None
         try:
-            deviation = float(self.deviation(quick))
+            largest = deviation(self.name, quick)
         except Exception as raised:  # any fault of the installation
             error = raised
-        return Checked(self, deviation, error, monotonic() - began)
+        return Checked(self, largest, error, monotonic() - began)
+
+
+def deviation(name: str, quick: bool) -> float:
+    """Return the largest deviation of a check. Raises any error, or `NotRun`."""
+    checks = import_module(f"{__package__}.checks")  # in the check: even this may fail
+    if name not in NO_KERNEL and checks.another_way():
+        raise NotRun("the machine code is broken, see `kernels`: Python would compute this instead")
+    return float(getattr(checks, name)(quick))
 
 
 @short_repr
-@dataclass(frozen=True, eq=False)
-class Checked:
+class Checked(NamedTuple):
     """Result of a check of the installation.
 
     Parameters
@@ -92,19 +93,15 @@ class Checked:
         """Why the check failed or was not run, in one line; None if it passed."""
         if self.passed:
             return None
-        if self.error is not None:
-            message = seen(str(self.error))
-            if isinstance(self.error, NotRun | RockingError):
-                return message
-            return f"{type(self.error).__name__}: {message}" if message else type(self.error).__name__
-        if self.found is None or not isfinite(self.found):
-            return "values are missing, or are not numbers"
-        return "the deviation exceeds the limit"
+        if self.error is None:
+            missing = self.found is None or not isfinite(self.found)
+            return "values are missing, or are not numbers" if missing else "the deviation exceeds the limit"
+        kind = "" if isinstance(self.error, NotRun | RockingError) else type(self.error).__name__
+        return ": ".join(filter(None, (kind, seen(str(self.error)))))
 
 
 @short_repr
-@dataclass(frozen=True)
-class SelfCheck:
+class SelfCheck(NamedTuple):
     """Results of all checks of the installation.
 
     Parameters
@@ -137,57 +134,32 @@ class SelfCheck:
         return not self.failed
 
 
-def _of(name: str, quick: bool) -> float:
-    """Call a function of the module of checks, which is imported in the check: even this may fail."""
-    checks = import_module(f"{__package__}.checks")
-    if name not in NO_KERNEL and checks.another_way():
-        raise NotRun("the machine code is broken, see `kernels`: Python would compute this instead")
-    deviation: float = getattr(checks, name)(quick)
-    return deviation
+def _check(line: str) -> Check:
+    """Return the check of a line: its name, its limit with a unit, and after a colon its meaning."""
+    head, meaning = line.split(": ", 1)
+    name, limit, *unit = head.split()
+    return Check(name, meaning, "".join(unit), float(limit))
 
 
-def _check(name: str, meaning: str, unit: str, limit: float) -> Check:
-    return Check(name, meaning, unit, limit, partial(_of, name))
-
-
-CHECKS = (
-    _check(
-        "release",
-        "Times of the first eight impacts of released blocks and walls, against quadrature of the first integral",
-        "s",
-        1e-9,
-    ),
-    _check(
-        "pulses", "Amplitudes of sine pulses that overturn a linear block, against formulas of its motion", "", 1e-12
-    ),
-    _check(
-        "histories",
-        "Times of uplift, impacts and overturning under ground motions, against the solver of SciPy",
-        "s",
-        1e-9,
-    ),
-    _check("blocks", "Equivalent blocks of five structures, against formulas and values of other programs", "", 1e-9),
-    _check(
-        "neighbours",
-        "Shares of neighbours that overturn, and their restitution, against normal distributions",
-        "",
-        0.006,
-    ),
-    _check("joints", "Forces at the corner of a rocking block, as tabulated, against Newton's law", "m/s2", 1e-5),
-    _check(
-        "openings",
-        "Times at which a block first slides, and from which its motion is unknown, by formulas",
-        "s",
-        1.4e-3,
-    ),
-    _check("filters", "Amplitudes of filtered sines, against those of Butterworth filters in closed form", "", 1e-9),
-    _check("records", "Samples read from small files of each record format and unit, against those written", "", 1e-12),
-    _check("records_by_obspy", "Samples read from SAC and miniSEED files by obspy, against those written", "", 1e-12),
-    _check("units", "Sizes of all units of quantities, against those of their definitions", "", 1e-15),
-    _check(
-        "threads", "Outcomes of batches in several threads and in one: equal bits, and none is missing", "values", 0.0
-    ),
-    _check("kernels", "Shipped machine code and its source run by Python: equal bits", "values", 0.0),
+CHECKS = tuple(
+    map(
+        _check,
+        """\
+release 1e-9 s: Times of the first eight impacts of released blocks and walls, against quadrature of the first integral
+pulses 1e-12: Amplitudes of sine pulses that overturn a linear block, against formulas of its motion
+histories 1e-9 s: Times of uplift, impacts and overturning under ground motions, against the solver of SciPy
+blocks 1e-9: Equivalent blocks of five structures, against formulas and values of other programs
+neighbours 0.006: Shares of neighbours that overturn, and their restitution, against normal distributions
+joints 1e-5 m/s2: Forces at the corner of a rocking block, as tabulated, against Newton's law
+openings 1.4e-3 s: Times at which a block first slides, and from which its motion is unknown, by formulas
+filters 1e-9: Amplitudes of filtered sines, against those of Butterworth filters in closed form
+records 1e-12: Samples read from small files of each record format and unit, against those written
+records_by_obspy 1e-12: Samples read from SAC and miniSEED files by obspy, against those written
+units 1e-15: Sizes of all units of quantities, against those of their definitions
+threads 0 values: Outcomes of batches in several threads and in one: equal bits, and none is missing
+kernels 0 values: Shipped machine code and its source run by Python: equal bits
+""".splitlines(),
+    )
 )
 
 

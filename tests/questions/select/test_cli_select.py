@@ -93,20 +93,6 @@ def test_the_numbers_are_those_of_the_written_records():
     assert found["fits"] == (ratio.min() >= 0.9 and ratio.max() <= 1.3)
 
 
-def test_the_table_says_the_same_as_json():
-    words = ("select", "r*.AT2", *ASKED, "--count", 2, "--factors", "0.5:3")
-    found, text = run_json(*words), run(*words).stdout
-    assert found["verdict"] in text
-    for each in found["records"]:
-        row = next(line for line in text.splitlines() if each["name"] in line)
-        assert f"{each['factor']:.4g}" in row
-        assert f"{each['pga_g']:.3g}" in row
-        assert each["event"] in row
-        assert each["station"] in row
-    for each in found["left_out"]:
-        assert f"{each['name']}: {each['why']}" in text
-
-
 def test_the_list_gives_the_same_motions_as_the_folder():
     run("select", "r*.AT2", *ASKED, "--count", 3, "-o", "out/set")
     listed = listed_in("out/set/set.yaml")
@@ -191,10 +177,6 @@ def test_a_bad_record_keeps_no_good_one_back(files):
     assert "r9.AT2" in result.stderr
 
 
-def test_nothing_that_can_be_used_is_wrong_input():
-    assert "no file matches" in run("select", "x*.AT2", *ASKED, "--count", 2, code=2).stderr
-
-
 def test_the_target_is_no_record():
     assert "code.csv is the target" in run("select", "*.AT2", "code.csv", *ASKED, "--count", 2).stderr
     assert "no records to choose from" in run("select", "code.csv", *ASKED, "--count", 2, code=2).stderr
@@ -210,22 +192,12 @@ def test_standard_input_is_kept_as_what_it_gave(files):
     assert read_record("set/standard-input.csv").npts == 1024
 
 
-def test_two_records_of_one_name_are_two(files):
-    (files / "more").mkdir()
-    (files / "more/r1.AT2").write_text((files / "r3.AT2").read_text().replace("Quake 1", "Other"))
-    run("select", "r1.AT2", "more/r1.AT2", *ASKED, "--count", 2, "-o", "set", "--factors", "0.01:100")
-    assert len(list(files.glob("set/*.csv"))) == 2
-
-
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("--count", "2", "--band", "2:0.2"), "is not increasing"),
         (("--count", "2", "--band", "0.2:9"), "the target goes from 0 to 4 s"),
         (("--count", "9",), "--count: a set of 9 was requested, but 7 records are available"),
         (("--count", "5",), "one per event leaves 4"),
-        (("--count", "2", "--damping", "100%"), "--damping"),
-        (("--count", "2", "--one-per", "fault"), "--one-per"),
         (("--count", "2", "--factors", "50:60"), "--factors"),
         (("--count", "2", "--target", "r1.AT2"), "column"),
     ],
@@ -245,19 +217,6 @@ def test_a_band_that_samples_do_not_reach_is_said():
     told = run("select", "r*.AT2", "--target", "code.csv", "--band", "0.05:2", "--count", 2).stderr
     assert re.search(r"less than 4 intervals of\s+7 of 7 records", told)
     assert "intervals" not in run("select", "r*.AT2", *ASKED, "--count", 2).stderr
-
-
-def test_one_factor_for_all():
-    found = run_json("select", "r*.AT2", *ASKED, "--count", 3, "--same-factor", "--factors", "0.01:100")
-    factors = [each["factor"] for each in found["records"]]
-    assert max(factors) == pytest.approx(min(factors), rel=1e-12)
-
-
-def test_a_picture_is_written(files):
-    run("select", "r*.AT2", *ASKED, "--count", 3, "--plot", "set.svg")
-    text = (files / "set.svg").read_text()
-    for words in ("target", "mean", "0.9 to 1.3 times the target"):
-        assert words in text
 
 
 def test_python_gives_the_same():

@@ -5,13 +5,11 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-import rocking_cli as rk
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion, Origin
 from rocking_cli.plotting import style
 from rocking_cli.processing.oscillator import response_spectrum
 from rocking_cli.questions.select import subsets
-from rocking_cli.questions.select.picture import draw_record_set
 from rocking_cli.questions.select.study import (
     Candidates,
     SetRequirements,
@@ -19,10 +17,11 @@ from rocking_cli.questions.select.study import (
     choose,
     coarse,
     log_weights,
+    own_factors,
     periods_of,
 )
 from rocking_cli.questions.select.target_spectrum import TargetSpectrum, read_target
-from rocking_cli.questions.select.view import ShownSet, ratio_in_words, view
+from rocking_cli.questions.select.view import ShownSet, draw_record_set, ratio_in_words, view
 
 BAND = (0.2, 2.0)
 CODE = TargetSpectrum("code", np.array([0.0, 0.15, 0.5, 1.0, 2.0, 4.0]), np.array([0.3, 0.75, 0.75, 0.375, 0.19, 0.05]))
@@ -80,10 +79,7 @@ def by_brute_force(found: Candidates, wanted: SetRequirements) -> tuple[float, f
 
 @pytest.mark.every(2)
 @pytest.mark.parametrize("policy", POLICIES)
-@pytest.mark.parametrize(
-    ("seed", "rough"),
-    [*(pytest.param(*each, marks=pytest.mark.rest) for each in ((1, 0.25), (2, 0.25), (3, 0.5))), (5, 0.9)],
-)
+@pytest.mark.parametrize(("seed", "rough"), [(1, 0.25), (5, 0.9)])
 def test_the_best_of_all_sets_is_that_of_brute_force(policy, seed, rough):
     found, wanted = made(8, seed, rough), SetRequirements(3, BAND, **POLICIES[policy])
     try:
@@ -105,15 +101,7 @@ def test_the_best_of_all_sets_is_that_of_brute_force(policy, seed, rough):
     assert chosen.sets == sets
 
 
-def test_some_of_these_sets_fit_and_some_do_not():
-    fits = [
-        choose(made(8, seed, rough), SetRequirements(3, BAND, one_per="none")).fits
-        for seed, rough in ((1, 0.12), (3, 0.9))
-    ]
-    assert fits == [True, False]
-
-
-@pytest.mark.parametrize("policy", POLICIES)
+@pytest.mark.parametrize("policy", ["narrow factors", "same factor", "one per station"])
 def test_a_set_keeps_to_what_is_asked(policy):
     found, wanted = made(12, 7, 0.3, scatter=0.6), SetRequirements(4, BAND, **POLICIES[policy])
     chosen = choose(found, wanted)
@@ -130,7 +118,7 @@ def test_a_set_keeps_to_what_is_asked(policy):
     np.testing.assert_allclose(chosen.mean, (chosen.factors[:, None] * found.spectra[chosen.chosen]).sum(0) / 4)
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2, 3])
+@pytest.mark.parametrize("seed", [0, 3])
 def test_searches_come_close_to_the_best_of_all(seed, monkeypatch):
     found, wanted = made(14, seed, 0.4), SetRequirements(5, BAND, seed=seed)
     best = choose(found, wanted)
@@ -160,13 +148,6 @@ def test_large_sets_are_not_all_tried(monkeypatch):
     assert small == choose(found, wanted).chosen.tolist()
 
 
-def test_sets_are_counted_as_they_are_tried():
-    groups = np.array([0, 0, 1, 2, 2, 2, 3])
-    tried = [members for members in combinations(range(7), 3) if len({groups[k] for k in members}) == 3]
-    assert subsets.count_sets(groups, 3) == len(tried)
-    assert subsets.count_sets(np.arange(40), 20) == 137846528820
-
-
 def test_of_sets_that_are_alike_the_first_is_taken_whatever_the_last_bits():
     found = made(6, 3, 0.3)
     twice = np.concatenate([found.spectra[:3], found.spectra[:3]])
@@ -192,6 +173,13 @@ def test_the_better_set_is_within_the_limits_first_then_near_then_first():
     assert not best(0.0, 0.1, 3, 4).better(best(1e-12, 0.1 + 1e-12, 1, 2))
     assert best(1e-12, 0.1 + 1e-12, 1, 2).better(best(0.0, 0.1, 3, 4))
     assert not best(0.0, 0.1, 3, 4).better(best(0.0, 0.1, 3, 4))
+
+
+def test_each_record_is_the_target_on_logarithmic_average():
+    found = made(5, 1, 0.9)
+    factors, left_out = own_factors(found, SetRequirements(3, BAND, factors=(0.01, 100.0)))
+    off = np.trapezoid(np.log(factors[:, None] * found.spectra / found.target), np.log(found.periods), axis=-1)
+    assert not left_out and off == pytest.approx(0, abs=1e-9)
 
 
 def test_a_record_out_of_reach_is_left_out_and_said():
@@ -231,26 +219,10 @@ def test_too_few_records(count, more, message, hint):
     assert problem.field == "`count`"
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"count": 0},
-        {"band": (2.0, 0.2)},
-        {"within": (1.3, 0.9)},
-        {"factors": (1.0, np.inf)},
-        {"damping": 1.0},
-        {"one_per": "fault"},
-    ],
-)
-def test_what_makes_no_sense_is_refused(changes):
-    with pytest.raises(InputError, match=f"^`{next(iter(changes))}`"):
-        rk.select("r.csv", "code.csv", **{"count": 3, "band": BAND} | changes)
-
-
 # --- words ----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("seed", "rough", "fits"), [(1, 0.12, True), (3, 0.9, False), (5, 0.9, False)])
+@pytest.mark.parametrize(("seed", "rough", "fits"), [(1, 0.12, True), (3, 0.9, False)])
 def test_the_sentence_says_what_the_numbers_say(seed, rough, fits):
     found = made(8, seed, rough)
     chosen = choose(found, SetRequirements(3, BAND, one_per="none"))
@@ -348,11 +320,9 @@ def test_candidates_have_the_spectra_of_their_motions():
 @pytest.mark.parametrize(
     ("text", "unit", "sa"),
     [
-        ("0.1,0.5\n0.2,0.4\n", None, [0.5, 0.4]),
         ("period [s],Sa [g]\n0.1,0.5\n0.2,0.4\n", "g", [0.5, 0.4]),
         ("T;Sa (m/s^2)\n0.1;4.903325\n0.2;3.92266\n", "m/s2", [0.5, 0.4]),
         ("# of a code\n\nsite B\nT_s,Sa_g\n0.1,.5\n0.2,4e-1\n\n", "g", [0.5, 0.4]),
-        ("T [s] Sa [cm/s2]\n0.1 490.3325\n0.2 392.266\n", "cm/s2", [0.5, 0.4]),
         ("\ufeffT,Sa\r\n0.1,0.5,\r\n0.2,0.4,,\r\n", None, [0.5, 0.4]),
     ],
 )
@@ -372,14 +342,11 @@ def test_a_target_is_read(tmp_path, text, unit, sa):
     [
         ("0.1,0.5\n0.2,0.4,0.3\n", 2, "3 columns"),
         ("T,Sa\n0.1,0.5\n0.1,0.4\n", 3, "twice"),
-        ("0.2,0.5\n0.1,0.4\n", 2, "periods must increase"),
         ("0.1,0.5\n0.2,-0.4\n", 2, "must not be negative"),
-        ("0.1,0.5\n0.2,nan\n", 2, "not a finite number"),
         ("T [s],Sa [km/s2]\n0.1,0.5\n", 1, "no unit of acceleration"),
         ("f [Hz],Sa [g]\n0.1,0.5\n", 1, "periods in s"),
         ("0,1;0,5\n0,2;0,4\n", 1, "a comma within a number"),
         ("0.1,0.5\n", None, "1 point: at least two"),
-        ("", None, "0 points: at least two"),
     ],
 )
 def test_a_wrong_target_is_pointed_at(tmp_path, text, line, message):
@@ -393,33 +360,8 @@ def test_a_wrong_target_is_pointed_at(tmp_path, text, line, message):
     assert problem.hint
 
 
-def test_a_target_that_is_no_text_or_not_there(tmp_path):
-    (tmp_path / "t.csv").write_bytes(b"\xff\xfe\x00\x81")
-    for name, message in (("t.csv", "not UTF-8 text"), ("none.csv", "no such file"), (".", "folder")):
-        with pytest.raises(InputError, match=message):
-            read_target(tmp_path / name)
-
-
-@pytest.mark.parametrize(
-    ("band", "message"), [((0.2, 5.0), "the target goes from 0 to 4 s"), ((0.2, 4.0), None), ((4.1, 5.0), "goes from")]
-)
-def test_a_band_must_lie_within_the_target(band, message):
-    if message is None:
-        CODE.check(band)
-        return
-    with pytest.raises(InputError) as caught:
-        CODE.check(band)
-    assert message in str(caught.value)
-    assert "`band`" in str(caught.value)
-
-
 def test_a_target_that_vanishes_in_the_band_is_refused():
     target = TargetSpectrum("t", np.array([0.0, 1.0, 2.0]), np.array([0.0, 0.5, 0.0]))
     target.check((0.1, 1.9))
     with pytest.raises(InputError, match="zero at 2 s"):
         target.check((0.1, 2.0))
-
-
-def test_ordinates_that_no_code_asks_for_are_doubtful(tmp_path):
-    (tmp_path / "t.csv").write_text("0.1,5\n0.2,25\n")
-    assert read_target(tmp_path / "t.csv").highest_if_odd == 25

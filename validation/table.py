@@ -19,7 +19,7 @@ from rocking_cli.units import UnitError, read, units_of
 FORECAST_PREFIX = "pred_"
 """Prefix of the headings of columns with shares predicted by other rules."""
 OWN_PREDICTORS = ("tool", "tool_with_unknown", "base_rate", "west", "velocity", "fitted_pgv")
-"""Names of the rules that `rocking score` computes itself."""
+"""Names of the rules that scoring computes itself."""
 COMMENT_SIGN = "#"
 """First character of the headings of columns that are not read."""
 HEADINGS = (

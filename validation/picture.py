@@ -8,7 +8,7 @@ from matplotlib.ticker import MaxNLocator
 
 from rocking_cli.errors import InputError
 from rocking_cli.plotting import style
-from rocking_cli.questions.score.study import Scored
+from validation.rules import Scored
 
 HISTOGRAM_BINS = 20
 MAX_LINEAR_COUNT = 10  # tests in a bin: with more, the axis of counts is logarithmic

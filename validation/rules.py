@@ -21,11 +21,11 @@ from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.measures import measure
 from rocking_cli.processing.steps import parse_step, process
-from rocking_cli.questions.score.table import OWN_PREDICTORS, ObservedTest
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.fit import Counts, fit_outcomes
 from rocking_cli.studies.neighbours import Neighbourhood, simulate_neighbours
+from validation.table import OWN_PREDICTORS, ObservedTest
 
 SEED = 1963
 DRAWS = 2000

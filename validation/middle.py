@@ -1,8 +1,8 @@
 """Study why shares of 0.6 to 0.8 are stated where about half of the tests overturn: docs/trust/middle.md.
 
-    python scripts/middle_of_the_scale.py EXPERIMENTS [RUNS.npz]
+    python -m validation.middle EXPERIMENTS [RUNS.npz]
 
-EXPERIMENTS holds the tests of the granite boulders, see scripts/granite_tests.py. RUNS.npz, outside the repository,
+EXPERIMENTS holds the tests of the granite boulders, see validation/granite.py. RUNS.npz, outside the repository,
 keeps the time histories, which take a quarter of an hour on two processors; without it they are simulated anew.
 
 What becomes of a symmetric body depends on the ratio of amplitude to slenderness and on the restitution only. So each
@@ -12,7 +12,6 @@ test is simulated for many values of both, and every way to draw neighbours is a
 from __future__ import annotations
 
 import csv
-import runpy
 import sys
 from collections.abc import Callable, Sequence
 from functools import cache, partial
@@ -31,18 +30,18 @@ from scipy.spatial import ConvexHull
 from rocking_cli import load_structure, read_record
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import KINEMATIC_SPREAD, SLENDERNESS_SPREAD, Model
-from rocking_cli.questions.score.study import ClusterDraws, ScoreEstimate, surprise
 from rocking_cli.structure import Structure
 from rocking_cli.studies import neighbours
 from rocking_cli.studies.neighbours import Neighbourhood, simulate_neighbours
 from rocking_cli.views.neighbours import deviations
+from validation import granite
+from validation.rules import ClusterDraws, ScoreEstimate, surprise
 
 Reals = NDArray[np.float64]
 
 PROJECT = Path(__file__).resolve().parents[1]
 PART = PROJECT / "docs" / "trust" / "middle.md"
-GRANITE = runpy.run_path(str(PROJECT / "scripts" / "granite_tests.py"))
-NAMES = tuple(GRANITE["SPECIMENS"])
+NAMES = tuple(granite.SPECIMENS)
 
 POINTS = 2000  # histories of each test
 WIDE, DEEP = 0.2, 0.35  # of these: deviation of ln(amplitude/slenderness), and largest loss of restitution
@@ -68,7 +67,7 @@ def model(folder: Path, name: str, further: float = 1.0) -> Model:
     path = folder / f"{name}_{further:g}.yaml"
     text = (folder / f"{name}.yaml").read_text(encoding="utf-8")
     if further > 1:
-        height, _, angle = GRANITE["SPECIMENS"][name]
+        height, _, angle = granite.SPECIMENS[name]
         half, other = height * tan(radians(angle)), height * tan(radians(further * angle))
         text = text.replace(f"[{-half:.9g}, ", f"[{-other:.9g}, ")
         text += f"negative: {{lead: rock, joints: {{O: {{pivot: rock, at: [{-other:.9g}, 0]}}}}}}\n"
@@ -144,7 +143,7 @@ class Study:
     @staticmethod
     def own_eta(name: str) -> float:
         """Return the restitution of the kinematics of a boulder."""
-        height, gyration, angle = GRANITE["SPECIMENS"][name]
+        height, gyration, angle = granite.SPECIMENS[name]
         half = height * tan(radians(angle))
         return 1 - 2 * half**2 / (height**2 + half**2 + gyration)
 
@@ -317,7 +316,7 @@ def page(study: Study) -> str:
     )
     return f"""### Shares of {LOW} to {HIGH}
 
-`scripts/middle_of_the_scale.py` studies on the tests above whether, and why, these shares are too high.
+`validation/middle.py` studies on the tests above whether, and why, these shares are too high.
 {sample()}
 In the model, what becomes of these boulders depends only on the ratio of amplitude to slenderness and on the
 restitution, so amplitude and slenderness are one source of scatter. Each test is simulated for {POINTS} pairs of both.
@@ -370,7 +369,7 @@ def main() -> int:
             found = [runs[name] for name in ("fell", "seeds", "feet")]
     else:
         with TemporaryDirectory() as made, Pool() as pool:
-            GRANITE["write"](source, Path(made))
+            granite.write(source, Path(made))
             with (source / "granite_boulders.csv").open(encoding="utf-8") as stream:
                 tests = [row["test"] for row in csv.DictReader(stream)]
             parts = pool.map(partial(simulate, Path(made)), tests, chunksize=3)

@@ -11,11 +11,11 @@ from rocking_cli.arrays import Bools, Reals
 from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.questions.score.study import in_time, surprise
-from rocking_cli.questions.score.table import ObservedTest
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Draws, Neighbourhood, simulate_neighbours
+from validation.rules import in_time, surprise
+from validation.table import ObservedTest
 
 REGION_PROBABILITY = 0.9  # probability of the joint region, by the likelihood ratio
 EDGE_DROP = -float(np.log(1 - REGION_PROBABILITY))  # drop of the log-likelihood at its edge (chi-square, 2 degrees)

@@ -1,6 +1,6 @@
-"""Write a table of shake-table tests of two granite boulders, with their structures and records, for `rocking score`.
+"""Write a table of shake-table tests of two granite boulders, with their structures and records, to be scored.
 
-    python scripts/granite_tests.py EXPERIMENTS FOLDER
+    python -m validation.granite EXPERIMENTS FOLDER
 
 EXPERIMENTS holds `granite_boulders.csv` and `granite_motions_100hz.npz`, the data of Chen and others
 (virtual_shake_robot), which are not part of this project. FOLDER receives `tests.csv`, 600 rows, and what it names: one

@@ -1,17 +1,16 @@
-"""Write docs/how_far_to_trust_it.md: what the tool says, held against shake-table tests and simulated traces.
+"""Write docs/how_far_to_trust_it.md: what the tool says, compared with shake-table tests and simulated traces.
 
-    python docs/make_trust.py EXPERIMENTS [--check]     # or make trust, with its parts; make trust-check
+    python -m validation.trust EXPERIMENTS [--check]     # or make trust, with its parts; make trust-check
 
 EXPERIMENTS holds the granite boulders (`granite_boulders.csv`, `granite_motions_100hz.npz`): data outside the project,
-see scripts/granite_tests.py. The parts in docs/trust are written by docs/make_traces.py and
-scripts/middle_of_the_scale.py. With --check the page is not written: the exit code is 1 if it is stale, and 0 without
+see validation/granite.py. The parts in docs/trust are written by validation/traces.py and
+validation/middle.py. With --check the page is not written: the exit code is 1 if it is stale, and 0 without
 EXPERIMENTS if its parts are as they should be, as the shares cannot be checked then.
 """
 
 from __future__ import annotations
 
 import re
-import runpy
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
@@ -28,20 +27,16 @@ import numpy as np
 from rocking_cli import load_structure, read_record
 from rocking_cli.dynamics.model import Model
 from rocking_cli.plotting import style
-from rocking_cli.questions.score.picture import draw_reliability
-from rocking_cli.questions.score.study import (
-    DRAWS,
-    CalibrationBin,
-    Scored,
-    ScoreEstimate,
-    score_tests,
-    scored,
-)
-from rocking_cli.questions.score.table import read_tests
 from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Draws, Neighbourhood
+from validation import granite
+from validation.middle import sample as first_of_middle
+from validation.picture import draw_reliability
+from validation.rules import DRAWS, CalibrationBin, Scored, ScoreEstimate, score_tests, scored
+from validation.table import read_tests
+from validation.traces import sample as first_traces
 
-DOCS = Path(__file__).resolve().parent
+DOCS = Path(__file__).resolve().parents[1] / "docs"
 PAGE, TRACES, MIDDLE = DOCS / "how_far_to_trust_it.md", DOCS / "trust" / "traces.md", DOCS / "trust" / "middle.md"
 EARLIER = "earlier"
 RULES = {
@@ -262,7 +257,7 @@ against simulated traces of a known restitution. `make trust` writes this page. 
 the first trace of each kind and the deviations of the rule again, and says whether they are stale.
 [Validation](validation.md) checks its formulas against other formulas, [the scoreboard](scoreboard.md) has one line for
 each set of tests and version, and `rocking selfcheck` checks the arithmetic of your installation, by no test. To score
-it on tests of your own, see [rocking score](commands.md#rocking-score-testscsv).
+it on tests of your own, see [Score your own tests](scoring.md).
 
 ## Shares of overturning
 
@@ -273,7 +268,7 @@ and 1.
 
 These are {len(today.observed)} shake-table tests, of both boulders under {today.clusters} motions at several
 intensities. The data are those of Chen and others (virtual_shake_robot), and not part of this project;
-`scripts/granite_tests.py` writes them as a table. Each boulder is a rigid body on the first edge of its foot, with the
+`validation/granite.py` writes them as a table. Each boulder is a rigid body on the first edge of its foot, with the
 restitution of its kinematics. Brackets hold 5 to 95 % of {DRAWS} draws of the motions with replacement. They contain
 what another choice of motions would change, and not what other boulders would: there are two.
 
@@ -331,8 +326,8 @@ restitution, redrawn above 1), they were drawn evenly within 2 % of amplitude an
   description of a body is the same in all of its tests, so there are two samples of such an error, not 600.
 - No wall, frame or arch, no tie and no load has been checked against observed shares: the checks of their mechanics are
   in [Validation](validation.md).
-- Peak rotations were not recorded in these tests. Where your table has a `peak`, `rocking score` ranks it among those
-  of the neighbours.
+- Peak rotations were not recorded in these tests. Where your table has a `peak`, it is ranked among those of the
+  neighbours.
 - A share says what neighbouring motions do to the structure as described. It does not know that the structure is
   another one: other edges, a crushed corner, a foot on soft ground.
 - Where joints open that the model keeps closed, the outcome is `unknown`, and is counted as such: see
@@ -369,10 +364,10 @@ def stale(before: str, now: str) -> list[str]:
 
 def outdated() -> list[str]:
     """Return the parts of the page whose first results are no longer what they were made of."""
-    makers = {TRACES: DOCS / "make_traces.py", MIDDLE: DOCS.parent / "scripts" / "middle_of_the_scale.py"}
+    samples = {TRACES: first_traces, MIDDLE: first_of_middle}
     return [
-        f"docs/trust/{path.name} is stale" for path, maker in makers.items()
-        for sample in [runpy.run_path(str(maker))["sample"]()]
+        f"docs/trust/{path.name} is stale" for path, first in samples.items()
+        for sample in [first()]
         if sample not in (text := path.read_text(encoding="utf-8"))
         and not any(is_same(line, sample) for line in text.splitlines())
     ]  # fmt: skip
@@ -380,9 +375,8 @@ def outdated() -> list[str]:
 
 def made(source: Path) -> tuple[str, Scored, Scored]:
     """Return the text of the page, and what it rests on: the scores of before and those of today."""
-    script = runpy.run_path(str(DOCS.parent / "scripts" / "granite_tests.py"))
     with TemporaryDirectory() as folder:
-        script["write"](source, Path(folder))
+        granite.write(source, Path(folder))
         earlier, today = both(Path(folder))
     return page(earlier, today), earlier, today
 

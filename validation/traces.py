@@ -1,6 +1,6 @@
-"""Hold `rocking calibrate --free` against simulated traces of known restitution: docs/trust/traces.md.
+"""Compare `rocking calibrate --free` with simulated traces of known restitution: docs/trust/traces.md.
 
-    python docs/make_traces.py [COUNT]     # traces of each case, 200
+    python -m validation.traces [COUNT]     # traces of each case, 200
 
 The traces are integrated here by Runge and Kutta's method, by nothing of the package.
 """
@@ -19,13 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli import Block, InputError
-from rocking_cli.questions.calibrate.study import fit_trace
-from rocking_cli.questions.calibrate.trace import Trace
+from rocking_cli.questions.calibrate.study import Trace, fit_trace
 from rocking_cli.structure import Structure
 
 Reals = NDArray[np.float64]
 
-PART = Path(__file__).resolve().parent / "trust" / "traces.md"
+PART = Path(__file__).resolve().parents[1] / "docs" / "trust" / "traces.md"
 G, DT, STEPS, IMPACTS = 9.80665, 0.01, 20, 7
 COUNT, NOISE, RELEASE = 200, 0.01, 0.7  # traces; noise over the release; release over alpha
 SCATTER = 0.02
@@ -198,7 +197,7 @@ def page(rows: Sequence[str], recorded: Sequence[str], wrong: Sequence[str], fre
 
 `rocking calibrate --free` on {count} simulated traces of each kind: a block let go at {RELEASE:g} alpha, seven
 impacts, 100 Hz, noise of {100 * NOISE:g} % of the release, with and without a drift of 1 % of alpha a second.
-`docs/make_traces.py` integrates them by a method of its own. 'As stated' is the mean of the standard deviations that
+`validation/traces.py` integrates them by a method of its own. 'As stated' is the mean of the standard deviations that
 the fits state, 'error over stated' the root mean square of the ratio (1 if it covers), and 'caution' the share of fits
 whose residual is said to leave a pattern. Where eta scatters from impact to impact (+- {SCATTER:g}), no single eta is
 right: the fit is checked against the mean of the seven that the trace had, too. Etas above 1 are set to 1, which

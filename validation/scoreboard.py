@@ -1,9 +1,9 @@
 """Write docs/scoreboard.md: the scores of this version on every set of tests that is at hand, and on forty assemblies.
 
-    python docs/make_scoreboard.py EXPERIMENTS     # or make scoreboard ROCKING_EXPERIMENTS=EXPERIMENTS
+    python -m validation.scoreboard EXPERIMENTS     # or make scoreboard ROCKING_EXPERIMENTS=EXPERIMENTS
 
 EXPERIMENTS holds data outside the project: `granite_boulders.csv` and `granite_motions_100hz.npz` (see
-scripts/granite_tests.py), and `shakebot_pulses.csv`. The page itself keeps the rows: that of this version is written
+validation/granite.py), and `shakebot_pulses.csv`. The page itself keeps the rows: that of this version is written
 anew, and a set that is not at hand keeps the rows it has. The assemblies are made by tests/free_blocks.py: they are
 always at hand, with MuJoCo, and take some minutes on two processors.
 """
@@ -11,7 +11,6 @@ always at hand, with MuJoCo, and take some minutes on two processors.
 from __future__ import annotations
 
 import csv
-import runpy
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache
@@ -25,15 +24,16 @@ from unittest.mock import patch
 
 import numpy as np
 
-from rocking_cli import Block, GroundMotion, __version__, parse_pulse, score
-from rocking_cli.questions.score.study import Scored, Stated, score_tests, scored
-from rocking_cli.questions.score.table import ObservedTest
+from rocking_cli import Block, GroundMotion, __version__, parse_pulse
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import free as memory
 from rocking_cli.studies.neighbours import Neighbourhood
+from validation import granite
+from validation.rules import Scored, Stated, score_tests, scored
+from validation.score import score
+from validation.table import ObservedTest
 
-DOCS = Path(__file__).resolve().parent
-PAGE = DOCS / "scoreboard.md"
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "scoreboard.md"
 HEADS = ("set", "version", "tests", "clusters", "Brier score", "drift", "log loss", "right", "area", "mean gap")
 BLOCK_HEADS = (
     "set", "version", "outcome known", "same outcome", "peak agrees", "within 5 %", "drift", "outcome unknown",
@@ -67,9 +67,8 @@ class Row(NamedTuple):
 
 def boulders(source: Path) -> Scored:
     """Score the shares of the granite boulders."""
-    script = runpy.run_path(str(DOCS.parent / "scripts" / "granite_tests.py"))
     with TemporaryDirectory() as made:
-        script["write"](source, Path(made))
+        granite.write(source, Path(made))
         return score(Path(made) / "tests.csv").result
 
 
@@ -155,7 +154,7 @@ SETS: dict[str, tuple[Callable[[Path], Scored], str, str]] = {
         "block (slenderness and half diagonal) is fitted to every other test of each posture, which also takes up a "
         "constant factor, and the remaining tests are scored. Such a fit measures no rock, and the scores are those "
         "of the motions as much as of the tool. A posture whose block lies on the edge of the grid is left out, as "
-        "`rocking calibrate --tests` refuses it.",
+        "`validation/region.py` refuses it.",
     ),
     RATES: (
         rates,
@@ -180,7 +179,6 @@ def row(name: str, found: Scored, before: list[Row]) -> Row:
 
 def assemblies(before: list[Row]) -> Row:
     """Simulate the assemblies by both engines, and return their line, with the drift of the peaks that agree."""
-    sys.path.insert(0, str(DOCS.parent))
     from tests.free_blocks import agreement, forty, side_by_side
 
     with TemporaryDirectory() as folder, patch.object(memory, "place", lambda: Path(folder) / "blocks.sqlite"):

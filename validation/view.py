@@ -9,7 +9,11 @@ from typing import Any
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.names import percent
-from rocking_cli.questions.score.study import (
+from rocking_cli.text import one_line
+from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, rounded, table_of
+from rocking_cli.views.neighbours import deviations
+from rocking_cli.views.view import ABSENT, Table, View
+from validation.rules import (
     BASE_RATE,
     DRAWS,
     FITTED_PGV,
@@ -22,10 +26,6 @@ from rocking_cli.questions.score.study import (
     ScoreEstimate,
     Stated,
 )
-from rocking_cli.text import one_line
-from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, rounded, table_of
-from rocking_cli.views.neighbours import deviations
-from rocking_cli.views.view import ABSENT, Table, View
 
 FEW_CLUSTERS = 10
 INTEGRATED = "In 300 shake-table tests, such a PGV was 1.3 times the measured one (0.76 to 6.3 times in 90 % of them)"

@@ -1,3 +1,0 @@
-"""Score stated shares of overturning against tests."""
-
-PLACE = 120
