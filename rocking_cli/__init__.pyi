@@ -54,25 +54,23 @@ from rocking_cli.excitation.pulse_fit import fit_pulse as fit_pulse
 from rocking_cli.excitation.pulses import Pulse as Pulse
 from rocking_cli.excitation.pulses import parse_pulse as parse_pulse
 from rocking_cli.excitation.records.record_units import Gain as Gain
-from rocking_cli.processing.floor import Floor as Floor
 from rocking_cli.processing.intensity import Measure as Measure
 from rocking_cli.processing.intensity import MotionMeasure as MotionMeasure
 from rocking_cli.processing.intensity import RelativeMeasure as RelativeMeasure
 from rocking_cli.processing.intensity import RunMeasure as RunMeasure
 from rocking_cli.processing.intensity import parse_measure as parse_measure
+from rocking_cli.processing.oscillator import Floor as Floor
 from rocking_cli.processing.oscillator import ResponseSpectrum as ResponseSpectrum
 from rocking_cli.processing.reading import turned as turned
 from rocking_cli.processing.steps import Step as Step
 from rocking_cli.questions.animate.verb import Animation as Animation
-from rocking_cli.questions.calibrate.region import JointRegion as JointRegion
+from rocking_cli.questions.calibrate.study import Trace as Trace
 from rocking_cli.questions.calibrate.study import TraceFit as TraceFit
-from rocking_cli.questions.calibrate.trace import Trace as Trace
-from rocking_cli.questions.crosscheck.study import Crosscheck as Crosscheck
 from rocking_cli.questions.demand.study import SpectraOfSite as SpectraOfSite
 from rocking_cli.questions.design.study import Aim as Aim
 from rocking_cli.questions.design.study import Design as Design
 from rocking_cli.questions.design.study import Span as Span
-from rocking_cli.questions.equivalent_pulses.study import EquivalentResponses as EquivalentResponses
+from rocking_cli.questions.equivalent_pulses.verb import EquivalentResponses as EquivalentResponses
 from rocking_cli.questions.error.study import Linearisation as Linearisation
 from rocking_cli.questions.fragility.asked import Shaken as Shaken
 from rocking_cli.questions.fragility.asked import Shaking as Shaking
@@ -92,16 +90,14 @@ from rocking_cli.questions.respond.each_verb import EachAnswer as EachAnswer
 from rocking_cli.questions.respond.motion_verbs import correct as correct
 from rocking_cli.questions.respond.motion_verbs import on_floor as on_floor
 from rocking_cli.questions.respond.verb import ResponseAnswer as ResponseAnswer
-from rocking_cli.questions.score.study import Scored as Scored
-from rocking_cli.questions.score.table import TableOfTests as TableOfTests
 from rocking_cli.questions.select.study import RecordSet as RecordSet
 from rocking_cli.questions.select.target_spectrum import TargetSpectrum as TargetSpectrum
-from rocking_cli.questions.selfcheck.study import SelfCheck as SelfCheck
+from rocking_cli.questions.selfcheck import study as study
 from rocking_cli.questions.spectrum.study import Spectrum as Spectrum
 from rocking_cli.questions.survey.structure_table import StructureTable as StructureTable
 from rocking_cli.questions.survey.study import Survey as Survey
+from rocking_cli.studies.neighbours import Release as Release
 from rocking_cli.studies.picture import Picture as Picture
-from rocking_cli.studies.release import Release as Release
 from rocking_cli.verification.results import Verification as Verification
 from typing import Any as Any
 from typing import Literal as Literal
@@ -411,92 +407,40 @@ def animate(
 def calibrate(
     structure: StructureLike,
     *,
-    free: str | Path | Trace | None = ...,
-    tests: str | Path | Mapping[str, Sequence[Any]] | TableOfTests | None = ...,
+    free: str | Path | Trace,
     free_geometry: bool = ...,
-    slenderness: tuple[float | str, float] = ...,
-    restitution: tuple[float | str, float] = ...,
-    points: int = ...,
-    neighbours: int = ...,
-    jobs: int | None = ...,
     out: str | Path | None = ...,
     plot: str | Path | None = ...,
-    units: str | None = ...,
-    dt: float | str | None = ...,
-    channel: str | int | None = ...,
-    quantity: Literal["acceleration", "velocity", "displacement"] | None = ...,
-    gain: Gain | str | None = ...,
-    run_on: bool | None = ...,
-    despite_header: bool | None = ...,
-    other: str | Path | None = ...,
-    other_channel: str | int | None = ...,
-    azimuth: float | str | None = ...,
-    floor: Floor | str | Mapping[str, Any] | None = ...,
     watch: Watcher = ...,
-) -> Answer[TraceFit] | Answer[JointRegion]:
-    """Find the restitution of a structure from a trace of free rocking, or its joint region from shake-table tests.
+) -> Answer[TraceFit]:
+    """Find the restitution of a structure from a trace of its free rocking.
 
     Parameters
     ----------
     structure : StructureLike
         The structure, or its YAML file.
-    free : str | Path | Trace | None, optional
+    free : str | Path | Trace
         Trace of a free-rocking test, a CSV file with the columns time [s] and angle [deg] or [rad]; - is standard
         input.
-    tests : str | Path | Mapping[str, Sequence[Any]] | TableOfTests | None, optional
-        Table of shake-table tests, as for `rocking score`; those of the structure are used.
     free_geometry : bool, optional
         Fit p and alpha to the trace too, of a free-standing block with alpha of 0.07 rad or more.
-    slenderness : tuple[float, float], optional
-        Range of the factor on the slenderness, for tests. By default 0.7:1.3.
-    restitution : tuple[float, float], optional
-        Range of the restitution, for tests. By default 0.7:0.99.
-    points : int, optional
-        Number of values along each axis of the grid, for tests. By default 9.
-    neighbours : int, optional
-        Number of neighbours of each test at each point of the grid. By default 40.
-    jobs : int | None, optional
-        Number of processor cores to use. By default one for each processor.
     out : str | Path | None, optional
         Write a copy of the structure's file with the fitted restitution and its scatter (`uncertainty`).
     plot : str | Path | None, optional
-        Plot the trace with its fit and residuals, or the likelihood over the grid (.png, .svg or .pdf).
-    units : str | None, optional
-        Unit of the record, if the file does not state it.
-    dt : float | str | None, optional
-        Sampling interval in s, if the file has no times.
-    channel : str | int | None, optional
-        Channel or column to read: its number, from 1, or its name.
-    quantity : Literal["acceleration", "velocity", "displacement"] | None, optional
-        Quantity in the record; velocities and displacements are differentiated.
-    gain : Gain | str | None, optional
-        Instrument sensitivity: the value of one unit of the record, such as 0.05m/V or 4.7e-6m/s2/count.
-    run_on : bool | None, optional
-        Read a text without times as one series that runs on over its rows.
-    despite_header : bool | None, optional
-        Accept a text with other numbers of points or peaks than its header states, as it was cut on purpose.
-    other : str | Path | None, optional
-        Second horizontal component, perpendicular to the record; the two are rotated into the plane of the structure.
-    other_channel : str | int | None, optional
-        Channel of the second component in its file.
-    azimuth : float | str | None, optional
-        Azimuth of the structure's plane, in degrees: 0 is the record, 90 the second. `respond` also accepts all.
-    floor : Floor | str | Mapping[str, Any] | None, optional
-        Floor of a building on which the structure stands: T1=0.4,xi=0.05,z=6m,H=9m,n=3 (or z/H=0.67, gamma=1.29).
+        Plot the trace with its fit and residuals (.png, .svg or .pdf).
     watch : Watcher
         Told what is read and written, what is doubtful, and how far the work is.
 
     Returns
     -------
-    Answer of TraceFit or JointRegion
-        From a trace: `eta`, its `scatter` from impact to impact, `etas`, `release`, `offset`, `drift`. From tests:
-        the log-likelihood over the grid, the `best` point and the `ranges` of the joint region of 90 %.
+    Answer of TraceFit
+        `eta`, its `scatter` from impact to impact, `etas`, `release`, `offset`, `drift`.
 
     Raises
     ------
     InputError
-        If neither or both of `free` and `tests` are given, if a file is not valid, or if what is given does not
-        determine the restitution: fewer than three impacts above the noise, a best point on the edge of the grid, ...
+        If a file is not valid, or if the trace does not determine the restitution, such as by fewer than three impacts
+        above the noise.
     MechanismError
         If the structure has no critical rotation.
     """
@@ -545,120 +489,6 @@ def collapse(
     >>> answer = rk.collapse(rk.Assembly(blocks={"block": block}, ground={"ground": ground}))
     >>> round(answer[rk.Direction.POSITIVE].lambda_, 12)
     0.25
-    """
-
-def crosscheck(
-    structure: StructureLike,
-    motions: Motion | Sequence[Motion] | Motions = ...,
-    *,
-    plot: str | Path | None = ...,
-    animate: str | Path | None = ...,
-    units: str | None = ...,
-    dt: float | str | None = ...,
-    channel: str | int | None = ...,
-    quantity: Literal["acceleration", "velocity", "displacement"] | None = ...,
-    gain: Gain | str | None = ...,
-    run_on: bool | None = ...,
-    despite_header: bool | None = ...,
-    other: str | Path | None = ...,
-    other_channel: str | int | None = ...,
-    azimuth: float | str | None = ...,
-    floor: Floor | str | Mapping[str, Any] | None = ...,
-    scale: float | str | None = ...,
-    target_pga: float | str | None = ...,
-    target_pgv: float | str | None = ...,
-    polarity: Literal['1', '-1', 1, -1] = ...,
-    release: Release | float | str | None = ...,
-    opening: float | str = ...,
-    out: str | Path | None = ...,
-    separator: Literal[',', ';', 'tab'] | None = ...,
-    decimal: Literal['.', ','] | None = ...,
-    watch: Watcher = ...,
-) -> Answer[Crosscheck]:
-    """Simulate the motion of a structure by the exact engine and by free blocks, and compare them.
-
-    Parameters
-    ----------
-    structure : StructureLike
-        The structure, or its YAML file.
-    motions : Motion | Sequence[Motion] | Motions, optional
-        The ground motion, its file, or a pulse as text.
-    plot : str | Path | None, optional
-        Plot both rotations against time (.png, .svg or .pdf).
-    animate : str | Path | None, optional
-        Animate both side by side: .gif, .mp4 (requires ffmpeg), or .html, a self-contained page with a slider.
-    units : str | None, optional
-        Unit of the record, if the file does not state it.
-    dt : float | str | None, optional
-        Sampling interval in s, if the file has no times.
-    channel : str | int | None, optional
-        Channel or column to read: its number, from 1, or its name.
-    quantity : Literal["acceleration", "velocity", "displacement"] | None, optional
-        Quantity in the record; velocities and displacements are differentiated.
-    gain : Gain | str | None, optional
-        Instrument sensitivity: the value of one unit of the record, such as 0.05m/V or 4.7e-6m/s2/count.
-    run_on : bool | None, optional
-        Read a text without times as one series that runs on over its rows.
-    despite_header : bool | None, optional
-        Accept a text with other numbers of points or peaks than its header states, as it was cut on purpose.
-    other : str | Path | None, optional
-        Second horizontal component, perpendicular to the record; the two are rotated into the plane of the structure.
-    other_channel : str | int | None, optional
-        Channel of the second component in its file.
-    azimuth : float | str | None, optional
-        Azimuth of the structure's plane, in degrees: 0 is the record, 90 the second. `respond` also accepts all.
-    floor : Floor | str | Mapping[str, Any] | None, optional
-        Floor of a building on which the structure stands: T1=0.4,xi=0.05,z=6m,H=9m,n=3 (or z/H=0.67, gamma=1.29).
-    scale : float | str | None, optional
-        Scale factor on the motion.
-    target_pga : float | str | None, optional
-        Peak ground acceleration to scale the motion to, in g.
-    target_pgv : float | str | None, optional
-        Peak ground velocity to scale the motion to, in m/s.
-    polarity : {"1", "-1"}, optional
-        Polarity of the motion: 1 as given, -1 reversed. By default 1.
-    release : Release | float | str | None, optional
-        Initial tilt of a release from rest: a fraction of phi_cr, or an angle such as 0.05rad; negative is
-        anticlockwise.
-    opening : float, optional
-        Largest opening of a joint up to which a history holds, over D_cr. By default 0.005.
-    out : str | Path | None, optional
-        Write both rotations against time (.csv or .parquet).  - is standard output.
-    separator : {",", ";", "tab"}, optional
-        Separator of the CSV table. By default a comma.
-    decimal : {".", ","}, optional
-        Decimal sign of the CSV table. By default a point.
-    watch : Watcher
-        Told what is read and written, what is doubtful, and how far the work is.
-
-    Returns
-    -------
-    Answer of Crosscheck
-        `exact` and `of_blocks` are the time histories, `finding` states whether they agree, `parted` is the time from
-        which they differ, and `joints` has the openings that free blocks find. Its frame has both rotations over time.
-
-    Raises
-    ------
-    InputError
-        If MuJoCo is not installed, the structure has something that free blocks cannot have, a value is out of range,
-        or a file cannot be used.
-    MechanismError
-        If the structure has no critical rotation or no uplift acceleration.
-    SolverError
-        If a motion cannot be simulated to its end.
-
-    Notes
-    -----
-    The exact engine is the nonlinear model of `respond`, whose joints are checked. Free blocks are the same bodies with
-    contact and friction, simulated by MuJoCo: restitution is what their contacts give, and the restitution of the
-    structure has no effect on them.
-
-    Examples
-    --------
-    >>> import rocking_cli as rk
-    >>> answer = rk.crosscheck(rk.Block(width=0.7, height=2.8), "sine:0.3g:0.9s")
-    >>> answer.finding
-    'agree'
     """
 
 def demand(
@@ -855,7 +685,7 @@ def draw(
     plot : str | Path | None, optional
         Output file (.png, .svg or .pdf). By default FILE with .png, in this folder; none with JSON or DXF.
     dxf : str | Path | None, optional
-        Write the drawing as DXF, in metres, from which `rocking import` makes the structure again; needs ezdxf.
+        Write the drawing as DXF, in metres, which `rocking import` reads; needs ezdxf.
     watch : Watcher
         Told what is read and written, what is doubtful, and how far the work is.
 
@@ -1638,7 +1468,7 @@ def margin(
     --------
     >>> import rocking_cli as rk
     >>> answer = rk.margin(rk.Block(width=0.7, height=2.8), "sine:0.4g:0.8s", polarity="1", neighbours=10)
-    >>> [round(found.uplift, 3) for found in answer.values()]
+    >>> [round(each.uplift, 3) for each in answer.values()]
     [0.625]
     """
 
@@ -2451,8 +2281,10 @@ def respond(  # type: ignore[overload-overlap]
     structure: StructureLike,
     motions: Motion = ...,
     *,
+    engine: Literal['exact', 'blocks', 'auto'] | None = ...,
     tail: float | str = ...,
     plot: str | Path | None = ...,
+    animate: str | Path | None = ...,
     units: str | None = ...,
     dt: float | str | None = ...,
     channel: str | int | None = ...,
@@ -2476,7 +2308,6 @@ def respond(  # type: ignore[overload-overlap]
     model: ModelName | Sequence[ModelName] | None = ...,
     rtol: float | str = ...,
     restitution: float | str | None = ...,
-    engine: Literal['exact', 'blocks', 'auto'] = ...,
     opening: float | str = ...,
     neighbours: int | None = ...,
     amplitude_deviation: float | str = ...,
@@ -2499,10 +2330,16 @@ def respond(  # type: ignore[overload-overlap]
         The structure, or its YAML file.
     motions : Motion | Sequence[Motion] | Motions, optional
         One motion or several, their files, or pulses as text; a pattern such as `records/*.AT2` gives several.
+    engine : {"exact", "blocks", "auto"}, optional
+        Engine: exact (one degree of freedom), blocks (free blocks beside it), or auto (blocks beside it if exact tells
+        no outcome). By default auto for a single motion, as far as free blocks are installed and take few steps;
+        otherwise exact.
     tail : float, optional
         Length of output after the end of the record. [s] By default 10.0.
     plot : str | Path | None, optional
         Plot the time histories (.png, .svg or .pdf).
+    animate : str | Path | None, optional
+        Animate both engines side by side: .gif, .mp4 (requires ffmpeg), or .html, a self-contained page with a slider.
     units : str | None, optional
         Unit of the record, if the file does not state it.
     dt : float | str | None, optional
@@ -2552,9 +2389,6 @@ def respond(  # type: ignore[overload-overlap]
     restitution : float | None, optional
         Coefficient of restitution of all impacts; of a structure that rocks to one side, the rebound. By default that
         of the structure.
-    engine : {"exact", "blocks", "auto"}, optional
-        Engine: exact (one degree of freedom), blocks (free blocks), or auto (blocks if exact tells no outcome). By
-        default exact.
     opening : float, optional
         Largest opening of a joint up to which a history holds, over D_cr. By default 0.005.
     neighbours : int | None, optional
@@ -2594,7 +2428,9 @@ def respond(  # type: ignore[overload-overlap]
         after the end of the shorter polarity. The written table has a row for each time, with the histories beside each
         other. `frames["impacts"]` has the impacts. For several motions, `Answers` with one for each, by its name,
         and `frames["peaks"]` with the peak displacement and tie forces under each; for all azimuths, the answer of
-        `respond_around`. The history of free blocks has the model "blocks"; their impacts lose what contact takes.
+        `respond_around`. Where the outcome of a single motion is unknown, free blocks go on if they are installed and
+        take few steps: their history has the model "blocks", and `engines` compares both by polarity (`finding`,
+        `parted`, `joints`). Restitution is what their contacts give; what is concluded stays that of the other models.
 
     Raises
     ------
@@ -2623,8 +2459,10 @@ def respond(
     structure: StructureLike,
     motions: list[Any] | tuple[Any, ...],
     *,
+    engine: Literal['exact', 'blocks', 'auto'] | None = ...,
     tail: float | str = ...,
     plot: str | Path | None = ...,
+    animate: str | Path | None = ...,
     units: str | None = ...,
     dt: float | str | None = ...,
     channel: str | int | None = ...,
@@ -2648,7 +2486,6 @@ def respond(
     model: ModelName | Sequence[ModelName] | None = ...,
     rtol: float | str = ...,
     restitution: float | str | None = ...,
-    engine: Literal['exact', 'blocks', 'auto'] = ...,
     opening: float | str = ...,
     neighbours: int | None = ...,
     amplitude_deviation: float | str = ...,
@@ -2670,8 +2507,10 @@ def respond(
     structure: StructureLike,
     motions: Motion | Sequence[Motion] | Motions = ...,
     *,
+    engine: Literal['exact', 'blocks', 'auto'] | None = ...,
     tail: float | str = ...,
     plot: str | Path | None = ...,
+    animate: str | Path | None = ...,
     units: str | None = ...,
     dt: float | str | None = ...,
     channel: str | int | None = ...,
@@ -2695,7 +2534,6 @@ def respond(
     model: ModelName | Sequence[ModelName] | None = ...,
     rtol: float | str = ...,
     restitution: float | str | None = ...,
-    engine: Literal['exact', 'blocks', 'auto'] = ...,
     opening: float | str = ...,
     neighbours: int | None = ...,
     amplitude_deviation: float | str = ...,
@@ -2875,107 +2713,6 @@ def respond_around(
         If a motion cannot be simulated.
     """
 
-def score(
-    tests: str | Path | Mapping[str, Sequence[Any]] | TableOfTests,
-    *,
-    jobs: int | None = ...,
-    plot: str | Path | None = ...,
-    neighbours: int | None = ...,
-    amplitude_deviation: float | str = ...,
-    slenderness_deviation: float | str | None = ...,
-    restitution_deviation: float | str | None = ...,
-    opening: float | str = ...,
-    units: str | None = ...,
-    dt: float | str | None = ...,
-    channel: str | int | None = ...,
-    quantity: Literal["acceleration", "velocity", "displacement"] | None = ...,
-    gain: Gain | str | None = ...,
-    run_on: bool | None = ...,
-    despite_header: bool | None = ...,
-    other: str | Path | None = ...,
-    other_channel: str | int | None = ...,
-    azimuth: float | str | None = ...,
-    floor: Floor | str | Mapping[str, Any] | None = ...,
-    out: str | Path | None = ...,
-    separator: Literal[',', ';', 'tab'] | None = ...,
-    decimal: Literal['.', ','] | None = ...,
-    watch: Watcher = ...,
-) -> Answer[Scored]:
-    """Score stated shares of overturning against the outcomes of shake-table tests.
-
-    Parameters
-    ----------
-    tests : str | Path | Mapping[str, Sequence[Any]] | TableOfTests
-        A table of tests as a CSV file, whose paths are relative to its folder; or its columns by their headings (a
-        frame of pandas is one), with paths relative to the current folder; docs/commands.md lists the columns.
-    jobs : int | None, optional
-        Number of processor cores to use. By default one for each processor.
-    plot : str | Path | None, optional
-        Plot observed against stated shares, a reliability diagram (.png, .svg or .pdf).
-    neighbours : int | None, optional
-        Number of neighbouring motions to simulate for each test. By default 200.
-    amplitude_deviation : float, optional
-        Standard deviation of ln amplitude of the neighbours. By default 0.04.
-    slenderness_deviation : float | None, optional
-        Standard deviation of ln slenderness. By default that of the file, or 10 %.
-    restitution_deviation : float | None, optional
-        Standard deviation of restitution. By default that of the file, 0.03 of a given value, or 0.05.
-    opening : float, optional
-        Largest opening of a joint up to which a history holds, over D_cr. By default 0.005.
-    units : str | None, optional
-        Unit of the record, if the file does not state it.
-    dt : float | str | None, optional
-        Sampling interval in s, if the file has no times.
-    channel : str | int | None, optional
-        Channel or column to read: its number, from 1, or its name.
-    quantity : Literal["acceleration", "velocity", "displacement"] | None, optional
-        Quantity in the record; velocities and displacements are differentiated.
-    gain : Gain | str | None, optional
-        Instrument sensitivity: the value of one unit of the record, such as 0.05m/V or 4.7e-6m/s2/count.
-    run_on : bool | None, optional
-        Read a text without times as one series that runs on over its rows.
-    despite_header : bool | None, optional
-        Accept a text with other numbers of points or peaks than its header states, as it was cut on purpose.
-    other : str | Path | None, optional
-        Second horizontal component, perpendicular to the record; the two are rotated into the plane of the structure.
-    other_channel : str | int | None, optional
-        Channel of the second component in its file.
-    azimuth : float | str | None, optional
-        Azimuth of the structure's plane, in degrees: 0 is the record, 90 the second. `respond` also accepts all.
-    floor : Floor | str | Mapping[str, Any] | None, optional
-        Floor of a building on which the structure stands: T1=0.4,xi=0.05,z=6m,H=9m,n=3 (or z/H=0.67, gamma=1.29).
-    out : str | Path | None, optional
-        Write what is stated of each test (.csv or .parquet).  - is standard output.
-    separator : {",", ";", "tab"}, optional
-        Separator of the CSV table. By default a comma.
-    decimal : {".", ","}, optional
-        Decimal sign of the CSV table. By default a point.
-    watch : Watcher
-        Told what is read and written, what is doubtful, and how far the work is.
-
-    Returns
-    -------
-    Answer of Scored
-        `tests` are the stated shares, `scores` those of each rule with intervals, `bins` the calibration.
-
-    Raises
-    ------
-    InputError
-        If the table has wrong rows, which the error lists, or a value is out of range.
-
-    Notes
-    -----
-    An interval is the range from 5 to 95 % of 2000 draws of clusters of tests with replacement.
-
-    Examples
-    --------
-    >>> import rocking_cli as rk
-    >>> motions = ["sine:0.2g:0.8s", "sine:0.3g:0.8s", "sine:0.6g:0.8s"]
-    >>> tests = {"structure": ["examples/block.yaml"] * 3, "record": motions, "overturned": [0, 0, 1]}
-    >>> [each.share for each in rk.score(tests, neighbours=20).tests]
-    [0.0, 0.0, 1.0]
-    """
-
 def select(
     motions: Motion | Sequence[Motion] | Motions,
     target: TargetSpectrum | SiteLike | tuple[ArrayLike, ArrayLike],
@@ -3081,7 +2818,7 @@ def selfcheck(
     *,
     quick: bool = ...,
     watch: Watcher = ...,
-) -> Answer[SelfCheck]:
+) -> Answer[study.SelfCheck]:
     """Check that this installation computes correctly, against formulas, literal values and a general solver.
 
     Parameters

@@ -86,12 +86,13 @@ def in_degrees(phi: float) -> str:
 
 def processing_in_words(motion: GroundMotion) -> str:
     """Return the processing steps of a motion, and the file that was prepared by them, in a few words, if any."""
-    from rocking_cli.excitation.records import record_units
+    from rocking_cli.excitation.records.record_units import QUANTITIES
+    from rocking_cli.processing import reading
 
     steps = list(motion.processing)
-    for quantity in record_units.QUANTITIES:
-        if (step := record_units.differentiation_step(quantity)) in steps:
-            steps[steps.index(step)] += f" ({record_units.in_words(quantity, motion.of_ground.dt)})"
+    for quantity in QUANTITIES:
+        if (step := f"from {quantity}") in steps:
+            steps[steps.index(step)] += f" ({reading.in_words(quantity, motion.of_ground.dt)})"
     parts = [f"processed: {', '.join(steps)}"] if steps else []
     return "; ".join(parts + ([f"prepared from {motion.prepared_from}"] if motion.prepared_from else []))
 

@@ -115,8 +115,8 @@ def draw_history(
         keys.append((axes, _draw_responses(axes, each, scale, until[what], watched)))
     for (axes, curves), time in zip(keys[shaken:], parted, strict=False):
         if start < time < end:
-            look = {"color": style.CURSOR, "linewidth": style.MEDIUM, "linestyle": (0, (1, 1.5))}
-            curves.append(axes.axvline(time, label=f"both engines part at {time:.4g} s", **look))
+            label, dots = f"both engines part at {time:.4g} s", (0, (1, 1.5))
+            curves.append(axes.axvline(time, label=label, color=style.CURSOR, linewidth=style.MEDIUM, linestyle=dots))
     if watched is not None and tied:
         for axes, (what, each) in zip(below[1::2], responses.items(), strict=True):
             _hatch_unknown(axes, until[what], (start, end))
