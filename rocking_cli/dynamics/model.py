@@ -11,9 +11,8 @@ import numpy as np
 
 from rocking_cli.arrays import Integers, Reals
 from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, both_statics
-from rocking_cli.core.advice import uplift_error
 from rocking_cli.core.bounds import Bound
-from rocking_cli.core.equivalence import Statics
+from rocking_cli.core.equivalence import Statics, uplift_error
 from rocking_cli.core.mechanism import why_none
 from rocking_cli.core.structure_fields import Uncertainty
 from rocking_cli.dynamics.joints import JointTables, joints_of

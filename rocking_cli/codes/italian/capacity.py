@@ -14,7 +14,7 @@ from pydantic import ValidationError
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.rules import Rule
 from rocking_cli.core import Mechanism
-from rocking_cli.core.equilibrium import NoCriticalRotation
+from rocking_cli.core.coefficients import NoCriticalRotation
 from rocking_cli.core.hung.attached import Spot
 from rocking_cli.core.hung.element import INTERLOCK_NAME as INTERLOCK
 from rocking_cli.core.hung.element import ConstantForce, Element

@@ -15,8 +15,7 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.hung.attached import Follow, Spot
 from rocking_cli.core.hung.element import ConstantForce, Spring
-from rocking_cli.core.hung.steel import TieStrength
-from rocking_cli.core.hung.ties import Tie
+from rocking_cli.core.hung.ties import Tie, TieStrength
 
 MIN_TURN = 1e-9  # rad per rad; a block that turns less moves in a straight line
 ROUNDING_SHARE = 1e-9  # share of the work of the weights, or of the masses, below which a remainder is zero

@@ -8,8 +8,7 @@ from typing import NamedTuple
 
 from rocking_cli.core import Mechanism
 from rocking_cli.core.hung.element import Spring
-from rocking_cli.core.hung.steel import BAR_DIAMETERS, STEELS, SteelName, TieStrength, circle, tie_strength
-from rocking_cli.core.hung.ties import Tie
+from rocking_cli.core.hung.ties import BAR_DIAMETERS, STEELS, SteelName, Tie, TieStrength, circle, tie_strength
 from rocking_cli.io.dotted import words
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from rocking_cli import names
 from rocking_cli.core import Direction, Mechanism
-from rocking_cli.core.advice import Grade, grade, uplift_error
+from rocking_cli.core.equivalence import Grade, grade, uplift_error
 from rocking_cli.dynamics.exact import ClosedForm, ExactResponse
 from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.pulses import Pulse

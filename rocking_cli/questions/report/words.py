@@ -12,8 +12,7 @@ from typing import Any, NamedTuple
 from markupsafe import Markup
 
 from rocking_cli.core import Mechanism
-from rocking_cli.core.advice import Grade
-from rocking_cli.core.equivalence import EQUAL_DIRECTIONS
+from rocking_cli.core.equivalence import EQUAL_DIRECTIONS, Grade
 from rocking_cli.core.hung.attached import Spot
 from rocking_cli.core.hung.element import ConstantForce, Element, SpringBed, SteelBar, Stretched
 from rocking_cli.core.plausible import doubts as doubts_about_size
