@@ -16,7 +16,8 @@ from rocking_cli.core.equivalence import Statics, uplift_error
 from rocking_cli.core.mechanism import why_none
 from rocking_cli.core.structure_fields import Uncertainty
 from rocking_cli.dynamics.joints import JointTables, joints_of
-from rocking_cli.dynamics.kernels import (
+from rocking_cli.dynamics.sliding import Sliding, sliding_of
+from rocking_cli.dynamics.stepping import (  # fmt: skip
     BOUND_ETA,
     COLUMNS,
     ETA,
@@ -32,8 +33,7 @@ from rocking_cli.dynamics.kernels import (
     RATE,
     REST,
     P,
-)  # fmt: skip
-from rocking_cli.dynamics.sliding import Sliding, sliding_of
+)
 from rocking_cli.dynamics.tables import DirectionTable, tabulate
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.names import OPENING

@@ -17,8 +17,10 @@ VAGUE = re.compile(
 EMPTY = re.compile(r"found|said|near|own|thing|stuff|foo|te?mp|(data|item|list|obj|res|result|text|tmp|val|value)\d+")
 VAGUE_CONSTANTS = {
     "rocking_cli/codes/italian/formulas.py": {"FURTHEST"},  # the formula of the largest ordinate up to a period
-    "rocking_cli/dynamics/kernels.py": {"APART", "BEHIND", "FAINT", "IDLE", "LARGEST", "LONG", "LONGEST", "SLOW"},
+    "rocking_cli/dynamics/kernels.py": {"FAINT", "IDLE", "LONG", "SLOW"},
+    "rocking_cli/dynamics/openings.py": {"APART", "LARGEST", "LONGEST"},
     "rocking_cli/dynamics/pulse_motion.py": {"FAINT", "STILL"},
+    "rocking_cli/dynamics/stepping.py": {"BEHIND"},
     "rocking_cli/plotting/style.py": {"FAINT", "SMALL", "THIN", "TINY"},  # steps of a scale, read as `style.SMALL`
 }
 """Constants that keep a vague name: that of the kernels cannot change without building the shipped libraries anew."""
