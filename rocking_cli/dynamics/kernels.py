@@ -175,7 +175,7 @@ class Interval(NamedTuple):
     ramp: float
 
 
-class Piece(NamedTuple):
+class VerticalPiece(NamedTuple):
     """A piece of an interval with straight vertical ground acceleration: g + v_g'' = g + grade tau, up to tau = end."""
 
     g: float
@@ -488,7 +488,7 @@ def piece_of(structure, motion, phase, interval, tau, j, watch, marks):
     while j < last and (j + 1) * v_dt - t <= tau + COINCIDE * v_dt:
         j += 1
     if j >= last:
-        return j, False, Piece(gravity, 0.0, span)
+        return j, False, VerticalPiece(gravity, 0.0, span)
     v0, v1 = v[j] * motion.v_factor, v[j + 1] * motion.v_factor
     grade = (v1 - v0) / v_dt
     g = gravity + (v0 + grade * (t - j * v_dt))
@@ -499,7 +499,7 @@ def piece_of(structure, motion, phase, interval, tau, j, watch, marks):
             end = gone
         else:
             unknown_from(watch, phase.law.d, t + tau, phase.state.q, WEIGHTLESS, marks)
-    return j, True, Piece(g, grade, end)
+    return j, True, VerticalPiece(g, grade, end)
 
 
 @inlined
@@ -676,7 +676,7 @@ def follow(structure, motion, start, loose, rtol, most_impacts, brief, watch, sa
             whole, state = in_one_step(structure, phase, interval, rtol, watch, marks)
             phase = Phase(phase.law, state, phase.h, True, False, phase.held)
             tau = span if whole else 0.0
-        piece = Piece(numbers[0, GRAVITY], 0.0, span)
+        piece = VerticalPiece(numbers[0, GRAVITY], 0.0, span)
         while tau < span:
             loops = 0
             if motion.v.size > 0:
