@@ -23,6 +23,7 @@ from numba import njit
 from rocking_cli import GroundMotion, load_structure, read_record, respond_each
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics import kernels as at
+from rocking_cli.dynamics import stepping
 from rocking_cli.dynamics.batch import HISTORIES_PER_TASK, Runs, respond_many
 from rocking_cli.dynamics.deck import MAX_IMPACTS, lay_out, run_deck
 from rocking_cli.dynamics.history import follow
@@ -74,17 +75,17 @@ class Prepared:
     def __init__(self, model: Model, motion: GroundMotion) -> None:
         self.deck = lay_out([model], [motion])
         self.model = model
-        self.runs, self.marks = np.zeros((1, at.RUN_COLUMNS)), np.empty((1, at.MARKS))
+        self.runs, self.marks = np.zeros((1, at.RUN_COLUMNS)), np.empty((1, stepping.MARKS))
         self.runs[0, [at.FACTOR, at.V_FACTOR, at.SIZE]] = 1.0
         self.runs[0, [at.ETA_POSITIVE, at.ETA_NEGATIVE]] = np.nan
         phi, rate, impacts = np.empty(motion.npts), np.empty(motion.npts), np.empty((0, 3))
-        self.samples = at.Samples(1, phi, rate, impacts, np.empty(at.MARKS))
+        self.samples = at.Samples(1, phi, rate, impacts, np.empty(stepping.MARKS))
 
     def run(self, rtol: float = RTOL) -> float:
         """Peak |phi|/phi_cr; if it overturns, minus the time at which it passes phi_cr."""
         run_deck(self.deck, self.runs, self.marks, rtol=rtol, samples=self.samples)
         if self.marks[0, at.STATUS] == at.OVERTURNED:
-            return -float(self.marks[0, at.CROSSED])
+            return -float(self.marks[0, stepping.CROSSED])
         return float((self.marks[0, at.PEAK : at.PEAK + 2] / self.model.phi_cr).max())
 
 
@@ -212,7 +213,7 @@ def bulk(motion: GroundMotion) -> None:
 
     def kernel() -> None:
         run = partial(run_deck, lay_out([model], [motion]), rtol=RTOL, most_impacts=MAX_IMPACTS)
-        in_parts(partial(run, rows, np.empty((BATCH, at.MARKS))), BATCH, HISTORIES_PER_TASK, None, None)
+        in_parts(partial(run, rows, np.empty((BATCH, stepping.MARKS))), BATCH, HISTORIES_PER_TASK, None, None)
 
     def verb() -> Any:
         return respond_each(block, motion, model="nonlinear", scale=scales, polarity="both", restitution=etas)

@@ -38,8 +38,8 @@ from rocking_cli.core import (
     quantity,
     rotation,
 )
+from rocking_cli.core.coefficients import NoCriticalRotation
 from rocking_cli.core.contacts import MASONRY_FRICTION
-from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.fields import Described, Name
 from rocking_cli.core.polygons import fault_of, size_of
 from rocking_cli.core.reactions import Going, loading

@@ -8,7 +8,7 @@ from typing import ClassVar, Literal, Self
 
 from pydantic import model_validator
 
-from mechanisms._single_body import SingleBody
+from mechanisms.block import SingleBody
 from rocking_cli.core import Body, Direction, Length, Outline, Solid, geometry_error, length, quantity
 
 SHELL_SCALE = 0.97  # size of the inner cone with which a thin shell is drawn

@@ -13,9 +13,17 @@ import numpy as np
 from pydantic import ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
-from mechanisms import _faces as faces
 from mechanisms._cracks import MIN_EDGE_DISTANCE, Crack, Cracked, active, cracked, weakest
-from mechanisms._linkage_checks import beside, closing, face_at, face_of, turns_the_wrong_way
+from mechanisms._linkage_checks import (
+    MAX_SINE,
+    beside,
+    closing,
+    face_at,
+    face_of,
+    lowest_side,
+    shared_sides,
+    turns_the_wrong_way,
+)
 from mechanisms._linkage_sides import GROUND, Connection, LinkageSide, PlacedSide, mirrored
 from mechanisms._linked_bodies import LinkedBodies
 from mechanisms._shapes import Member, Shape
@@ -374,10 +382,10 @@ class Linkage(LinkedBodies):
         shapes = [self._members[name].outlines for name in pair if name != GROUND]
         if len(shapes) == 1:
             (body,) = (name for name in pair if name != GROUND)
-            ends = faces.lowest(shapes[0])
+            ends = lowest_side(shapes[0])
             return [] if ends is None else [Contact((None, body), ends, face=None, friction=self.friction)]
         contacts: list[Contact] = []
-        for normal, ends in faces.shared(*shapes):
+        for normal, ends in shared_sides(*shapes):
             contact = replace(_bearing(pair, ends, normal), friction=self.friction)
             name = contact.label + (f", face {len(contacts) + 1}" if contacts else "")
             contacts.append(replace(contact, name=name))
@@ -514,9 +522,7 @@ def _is_on(contact: Contact, face: Contact) -> bool:
     start, end = face.points
     along = (end - start) / abs(end - start)
     off = max(abs(((at - start) * along.conjugate()).imag) for at in contact.points)
-    return (
-        off <= MIRROR_DISTANCE * abs(end - start) and abs((along.conjugate() * contact.normal).real) <= faces.MAX_SINE
-    )
+    return off <= MIRROR_DISTANCE * abs(end - start) and abs((along.conjugate() * contact.normal).real) <= MAX_SINE
 
 
 def _on_pieces(tie: Tie, pieces: Cracked) -> Tie:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from math import pi
 from typing import ClassVar
 
-from mechanisms._single_body import SingleBody
+from mechanisms.block import SingleBody
 from rocking_cli.core import Body, Direction, Length, Outline, Sketch, disc, length, rectangle
 
 

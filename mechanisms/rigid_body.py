@@ -12,7 +12,8 @@ import numpy as np
 from pydantic import model_validator
 
 from mechanisms._shapes import ROUNDING_OVERLAP, BodyPart, Fillet, Plate, fillet, foot_is_cut, plates, united
-from mechanisms._single_body import SingleBody
+from mechanisms.block import SingleBody
+from rocking_cli.arrays import Bools
 from rocking_cli.core import (
     Body,
     Contact,
@@ -29,7 +30,7 @@ from rocking_cli.core import (
     quantity,
 )
 from rocking_cli.core.kinematics import Points
-from rocking_cli.core.polygons import POINT_DISTANCE, Bools, fault_of, size_of
+from rocking_cli.core.polygons import POINT_DISTANCE, fault_of, size_of
 
 LEVEL_DIFFERENCE = 1e-6  # height difference of corners that count as level, over the smaller of width and height
 MAX_CORNERS = 10_000

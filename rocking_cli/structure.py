@@ -13,8 +13,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from rocking_cli.core import Equivalence, Mechanism, NoEquivalentBlock, Statics, both_statics, equivalent_block
-from rocking_cli.core.advice import uplift_error
-from rocking_cli.core.equivalence import MAX_CURVATURE
+from rocking_cli.core.equivalence import MAX_CURVATURE, uplift_error
 from rocking_cli.core.hung.element import Question
 from rocking_cli.dynamics.model import MODELS, Model, ModelName, build, no_restitution
 from rocking_cli.errors import InputError, MechanismError, Problem, named, of_structure

@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 PROJECT = Path(__file__).resolve().parents[1]
 LISTED = Path(__file__).with_suffix(".toml")
 LAYERS = ("core", "dynamics", "studies", "structure.py", "names.py", "processing", "mechanisms")
-KERNELS = ("rocking_cli.dynamics.kernels", "rocking_cli.dynamics.pulse_motion")
+KERNELS = tuple(f"rocking_cli.dynamics.{name}" for name in ("openings", "stepping", "kernels", "pulse_motion"))
 NEIGHBOURS = 20
 SURE = (0.05, 0.95)  # shares of overturning neighbours below and above which a verdict is sure
 LEEWAY = 0.1  # by which a share must move to have changed: two neighbours of twenty

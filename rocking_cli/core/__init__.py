@@ -1,6 +1,7 @@
 """Mechanics of rigid bodies: positions of the bodies of a mechanism, equation of motion, equivalent block."""
 
 from rocking_cli.core.bodies import Body as Body
+from rocking_cli.core.bodies import Solid as Solid
 from rocking_cli.core.bodies import annular_sector as annular_sector
 from rocking_cli.core.bodies import box as box
 from rocking_cli.core.bodies import polygon as polygon
@@ -31,10 +32,10 @@ from rocking_cli.core.kinematics import RigidMotion as RigidMotion
 from rocking_cli.core.kinematics import four_bar as four_bar
 from rocking_cli.core.kinematics import four_bar_limit as four_bar_limit
 from rocking_cli.core.kinematics import rotation as rotation
+from rocking_cli.core.linkage import Guide as Guide
 from rocking_cli.core.linkage import LinkageMotion as LinkageMotion
 from rocking_cli.core.linkage import NoMotion as NoMotion
-from rocking_cli.core.loops import Guide as Guide
-from rocking_cli.core.loops import Pin as Pin
+from rocking_cli.core.linkage import Pin as Pin
 from rocking_cli.core.mechanism import Mechanism as Mechanism
 from rocking_cli.core.mechanism_kinematics import CollapseHinge as CollapseHinge
 from rocking_cli.core.mechanism_kinematics import CollapseMechanism as CollapseMechanism
@@ -49,4 +50,3 @@ from rocking_cli.core.sketch import Sketch as Sketch
 from rocking_cli.core.sketch import disc as disc
 from rocking_cli.core.sketch import rectangle as rectangle
 from rocking_cli.core.sketch import three_digits as three_digits
-from rocking_cli.core.solids import Solid as Solid

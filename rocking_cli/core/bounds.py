@@ -12,10 +12,9 @@ import numpy as np
 
 from rocking_cli.arrays import Points, Reals
 from rocking_cli.core.contacts import Contact
-from rocking_cli.core.convex import convex_pieces
 from rocking_cli.core.kinematics import Direction, RigidMotion, distance, inside, rotation
 from rocking_cli.core.mechanism_kinematics import Jointed
-from rocking_cli.core.polygons import nearby
+from rocking_cli.core.polygons import convex_pieces, nearby
 
 NODES = 65  # rotations from rest to the end of the search at which all bodies are looked at first
 FINER = 33  # rotations inside an interval in which two bodies may meet

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
-from math import isclose, isnan, sqrt
+from enum import IntEnum
+from math import isclose, isnan, sqrt, tan
+from typing import Literal
 
 import numpy as np
 
-from rocking_cli.core.coefficients import check_continuous
-from rocking_cli.core.equilibrium import NoCriticalRotation
+from rocking_cli.core.coefficients import NoCriticalRotation, check_continuous
 from rocking_cli.core.kinematics import Direction
 from rocking_cli.core.mechanism import Mechanism
 from rocking_cli.errors import PluginError, RockingError, StructureError
@@ -296,3 +297,61 @@ def statics(mechanism: Mechanism, direction: Direction) -> Statics:
     why = mechanism.hung.fault("equivalent block") or why
     at_yield = None if bound is None else bound.phi
     return Statics(lam, phi_cr, limit, float(slope[0] / moment[0]), departure, why or None, at_yield)
+
+
+# The paper finds small errors with either kappa for walls of alpha < 0.2: lambda_lin/lambda = 0.2/tan(0.2) there.
+SLENDER_LAMBDA_RATIO = 0.2 / tan(0.2)
+# Errors up to which a block agrees with its structure, and up to which it is good for a first estimate.
+SMALL_ERROR, LARGE_ERROR = (0.05, 0.15)
+
+
+class Grade(IntEnum):
+    """Grade of an equivalent block, from good to bad."""
+
+    AGREES = 0
+    ESTIMATE = 1
+    DISREGARD = 2
+
+    @property
+    def key(self) -> str:
+        """Name of the grade in JSON."""
+        return ("agrees", "first_estimate", "disregard")[self]
+
+
+def grade(error: float, small: float = SMALL_ERROR, large: float = LARGE_ERROR) -> Grade:
+    """Return the grade of an equivalent block with this error; NaN counts as too large.
+
+    Parameters
+    ----------
+    error : float
+        Relative error of either sign.
+    small, large : float
+        Largest errors at which the block agrees, and is good for a first estimate.
+
+    Examples
+    --------
+    >>> grade(-0.04).key, grade(0.1).key, grade(0.2).key
+    ('agrees', 'first_estimate', 'disregard')
+    """
+    size = abs(error)
+    return Grade.AGREES if size <= small else Grade.ESTIMATE if size <= large else Grade.DISREGARD
+
+
+def uplift_error(equivalence: Equivalence) -> float:
+    """Return the relative error of the uplift acceleration with kappa1, in the direction where it is larger.
+
+    With kappa2 this error is zero.
+    """
+    errors = [equivalence[each].lambda_lin / equivalence[each].lambda_ - 1 for each in Direction]
+    return max(errors, key=abs)
+
+
+def preferred_kappa(block: EquivalentBlock) -> Literal["kappa2", "either"]:
+    """Return which kappa to use for an equivalent block, judged by the uplift of the linearised mechanism alone.
+
+    lambda_lin/lambda is the paper's measure of effective slenderness: 1 for a slender structure, for which either will
+    do.
+    """
+    return (
+        "either" if SLENDER_LAMBDA_RATIO <= block.lambda_lin / block.lambda_ <= 1 / SLENDER_LAMBDA_RATIO else "kappa2"
+    )

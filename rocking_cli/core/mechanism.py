@@ -15,13 +15,20 @@ from typing import Any, Self, final
 import numpy as np
 from pydantic import ValidationError
 
-from rocking_cli.core import equilibrium
 from rocking_cli.core.bodies import Body
 from rocking_cli.core.bounds import Bound, first_beyond, meeting
-from rocking_cli.core.coefficients import Coefficients, coefficients
+from rocking_cli.core.coefficients import (
+    SCAN_POINTS,
+    Coefficients,
+    coefficients,
+    first_fall,
+    narrowed,
+    uplift_acceleration,
+)
 from rocking_cli.core.hung.attached import Attached, Follow, PointMass, Spot
 from rocking_cli.core.hung.attachments import (
     Carrier,
+    Hung,
     Loc,
     RefusedFields,
     as_validation_error,
@@ -31,7 +38,6 @@ from rocking_cli.core.hung.attachments import (
 )
 from rocking_cli.core.hung.element import INTERLOCK_NAME as INTERLOCK
 from rocking_cli.core.hung.element import Element, SteelBar, Stretched
-from rocking_cli.core.hung.everything import Hung
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.core.mechanism_kinematics import Extra, Jointed, Kinematics
 from rocking_cli.core.sketch import Outline
@@ -214,7 +220,7 @@ class Mechanism(Jointed):
     @final
     def uplift(self, direction: Direction) -> float:
         """Return lambda, the ground acceleration that starts rocking, over g [paper, Eq. 10]."""
-        return equilibrium.uplift_acceleration(self.coefficients(np.zeros(1), direction), self.gravity)
+        return uplift_acceleration(self.coefficients(np.zeros(1), direction), self.gravity)
 
     @final
     def critical_rotation(self, direction: Direction) -> float:
@@ -229,12 +235,12 @@ class Mechanism(Jointed):
     def solved_critical_rotation(self, direction: Direction) -> float:
         """Return phi_cr from the coefficients, without regard to a closed form [rad]. Raises `NoCriticalRotation`."""
         limit = self.limit(direction)
-        grid = np.linspace(0.0, limit, equilibrium.SCAN_POINTS)[:-1]
-        low, high = equilibrium.first_fall(self.coefficients(grid, direction), limit, self.gravity)
+        grid = np.linspace(0.0, limit, SCAN_POINTS)[:-1]
+        low, high = first_fall(self.coefficients(grid, direction), limit, self.gravity)
         phi = (low + high) / 2
         for _ in range(100):
             here = self.coefficients(np.array([phi]), direction)
-            low, high, guess = equilibrium.narrowed(here, low, high, self.gravity)
+            low, high, guess = narrowed(here, low, high, self.gravity)
             if abs(guess - phi) <= 4 * np.finfo(float).eps * phi:
                 break
             phi = guess

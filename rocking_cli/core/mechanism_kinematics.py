@@ -11,13 +11,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, final
 
-from rocking_cli.core.bodies import Body, weighed
+from rocking_cli.core.bodies import Body, Solid, weighed
 from rocking_cli.core.contacts import Contact, Joint, Piece, of_joints
 from rocking_cli.core.hung.attached import Attached
 from rocking_cli.core.hung.attachments import RefusedFields
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion, area_of
 from rocking_cli.core.sketch import Sketch
-from rocking_cli.core.solids import Solid
 from rocking_cli.core.structure_fields import StructureFields
 from rocking_cli.short_repr import short_repr
 

@@ -1,7 +1,11 @@
-"""The installed mechanisms, found by the entry points `rocking.mechanisms` and loaded when they are used."""
+"""The installed mechanisms, found by the entry points `rocking.mechanisms` and loaded when they are used.
+
+`Verdict` is the result of a check of their contract.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from importlib.metadata import EntryPoint
 from typing import cast
 
@@ -55,3 +59,30 @@ def conformance(plugin: object, name: str) -> list[str]:
     if getattr(plugin, "mechanism", name) != name:
         faults.append(f"its class says mechanism = {plugin.mechanism!r}, its entry point says {name!r}")
     return faults
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Result of one check of a structure.
+
+    Parameters
+    ----------
+    check : str
+        Name of the check.
+    meaning : str
+        What the check requires of the structure, one sentence.
+    why : str or None
+        Why it fails; None if it passes.
+    trace : str or None
+        Traceback of the plugin's error, if the check failed by one.
+    """
+
+    check: str
+    meaning: str
+    why: str | None = None
+    trace: str | None = None
+
+    @property
+    def passed(self) -> bool:
+        """Whether the structure passes the check."""
+        return self.why is None

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking_cli.arrays import Bools, Integers, Reals
-from rocking_cli.dynamics import kernels
+from rocking_cli.dynamics import kernels, stepping
 from rocking_cli.dynamics.deck import MAX_IMPACTS, NEVER_LIFTED, check_rtol, lay_out, never_lifts, read_marks, run_deck
 from rocking_cli.dynamics.history import out_of_step
 from rocking_cli.dynamics.model import Model
@@ -221,7 +221,7 @@ def respond_many(
         starts = np.array([[model.q(float(tilt)) for tilt in different] for model in models])
         rows[:, kernels.START] = starts[runs.model, which]
     rows[:, [kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE]] = etas
-    marks = np.full((len(runs), kernels.MARKS), np.nan)  # a run that is never computed has failed
+    marks = np.full((len(runs), stepping.MARKS), np.nan)  # a run that is never computed has failed
     most_impacts = DECISIVE_IMPACTS - 1 if only_peaks else MAX_IMPACTS  # a history ends after this number of impacts
     rows[:, kernels.STRUCTURE] = runs.model
     rows[:, kernels.LOOSE] = np.array([model.to_first_impact for model in models])[runs.model]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.arrays import Bools, Integers, Reals
-from rocking_cli.dynamics import kernels, ways
+from rocking_cli.dynamics import kernels, openings, stepping, ways
 from rocking_cli.dynamics.calling import HISTORIES, TIED
 from rocking_cli.dynamics.joints import laid_out
 from rocking_cli.dynamics.model import Model
@@ -27,10 +27,10 @@ Number = TypeVar("Number", np.float64, np.int64)
 NO_VALUES = np.empty(0)
 RELEASE_DT = 0.005  # s, for a free motion without a record
 MAX_IMPACTS = 20_000  # impacts after the record; with more, a structure is still rocking (eta = 0.999 takes 14,000)
-NEVER_LIFTED = np.full(kernels.MARKS, np.nan)  # marks of a run that ends as it began, at rest
-NEVER_LIFTED[[kernels.PEAK, kernels.PEAK + 1, kernels.IMPACTS, kernels.ENDED, kernels.SIDE]] = 0.0
-NEVER_LIFTED[[kernels.LARGEST, kernels.LONGEST]] = 0.0
-NEVER_LIFTED[kernels.STATUS] = kernels.AT_REST
+NEVER_LIFTED = np.full(stepping.MARKS, np.nan)  # marks of a run that ends as it began, at rest
+NEVER_LIFTED[[stepping.PEAK, stepping.PEAK + 1, stepping.IMPACTS, stepping.ENDED, stepping.SIDE]] = 0.0
+NEVER_LIFTED[[openings.LARGEST, openings.LONGEST]] = 0.0
+NEVER_LIFTED[stepping.STATUS] = kernels.AT_REST
 
 
 def run_deck(
@@ -51,12 +51,12 @@ def run_deck(
     run = ways.kernel(TIED if deck.forces.ndim == 4 else HISTORIES)
     brief = samples is None
     if samples is None:
-        samples = kernels.Samples(1, NO_VALUES, NO_VALUES, np.empty((0, 3)), np.empty(kernels.MARKS))
+        samples = kernels.Samples(1, NO_VALUES, NO_VALUES, np.empty((0, 3)), np.empty(stepping.MARKS))
     joint_count = int(deck.joints.sizes[:, 1].max(initial=0))
     room = kernels.Room(
-        np.empty((2, kernels.COLUMNS)),
-        np.empty((joint_count, kernels.KEPT)),
-        np.empty(kernels.NOTES),
+        np.empty((2, stepping.COLUMNS)),
+        np.empty((joint_count, openings.KEPT)),
+        np.empty(openings.NOTES),
         np.empty(4 * joint_count, np.int64),
     )
     run(first, len(runs) if stop is None else stop, runs, deck, rtol, most_impacts, brief, samples, marks, room)
@@ -84,8 +84,8 @@ def never_lifts(deck: kernels.Deck, runs: Reals) -> Bools:
     push = extremes.T[:, record] * (runs[:, kernels.FACTOR] / size)
     low, high = np.minimum(*push), np.maximum(*push)
     gravity, *_, steady_from, steady_to = deck.joints.numbers.T[:, structure]
-    weight = deck.numbers[:, 0, kernels.GRAVITY][structure] / size
-    to_left, to_right = deck.numbers[:, :, kernels.LAMBDA].T[:, structure] * (weight * (1 + kernels.MARGIN))
+    weight = deck.numbers[:, 0, stepping.GRAVITY][structure] / size
+    to_left, to_right = deck.numbers[:, :, stepping.LAMBDA].T[:, structure] * (weight * (1 + kernels.MARGIN))
     stays = (-to_left <= low) & (high <= to_right)
     low, high = low / (weight / gravity), high / (weight / gravity)
     steady = (steady_from <= np.minimum(low, low * slender)) & (np.maximum(high, high * slender) <= steady_to)
@@ -106,21 +106,21 @@ def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
     reach : ndarray, shape (n,)
         Displacement by which openings of joints are divided [m]; NaN if the joints are not known.
     """
-    status = marks[:, kernels.STATUS]
-    passed, crossed = marks[:, kernels.PASSED], marks[:, kernels.CROSSED]
+    status = marks[:, stepping.STATUS]
+    passed, crossed = marks[:, openings.PASSED], marks[:, stepping.CROSSED]
     # A structure past its critical rotation for good has overturned, whatever joint opens later.
     overturned = (status == kernels.OVERTURNED) & ~(passed < np.where(np.isnan(crossed), np.inf, crossed))
     failed = (status == kernels.STALLED) | np.isnan(status)
     unknown = np.isfinite(passed) & ~overturned & ~failed
-    fell_to = np.where(overturned, 1 - 2 * marks[:, kernels.SIDE], 0).astype(np.int64)
-    until = np.where(unknown[:, None], kernels.PASSED_PEAK, kernels.PEAK) + np.arange(2)
+    fell_to = np.where(overturned, 1 - 2 * marks[:, stepping.SIDE], 0).astype(np.int64)
+    until = np.where(unknown[:, None], openings.PASSED_PEAK, stepping.PEAK) + np.arange(2)
     peaks = np.take_along_axis(marks, until, axis=1)
     end = np.where(unknown, passed, np.where(overturned & ~np.isnan(crossed), crossed, np.inf))
-    warned = np.where(marks[:, kernels.WARNED] <= end, marks[:, kernels.WARNED], np.nan)
+    warned = np.where(marks[:, openings.WARNED] <= end, marks[:, openings.WARNED], np.nan)
     ratio = np.maximum(*(peaks / phi_cr).T)
-    bound = np.maximum(*(marks[:, kernels.WARNED_PEAK : kernels.WARNED_PEAK + 2] / phi_cr).T)
-    uplift = marks[:, kernels.FIRST_UPLIFT]
-    impacts = np.where(unknown, marks[:, kernels.PASSED_IMPACTS], marks[:, kernels.IMPACTS])
+    bound = np.maximum(*(marks[:, openings.WARNED_PEAK : openings.WARNED_PEAK + 2] / phi_cr).T)
+    uplift = marks[:, stepping.FIRST_UPLIFT]
+    impacts = np.where(unknown, marks[:, openings.PASSED_IMPACTS], marks[:, stepping.IMPACTS])
     return Outcome(
         still_rocking=(status == kernels.STILL_ROCKING) & ~unknown,
         failed=failed,
@@ -128,15 +128,15 @@ def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
         peak_positive=np.where(fell_to == 1, np.nan, peaks[:, 0]),
         peak_negative=np.where(fell_to == -1, np.nan, peaks[:, 1]),
         peak_ratio=np.where(overturned, np.nan, ratio),
-        overturning_time=np.where(overturned, marks[:, kernels.CROSSED], np.nan),
+        overturning_time=np.where(overturned, marks[:, stepping.CROSSED], np.nan),
         uplift_time=np.where(unknown & (uplift > passed), np.nan, uplift),
         impact_count=np.nan_to_num(impacts).astype(np.int64),
-        end_time=np.where(unknown, np.nan, marks[:, kernels.ENDED]),
+        end_time=np.where(unknown, np.nan, marks[:, stepping.ENDED]),
         unknown=unknown,
         known_to=np.where(unknown, passed, np.nan),
         warned=warned,
         lower_bound=np.where(np.isnan(warned), np.where(unknown, ratio, np.nan), bound),
-        opening=marks[:, kernels.LARGEST] / reach,
+        opening=marks[:, openings.LARGEST] / reach,
         by_blocks=np.zeros(len(marks), np.bool_),
         slip=np.zeros(len(marks)),
         off_edge=np.zeros(len(marks), np.bool_),
@@ -179,7 +179,7 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
         aheads.joined(),
         v_aheads.joined(),
         v_aboves.joined(),
-        kernels.Joints(*laid_out([model.joints for model in models])),
+        openings.Joints(*laid_out([model.joints for model in models])),
     )
 
 

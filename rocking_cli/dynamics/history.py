@@ -13,7 +13,7 @@ import numpy as np
 from rocking_cli import names
 from rocking_cli.arrays import Bools, Reals
 from rocking_cli.core.bounds import Bound
-from rocking_cli.dynamics import kernels
+from rocking_cli.dynamics import kernels, openings, stepping
 from rocking_cli.dynamics.deck import MAX_IMPACTS, RELEASE_DT, check_rtol, lay_out, read_marks, run_deck
 from rocking_cli.dynamics.joints import JointCheck, check_of
 from rocking_cli.dynamics.model import Model, ModelName
@@ -187,11 +187,11 @@ def follow(
         what = "the period" if motion is not None and motion.format == "pulse" else "dt"
         raise InputError(f"dt = {dt:g} s makes {many} samples with a tail of {tail:g} s: is {what} in seconds?")
     phi, rate, impacts = np.empty(samples), np.empty(samples), np.empty((most_kept, 3))
-    runs, marks = np.zeros((1, kernels.RUN_COLUMNS)), np.empty((1, kernels.MARKS))
+    runs, marks = np.zeros((1, kernels.RUN_COLUMNS)), np.empty((1, stepping.MARKS))
     runs[0, [kernels.FACTOR, kernels.V_FACTOR, kernels.SIZE, kernels.SLENDER]] = 1.0
     runs[0, [kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE]] = eta
     runs[0, kernels.START] = model.q(release)
-    recorded = kernels.Samples(every, phi, rate, impacts, np.empty(kernels.MARKS))
+    recorded = kernels.Samples(every, phi, rate, impacts, np.empty(stepping.MARKS))
     run = partial(run_deck, lay_out([model], [motion]), runs, marks, rtol=rtol, samples=recorded)
     run()
     tilts = np.array([release])
@@ -204,7 +204,7 @@ def follow(
     if slip is not None:  # it only slides
         phi[:] = rate[:] = 0.0
     outcome = replace(read_marks(marks, np.array([model.phi_cr]), np.array([model.reach])), slip=largest)
-    end = float(marks[0, kernels.ENDED])
+    end = float(marks[0, stepping.ENDED])
     if outcome.failed[0]:
         raise SolverError(
             f"the {model.name} time history could not be simulated past t = {end:.6g} s: the steps became too small"
@@ -217,7 +217,7 @@ def follow(
         phi[beyond] = rate[beyond] = np.nan
         end = min(end, until)
     # The samples end with the record or with the motion, whichever is later; after overturning they are NaN.
-    kept = min(samples, max(npts, int(end / dt) + (1 if marks[0, kernels.STATUS] == kernels.STILL_ROCKING else 3)))
+    kept = min(samples, max(npts, int(end / dt) + (1 if marks[0, stepping.STATUS] == kernels.STILL_ROCKING else 3)))
     time = np.arange(kept, dtype=np.float64) * dt
     return History(
         **{name: getattr(outcome, name)[0].item() for name in OUTCOME_FIELDS},
@@ -231,10 +231,10 @@ def follow(
         uplift_error=model.uplift_error,
         p=model.p,
         ends_at_limit=model.ends_at_limit,
-        bound=model.bounds[int(marks[0, kernels.SIDE])] if marks[0, kernels.REASON] == kernels.BOUND else None,
+        bound=model.bounds[int(marks[0, stepping.SIDE])] if marks[0, openings.REASON] == openings.BOUND else None,
         check=check_of(model.joints, marks[0], float(outcome.overturning_time[0])),
-        apart=bool(marks[0, kernels.REASON] == kernels.APART) and not model.to_first_impact,
-        unmeasured=bool(marks[0, kernels.REASON] == kernels.APART) and model.to_first_impact,
+        apart=bool(marks[0, openings.REASON] == openings.APART) and not model.to_first_impact,
+        unmeasured=bool(marks[0, openings.REASON] == openings.APART) and model.to_first_impact,
         slid=slid_of(model.sliding, slip, slips, time) if model.sliding is not None and slip is not None else None,
     )
 
@@ -272,9 +272,9 @@ def out_of_step(
     differs = np.zeros(len(rows), bool)
     structure_of_run = rows[:, kernels.STRUCTURE].astype(np.int64)
     for k, model in enumerate(models):
-        mine = np.flatnonzero((structure_of_run == k) & (marks[:, kernels.IMPACTS] > 0))
+        mine = np.flatnonzero((structure_of_run == k) & (marks[:, stepping.IMPACTS] > 0))
         for column in model.columns if mine.size else ():
-            there, column_marks = rows[mine].copy(), np.full((mine.size, kernels.MARKS), np.nan)
+            there, column_marks = rows[mine].copy(), np.full((mine.size, stepping.MARKS), np.nan)
             there[:, kernels.STRUCTURE] = 0
             there[:, kernels.START] = [column.q(tilt) for tilt in tilts[mine].tolist()]
             for place, eta, of in zip((kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE), column.eta, model.eta, strict=True):

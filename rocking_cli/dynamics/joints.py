@@ -28,7 +28,7 @@ from rocking_cli.core.released import (
     tabulated_impulses,
 )
 from rocking_cli.core.structure_fields import Strength
-from rocking_cli.dynamics import kernels
+from rocking_cli.dynamics import openings
 from rocking_cli.dynamics.modes import modes
 from rocking_cli.dynamics.resting import EarlyMechanism, Rest, resting
 from rocking_cli.dynamics.tables import DirectionTable
@@ -49,9 +49,9 @@ MAX_MISSING_WEIGHTS = 1e3  # force over the weight that no ground motion overcom
 BOUND_MARGIN = 0.01  # margin over the width of the certain bounds, as cubics may cross them between nodes
 MAX_LISTED_NAMES = 4  # names listed in a message: enough for the hinges of a frame or an arch in both directions
 EVENTS = (
-    [kernels.PASSED, kernels.REASON, kernels.WHERE],
-    [kernels.WARNED, kernels.WARNED_WHERE],
-    [kernels.PARTED, kernels.PARTED_WHERE],
+    [openings.PASSED, openings.REASON, openings.WHERE],
+    [openings.WARNED, openings.WARNED_WHERE],
+    [openings.PARTED, openings.PARTED_WHERE],
 )
 """Marks of each event at a joint, its time first."""
 PLACE_KINDS = (("foot", "feet"), ("hinge", "hinges"), ("closed joint", "closed joints"))
@@ -223,24 +223,24 @@ def check_of(joints: JointTables | None, marks: Reals, overturning_time: float) 
         at = marks[column]
         return joints.labels[int(at)] if np.isfinite(at) and at >= 0 else ""
 
-    reason = None if np.isnan(marks[kernels.REASON]) else REASONS[int(marks[kernels.REASON])]
-    if reason == "opens" and marks[kernels.WHERE] in joints.sliding:
+    reason = None if np.isnan(marks[openings.REASON]) else REASONS[int(marks[openings.REASON])]
+    if reason == "opens" and marks[openings.WHERE] in joints.sliding:
         reason = "slides"
     opens, where = (
-        (kernels.WARNED, kernels.WARNED_WHERE) if joints.redundant else (kernels.PARTED, kernels.PARTED_WHERE)
+        (openings.WARNED, openings.WARNED_WHERE) if joints.redundant else (openings.PARTED, openings.PARTED_WHERE)
     )
-    stays_closed = joints.redundant or (joints.contacts[:, :, kernels.OTHER] >= 0).any()
+    stays_closed = joints.redundant or (joints.contacts[:, :, openings.OTHER] >= 0).any()
     return JointCheck(
         limit=joints.limit,
         reach=joints.reach,
-        passed=float(marks[kernels.PASSED]),
+        passed=float(marks[openings.PASSED]),
         reason=reason,
-        joint=label(kernels.WHERE),
-        warned=float(marks[kernels.WARNED]),
-        warned_joint=label(kernels.WARNED_WHERE),
-        largest=float(marks[kernels.LARGEST]),
-        largest_joint=label(kernels.LARGEST_WHERE),
-        longest=float(marks[kernels.LONGEST]),
+        joint=label(openings.WHERE),
+        warned=float(marks[openings.WARNED]),
+        warned_joint=label(openings.WARNED_WHERE),
+        largest=float(marks[openings.LARGEST]),
+        largest_joint=label(openings.LARGEST_WHERE),
+        longest=float(marks[openings.LONGEST]),
         parted=float(marks[opens]) if stays_closed else None,
         parted_joint=label(where),
         count=len(joints.labels),
@@ -583,7 +583,7 @@ def checked_joints(mechanism: Mechanism) -> Sequence[str]:
 def laid_out(
     all_joints: Sequence[JointTables | None],
 ) -> tuple[Integers, Integers, Reals, Reals, Reals, Reals, Reals, Reals, Reals]:
-    """Return the joints of several structures, one after the other, as the fields of `kernels.Joints`."""
+    """Return the joints of several structures, one after the other, as the fields of `openings.Joints`."""
     counts = np.zeros((len(all_joints), 8), np.int64)
     numbers = np.ones((len(all_joints), 8))
     known = [each for each in all_joints if each is not None]
@@ -597,14 +597,14 @@ def laid_out(
         )  # fmt: skip
         numbers[k] = each.gravity, each.limit * each.reach, each.step, each.scales, *each.calm, *each.steady
         first += len(each.labels)
-        rows_at += each.rows.size // kernels.OF_ROW
+        rows_at += each.rows.size // openings.OF_ROW
         struck_at += each.struck.size // 2
         within_at += each.within.size // 5
     return (
         counts,
         np.concatenate([np.zeros((0, 2, 4), np.int64), *(each.contacts for each in known)]),
         np.concatenate([np.zeros((0, 2)), *(each.bearing for each in known)]),
-        np.concatenate([np.zeros((0, kernels.OF_ROW)), *(each.rows.reshape(-1, kernels.OF_ROW) for each in known)]),
+        np.concatenate([np.zeros((0, openings.OF_ROW)), *(each.rows.reshape(-1, openings.OF_ROW) for each in known)]),
         np.concatenate([np.zeros((0, 2)), *(each.struck.reshape(-1, 2) for each in known)]),
         np.concatenate([np.zeros((0, 2)), *(each.stopped.reshape(-1, 2) for each in known)]),
         np.concatenate([np.zeros((0, 5)), *(each.within.reshape(-1, 5) for each in known)]),

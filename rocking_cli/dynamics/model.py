@@ -11,13 +11,13 @@ import numpy as np
 
 from rocking_cli.arrays import Integers, Reals
 from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, both_statics
-from rocking_cli.core.advice import uplift_error
 from rocking_cli.core.bounds import Bound
-from rocking_cli.core.equivalence import Statics
+from rocking_cli.core.equivalence import Statics, uplift_error
 from rocking_cli.core.mechanism import why_none
 from rocking_cli.core.structure_fields import Uncertainty
 from rocking_cli.dynamics.joints import JointTables, joints_of
-from rocking_cli.dynamics.kernels import (
+from rocking_cli.dynamics.sliding import Sliding, sliding_of
+from rocking_cli.dynamics.stepping import (  # fmt: skip
     BOUND_ETA,
     COLUMNS,
     ETA,
@@ -33,8 +33,7 @@ from rocking_cli.dynamics.kernels import (
     RATE,
     REST,
     P,
-)  # fmt: skip
-from rocking_cli.dynamics.sliding import Sliding, sliding_of
+)
 from rocking_cli.dynamics.tables import DirectionTable, tabulate
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.names import OPENING

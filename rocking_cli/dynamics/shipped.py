@@ -23,7 +23,7 @@ from rocking_cli.errors import BrokenKernels
 
 READY_FOLDER = Path(__file__).with_name("ready")
 MANIFEST_FILE = "manifest.json"
-SOURCE_FILES = ("calling.py", "kernels.py", "pulse_motion.py")
+SOURCE_FILES = ("calling.py", "kernels.py", "openings.py", "pulse_motion.py", "stepping.py")
 """Source files of the shipped kernels, in this folder."""
 MADE_BY = {"numba": "0.61.2", "llvmlite": "0.44.0", "ziglang": "0.17.1"}
 """Versions of the tools that build the shipped kernels."""

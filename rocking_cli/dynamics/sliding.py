@@ -25,7 +25,7 @@ from rocking_cli.core.hung.attached import PointMass
 from rocking_cli.core.hung.element import ConstantForce
 from rocking_cli.core.released import ONE, PUSH, WEIGHT
 from rocking_cli.core.structure_fields import Strength
-from rocking_cli.dynamics import kernels
+from rocking_cli.dynamics import kernels, openings, stepping
 from rocking_cli.dynamics.resting import resting
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.short_repr import short_repr
@@ -433,14 +433,14 @@ def settle(
         kept,
     )
     arrived = ~np.isnan(slip.arrives)
-    known = np.full((slides.size, kernels.MARKS), nan)
-    for column in (kernels.PEAK, kernels.PASSED_PEAK):
+    known = np.full((slides.size, stepping.MARKS), nan)
+    for column in (stepping.PEAK, openings.PASSED_PEAK):
         known[:, column : column + 2] = 0.0
-    known[:, [kernels.SIDE, kernels.IMPACTS, kernels.PASSED_IMPACTS, kernels.LARGEST, kernels.LONGEST]] = 0.0
-    known[:, kernels.STATUS], known[:, kernels.ENDED] = kernels.AT_REST, slip.ends
-    known[:, kernels.WARNED], known[:, kernels.PASSED] = slip.begins, slip.arrives
-    known[:, kernels.WARNED_PEAK : kernels.WARNED_PEAK + 2] = 0.0
-    known[arrived, kernels.REASON], known[arrived, kernels.WHERE] = kernels.SLIDES, 0.0
+    known[:, [stepping.SIDE, stepping.IMPACTS, openings.PASSED_IMPACTS, openings.LARGEST, openings.LONGEST]] = 0.0
+    known[:, stepping.STATUS], known[:, stepping.ENDED] = kernels.AT_REST, slip.ends
+    known[:, openings.WARNED], known[:, openings.PASSED] = slip.begins, slip.arrives
+    known[:, openings.WARNED_PEAK : openings.WARNED_PEAK + 2] = 0.0
+    known[arrived, openings.REASON], known[arrived, openings.WHERE] = openings.SLIDES, 0.0
     marks[slides], largest[slides] = known, abs(slip.largest)
     return largest, slip
 

@@ -12,7 +12,7 @@ from math import inf
 import numpy as np
 
 from rocking_cli import names
-from rocking_cli.core.advice import Grade, grade
+from rocking_cli.core.equivalence import Grade, grade
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 

@@ -10,7 +10,7 @@ import functools
 import importlib
 import os
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from math import ceil
 from types import FunctionType
@@ -107,9 +107,9 @@ def in_python(of: KernelSet) -> Kernel:
     Integers are truncated like those of machine code, and floating-point errors such as a division by zero raise
     nothing.
     """
-    module = importlib.import_module(of.module)
-    namespace = {**vars(module), "int": _like_machine_code(int), "ceil": _like_machine_code(ceil)}
-    for source_function in module.SOURCE:
+    source = importlib.import_module(of.module).SOURCE
+    namespace = {**names_of(source), "int": _like_machine_code(int), "ceil": _like_machine_code(ceil)}
+    for source_function in source:
         twin = FunctionType(source_function.__code__, namespace, source_function.__name__, source_function.__defaults__)
         namespace[source_function.__name__] = twin
     function = namespace[of.function]
@@ -119,6 +119,12 @@ def in_python(of: KernelSet) -> Kernel:
             function(*arguments)
 
     return run
+
+
+def names_of(source: Iterable[Callable[..., object]]) -> dict[str, Any]:
+    """Return the names of all modules from which the functions of a kernel are, in one namespace."""
+    modules = dict.fromkeys(function.__module__ for function in source)
+    return {name: value for module in modules for name, value in vars(importlib.import_module(module)).items()}
 
 
 INT64_MIN = -(2**63)

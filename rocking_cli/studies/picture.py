@@ -28,7 +28,7 @@ from rocking_cli.core import (
     disc,
 )
 from rocking_cli.core.bounds import Bound
-from rocking_cli.core.equilibrium import NoCriticalRotation
+from rocking_cli.core.coefficients import NoCriticalRotation
 from rocking_cli.core.mechanism import extent
 from rocking_cli.errors import RockingError, StructureError
 from rocking_cli.plugins.errors import plugin_error

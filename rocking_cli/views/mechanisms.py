@@ -10,10 +10,9 @@ from pydantic import BaseModel
 from pydantic_core import PydanticUndefined, to_jsonable_python
 
 from rocking_cli.core import Mechanism
-from rocking_cli.core.contract import Verdict
 from rocking_cli.core.hung.element import Interlock, Load
-from rocking_cli.core.hung.steel import AnchorPlate, BearingWall
-from rocking_cli.core.hung.ties import Face, Place, Tie
+from rocking_cli.core.hung.ties import AnchorPlate, BearingWall, Face, Place, Tie
+from rocking_cli.core.registry import Verdict
 from rocking_cli.core.structure_fields import Crushing, Stop, Strength, Uncertainty
 from rocking_cli.io import starters
 from rocking_cli.io.yaml_file import block, in_a_line, is_deep

@@ -9,8 +9,8 @@ from typing import Any
 
 from rocking_cli import names
 from rocking_cli.core import Direction, Mechanism
-from rocking_cli.core.advice import Grade, grade
 from rocking_cli.core.contacts import MASONRY_FRICTION
+from rocking_cli.core.equivalence import Grade, grade
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.joints import JointCheck
 from rocking_cli.dynamics.model import ModelName

@@ -85,7 +85,7 @@ def test_a_meeting_is_where_shapely_finds_one(gap, height, width, foot, top, lea
     def common(phi):
         return rotate(block, -phi, origin=(width, 0), use_radians=True).intersection(other).area
 
-    phi = np.linspace(0, 2 * phi_cr, 80)
+    phi = np.linspace(0, 2 * phi_cr, 30)
     met = [each for each in phi if common(each) > 1e-9]
     if not met:
         assert bound is None or bound.phi > phi[-2] or common(bound.phi + 1e-3) > 0

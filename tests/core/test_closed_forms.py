@@ -3,7 +3,6 @@
 The formulas are those of Table I and Eqs. 21-23, or follow from R, alpha and the inertia about the pivot.
 """
 
-from itertools import pairwise
 from math import atan, atan2, cos, degrees, hypot, inf, pi, radians, sin, sqrt, tan
 
 import numpy as np
@@ -22,7 +21,7 @@ from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.errors import InputError
 from tests.reference_mechanics import derivative, deviation, polygon_moments
 
-CASES = range(25)
+CASES = range(10)
 BOTH = list(Direction)
 
 
@@ -134,20 +133,6 @@ def test_hollow_cone_is_a_solid_cone_less_a_similar_one(case):
     assert block.p**2 == approx(g * R / inertia, rel=1e-11 / (1 - k))
     assert block.phi_cr == approx(alpha, rel=1e-11 / (1 - k))
     assert block.eta == approx(1 - 2 * r**2 / inertia, rel=1e-10 / (1 - k), abs=1e-11)
-
-
-@pytest.mark.parametrize("case", range(5))
-def test_hollow_cone_goes_from_solid_to_shell_monotonically(case):
-    r, h = draw(case, (0.1, 5.0), (1.0, 40.0))
-    shell, solid = (equivalent_block(Cone(base_radius=r, height=h, kind=kind)).positive for kind in ("shell", "solid"))
-    ratios = [1e-4, *np.linspace(0.05, 0.95, 19).tolist(), 1 - 1e-6]
-    hollow = [equivalent_block(Cone(base_radius=r, height=h, kind="hollow", inner_ratio=k)).positive for k in ratios]
-    # The centroid moves by O(k^3) near the solid and by O(1 - k) near the shell.
-    for name in ("p", "phi_cr", "eta"):
-        assert getattr(hollow[0], name) == approx(getattr(solid, name), rel=1e-10)
-        assert getattr(hollow[-1], name) == approx(getattr(shell, name), rel=1e-5)
-    angles = [solid.phi_cr, *(block.phi_cr for block in hollow), shell.phi_cr]
-    assert all(later < earlier for earlier, later in pairwise(angles[1:]))  # k = 1e-4 is solid to rounding
 
 
 def test_a_vanishing_wall_is_not_lost_to_cancellation():

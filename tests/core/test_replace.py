@@ -105,8 +105,3 @@ def test_fields_without_names_are_told_their_names(name):
     assert [each.partition(" [")[0] for each in named.split(", ")][: len(required)] == required
     assert "gravity [m/s2]" in (others if required else named)
     assert hint == f"  such as {cls.__name__}({', '.join(f'{each}=...' for each in required)})"
-
-
-def test_units_are_beside_the_names():
-    with pytest.raises(rk.InputError, match=r"^Block takes its fields by name: width \[m\], height \[m\]; also plane"):
-        rk.Block(0.5, height=2.2)

@@ -8,7 +8,7 @@ import yaml
 
 import rocking_cli as rk
 from rocking_cli.core import Direction
-from rocking_cli.core.hung.steel import STEELS
+from rocking_cli.core.hung.ties import STEELS
 from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.errors import InputError
 from tests.cli.test_cli import run, run_json

@@ -173,15 +173,6 @@ def test_every_command_warns_of_millimetres(command, tmp_path):
         assert "width is 800 m" in (tmp_path / "r.html").read_text(encoding="utf-8")
 
 
-def test_the_notes_of_respond_say_it_too(tmp_path):
-    import json
-
-    (tmp_path / "w.yaml").write_text("mechanism: block\nwidth: 800\nheight: 12000\n")
-    found = json.loads(run("respond", "w.yaml", "--release", "0.5", "--json").stdout)
-    width, height = "w: width is 800 m: did you mean 800 mm?", "w: height is 12000 m: did you mean 12000 mm?"
-    assert found["notes"] == [width, height]
-
-
 def test_a_slenderness_is_an_angle(tmp_path):
     import json
 

@@ -122,13 +122,6 @@ def test_a_density_of_no_material_is_doubted_in_the_unit_that_it_was_meant_in():
         assert doubts(made(FACADE.replace("19 kN/m3", text))) == []
 
 
-def test_a_survey_doubts_such_a_density_too(tmp_path):
-    (tmp_path / "t.csv").write_text("mechanism,name,width,height,depth,density [kN/m3]\nblock,a,0.5,2,1,1800\n")
-    shown = run("survey", str(tmp_path / "t.csv"), "--out", str(tmp_path / "o.csv"))
-    assert "a: density is 183549 kg/m3: did you mean 1800 kg/m3?" in shown.stderr
-    assert "did you mean 1800 kg/m3?" in (tmp_path / "o.csv").read_text(encoding="utf-8")
-
-
 def test_a_load_per_metre_follows_the_depth_and_keeps_its_mass_at_another_size():
     wall = made(FACADE.replace("  - {name: roof, mass: 30 kN, at: [0, 8], floor: sliding}\n", ""))
     deeper = rk.design(wall, ("depth", 1.0, 10.0), "lambda >= 0.01").result.metric

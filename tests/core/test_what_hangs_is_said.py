@@ -144,7 +144,3 @@ def test_a_report_says_at_its_head_that_joints_do_not_hold(tmp_path, monkeypatch
     file.write_text("mechanism: block\nwidth: 0.6\nheight: 3\nmass: 1000\nfriction: 0.21\n")
     asked = ("--pulse", "sine:0.4g:0.6s", "--neighbours", 20, "--out", tmp_path / "report.html")
     assert words in " ".join(run("report", file, *asked).stdout.split())
-
-
-def test_a_mistyped_starter_is_guessed():
-    assert "did you mean facade?" in run("new", "facad", code=2).output

@@ -12,7 +12,7 @@ from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
-from rocking_cli.dynamics import kernels
+from rocking_cli.dynamics import stepping
 from rocking_cli.dynamics.deck import MAX_IMPACTS, run_deck
 from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.model import Model
@@ -670,7 +670,7 @@ def made_ready(mechanism, name):
     models = {}
     for each in built(type(mechanism), name):
         numbers = each.numbers.copy()
-        numbers[:, kernels.ETA] = mechanism.restitution
+        numbers[:, stepping.ETA] = mechanism.restitution
         models[each.name] = replace(each, numbers=numbers)
     return Structure(mechanism, _models=models)
 

@@ -213,23 +213,6 @@ def test_restitution_acts_on_the_rate_of_rotation_not_on_theta():
         np.testing.assert_allclose(rates[1:] / rates[:-1], eta, rtol=1e-8, err_msg=model)
 
 
-@pytest.mark.parametrize("name", ["block", "wall", "arch"])
-@pytest.mark.parametrize("model", ["nonlinear", "linear1", "linear2"])
-def test_a_symmetric_structure_answers_a_reversed_record_with_the_mirror_image(name, model):
-    dt, samples = pulse(name, 2.5, 5.0)
-    one, other = (
-        respond(structure(name), GroundMotion("test", dt, sign * samples, unit="m/s2"), models=(model,))[model]
-        for sign in (1, -1)
-    )
-    early = one.time < one.impacts[5, 0]
-    scale = abs(one.phi).max()
-    np.testing.assert_allclose(other.phi[: early.sum()], -one.phi[early], rtol=0, atol=1e-9 * scale)
-    np.testing.assert_allclose(other.impacts[:6, 0], one.impacts[:6, 0], rtol=0, atol=1e-9)
-    np.testing.assert_array_equal(other.impacts[:6, 1], -one.impacts[:6, 1])
-    assert other.peak_positive == pytest.approx(one.peak_negative, rel=1e-9)
-    assert other.peak_negative == pytest.approx(one.peak_positive, rel=1e-9)
-
-
 def arch(kind=Arch, **fields):
     return kind(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, **fields)
 
@@ -238,11 +221,11 @@ def arch(kind=Arch, **fields):
 @pytest.mark.parametrize(("amplitude", "release"), [(2.5, None), (1.4, None), (1.2, 0.1)])
 def test_the_joints_that_are_checked_change_nothing_of_the_motion(amplitude, release):
     dt, samples = pulse("arch", amplitude, 5.0)
-    free = nonlinear(arch(UncheckedArch), dt, samples, release=release)
-    assert free.check is None and not free.unknown and np.isnan(free.opening)
-    for voussoirs, opening in ((None, 1.0), (None, 0.005), (9, 0.02), (9, 0.0)):
+    unchecked = {n: nonlinear(arch(UncheckedArch, voussoirs=n), dt, samples, release=release) for n in (None, 9)}
+    assert unchecked[None].check is None and not unchecked[None].unknown and np.isnan(unchecked[None].opening)
+    for voussoirs, opening in ((None, 1.0), (None, 0.005), (9, 0.0)):
+        free = unchecked[voussoirs]
         history = nonlinear(arch(voussoirs=voussoirs), dt, samples, release=release, opening=opening)
-        free = nonlinear(arch(UncheckedArch, voussoirs=voussoirs), dt, samples, release=release)
         until = history.known_to if history.unknown else np.inf
         known = free.time <= until
         np.testing.assert_array_equal(history.phi[known[: history.time.size]], free.phi[known])

@@ -9,7 +9,7 @@ import pytest
 
 import rocking_cli as rk
 from rocking_cli.core import Direction
-from rocking_cli.dynamics import kernels
+from rocking_cli.dynamics import kernels, openings, stepping
 from rocking_cli.dynamics.deck import lay_out, run_deck
 from rocking_cli.dynamics.joints import checked_joints
 from rocking_cli.dynamics.resting import FEET_PLACE
@@ -177,9 +177,9 @@ def test_no_sentence_speaks_of_a_joint_after_overturning(name, pulse):
     assert times and max(times) <= history.overturning_time + 1e-4 and "for an instant" not in said
     # The kernel did see a joint that would open then, so that it is left out on purpose.
     (model,) = build_models(structure, ("nonlinear",))
-    marks = np.full((1, kernels.MARKS), np.nan)
+    marks = np.full((1, stepping.MARKS), np.nan)
     rows = np.zeros((1, kernels.RUN_COLUMNS))
     rows[0, [kernels.FACTOR, kernels.V_FACTOR, kernels.SIZE, kernels.SLENDER]] = 1.0
     rows[0, [kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE]] = np.nan
     run_deck(lay_out([model], [rk.parse_pulse(pulse).sampled()]), rows, marks, rtol=1e-9)
-    assert history.overturning_time == marks[0, kernels.CROSSED] < marks[0, kernels.WARNED]
+    assert history.overturning_time == marks[0, stepping.CROSSED] < marks[0, openings.WARNED]

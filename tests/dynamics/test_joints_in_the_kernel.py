@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from mechanisms.block import Block
-from rocking_cli.dynamics import kernels
+from rocking_cli.dynamics import kernels, openings, stepping
 from rocking_cli.dynamics.deck import lay_out
-from rocking_cli.dynamics.kernels import Ground, Law, State
+from rocking_cli.dynamics.stepping import Ground, Law, State
 from rocking_cli.excitation.base import GroundMotion
 from tests.following import build_model
 
@@ -25,15 +25,15 @@ LAW = Law(**{**dict.fromkeys(Law._fields, 1.0), "d": 0, "q_end": 2.0, "gravity":
 
 def marks():
     """Marks of a history that has just begun."""
-    found = np.full(kernels.MARKS, NEVER)
-    found[[kernels.PEAK, kernels.PEAK + 1, kernels.IMPACTS, kernels.LARGEST, kernels.LONGEST]] = 0.0
+    found = np.full(stepping.MARKS, NEVER)
+    found[[stepping.PEAK, stepping.PEAK + 1, stepping.IMPACTS, openings.LARGEST, openings.LONGEST]] = 0.0
     return found
 
 
 def begun(watch):
     """A watch of which nothing has moved."""
     watch.kept[:], watch.notes[:] = 0.0, 0.0
-    watch.notes[[kernels.SINCE, kernels.SEEN]] = NEVER
+    watch.notes[[openings.SINCE, openings.SEEN]] = NEVER
     return watch
 
 
@@ -43,16 +43,16 @@ def of_block(mu=MU, opening=0.005):
     model = build_model(block, "nonlinear", opening)
     deck = lay_out([model], [GroundMotion("still", 0.01, np.zeros(2), unit="m/s2")])
     room = kernels.Room(
-        np.empty((2, kernels.COLUMNS)), np.empty((1, kernels.KEPT)), np.empty(kernels.NOTES), np.empty(4, np.int64)
+        np.empty((2, stepping.COLUMNS)), np.empty((1, openings.KEPT)), np.empty(openings.NOTES), np.empty(4, np.int64)
     )
     nothing = np.empty(0)
     motion = kernels.Motion(nothing, 1.0, 0.01, nothing, 1.0, 0.01, nothing, nothing, nothing)
-    return begun(kernels.watch_of(deck.joints, 0, 1.0, 1.0, motion, room))
+    return begun(openings.watch_of(deck.joints, 0, 1.0, 1.0, motion, room))
 
 
 def of_rows(*forces, step=0.1, limit=1.0, strength=np.inf, friction=np.nan, other=-1):
     """The watch of one joint: polynomials over a cell of width 2 of N at its end and of T, with a compliance of 1."""
-    rows = np.zeros((2, len(forces), kernels.OF_ROW))
+    rows = np.zeros((2, len(forces), openings.OF_ROW))
     for k, force in enumerate(forces):
         for column, factors in force.items():
             rows[:, k, column : column + len(factors)] = factors
@@ -60,11 +60,11 @@ def of_rows(*forces, step=0.1, limit=1.0, strength=np.inf, friction=np.nan, othe
     made = {
         "size": 1, "cells": 1, "lines": len(forces), "gravity": G, "limit": limit, "step": step, "slender": 1.0,
         "contacts": np.array([[[0, other, len(forces) - 1, 0]] * 2]), "bearing": np.array([[friction, strength]]),
-        "rows": rows.reshape(-1, kernels.OF_ROW), "stopped": np.zeros((2 * len(forces), 2)),
-        "kept": np.empty((1, kernels.KEPT)),
-        "notes": np.empty(kernels.NOTES), "active": np.empty(4, np.int64),
+        "rows": rows.reshape(-1, openings.OF_ROW), "stopped": np.zeros((2 * len(forces), 2)),
+        "kept": np.empty((1, openings.KEPT)),
+        "notes": np.empty(openings.NOTES), "active": np.empty(4, np.int64),
     }  # fmt: skip
-    return begun(kernels.Watch(**{**dict.fromkeys(kernels.Watch._fields, 0), **made}))
+    return begun(openings.Watch(**{**dict.fromkeys(openings.Watch._fields, 0), **made}))
 
 
 ONE, PUSH, RATE, LIFT = 0, 4, 8, 12  # first columns of a row
@@ -86,19 +86,19 @@ class TestInsideAStep:
     def test_place_and_speed_are_those_of_the_motion(self, x):
         start, size, end = self.step()
         expected = self.MOTION(x * size), self.MOTION.deriv()(x * size)
-        assert kernels.between(start, end, size, x) == pytest.approx(expected, rel=1e-12)
+        assert openings.between(start, end, size, x) == pytest.approx(expected, rel=1e-12)
 
     @pytest.mark.parametrize("share", [0.2, 0.45, 0.7])
     def test_a_joint_opens_from_where_it_pulls(self, share):
         """N = 1 - q/q_0 is inside a step on the parabola through its start, middle and end: it pulls from a root on."""
         level, start = float(self.MOTION(share * self.SIZE)), 5.0
         watch, found = of_rows({ONE: (1.0, -2 / level)}, {ONE: (1.0,)}, step=self.SIZE / 1000), marks()
-        kernels.look(watch, LAW, Ground(0.0, 0.0, G, 0.0), start, 0.0, *self.step(), 0.0, 0.0, 0.0, found)
+        openings.look(watch, LAW, Ground(0.0, 0.0, G, 0.0), start, 0.0, *self.step(), 0.0, 0.0, 0.0, found)
         pull = np.polyfit([0.0, 0.5, 1.0], self.MOTION(np.array([0.0, 0.5, 1.0]) * self.SIZE) / level - 1, 2)
         first = min(root for root in np.roots(pull) if 0 < root < 1)
-        assert 0 <= (found[kernels.WARNED] - start) / self.SIZE - first <= 1.001e-3
-        reached = self.MOTION(found[kernels.WARNED] - start)
-        assert found[kernels.WARNED_PEAK] == pytest.approx(reached, rel=1e-12)
+        assert 0 <= (found[openings.WARNED] - start) / self.SIZE - first <= 1.001e-3
+        reached = self.MOTION(found[openings.WARNED] - start)
+        assert found[openings.WARNED_PEAK] == pytest.approx(reached, rel=1e-12)
 
     @pytest.mark.parametrize(("share", "moment"), [(0.3, 0.5), (0.7, 1.0), (1.1, NEVER)])
     def test_a_contact_crushes_at_the_first_moment_of_three_at_which_it_bears_too_much(self, share, moment):
@@ -106,10 +106,10 @@ class TestInsideAStep:
         strength = float(self.MOTION(share * self.SIZE))
         how = {"step": self.SIZE / 4, "strength": strength, "friction": 0.0}
         watch, found = of_rows({ONE: (0.0, 2.0)}, {ONE: (1.0,)}, **how), marks()
-        kernels.look(watch, LAW, Ground(0.0, 0.0, G, 0.0), 0.0, 0.0, *self.step(), 0.0, 0.0, 0.0, found)
-        reason = kernels.CRUSHES if moment <= 1 else NEVER
+        openings.look(watch, LAW, Ground(0.0, 0.0, G, 0.0), 0.0, 0.0, *self.step(), 0.0, 0.0, 0.0, found)
+        reason = openings.CRUSHES if moment <= 1 else NEVER
         expected = [moment * self.SIZE, reason]
-        assert found[[kernels.PASSED, kernels.REASON]].tolist() == pytest.approx(expected, nan_ok=True)
+        assert found[[openings.PASSED, openings.REASON]].tolist() == pytest.approx(expected, nan_ok=True)
 
 
 class TestAnImpact:
@@ -122,38 +122,38 @@ class TestAnImpact:
         watch, found, rate = of_block(mu), marks(), 1.7
         b, h, inertia = HALF_WIDTH, HALF_HEIGHT, 4 / 3 * MASS * (HALF_WIDTH**2 + HALF_HEIGHT**2)
         eta = 1 - 1.5 * b**2 / (b**2 + h**2)
-        kernels.strike(watch, d, 3.0, 0.0, watch.struck, rate, eta, found)
+        openings.strike(watch, d, 3.0, 0.0, watch.struck, rate, eta, found)
         lacks = max(MASS * rate * (h * (1 - eta) - mu * b * (1 + eta)), 0.0)
         slips = inertia / (MASS * inertia - (MASS * h) ** 2) * lacks
-        rates = watch.kept[0, kernels.SLIP_RATE : kernels.SLIP_RATE + 2].tolist()
+        rates = watch.kept[0, openings.SLIP_RATE : openings.SLIP_RATE + 2].tolist()
         assert sorted(rates) == pytest.approx([0.0, slips], rel=1e-9)
-        assert (lacks > 0) == (watch.notes[kernels.MOVING] > 0) == (mu < 0.353)
-        assert found[kernels.WARNED] == pytest.approx(3.0 if lacks else NEVER, nan_ok=True)
-        assert not watch.kept[0, kernels.GAP : kernels.GAP + 4].any()  # the foot is pressed
+        assert (lacks > 0) == (watch.notes[openings.MOVING] > 0) == (mu < 0.353)
+        assert found[openings.WARNED] == pytest.approx(3.0 if lacks else NEVER, nan_ok=True)
+        assert not watch.kept[0, openings.GAP : openings.GAP + 4].any()  # the foot is pressed
 
     @pytest.mark.parametrize("eta", [0.0, 0.4, 0.9])
     def test_an_impulse_is_what_stops_the_motion_and_what_begins_the_next(self, eta):
         """P = w (P_0 + eta P_1): -(1 + 3 eta) opens the end, and what presses it gives its friction."""
         watch = of_rows({}, {})._replace(struck=np.array([[9.0, 9.0], [9.0, 9.0], [-1.0, -3.0], [0.0, 0.0]]))
-        kernels.strike(watch, 1, 0.0, 0.0, watch.struck, 2.0, eta, marks())
-        assert watch.kept[0, kernels.GAP_RATE] == pytest.approx(2.0 * (1 + 3 * eta))
+        openings.strike(watch, 1, 0.0, 0.0, watch.struck, 2.0, eta, marks())
+        assert watch.kept[0, openings.GAP_RATE] == pytest.approx(2.0 * (1 + 3 * eta))
         watch = of_rows({}, {}, friction=0.5)._replace(
             struck=np.array([[1.0, 3.0], [-2.0, -5.0], [9.0, 9.0], [9.0, 9.0]])
         )
-        kernels.strike(watch, 0, 0.0, 0.0, watch.struck, 2.0, eta, marks())
+        openings.strike(watch, 0, 0.0, 0.0, watch.struck, 2.0, eta, marks())
         slips = 2.0 * (2 + 5 * eta - 0.5 * (1 + 3 * eta))
-        assert watch.kept[0, kernels.SLIP_RATE : kernels.SLIP_RATE + 2].tolist() == pytest.approx([0.0, slips])
+        assert watch.kept[0, openings.SLIP_RATE : openings.SLIP_RATE + 2].tolist() == pytest.approx([0.0, slips])
 
     def test_what_opens_elsewhere_in_the_other_direction_starts_anew_and_slips_go_on(self):
         for changes, stays in ((0, 0.1), (1, 0.0)):
             watch = of_rows({}, {}, friction=0.5)._replace(struck=np.zeros((4, 2)))
-            watch.contacts[:, :, kernels.CHANGES] = changes
-            watch.kept[0, [kernels.GAP, kernels.SLIP, kernels.SLIP_RATE]] = 0.1, 0.2, 0.3
-            kernels.strike(watch, 0, 0.0, 0.0, watch.struck, 1.0, 0.5, marks())
-            kept = watch.kept[0, [kernels.GAP, kernels.SLIP, kernels.SLIP_RATE]]
+            watch.contacts[:, :, openings.CHANGES] = changes
+            watch.kept[0, [openings.GAP, openings.SLIP, openings.SLIP_RATE]] = 0.1, 0.2, 0.3
+            openings.strike(watch, 0, 0.0, 0.0, watch.struck, 1.0, 0.5, marks())
+            kept = watch.kept[0, [openings.GAP, openings.SLIP, openings.SLIP_RATE]]
             assert kept.tolist() == [stays, 0.2, 0.3]
-            kernels.settle(watch, 0.0, marks())  # at rest all joints are closed, and what has slid stays
-            assert watch.kept[0].any() and watch.kept[0, kernels.SLIP] == 0.2 == watch.kept[0].sum()
+            openings.settle(watch, 0.0, marks())  # at rest all joints are closed, and what has slid stays
+            assert watch.kept[0].any() and watch.kept[0, openings.SLIP] == 0.2 == watch.kept[0].sum()
 
 
 class TestAtRest:
@@ -171,22 +171,22 @@ class TestAtRest:
     def test_the_slip_is_that_of_the_forces_at_each_moment(self, ground, lift, way, steps):
         watch, found, size = of_block(opening=1e3), marks(), 0.5
         (u0, u1), (v0, v1) = ground, lift
-        kernels.stand(watch, 2.0, size, steps, way * u0 * G, way * u1 * G, 1.0, v0 * G, v1 * G, found)
+        openings.stand(watch, 2.0, size, steps, way * u0 * G, way * u1 * G, 1.0, v0 * G, v1 * G, found)
         first, last = (G * (u - MU * (1 + v)) for u, v in ((u0, v0), (u1, v1)))
         left = 0.0 if last <= 0 else size if first >= 0 else size * last / (last - first)  # it slides
         first = max(first, 0.0)
         kept = watch.kept[0]
-        slips = kept[kernels.SLIP : kernels.SLIP + 2].sum(), kept[kernels.SLIP_RATE : kernels.SLIP_RATE + 2].sum()
+        slips = kept[openings.SLIP : openings.SLIP + 2].sum(), kept[openings.SLIP_RATE : openings.SLIP_RATE + 2].sum()
         assert slips == pytest.approx((left**2 * (2 * first + last) / 6, left * (first + last) / 2), rel=1e-6)
-        assert not kept[kernels.GAP : kernels.GAP + 4].any()
+        assert not kept[openings.GAP : openings.GAP + 4].any()
         if left:  # the first moment at which it slides
-            assert 0 <= found[kernels.WARNED] - (2.0 + size - left) <= size / steps * (1 + 1e-9)
+            assert 0 <= found[openings.WARNED] - (2.0 + size - left) <= size / steps * (1 + 1e-9)
 
     def test_when_it_warns_passes_the_limit_and_stops(self):
         """u_g'' grows to 0.2 g in 0.5 s, falls to nothing in 0.5 s, and is nothing: times by integration by hand."""
         watch, found, steps = of_block(opening=0.01), marks(), 5000
         for k, (u0, u1) in enumerate([(0.0, 0.2), (0.2, 0.0), (0.0, 0.0), (0.0, 0.0)]):
-            kernels.stand(watch, 0.5 * k, 0.5, steps, u0 * G, u1 * G, 1.0, 0.0, 0.0, found)
+            openings.stand(watch, 0.5 * k, 0.5, steps, u0 * G, u1 * G, 1.0, 0.0, 0.0, found)
         # Beyond mu g from 0.25 to 0.75 s: a triangle of 0.1 g; then it decelerates by a ramp to mu g, and by mu g.
         rate_then = 0.5 * 0.5 * 0.1 * G - 0.5 * 0.25 * 0.1 * G
         stops = 1.0 + rate_then / (0.1 * G)
@@ -194,20 +194,20 @@ class TestAtRest:
         slip = lambda t: ramp * (t - 0.25) ** 3 / 6  # noqa: E731
         limit = watch.limit
         assert limit < slip(0.5)
-        assert found[kernels.WARNED] == pytest.approx(0.25, abs=2e-4)
-        assert found[kernels.PASSED] == pytest.approx(0.25 + (6 * limit / ramp) ** (1 / 3), abs=2e-4)
-        assert found[kernels.REASON] == kernels.SLIDES and found[kernels.WHERE] == 0
-        assert found[kernels.LONGEST] == pytest.approx(stops - 0.25, abs=4e-4)
-        assert found[kernels.LARGEST_AT] == pytest.approx(stops, abs=4e-4)
-        assert watch.notes[kernels.MOVING] == 0 and isnan(found[kernels.PARTED])
+        assert found[openings.WARNED] == pytest.approx(0.25, abs=2e-4)
+        assert found[openings.PASSED] == pytest.approx(0.25 + (6 * limit / ramp) ** (1 / 3), abs=2e-4)
+        assert found[openings.REASON] == openings.SLIDES and found[openings.WHERE] == 0
+        assert found[openings.LONGEST] == pytest.approx(stops - 0.25, abs=4e-4)
+        assert found[openings.LARGEST_AT] == pytest.approx(stops, abs=4e-4)
+        assert watch.notes[openings.MOVING] == 0 and isnan(found[openings.PARTED])
 
     @pytest.mark.parametrize(("u", "calm"), [(0.0999, True), (0.1001, False), (-0.0999, True), (-0.1001, False)])
     def test_it_is_steady_up_to_its_friction(self, u, calm):
-        assert bool(kernels.steady(of_block(), u * G)) == calm
+        assert bool(openings.steady(of_block(), u * G)) == calm
         moving = of_block()
-        moving.notes[kernels.MOVING] = 1.0
-        assert not kernels.steady(moving, u * G)
-        assert bool(kernels.steady(of_block()._replace(slender=1.01), u * G / 1.01)) == calm
+        moving.notes[openings.MOVING] = 1.0
+        assert not openings.steady(moving, u * G)
+        assert bool(openings.steady(of_block()._replace(slender=1.01), u * G / 1.01)) == calm
 
 
 class TestQuiet:
@@ -220,7 +220,7 @@ class TestQuiet:
         within[d] = self.LINE
         watch = of_rows({}, {})._replace(within=within, slender=slender, scales=scales, slow=slow)
         law = LAW._replace(d=d)
-        return kernels.quiet(watch, law, Ground((1 - 2 * d) * push, 0.0, weight, 0.0), 0.0, q, square**0.5)
+        return openings.quiet(watch, law, Ground((1 - 2 * d) * push, 0.0, weight, 0.0), 0.0, q, square**0.5)
 
     @pytest.mark.parametrize("d", [0, 1])
     @pytest.mark.parametrize("factor", [1.0, 0.5])
@@ -249,47 +249,47 @@ class TestNotes:
     """What `note` keeps of the moments it is told of: the first, the largest and the longest."""
 
     def moment(self, watch, found, t, *, q=0.1, gap=0.0, slip=0.0, missing=0.0, moving=False, crushes=-1, parted=-1):
-        watch.kept[0, [kernels.GAP, kernels.SLIP]] = gap, slip
-        demand = kernels.Demand(missing, 0 if missing else -1, crushes, parted)
-        kernels.note(watch, 0, 1.0, t, q, demand, moving, found)
+        watch.kept[0, [openings.GAP, openings.SLIP]] = gap, slip
+        demand = openings.Demand(missing, 0 if missing else -1, crushes, parted)
+        openings.note(watch, 0, 1.0, t, q, demand, moving, found)
 
     def test_the_first_that_passes_the_limit_with_its_reason_and_the_peaks_until_then(self):
-        for how, reason in (({"gap": 0.0101}, kernels.OPENS), ({"slip": 0.0101}, kernels.SLIDES),
-                            ({"crushes": 0}, kernels.CRUSHES)):  # fmt: skip
+        for how, reason in (({"gap": 0.0101}, openings.OPENS), ({"slip": 0.0101}, openings.SLIDES),
+                            ({"crushes": 0}, openings.CRUSHES)):  # fmt: skip
             watch, found = of_rows({}, {}, limit=0.01), marks()
-            found[kernels.IMPACTS], watch.notes[kernels.SO_FAR], watch.notes[kernels.SO_FAR + 1] = 3, 0.5, 0.7
+            found[stepping.IMPACTS], watch.notes[openings.SO_FAR], watch.notes[openings.SO_FAR + 1] = 3, 0.5, 0.7
             self.moment(watch, found, 1.0, gap=0.01, q=0.2)  # as much as is permitted
-            assert isnan(found[kernels.PASSED])
+            assert isnan(found[openings.PASSED])
             self.moment(watch, found, 2.0, q=0.3, **how)
-            found[kernels.IMPACTS] = 4
+            found[stepping.IMPACTS] = 4
             self.moment(watch, found, 3.0, q=0.6, **how)
-            got = found[[kernels.PASSED, kernels.REASON, kernels.WHERE, kernels.PASSED_IMPACTS, kernels.PASSED_PEAK,
-                         kernels.PASSED_PEAK + 1]]  # fmt: skip
+            places = ("PASSED", "REASON", "WHERE", "PASSED_IMPACTS", "PASSED_PEAK")
+            got = found[[*(getattr(openings, place) for place in places), openings.PASSED_PEAK + 1]]
             assert got.tolist() == [2.0, reason, 0.0, 3.0, 0.5, 0.7]
 
     def test_the_first_warning_and_the_largest_opening_up_to_the_critical_rotation(self):
         watch, found = of_rows({}, {}), marks()
         self.moment(watch, found, 1.0)
-        assert isnan(found[kernels.WARNED]) and isnan(found[kernels.PARTED])
+        assert isnan(found[openings.WARNED]) and isnan(found[openings.PARTED])
         self.moment(watch, found, 2.0, missing=5.0, parted=0, gap=0.1, q=0.4)
         self.moment(watch, found, 3.0, missing=9.0, parted=0, gap=0.3, q=1.0)
         self.moment(watch, found, 4.0, gap=0.5, q=1.001)  # beyond phi_cr
         self.moment(watch, found, 5.0, gap=0.2, q=0.9)
-        got = found[[kernels.WARNED, kernels.WARNED_PEAK, kernels.PARTED, kernels.LARGEST, kernels.LARGEST_AT]]
+        got = found[[openings.WARNED, openings.WARNED_PEAK, openings.PARTED, openings.LARGEST, openings.LARGEST_AT]]
         assert got.tolist() == [2.0, 0.4, 2.0, 0.3, 3.0]
 
     def test_the_longest_time_for_which_any_moves(self):
         watch, found = of_rows({}, {}), marks()
         for t, moving in ((0.0, False), (1.0, True), (1.5, True), (3.0, False), (4.0, True), (5.0, False)):
             self.moment(watch, found, t, moving=moving)
-        assert found[kernels.LONGEST] == 2.0
+        assert found[openings.LONGEST] == 2.0
 
 
 class TestUplift:
     """-u_g'' > lambda (g + v_g'') lifts the positive direction, u_g'' the negative one: on ramps, at a root."""
 
-    NUMBERS = np.zeros((2, kernels.COLUMNS))
-    NUMBERS[:, kernels.LAMBDA], NUMBERS[:, kernels.GRAVITY] = (0.2, 0.3), G
+    NUMBERS = np.zeros((2, stepping.COLUMNS))
+    NUMBERS[:, stepping.LAMBDA], NUMBERS[:, stepping.GRAVITY] = (0.2, 0.3), G
 
     def at(self, u, ramp, end=2.0, g=G, grade=0.0, tau=0.0):
         return kernels.lifts_at(self.NUMBERS, tau, end, u, ramp, g, grade)
@@ -305,7 +305,7 @@ class TestUplift:
     def test_of_both_it_takes_the_first_or_the_one_with_more_behind_it(self):
         """Without weight both directions are open; here one is after the other, as weight ebbs within 1 s."""
         for u, d in ((-0.15 * G, 0), (0.25 * G, 1)):
-            first = 1 - abs(u) / (self.NUMBERS[d, kernels.LAMBDA] * G)
+            first = 1 - abs(u) / (self.NUMBERS[d, stepping.LAMBDA] * G)
             time, lifted = self.at(u, 0.0, end=3.0, grade=-G)
             assert (time, lifted) == (pytest.approx(first), d)
         other = self.at(0.1 * G, -0.4 * G, end=1.0, grade=-1.2 * G)

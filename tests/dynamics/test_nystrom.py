@@ -9,7 +9,7 @@ from mpmath import mp
 
 from mechanisms.block import Block
 from rocking_cli.core import equivalent_block
-from rocking_cli.dynamics.kernels import Ground, Law, State, force, nystrom
+from rocking_cli.dynamics.stepping import Ground, Law, State, force, nystrom
 from rocking_cli.excitation.base import GroundMotion
 from tests.following import respond
 from tests.reference_history import Nonlinear

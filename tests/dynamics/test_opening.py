@@ -12,7 +12,7 @@ import pytest
 from rocking_cli import GroundMotion, Registry, load_structure, read_record
 from rocking_cli.core import Direction
 from rocking_cli.core.released import Undetermined, released, tabulated_impulses
-from rocking_cli.dynamics import kernels
+from rocking_cli.dynamics import openings
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.joints import _calm, _within
 from rocking_cli.dynamics.modes import modes
@@ -22,7 +22,7 @@ from rocking_cli.structure import build_models
 from rocking_cli.views.verdict import joints_in_words
 from tests.conftest import EXAMPLES, SHARED
 from tests.following import respond
-from tests.oracle.openings import openings
+from tests.oracle.openings import openings as other_openings
 
 BLOCKS = SHARED / "blocks" / "assemblies.json"
 ACCEL = EXAMPLES / "accel.csv"
@@ -67,7 +67,7 @@ def test_values_that_two_other_programs_agree_on(name, fields, reach, rows):
 @pytest.mark.every(2)
 @pytest.mark.parametrize(("name", "factor"), [("masonry/buttressed_arch.yaml", 0.5), ("masonry/portal.yaml", 1.75)])
 def test_motion_and_openings_are_those_of_a_program_that_shares_nothing(name, factor):
-    theirs, found = openings(EXAMPLES / name, ACCEL, factor), history(structure(name), factor)
+    theirs, found = other_openings(EXAMPLES / name, ACCEL, factor), history(structure(name), factor)
     assert found.check.reach == pytest.approx(theirs.reach, rel=1e-9)
     assert found.opening == pytest.approx(theirs.largest, rel=0.001)
     assert found.known_to == pytest.approx(theirs.passed, abs=0.0015)  # each says it at its next node
@@ -445,11 +445,11 @@ def test_what_slides_in_one_motion_adds_to_what_slid_before():
 )
 def test_an_opening_and_a_slip_step_by_step(end, before, accelerations, time, after):
     """Rows 0 and 1 of a joint are its ends, 2 and 3 its slip in either sense; the acceleration is straight."""
-    kept = np.zeros((1, kernels.KEPT))
-    at, rate = [(kernels.GAP, kernels.GAP_RATE), (kernels.SLIP, kernels.SLIP_RATE)][end // 2]
+    kept = np.zeros((1, openings.KEPT))
+    at, rate = [(openings.GAP, openings.GAP_RATE), (openings.SLIP, openings.SLIP_RATE)][end // 2]
     columns = [at + end % 2, rate + end % 2]
     kept[0, columns] = before
-    moves = kernels.advance_opening(kept, 0, end, *accelerations, time)
+    moves = openings.advance_opening(kept, 0, end, *accelerations, time)
     assert kept[0, columns] == pytest.approx(after)
     assert moves == (after[1] > 0 or (end < 2 and after[0] > 0))
 

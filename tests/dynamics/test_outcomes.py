@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mechanisms.block import Block
-from rocking_cli.dynamics import kernels
+from rocking_cli.dynamics import kernels, openings, stepping
 from rocking_cli.dynamics.deck import lay_out, read_marks
 from rocking_cli.dynamics.joints import check_of
 from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcome
@@ -24,17 +24,17 @@ BLOCK = Block(width=0.7, height=2.8)
 
 def read(status=kernels.AT_REST, side=0, **noted):
     """The outcome of one run: peaks of .1 and .3 rad, two impacts, uplift at 1 s and an end at 9 s unless noted."""
-    marks = np.full((1, kernels.MARKS), NEVER)
+    marks = np.full((1, stepping.MARKS), NEVER)
     usual = {"FIRST_UPLIFT": 1.0, "IMPACTS": 2, "ENDED": 9.0, "LARGEST": 0.001}
     for name, value in (usual | noted).items():
-        marks[0, getattr(kernels, name)] = value
-    marks[0, [kernels.STATUS, kernels.SIDE]] = status, side
-    marks[0, kernels.PEAK : kernels.PEAK + 2] = 0.1, 0.3
+        marks[0, getattr(stepping if hasattr(stepping, name) else openings, name)] = value
+    marks[0, [stepping.STATUS, stepping.SIDE]] = status, side
+    marks[0, stepping.PEAK : stepping.PEAK + 2] = 0.1, 0.3
     if "PASSED" in noted:
-        marks[0, kernels.PASSED_PEAK : kernels.PASSED_PEAK + 2] = 0.05, 0.04
-        marks[0, kernels.PASSED_IMPACTS] = 1
+        marks[0, openings.PASSED_PEAK : openings.PASSED_PEAK + 2] = 0.05, 0.04
+        marks[0, openings.PASSED_IMPACTS] = 1
     if "WARNED" in noted:
-        marks[0, kernels.WARNED_PEAK : kernels.WARNED_PEAK + 2] = 0.02, 0.06
+        marks[0, openings.WARNED_PEAK : openings.WARNED_PEAK + 2] = 0.02, 0.06
     return read_marks(marks, np.array([PHI_CR]), np.array([REACH])).by_field(lambda values: values[0])
 
 
@@ -112,10 +112,16 @@ def test_still_rocking_is_said_only_of_what_is_known():
 def test_the_joints_say_what_happened_to_them_or_that_nothing_did(known):
     """A block has one joint, with the ground, and none that stays closed while it rocks."""
     model = build_model(BLOCK, "nonlinear")
-    marks = np.full(kernels.MARKS, NEVER)
-    marks[[kernels.LARGEST, kernels.LONGEST]] = 0.0
+    marks = np.full(stepping.MARKS, NEVER)
+    marks[[openings.LARGEST, openings.LONGEST]] = 0.0
     if not known:
-        marks[[kernels.PASSED, kernels.REASON, kernels.WHERE, kernels.WARNED, kernels.WARNED_WHERE]] = 3, 1, 0, 2, 0
+        marks[[openings.PASSED, openings.REASON, openings.WHERE, openings.WARNED, openings.WARNED_WHERE]] = (
+            3,
+            1,
+            0,
+            2,
+            0,
+        )
     found = check_of(model.joints, marks, NEVER)
     assert (found.reason, found.passed, found.warned) == pytest.approx(
         (None, NEVER, NEVER) if known else ("slides", 3.0, 2.0), nan_ok=True

@@ -269,12 +269,6 @@ class TestLibrary:
         with pytest.raises(BrokenKernels, match=r"cannot be loaded, reinstall rocking-cli: .*Permission denied"):
             shipped.load(PULSES)
 
-    def test_a_folder_in_its_place(self, folder):
-        shipped.place().unlink()
-        shipped.place().mkdir()
-        with pytest.raises(BrokenKernels, match="is missing, reinstall"):
-            shipped.load(PULSES)
-
     @pytest.mark.parametrize("manifest", [None, "", "{", "[1]", "{}", '{"source": 1, "made_by": 2, "files": 3}'])
     def test_a_manifest_that_is_none(self, folder, manifest):
         if manifest is None:

@@ -12,7 +12,7 @@ from rocking_cli.core import Direction, both_statics
 from rocking_cli.core import linkage as of_linkages
 from rocking_cli.core import released as of_released
 from rocking_cli.core.kinematics import Rates, VelocityTerm
-from rocking_cli.core.loops import Loops
+from rocking_cli.core.linkage import Loops
 from rocking_cli.core.released import ONE, PUSH, RATE, Pieces, Undetermined, _check_count, released
 from rocking_cli.dynamics.joints import joints_of
 from rocking_cli.dynamics.modes import _Placed, _thrown, modes, stuck

@@ -21,7 +21,9 @@ VAGUE = (
 EMPTY = r"found|said|near|own|thing|stuff|foo|te?mp|(?:data|item|list|obj|res|result|text|tmp|val|value)\d+"
 """Locals that do not say what they hold."""
 VAGUE_CONSTANTS = {
-    "rocking_cli/dynamics/kernels.py": {"APART", "BEHIND", "FAINT", "IDLE", "LARGEST", "LONG", "LONGEST", "SLOW"},
+    "rocking_cli/dynamics/kernels.py": {"FAINT", "IDLE", "LONG", "SLOW"},
+    "rocking_cli/dynamics/openings.py": {"APART", "LARGEST", "LONGEST"},
+    "rocking_cli/dynamics/stepping.py": {"BEHIND"},
     "rocking_cli/dynamics/pulse_motion.py": {"FAINT", "STILL"},
     "rocking_cli/plotting/style.py": {"FAINT", "SMALL", "THIN", "TINY"},  # steps of a scale, read as `style.SMALL`
 }

@@ -91,7 +91,7 @@ def test_a_wall_solved_by_interior_points_has_both_theorems():
     assert friction(found).needed == 0.6  # it slides: any less and it would slide earlier
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(6))
 def test_rigid_parts_leave_the_velocities_that_one_dense_matrix_has(seed):
     blocks, joints, direction = jumble(seed)
     problem = AssemblyProblem.of(blocks, joints, (), direction)

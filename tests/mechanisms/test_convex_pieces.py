@@ -8,8 +8,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from rocking_cli.core.convex import convex_pieces
 from rocking_cli.core.kinematics import area_of, inside
+from rocking_cli.core.polygons import convex_pieces
 
 L_SHAPE = [0, 2, 2 + 1j, 1 + 1j, 1 + 3j, 3j]
 U_SHAPE = [0, 3, 3 + 2j, 2 + 2j, 2 + 1j, 1 + 1j, 1 + 2j, 2j]

@@ -14,13 +14,11 @@ from pydantic import ValidationError
 from rocking_cli.codes.italian.chain import Chain, ChainBlock
 from rocking_cli.codes.italian.rules import Rule
 from rocking_cli.core import Mechanism
-from rocking_cli.core.coefficients import Coefficients
-from rocking_cli.core.equilibrium import NoCriticalRotation
+from rocking_cli.core.coefficients import Coefficients, NoCriticalRotation
 from rocking_cli.core.hung.attached import Follow, Spot
 from rocking_cli.core.hung.element import INTERLOCK_NAME as INTERLOCK
 from rocking_cli.core.hung.element import ConstantForce, Element, Spring
-from rocking_cli.core.hung.steel import TieStrength
-from rocking_cli.core.hung.ties import Tie
+from rocking_cli.core.hung.ties import Tie, TieStrength
 from rocking_cli.core.kinematics import Reals
 from rocking_cli.errors import InputError, Problem, StructureError
 from rocking_cli.short_repr import short_repr

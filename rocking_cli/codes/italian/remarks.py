@@ -39,7 +39,7 @@ from rocking_cli.codes.italian.rules import (
 from rocking_cli.codes.italian.site import LARGEST_FC, ItalianSite
 from rocking_cli.core import Mechanism
 from rocking_cli.core.hung.element import INTERLOCK_NAME
-from rocking_cli.core.hung.steel import MAX_STRAIN
+from rocking_cli.core.hung.ties import MAX_STRAIN
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import digits_apart
 from rocking_cli.studies.conclusion import Effect

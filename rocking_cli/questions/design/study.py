@@ -14,7 +14,7 @@ import numpy as np
 from rocking_cli.arrays import Bools, Reals
 from rocking_cli.core import Mechanism
 from rocking_cli.core.hung.element import Spring
-from rocking_cli.core.hung.steel import BAR_DIAMETERS, STEELS, SteelName, TieStrength, circle, tie_strength
+from rocking_cli.core.hung.ties import BAR_DIAMETERS, STEELS, SteelName, TieStrength, circle, tie_strength
 from rocking_cli.errors import InputError, MechanismError, Problem, SolverError
 from rocking_cli.io.yaml_file import words
 from rocking_cli.names import percent

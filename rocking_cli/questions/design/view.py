@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rocking_cli import names
-from rocking_cli.core.hung.steel import BAR_DIAMETERS
+from rocking_cli.core.hung.ties import BAR_DIAMETERS
 from rocking_cli.names import percent
 from rocking_cli.questions.design.metrics import Excitation
 from rocking_cli.questions.design.study import TREND_TOLERANCE, Bars, Design, SteelAnswer

@@ -9,9 +9,8 @@ from operator import itemgetter, methodcaller
 from typing import Any, NamedTuple
 
 from rocking_cli.core import Direction, EquivalentBlock, Mechanism, PointMass, Statics, one_block
-from rocking_cli.core.advice import Grade, grade, preferred_kappa
 from rocking_cli.core.bounds import Bound
-from rocking_cli.core.equivalence import EQUAL_DIRECTIONS, alike
+from rocking_cli.core.equivalence import EQUAL_DIRECTIONS, Grade, alike, grade, preferred_kappa
 from rocking_cli.core.hung.element import Element
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.structure import Structure

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, equivalent_block
-from rocking_cli.core.advice import Grade, grade, preferred_kappa
+from rocking_cli.core.equivalence import Grade, grade, preferred_kappa
 from rocking_cli.errors import SolverError
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure

@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking_cli.arrays import Reals
 from rocking_cli.core import Equivalence, Mechanism
-from rocking_cli.core.advice import SMALL_ERROR, Grade
+from rocking_cli.core.equivalence import SMALL_ERROR, Grade
 from rocking_cli.io.tables import Columns, stacked
 from rocking_cli.names import percent
 from rocking_cli.questions.error.study import Errors, Linearisation, errors, preferred, velocity_ratios

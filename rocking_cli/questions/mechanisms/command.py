@@ -15,8 +15,7 @@ from rocking_cli.io.files import check_writable
 
 if TYPE_CHECKING:
     from rocking_cli.core import Mechanism
-    from rocking_cli.core.contract import Verdict
-    from rocking_cli.core.registry import Registry
+    from rocking_cli.core.registry import Registry, Verdict
     from rocking_cli.studies.picture import Picture
 
 PARTS = ("loads", "ties", "stops", "interlock", "strength", "crushing", "uncertainty")

@@ -11,7 +11,7 @@ from typing import Any, Literal, NamedTuple
 
 from rocking_cli import names
 from rocking_cli.core import Direction, EquivalentBlock, Mechanism
-from rocking_cli.core.advice import Grade, grade, uplift_error
+from rocking_cli.core.equivalence import Grade, grade, uplift_error
 from rocking_cli.dynamics.exact import ClosedForm, ExactResponse, closed_form, exact_response
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking_cli.core.advice import Grade
+from rocking_cli.core.equivalence import Grade
 from rocking_cli.plotting.language import in_language
 from rocking_cli.plotting.moving import ground_chart, moving, ratio_chart
 from rocking_cli.questions.equiv.view import PARAMETERS, EquivalentSide

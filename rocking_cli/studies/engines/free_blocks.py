@@ -18,9 +18,9 @@ import numpy as np
 from rocking_cli.arrays import Points, Reals
 from rocking_cli.core import Body, Contact, Direction, Mechanism, PointMass, Spot, of_joints
 from rocking_cli.core.contacts import MASONRY_FRICTION
-from rocking_cli.core.convex import convex_pieces
 from rocking_cli.core.hung.element import ConstantForce, Element, Spring, SteelBar
 from rocking_cli.core.kinematics import area_of, distance
+from rocking_cli.core.polygons import convex_pieces
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.hung import walls

@@ -18,7 +18,7 @@ from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
-from rocking_cli.core.advice import grade, preferred_kappa
+from rocking_cli.core.equivalence import grade, preferred_kappa
 from rocking_cli.core.structure_file import load_structure
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion

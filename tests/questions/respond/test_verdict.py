@@ -11,7 +11,7 @@ import rocking_cli as rk
 from mechanisms.block import Block
 from rocking_cli import names
 from rocking_cli.core import Direction
-from rocking_cli.core.advice import Grade
+from rocking_cli.core.equivalence import Grade
 from rocking_cli.dynamics.verdict import agreements
 from rocking_cli.structure import Structure
 from rocking_cli.views.response import known_data

@@ -14,7 +14,7 @@ from click.testing import CliRunner
 
 import rocking_cli as rk
 from rocking_cli.cli.main import main
-from rocking_cli.dynamics import kernels, shipped, ways
+from rocking_cli.dynamics import shipped, stepping, ways
 from rocking_cli.dynamics.calling import SETS
 from rocking_cli.errors import KernelWarning
 from rocking_cli.excitation.records.formats import Readers
@@ -223,7 +223,7 @@ class TestEachCheck:
             def kernel(*arguments):
                 run(*arguments)
                 if of.name == name:
-                    row = arguments[6][0, -1:] if name == "pulses" else arguments[8][0, kernels.PEAK :][:1]
+                    row = arguments[6][0, -1:] if name == "pulses" else arguments[8][0, stepping.PEAK :][:1]
                     row[:] = np.nextafter(row, 9.0)
 
             return kernel

@@ -21,7 +21,7 @@ from rocking_cli.codes.italian.sheet import build
 from rocking_cli.codes.italian.sheet.chain import ChainCentres
 from rocking_cli.codes.italian.sheet.geometry import SIZE_UNITS, Composition, ranges
 from rocking_cli.core import Direction
-from rocking_cli.core.equilibrium import NoCriticalRotation
+from rocking_cli.core.coefficients import NoCriticalRotation
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_fields import StructureFields
 from rocking_cli.core.structure_file import load_structure, parse_structure

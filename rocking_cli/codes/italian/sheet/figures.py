@@ -22,7 +22,7 @@ from rocking_cli.codes.italian.rules import RULES, STATES
 from rocking_cli.codes.italian.sheet.chain import Scale, named
 from rocking_cli.codes.italian.sheet.site import states
 from rocking_cli.core import Length
-from rocking_cli.core.solids import Solid
+from rocking_cli.core.bodies import Solid
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.plotting import dimensions, hung, style
 from rocking_cli.plotting.labels import MARK_COST, Labels

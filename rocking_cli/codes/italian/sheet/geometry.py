@@ -17,8 +17,7 @@ from rocking_cli.codes.italian import formulas as F
 from rocking_cli.core import Body, Mechanism, PointMass, Solid
 from rocking_cli.core.hung.attached import Spot
 from rocking_cli.core.hung.element import ConstantForce, SpringBed
-from rocking_cli.core.hung.steel import circle
-from rocking_cli.core.hung.ties import Tie
+from rocking_cli.core.hung.ties import Tie, circle
 from rocking_cli.core.kinematics import area_of
 from rocking_cli.core.structure_fields import StructureFields
 from rocking_cli.verification.results import Evaluated, Formula

@@ -30,7 +30,7 @@ from rocking_cli.codes.italian.sheet.chain import ChainSteps, Rows
 from rocking_cli.codes.italian.sheet.site import hazard_at, is_close
 from rocking_cli.core.hung.attached import Spot
 from rocking_cli.core.hung.element import INTERLOCK_NAME
-from rocking_cli.core.hung.steel import MAX_STRAIN
+from rocking_cli.core.hung.ties import MAX_STRAIN
 from rocking_cli.verification.results import Evaluated, Formula, Remark, Working
 from rocking_cli.views.sheet import template
 from rocking_cli.views.sheet.document import workings
