@@ -129,7 +129,7 @@ class LazyGroup(click.Group):
             terminal.error(": ".join(["interrupted", *getattr(stopped, "__notes__", ())]))
             ctx.exit(endings.exit_code(stopped))
         except RockingError as error:
-            terminal.error(str(error))
+            terminal.error("\n  ".join([str(error), *getattr(error, "__notes__", ())]))
             terminal.debug_traceback(error)
             ctx.exit(error.exit_code)
         except OSError as error:  # reported by `main`

@@ -108,7 +108,7 @@ FIELD = "{0} is a field of the structure: structure.replace({0}={1})"
         ("respond_each", "scales", 2, "did you mean scale?"),
         ("equiv", "structure", None, "did you mean structures?"),
         ("respond", "pga", 0.3, "did you mean target_pga?"),
-        ("respond", "zzz", 1, "known: amplitude_deviation, azimuth,"),
+        ("respond", "zzz", 1, "known: amplitude_deviation, animate, azimuth,"),
         ("select", "eta", 0.9, "known: "),
     ],
 )

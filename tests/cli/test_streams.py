@@ -5,6 +5,7 @@ import errno
 import io
 import os
 import shlex
+import shutil
 import sys
 from contextlib import nullcontext, suppress
 from pathlib import Path
@@ -63,6 +64,7 @@ def _lead(number, where):
 
 def ended(words, results, messages):
     """Return the exit code of a command in a process of its own, as Python ends it."""
+    shutil.rmtree("folder", ignore_errors=True)  # `new` writes no folder again
     child = os.fork()
     if not child:
         code = 99  # of a traceback

@@ -278,7 +278,7 @@ def test_the_law_of_the_guide_is_this_one():
         ),
         (
             ("equivalent_pulses", EXAMPLES / "block.yaml", "--ag", "1g", "--period", "0.5"),
-            "wall: the linear models do not",
+            "the linear models do not hold: cable yields",
         ),
     ],
     ids=lambda value: value[0] if isinstance(value, tuple) else "",

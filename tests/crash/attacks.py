@@ -37,6 +37,8 @@ LINES = {
     "select": f"select {EXAMPLES}/accel.csv {EXAMPLES}/accel_transverse.csv --target {EXAMPLES}/target.csv "
     "--band 0.2:2 --count 2 --out folder --plot p.png",
     "respond": f"respond {BLOCK} {UNDER} --out o.csv --plot p.svg",
+    "engines": "respond INPUTS/short.yaml --pulse sine:0.3g:0.2s --engine blocks --out o.csv --plot p.png "
+    "--animate a.html",
     "margin": f"margin {BLOCK} {UNDER} --out o.csv --plot p.png",
     "demand": f"demand {SITE} --out o.csv --plot p.png",
     "verify": f"verify {BLOCK} --site {SITE} --plot p.png --sheet s.html",

@@ -104,7 +104,7 @@ def respond_around(asked: RespondAroundAsked, watch: Watcher) -> Answer[AzimuthR
     result = all_around(ready, models, pair, asked.scale, release=asked.ratio(ready), rtol=asked.rtol)
 
     free = [side.phi_cr is None for side in ready.statics]
-    figure = drawn("questions.respond.azimuths_picture.draw_azimuths", result, heading_of_run(ready), free)
+    figure = drawn("questions.respond.each_picture.draw_azimuths", result, heading_of_run(ready), free)
     shown = view(ready, result, doubts_of(ready.mechanism))
     dims = [Dimensions(("azimuth",), ("pga_g",)), Dimensions(("model", "azimuth"))]
     return Answer("all directions", result, shown, partial(columns, result), figure, dims=dims)

@@ -149,7 +149,7 @@ def test_a_file_is_refused_with_class_words_and_place_and_nothing_is_written(
 def test_every_class_that_the_code_raises_is_tried():
     package = PROJECT / "rocking_cli"
     folders = [package / each for each in ("io/drawings", "questions/import_drawing", "questions/import_mesh")]
-    files = [package / "ask" / "drawings.py", *(file for folder in folders for file in folder.glob("*.py"))]
+    files = [package / "ask" / "read.py", *(file for folder in folders for file in folder.glob("*.py"))]
     code = "".join(file.read_text(encoding="utf-8") for file in files)
     raised = set(re.findall(r'(?:DrawingError\(|places\.require\([^"]*, |refusal\()\s*"(\w+)"', code))
     assert raised == {refused for refused, *_ in REFUSED}
