@@ -119,6 +119,11 @@ class History(Outcome[bool, int, float]):
         return isfinite(self.ratio[0])
 
     @property
+    def crushes(self) -> bool:
+        """Whether the motion is unknown because a joint crushes."""
+        return self.unknown is True and self.check is not None and self.check.reason == "crushes"
+
+    @property
     def words(self) -> str:
         """Outcome in the words of `rocking_cli.names`."""
         if self.blocks is not None and self.blocks.off:

@@ -279,11 +279,16 @@ def are_alike(one: Conclusion, other: Conclusion) -> bool:
     return all(isclose(a, b, rel_tol=SAME_RATIO) for a, b in zip(severity(one), severity(other), strict=True))
 
 
-def severity(conclusion: Conclusion) -> tuple[int, int, float, float, float, float]:
-    """Return how bad a conclusion is, to compare it with others: of unknown outcomes, that of free blocks decides."""
+def severity(conclusion: Conclusion) -> tuple[float, ...]:
+    """Return how bad a conclusion is, to compare it with others: of unknown outcomes, that of free blocks decides.
+
+    Of equal ones, that which overturns earlier as free blocks is worse, and then that which is unknown earlier.
+    """
     told = conclusion.told
     share = conclusion.share.highest if conclusion.share is not None else 0.0
     # Without a ratio, a motion takes the structure past its capacity: this is the worst.
     ratio = 0.0 if conclusion.ratio is None else -conclusion.ratio
     places = SEVERITY.index(conclusion.concluded), SEVERITY.index(told.concluded)
-    return *places, share, ratio, told.peak_ratio or 0.0, told.slip or 0.0
+    falls = conclusion.blocks.time if conclusion.blocks is not None else None
+    times = -(falls or 0.0), -(conclusion.known_until or 0.0)
+    return *places, share, ratio, told.peak_ratio or 0.0, told.slip or 0.0, *times

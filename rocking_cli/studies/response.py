@@ -214,6 +214,10 @@ def histories(
     unknown = nonlinear is not None and nonlinear.unknown
     if (engine == "exact" and not (unknown and conditions.goes_on)) or (engine == "auto" and exact and not unknown):
         return exact, None, ""
+    if nonlinear is not None and nonlinear.crushes and engine != "blocks":
+        return exact, None, "free blocks cannot crush"
+    if engine == "exact" and structure.restitution_source == "missing":
+        return exact, None, ""  # free blocks would assume the rebound, which is not known
     from rocking_cli.studies.both_engines import compare
     from rocking_cli.studies.engines.free import Blocks, TooLong
 
@@ -230,8 +234,9 @@ def histories(
     except (InputError, SolverError) as error:
         if not unasked:
             raise
-        failed = f"free blocks fail: {error}" if isinstance(error, SolverError) else ""
-        return exact, None, f"free blocks take more than {most:,.0f} steps" if isinstance(error, TooLong) else failed
+        if isinstance(error, TooLong):
+            return exact, None, f"free blocks take more than {most:,.0f} steps times blocks"
+        return exact, None, f"free blocks fail: {error}" if isinstance(error, SolverError) else ""
     both = compare(structure.mechanism, nonlinear, blocks, moved, free) if nonlinear is not None else None
     return {**exact, "blocks": blocks}, both, ""
 

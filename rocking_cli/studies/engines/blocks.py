@@ -36,7 +36,7 @@ LIGHT = 0.1  # normal force over the weight of the lighter block, below which fr
 REST_ENERGY = 1e-9  # kinetic energy at rest, over m g times the size; for sqrt(size/g), as blocks also turn back
 LONGEST_TAIL = 60.0  # s after the motion for which blocks that still move are followed
 ROUNDING = 1e-6  # samples
-READ_AS = 4  # number of the rule by which an outcome is read from a motion: outcomes by others are not those kept
+READ_AS = 5  # number of the rule by which an outcome is read from a motion: outcomes by others are not those kept
 
 
 @short_repr

@@ -89,8 +89,9 @@ def follow(
     """
     check_motion(structure, motion, release, tail)
     simulated = history.follow(structure.model(model), motion, release=release or 0.0, tail=tail, rtol=rtol)
-    with suppress(InputError):  # raised of what free blocks cannot have
-        return replace(simulated, witness=simulated.unknown and free_blocks(structure.mechanism) is not None)
+    if simulated.unknown and not simulated.crushes:
+        with suppress(InputError):  # raised of what free blocks cannot have
+            return replace(simulated, witness=free_blocks(structure.mechanism) is not None)
     return simulated
 
 

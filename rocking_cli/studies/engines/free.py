@@ -29,7 +29,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.io.json_text import json_text
 from rocking_cli.names import TAIL_SECONDS
 from rocking_cli.structure import Structure
-from rocking_cli.studies.engines.blocks import STEPS, SUNK, BlockModel, BlockMotion, time_constant
+from rocking_cli.studies.engines.blocks import SETTLING, STEPS, SUNK, BlockModel, BlockMotion, time_constant
 from rocking_cli.studies.engines.exact import EXACT, Engine, EngineName, RunOptions, check_motion
 from rocking_cli.studies.engines.free_blocks import FreeBlocks, free_blocks
 from rocking_cli.studies.engines.scene import engine_version
@@ -66,9 +66,9 @@ def simulate(
     TooLong
         If it takes more steps.
     """
-    lasts = motion.duration if motion is not None else 0.0
+    lasts, settling = motion.duration if motion is not None else 0.0, SETTLING * free.unit_of_time
     for finer in FINER:
-        seconds = most_steps / len(free.bodies) * time_constant(free) / (finer * STEPS)
+        seconds = most_steps / len(free.bodies) * time_constant(free) / (finer * STEPS) - settling
         if lasts > seconds:
             raise TooLong("a simulation takes too many steps")
         if finer not in models:
@@ -78,14 +78,15 @@ def simulate(
             raise TooLong("a simulation takes too many steps")
         if not moved.failed:
             break
-        most_steps *= 1 - float(moved.time[-1]) / seconds
+        most_steps *= 1 - (float(moved.time[-1]) + settling) / (seconds + settling)
     return moved
 
 
 def outcome_of(moved: BlockMotion, free: FreeBlocks, phi_cr: Sequence[float]) -> dict[str, Any]:
     """Return the fields of the outcome of a motion of free blocks."""
     phi = free.rotation(moved.moved)
-    way = phi[-1] if free.leads else moved.moved[-1, _place(free, moved.block), 0]
+    of_mechanism = phi[-1] if free.leads else 0.0  # zero where a block falls beside the mechanism
+    way = of_mechanism or moved.moved[-1, _place(free, moved.block), 0]
     peaks = [float(np.max(sign * phi, initial=0.0)) for sign in (1, -1)]
     fell = np.isfinite(moved.collapsed)
     moving = np.abs(phi) > MOVED * np.where(phi < 0, phi_cr[1], phi_cr[0])

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from math import inf, nan
+from math import inf, nan, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -31,6 +31,7 @@ TURN = 0.8  # rad: a block that turns by it has collapsed
 COLLAPSE = f"a block falls by {FALL:g} of the structure's height, or turns by {TURN:g} rad"
 NEAR_SHARE = 1e-6  # distance that counts as zero, over the size of the structure
 LEAD_RATE = 1e-6  # difference of a rate of turning from that of phi that counts as zero
+LEAD_SHARE = 0.5  # of the limit of the rotation, at which the body that leads still turns by phi
 SAME_TURN = 1e-6  # turn from one normal to another that counts as none
 FLAT_SHARE = 1e-6  # length of a foot, over the size of the structure, below which it is a point
 FARTHEST_GROUND = (
@@ -128,6 +129,12 @@ class FreeBlocks:
     def box(self) -> tuple[complex, complex]:
         """Lower left and upper right corner of all blocks at rest [m]."""
         return box_around([piece for pieces in self.shapes.values() for piece in pieces])
+
+    @property
+    def unit_of_time(self) -> float:
+        """sqrt(size/g), of the diagonal of the box [s]."""
+        low, high = self.box
+        return sqrt(abs(high - low) / self.gravity)
 
     @property
     def height(self) -> float:
@@ -466,12 +473,17 @@ class _Apart:
         leads = []
         names = [body.name for body in self.mechanism.bodies()]
         try:
-            moving = [self.mechanism.motion(np.zeros(1), direction) for direction in self.mechanism.directions]
+            moving = [
+                self.mechanism.motion(np.array([0.0, LEAD_SHARE * self.mechanism.limit(direction)]), direction)
+                for direction in self.mechanism.directions
+            ]
         except MechanismError:
             return []
         for direction, each in zip(self.mechanism.directions, moving, strict=True):
             motions = dict(zip(names, each, strict=True))
-            turning = {name for name, motion in motions.items() if abs(motion.dpsi[0] + direction) < LEAD_RATE}
+            off = {name: np.abs(motion.dpsi + direction) for name, motion in motions.items()}
+            alike = {name for name in names if off[name][0] < LEAD_RATE}  # at rest others may turn as fast
+            turning = {name for name in alike if off[name][1] < LEAD_RATE} or alike
             rates = np.zeros((len(bodies), 3))
             for k, body in enumerate(bodies):
                 of, shift = moves_with[body.name]

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from hashlib import sha256
 from importlib.util import find_spec
 from itertools import pairwise
-from math import inf, sqrt
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -117,7 +117,7 @@ class _Builder:
         self.mujoco, self.free = mujoco, free
         low, high = free.box
         self.size = abs(high - low)
-        self.unit_of_time = sqrt(self.size / free.gravity)
+        self.unit_of_time = free.unit_of_time
         self.mass = sum(body.mass for body in free.bodies) + sum(load.mass for load in free.floors)
         self.spec = mujoco.MjSpec()
         self.soft: dict[str, Any] = {
