@@ -63,7 +63,7 @@ class Ring:
             Moment of the weight. The moment of all loads is rows . (M0, Fx, Fy, lambda) - weight.
         """
         point, area, moment = self.joint(angle, face)
-        lever = moment - point * area
+        lever = moment - point * area  # about the point: weight has the moment -Re, inertia to the right -lambda Im
         rows = np.stack([np.ones_like(angle), point.imag, -point.real, -lever.imag], axis=-1)
         return rows, lever.real
 

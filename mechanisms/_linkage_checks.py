@@ -90,6 +90,7 @@ def _facing(one: Iterable[Side], other: Sequence[Side]) -> Iterator[tuple[Side, 
         along, back = (q - p) / abs(q - p), (s - r) / abs(s - r)
         turn = along.conjugate() * back
         if abs(turn.imag) <= MAX_SINE and turn.real <= 0:
+            # Along the first side, the second one extends from its end s to its start r.
             yield (p, q), (r, s), max(0.0, ((s - p) / along).real), min(abs(q - p), ((r - p) / along).real)
 
 

@@ -446,15 +446,16 @@ class Linkage(LinkedBodies):
         """Return a joint that only hinges, at one point, with the whole face that touches at rest."""
         if contact.held is not None or len(contact.points) > 1:
             return contact
-        (at,), moves = contact.points, [name for name in contact.pieces if name is not None]
-        still = [name for name in self._anchored[self.directions[0]] if name != GROUND]
-        pairs = [moves] if len(moves) == 2 else [[name, *moves] for name in still]
-        closed = [face for one, other in pairs for face in self._closed_faces((one, other)) if _is_on(contact, face)]
-        ends = [end for face in closed for end in face.points]
-        if not ends and (face := face_at(self._members, moves, at)) is not None:
+        (hinge,), bodies = contact.points, [name for name in contact.pieces if name is not None]
+        # A joint of one body alone is on the ground, or on any of the bodies that count as the ground.
+        fixed = [name for name in self._anchored[self.directions[0]] if name != GROUND]
+        pairs = [bodies] if len(bodies) == 2 else [[name, *bodies] for name in fixed]
+        faces = [face for one, other in pairs for face in self._closed_faces((one, other)) if _is_on(contact, face)]
+        ends = [end for face in faces for end in face.points]
+        if not ends and (face := face_at(self._members, bodies, hinge)) is not None:
             ends = [face.far]
-        far = max(ends, key=lambda end: abs(end - at), default=at)
-        return contact if far == at else replace(contact, points=(at, far), face=None)
+        far = max(ends, key=lambda end: abs(end - hinge), default=hinge)
+        return contact if far == hinge else replace(contact, points=(hinge, far), face=None)
 
     @property
     def propped(self) -> bool:

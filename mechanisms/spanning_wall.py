@@ -242,7 +242,7 @@ class SpanningWall(Mechanism):
         hinge = Extra("hinge", self._hinges[direction], "", "height of the hinge over that of the wall")
         if not self.has_mass:
             return (hinge,)
-        force = abs(float(at_uplift(self, direction).force[-1, 0].real))
+        force = abs(float(at_uplift(self, direction).force[-1, 0].real))  # of the last joint, C at the top
         return hinge, Extra("top_force", force, "N", "horizontal force at which its top is held as rocking starts")
 
     def joints(self, direction: Direction) -> Sequence[Joint]:

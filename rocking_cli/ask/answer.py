@@ -148,8 +148,9 @@ class Answer(Generic[R]):
         if find_spec("xarray") is None:
             hint = "pip install 'rocking-cli[xarray]'"
             raise InputError(Problem("labelled arrays require the package xarray", hint=hint))
-        made = {table: parted(table()) for table in {each.table or self.columns for each in self.dims}}
-        return labelled([(each, made[each.table or self.columns]) for each in self.dims])
+        # Dimensions without a table of their own share that of the answer, which is computed once.
+        computed = {table: parted(table()) for table in {each.table or self.columns for each in self.dims}}
+        return labelled([(each, computed[each.table or self.columns]) for each in self.dims])
 
     @property
     def frames(self) -> dict[str, pandas.DataFrame]:

@@ -34,25 +34,25 @@ def _number(stopped: BaseException | None) -> int:
 @contextmanager
 def in_order() -> Iterator[None]:
     """Raise `Stopped` on the signals that end a program, except those that are ignored, as `nohup` does."""
-    kept, unraisable = {}, sys.unraisablehook
+    former_handlers, former_hook = {}, sys.unraisablehook
 
-    def not_lost(what: sys.UnraisableHookArgs) -> None:
+    def send_again(dropped: sys.UnraisableHookArgs) -> None:
         """Send a signal again if it came where Python drops exceptions, such as while an object is deleted."""
-        if isinstance(what.exc_value, KeyboardInterrupt):
-            threading.Timer(RESEND_INTERVAL, _give, [_number(what.exc_value)]).start()
+        if isinstance(dropped.exc_value, KeyboardInterrupt):
+            threading.Timer(RESEND_INTERVAL, _give, [_number(dropped.exc_value)]).start()
         else:
-            unraisable(what)
+            former_hook(dropped)
 
-    sys.unraisablehook = not_lost
+    sys.unraisablehook = send_again
     if threading.current_thread() is threading.main_thread():  # other threads may not set signal handlers
         for number in (getattr(signal, name) for name in END_SIGNALS if hasattr(signal, name)):
             if signal.getsignal(number) == signal.SIG_DFL:
-                kept[number] = signal.signal(number, _stop)
+                former_handlers[number] = signal.signal(number, _stop)
     try:
         yield
     finally:
-        sys.unraisablehook = unraisable
-        for number, handler in kept.items():
+        sys.unraisablehook = former_hook
+        for number, handler in former_handlers.items():
             signal.signal(number, handler)
 
 

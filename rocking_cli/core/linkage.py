@@ -223,14 +223,17 @@ class Loops:
         return np.asarray((self._turned(e) * (self._k + e @ self._C.T + u @ self._S.T)).imag)
 
     def matrix(self, x: Reals) -> Reals:
-        """Return the Jacobian of the loop equations, shape (n, m, unknowns)."""
+        """Return the Jacobian of the loop equations, shape (n, m, unknowns).
+
+        Its columns are the rotations psi of the links, then the real and the imaginary parts of u.
+        """
         psi, u = self._parts(x)
         e = np.exp(1j * psi)
         w, gap = self._turned(e), self._k + e @ self._C.T + u @ self._S.T
         jacobian = np.empty((len(x), len(self._w), self.unknowns))
         jacobian[:, :, : self.count] = (w[:, :, None] * (1j * self._C) * e[:, None, :]).imag
-        body = np.flatnonzero(self._turn >= 0)
-        jacobian[:, body, self._turn[body]] -= (w * gap).real[:, body]
+        guides = np.flatnonzero(self._turn >= 0)  # equations whose line turns with a link
+        jacobian[:, guides, self._turn[guides]] -= (w * gap).real[:, guides]
         jacobian[:, :, self.count : self.count + self.trees] = w.imag[:, :, None] * self._S
         jacobian[:, :, self.count + self.trees :] = w.real[:, :, None] * self._S
         return jacobian

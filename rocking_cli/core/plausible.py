@@ -109,7 +109,7 @@ def _measures(mechanism: Mechanism) -> Mapping[str, float]:
     """Return the measures of a structure with which its numbers are compared."""
     measures = {"": 1.0, "length": mechanism.depth or nan}
     try:
-        corners = np.array([z for shapes in mechanism.carrier.outlines.values() for each in shapes for z in each])
+        corners = np.array([z for outlines in mechanism.carrier.outlines.values() for line in outlines for z in line])
         mass = sum(body.mass for body in mechanism.weighed()) if mechanism.has_mass else nan
     except Exception:  # a plugin may fail in any way; its next use reports it
         return measures

@@ -41,7 +41,10 @@ def fault_of(z: Points) -> str | None:
 
 
 def overlap(one: Points, other: Points, tolerance: float) -> bool:
-    """Return whether two polygons have more in common than sides and corners, to a tolerance [m]."""
+    """Return whether two polygons have more in common than sides and corners, to a tolerance [m].
+
+    If they have, the middle of a piece of a side, or a point inside of one, lies deeper in the other.
+    """
     if not _boxes_meet(one, other, -tolerance) or _beside(one, other, tolerance):
         return False
     for first, second in ((one, other), (other, one)):

@@ -198,13 +198,16 @@ def _instead_of_joints(mechanism: Mechanism, direction: Direction) -> Sequence[C
 
 
 def _at_contacts(pieces: Pieces, contacts: Sequence[Contact], demand: Reals) -> Reactions | None:
-    """Return the forces at the contacts from three equations for each piece; None if no forces balance `demand`."""
+    """Return the forces at the contacts from three equations for each piece; None if no forces balance `demand`.
+
+    Subscripts of the sums: n are the states, q the equations, r the components of the forces.
+    """
     rates, rows = pieces.rates(contacts)
     jacobian = rates.dense()
     balance, needed = (jacobian / pieces.scale).swapaxes(1, 2), demand / pieces.scale
     values = np.einsum("nrq,nq->nr", np.linalg.pinv(balance), needed)
-    off = np.abs(np.einsum("nqr,nr->nq", balance, values) - needed)
-    if off.max(initial=0.0) > MAX_IMBALANCE * np.abs(needed).max(initial=0.0):
+    imbalance = np.abs(np.einsum("nqr,nr->nq", balance, values) - needed)
+    if imbalance.max(initial=0.0) > MAX_IMBALANCE * np.abs(needed).max(initial=0.0):
         return None
     joints: list[Joint] = []
     force: list[Points] = []
@@ -215,6 +218,7 @@ def _at_contacts(pieces: Pieces, contacts: Sequence[Contact], demand: Reals) -> 
         names = tuple(name for name in contact.pieces if name is not None)
         joints.append(Joint(contact.letter, contact.points[0], names, normal=contact.normal, face=contact.face))
         across.append(pieces.normal(contact))
+        # The normal forces along the unit normal, the shear force across it.
         force.append((values[:, list(normal)].sum(axis=1) - 1j * values[:, shear]) * across[-1])
     if not joints:
         return None

@@ -311,6 +311,7 @@ class StructureFields(Described):
             If a validator of the plugin fails in any other way.
         """
         with blame(f"the mechanism {cls.mechanism} failed on these fields", cls.__module__, but=ValidationError):
+            # Validators add a remark to "weights" for each weight that they read as a mass.
             context: dict[str, Any] = {"folder": folder, "weights": []}
             structure = cls.model_validate(dict(fields), context=context)
             # Kept like cached properties: they are no fields, and do not count where structures are compared.

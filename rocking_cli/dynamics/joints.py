@@ -256,6 +256,9 @@ def joints_of(
 ) -> JointTables | None:
     """Return the joints of a structure as arrays of the kernel; None if they are not known.
 
+    The rows of each direction are the forces at its joints, as statics gives them; where statics alone does not, the
+    modes in which joints open. In a structure with supports that push back, those modes of supports follow.
+
     Parameters
     ----------
     mechanism : Mechanism
@@ -289,47 +292,47 @@ def joints_of(
             modes(mechanism, direction, _at(table, cells), side.reference)
             for (direction, table), side in zip(sides, statics, strict=True)
         ]
-    released_sides = [one for one, _ in answers if one is not None]
-    if len(released_sides) < len(sides) or not all(one.contacts for one in released_sides):
+    released_sides = [forces for forces, _ in answers if forces is not None]
+    if len(released_sides) < len(sides) or not all(forces.contacts for forces in released_sides):
         return None
     still = resting(mechanism)
-    back = still.modes if mechanism.propped else ()  # modes that push supports back act on as the structure rocks
+    push_modes = still.modes if mechanism.propped else ()  # these push supports back, and go on as the structure rocks
     known = [*released_sides, still.closed] if still.closed is not None else released_sides
     labels = list(dict.fromkeys(
-        contact.label for one in known
-        for contact, (_, shear) in zip(one.contacts, one.rows, strict=True) if shear is not None
+        contact.label for forces in known
+        for contact, (_, shear) in zip(forces.contacts, forces.rows, strict=True) if shear is not None
     ))  # fmt: skip
     contacts, bearing = _contacts(mechanism, released_sides, labels, still.modes)
-    row_count = max(one.force.shape[1] for one in released_sides) + len(back)
+    row_count = max(forces.force.shape[1] for forces in released_sides) + len(push_modes)
     weight = mechanism.gravity * sum(body.mass for body in mechanism.weighed())
-    rows = np.zeros((cells, 2, row_count, 20))
+    rows = np.zeros((cells, 2, row_count, 20))  # cubics of four factors and a compliance
     within = np.zeros((CELL_SPLITS * cells, 2, 5))
     struck, stopped = np.zeros((2, 2, row_count, 2))
     rest, steady = _at_rest(still, labels, bearing, weight)
-    plain = len(labels)
+    joint_count = len(labels)
     labels += [mode.joint for mode in still.modes]
-    for d, ((direction, table), one) in enumerate(zip(sides, released_sides, strict=True)):
-        whole = _factors(one, mechanism.coefficients(_at(table, cells), direction).I, weight)
-        if back:
-            of_joints = whole.shape[1]
-            contacts[-len(back) :, d, 0] = contacts[-len(back) :, d, 2] = np.arange(len(back)) + of_joints
-            constant = np.array([[*mode.force, mode.compliance] for mode in back])
-            whole = np.concatenate([whole, np.tile(constant, (len(whole), 1, 1))], axis=1)
-            there = Pieces(mechanism, mechanism.directions[0], np.zeros(1))
+    for d, ((direction, table), forces) in enumerate(zip(sides, released_sides, strict=True)):
+        factors = _factors(forces, mechanism.coefficients(_at(table, cells), direction).I, weight)
+        if push_modes:
+            first, count = factors.shape[1], len(push_modes)  # their rows follow those of the joints
+            contacts[-count:, d, 0] = contacts[-count:, d, 2] = np.arange(count) + first
+            constant = np.array([[*mode.force, mode.compliance] for mode in push_modes])
+            factors = np.concatenate([factors, np.tile(constant, (len(factors), 1, 1))], axis=1)
+            pieces = Pieces(mechanism, mechanism.directions[0], np.zeros(1))
             # The velocities of the supports are -t before an impact and eta t after it.
-            struck[d, of_joints : whole.shape[1]] = [
-                [float(there.momentum(there.dq)[0] @ mode.velocity)] * 2 for mode in back
+            struck[d, first : factors.shape[1]] = [
+                [float(pieces.momentum(pieces.dq)[0] @ mode.velocity)] * 2 for mode in push_modes
             ]
-        cubics = _lines(whole) if redundant else _cubics(whole)
-        rows[:, d, : whole.shape[1]] = cubics.reshape(cells, -1, 20)
+        cubics = _lines(factors) if redundant else _cubics(factors)
+        rows[:, d, : factors.shape[1]] = cubics.reshape(cells, -1, 20)
         within[:, d] = _within(cubics, contacts[:, d], bearing)
-        if (hit := answers[d][1]) is not None:
-            struck[d, : len(hit)] = hit
+        if (impact := answers[d][1]) is not None:
+            struck[d, : len(impact)] = impact
         bound = mechanism.bounds[direction]
         if bound is not None and bound.restitution is not None and not redundant:
             by_stop = stop_impulses(mechanism, direction, bound)
             stopped[d, : len(by_stop)] = by_stop[:, None]
-    sliding = {k for k, mode in enumerate(still.modes, plain) if mode.slides}
+    sliding = {k for k, mode in enumerate(still.modes, joint_count) if mode.slides}
     return JointTables(
         labels, contacts, bearing, rows, struck, stopped, within, _reach(mechanism, statics), OPENING,
         not any(table.held.size for table in tables), MAX_OPENING_STEP / p, mechanism.gravity, rest, steady,

@@ -236,7 +236,10 @@ def _bears_at_uplift(mechanism: Mechanism, direction: Direction, uplift: float, 
 
 
 def _conditions(joints: Released, friction: float | None = None) -> Iterator[tuple[Reals, str, bool]]:
-    """Yield each force that must not be negative at rest, its joint, and whether the joint slides if it is."""
+    """Yield each force that must not be negative at rest, its joint, and whether the joint slides if it is.
+
+    A force is given by its factors, as in `Released`: it is affine in the ground accelerations.
+    """
     for contact, (normal, shear) in zip(joints.contacts, joints.rows, strict=True):
         for row in normal:
             yield joints.force[0, row], contact.label, False

@@ -30,6 +30,9 @@ def problems(
 ) -> list[Problem]:
     """Return the errors of a validation as problems, each with its place in the file.
 
+    Only the first `MAX_WORDED` in the file are put into words. All others are one problem, given as often as there are
+    others, so that they are counted.
+
     Parameters
     ----------
     document : Document

@@ -527,15 +527,18 @@ def _put_below(key: Legend, axes: Axes) -> None:
     key.set_bbox_to_anchor((0.5, 0.0), axes.transAxes + ScaledTranslation(0, -depth, root.dpi_scale_trans))
 
 
-def _break_lines(axes: Axes, before: set[Any], left: float) -> None:
-    """Break labels, and notes that are new, into lines that fit a panel; a legend leaves a share of its height."""
+def _break_lines(axes: Axes, before: set[Any], height_share: float) -> None:
+    """Break the labels of a panel, and the notes in it that are not among those before, into lines that fit.
+
+    Legends below the panels leave `height_share` of its height.
+    """
     size = inches(axes)
-    new = [each for each in axes.texts if isinstance(each, Annotation) and each not in before]
-    notes = [(each, size.real) for each in new if each.xycoords == "axes fraction"]
-    for each, room in ((axes.xaxis.label, size.real), (axes.yaxis.label, left * size.imag), *notes):
-        escape: Callable[[str], str] = str if each.get_parse_math() else plain
-        text = folded(escape(each.get_text()), room, float(each.get_fontsize()))
-        each.set_text(text if each.get_parse_math() else text.replace(r"\$", "$"))
+    added = [each for each in axes.texts if isinstance(each, Annotation) and each not in before]
+    notes = [(note, size.real) for note in added if note.xycoords == "axes fraction"]
+    for label, room in ((axes.xaxis.label, size.real), (axes.yaxis.label, height_share * size.imag), *notes):
+        escape: Callable[[str], str] = str if label.get_parse_math() else plain
+        text = folded(escape(label.get_text()), room, float(label.get_fontsize()))
+        label.set_text(text if label.get_parse_math() else text.replace(r"\$", "$"))
 
 
 def tidy(axes: Axes, x: str = "", y: str = "") -> None:

@@ -454,8 +454,10 @@ def _base(reactions: Reactions, rest: Collection[str] = ()) -> Reals:
     total = np.zeros(reactions.force.shape[1])
     for joint, force in zip(reactions.joints, reactions.force.real, strict=True):
         moves = [name not in rest for name in joint.bodies]
-        if reactions.is_whole or (not joint.is_guide and moves == [True]) or moves == [False, True]:
-            total += force  # forces act on the last body of the joint
+        on_ground = moves == [True] and not joint.is_guide
+        # Forces act on the last body of a joint, which is the only one if the other is the ground.
+        if reactions.is_whole or on_ground or moves == [False, True]:
+            total += force
         elif moves == [True, False]:
             total -= force
     return total

@@ -363,11 +363,11 @@ def carries_what_hangs_on_it(structure: Mechanism) -> None:
         return
 
     def energies(phi: Reals, direction: Direction) -> tuple[Reals, Reals]:
-        """Return the energies from the place of the point: of the weight over g, and of tie and force."""
+        """Return the energies of what hangs on a point, from where it moves: of the weight over g, of tie and force."""
         z = bare.followed(phi, direction)(spot).z
-        longer = np.abs(z - anchor) - abs(spot.at - anchor)
-        work = ((z - spot.at) * np.conj(force)).real
-        return share["weight"] * mass * (z - spot.at).imag, prestress * longer + stiffness * longer**2 / 2 - work
+        elongation = np.abs(z - anchor) - abs(spot.at - anchor)
+        of_weight, work = share["weight"] * mass * (z - spot.at).imag, ((z - spot.at) * np.conj(force)).real
+        return of_weight, prestress * elongation + stiffness * elongation**2 / 2 - work
 
     for direction in structure.directions:
         top = _top(bare, direction)

@@ -75,7 +75,10 @@ def _shares(near: Neighbours) -> str:
 
 
 def neighbours_data(near: Neighbours) -> dict[str, Any]:
-    """Return the outcomes of the neighbours of a motion as plain data; peaks of overturning are null."""
+    """Return the outcomes of the neighbours of a motion as plain data.
+
+    A quantile of peaks or slips is null if it belongs to a neighbour that overturns or whose outcome is unknown.
+    """
 
     def quantiles(values: Sequence[float]) -> dict[str, float | None]:
         pairs = zip(FRACTILES, values, strict=True)

@@ -367,8 +367,8 @@ def standing(workings: Sequence[Working], notation: str | None = "", say: Langua
     """
     plain = [each.in_plain() for each in workings]
     ours, unchecked, transcribed, printed = (
-        {each.symbol: each.meaning for each in plain if each.standing == standing}
-        for standing in ("ours", "code", "transcription", "print")
+        {each.symbol: each.meaning for each in plain if each.standing == level}
+        for level in ("ours", "code", "transcription", "print")
     )
     sentences, symbols = [], {"printed": ", ".join(printed)}
     if notation is not None and (printed or transcribed or unchecked):

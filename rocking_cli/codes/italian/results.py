@@ -203,13 +203,13 @@ class Dynamic:
         """The requirement on the mean of the histories with FC; None if the code requires more histories."""
         if self.too_few:
             return None
-        mean, past = self.mean(confident=True), self.passed(confident=True)
-        if past or (mean is not None and not self.holds(confident=True)):
+        mean, exceeding = self.mean(confident=True), self.passed(confident=True)
+        if exceeding or (mean is not None and not self.holds(confident=True)):
             concluded = Concluded.NOT_SATISFIED
         else:
             concluded = Concluded.UNKNOWN if mean is None else Concluded.SATISFIED
-        ratio = None if mean is None else self.allowed / mean if mean else inf
-        motion = next(iter(past + self.unknown(confident=True)), "")
+        ratio = None if mean is None else (self.allowed / mean if mean else inf)
+        motion = next(iter(exceeding + self.unknown(confident=True)), "")  # past d0*, or else unknown
         return Requirement(self.state, HISTORIES, ratio, concluded, [each.name for each in self.records], motion)
 
     def holds(self, *, confident: bool) -> bool:

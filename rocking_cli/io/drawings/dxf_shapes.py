@@ -141,9 +141,9 @@ def _arc(centre: complex, radius: float, start: float, turn: float) -> tuple[Poi
     """Return the corners and bulges of an arc, and whether it is a full circle; angles in rad, of turn 0 to 2 pi."""
     full = not FULL_TURN < abs(turn) < 2 * pi - FULL_TURN
     count = 2 if full or abs(turn) > pi else 1  # the bulge of a longer arc would lose digits
-    each = np.copysign(2 * pi if full else turn, turn) / count
-    points = centre + radius * np.exp(1j * (start + each * np.arange(count + (not full))))
-    bulges = np.full(len(points), np.tan(each / 4))
+    turn_each = np.copysign(2 * pi if full else turn, turn) / count
+    points = centre + radius * np.exp(1j * (start + turn_each * np.arange(count + (not full))))
+    bulges = np.full(len(points), np.tan(turn_each / 4))
     if not full:
         bulges[-1] = 0.0
     return points, bulges, full

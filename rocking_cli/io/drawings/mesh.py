@@ -132,18 +132,18 @@ def _surface(known: str, data: bytes, file: str) -> tuple[NDArray[Any], Integers
 
 
 def _plain(data: bytes, file: str) -> bytes:
-    """Return an OBJ file with points and faces alone, whose corners all count from its first point.
+    """Return an OBJ file with points and faces alone, whose corners are all numbered from 1, the first point.
 
-    trimesh counts those that are negative back from the last point, not from the face, and takes no notice of others
-    that name no point.
+    In OBJ a corner -1 is the last point above its face. trimesh takes it for the last point of the file, and does not
+    notice corners that name no point.
     """
-    rows, points = list[bytes](), 0
+    rows, point_count = list[bytes](), 0
     for kind, row in _OBJ_ROW.findall(_OBJ_ASIDE.sub(b" ", data)):
-        points += kind == b"v"
+        point_count += kind == b"v"
         if kind == b"f":
             if not _INTEGERS.fullmatch(row):
                 raise _damaged("OBJ", "a face has corners that are not whole numbers", file)
-            corners = [k + (points + 1) * (k < 0) for k in map(int, row.split())]
+            corners = [k + (point_count + 1) * (k < 0) for k in map(int, row.split())]
             if len(corners) < 3 or min(corners) < 1:
                 raise _damaged("OBJ", "a face has fewer than three corners, or a point that does not exist", file)
             row = b" ".join(b"%d" % k for k in corners)

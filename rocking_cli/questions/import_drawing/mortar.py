@@ -41,23 +41,26 @@ def normals_of(sides: Any) -> Points:
 
 
 def facing(sides: Any, least: float, most: float) -> Any:
-    """Return the sides that face a parallel side of another ring across a gap between two bounds [m], as `PAIR`."""
+    """Return the sides that face a parallel side of another ring across a gap between two bounds [m], as `PAIR`.
+
+    The gap is taken at the middle of their common part; it is negative where rings overlap.
+    """
     ends, normal = np.stack([sides["a"], sides["b"]]), normals_of(sides)
     room, opposite = max(-least, most) * (1 + 1j) / 2, [np.zeros(0, PAIR)]
     low, high = (bound(ends.real, axis=0) + 1j * bound(ends.imag, axis=0) for bound in (np.min, np.max))
     for first, second in nearby(low - room, high + room):
         for i, j in ((first, second), (second, first)):
-            across = (normal[i].conj() * normal[j]).real
-            keep = (sides["of"][i] != sides["of"][j]) & (across < -PARALLEL)
-            i, j, across = i[keep], j[keep], across[keep]
-            one, length, unit = sides["a"][i], np.abs(ends[1, i] - ends[0, i]), 1j * normal[i]
-            at = ((ends[:, j] - one) * unit.conj()).real
-            start, end = np.maximum(at.min(axis=0), 0.0), np.minimum(at.max(axis=0), length)
-            middle = one + unit * (start + end) / 2
-            gap = ((sides["a"][j] - middle).conj() * normal[j]).real / across
+            cosine = (normal[i].conj() * normal[j]).real
+            keep = (sides["of"][i] != sides["of"][j]) & (cosine < -PARALLEL)
+            i, j, cosine = i[keep], j[keep], cosine[keep]
+            origin, length, unit = sides["a"][i], np.abs(ends[1, i] - ends[0, i]), 1j * normal[i]
+            along = ((ends[:, j] - origin) * unit.conj()).real  # where both ends of j are along i
+            start, end = np.maximum(along.min(axis=0), 0.0), np.minimum(along.max(axis=0), length)
+            middle = origin + unit * (start + end) / 2
+            gap = ((sides["a"][j] - middle).conj() * normal[j]).real / cosine
             pairs = np.zeros(len(i), PAIR)
             pairs["one"], pairs["other"], pairs["gap"] = i, j, gap
-            pairs["start"], pairs["end"] = one + unit * start, one + unit * end
+            pairs["start"], pairs["end"] = origin + unit * start, origin + unit * end
             opposite.append(pairs[(end - start > LEAST_SHARE * length) & (gap >= least) & (gap <= most)])
     return np.concatenate(opposite)
 

@@ -77,6 +77,7 @@ class BlockPicture(Picture):
         return box_around([np.array(self.reach), *outlines])
 
     def _slack(self, rotation: Reals) -> list[Bools]:
+        """Return for each tie a mask of the times at which it is slack, by its elongation from rest."""
         centroids, psi = self.at(rotation)
 
         def place(end: End) -> Points | complex:
@@ -86,10 +87,10 @@ class BlockPicture(Picture):
                 centroids[end.part] + np.exp(1j * psi[end.part]) * (end.point - self.parts[end.part].centroid)
             )
 
-        def longer(piece: TiePiece) -> Reals:
+        def elongation(piece: TiePiece) -> Reals:
             return np.asarray(np.abs(place(piece.end) - place(piece.start)) - abs(piece.end.point - piece.start.point))
 
-        return [tie.slack_at(np.sum([longer(piece) for piece in tie.pieces], axis=0)) for tie in self.ties]
+        return [tie.slack_at(np.sum([elongation(piece) for piece in tie.pieces], axis=0)) for tie in self.ties]
 
 
 @short_repr

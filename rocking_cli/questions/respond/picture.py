@@ -174,21 +174,22 @@ def _draw_time(
 ) -> tuple[float, float]:
     """Let the time axis begin shortly before the first uplift and end when nothing moves; say what is left out.
 
-    It begins and ends at a tick. Returns its ends [s].
+    It begins and ends at a tick. `until` has the time until which the histories of each response are valid [s],
+    infinite if their outcome is known. Returns its ends [s].
     """
-    every = [(run, until[what]) for what, each in responses.items() for run in each.values()]
-    moving = [(run, known) for run, known in every if run.lifted] or every
+    runs = [(run, until[what]) for what, histories in responses.items() for run in histories.values()]
+    moving = [(run, known) for run, known in runs if run.lifted] or runs
     starts = [0.0 if run.ratio[0] or isnan(run.uplift_time) else run.uplift_time - SECONDS_BEFORE for run, _ in moving]
     starts += [] if pulse is None else [pulse.start]
     first = max(0.0, min(starts))
     last = max(_end(run, known, first) for run, known in moving)
     start, end = style.time_axis(axes, first, last)
     ends = [run.overturning_time if run.fell else run.end_time for run, known in moving if not isfinite(known)]
-    lasts = max([*ends, motion.duration if motion is not None else 0.0])
+    latest = max([*ends, motion.duration if motion is not None else 0.0])  # what is not shown ends
     left_out = [f"0 to {start:g} s, at rest"] if start > 0 else []
-    if lasts > end:
+    if latest > end:
         why = " or ".join(dict.fromkeys(_state(run, known, end) for run, known in moving))
-        left_out.append(f"{end:g} to {lasts:.4g} s, {why}")
+        left_out.append(f"{end:g} to {latest:.4g} s, {why}")
     label = f"time [s]; not shown: {'; '.join(left_out)}" if left_out else "time [s]"
     label = label.replace(", at rest; ", " and ") if label.endswith(", at rest") else label
     room = style.page_width() - style.MAX_SIDE_MARGIN

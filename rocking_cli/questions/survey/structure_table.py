@@ -118,7 +118,8 @@ class StructureTable(Sequence["TableRow"]):
         self.registry = _Kept()
         self._bases: dict[str, dict[str, Any] | InputError] = {}
         self.columns = self._columns()
-        self._special = {column.path[0]: column.place for column in self.columns if len(column.path) == 1}
+        # Where the cells of columns with one word as heading are, such as the name.
+        self._places = {column.path[0]: column.place for column in self.columns if len(column.path) == 1}
         self._check_fields()
 
     @classmethod
@@ -137,7 +138,7 @@ class StructureTable(Sequence["TableRow"]):
 
     def text(self, row: Row, name: str) -> str:
         """Return the text of a row's cell, by the heading of its column; empty without such a column."""
-        return row.cells[self._special[name]] if name in self._special else ""
+        return row.cells[self._places[name]] if name in self._places else ""
 
     def base_of(self, row: Row) -> str:
         """Return the YAML file that a row modifies; empty for none. Other files are fields of mechanisms."""

@@ -368,24 +368,24 @@ def recall(keys: Sequence[str]) -> dict[str, Any]:
     outcomes: dict[str, Any] = {}
     if not os.path.isfile(place()):  # noqa: PTH113 - pathlib raises where a folder may not be entered
         return outcomes
-    rows, bad = list[tuple[str, Any]](), 0
+    rows, damaged = list[tuple[str, Any]](), 0
 
-    def ask(known: sqlite3.Connection) -> None:
-        (fault,) = known.execute("PRAGMA quick_check(1)").fetchone()
+    def read(database: sqlite3.Connection) -> None:
+        (fault,) = database.execute("PRAGMA quick_check(1)").fetchone()
         if fault != "ok":
             raise sqlite3.DatabaseError(fault)
         for key in keys:
-            rows.extend((key, kept) for (kept,) in known.execute("SELECT outcome FROM kept WHERE key = ?", (key,)))
+            rows.extend((key, kept) for (kept,) in database.execute("SELECT outcome FROM kept WHERE key = ?", (key,)))
 
-    _opened(ask)
+    _opened(read)
     for key, kept in rows:
         checksum, _, text = str(kept).partition(" ")
         if checksum == _checksum(key, text):
             outcomes[key] = {name: nan if value is None else value for name, value in json.loads(text).items()}
         else:
-            bad += 1
-    if bad:
-        warn(KeptWarning(f"{place()}: rows that are damaged and are simulated again: {bad}"))
+            damaged += 1
+    if damaged:
+        warn(KeptWarning(f"{place()}: rows that are damaged and are simulated again: {damaged}"))
     return outcomes
 
 

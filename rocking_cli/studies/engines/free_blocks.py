@@ -322,6 +322,7 @@ class _Apart:
         return InputError(Problem(f"free blocks cannot have {what}", field=field))
 
     def _refuse(self) -> None:
+        """Raise `InputError` for the first thing of the structure that free blocks cannot have."""
         if self.mechanism.crushing is not None:
             raise self._cannot("crushing", "pivots that crush")
         if self.mechanism.stops:
@@ -341,8 +342,8 @@ class _Apart:
                 if isinstance(attached, SteelBar):
                     raise self._cannot(field, f"a tie that yields, as {attached.name}")
                 springs = [each for each in attached.stretched if isinstance(each, Spring) and each.stiffness]
-                several = any(spot.body in self.mechanism.alike() for tie in springs for spot in tie.spots)
-                if several or not springs or len(springs) < len(attached.stretched):
+                on_alike = any(spot.body in self.mechanism.alike() for tie in springs for spot in tie.spots)
+                if on_alike or not springs or len(springs) < len(attached.stretched):
                     raise self._cannot(field, f"{attached.name}, {attached.words}: only elastic ties on single bodies")
         if any(contact.roll for contact in self.contacts):
             raise self._cannot("corner_radius", "rounded feet")
@@ -413,20 +414,23 @@ class _Apart:
         return {name: [z for z in each if len(z) > 2 and area_of(z) > least] for name, each in parts.items()}
 
     def _endless(self, line: Points) -> list[Points | HalfPlane]:
-        """Return the ground on the right of a line, which goes on beyond both ends; towards deeper blocks, halfway."""
+        """Return the ground on the right of a line, which goes on beyond both its ends.
+
+        Beyond an end, where a block stands deeper than the ground there, it goes only halfway to this block.
+        """
         corners = np.concatenate([z for member in self.members for z in member.polygons])
-        first, last = (away / abs(away) for away in (line[0] - line[1], line[-1] - line[-2]))
+        before, after = (outward / abs(outward) for outward in (line[0] - line[1], line[-1] - line[-2]))
         reaches = []
-        for end, away, below in ((line[0], first, 1), (line[-1], last, -1)):
-            there = (corners - end) / away
-            deeper = there.real[(there.real > 0) & (below * there.imag > NEAR_SHARE * self.size)]
+        # The ground is on the left of a ray from the start of the line outward, and on the right of one from its end.
+        for end, outward, ground_side in ((line[0], before, 1), (line[-1], after, -1)):
+            from_end = (corners - end) / outward
+            deeper = from_end.real[(from_end.real > 0) & (ground_side * from_end.imag > NEAR_SHARE * self.size)]
             reaches.append(float(deeper.min(initial=inf)) / 2)
         if reaches == [inf, inf] and len(line) == 2:
             return [_half_plane(*line)]
-        first_reach, last_reach = (min(reach, FARTHEST_GROUND * self.size) for reach in reaches)
-        return list(
-            _below(np.array([line[0] + first_reach * first, *line[1:-1], line[-1] + last_reach * last]), self.size)
-        )
+        reach_before, reach_after = (min(reach, FARTHEST_GROUND * self.size) for reach in reaches)
+        start, end = line[0] + reach_before * before, line[-1] + reach_after * after
+        return list(_below(np.array([start, *line[1:-1], end]), self.size))
 
     def _held(self, ground: dict[str, list[Points | HalfPlane]]) -> list[HeldPoint]:
         """Return the points that are held, and add the ground below feet that stand elsewhere than on `ground`."""

@@ -119,7 +119,10 @@ def tables(say: Language, package: str, name: str, context: Mapping[str, Any]) -
 
 
 def _read(say: Language, text: str, objects: Sequence[Item]) -> list[SheetPart]:
-    """Return the sections of a text whose blocks `@k` stand for objects."""
+    """Return the sections of a text in which a block `@k` stands for `objects[k]`.
+
+    Items before the first heading come first, as a section without a heading.
+    """
     whole = _OpenSection(0, "", "")
     open_sections = [whole]  # from the whole to the innermost
     for block in filter(None, map(str.strip, BLANK_LINES.split(text))):

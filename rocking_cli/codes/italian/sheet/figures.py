@@ -233,53 +233,53 @@ def draw_capacity(
     title : str
         Title of each panel, before its direction and FC.
     ends : mapping of str to str, optional
-        What stands after them, by the name of the direction.
+        Words at the end of each title, after FC, by the name of the direction.
     demand : SiteDemand, optional
         Spectra of the site to draw into the same axes, with the line of the period of the first limit state.
     """
     figure, panels = style.panels((3.4 if demand is None else 4.2) * len(sides), len(sides))
-    every = panels[:, 0]
-    for axes, (where, side) in zip(every, sides.items(), strict=True):
+    panel_axes = panels[:, 0]
+    for axes, (direction, side) in zip(panel_axes, sides.items(), strict=True):
         end, (d, a) = capacity_end(side.exact), side.exact.points()
-        there = np.append(d[d < end], end)
-        axes.plot(there, np.interp(there, d, a), color=style.INK, linewidth=style.BOLD, label=say("exact curve"))
+        shown = np.append(d[d < end], end)
+        axes.plot(shown, np.interp(shown, d, a), color=style.INK, linewidth=style.BOLD, label=say("exact curve"))
         line = {"color": style.MEASURE, "linestyle": "--", "linewidth": style.MEDIUM}
         axes.plot([0, end], [side.a0, side.a0 * (1 - end / side.d0)], label=say("straight line"), **line)
         axes.set_xlim(0, 1.03 * max([end, *(each.demand or 0.0 for each in side.states.values())]))
         tallest = max(side.exact.largest, side.a0)
         for rule in RULES:
-            name, at, look = rule.state, side.states[rule.state], _look(rule.state)
+            name, limit, look = rule.state, side.states[rule.state], _look(rule.state)
             color, dashes = look["color"], look["linestyle"]
             mark = {"marker": look["marker"], "color": color, "linestyle": "none", "zorder": 5}
-            axes.plot(at.d, at.a, label=say("capacity d_{state}", state=name), **mark)
-            if at.demand is None:
+            axes.plot(limit.d, limit.a, label=say("capacity d_{state}", state=name), **mark)
+            if limit.demand is None:
                 continue
+            caption = say("demand at {state}", state=name)
             if demand is None:
-                label = say("demand at {state}", state=name)
-                axes.axvline(at.demand, color=color, linestyle=dashes, linewidth=style.MEDIUM, label=label)
+                axes.axvline(limit.demand, color=color, linestyle=dashes, linewidth=style.MEDIUM, label=caption)
                 continue
             spectrum = _acceleration_displacement(demand.states[name], rule.damping)
             label = say("spectrum of {state}, ξ = {xi:g} %", state=name, xi=100 * rule.damping)
             axes.plot(*spectrum, color=color, linestyle=dashes, linewidth=style.MEDIUM, label=label)
-            steep = (2 * pi / at.T) ** 2
-            axes.plot(at.demand, steep * at.demand, **{**mark, "fillstyle": "none"}, markersize=8,
-                      label=say("demand at {state}", state=name))  # fmt: skip
-            tallest = max(tallest, min(TALLEST_SHARE * tallest, spectrum[1].max()), 1.1 * steep * at.demand)
+            slope = (2 * pi / limit.T) ** 2  # of the line of the period: a = omega^2 d
+            axes.plot(limit.demand, slope * limit.demand, **{**mark, "fillstyle": "none"}, markersize=8, label=caption)
+            tallest = max(tallest, min(TALLEST_SHARE * tallest, spectrum[1].max()), 1.1 * slope * limit.demand)
             if name == side.first:
                 label = say("line of the period T_{state}", state=name)
-                axes.axline((0, 0), slope=steep, color=style.FAINT, linewidth=style.MEDIUM, label=label)
-                style.note(axes, f"T_{name} = {at.T:.4g} s")
+                axes.axline((0, 0), slope=slope, color=style.FAINT, linewidth=style.MEDIUM, label=label)
+                style.note(axes, f"T_{name} = {limit.T:.4g} s")
         axes.set_ylim(0, 1.08 * tallest)
         axes.set_ylabel(say("acceleration a* [m/s2]" if demand is None else "acceleration a*, S_e [m/s²]"),
                         fontsize=style.LABEL)  # fmt: skip
-        style.heading(axes, f"{title}, {where.lower()}, FC = {side.exact.confidence:g}{(ends or {}).get(where, '')}")
+        title_end = (ends or {}).get(direction, "")
+        style.heading(axes, f"{title}, {direction.lower()}, FC = {side.exact.confidence:g}{title_end}")
         style.tidy(axes)
         if demand is None:
             axes.legend(**style.LEGEND)
-    of = "displacement d of the single-degree-of-freedom system [m]"
-    every[-1].set_xlabel(say(of if demand is None else "displacement d, S_De [m]"), fontsize=style.LABEL)
+    label = "displacement d of the single-degree-of-freedom system [m]"
+    panel_axes[-1].set_xlabel(say(label if demand is None else "displacement d, S_De [m]"), fontsize=style.LABEL)
     if demand is not None:
-        style.legend_below(figure, every[0].get_legend_handles_labels()[0], 3)
+        style.legend_below(figure, panel_axes[0].get_legend_handles_labels()[0], 3)
     return in_language(say, figure)
 
 
