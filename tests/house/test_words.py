@@ -38,8 +38,8 @@ QUESTION = re.compile(r"(Which|How|What|Who|Where|Whether|The|A|An|Its)\b")
 MAX_SHORT_HELP = 60  # characters
 DIFFERENT = {
     "--a", "--ag", "--at", "--azimuth", "--check", "--count", "--engine", "--language", "--model", "--neighbours",
-    "--omega", "--out", "--page", "--period", "--plot", "--points", "--pulse", "--restitution", "--scale", "--shape", "--site",
-    "--slenderness", "--state", "--units",
+    "--omega", "--out", "--page", "--period", "--plot", "--points", "--pulse", "--restitution", "--scale", "--shape",
+    "--site", "--slenderness", "--state", "--units",
 }  # fmt: skip
 """Options whose meaning differs between commands, so that one text would be false."""
 COMMANDS = {name: main.get_command(click.Context(main), name) for name in commands()}

@@ -23,6 +23,7 @@ from rocking_cli.studies.conclusion import (
     LeftOut,
     NeighbourShare,
     NextStep,
+    are_alike,
     worst,
 )
 from rocking_cli.studies.response import concluded
@@ -340,6 +341,8 @@ def test_the_worst_of_several_governs():
         for name, each in zip("ab", blocks, strict=True)
     ]
     assert worst(open_).motion == "a" and worst([*open_, ended("c", Concluded.OVERTURNS)]).motion == "c"
+    early, late = (replace(open_[0], motion=str(time), known_until=time) for time in (1.0, 2.0))
+    assert worst([late, early]) is early and not are_alike(early, late)
     assert (open_[1].told.concluded, open_[1].told.peak_ratio) == (Concluded.ROCKS, 0.4)
     known = replace(rocks[0], blocks=blocks[0])
     assert known.told is known and known.concluded is Concluded.ROCKS

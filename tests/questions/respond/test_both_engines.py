@@ -123,7 +123,8 @@ def test_without_mujoco_all_is_as_by_the_exact_engine(monkeypatch):
 def test_beyond_the_bound_it_is_told_who_goes_on(unasked, monkeypatch):
     """Steps times bodies of the whole motion count: one fewer, and free blocks do not go on unless they are asked."""
     free, moved = free_blocks(SMOOTH), unasked.engines[1].moved
-    steps = max(unasked.first.duration, moved.time[-1]) / engine.BlockModel(free).step
+    lasts = max(unasked.first.duration, moved.time[-1]) + engine.SETTLING * free.unit_of_time
+    steps = lasts / engine.BlockModel(free).step
     monkeypatch.setattr(study, "MOST_UNASKED_STEPS", 1.01 * steps)
     assert "blocks" in rk.respond(SMOOTH, STRONG)
     assert "blocks" not in rk.respond(SMOOTH, STRONG, polarity="both")  # which share the bound
@@ -135,6 +136,40 @@ def test_beyond_the_bound_it_is_told_who_goes_on(unasked, monkeypatch):
     said = " ".join(left.sentences)
     assert told["no_blocks"][1:] in said and "`rocking respond` with the engine `auto`" in said
     assert "blocks" in rk.respond(SMOOTH, STRONG, engine="auto")
+
+
+def test_what_crushes_is_unknown_to_free_blocks_too():
+    weak = rk.Block(width=0.7, height=2.8, density=2000, depth=1, strength={"stress": "0.3 MPa", "width": "5 cm"})
+    for engine_name in (None, "auto"):
+        answer = rk.respond(weak, ACCEL, engine=engine_name)
+        told = answer.to_dict()
+        assert (
+            answer["nonlinear"].crushes and "blocks" not in answer and told["no_blocks"] == "free blocks cannot crush"
+        )
+        assert "free_blocks" not in told["conclusion"]["next"]
+
+
+def test_a_rebound_that_is_not_known_is_not_assumed():
+    slab = structure_of(EXAMPLES / "linkages" / "leaning_slab.yaml").mechanism
+    answer = rk.respond(slab.model_copy(update={"rebound": None}), release=0.5)
+    assert answer["nonlinear"].unmeasured and "blocks" not in answer
+
+
+def test_the_rotation_is_that_of_the_body_that_leads():
+    """The slab that leans on the pier turns as fast at rest, and less beyond."""
+    slab = structure_of(EXAMPLES / "linkages" / "leaning_slab.yaml").mechanism
+    assert [lead.block for lead in free_blocks(slab).leads] == ["pier"]
+    run = rk.respond(slab, release=0.9, engine="blocks")["blocks"]
+    assert run.ratio[0] == pytest.approx(0.9, abs=1e-9)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_block_that_falls_by_itself_gives_its_direction(found, side):
+    free = replace(found.free)
+    moved = replace(found.moved, moved=np.zeros((3, 1, 3)), rates=np.zeros((3, 1, 3)), time=np.arange(3.0))
+    moved.moved[-1, 0, 0] = 0.8 * side
+    moved = replace(moved, collapsed=2.0, block=free.bodies[0].name)
+    assert engine.outcome_of(moved, free, (0.3, 0.3))["fell_to"] == side
 
 
 def test_the_bound_ends_a_free_motion_too(monkeypatch):
