@@ -231,7 +231,7 @@ LONG = "report", "verify", "calibrate", "survey", "fragility", "overturning_map"
 """Verbs whose questions take longer: they are asked with the rest."""
 OF_A_KNOWN_MOTION = {"structure": OTHER, "motions": "sine:0.3g:0.2s"}, {"contact": True, "tail": 0.05, "rtol": 1e-5}
 """Arguments of `respond` that change nothing where friction is given, or where the outcome is unknown."""
-WITHOUT_EFFECT = {"watch", "jobs"}
+WITHOUT_EFFECT = {"watch", "jobs", "in_processes"}
 """Arguments that change no answer: the watcher, and how many processors work on it."""
 
 IDLE = [
