@@ -278,7 +278,11 @@ class Store:
         if self.empty:
             self._make_folder()
         if text != self._text:
-            write_whole(self.path / STUDY, lambda stream: stream.write(_sealed(text)))
+            try:
+                write_whole(self.path / STUDY, lambda stream: stream.write(_sealed(text)))
+            except InputError as error:  # another process may have put the folder aside meanwhile
+                what, hint = "this store has been moved or deleted", "run the same command again to continue"
+                raise error if self.path.is_dir() else InputError(Problem(what, str(self.path), hint=hint)) from None
         self._text, self.facts = text, json.loads(text)
         if measured.of_run:
             self._write(MEASURED, measured.of_run, self._usable())
