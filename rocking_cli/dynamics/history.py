@@ -121,7 +121,7 @@ class History(Outcome[bool, int, float]):
     @property
     def crushes(self) -> bool:
         """Whether the motion is unknown because a joint crushes."""
-        return self.unknown is True and self.check is not None and self.check.reason == "crushes"
+        return bool(self.unknown) and self.check is not None and self.check.reason == "crushes"
 
     @property
     def words(self) -> str:
