@@ -309,7 +309,9 @@ def _draw_responses(axes: Axes, histories: Runs, scale: _Scale, until: float, wa
     if watched is not None and not watched.mechanism.rocks_both_ways:
         _draw_wall(axes, watched.mechanism.directions[0], scale)
     moves = any(run.lifted for run in histories.values()) and not histories[best].slip
-    curves = [_draw_run(axes, run, scale, until, told=name != best and moves) for name, run in histories.items()]
+    known = known_until({name: run for name, run in histories.items() if name != "blocks"})  # of the equivalent blocks
+    ends = {name: until if run.by_blocks or run.unknown else min(until, known) for name, run in histories.items()}
+    curves = [_draw_run(axes, run, scale, ends[name], told=name != best and moves) for name, run in histories.items()]
     moved = watched if best != "blocks" else None  # free blocks do not move as the mechanism does
     points, limits = list(_points(axes, histories[best], scale, until, moved)), list[Line2D]()
     for k, side in enumerate(Direction):

@@ -139,6 +139,14 @@ def test_beyond_the_bound_it_is_told_who_goes_on(unasked, monkeypatch):
     assert "blocks" in rk.respond(SMOOTH, STRONG, engine="auto")
 
 
+def test_beside_free_blocks_the_equivalent_blocks_end_where_one_degree_of_freedom_does(unasked):
+    runs = unasked.runs[1]
+    lines = {line.get_label(): line for line in draw_history(runs, unasked.first, "").axes[1].get_lines()}
+    (linear,) = (line for label, line in lines.items() if "kappa_2" in label)
+    assert linear.get_label().endswith("$") and linear.get_xdata()[-1] <= runs["nonlinear"].known_to
+    assert lines["free blocks"].get_xdata()[-1] > runs["nonlinear"].known_to
+
+
 def test_what_crushes_is_unknown_to_free_blocks_too():
     weak = rk.Block(width=0.7, height=2.8, density=2000, depth=1, strength={"stress": "0.3 MPa", "width": "5 cm"})
     for engine_name in (None, "auto"):
