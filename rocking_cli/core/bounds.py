@@ -176,20 +176,20 @@ class _Meetings:
         """Return the first rotation below `before` at which two parts meet, or None."""
         touching = self._touching(one, other)
         apart, path = self._apart(one, other, self.phi, self.links)
-        for k in range(1, NODES):
-            if self.phi[k - 1] >= before:
-                return None
+        # Between two rotations at which they are apart, they cannot meet unless their path is as long as this.
+        both = np.minimum(apart[:-1], apart[1:]) > touching
+        may_meet = both & (apart[:-1] + apart[1:] < path)
+        for k in np.flatnonzero((apart[1:] < -touching) | may_meet) + 1:
             low, high = self.phi[k - 1], self.phi[k]
+            if low >= before:
+                return None
             if apart[k] < -touching:
                 free = apart[:k].max() > touching  # they were apart before
                 if not free and self._apart_at(one, other, high / 2) < JOINED * apart[k]:
                     return None  # they overlap from rest on, as at a hinge that is not at a corner
                 return self._first(one, other, low, high, 0.0 if free else -touching)
-            # Between two rotations at which they are apart, they cannot meet unless their path is as long as this.
-            if min(apart[k - 1 : k + 1]) > touching and apart[k - 1] + apart[k] < path[k - 1]:
-                phi = self._between(one, other, low, high)
-                if phi is not None:
-                    return phi
+            if (phi := self._between(one, other, low, high)) is not None:
+                return phi
         return None
 
     def _between(self, one: _Shape, other: _Shape, low: float, high: float) -> float | None:

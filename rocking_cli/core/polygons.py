@@ -6,6 +6,8 @@ Corners are complex numbers x + iy [m], in order around the polygon, the last jo
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import cache
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -291,31 +293,32 @@ def _any_in_triangle(points: Points, a: complex, b: complex, c: complex) -> bool
     return bool((np.array(sides) >= 0).all(axis=0).any())
 
 
-def _merged(pieces: list[list[int]], z: Points) -> list[Points]:
-    """Join pieces along common sides for as long as they stay convex."""
-    joined = True
-    while joined:
-        joined = False
-        for i, one in enumerate(pieces):
-            for j in range(i + 1, len(pieces)):
-                union = _union(one, pieces[j])
-                if union is not None and all(
-                    _turn(z[union[k - 2]], z[union[k - 1]], z[union[k]]) >= 0 for k in range(len(union))
-                ):
-                    pieces[i] = union
-                    pieces.pop(j)
-                    joined = True
-                    break
-            if joined:
+def _merged(triangles: list[list[int]], z: Points) -> list[Points]:
+    """Join triangles, and what they become, along common sides for as long as they stay convex."""
+
+    @cache  # each pair is met again after every join
+    def joined(one: tuple[int, ...], other: tuple[int, ...]) -> tuple[int, ...] | None:
+        union = _union(one, other)
+        if union is None or any(_turn(z[union[k - 2]], z[union[k - 1]], z[union[k]]) < 0 for k in range(len(union))):
+            return None
+        return union
+
+    pieces = [tuple(corners) for corners in triangles]
+    while True:
+        for i, j in combinations(range(len(pieces)), 2):
+            if (union := joined(pieces[i], pieces[j])) is not None:
+                pieces[i] = union
+                pieces.pop(j)
                 break
-    return [z[piece] for piece in pieces]
+        else:
+            return [z[list(piece)] for piece in pieces]
 
 
-def _union(one: list[int], other: list[int]) -> list[int] | None:
+def _union(one: tuple[int, ...], other: tuple[int, ...]) -> tuple[int, ...] | None:
     """Return two pieces as one, if they share a side."""
     for k, start in enumerate(one):
         end = one[(k + 1) % len(one)]
         if start in other and other[other.index(start) - 1] == end:
             m = other.index(start)
-            return [*one[: k + 1], *(other[(m + n) % len(other)] for n in range(1, len(other) - 1)), *one[k + 1 :]]
+            return *one[: k + 1], *(other[(m + n) % len(other)] for n in range(1, len(other) - 1)), *one[k + 1 :]
     return None
