@@ -9,9 +9,9 @@ _recent: list[Structure] = []
 
 
 def structure_of(mechanism, opening=OPENING):
-    """Its structure, that of before if it was asked for lately: whoever follows it often builds its models once."""
+    """Its structure, that of before if an equal one was asked for lately: its models are built once."""
     for each in _recent:
-        if each.mechanism is mechanism and each.opening == opening:
+        if each.mechanism == mechanism and each.opening == opening:
             return each
     _recent.append(Structure(mechanism, opening=opening))
     del _recent[:-40]

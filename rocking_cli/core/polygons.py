@@ -242,11 +242,10 @@ def _filled(z: Points, others: Sequence[Points]) -> Points | None:
     size = float(np.abs(z - z.mean()).max())
     if distance(z, hull).max() > SHALLOW_SHARE * size:
         return None
-    for other in others:
-        reaching = other[inside(other, hull) & (~inside(other, z) | (distance(other, z) < TOUCHING_SHARE * size))]
-        if reaching.size and distance(reaching, hull).max() > TOUCHING_SHARE * size:
-            return None
-    return hull
+    beside = np.concatenate([*others, z[:0]])
+    beside = beside[inside(beside, hull)]
+    reaching = beside[~inside(beside, z) | (distance(beside, z) < TOUCHING_SHARE * size)]
+    return hull if (distance(reaching, hull) <= TOUCHING_SHARE * size).all() else None
 
 
 def _hull(z: Points) -> Points:

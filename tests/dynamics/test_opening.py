@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from functools import cache
 from itertools import pairwise, product
 from math import isnan, nan
 from types import SimpleNamespace
@@ -18,10 +19,10 @@ from rocking_cli.dynamics.joints import _calm, _within
 from rocking_cli.dynamics.modes import modes
 from rocking_cli.dynamics.outcome import OUTCOME_FIELDS
 from rocking_cli.errors import InputError
-from rocking_cli.structure import build_models
+from rocking_cli.names import OPENING
 from rocking_cli.views.verdict import joints_in_words
 from tests.conftest import EXAMPLES, SHARED
-from tests.following import respond
+from tests.following import build_model, respond
 from tests.oracle.openings import openings as other_openings
 
 BLOCKS = SHARED / "blocks" / "assemblies.json"
@@ -29,9 +30,13 @@ ACCEL = EXAMPLES / "accel.csv"
 NEVER = nan
 
 
+@cache
 def structure(name, **fields):
-    made = load_structure(EXAMPLES / name)
-    return made.model_copy(update=fields) if fields else made
+    return structure(name).model_copy(update=fields) if fields else load_structure(EXAMPLES / name)
+
+
+def nonlinear(made, opening=OPENING):
+    return build_model(made, "nonlinear", opening)
 
 
 def history(made, factor=1.0, **how):
@@ -227,7 +232,7 @@ def test_a_lone_block_that_jumps_is_known_no_further():
     opening = np.cumsum(np.cumsum(let_go[first:])) * dt**2
     assert found.unknown
     assert found.known_to == pytest.approx((first + np.argmax(opening > 0.005 * found.check.reach)) * dt, abs=5 * dt)
-    runs = respond_many(build_models(made, ("nonlinear",)), [motion], Runs.of(0, 0, scale=[0.5, 1.0]))
+    runs = respond_many([nonlinear(made)], [motion], Runs.of(0, 0, scale=[0.5, 1.0]))
     assert runs.unknown.tolist() == [False, True]
     assert runs.known_to[1] == pytest.approx(found.known_to, abs=dt)
 
@@ -235,7 +240,7 @@ def test_a_lone_block_that_jumps_is_known_no_further():
 def test_where_the_quick_bounds_hold_every_joint_bears():
     for name in ("masonry/buttressed_arch.yaml", "frame.yaml", "wall.yaml"):
         made = structure(name)
-        (model,) = build_models(made, ("nonlinear",))
+        model = nonlinear(made)
         joints, random = model.joints, np.random.default_rng(3)
         rows, within = joints.rows, joints.within
         inside = 0
@@ -259,7 +264,7 @@ def test_where_the_quick_bounds_hold_every_joint_bears():
 
 @pytest.mark.parametrize("name", ["masonry/portal.yaml", "wall.yaml", "block.yaml", "frame.yaml"])
 def test_below_the_line_of_the_calm_every_joint_bears(name):
-    (model,) = build_models(structure(name), ("nonlinear",))
+    model = nonlinear(structure(name))
     joints, random = model.joints, np.random.default_rng(3)
     most, fastest = joints.calm
     assert most > 0 and fastest > 0
@@ -278,7 +283,7 @@ def test_below_the_line_of_the_calm_every_joint_bears(name):
 
 def test_where_the_quick_bounds_hold_nothing_slides_either_way():
     """At the corners of the bounds of every third cell, mu N - T and mu N + T are positive."""
-    (model,) = build_models(structure("masonry/portal.yaml", friction=0.6), ("nonlinear",))
+    model = nonlinear(structure("masonry/portal.yaml", friction=0.6))
     joints, least, held = model.joints, [np.inf, np.inf], 0
     for d, place in product(range(2), range(0, len(joints.within), 3)):
         low, low_more, high, high_more, most = joints.within[place, d]
@@ -323,7 +328,7 @@ def test_the_quick_bounds_change_nothing(case):
         made, factors = Registry()["block"](width=1.0, height=5.0, mass=1000.0, loads=[lift]), [1.0, 0.5]
         up = GroundMotion("up", 0.01, 0.3 * g * np.sin(4 * np.pi * motion.time), unit="m/s2")
         motion = replace(motion.scaled(0.1), vertical=up)
-    (model,) = build_models(made, ("nonlinear",))
+    model = nonlinear(made)
     within = model.joints.within.copy()
     within[..., 4] = -1.0  # no q.^2 is as small
     other = replace(model, joints=replace(model.joints, within=within, calm=(np.inf, -1.0)))
@@ -340,7 +345,7 @@ def test_the_reach_is_that_of_the_direction_in_which_it_moves_less():
     (body,) = made.bodies()
     chords = [2 * abs(arm) * np.sin(np.arctan2(abs(arm.real), arm.imag) / 2)
               for arm in (body.centroid - 0.7, body.centroid)]  # fmt: skip
-    (model,) = build_models(made, ("nonlinear",))
+    model = nonlinear(made)
     assert max(chords) > 1.2 * min(chords)
     assert model.joints.reach == pytest.approx(min(chords), rel=1e-9)
 
@@ -349,14 +354,14 @@ def test_columns_alike_bear_together():
     """Of three columns that slide before they rock each joint is one of all: three times 2 MPa x .3 m x 1 m."""
     fields = {"column_width": 1.0, "column_height": 6.0, "mass_ratio": 1.0, "density": 2000.0, "depth": 1.0}
     fields |= {"columns": 3, "friction": 0.1, "strength": {"stress": 2e6, "width": 0.3}}
-    joints = build_models(Registry()["symmetric_frame"](**fields), ("nonlinear",))[0].joints
+    joints = nonlinear(Registry()["symmetric_frame"](**fields)).joints
     assert len(joints.labels) == 3 and joints.bearing[:2, 1] == pytest.approx(3 * 2e6 * 0.3)
 
 
 def test_which_joints_bear_elsewhere_in_the_other_direction():
     """Of a portal the hinges of each direction: those joints start anew at an impact, the others do not."""
     made = structure("masonry/portal.yaml")
-    joints = build_models(made, ("nonlinear",))[0].joints
+    joints = nonlinear(made).joints
     points = {label: [set(), set()] for label in joints.labels}
     for k, direction in enumerate(Direction):
         for contact in made.contacts(direction):
@@ -469,7 +474,7 @@ def test_the_limit_is_one_of_the_analysis_and_a_file_that_has_it_says_so(tmp_pat
 
 
 def test_joints_of_more_slender_neighbours_bear_the_whole_acceleration():
-    (model,) = build_models(structure("masonry/portal.yaml"), ("nonlinear",), opening=1.0)
+    model = nonlinear(structure("masonry/portal.yaml"), 1.0)
     runs = Runs.of(0, 0, scale=[1.5, 1.8], slender=[1.0, 1.2])
     plain, slender = respond_many([model], [read_record(ACCEL)], runs).peak_ratio
     assert plain == pytest.approx(slender, rel=1e-9)  # the motion over phi_cr is that of a weaker ground motion
@@ -480,7 +485,7 @@ def test_joints_of_more_slender_neighbours_bear_the_whole_acceleration():
 
 
 def test_crushing_ends_a_history_at_once():
-    made = structure("masonry/portal.yaml", strength={"stress": 5e4, "width": 0.05})
+    made = structure("masonry/portal.yaml").model_copy(update={"strength": {"stress": 5e4, "width": 0.05}})
     found = history(made, 1.0)
     assert found.unknown and found.check.reason == "crushes"
     assert found.known_to == pytest.approx(found.uplift_time, abs=0.01)  # its hinges crush as soon as it rocks
@@ -505,7 +510,7 @@ def test_a_plugin_of_several_bodies_that_names_no_contacts_is_not_checked():
 )
 def test_joints_cut_in_two_say_the_same(name, factor):
     made = structure(name)
-    (model,) = build_models(made, ("nonlinear",))
+    model = nonlinear(made)
     contacts = {direction: made.contacts(direction) for direction in Direction}
 
     class Cut(type(made)):
@@ -520,7 +525,7 @@ def test_joints_cut_in_two_say_the_same(name, factor):
                 found += [replace(each, points=ends, name=f"{each.label} {k}") for k, ends in enumerate(halves)]
             return found
 
-    (other,) = build_models(Cut.from_fields({key: getattr(made, key) for key in made.model_fields_set}), ("nonlinear",))
+    other = nonlinear(Cut.from_fields({key: getattr(made, key) for key in made.model_fields_set}))
     assert other.joints.rows.shape != model.joints.rows.shape
     one, two = (respond_many([each], [read_record(ACCEL)], Runs.of(0, 0, scale=factor)) for each in (model, other))
     assert one.unknown[0] == two.unknown[0]
@@ -567,7 +572,7 @@ def test_a_wall_in_running_bond_is_checked():
             bricks[f"c{course} {k}"] = {"polygon": corners}
     ground = {"floor": {"polygon": [[-1.0, -0.3], [2.5, -0.3], [2.5, 0.0], [-1.0, 0.0]]}}
     made = Registry()["assembly"](blocks=bricks, ground=ground, friction=0.7, density=1800.0, depth=0.5)
-    (model,) = build_models(made, ("nonlinear",))
+    model = nonlinear(made)
     assert model.joints is not None and model.joints.labels
     found = respond_many([model], [read_record(ACCEL)], Runs.of(0, 0, scale=[1.0, 4.0]))
     assert np.isfinite(found.opening).all()
