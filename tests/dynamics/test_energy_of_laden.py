@@ -54,11 +54,8 @@ def energies(structure: Mechanism, phi, rate):
     return total
 
 
-def missing(structure, rtol):
+def missing(structure, model, rtol):
     """By how much the energy of a motion from a tilt changes on its way to the first impact, over all of it."""
-    (model,) = build_models(structure, ("nonlinear",))
-    if model.phi_cr[0] < 1e-3:
-        return 0.0
     still = GroundMotion("still", 0.002, np.zeros(2), unit="m/s2")
     history = follow(model, still, release=0.3, rtol=rtol)
     end = history.impacts[0, 0] if len(history.impacts) else history.time[-1]
@@ -76,8 +73,9 @@ def missing(structure, rtol):
 @given(laden())
 def test_from_a_tilt_to_the_impact_no_energy_is_lost(structure):
     if structure is not None and structure.uplift(Direction.POSITIVE) > 1e-3:
-        for rtol in (1e-6, 1e-9):
-            assert missing(structure, rtol) < 100 * rtol
+        (model,) = build_models(structure, ("nonlinear",))
+        for rtol in (1e-6, 1e-9) if model.phi_cr[0] >= 1e-3 else ():
+            assert missing(structure, model, rtol) < 100 * rtol
 
 
 @pytest.mark.rest

@@ -357,10 +357,10 @@ def test_thrown_back_it_is_checked_on_both_sides_of_an_impact():
 
 
 def test_impulses_of_one_direction_alone_do_not_say_what_impacts_need():
-    arch = Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, voussoirs=7)
-    eta = arch.eta(arch.directions[0])
+    frame = SymmetricFrame(column_width=1.0, column_height=6.0, mass_ratio=1.0)
+    eta = frame.eta(frame.directions[0])
     for given, known in ((eta, True), (0.5, False)):
-        one = arch.model_copy(update={"restitution": {"positive_to_negative": eta, "negative_to_positive": given}})
+        one = frame.model_copy(update={"restitution": {"positive_to_negative": eta, "negative_to_positive": given}})
         history, found = checked(one, shaking(0.5))
         assert len(set(history.impacts[:, 1])) == 2
         assert np.isfinite(found.impact_friction) == known
