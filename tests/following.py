@@ -13,7 +13,9 @@ def structure_of(mechanism, opening=OPENING):
     for each in _recent:
         if each.mechanism == mechanism and each.opening == opening:
             return each
-    _recent.append(Structure(mechanism, opening=opening))
+    # With another opening its bounds are the same, which the mechanism keeps.
+    known = next((each.mechanism for each in _recent if each.mechanism == mechanism), mechanism)
+    _recent.append(Structure(known, opening=opening))
     del _recent[:-40]
     return _recent[-1]
 

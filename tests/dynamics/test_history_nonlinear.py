@@ -223,7 +223,7 @@ def test_the_joints_that_are_checked_change_nothing_of_the_motion(amplitude, rel
     dt, samples = pulse("arch", amplitude, 5.0)
     unchecked = {n: nonlinear(arch(UncheckedArch, voussoirs=n), dt, samples, release=release) for n in (None, 9)}
     assert unchecked[None].check is None and not unchecked[None].unknown and np.isnan(unchecked[None].opening)
-    for voussoirs, opening in ((None, 1.0), (None, 0.005), (9, 0.0)):
+    for voussoirs, opening in ((None, 1.0), (9, 0.005), (9, 0.0)):
         free = unchecked[voussoirs]
         history = nonlinear(arch(voussoirs=voussoirs), dt, samples, release=release, opening=opening)
         until = history.known_to if history.unknown else np.inf

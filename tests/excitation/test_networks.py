@@ -1,5 +1,6 @@
 """Networks that print components side by side, and GeoNet V1A: small made files, as they should be and spoilt."""
 
+import os
 import re
 import subprocess
 import sys
@@ -141,23 +142,26 @@ def test_values_missing_before_and_after_a_record_are_left_out_and_said(write):
 # --- the reader that fits -------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["jma", "text"])
-def test_reading_a_file_imports_the_reader_of_no_other_format(name, tmp_path):
+READ = """
+import sys
+from rocking_cli import read_record
+from rocking_cli.excitation.records import formats
+known = [each for each in vars(formats).values() if isinstance(each, formats.Format)]
+modules = {each.module.partition('.')[0] for each in known}
+for place, channel in (("text", None), ("jma", "1")):
+    read_record(place, channel=channel)
+    print(sorted(each for each in modules if formats.__package__ + '.' + each in sys.modules), 'obspy' in sys.modules)
+"""
+
+
+def test_reading_a_file_imports_the_reader_of_no_other_format(tmp_path):
     from tests.readers import samples
 
-    path = tmp_path / "record.dat"
-    path.write_bytes(samples()[name].content)
-    code = (
-        "import sys; from rocking_cli import read_record; from rocking_cli.excitation.records import formats; "
-        f"read_record({str(path)!r}, channel={'1' if name == 'jma' else None!r}); "
-        "known = [each for each in vars(formats).values() if isinstance(each, formats.Format)]; "
-        "modules = {each.module.partition('.')[0] for each in known}; "
-        "loaded = sorted(each for each in modules if formats.__package__ + '.' + each in sys.modules); "
-        "print(loaded, 'obspy' in sys.modules)"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=PROJECT)
-    own = [] if name == "text" else [getattr(formats, name).module]
-    assert done.stdout == f"{own} False\n", done.stderr
+    for name in ("text", "jma"):
+        (tmp_path / name).write_bytes(samples()[name].content)
+    environment = {**os.environ, "PYTHONPATH": str(PROJECT)}
+    done = subprocess.run([sys.executable, "-c", READ], capture_output=True, text=True, cwd=tmp_path, env=environment)
+    assert done.stdout == f"[] False\n{[formats.jma.module]} False\n", done.stderr
 
 
 def test_the_made_files_are_in_the_check_of_the_installation():

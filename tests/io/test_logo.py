@@ -38,7 +38,7 @@ def test_what_is_no_picture_or_too_large_is_refused(tmp_path):
         embedded(tmp_path / "large")
 
 
-def test_the_page_of_a_report_has_it(tmp_path):
+def test_the_page_of_a_report_has_it(tmp_path, small_maps):
     (tmp_path / "logo.svg").write_bytes(SVG)
     out = tmp_path / "report.html"
     run("report", "--logo", tmp_path / "logo.svg", "--author", "A & B", "--out", out)

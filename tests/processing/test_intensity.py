@@ -45,7 +45,7 @@ def fine(motion, parts=1000):
 
 def displacement(motion, period, damping):
     """Largest displacement of an oscillator, by scipy on a fine grid, in the first swing after the motion too."""
-    step = motion.dt / np.ceil(motion.dt / min(motion.dt / 10, period / 100))
+    step = motion.dt / np.ceil(motion.dt / (period / 100))
     t = np.arange(0, motion.duration + 1.5 * period, step)
     ground = np.interp(t, motion.time, motion.acceleration, right=0.0)
     w = 2 * pi / period

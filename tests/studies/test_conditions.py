@@ -70,7 +70,7 @@ def quick(monkeypatch, tmp_path):
 
 
 @pytest.mark.every(4)
-@pytest.mark.parametrize("name", STRUCTURES)
+@pytest.mark.parametrize("name", ["block", "frame", "facade"])
 @pytest.mark.parametrize("verb", VERBS)
 def test_all_that_is_answered_is_that_of_a_file_with_this_restitution(verb, name):
     mechanism = STRUCTURES[name]

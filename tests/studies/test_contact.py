@@ -271,11 +271,12 @@ class NoJoints(Wall):
         return ()
 
 
+ARCH = Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, voussoirs=7)
 STRUCTURES = [
     Wall(thickness=0.3, height=3.0),
     NoJoints(thickness=0.3, height=3.0, restitution=0.7),
-    Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, voussoirs=7),
-    Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, voussoirs=7, restitution=0.6),
+    ARCH,
+    ARCH.model_copy(update={"restitution": 0.6}),
     AsymmetricFrame(
         column_width=1, left_height=6, right_height=7.5, spacing=8, beam_depth=1, density=2000.0, depth=1.0
     ),
@@ -357,10 +358,9 @@ def test_thrown_back_it_is_checked_on_both_sides_of_an_impact():
 
 
 def test_impulses_of_one_direction_alone_do_not_say_what_impacts_need():
-    frame = SymmetricFrame(column_width=1.0, column_height=6.0, mass_ratio=1.0)
-    eta = frame.eta(frame.directions[0])
+    eta = ARCH.eta(ARCH.directions[0])
     for given, known in ((eta, True), (0.5, False)):
-        one = frame.model_copy(update={"restitution": {"positive_to_negative": eta, "negative_to_positive": given}})
+        one = ARCH.model_copy(update={"restitution": {"positive_to_negative": eta, "negative_to_positive": given}})
         history, found = checked(one, shaking(0.5))
         assert len(set(history.impacts[:, 1])) == 2
         assert np.isfinite(found.impact_friction) == known

@@ -37,20 +37,19 @@ from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 from tests.following import respond
 
-ARCH = "mechanism: arch\nname: {0}\nradius: {1}\nthickness: 0.8\ninclusion_angle_deg: 150\nvoussoirs: 7\n"
+BLOCK = "mechanism: block\nwidth: 1\nheight: 5\nfriction: 0.3\n"
 SITE = "FC: 1.2\nag: 0.9\nF0: 2.5\nTC: 0.5\nS: 1.2\n"  # so strong that the static methods fail too
-PULSE = "--pulse", "sine:2g:0.4s"  # opens a joint of the arch after .06 s, long before it could overturn
+PULSE = "--pulse", "sine:2g:0.4s"  # the block slides, long before it could overturn
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A made-up arch whose history ends early, a sister of it, and the files that commands need beside them."""
+    """A block whose history ends early, and the files that commands need beside it."""
     made = tmp_path_factory.mktemp("unknown")
     files = {
-        "arch.yaml": ARCH.format("thin arch", 6.0),
-        "sister.yaml": ARCH.format("wide arch", 7.0),
+        "block.yaml": BLOCK,
         "site.yaml": SITE,
-        "table.csv": "file\narch.yaml\n",
+        "table.csv": "file\nblock.yaml\n",
     }
     for name, text in files.items():
         (made / name).write_text(text)
@@ -77,10 +76,10 @@ class TestMargin:
 class TestSeveral:
     def test_motions_of_unknown_outcome_are_counted_apart(self, folder):
         weak, strong = ("--pulse", "sine:0.1g:0.3s"), PULSE
-        said = run("respond", folder / "arch.yaml", *weak, *strong, "--neighbours", 3, "--model", "nonlinear").stdout
+        said = run("respond", folder / "block.yaml", *weak, *strong, "--neighbours", 3, "--model", "nonlinear").stdout
         counted = "has an unknown outcome under 1 of 2 motions (sine:2g:0.4s) and does not uplift under 1."
         assert f"By the nonlinear model, the structure {counted} sine:2g:0.4s governs: " in said
-        assert "sine:2g:0.4s: the outcome is unknown after 0.0617 s: then the joint between voussoir" in said
+        assert re.search(r"sine:2g:0\.4s: the outcome is unknown after 0\.\d+ s: then the joint between the ground", said)
         (row,) = (line.split() for line in said.splitlines() if line.startswith(" sine:2g"))
         assert row == ["sine:2g:0.4s", "2", "unknown", "-", "0", "%", "100", "%", "unknown"]
 
@@ -144,7 +143,7 @@ class TestDesign:
     @pytest.mark.parametrize("op", ["<", ">"])
     def test_unknown_meets_no_requirement(self, folder, op):
         found = rk.design(
-            folder / "arch.yaml", "thickness=0.79:0.8", f"overturned {op} 0.5", PULSE[1], neighbours=2, points=2
+            folder / "block.yaml", "width=0.99:1", f"overturned {op} 0.5", PULSE[1], neighbours=2, points=2
         )
         assert found.holds == [] and [each.unknown for each in found.behind] == [1, 1]
         assert np.isnan(found.metric).all() == (op == ">")
@@ -152,7 +151,7 @@ class TestDesign:
 
     def test_a_median_that_is_unknown_is_not_said_to_overturn(self, folder):
         found = rk.design(
-            folder / "arch.yaml", "thickness=0.79:0.8", "peak_ratio < 0.5", PULSE[1], neighbours=2, points=2
+            folder / "block.yaml", "width=0.99:1", "peak_ratio < 0.5", PULSE[1], neighbours=2, points=2
         )
         assert np.isinf(found.metric).all() and not found.met.any()
         assert [row[1] for row in found.view.parts[1].rows] == ["unknown", "unknown"]
@@ -261,7 +260,7 @@ class TestVerification:
 
     def test_times_with_FC_are_those_of_the_record(self, folder):
         """With FC the motion is simulated 1.1 times as quick: the moment is given as one of the record."""
-        found = run_json("verify", folder / "arch.yaml", "--site", folder / "site.yaml", *PULSE)
+        found = run_json("verify", folder / "block.yaml", "--site", folder / "site.yaml", *PULSE)
         (record,) = found["directions"]["positive"]["dynamic"]["SLV"]["records"]
         assert record["d_with_FC"] is record["d_without_FC"] is None
         assert (
@@ -289,7 +288,7 @@ class TestReport:
 
 
 def test_many_histories_in_python_have_no_outcome_where_it_is_unknown(folder):
-    found = rk.respond_each([folder / "arch.yaml", EXAMPLES / "curve.yaml"], PULSE[1], model="nonlinear")
+    found = rk.respond_each([folder / "block.yaml", EXAMPLES / "curve.yaml"], PULSE[1], model="nonlinear")
     data = found.to_dict()["nonlinear"]
     assert np.ravel(data["overturned"]).tolist()[0] is None and np.ravel(data["unknown"]).tolist() == [True, None]
     assert "and the outcome of 1 is unknown." in found.sentences[0]

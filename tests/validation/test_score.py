@@ -390,9 +390,8 @@ class TestWords:
 
 
 def test_opening_and_reading_of_records_are_those_of_the_tool(tmp_path):
-    arch = "mechanism: arch\nradius: 6\nthickness: 0.8\ninclusion_angle_deg: 150\nvoussoirs: 7\n"
-    (tmp_path / "arch.yaml").write_text(arch)
-    table = write(tmp_path, ["arch.yaml,sine:0.6g:0.4s,0"])
+    (tmp_path / "slides.yaml").write_text("mechanism: block\nwidth: 1\nheight: 5\nfriction: 0.3\n", encoding="utf-8")
+    table = write(tmp_path, ["slides.yaml,sine:2g:0.4s,0"])
     for opening in (0.0, 1000.0):
         (typed,) = run_json(command, table, "--neighbours", "2", "--opening", opening)["tests"]
         assert typed["unknown"] == (opening == 0)
