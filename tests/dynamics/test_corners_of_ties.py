@@ -57,7 +57,7 @@ def test_a_tie_without_force_at_rest_has_no_corner_there():
         tie = {"name": "t", "from": {"ground": [x, 0.1]}, "to": {"at": [-0.3, 2.7]}, "stiffness": weight}
         for only in ("tension", "compression"):
             tool = twin("block", ties=[{**tie, "only": only}]).tool
-            assert build_models(tool, ("nonlinear",))[0].corners.size == 0
+            assert not any(table.corners.any() for table in tabulate(tool))
             stiff = tool.coefficients(np.zeros(1), Direction.POSITIVE).dQ[0]
             assert (stiff > 0) == (only == "tension")
 

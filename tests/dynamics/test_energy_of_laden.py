@@ -69,7 +69,7 @@ def missing(structure, model, rtol):
 
 
 @pytest.mark.every(3)
-@settings(max_examples=15)
+@settings(max_examples=10)
 @given(laden())
 def test_from_a_tilt_to_the_impact_no_energy_is_lost(structure):
     if structure is not None and structure.uplift(Direction.POSITIVE) > 1e-3:

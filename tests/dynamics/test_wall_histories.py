@@ -156,7 +156,7 @@ def test_modes_say_of_any_state_what_a_programme_of_all_forces_says(made, direct
 @pytest.mark.parametrize("begins", [1, 5])
 def test_a_mode_that_does_not_exist_at_rest_has_no_part_in_impacts(begins, monkeypatch):
     """What no joint could follow says nothing of what they bear; if it exists at no rotation, it is no mode."""
-    made = wall(2, 5)
+    made = wall(2, 3)
     critical = made.critical_rotation(FORWARD)
     phi = np.linspace(0.0, critical, 5)
     assert np.abs(modes(made, FORWARD, phi, critical).struck[:, 0]).min() > 0
