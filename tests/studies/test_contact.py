@@ -370,9 +370,9 @@ def test_impulses_of_one_direction_alone_do_not_say_what_impacts_need():
 
 def test_the_picture_shows_it_where_it_is_requested():
     block, record = EXAMPLES / "block.yaml", EXAMPLES / "accel.csv"
-    for contact in (False, True):
-        figure = respond_verb(block, record, neighbours=0, contact=contact).figure()
-        assert ("required" in [text.get_text() for text in figure.findobj(Text)]) == contact
+    for requested in (False, True):
+        figure = respond_verb(block, record, neighbours=0, contact=requested).figure()
+        assert ("required" in [text.get_text() for text in figure.findobj(Text)]) == requested
     asked = ("respond", block, "--record", record, "--neighbours", 0, "--contact")
     assert "--contact has no effect without --plot" in run(*asked, code=2).stderr
 
