@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
 from rocking_cli.excitation.measures import Measures
@@ -124,7 +123,9 @@ def _clipping(motion: GroundMotion) -> list[Doubt]:
     what = "samples" if motion.points is None else "points"
     doubts = []
     for extreme in dict.fromkeys((float(a.max()), float(a.min()))):
-        run = _longest_run(np.flatnonzero(a == extreme))
+        there = np.flatnonzero(a == extreme)
+        ends = np.concatenate([[-1], np.flatnonzero(np.diff(there) > 1), [there.size - 1]])  # of runs in a row
+        run = int(np.diff(ends).max())
         if run >= CLIPPED_SAMPLES and abs(extreme) > peak / 2:  # a one-sided pulse has many zeros at its other extreme
             text = f"{run} {what} in a row stand at its extreme of {extreme / STANDARD_GRAVITY:.3g} g: clipped?"
             doubts.append(Doubt("clipped", float(run), text))
@@ -187,10 +188,3 @@ def _dropouts(motion: GroundMotion) -> list[Doubt]:
         f"between two jumps{more}: values that were lost?"
     )
     return [Doubt("dropout", (start + 1) * motion.dt, text)]
-
-
-def _longest_run(indexes: NDArray[np.intp]) -> int:
-    """Return the length of the longest run of consecutive numbers among ascending indices."""
-    gaps = np.flatnonzero(np.diff(indexes) > 1)
-    ends = np.concatenate([[-1], gaps, [indexes.size - 1]])
-    return int(np.diff(ends).max())

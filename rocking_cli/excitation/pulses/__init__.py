@@ -165,10 +165,14 @@ class Pulse(ABC):
         >>> parse_pulse("sine:0.6g:0.8s").specification
         'sine:0.6g:0.8s'
         """
+        # The shortest text of the amplitude, in g or m/s2: some amplitudes are not a multiple of g.
+        texts = (f"{self.amplitude / STANDARD_GRAVITY:.{digits}g}" for digits in range(1, MAX_DIGITS + 1))
+        in_g = [f"{text}g" for text in texts if float(text) * STANDARD_GRAVITY == self.amplitude]
+        amplitude = min([*in_g[:1], f"{_shortest(self.amplitude)}m/s2"], key=len)
         further = [
             f"{_shortest(getattr(self, field.name))}{field.metadata.get('unit', '')}" for field in fields(self)[2:]
         ]
-        return ":".join([self.name, _amplitude(self.amplitude), f"{_shortest(self.period)}s", *further])
+        return ":".join([self.name, amplitude, f"{_shortest(self.period)}s", *further])
 
     def __str__(self) -> str:
         return f"{self.name}:{self.amplitude / STANDARD_GRAVITY:.6g}g:{self.period:.6g}s"
@@ -177,16 +181,6 @@ class Pulse(ABC):
 def _shortest(value: float) -> str:
     """Return the shortest text that is read as this number."""
     return repr(float(value)).removesuffix(".0")
-
-
-def _amplitude(value: float) -> str:
-    """Return the shortest text in g or m/s2 that is read as this amplitude [m/s2].
-
-    Some amplitudes are not a multiple of g.
-    """
-    texts = (f"{value / STANDARD_GRAVITY:.{digits}g}" for digits in range(1, MAX_DIGITS + 1))
-    in_g = [f"{text}g" for text in texts if float(text) * STANDARD_GRAVITY == value]
-    return min([*in_g[:1], f"{_shortest(value)}m/s2"], key=len)
 
 
 def _with_its_impulse(curve: Reals) -> Reals:

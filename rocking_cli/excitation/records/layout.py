@@ -183,7 +183,9 @@ def fixed_width(file: str, lines: Lines, block: RecordBlock, *, last: bool = Tru
     rows = index - block.start
     if leaving:
         if 2 * len(leaving) <= rows and not lines.edited:
-            raise InputError(_out_of_columns(file, lines, leaving, rows, block))
+            more = f" (as in {len(leaving) - 1} more of {rows})" if len(leaving) > 1 else ""
+            message = f"the numbers of this row do not end at their columns of {block.width} characters{more}"
+            raise InputError(Problem(message, file, leaving[0], excerpt=lines[leaving[0] - 1][:100], hint=_LOST))
         if unread is not None:
             raise InputError(*(replace(problem, hint=_TOUCHING.format(block.width)) for problem in unread.problems))
         remarks = (_no_columns(leaving, rows, block),)
@@ -225,13 +227,6 @@ def _floats(file: str, line_number: int, row: str, cells: Sequence[str], block: 
     if not values or not all(map(sensible, values)):
         return numbers_in(file, line_number, row, cells)
     return values
-
-
-def _out_of_columns(file: str, lines: Lines, leaving: Sequence[int], rows: int, block: RecordBlock) -> Problem:
-    """Return the problem of the first of a few rows that are not aligned to the columns."""
-    more = f" (as in {len(leaving) - 1} more of {rows})" if len(leaving) > 1 else ""
-    message = f"the numbers of this row do not end at their columns of {block.width} characters{more}"
-    return Problem(message, file, leaving[0], excerpt=lines[leaving[0] - 1][:100], hint=_LOST)
 
 
 def _no_columns(leaving: Sequence[int], rows: int, block: RecordBlock) -> Doubt:

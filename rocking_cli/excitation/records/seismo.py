@@ -205,7 +205,9 @@ class _SacHeader:
 
 def read_sac(data: bytes, file: str, asked: Asked) -> GroundMotion:
     """Read a SAC file; see `formats.Reader.read`."""
-    header = _sac_header(data)
+    # In the byte order that gives a valid version, as one does for a file of the format.
+    both = (_SacHeader(*struct.unpack_from(f"{order}fff292xi8xi20xii72xi", data)) for order in "<>")
+    header = next(header for header in both if header.version in _SAC_VERSIONS)
     if not header.even:
         hint = "interpolate it at a constant interval first"
         raise InputError(Problem("the header says the samples are unevenly spaced (LEVEN)", file, hint=hint))
@@ -249,12 +251,6 @@ def _extremes(header: _SacHeader, samples: NDArray[np.float32]) -> tuple[Doubt, 
         f"{least:g} to {most:g}: a damaged file, or processed since?"
     )
     return (Doubt("header_peak", max(abs(least), abs(most)), text),)
-
-
-def _sac_header(data: bytes) -> _SacHeader:
-    """Read the header in the byte order that gives a valid version, as one does for a file of the format."""
-    both = (_SacHeader(*struct.unpack_from(f"{order}fff292xi8xi20xii72xi", data)) for order in "<>")
-    return next(header for header in both if header.version in _SAC_VERSIONS)
 
 
 # Not among them: pickles, which run code when they are read; formats whose files name other files; those without marks.
