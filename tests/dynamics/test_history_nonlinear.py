@@ -221,11 +221,10 @@ def arch(kind=Arch, **fields):
 @pytest.mark.parametrize(("amplitude", "release"), [(2.5, None), (1.4, None), (1.2, 0.1)])
 def test_the_joints_that_are_checked_change_nothing_of_the_motion(amplitude, release):
     dt, samples = pulse("arch", amplitude, 5.0)
-    unchecked = {n: nonlinear(arch(UncheckedArch, voussoirs=n), dt, samples, release=release) for n in (None, 9)}
-    assert unchecked[None].check is None and not unchecked[None].unknown and np.isnan(unchecked[None].opening)
-    for voussoirs, opening in ((None, 1.0), (9, 0.005), (9, 0.0)):
-        free = unchecked[voussoirs]
-        history = nonlinear(arch(voussoirs=voussoirs), dt, samples, release=release, opening=opening)
+    free = nonlinear(arch(UncheckedArch, voussoirs=9), dt, samples, release=release)
+    assert free.check is None and not free.unknown and np.isnan(free.opening)
+    for opening in (1.0, 0.005, 0.0):
+        history = nonlinear(arch(voussoirs=9), dt, samples, release=release, opening=opening)
         until = history.known_to if history.unknown else np.inf
         known = free.time <= until
         np.testing.assert_array_equal(history.phi[known[: history.time.size]], free.phi[known])

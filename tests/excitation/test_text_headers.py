@@ -22,7 +22,7 @@ from tests.header_files import COMPONENTS, COUNT, DT, EAST, FILES, GAL, NORTH, T
 FINDINGS = RECORDS.parent / "findings" / "records"
 BY_TEXT = pytest.mark.parametrize("name", [name for name in FILES if name not in header_files.OTHER_READERS])
 BY_FILE = pytest.mark.parametrize("name", FILES)
-SPOILT = int(os.environ.get("HEADERS", "1500"))
+SPOILT = int(os.environ.get("HEADERS", "1000"))
 
 
 def options(file: TextFile, channel) -> dict:

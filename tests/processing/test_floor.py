@@ -244,7 +244,7 @@ class TestAllAround:
         assert peaks[: peaks.size // 2] == pytest.approx(peaks[peaks.size // 2 :], nan_ok=True)
 
 
-def test_in_python(quake, tmp_path):
+def test_in_python(quake):
     import rocking_cli as rk
 
     other = rk.correct(quake, "trim 0:6", {"lowpass": 20})
@@ -255,8 +255,7 @@ def test_in_python(quake, tmp_path):
     assert found.outcomes["nonlinear"].peak_ratio[0] == pytest.approx(
         rk.respond(rk.Block(width=0.7, height=2.8), quake, model="nonlinear")["nonlinear"].peak_ratio
     )
-    found.plot(tmp_path / "around.svg")
-    assert (tmp_path / "around.svg").read_text(encoding="utf-8").startswith("<?xml")
+    assert found.figure().axes
 
 
 def test_the_ground_below_a_floor_is_turned_with_it(quake):

@@ -130,7 +130,7 @@ def test_neighbours_are_what_each_would_be_alone(mechanism, scale, motion):
 @pytest.mark.parametrize(
     ("file", "opening", "scale", "some", "fell"),
     [
-        *(pytest.param("arch", 0.005, *each, 0.0, marks=pytest.mark.rest) for each in ((1.0, 0.3), (1.1, 0.6))),
+        pytest.param("arch", 0.005, 1.1, 0.6, 0.0, marks=pytest.mark.rest),
         ("wall", 0.0, 2.5, 0.3, 0.3),
     ],
 )
