@@ -50,7 +50,7 @@ def test_what_a_power_loss_leaves(tmp_path):
 
 @pytest.mark.rest
 @pytest.mark.skipif(why_not() is not None, reason=str(why_not()))
-@pytest.mark.parametrize(("name", "one_in"), [("error", 8), ("new", 6), ("sheets", 20), ("restart", 30)])
+@pytest.mark.parametrize(("name", "one_in"), [("error", 16), ("new", 12), ("sheets", 40), ("restart", 60)])
 def test_whatever_ends_a_command_its_outputs_are_whole(name, one_in, tmp_path):
     tries, faults = attack(name, tmp_path / name, one_in)
     assert tries["SIGKILL"] and tries["EIO"]

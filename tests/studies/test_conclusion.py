@@ -243,7 +243,7 @@ def test_a_margin_a_pulse_and_a_response_conclude_alike():
     """The same class and governing motion from three commands; a margin adds the share and the factor."""
     block, pulses = rk.Block(width=0.5, height=2.2), ["sine:0.35g:0.7s", "sine:2g:1s", "sine:0.1g:1s"]
     for pulse in pulses:
-        alone, margin = rk.respond(block, pulse, neighbours=10), rk.margin(block, pulse, polarity="1", neighbours=10)
+        alone, margin = rk.respond(block, pulse, neighbours=4), rk.margin(block, pulse, polarity="1", neighbours=4)
         assert alone.conclusion.concluded is margin.conclusion.concluded
         assert alone.conclusion.share == margin.conclusion.share
         _, ag, period = pulse.split(":")
@@ -252,10 +252,10 @@ def test_a_margin_a_pulse_and_a_response_conclude_alike():
         found = margin[margin.conclusion.motion]
         least = found.first(0.1, unknown=True)
         assert margin.conclusion.ratio == (np.inf if least is None else least)
-    several = rk.margin(block, pulses, polarity="1", neighbours=5)
+    several = rk.margin(block, pulses, polarity="1", neighbours=4)
     assert several.conclusion.motion == several.sentences[0].split(". ")[1].split(" governs")[0] == "sine:2g:1s"
     assert several.conclusion.motions == pulses
-    none = rk.margin(block, "sine:1e-3g:0.1s", polarity="1", neighbours=5)
+    none = rk.margin(block, "sine:1e-3g:0.1s", polarity="1", neighbours=4)
     assert np.isinf(none.conclusion.ratio) and "At no factor tried may 10 % or more overturn." in none.sentences[0]
     assert none.to_dict()["conclusion"]["ratio"] is None
 
@@ -481,7 +481,8 @@ def test_every_surface_of_a_response_has_one_conclusion(number):
     file = YAML_FILES[number]
     if not yaml.safe_load(file.read_text(encoding="utf-8")).get("mechanism"):
         return
-    answer = rk.respond(file, ["sine:0.15g:0.5s", "sine:0.5g:0.7s"][number % 2], model="nonlinear", neighbours=0, engine="exact")
+    pulse = ("sine:0.15g:0.5s", "sine:0.5g:0.7s")[number % 2]
+    answer = rk.respond(file, pulse, model="nonlinear", neighbours=0, engine="exact")
     end, history = answer.conclusion, answer["nonlinear"]
     words = end.concluded.value.replace("_", " ")
     said = " ".join(answer.sentences)
