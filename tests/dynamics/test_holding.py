@@ -80,7 +80,7 @@ def test_the_sentence_names_what_is_checked_and_what_is_not():
 
 
 @pytest.mark.parametrize("pulse", ["sine:1.5g:0.3s", "sine:2g:0.3s", "sine:2.5g:1s", "sine:2g:0.5s"])
-def test_what_needs_more_friction_than_masonry_has_is_not_called_valid(pulse, tmp_path):
+def test_what_needs_more_friction_than_masonry_has_is_not_called_valid(pulse):
     """Of a squat block nothing opens, it opens a little, it bears beyond phi_cr, and too much: all need friction."""
     history, found = under(SQUAT, pulse)
     assert found.friction_needed > 2
@@ -90,13 +90,17 @@ def test_what_needs_more_friction_than_masonry_has_is_not_called_valid(pulse, tm
     )
     said = joints_in_words(history, found.assumed_friction)
     assert assumes in said and not VALID.search(said)
+    assert replace(found, friction=10.0).assumed_friction is None
+
+
+def test_the_answer_and_the_film_say_once_what_friction_they_assume(tmp_path):
+    pulse, assumes = "sine:2g:0.5s", "is more than the 0.6 usual for masonry: the result assumes that nothing slides."
     answer = rk.respond(SQUAT, pulse, model="nonlinear", neighbours=0)
     whole = " ".join(answer.sentences)
     assert whole.count(assumes) == 1 and not VALID.search(whole)
     assert assumes in answer.to_dict()["verdict"]
     film = rk.animate(SQUAT, pulse, out=tmp_path / "x.html", neighbours=0).film
     assert assumes in verdict_of(film) and not VALID.search(verdict_of(film))
-    assert replace(found, friction=10.0).assumed_friction is None
 
 
 def test_with_friction_in_the_file_a_small_opening_leaves_a_valid_result():
