@@ -164,9 +164,9 @@ class TestMechanisms:
 
 class TestEquiv:
     def test_several_files_give_one_object_a_line(self):
-        files = [EXAMPLES / f"{name}.yaml" for name in ("block", "wall", "arch")]
-        lines = run("equiv", *files, "--json").stdout.splitlines()
-        assert [json.loads(line)["mechanism"] for line in lines] == ["block", "wall", "arch"]
+        names = ["block", "wall", "rigid_body"]
+        lines = run("equiv", *(EXAMPLES / f"{name}.yaml" for name in names), "--json").stdout.splitlines()
+        assert [json.loads(line)["mechanism"] for line in lines] == names
 
     def test_a_symmetric_structure_has_one_column_and_another_two(self):
         assert "positive" not in run("equiv", EXAMPLES / "block.yaml").stdout
@@ -180,8 +180,7 @@ class TestEquiv:
     def test_the_preferred_kappa_follows_effective_slenderness(self):
         assert "either kappa is adequate" in run("equiv", EXAMPLES / "wall.yaml").stdout
         assert "prefer kappa2" in run("equiv", EXAMPLES / "block.yaml").stdout
-        assert "disregard kappa1" in run("equiv", EXAMPLES / "arch.yaml").stdout
-        assert run_json("equiv", EXAMPLES / "arch.yaml")["directions"]["positive"]["prefer"] == "kappa2"
+        assert run_json("equiv", EXAMPLES / "block.yaml")["directions"]["positive"]["prefer"] == "kappa2"
 
     def test_bad_files_are_reported_with_all_their_problems_and_the_good_ones_shown(self, tmp_path):
         one, two = tmp_path / "one.yaml", tmp_path / "two.yaml"
@@ -210,12 +209,12 @@ class TestEquiv:
     def test_an_eta_above_one_is_said_with_the_energy_that_is_kept(self, tmp_path):
         """A stack that turns as a whole in one direction, and with its upper block only in the other."""
         (tmp_path / "stack.yaml").write_text(STACK, encoding="utf-8")
-        data = run_json("equiv", "stack.yaml")
-        etas = [data["directions"][way]["eta"] for way in ("positive", "negative")]
+        respond = "respond", "stack.yaml", "--pulse", "sine:0.5g:0.5s", "--engine", "exact", "--neighbours", 0
+        etas = list(run_json(*respond)["restitution"].values())[:2]
         # Of two projections of one velocity on the other mechanism, there and back, both keep the same energy.
         kept = 100 * etas[0] * etas[1]
         said = f"The eta of {etas[0]:.4g} at impacts that end motion in the positive direction compares the rates"
-        for asked in (("equiv", "stack.yaml"), ("respond", "stack.yaml", "--pulse", "sine:0.5g:0.5s")):
+        for asked in (("equiv", "stack.yaml"), respond):
             text = " ".join(run(*asked).stdout.split())
             assert etas[0] > 1 > etas[1] and f"Caution: {said}" in text and "less, about 0.95" not in text
             assert f"keeps {kept:.3g} % of the kinetic energy" in text and text.count("compares the rates") == 1
@@ -254,8 +253,9 @@ class TestRespond:
         assert (one["peak_positive"], one["peak_negative"]) == (other["peak_negative"], other["peak_positive"])
         assert one["peak_positive"] > 0
 
-    def test_release_without_a_record(self):
-        asked = ("respond", EXAMPLES / "arch.yaml", "--release", "-0.5")
+    def test_release_without_a_record(self, tmp_path):
+        (tmp_path / "stack.yaml").write_text(STACK, encoding="utf-8")
+        asked = ("respond", "stack.yaml", "--release", "-0.5", "--engine", "exact")
         data = run_json(*asked, "--opening", 1)
         assert data["record"] is None and data["release"] == -0.5
         response = data["responses"]["nonlinear"]
@@ -263,8 +263,8 @@ class TestRespond:
             response["peak_ratio"] == pytest.approx(0.5) and response["peak_negative"] > response["peak_positive"] > 0
         )
         assert response["uplift_time"] is None and response["impacts"] > 5 and response["outcome"] == "at_rest"
-        response = run_json(*asked)["responses"]["nonlinear"]  # a joint opens at once
-        assert (response["outcome"], response["overturned"], response["impacts"]) == ("unknown", None, 0)
+        response = run_json(*asked)["responses"]["nonlinear"]  # another joint opens at the first impact
+        assert (response["outcome"], response["overturned"], response["impacts"]) == ("unknown", None, 1)
         assert response["peak_ratio"] == response["peak_lower_bound"] == pytest.approx(0.5)
 
     def test_the_history_file_agrees_with_the_peaks(self):
