@@ -32,7 +32,10 @@ WEAK = rk.Block(width=0.7, height=2.8, name="weak", friction=0.26)  # it slides 
 PULSE, STRONG = "sine:0.3g:0.5s", "sine:0.9g:0.5s"
 FRAME = rk.load_structure(EXAMPLES / "frame.yaml").model_copy(update={"friction": 0.3})
 LEANING = WEAK.model_copy(update={"friction": 0.2, "one_sided": "positive", "rebound": 0.5})
-PORTAL = rk.load_structure(EXAMPLES / "assembly.yaml")
+PILLAR = rk.Assembly(
+    blocks={"pillar": {"polygon": [[0, 0], [0.6, 0], [0.6, 2.4], [0, 2.4]]}}, density=2000.0, depth=1.0,
+    ground={"floor": {"polygon": [[-1, -1], [2, -1], [2, 0], [-1, 0]]}},
+)  # fmt: skip
 TIME = 0.01 * np.arange(200)
 RECORD = rk.GroundMotion("record", 0.01, 3.0 * np.sin(2 * np.pi * TIME / 0.8) * np.exp(-TIME), unit="m/s2")
 SHORT = rk.Block(width=1.0, height=2.0, name="short")
@@ -80,7 +83,7 @@ TABLE = {"out": "o.csv", "separator": ";", "decimal": ","}
 
 CALLS = {
     "equiv": ({"structures": BLOCK}, {"structures": [BLOCK, OTHER]} | TABLE),
-    "collapse": ({"structure": PORTAL}, {"structure": PORTAL.enlarged(2.0), "out": "o.yaml"} | PLOT),
+    "collapse": ({"structure": PILLAR}, {"structure": PILLAR.enlarged(2.0), "out": "o.yaml"} | PLOT),
     "draw": ({"structure": BLOCK}, {"structure": OTHER, "at": 0.3, "dxf": "odd.dxf"} | PLOT),
     "import_drawing": (
         {"file": "in.csv", "units": "mm", "depth": 1.0, "density": 2000.0, "merge_gap": "6 mm", "nested": "openings",

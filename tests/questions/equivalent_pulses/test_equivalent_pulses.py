@@ -167,8 +167,8 @@ class TestCommand:
         assert peaks == pytest.approx([each["peak_ratio"] for each in data["structures"]], rel=1e-3)
 
     def test_pulses_too_weak_to_lift_are_a_result(self, tmp_path):
-        arguments = [BLOCK, WALL, "--ag", "0.1g", "--period", "1", "--plot", "weak.png", "--out", "weak.csv"]
-        data = json.loads(run(*arguments, "--json").stdout)
+        arguments = [BLOCK, FRAME, "--ag", "0.1g", "--period", "1"]
+        data = json.loads(run(*arguments, "--plot", "weak.png", "--out", "weak.csv", "--json").stdout)
         assert data["a"] == pytest.approx(0.1 / 0.25) and data["linear_peak_ratio"] == 0
         assert [each["peak_ratio"] for each in data["structures"]] == [0, 0] and data["relative_spread"] is None
         assert "does not uplift (a = 0.4, uplift needs a > 1), nor does any structure" in data["verdict"]

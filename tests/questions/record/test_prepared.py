@@ -11,6 +11,7 @@ import pytest
 import rocking_cli as rk
 from rocking_cli.excitation.base import Doubt, Origin
 from rocking_cli.excitation.records.prepared import ITEMS, write_record_csv
+from rocking_cli.questions.report import study as assessment
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 
@@ -56,7 +57,8 @@ def test_who_uses_it_says_what_was_done(prepared, command):
         assert f'"processing": {json.dumps(STEPS)}, "prepared_from": "accel.csv"' in result.stdout
 
 
-def test_a_report_prints_it_in_both_languages(prepared):
+def test_a_report_prints_it_in_both_languages(prepared, monkeypatch):
+    monkeypatch.setattr(assessment, "MAP_POINTS", 3)
     for language, words in (("en", "was prepared from"), ("it", "è stato preparato da")):
         out = prepared.with_suffix(f".{language}.html")
         run("report", BLOCK, "--record", prepared, "--neighbours", 1, "--language", language, "-o", out)
