@@ -123,9 +123,10 @@ def ratio_chart(histories: Mapping[ModelName, History], bins: int = BINS_ACROSS)
     return _ratio_chart([(NAMES[name], name, run, until) for name, run in histories.items()], bins)
 
 
-def ratio_charts(films: Sequence[Film], bins: int = BINS_ACROSS) -> dict[str, Any]:
+def ratio_charts(films: Sequence[Film]) -> dict[str, Any]:
     """Return a chart like `ratio_chart` with a curve for each of several structures, as far as its outcome is known."""
-    return _ratio_chart([(each.name, f"curve-{k}", each.history, inf) for k, each in enumerate(films)], bins)
+    curves = [(each.name, f"curve-{k}", each.history, inf) for k, each in enumerate(films)]
+    return _ratio_chart(curves, BINS_ACROSS)
 
 
 def _ratio_chart(curves: Sequence[tuple[str, str, History, float]], bins: int) -> dict[str, Any]:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import click
 
-from rocking_cli.cli import options, terminal
-from rocking_cli.cli.help import Command
+from rocking_cli.cli import terminal
+from rocking_cli.cli.help import Command, as_json
 
 
 @click.command(cls=Command, short_help="Show the installation: versions, plugins, kernels.")
-@options.as_json
+@as_json
 def command(as_json: bool) -> None:
     """Show the installation: versions, extras, plugins and their faults, kernels, and variables of the environment.
 
