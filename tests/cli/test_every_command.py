@@ -170,7 +170,7 @@ HISTORIES = {
     "margin A --record R --neighbours 2 --plot p.svg": (
         lambda found: found["motions"][0]["unknown"][-1] == 1 and found["motions"][0]["levels"]["50"]["first"] is None
     ),
-    "respond A --record R --engine blocks --plot p.svg --out h.csv --animate film.html": lambda found: (
+    "respond A --record R --engine blocks --tail 1 --plot p.svg --out h.csv --animate film.html": lambda found: (
         found["responses"]["nonlinear"]["outcome"] == found["engines"]["finding"].removeprefix("exact_") == "unknown"
     ),
     "verify A --site site.yaml --record R --sheet sheet.html": lambda found: all(

@@ -19,6 +19,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import COARSE_POINTS_PER_PERIOD
 from rocking_cli.plotting import style
+from rocking_cli.questions.overturning import study
 from rocking_cli.questions.overturning.edges import FREE_POINTS, edges_of
 from rocking_cli.questions.overturning.picture import draw_comparison, draw_map
 from rocking_cli.questions.overturning.study import (
@@ -306,6 +307,10 @@ class TestShape:
 
 
 class TestCommand:
+    @pytest.fixture(autouse=True)
+    def _of_few_amplitudes(self, monkeypatch):
+        monkeypatch.setattr(study, "SCAN_AMPLITUDES", SCAN_AMPLITUDES // 8)
+
     def test_a_map_in_every_form(self):
         data = run_json(
             "overturning", FILES[0], "--points", 24, "--out", "map.csv", "--plot", "map.png", "--period", "0.3:2.5",
