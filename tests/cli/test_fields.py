@@ -160,8 +160,7 @@ def _drawn() -> list[tuple[str, list[tuple[Place, str]], tuple[str, ...]]]:
     ]
 
 
-def test_a_spoilt_field_is_answered_or_named(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_a_spoilt_field_is_answered_or_named(tmp_path):
     for name, changes, words in _drawn():
         _check(name, changes, words, tmp_path)
 

@@ -61,8 +61,7 @@ def test_a_word_for_a_number_is_refused(name):
         ({"other": "east.csv", "azimuth": "0.5 rad"}, {"other": "east.csv", "azimuth": 28.64788975654116}),
     ],
 )
-def test_an_option_of_a_record_may_be_text_with_its_unit_as_on_the_command_line(tmp_path, monkeypatch, text, number):
-    monkeypatch.chdir(tmp_path)
+def test_an_option_of_a_record_may_be_text_with_its_unit_as_on_the_command_line(tmp_path, text, number):
     columns = "0\n1\n2\n-1\n0\n" * 20
     for name in ("north.csv", "east.csv"):
         Path(name).write_text(columns)
