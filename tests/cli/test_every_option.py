@@ -20,7 +20,6 @@ import pytest
 import yaml
 
 import rocking_cli as rk
-import rocking_cli.questions.report.study
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.processing.reading_options import READING, SCALING
 from tests.conftest import EXAMPLES
@@ -300,7 +299,10 @@ def answered(verb, arguments, copied=lambda answer: answer):
 @pytest.fixture(autouse=True)
 def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)  # for certain, as files are removed there
-    monkeypatch.setattr(rocking_cli.questions.report.study, "MAP_POINTS", 4)
+    monkeypatch.setattr("rocking_cli.questions.report.study.MAP_POINTS", 4)
+    monkeypatch.setattr("rocking_cli.questions.overturning.study.SCAN_AMPLITUDES", 25)
+    for name in ("FACTORS", "FEW_FACTORS"):
+        monkeypatch.setattr(f"rocking_cli.questions.margin.study.{name}", np.array([0.3, 0.8, 1.0, 2.0]))
     Path("in.yaml").write_text("mechanism: block\nwidth: 0.7\nheight: 2.8\nfriction: 0.26\n")
     rows = zip(TIME, RECORD.acceleration, strict=True)
     Path("in.txt").write_text("time,a\n" + "".join(f"{t},{a}\n" for t, a in rows))

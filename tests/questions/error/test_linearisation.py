@@ -195,7 +195,9 @@ def test_the_command_gives_what_the_library_gives():
 
 
 def test_the_words_follow_the_numbers():
-    assert "kappa2 agrees" in run_json("error", EXAMPLES / "block.yaml")["verdict"]
+    block = run_json("error", EXAMPLES / "block.yaml")
+    assert "kappa2 agrees" in block["verdict"]
+    assert block["grades"] == dict.fromkeys(("kappa1", "kappa2"), "agrees") and block["prefer"] == "kappa2"
     arch = run_json("error", EXAMPLES / "arch.yaml")["verdict"]
     assert "Prefer kappa2" in arch and "kappa2 is good for a first estimate" in arch and "more than 5 %" in arch
     stocky = arch_of(3.0, 100.0)
