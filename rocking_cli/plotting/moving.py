@@ -9,8 +9,8 @@ from math import floor, inf, log10
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import known_until
@@ -22,7 +22,6 @@ from rocking_cli.plotting.style import BINS_ACROSS, visible
 from rocking_cli.studies.film import Film, Scene
 from rocking_cli.views.animation import drawing_in_words, fate, scale_in_words, why_it_ends
 
-Reals = NDArray[np.float64]
 MAX_SHOWN_RATIO = 1.6  # largest ratio of phi to phi_cr: beyond it, a structure overturns or nearly does
 MIN_FRAME_INTERVAL = 0.01  # s between the rotations of a page
 MAX_FRAMES = 20_000  # rotations of a page
