@@ -49,7 +49,7 @@ class TestSwitchesOfTheProgram:
 
 class TestInfo:
     def test_it_knows_the_versions_the_extras_and_the_plugins(self, monkeypatch):
-        from rocking_cli.questions.info import study as installation
+        from rocking_cli.questions.info import command as installation
 
         found = run_json("info")
         assert found["version"] == version("rocking-cli") and found["libraries"]["numpy"] == version("numpy")
