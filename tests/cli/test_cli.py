@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 import warnings
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -57,6 +58,12 @@ def run_json(*arguments):
     return json.loads(line)
 
 
+@cache
+def of_frame(*more):
+    """The JSON of the frame under the example, for several tests."""
+    return run_json(*RESPOND, *more)
+
+
 def shares(near):
     """What neighbours are said to be, as a sentence has it."""
     number = round(near["count"] * near["overturned"])
@@ -92,7 +99,7 @@ class TestNeighbours:
             assert f"Of 30 neighbouring motions ({deviations(around)}), {shares(near)}" in text
 
     def test_none_if_none_are_requested(self):
-        assert run_json(*RESPOND)["neighbours"] is None and "neighbouring" not in run(*RESPOND).stdout
+        assert of_frame()["neighbours"] is None and "neighbouring" not in run(*RESPOND).stdout
 
     def test_of_linear_models_alone_they_follow_the_first(self):
         words = ("respond", FRAME, "--record", ACCEL, "--scale", "1.2", "--neighbours", 9)
@@ -373,14 +380,14 @@ class TestRespond:
 
 class TestBothPolarities:
     def test_each_is_what_it_is_alone_and_the_larger_governs(self):
-        both = run_json(*RESPOND, "--polarity", "both")
+        both = of_frame("--polarity", "both")
         assert list(both) == [
             "structure", "record", "release", "restitution", "conclusion", "polarities", "governs", "notes", "given",
         ]  # fmt: skip
         assert both["record"]["polarity"] == "both"
         peaks = {}
         for polarity in ("1", "-1"):
-            alone = run_json(*RESPOND, "--polarity", polarity)
+            alone = of_frame("--polarity", polarity)
             assert both["polarities"][polarity]["responses"] == alone["responses"]
             peaks[int(polarity)] = alone["responses"]["nonlinear"]["peak_ratio"]
         assert both["governs"] == max(peaks, key=peaks.get)
@@ -406,7 +413,7 @@ class TestBothPolarities:
 
 class TestImpacts:
     def test_json_lists_them_with_the_rates_of_the_restitution(self):
-        response = run_json(*RESPOND, "--impacts")["responses"]["nonlinear"]
+        response = of_frame("--impacts")["responses"]["nonlinear"]
         directions = run_json("equiv", FRAME)["directions"]
         found = response["impact_list"]
         assert len(found) == response["impacts_all"] > response["impacts"] > 12
@@ -418,7 +425,7 @@ class TestImpacts:
             assert each["rate_after"] == pytest.approx(directions[each["direction"]]["eta"] * each["rate_before"])
             assert each["rate_before"] > each["rate_after"] > 0
         assert {each["direction"] for each in found} == {"positive", "negative"}
-        assert "impact_list" not in run_json(*RESPOND)["responses"]["nonlinear"]
+        assert "impact_list" not in of_frame()["responses"]["nonlinear"]
 
     def test_the_rates_are_those_of_the_history(self, tmp_path):
         """Of a release without a record: before and after the first impact, the samples tend to its rates."""
@@ -433,8 +440,8 @@ class TestImpacts:
         assert -rate[k] == pytest.approx(first["rate_after"], rel=0.05)
 
     def test_the_table_shows_the_first_and_how_many_follow(self):
-        words = (*RESPOND, "--impacts", "--model", "nonlinear")
-        text, response = run(*words).stdout, run_json(*words)["responses"]["nonlinear"]
+        text = run(*RESPOND, "--impacts", "--model", "nonlinear").stdout
+        response = of_frame("--impacts")["responses"]["nonlinear"]
         found, fastest = response["impact_list"], max(each["rate_before"] for each in response["impact_list"])
         for each in [each for each in found if each["rate_before"] >= 0.02 * fastest][:12]:
             assert f"{each['time']:.4f}" in text and f"{each['rate_after']:.4g}" in text
