@@ -228,13 +228,15 @@ def template(cls: Any) -> str:
     return "\n".join([*head, *lines]) + "\n"
 
 
-def starter(code: Code) -> str:
+def starter(code: Code, commands: Sequence[str] = ()) -> str:
     """Return a commented site file for a code of practice: its own, or one made from its fields like `template`.
 
     Parameters
     ----------
     code : Code
         The code.
+    commands : sequence of str
+        The commands that print the file and use it.
 
     Returns
     -------
@@ -247,8 +249,9 @@ def starter(code: Code) -> str:
     empty = {row["field"]: "" for row in rows if not row["required"] and row["example"] is None is row["default"]}
     lines, missing = _lines(rows, {**empty, "name": "my site"})
     fill_in = [f"# Fill in {', '.join(missing)}: the code gives no example."] if missing else []
-    head = f"# A site, to verify a structure by the {' '.join(f'{code.name} ({code.edition})'.split())}."
-    return "\n".join([head, *fill_in, f"# {SITE_UNITS_NOTE}", f"code: {in_a_line(code.key)}", *lines]) + "\n"
+    head = [f"# A site, to verify a structure by the {' '.join(f'{code.name} ({code.edition})'.split())}."]
+    head += [f"#   {each}" for each in commands]
+    return "\n".join([*head, *fill_in, f"# {SITE_UNITS_NOTE}", f"code: {in_a_line(code.key)}", *lines]) + "\n"
 
 
 def comments(cls: Any, code: Code | None) -> frozenset[str]:
