@@ -66,7 +66,7 @@ from rocking_cli.processing.steps import Step as Step
 from rocking_cli.questions.animate.verb import Animation as Animation
 from rocking_cli.questions.calibrate.study import Trace as Trace
 from rocking_cli.questions.calibrate.study import TraceFit as TraceFit
-from rocking_cli.questions.demand.study import SpectraOfSite as SpectraOfSite
+from rocking_cli.questions.demand.view import SpectraOfSite as SpectraOfSite
 from rocking_cli.questions.design.study import Aim as Aim
 from rocking_cli.questions.design.study import Design as Design
 from rocking_cli.questions.design.study import Span as Span

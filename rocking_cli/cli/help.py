@@ -1,12 +1,16 @@
-"""The help of commands: the options of records under a heading of their own, and lines that fit a narrow terminal."""
+"""The help of commands, heading by heading and in lines that fit a narrow terminal, and completion by the shell.
+
+Completion never loads a plugin.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from shutil import get_terminal_size
 from typing import Any
 
 import click
+from click.shell_completion import CompletionItem
 
 from rocking_cli.errors import spelled
 from rocking_cli.processing.reading_options import CORRECTIONS, corrected_once
@@ -78,3 +82,43 @@ class Command(click.Command):
             if records:
                 with formatter.section(heading):
                     formatter.write_dl(records)
+
+
+JSON_HELP = "Print the result as one JSON object, and nothing else."
+as_json = click.option("--json", "as_json", cls=HeadedOption, heading=OUTPUT_HEADING, is_flag=True, help=JSON_HELP)
+CODES, MECHANISMS, PULSES = "rocking.codes", "rocking.mechanisms", "rocking.pulses"
+"""Entry-point groups, as in the modules of the plugins, which take long to import."""
+Completer = Callable[[click.Context, click.Parameter, str], list[CompletionItem]]
+
+
+def completer(known: str, *more: str, ending: str = "") -> Completer:
+    """Return what completes the value of an option.
+
+    Parameters
+    ----------
+    known : str
+        "file" for names of files, the entry-point group of plugins, or words: separated by spaces, or by commas if the
+        option takes several of them.
+    *more : str
+        Further words beside the names of plugins.
+    ending : str
+        Suffix of each word.
+    """
+
+    def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        if known in ("file", "output"):
+            return [CompletionItem(incomplete, type="file")]  # the shell completes it
+        before, comma, begun = incomplete.rpartition(",") if "," in known else ("", "", incomplete)
+        words = known.replace(",", " ").split()
+        if known.startswith("rocking."):
+            from rocking_cli.plugins.registry import find
+
+            words = sorted({*find(known), *more})
+        typed = before.split(",") if comma else []
+        return [
+            CompletionItem(f"{before}{comma}{word}{ending}")
+            for word in words
+            if (word + ending).startswith(begun) and word not in typed
+        ]
+
+    return complete

@@ -15,8 +15,16 @@ from pydantic.fields import FieldInfo
 from rocking_cli.ask.asked import AskedModel, Kind, choices, in_order, no_effect, owner_of, told_of
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.cli import terminal
-from rocking_cli.cli.help import MOTIONS_HEADING, OPTIONS_HEADING, OUTPUT_HEADING, Command, HeadedOption
-from rocking_cli.cli.options import JSON_HELP, PULSES, completer
+from rocking_cli.cli.help import (
+    JSON_HELP,
+    MOTIONS_HEADING,
+    OPTIONS_HEADING,
+    OUTPUT_HEADING,
+    PULSES,
+    Command,
+    HeadedOption,
+    completer,
+)  # fmt: skip
 from rocking_cli.errors import InputError, spelled
 from rocking_cli.plugins.rooms import names
 from rocking_cli.processing.reading_options import CORRECTIONS

@@ -1,19 +1,27 @@
-"""The command `rocking`: a group that imports a command only when it is used."""
+"""The command `rocking`: a group that imports a command only when it is used.
+
+A signal of the system ends it in order, as Ctrl-C does, so that no partial files remain.
+"""
 
 from __future__ import annotations
 
 import errno
 import os
+import signal
 import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
 from importlib import import_module
 from time import monotonic
-from typing import Any
+from types import FrameType
+from typing import Any, NoReturn
 
 import click
 
 from rocking_cli import __version__
-from rocking_cli.cli import endings, terminal
+from rocking_cli.cli import terminal
 from rocking_cli.cli.help import HelpFormatter
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.plugins.rooms import commands, short_help
@@ -23,6 +31,63 @@ NO_MEMORY = "Could not allocate memory", "can't start new thread"  # of MuJoCo, 
 GONE = {"crosscheck": "`rocking respond --engine blocks` compares both engines"}
 """Commands that are gone, and what does their work."""
 MAX_EPOCH_DIGITS = 11  # number of digits of SOURCE_DATE_EPOCH, up to the year 5138
+
+END_SIGNALS = ("SIGTERM", "SIGHUP")  # sent by `kill`, and when a terminal closes; Windows lacks SIGHUP
+RESEND_INTERVAL = 0.05  # s after which a lost signal is sent again
+
+
+class Stopped(KeyboardInterrupt):
+    """Signal that ends the program."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(signal.Signals(number).name)
+        self.number = number
+
+
+def exit_code(stopped: KeyboardInterrupt) -> int:
+    """Return the exit code that shells give a program ended by a signal: 130 for Ctrl-C."""
+    return 128 + _number(stopped)
+
+
+def _number(stopped: BaseException | None) -> int:
+    return stopped.number if isinstance(stopped, Stopped) else signal.SIGINT
+
+
+@contextmanager
+def in_order() -> Iterator[None]:
+    """Raise `Stopped` on the signals that end a program, except those that are ignored, as `nohup` does."""
+    former_handlers, former_hook = {}, sys.unraisablehook
+
+    def stop(number: int, frame: FrameType | None) -> NoReturn:
+        raise Stopped(number)
+
+    def send_again(dropped: sys.UnraisableHookArgs) -> None:
+        """Send a signal again if it came where Python drops exceptions, such as while an object is deleted."""
+        if isinstance(dropped.exc_value, KeyboardInterrupt):
+            threading.Timer(RESEND_INTERVAL, _give, [_number(dropped.exc_value)]).start()
+        else:
+            former_hook(dropped)
+
+    sys.unraisablehook = send_again
+    if threading.current_thread() is threading.main_thread():  # other threads may not set signal handlers
+        for number in (getattr(signal, name) for name in END_SIGNALS if hasattr(signal, name)):
+            if signal.getsignal(number) == signal.SIG_DFL:
+                former_handlers[number] = signal.signal(number, stop)
+    try:
+        yield
+    finally:
+        sys.unraisablehook = former_hook
+        for number, handler in former_handlers.items():
+            signal.signal(number, handler)
+
+
+def _give(number: int) -> None:
+    """Send a signal to the main thread; a signal raised in another thread would not wake it."""
+    main = threading.main_thread().ident
+    if hasattr(signal, "pthread_kill") and main is not None:
+        signal.pthread_kill(main, number)
+    else:  # Windows can only raise the signal in this thread
+        signal.raise_signal(number)
 
 
 class _Helped(click.Context):
@@ -117,7 +182,7 @@ class LazyGroup(click.Group):
         began = monotonic()
         try:
             _check_environment()
-            with endings.in_order():
+            with in_order():
                 return super().invoke(ctx)
         except click.ClickException as error:
             # The message quotes what the user typed.
@@ -127,7 +192,7 @@ class LazyGroup(click.Group):
             raise
         except KeyboardInterrupt as stopped:
             terminal.error(": ".join(["interrupted", *getattr(stopped, "__notes__", ())]))
-            ctx.exit(endings.exit_code(stopped))
+            ctx.exit(exit_code(stopped))
         except RockingError as error:
             terminal.error("\n  ".join([str(error), *getattr(error, "__notes__", ())]))
             terminal.debug_traceback(error)

@@ -10,12 +10,12 @@ from matplotlib.collections import PolyCollection
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
+from rocking_cli.arrays import Points
 from rocking_cli.plotting import style
 from rocking_cli.plotting.labels import MARK_COST, Labels
 from rocking_cli.plotting.panels import Panel
 from rocking_cli.studies.picture import Picture
 
-Points = NDArray[np.complex128]
 SYMBOL_OFFSET = 0.1  # inches from a point to the symbol of a short spring
 MAX_SPRING_LENGTH = 0.4  # inches; longest symbol of a spring
 MAX_SPRING_SHARE = 0.6  # longest symbol of a spring, as a share of the length of its line

@@ -9,8 +9,8 @@ from math import floor, inf, log10
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import known_until
@@ -22,7 +22,6 @@ from rocking_cli.plotting.style import BINS_ACROSS, visible
 from rocking_cli.studies.film import Film, Scene
 from rocking_cli.views.animation import drawing_in_words, fate, scale_in_words, why_it_ends
 
-Reals = NDArray[np.float64]
 MAX_SHOWN_RATIO = 1.6  # largest ratio of phi to phi_cr: beyond it, a structure overturns or nearly does
 MIN_FRAME_INTERVAL = 0.01  # s between the rotations of a page
 MAX_FRAMES = 20_000  # rotations of a page
@@ -123,9 +122,10 @@ def ratio_chart(histories: Mapping[ModelName, History], bins: int = BINS_ACROSS)
     return _ratio_chart([(NAMES[name], name, run, until) for name, run in histories.items()], bins)
 
 
-def ratio_charts(films: Sequence[Film], bins: int = BINS_ACROSS) -> dict[str, Any]:
+def ratio_charts(films: Sequence[Film]) -> dict[str, Any]:
     """Return a chart like `ratio_chart` with a curve for each of several structures, as far as its outcome is known."""
-    return _ratio_chart([(each.name, f"curve-{k}", each.history, inf) for k, each in enumerate(films)], bins)
+    curves = [(each.name, f"curve-{k}", each.history, inf) for k, each in enumerate(films)]
+    return _ratio_chart(curves, BINS_ACROSS)
 
 
 def _ratio_chart(curves: Sequence[tuple[str, str, History, float]], bins: int) -> dict[str, Any]:

@@ -13,15 +13,14 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, PathPatch, Polygon
 from matplotlib.path import Path
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Points
 from rocking_cli.core import Angle, Direction, Forces, Length, Line, three_digits
 from rocking_cli.plotting import dimensions, hung, style
 from rocking_cli.plotting.labels import EDGE_COST, MARK_COST, Labels, mathematics
 from rocking_cli.plotting.panels import PANEL_GAP, Page, Panel, lay_out
 from rocking_cli.studies.picture import MAX_SEPARATE_PARTS, DrawnHinge, DrawnPart, Picture, box_around
 
-Points = NDArray[np.complex128]
 SCALE_HEIGHT = 0.34  # inches below a panel for the scale
 LINE_HEIGHT, NOTE_HEIGHT = 0.16, 0.13  # inches of a line of a heading or a title, and of a note
 MIN_PANEL_WIDTH = 0.95  # inches: a slender structure still needs room for its labels

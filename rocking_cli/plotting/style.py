@@ -9,7 +9,7 @@ from contextvars import ContextVar
 from functools import cache, lru_cache
 from pathlib import Path
 from textwrap import shorten
-from typing import IO, Any, NamedTuple, cast
+from typing import IO, TYPE_CHECKING, Any, NamedTuple, cast
 from warnings import catch_warnings, filterwarnings
 
 import numpy as np
@@ -23,7 +23,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine, TightLayoutEngine
 from matplotlib.legend import Legend
 from matplotlib.patheffects import withStroke
 from matplotlib.text import Annotation, Text
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, PercentFormatter
+from matplotlib.ticker import Formatter, FuncFormatter, LogLocator, MaxNLocator, NullFormatter, PercentFormatter
 from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
@@ -31,6 +31,9 @@ from rocking_cli import names
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.files import write_whole
 from rocking_cli.text import printable
+
+if TYPE_CHECKING:
+    from rocking_cli.views.sheet.language import Language
 
 PAGE_WIDTH, PHONE_WIDTH = 7.2, 3.3  # inches of text on paper, and on a phone, where it is enlarged to the screen
 DPI = 150
@@ -429,12 +432,6 @@ def note(axes: Axes, text: str, height: float = 0.96) -> None:
     )
 
 
-def make_room(axes: Axes, share: float = 0.2) -> None:
-    """Raise the upper end of a panel by a share of its height, so that a note does not cover peaks."""
-    low, high = axes.get_ylim()
-    axes.set_ylim(low, high + share * (high - low))
-
-
 def plain_numbers(axis: Axis, subs: Sequence[float] = (1.0, 2.0, 5.0)) -> None:
     """Set plain numbers along a logarithmic axis, at given multiples of the powers of ten."""
     axis.set_major_locator(LogLocator(subs=subs))
@@ -587,3 +584,48 @@ def draw_samples(axes: Axes, values: NDArray[np.float64], dt: float, start: floa
     """Plot even samples against time, those that are visible."""
     shown = visible(values)
     axes.plot(start + shown * dt, values[shown], **look)
+
+
+class _Numbers(Formatter):
+    """Labels along an axis, with the decimal marks of a language."""
+
+    def __init__(self, say: Language, own: Formatter) -> None:
+        self.say, self.own = say, own
+
+    def __call__(self, value: float, pos: int | None = None) -> str:
+        return self.say.formula(self.own(value, pos))
+
+    def format_ticks(self, values: list[float]) -> list[str]:
+        return [*map(self.say.formula, self.own.format_ticks(values))]
+
+
+def in_language(say: Language, draw: Callable[[], Figure]) -> Callable[[], Figure]:
+    """Return what draws a plot in a language; a text that is not recognised stays in English.
+
+    Parameters
+    ----------
+    say : Language
+        The language, whose texts of the family `figure` are those of plots.
+    draw : callable
+        Draws the plot in English.
+    """
+    if say.key == "en":
+        return draw
+
+    def translated() -> Figure:
+        figure = draw()
+        for axis in (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)):
+            axis.set_major_formatter(_Numbers(say, axis.get_major_formatter()))
+        for each in figure.findobj(Text):
+            assert isinstance(each, Text)  # as selected above
+            each.set_text(say.formula(_translated(say, each.get_text().split("\n"), float(each.get_fontsize()))))
+        return figure
+
+    return translated
+
+
+def _translated(say: Language, lines: list[str], points: float) -> str:
+    """Return a text of a plot in a language; one sentence in several lines is broken anew, into no wider lines."""
+    if len(lines) > 1 and (whole := say.matched("figure", " ".join(lines))) is not None:
+        return folded(whole, max(size_of(line, points).real for line in lines), points)
+    return "\n".join(say.recognised("figure", line) for line in lines)

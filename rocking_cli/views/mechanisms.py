@@ -34,16 +34,12 @@ UNITS_NOTE = "A number without a unit is in the unit in brackets; 800 mm, 12 ft 
 SITE_UNITS_NOTE = "Numbers are in the unit in brackets."
 
 
-def _default(row: Mapping[str, Any]) -> str | None:
-    return "required" if row["required"] else None if row["default"] is None else str(row["default"])
-
-
 COLUMNS: tuple[Column[Mapping[str, Any]], ...] = (
     only_shown("field", itemgetter("field"), text=True),
     only_shown("symbol", itemgetter("symbol"), text=True),
     only_shown("unit", itemgetter("unit"), text=True),
     only_shown("bounds", itemgetter("bounds"), text=True),
-    only_shown("default", _default, text=True),
+    only_shown("default", lambda row: "required" if row["required"] else row["default"], str, text=True),
     only_shown("meaning", itemgetter("description"), text=True),
 )
 """Columns of the table of the fields of a structure file; a row is the plain data of one field."""
@@ -160,6 +156,8 @@ def fields(cls: type[BaseModel], common: type[BaseModel] = Mechanism) -> list[di
             for rule in info.metadata
             if hasattr(rule, attribute)
         ]
+        # Common are fields of the base class that this class does not define again.
+        classes = cls.__mro__[: cls.__mro__.index(common)] if issubclass(cls, common) else [cls]
         rows.append(
             {
                 "field": info.alias or key,
@@ -171,16 +169,10 @@ def fields(cls: type[BaseModel], common: type[BaseModel] = Mechanism) -> list[di
                 "default": None if info.default is PydanticUndefined else info.default,
                 "example": info.examples[0] if info.examples else None,
                 "description": info.description or "",
-                "common": _is_common(cls, key, common),
+                "common": not any(key in vars(each).get("__annotations__", {}) for each in classes),
             }
         )
     return sorted(rows, key=lambda row: row["common"])
-
-
-def _is_common(cls: type[BaseModel], key: str, common: type[BaseModel]) -> bool:
-    """Return whether the base class has a field that this class does not define again."""
-    classes = cls.__mro__[: cls.__mro__.index(common)] if issubclass(cls, common) else [cls]
-    return not any(key in vars(each).get("__annotations__", {}) for each in classes)
 
 
 def checked(name: str, package: str, file: str | None, verdicts: Sequence[Verdict]) -> View:

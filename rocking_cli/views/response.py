@@ -7,10 +7,8 @@ from dataclasses import fields
 from math import degrees, inf, sqrt
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from rocking_cli import names
+from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.dynamics.history import MIN_IMPACT_RATE, BlockPeaks, History, contact_lost
 from rocking_cli.dynamics.model import ModelName
@@ -33,7 +31,6 @@ from rocking_cli.views.restitution import restitution_data, restitution_used
 from rocking_cli.views.verdict import ONE_SAMPLE, SENSE, contact_data, contact_words, unchecked, verdict, why_unknown
 from rocking_cli.views.view import Table, View, force_unit, in_degrees, number, processing_data
 
-Reals = NDArray[np.float64]
 MAX_LISTED_IMPACTS = 12  # number of impacts of a model in its table; the data have all
 
 

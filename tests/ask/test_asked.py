@@ -152,8 +152,7 @@ def test_signature_docstring_and_help_have_every_field_once(typed):
     assert usual and f"[default: {usual}]" in " ".join(page.split()) and "Neighbouring motions:" in page
 
 
-def test_files_are_written_and_no_input_is_replaced(typed, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_files_are_written_and_no_input_is_replaced(typed, tmp_path):
     assert "wrote rows.csv" in typed("--out", "rows.csv").stderr
     assert (tmp_path / "rows.csv").read_text() == "a\n1.5\n"
     toy(out="again.csv", separator=";", decimal=",")

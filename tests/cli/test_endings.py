@@ -9,8 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from rocking_cli.__main__ import run
-from rocking_cli.cli import endings
-from rocking_cli.cli.main import main
+from rocking_cli.cli.main import Stopped, exit_code, in_order, main
 from tests.conftest import EXAMPLES
 
 SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
@@ -20,10 +19,10 @@ SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if 
 def test_who_ignores_a_signal_goes_on_ignoring_it():
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
-        with endings.in_order():
+        with in_order():
             os.kill(os.getpid(), signal.SIGHUP)
             assert signal.getsignal(signal.SIGTERM) != signal.SIG_DFL  # else the next lines would end the tests
-            with pytest.raises(endings.Stopped):
+            with pytest.raises(Stopped):
                 os.kill(os.getpid(), signal.SIGTERM)
                 time.sleep(1)
         assert signal.getsignal(signal.SIGHUP) == signal.SIG_IGN
@@ -40,11 +39,11 @@ def test_a_signal_that_comes_where_python_drops_exceptions_is_not_lost(number):
             os.kill(os.getpid(), number)
             time.sleep(0.01)
 
-    with pytest.raises(KeyboardInterrupt) as caught, endings.in_order():
+    with pytest.raises(KeyboardInterrupt) as caught, in_order():
         assert signal.getsignal(number) != signal.SIG_DFL
         Deleted()
         time.sleep(60)
-    assert endings.exit_code(caught.value) == 128 + number
+    assert exit_code(caught.value) == 128 + number
 
 
 def test_an_interrupt_ends_any_command_with_130(monkeypatch):

@@ -10,6 +10,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 import pytest
+from click.shell_completion import BashComplete
 from click.testing import CliRunner
 
 from rocking_cli.cli.main import main
@@ -22,10 +23,8 @@ ACCEL, BLOCK = str(EXAMPLES / "accel.csv"), str(EXAMPLES / "block.yaml")
 
 
 def test_the_package_runs_as_the_command_does():
-    module = [sys.executable, "-m", "rocking_cli", "equiv", BLOCK, "--json"]
-    ran = subprocess.run(module, capture_output=True, text=True, check=True)
-    assert ran.stdout == run("equiv", BLOCK, "--json").stdout
-    wrong = subprocess.run([*module, "--no"], capture_output=True, text=True)
+    module = [sys.executable, "-m", "rocking_cli", "equiv", BLOCK, "--no"]
+    wrong = subprocess.run(module, capture_output=True, text=True)
     assert wrong.returncode == 2 and "Usage: rocking equiv" in wrong.stderr
 
 
@@ -50,7 +49,7 @@ class TestSwitchesOfTheProgram:
 
 class TestInfo:
     def test_it_knows_the_versions_the_extras_and_the_plugins(self, monkeypatch):
-        from rocking_cli.questions.info import study as installation
+        from rocking_cli.questions.info import command as installation
 
         found = run_json("info")
         assert found["version"] == version("rocking-cli") and found["libraries"]["numpy"] == version("numpy")
@@ -116,9 +115,10 @@ class TestCompletion:
         loaded = {line.rpartition("|")[2].strip() for line in ran.stderr.splitlines()}
         assert "click" in loaded and not loaded & {"mechanisms", "numpy", "rocking_cli.excitation.pulses"}
 
-    @pytest.mark.parametrize("words", [("equiv", "x"), ("respond", "--record", "x"), ("draw", "--plot", "x")])
+    @pytest.mark.parametrize("words", [("equiv",), ("respond", "--record"), ("draw", "--plot")])
     def test_files_are_left_to_the_shell(self, words):
-        assert self.asked("rocking", *words)[1].stdout == "file,x\n"
+        shell = BashComplete(main, {}, "rocking", "_ROCKING_COMPLETE")
+        assert [shell.format_completion(each) for each in shell.get_completions(list(words), "x")] == ["file,x"]
 
     @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
     def test_the_script_is_that_of_the_shell(self, shell):
@@ -166,9 +166,7 @@ class TestStandardStreams:
         "command",
         [
             ("respond", BLOCK, "--pulse", "sine:0.5g:1s", "--neighbours", "0"),
-            ("spectrum", BLOCK, "--pulse", "sine:0.5g:1s", "--sizes", "2:3", "--count", "2"),
             ("overturning", BLOCK, "--points", "6"),
-            ("equivalent_pulses", BLOCK, str(EXAMPLES / "wall.yaml"), "--ag", "0.6g", "--period", "0.8"),
         ],
         ids=lambda command: command[0],
     )
@@ -176,9 +174,9 @@ class TestStandardStreams:
         run(*command, "--out", "there.csv")
         table = Path("there.csv").read_bytes()
         shown = run(*command)
-        assert table and CliRunner().invoke(main, [*command, "--out", "-"]).stdout_bytes == table
-        assert run(*command, "--out", "-", "--json").stdout_bytes == table
-        assert shown.stdout.strip() in run(*command, "--out", "-").stderr
+        there = run(*command, "--out", "-")
+        assert table and there.stdout_bytes == run(*command, "--out", "-", "--json").stdout_bytes == table
+        assert shown.stdout.strip() in there.stderr
         assert not Path("-").exists()
 
     def test_after_it_results_are_on_standard_output_again(self):
@@ -190,7 +188,8 @@ class TestStandardStreams:
         assert "--out: - takes the table of a single motion" in run(*several, code=2).stderr
         assert "does not end in .html" in run("report", BLOCK, "-o", "-", code=2).stderr
 
-    def test_a_report_holds_what_came_from_there(self):
+    def test_a_report_holds_what_came_from_there(self, monkeypatch):
+        monkeypatch.setattr("rocking_cli.questions.report.study.MAP_POINTS", 3)
         there = json.loads(piped("report", "-", "--json", content=Path(BLOCK).read_bytes()).stdout)["structure"]
         assert there == {**run_json("report", BLOCK)["structure"], "file": "standard input"}
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import click
 
-from rocking_cli.cli import options, terminal
-from rocking_cli.cli.help import Command
+from rocking_cli.cli import terminal
+from rocking_cli.cli.help import Command, as_json
 
 COMPLETION_VARIABLE = "_ROCKING_COMPLETE"
 """Variable of the environment by which the shell requests completions, named as click expects it."""
@@ -13,7 +13,7 @@ COMPLETION_VARIABLE = "_ROCKING_COMPLETE"
 
 @click.command(cls=Command, short_help="Print the shell completion script.")
 @click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
-@options.as_json
+@as_json
 def command(shell: str, as_json: bool) -> None:
     """Print a script for the shell that completes commands, options, mechanisms, pulse shapes, models and files.
 

@@ -9,7 +9,7 @@ from rocking_cli.ask.inputs import site_of
 from rocking_cli.ask.verbs import verb
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.questions.demand.asked import DemandAsked
-from rocking_cli.questions.demand.study import SpectraOfSite
+from rocking_cli.questions.demand.view import SpectraOfSite, spectra_of, table, title, view
 
 
 @verb(DemandAsked)
@@ -35,9 +35,6 @@ def demand(asked: DemandAsked, watch: Watcher) -> Answer[SpectraOfSite]:
     >>> round(slv.values["S"], 3), round(slv.values["pga"], 4), slv.acceleration.round(3).max().item()
     (1.4, 0.28, 0.7)
     """
-    from rocking_cli.questions.demand.study import spectra_of
-    from rocking_cli.questions.demand.view import table, title, view
-
     spectra = spectra_of(site_of(asked.site), asked.damping)
     shown = (spectra.periods, spectra.states, spectra.demand.first, title(spectra))
     figure = drawn("plotting.spectra.draw_spectra_of_site", *shown)

@@ -37,11 +37,6 @@ class Parameter(Column[EquivalentBlock]):
     symbol: str = ""
     meaning: str = ""
 
-    @property
-    def of_mass(self) -> bool:
-        """Whether the parameter is proportional to mass, and so per unit mass for a structure without masses."""
-        return self.unit.startswith("kg ")
-
     def unit_of(self, *, mass: bool) -> str:
         """Return the unit for a structure with or without masses."""
         return self.unit if mass else self.unit.removeprefix("kg ")
@@ -137,7 +132,7 @@ def _columns(mechanism: Mechanism, directions: Sequence[Direction]) -> Iterator[
     """Yield the parameters, and the values that a mechanism found itself, which may differ between directions."""
     per_mass = "" if mechanism.has_mass else ", per unit mass"
     for each in PARAMETERS:
-        words = each.words + (per_mass if each.of_mass else "")
+        words = each.words + (per_mass if each.unit.startswith("kg ") else "")
         yield only_shown(each.key, itemgetter(each.key), number, each.unit_of(mass=mechanism.has_mass), words=words)
     parameters = {direction: {each.key: each for each in mechanism.found(direction)} for direction in directions}
     for key in dict.fromkeys(key for those in parameters.values() for key in those):

@@ -344,7 +344,8 @@ def draw(found: EquivalentResponses) -> Figure:
     below.set_xlim(0.0, min(pulse_end + SHOWN_AFTER_PULSE, float(found.tau[-1])))
     above.set_xlim(left=0.0)
     below.axvline(pulse_end, color=style.FAINT, linewidth=style.CURVE, linestyle=":", label="end of the pulses")
-    style.make_room(below, 0.1)
+    low, high = below.get_ylim()
+    below.set_ylim(low, high + 0.1 * (high - low))  # so that the peaks are free of the frame
     below.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
     style.tidy(above, "time [s]", "pulse of each [g]")
     style.tidy(below, r"dimensionless time $p\,t$", r"$\phi/\phi_{cr}$, first lifted side up")

@@ -124,7 +124,6 @@ def margin(
     motion: GroundMotion,
     *,
     factors: Reals = FACTORS,
-    threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Margin:
     """Compute the share of overturning as a function of the factor on a motion.
@@ -137,8 +136,6 @@ def margin(
         The ground motion at a factor of 1.
     factors : ndarray, shape (n,)
         Factors on the motion, positive and increasing; 1 is added.
-    threads : int, optional
-        Number of threads; by default one for each processor.
     progress : callable, optional
         Called with the number of histories done since the last call; their total is the product of the numbers of
         factors (with 1), neighbours and polarities.
@@ -169,7 +166,7 @@ def margin(
         some = factors[undecided]
         repeated = Draws(*(np.concatenate([values] * some.size) if some.size else values[:0] for values in draws))
         outcomes = simulate_neighbours(
-            model, motion, repeated, scale=some.repeat(around.count), polarity=sign, threads=threads, progress=progress,
+            model, motion, repeated, scale=some.repeat(around.count), polarity=sign, progress=progress,
             engine=conditions.by,
         )  # fmt: skip
         by_blocks, off_edge = by_blocks + int(outcomes.by_blocks.sum()), off_edge + int(outcomes.off_edge.sum())

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import click
 
-from rocking_cli.cli import options, terminal
-from rocking_cli.cli.help import Command
+from rocking_cli.cli import terminal
+from rocking_cli.cli.help import Command, as_json
 from rocking_cli.errors import named
 from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
 from rocking_cli.views.view import View
@@ -79,7 +79,7 @@ def view(found: Sequence[InstalledMeasure]) -> View:
 
 
 @click.command(cls=Command, short_help="List the installed intensity measures.")
-@options.as_json
+@as_json
 def command(as_json: bool) -> None:
     """List the installed intensity measures: their form, unit and dependence on the scale factor of a record.
 

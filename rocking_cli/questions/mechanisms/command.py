@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rocking_cli.cli import options, terminal
-from rocking_cli.cli.help import Command
+from rocking_cli.cli import terminal
+from rocking_cli.cli.help import MECHANISMS, Command, as_json, completer
 from rocking_cli.errors import InputError, MechanismError, RockingError
 from rocking_cli.io.files import check_writable
 
@@ -25,7 +25,7 @@ TEMPLATE_CHECK = "The file that `rocking new` prints is a structure."
 
 
 @click.command(cls=Command, short_help="List, describe or check the installed mechanisms.")
-@click.argument("name", required=False, shell_complete=options.completer(options.MECHANISMS))
+@click.argument("name", required=False, shell_complete=completer(MECHANISMS))
 @click.argument("file", required=False, type=click.Path())
 @click.option(
     "--check",
@@ -34,10 +34,10 @@ TEMPLATE_CHECK = "The file that `rocking new` prints is a structure."
     help="Check NAME against the contract of mechanisms, on its examples or on FILE.",
 )
 @click.option(
-    "--plot", metavar="FILE.png", type=click.Path(path_type=Path), shell_complete=options.completer("file"),
+    "--plot", metavar="FILE.png", type=click.Path(path_type=Path), shell_complete=completer("file"),
     help="Draw all mechanisms, small, to choose one (.png, .svg or .pdf).",
 )  # fmt: skip
-@options.as_json
+@as_json
 def command(name: str | None, file: str | None, checked: bool, plot: Path | None, as_json: bool) -> None:
     """List the installed mechanisms and the structures that each suits; with NAME, show the fields of one.
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import click
 
-from rocking_cli.cli import options, terminal
-from rocking_cli.cli.help import Command
+from rocking_cli.cli import terminal
+from rocking_cli.cli.help import CODES, MECHANISMS, Command, as_json, completer
 from rocking_cli.errors import named
 from rocking_cli.io.starters import STARTERS, in_italian, italian, starter, template_of
 from rocking_cli.names import LANGUAGES
@@ -24,7 +24,7 @@ SITE = "site"
     "name",
     metavar="NAME",
     required=False,
-    shell_complete=options.completer(options.MECHANISMS, STUDY, SITE, *STARTERS),
+    shell_complete=completer(MECHANISMS, STUDY, SITE, *STARTERS),
 )
 @click.option("--plugin", is_flag=True, help="Create a package for a mechanism of your own, called NAME.")
 @click.option(
@@ -32,7 +32,7 @@ SITE = "site"
     is_flag=False,
     flag_value="",
     metavar="[CODE]",
-    shell_complete=options.completer(options.CODES),
+    shell_complete=completer(CODES),
     help="With `site`: code of practice of the site file.  [default: NTC2018]  With --plugin, alone: create a package "
     "for a code of practice.",
 )
@@ -41,13 +41,13 @@ SITE = "site"
     "--out",
     type=click.Path(),
     metavar="FOLDER",
-    shell_complete=options.completer("file"),
+    shell_complete=completer("file"),
     help="New folder for the package.  [default: rocking-NAME, in this folder]",
 )
 @click.option(
     "--language", type=click.Choice(LANGUAGES), default="en", show_default=True, help="Language of the comments."
 )
-@options.as_json
+@as_json
 @click.pass_context
 def command(
     ctx: click.Context, name: str | None, plugin: bool, code: str | None, out: str | None, language: str, as_json: bool
@@ -104,7 +104,7 @@ def _made(word: str, code: str | None, *, as_json: bool) -> dict[str, Any]:
     """Return the kind and name of a template, and its text; a warning says if it does not work as it is."""
     from rocking_cli.plugins.registry import find
 
-    mechanisms = find(options.MECHANISMS)
+    mechanisms = find(MECHANISMS)
     name = word if word in mechanisms else template_of(word)
     if code is not None and name != SITE:
         raise click.UsageError(
@@ -124,7 +124,7 @@ def _made(word: str, code: str | None, *, as_json: bool) -> dict[str, Any]:
     from rocking_cli.views.mechanisms import template
 
     registry = Registry()
-    if name not in registry and name in find(options.CODES):
+    if name not in registry and name in find(CODES):
         hint = f"`rocking new site --code {name}` prints a site file"
         raise InputError(Problem(f"{name} is a code of practice, not a mechanism", hint=hint))
     if name not in registry and (similar := get_close_matches(name, [*STARTERS, *italian()["templates"]], n=1)):

@@ -144,14 +144,12 @@ def _side_by_side(
 
 def _long(records: Sequence[Examined], columns: Sequence[Column[Examined]]) -> Table:
     """Return a table with a row for each record, none of which has a line break."""
-    whole = table_of("", [only_shown("record", of("label"), text=True), *map(_narrow, columns)], records)
+    narrow = []  # with their units in the headings, which are broken into lines
+    for each in columns:
+        unit = f"\n[{each.unit}]" if each.unit else ""
+        narrow.append(replace(each, head=f"{_folded(each.head or '', MAX_HEADING_LINE)}{unit}"))
+    whole = table_of("", [only_shown("record", of("label"), text=True), *narrow], records)
     return replace(whole, rows=[[cell.replace("\n", " ") for cell in row] for row in whole.rows])
-
-
-def _narrow(column: Column[Examined]) -> Column[Examined]:
-    """Return a column with its unit in the heading, which is broken into lines."""
-    unit = f"\n[{column.unit}]" if column.unit else ""
-    return replace(column, head=f"{_folded(column.head or '', MAX_HEADING_LINE)}{unit}")
 
 
 def _columns(records: Sequence[Examined]) -> list[Column[Examined]]:

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking_cli.core.equivalence import Grade
-from rocking_cli.plotting.language import in_language
 from rocking_cli.plotting.moving import ground_chart, moving, ratio_chart
+from rocking_cli.plotting.style import in_language
 from rocking_cli.questions.equiv.view import PARAMETERS, EquivalentSide
 from rocking_cli.questions.error.study import errors, preferred
 from rocking_cli.questions.error.view import draw_linearisation

@@ -155,12 +155,6 @@ def blocks_of(slenderness: float, model: ModelName, restitution: float | None = 
     return SpectrumShape(shape_of(Structure(block, restitution=restitution), model).structure, slenderness)
 
 
-def usual_sizes(shapes: Sequence[SpectrumShape]) -> tuple[float, float]:
-    """Return the default smallest and largest size of a spectrum, as 2 pi/p [s]."""
-    periods = [each.period for each in shapes if each.slenderness is None]
-    return (min(periods) / MAX_SCALE**0.5, max(periods) * MAX_SCALE**0.5) if periods else BLOCK_PERIODS
-
-
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Spectrum:

@@ -61,9 +61,12 @@ def spectrum(asked: SpectrumAsked, watch: Watcher) -> Answer[list[Spectrum]]:
     if not shapes:
         hint = f"give one, or {named('slenderness')} for blocks"
         raise InputError(Problem("is missing", field=named("structures"), hint=hint))
-    low, high = asked.sizes or study.usual_sizes(shapes)
+    as_given = [each.period for each in shapes if each.slenderness is None]
+    widest = study.MAX_SCALE**0.5
+    usual = (min(as_given) / widest, max(as_given) * widest) if as_given else study.BLOCK_PERIODS
+    low, high = asked.sizes or usual
     periods = np.geomspace(low, high, asked.count)
-    smallest = min([float(periods[0]), *(each.period for each in shapes if each.slenderness is None)])
+    smallest = min([float(periods[0]), *as_given])
     chosen = requested.gather(2 * pi / smallest, watch, "the smallest size")
     scaled = [each.motion.scaled(each.factor) for each in chosen]
     with watch.progress(study.count_histories(shapes, periods, len(chosen), signs), "histories") as progress:

@@ -17,8 +17,8 @@ from rocking_cli.ask.watcher import Watcher
 from rocking_cli.documents.figures import dark_figures, inline_svg, template
 from rocking_cli.errors import InputError, Problem, Refused, RockingError
 from rocking_cli.io.files import check_writable, discard, folder, write_files
-from rocking_cli.plotting.language import in_language
 from rocking_cli.plotting.moving import asset
+from rocking_cli.plotting.style import in_language
 from rocking_cli.questions.survey.asked import SurveyAsked
 from rocking_cli.questions.survey.picture import draw_map, draw_survey
 from rocking_cli.questions.survey.structure_table import coordinates

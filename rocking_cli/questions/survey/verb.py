@@ -54,7 +54,7 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
     ['b', 'a']
     """
     from rocking_cli.io.tables import PARQUET
-    from rocking_cli.plotting.language import in_language
+    from rocking_cli.plotting.style import in_language
     from rocking_cli.questions.survey.study import survey as study
     from rocking_cli.questions.survey.view import blocks, columns, texts_in, title, view
 
@@ -173,8 +173,7 @@ def _tell_first(tell: Callable[[str], None], sentences: Sequence[str], others: s
 
 
 def _write_map(place: Path, found: Survey, title: str, say: Language, watch: Watcher) -> None:
-    from rocking_cli.plotting.language import in_language
-    from rocking_cli.plotting.style import write
+    from rocking_cli.plotting.style import in_language, write
     from rocking_cli.questions.survey.picture import draw_map
     from rocking_cli.questions.survey.structure_table import coordinates
 

@@ -86,8 +86,7 @@ def test_free_assemblies_and_what_glue_alone_confines_are_not_searched():
     towers = [rectangle("left", 0, 0, 1, 4), rectangle("right", 1, 0, 2, 4)]
     assert not found(towers, [FLOOR], 0.6).confined
     assert not found(towers, [FLOOR], None, per_pair={("left", "right"): 0.001}).confined
-    for name in ("portal", "wall_of_three"):
-        assert not rk.load_structure(EXAMPLES / "masonry" / f"{name}.yaml").collapse(POSITIVE).confined
+    assert not rk.load_structure(EXAMPLES / "masonry" / "portal.yaml").collapse(POSITIVE).confined
 
 
 # --- all states of the joints of a block, by statics of its own -------------------------------------------------------
@@ -217,7 +216,7 @@ def test_a_search_that_ends_early_is_never_silent(infill, monkeypatch):
     given["blocks"].update(slender)
     given["ground"] = {"floor": box(-2.0, -0.5, 6.0, 0.0), "ceiling": box(-1.0, 2.4, 2.0, 2.9)}
     infill.write_text(yaml.safe_dump(given), encoding="utf-8")
-    assert "is not complete" not in str(run_json("equiv", infill))
+    assert "is not complete" not in rk.load_structure(infill).own_caution()
     monkeypatch.setattr(confined, "MAX_JOINTS", 2)
-    said = str(run_json("equiv", infill))
+    said = rk.load_structure(infill).own_caution()
     assert "is not complete in the positive direction and in the negative direction: lambda may be lower" in said

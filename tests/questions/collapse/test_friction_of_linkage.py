@@ -62,8 +62,8 @@ def test_a_squat_block_slides_and_does_not_overturn():
 
 
 @pytest.mark.rest
-def test_verdict_and_report_say_it(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+@pytest.mark.usefixtures("small_maps")
+def test_verdict_and_report_say_it(tmp_path):
     blocks = {"wall": {"polygon": WALL}, "buttress": {"polygon": BUTTRESS}}
     fields = {"mechanism": "assembly", **GIVEN, "blocks": blocks, "ground": {"ground": GROUND}}
     (tmp_path / "facade.yaml").write_text(yaml.safe_dump(fields), "utf-8")

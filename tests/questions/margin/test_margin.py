@@ -28,6 +28,7 @@ from tests.following import build_model, conditions
 
 BLOCK = parse_structure("mechanism: block\nwidth: 0.7\nheight: 2.8\n", "block", "block")
 CORNERS = "mechanism: rigid_body\npolygon: [[0, 0], [0.7, 0], [0.69, 2.8], [0, 2.8]]\n"
+SLIDING = CORNERS.replace("0.69", "0.6")  # on little friction
 FRAME = load_structure(EXAMPLES / "frame.yaml")
 AROUND = Neighbourhood(20)
 
@@ -70,19 +71,20 @@ def share(mechanism, motion, factor, polarities, around=AROUND):
 )
 def test_the_shares_are_those_of_neighbours_followed_alone(mechanism, pulse, polarities):
     motion = parse_pulse(pulse).sampled()
-    found = margin(conditions(mechanism, AROUND, signs=polarities), motion)
-    assert found.around == Neighbourhood(20, 0.04, 0.05, 0.10) and found.checked and not found.unknown.any()
+    around = Neighbourhood(8)
+    found = margin(conditions(mechanism, around, signs=polarities), motion)
+    assert found.around == Neighbourhood(8, 0.04, 0.05, 0.10) and found.checked and not found.unknown.any()
     partly = np.flatnonzero((found.overturned > 0) & (found.overturned < 1))
     assert found.factors.tolist() == sorted([*FACTORS, 1.0]) and partly.size
     for k in [0, *partly[:2], partly[-1], FACTORS.size]:
-        assert found.overturned[k] == share(mechanism, motion, found.factors[k], polarities)[0]
-    assert found.share.lowest == share(mechanism, motion, 1.0, polarities)[0]
+        assert found.overturned[k] == share(mechanism, motion, found.factors[k], polarities, around)[0]
+    assert found.share.lowest == share(mechanism, motion, 1.0, polarities, around)[0]
 
 
 @pytest.mark.parametrize("polarities", [(-1,), (1, -1)])
 def test_the_shares_of_unknown_outcome_are_those_of_neighbours_followed_alone(polarities):
     """Of a body that slides: more overturn for certain under one polarity, and more may do so under the other."""
-    body = parse_structure(f"{CORNERS}friction: 0.4\n".replace("0.69", "0.6"), "sliding", "sliding")
+    body = parse_structure(f"{SLIDING}friction: 0.4\n", "sliding", "sliding")
     motion, around = read_record(EXAMPLES / "accel.csv"), Neighbourhood(10, slenderness=0.0)
     found = margin(conditions(body, around, signs=polarities), motion, factors=np.array([0.5, 2.0, 3.0]))
     assert found.factors.tolist() == [0.5, 1.0, 2.0, 3.0]
@@ -110,24 +112,26 @@ def test_a_reversed_motion_is_followed_only_where_it_can_add_something(monkeypat
         margins, "simulate_neighbours", lambda *a, **k: followed.append(len(a[2].amplitude)) or simulate(*a, **k)
     )
     motion = parse_pulse("sine:0.8g:0.5s").sampled()
-    around = Neighbourhood(20, 0.02, 0.02, 0.0)
-    every = 61 * around.count
+    around, factors = Neighbourhood(8, 0.02, 0.02, 0.0), np.linspace(0.5, 5, 18)  # and that of the motion as given
+    every = 19 * around.count
     # A little heavier at one side, so that a reversed motion is another one.
     leaning = parse_structure(CORNERS, "leaning", "leaning")
-    one = margin(conditions(leaning, around), motion)
+    one = margin(conditions(leaning, around), motion, factors=factors)
     certain = int((one.overturned == 1).sum())
-    for each, again in ((BLOCK, 0), (leaning, 61 - certain)):
+    for each, again in ((BLOCK, 0), (leaning, 19 - certain)):
         followed.clear()
         done.clear()
-        margin(conditions(each, around, signs=(1, -1)), motion, progress=done.append)
+        margin(conditions(each, around, signs=(1, -1)), motion, factors=factors, progress=done.append)
         assert followed == [every, again * around.count]
         assert sum(done) == 2 * every
-    assert certain > 10
+    assert 3 < certain < 19
 
 
 @pytest.mark.parametrize(
-    ("name", "alike"), [("block", True), ("arch", True), ("wall", True), ("frame", False), ("rigid_body", False)]
-)
+    ("name", "alike"),
+    [("block", True), ("wall", True), ("frame", False), ("rigid_body", False),
+     pytest.param("arch", True, marks=pytest.mark.rest)],
+)  # fmt: skip
 def test_symmetric_structures_are_known(name, alike):
     models = build_models(load_structure(EXAMPLES / f"{name}.yaml"))
     assert {each.name: each.symmetric for each in models} == dict.fromkeys(("nonlinear", "linear1", "linear2"), alike)
@@ -226,10 +230,10 @@ class TestCommand:
     ACCEL = EXAMPLES / "accel.csv"
 
     def test_json_is_the_study(self):
-        data = run_json("margin", self.BLOCK, "--record", self.ACCEL, "--pulse", "sine:0.5g:0.8s", "--neighbours", 20)
-        assert data["neighbours"] == {"count": 20, "amplitude": 0.04, "restitution": 0.05, "slenderness": 0.10}
+        data = run_json("margin", self.BLOCK, "--record", self.ACCEL, "--pulse", "sine:0.5g:0.8s", "--neighbours", 6)
+        assert data["neighbours"] == {"count": 6, "amplitude": 0.04, "restitution": 0.05, "slenderness": 0.10}
         assert len(data["motions"]) == 2 and data["motions"][0]["name"] == "accel.csv"
-        asked = conditions(load_structure(self.BLOCK), AROUND, signs=(1, -1))
+        asked = conditions(load_structure(self.BLOCK), Neighbourhood(6), signs=(1, -1))
         found = margin(asked, parse_pulse("sine:0.5g:0.8s").sampled())
         theirs = data["motions"][1]
         assert theirs["shares"] == found.overturned.tolist() and theirs["unknown"] == [0.0] * 61
@@ -245,18 +249,19 @@ class TestCommand:
         file.write_text(
             self.BLOCK.read_text(encoding="utf-8") + "uncertainty: {slenderness: 0.03, restitution: 0.01}\n"
         )
-        words = ("margin", file, "--pulse", "sine:0.5g:0.8s", "--neighbours", 5, "--polarity", 1)
-        own = {"count": 5, "amplitude": 0.04, "slenderness": 0.03, "restitution": 0.01}
+        words = ("margin", file, "--pulse", "sine:0.5g:0.8s", "--neighbours", 1, "--polarity", 1)
+        own = {"count": 1, "amplitude": 0.04, "slenderness": 0.03, "restitution": 0.01}
         assert run_json(*words)["neighbours"] == own
         given = run_json(*words, "--slenderness-deviation", "7%", "--amplitude-deviation", 0.02)
         assert given["neighbours"] == own | {"slenderness": 0.07, "amplitude": 0.02}
         assert run_json(*words, "--restitution-deviation", 0.04)["neighbours"] == own | {"restitution": 0.04}
 
-    def test_unknown_outcomes_are_a_share_of_their_own(self):
-        words = ("margin", EXAMPLES / "arch.yaml", "--record", self.ACCEL, "--neighbours", 5, "--polarity", 1)
+    def test_unknown_outcomes_are_a_share_of_their_own(self, tmp_path):
+        (tmp_path / "stone.yaml").write_text(f"{SLIDING}friction: 0.3\n", encoding="utf-8")
+        words = ("margin", "stone.yaml", "--record", self.ACCEL, "--neighbours", 5, "--polarity", 1)
         (ours,) = run_json(*words)["motions"]
-        arch = conditions(load_structure(EXAMPLES / "arch.yaml"), Neighbourhood(5))
-        found = margin(arch, read_record(self.ACCEL))
+        stone = conditions(load_structure(tmp_path / "stone.yaml"), Neighbourhood(5))
+        found = margin(stone, read_record(self.ACCEL))
         assert ours["unknown"] == found.unknown.tolist() and max(ours["unknown"]) > 0.5
         assert ours["levels"]["50"]["first_or_unknown"] == found.first(0.5, unknown=True) is not None
         assert ours["levels"]["10"]["last_below_or_unknown"] == found.last_below(0.1, unknown=True) is not None

@@ -75,6 +75,11 @@ def histories():
     return respond(PORTAL, RECORD)
 
 
+@pytest.fixture(scope="module")
+def shape():
+    return shape_of(Structure(PORTAL), "nonlinear")
+
+
 ROUND = np.floor, np.ceil
 
 
@@ -212,8 +217,7 @@ class TestCurves:
 
 
 class TestSpectrum:
-    def test_the_structure_is_that_of_respond(self, histories):
-        shape = shape_of(Structure(PORTAL), "nonlinear")
+    def test_the_structure_is_that_of_respond(self, shape, histories):
         (found,) = spectra([shape], np.array([1.0, 10.0]), [RECORD])
         alone = histories["nonlinear"]
         assert found.unknown[0, found.given] and found.lower_bound[0, found.given] == alone.lower_bound
@@ -241,9 +245,9 @@ class TestSpectrum:
         assert np.isinf(found.fractile(0.5)).all() and found.fractile_overturns(0.5).tolist() == [False, True]
         assert found.share[0] == pytest.approx(1 / 3) and found.share_at_most[0] == pytest.approx(2 / 3)
 
-    def test_data_words_and_picture(self):
+    def test_data_words_and_picture(self, shape):
         motions = [RECORD, RECORD.scaled(0.5), parse_pulse("sine:1g:0.5s").sampled()]
-        found = spectra([shape_of(Structure(PORTAL), "nonlinear")], np.geomspace(1, 10, 6), motions)
+        found = spectra([shape], np.geomspace(1, 10, 6), motions)
         results = spectrum_views.ShownSpectra(found, [Scaled(each, 1.0) for each in motions], (0.16, 0.5, 0.84), "1")
         view = spectrum_views.view(results)
         (data,) = view.data()["spectra"]

@@ -1,17 +1,17 @@
 """`rocking pulse` on a structure, and its messages if it cannot do what is requested."""
 
-import json
 import re
+from functools import partial
 
 import pytest
-from click.testing import CliRunner
 from pytest import approx
 
 from rocking_cli import load_structure
-from rocking_cli.cli.main import main
 from rocking_cli.core import equivalent_block
 from rocking_cli.dynamics.exact import closed_form, exact_response
 from rocking_cli.excitation.pulses import parse_pulse
+from tests.cli.test_cli import run as command
+from tests.cli.test_cli import run_json as command_json
 from tests.conftest import EXAMPLES
 from tests.following import respond
 from tests.pulses import exact_pulse
@@ -26,14 +26,7 @@ def block(tmp_path):
     return str(path)
 
 
-def run(*arguments, code=0):
-    result = CliRunner().invoke(main, ["pulse", *map(str, arguments)])
-    assert result.exit_code == code, result.output
-    return result
-
-
-def run_json(*arguments):
-    return json.loads(run(*arguments, "--json").stdout)
+run, run_json = partial(command, "pulse"), partial(command_json, "pulse")
 
 
 def test_every_answer_is_that_of_the_library(block):

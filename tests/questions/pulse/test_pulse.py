@@ -1,10 +1,9 @@
 """Pulses: Eqs. 41-42 against the linear equation solved with symbols, and the command; see test_exact_pulse.py."""
 
-import json
 import re
 from collections import Counter
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from itertools import chain, product
 from math import asin, exp, inf, isfinite, nan, pi, sqrt
 
@@ -12,13 +11,13 @@ import mpmath
 import numpy as np
 import pytest
 import sympy
-from click.testing import CliRunner
 from pytest import approx
 
-from rocking_cli.cli.main import main
 from rocking_cli.dynamics.exact import closed_form
 from rocking_cli.errors import InputError
 from rocking_cli.questions.pulse.view import why_not_valid
+from tests.cli.test_cli import run as command
+from tests.cli.test_cli import run_json
 from tests.pulses import exact_pulse
 
 NEAR = 1e-6  # of a boundary, where rounding may decide
@@ -220,16 +219,11 @@ def test_bad_input_is_refused_by_name(function, name, value):
         function(**({"a": 2.0, "omega": 3.0, "eta": 0.9} | {name: value}))
 
 
-def run(*arguments):
-    result = CliRunner().invoke(main, ["pulse", *map(str, arguments), "--json"])
-    assert result.exit_code == 0, result.output
-    assert result.stdout.count("\n") == 1
-    assert result.stdout.endswith("\n")
+run = partial(run_json, "pulse")
 
-    def not_json(word):
-        raise AssertionError(f"{word} is not JSON")
 
-    return json.loads(result.stdout, parse_constant=not_json)
+def words(*arguments):
+    return " ".join(command("pulse", *arguments).stdout.split())
 
 
 def test_the_command_prints_both_answers_as_one_line_of_json():
@@ -266,9 +260,3 @@ def test_a_block_that_overturns_without_impact_has_no_closed_form():
     assert "does not overturn before its first impact" in closed["reason"]
     said = words("--a", 8, "--omega", 3)
     assert "Do not use the closed form" in said and "-2.85" not in said
-
-
-def words(*arguments):
-    result = CliRunner().invoke(main, ["pulse", *map(str, arguments)])
-    assert result.exit_code == 0, result.output
-    return " ".join(result.stdout.split())

@@ -4,6 +4,7 @@ import csv
 import io
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import pytest
 import rocking_cli as rk
 from rocking_cli.excitation.base import Doubt, Origin
 from rocking_cli.excitation.records.prepared import ITEMS, write_record_csv
+from rocking_cli.questions.report import study as assessment
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 
@@ -56,12 +58,13 @@ def test_who_uses_it_says_what_was_done(prepared, command):
         assert f'"processing": {json.dumps(STEPS)}, "prepared_from": "accel.csv"' in result.stdout
 
 
-def test_a_report_prints_it_in_both_languages(prepared):
-    for language, words in (("en", "was prepared from"), ("it", "è stato preparato da")):
-        out = prepared.with_suffix(f".{language}.html")
-        run("report", BLOCK, "--record", prepared, "--neighbours", 1, "--language", language, "-o", out)
-        codes = [f"<code>{each}</code>" for each in ("accel.csv", *STEPS)]
-        assert f"y.csv {words} {codes[0]}: {codes[1]}, {codes[2]}." in out.read_text(encoding="utf-8")
+@pytest.mark.every(2)
+@pytest.mark.parametrize(("language", "words"), [("en", "was prepared from"), ("it", "è stato preparato da")])
+def test_a_report_prints_it_in_both_languages(prepared, language, words, monkeypatch):
+    monkeypatch.setattr(assessment, "MAP_POINTS", 3)
+    run("report", BLOCK, "--record", prepared, "--neighbours", 1, "--language", language, "-o", "report.html")
+    codes = [f"<code>{each}</code>" for each in ("accel.csv", *STEPS)]
+    assert f"y.csv {words} {codes[0]}: {codes[1]}, {codes[2]}." in Path("report.html").read_text(encoding="utf-8")
 
 
 def test_python_writes_the_same_file(prepared):

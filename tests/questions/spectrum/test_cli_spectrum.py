@@ -12,17 +12,13 @@ from rocking_cli.ask.read import read_record
 from rocking_cli.core.structure_file import load_structure
 from rocking_cli.questions.spectrum import study
 from tests.cli.test_cli import run as command
+from tests.cli.test_cli import run_json as command_json
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS, rows_of
 from tests.following import respond
 
 ACCEL, BLOCK, FRAME = (str(EXAMPLES / name) for name in ("accel.csv", "block.yaml", "frame.yaml"))
 QUICK = ("--sizes", "1:6", "--count", "5")
-run = partial(command, "spectrum")
-
-
-def run_json(*arguments, code=0):
-    (line,) = run(*arguments, "--json", code=code).stdout.splitlines()
-    return json.loads(line)
+run, run_json = partial(command, "spectrum"), partial(command_json, "spectrum")
 
 
 @pytest.fixture

@@ -508,7 +508,7 @@ class TestStarter:
         assert said in run("new", *words, code=2).stderr and in_the_folder() == []
 
     def test_its_name_is_completed_without_loading_it(self, monkeypatch):
-        from rocking_cli.cli.options import CODES, completer
+        from rocking_cli.cli.help import CODES, completer
 
         monkeypatch.setattr(EntryPoint, "load", lambda point: pytest.fail("loaded"))
         assert [each.value for each in completer(CODES)(None, None, "U")] == ["UNI-demo"]
