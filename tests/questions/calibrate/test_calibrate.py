@@ -1,5 +1,6 @@
 """Restitution from traces: against traces integrated here, and as a user runs the command."""
 
+import json
 from math import atan, cos, degrees, hypot, sqrt
 
 import numpy as np
@@ -16,7 +17,7 @@ from rocking_cli.questions.calibrate.free_rocking import MechanismSide, ScaledSi
 from rocking_cli.questions.calibrate.study import Trace, fit_trace, pool, read_trace
 from rocking_cli.questions.calibrate.view import trace_view
 from rocking_cli.structure import Structure
-from tests.cli.test_cli import run, run_json
+from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
 from validation.traces import simulate  # by Runge and Kutta
 
@@ -98,6 +99,8 @@ class TestFit:
 
     def test_what_else_a_trace_shows(self, clean):
         found = fit_trace(Structure(BLOCK), trace(clean[0], drift=0.01, offset=0.03, start=5.0))
+        said = trace_view(found, Structure(BLOCK)).parts
+        assert f"eta = {found.eta.value:.4f}" in said[1] and "7 impacts are seen" in said[0]
         assert len(found.etas) == 7 and found.pooled.seen < 0.005 < found.scatter
         assert found.impacts == pytest.approx(np.array(clean[1]) + 5.3, abs=0.005)
         assert (found.release_time, found.release) == pytest.approx((5.3, RELEASE), abs=0.004)
@@ -287,18 +290,17 @@ class TestCommand:
         )
         return tmp_path
 
-    def test_what_is_printed_and_written(self, folder):
-        block, new = folder / "block.yaml", folder / "new.yaml"
-        asked = ("calibrate", block, "--free", folder / "trace.csv")
-        data = run_json(*asked, "-o", new, "--plot", folder / "fit.png")
+    def test_of_a_trace_from_standard_input(self, folder):
+        new, plot = folder / "new.yaml", folder / "fit.png"
+        words = ["calibrate", folder / "block.yaml", "--free", "-", "-o", new, "--plot", plot, "--json"]
+        text = (folder / "trace.csv").read_text(encoding="utf-8")
+        data = json.loads(CliRunner().invoke(main, list(map(str, words)), input=text).stdout)
         eta = data["restitution"]
         assert eta["value"] == pytest.approx(ETA, abs=5e-4) and 2e-3 < eta["deviation"] < 0.01
         assert data["impacts"] == len(data["etas"]) == len(data["impact_times"]) == 7 and data["geometry"] is None
-        text = run(*asked).stdout
-        assert f"eta = {eta['value']:.4f}" in text and "7 impacts are seen" in text
-        assert (folder / "fit.png").read_bytes().startswith(b"\x89PNG")
+        assert plot.read_bytes().startswith(b"\x89PNG")
         written = new.read_text(encoding="utf-8")
-        assert "# of a museum" in written and "fitted to trace.csv, 7 impacts" in written
+        assert "# of a museum" in written and ", 7 impacts" in written
         fields = yaml.safe_load(written)
         assert fields["restitution"] == pytest.approx(eta["value"], abs=5e-5)
         assert fields["uncertainty"] == {"slenderness": 0.03, "restitution": pytest.approx(eta["scatter"], abs=5e-5)}
@@ -327,11 +329,6 @@ class TestCommand:
         one, *others = (read_trace(folder / name) for name in ("trace.csv", "other.csv", "rad.csv"))
         for other in others:
             assert one.angles == pytest.approx(other.angles) and one.times == pytest.approx(other.times)
-
-    def test_a_trace_may_come_from_standard_input(self, folder):
-        text = (folder / "trace.csv").read_text(encoding="utf-8")
-        result = CliRunner().invoke(main, ["calibrate", str(folder / "block.yaml"), "--free", "-"], input=text)
-        assert result.exit_code == 0 and "7 impacts are seen" in result.stdout
 
     def test_a_file_is_never_overwritten_by_its_copy(self, folder):
         asked = ("calibrate", folder / "block.yaml", "--free", folder / "trace.csv", "-o", folder / "block.yaml")

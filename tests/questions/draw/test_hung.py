@@ -242,7 +242,7 @@ class TestDraw:
 class TestAnimate:
     def test_a_gif_shows_what_hangs_on_it_in_its_own_colour(self, leaning, tmp_path):
         out = tmp_path / "a.gif"
-        run("animate", leaning, "--pulse", "sine:0.5g:0.5s", "--fps", 4, "--out", out,
+        run("animate", leaning, "--pulse", "sine:0.5g:0.5s", "--fps", 1, "--out", out,
             "--neighbours", 0)  # fmt: skip
         green = tuple(int(style.TIE["color"][k : k + 2], 16) for k in (1, 3, 5))
         with Image.open(out) as frames:

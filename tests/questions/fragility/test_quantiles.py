@@ -14,7 +14,6 @@ from rocking_cli.questions.fragility import quantiles
 from rocking_cli.questions.fragility.picture import draw_quantiles
 from rocking_cli.questions.fragility.quantiles import Group, Quantiles, all_quantiles
 from rocking_cli.questions.fragility.store import Store
-from rocking_cli.questions.fragility.study import load_study
 from tests.conftest import EXAMPLES
 from tests.questions.fragility.test_study_runs import carry_out
 from tests.stores import command, every_run
@@ -38,9 +37,9 @@ def however_few():
 
 def study(folder, method, measures=MEASURES):
     given = {
-        "structures": [str(EXAMPLES / "frame.yaml"), BLOCK], "records": PULSES, "polarity": "both", "samples": 3,
+        "structures": [str(EXAMPLES / "frame.yaml"), BLOCK], "records": PULSES, "polarity": "both", "samples": 2,
         "measures": measures, "limit_states": ["uplift", "overturning"], "method": method,
-        "levels": {"measure": "scale" if method == "cloud" else "PGA", "least": 0.15, "most": 1.5, "count": 7},
+        "levels": {"measure": "scale" if method == "cloud" else "PGA", "least": 0.15, "most": 1.5, "count": 5},
     }  # fmt: skip
     path = folder / "study.yaml"
     path.write_text(yaml.safe_dump(given), encoding="utf-8")
@@ -53,9 +52,8 @@ def whole(request, tmp_path_factory):
     path = study(folder, request.param)
     prepared = carry_out(path, folder / "study.runs", jobs=1)
     store = Store.reading(folder / "study.runs")
-    return prepared.plan, load_study(path).definition, folder / "study.runs", list(
-        all_quantiles(store, prepared.plan, load_study(path).definition)
-    )  # fmt: skip
+    definition = prepared.study.definition
+    return prepared.plan, definition, folder / "study.runs", list(all_quantiles(store, prepared.plan, definition))
 
 
 def ranked(place, plan, structure, measure):
@@ -137,11 +135,10 @@ def test_json_has_them_always_and_the_terminal_where_they_are_asked_for(whole):
     assert ("in tenths" in shown) == any(not each.stripes for each in found)
 
 
-def test_runs_that_are_not_there_count_for_nothing(tmp_path, monkeypatch):
-    path = study(tmp_path, "stripes")
-    prepared = carry_out(path, tmp_path / "study.runs", jobs=1)
-    store = Store.reading(tmp_path / "study.runs")
-    gone = prepared.plan.size // 4  # all of the first structure, and none of the other
+def test_runs_that_are_not_there_count_for_nothing(whole, monkeypatch):
+    plan, definition, place, _ = whole
+    store = Store.reading(place)
+    gone = plan.size // 3  # all of the first structure, and none of the other
     rows = store.rows
 
     def some(first, stop):
@@ -149,9 +146,9 @@ def test_runs_that_are_not_there_count_for_nothing(tmp_path, monkeypatch):
             yield replace(each, outcome=np.where(each.run % 2 == 1, 2, each.outcome))
 
     monkeypatch.setattr(store, "rows", some)
-    found, *_ = every = list(all_quantiles(store, prepared.plan, load_study(path).definition))
+    found, *_ = every = list(all_quantiles(store, plan, definition))
     assert {each.structure for each in every} == {"uncertain"}
-    assert sum(each.runs for each in found.groups) == (prepared.plan.size - gone) / 2
+    assert sum(each.runs for each in found.groups) == (plan.size - gone) / 2
 
 
 def groups(*rows):

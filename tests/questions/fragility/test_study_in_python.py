@@ -177,7 +177,7 @@ class TestTheCurves:
 
 
 def test_frames_have_each_fit_and_each_quantile_once():
-    answer = study(PULSES, limit_states=["uplift", 0.3, "overturning"], rank_measures=True)
+    answer = study(PULSES[:6], limit_states=["uplift", 0.3, "overturning"], rank_measures=True)
     fits, quantiles = answer.frames["fits"], answer.frames["quantiles"]
     assert fits["limit_state"].tolist() == ["uplift", "0.3", "overturning"]
     for row, curve in zip(fits.itertuples(), answer.result, strict=True):

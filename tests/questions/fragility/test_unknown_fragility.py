@@ -20,7 +20,6 @@ from rocking_cli.questions.fragility.picture import draw_curves, draw_ida, draw_
 from rocking_cli.questions.fragility.quantiles import all_quantiles
 from rocking_cli.questions.fragility.ranking import judge, rank
 from rocking_cli.questions.fragility.store import COLUMNS, UNKNOWN, RunRows, Store
-from rocking_cli.questions.fragility.study import load_study
 from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.fragility.quantities import kept
 from tests.conftest import EXAMPLES, rows_of
@@ -33,7 +32,7 @@ GIVEN = {
     "structures": [str(EXAMPLES / "masonry" / "portal.yaml")],
     "records": [str(EXAMPLES / "accel.csv"), {"pulse": "ricker:1g:0.8s"}, {"pulse": "sine:1g:0.6s"}],
     "polarity": "both", "method": "stripes", "limit_states": LIMITS, "bivariate": [["PGA", "PGV"]],
-    "levels": {"measure": "PGA", "least": 0.2, "most": 1.5, "count": 8},
+    "levels": {"measure": "PGA", "least": 0.2, "most": 1.5, "count": 6},
     "hazard": {"points": [[0.1, 0.01], [2, 0.0001]]},
 }  # fmt: skip
 
@@ -50,7 +49,7 @@ def whole(tmp_path_factory):
     folder = tmp_path_factory.mktemp("unknown")
     path = write(folder)
     prepared = carry_out(path, folder / "study.runs", jobs=2)
-    plan, study = prepared.plan, load_study(path)
+    plan, study = prepared.plan, prepared.study
     held = Store.reading(folder / "study.runs")
     rows, reach = every_run(folder / "study.runs"), kept(held.facts, LIMITS)["40 mm"]
     _, record, _, level, polarity = plan.places(rows.run)

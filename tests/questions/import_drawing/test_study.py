@@ -1,7 +1,7 @@
 """Structures from drawings: check values that follow by hand, refusals with their places, and mended faults."""
 
 from functools import cache
-from math import cos, pi, radians, sin, sqrt, tan
+from math import atan, cos, pi, radians, sin, sqrt, tan
 
 import numpy as np
 import pytest
@@ -99,15 +99,15 @@ class TestCheckValues:
 
     def test_a_running_bond(self):
         bricks = []
-        for row in range(13):
+        for row in range(7):
             starts = [(0.0, 0.25), (0.26, 0.25), (0.52, 0.25), (0.78, 0.23)]
             if row % 2:
                 starts = [(0.0, 0.12), (0.13, 0.25), (0.39, 0.25), (0.65, 0.36)]
             bricks += [box(x, 0.06 * row, width, 0.05) for x, width in starts]
         found = imported(*bricks, merge_gap=0.012)
-        assert sum(body.moments.area for body in found.bodies) == approx(1.01 * 0.77, rel=1e-9)
-        assert lambdas(found) == approx([1.01 / 0.77] * 2, rel=1e-6)
-        assert criticals(found) == approx([0.91942136] * 2, rel=1e-6)
+        assert sum(body.moments.area for body in found.bodies) == approx(1.01 * 0.41, rel=1e-9)
+        assert lambdas(found) == approx([1.01 / 0.41] * 2, rel=1e-6)
+        assert criticals(found) == approx([atan(1.01 / 0.41)] * 2, rel=1e-6)
 
     def test_oppenheims_voussoirs_as_arcs(self):
         found = oppenheims_arch()

@@ -70,10 +70,11 @@ def by_brute_force(found: Candidates, wanted: SetRequirements) -> tuple[float, f
         sets += 1
         ratio = np.mean([own[k] * found.spectra[k] / target for k in members], axis=0)
         chosen = own[list(members)]
-        for common in np.geomspace(low / chosen.min(), high / chosen.max(), 1001 if high > 10 else 401):
-            moved = common * ratio
-            excess = max(np.log(wanted.within[0] / moved.min()), np.log(moved.max() / wanted.within[1]), 0.0)
-            best = min(best, (excess, np.sqrt(mean(np.log(moved) ** 2))))
+        common = np.geomspace(low / chosen.min(), high / chosen.max(), 1001 if high > 10 else 401)
+        moved = common[:, None] * ratio
+        below, above = np.log(wanted.within[0] / moved.min(axis=1)), np.log(moved.max(axis=1) / wanted.within[1])
+        excess = np.maximum(np.maximum(below, above), 0.0)
+        best = min(best, *zip(excess.tolist(), np.sqrt(mean(np.log(moved) ** 2)).tolist(), strict=True))
     return *best, sets
 
 

@@ -373,15 +373,17 @@ class TestSheets:
             name: hashlib.sha256(Path("sh", name).read_bytes()).hexdigest() for name in ("a.html", "c.html")
         }
 
-    @pytest.mark.parametrize("name", ["mine.txt", "a.html"])
-    def test_a_folder_with_files_of_others_is_refused_before_any_work(self, name):
+    def test_a_folder_with_files_of_others_is_refused_before_any_work(self):
         self.table("a")
         self.sheet()
-        Path("sh", name).write_text("edited by hand", encoding="utf-8")
-        before = {each.name: each.read_bytes() for each in Path("sh").iterdir()}
-        said = self.sheet("--out", "o.csv", code=2).stderr
-        assert "this file is in the folder of the sheets, and rocking did not write it, or not as it is now" in said
-        assert {each.name: each.read_bytes() for each in Path("sh").iterdir()} == before and not Path("o.csv").exists()
+        for name in ("mine.txt", "a.html"):
+            Path("sh", name).write_text("edited by hand", encoding="utf-8")
+            before = {each.name: each.read_bytes() for each in Path("sh").iterdir()}
+            said = self.sheet("--out", "o.csv", code=2).stderr
+            assert f"{name}: " in said and "rocking did not write it, or not as it is now" in said
+            assert {each.name: each.read_bytes() for each in Path("sh").iterdir()} == before
+            assert not Path("o.csv").exists()
+            Path("sh", "mine.txt").unlink(missing_ok=True)
 
     def test_without_what_makes_sheets_the_survey_is_printed_and_it_is_said_once(self, monkeypatch):
         self.table("a", "b")
