@@ -139,8 +139,8 @@ def test_what_is_no_uniform_plate_is_told(tmp_path):
 
 def test_friction_of_crossing_walls_is_no_load(tmp_path):
     courses = {"courses": 40, "overlap": 0.2, "thickness": 0.5, "walls": 1, "height": 8.0}
-    wall = rk.Block(width=0.6, height=8.0, density=2400, depth=1.0, interlock=courses)
-    with pytest.warns(rk.DoubtWarning, match="does not tell `interlock`"):
+    wall = rk.Block(width=0.6, height=8.0, density=2400, depth=1.0, interlock=courses, friction=0.4)
+    with pytest.warns(rk.DoubtWarning, match="does not tell `friction`, `interlock`"):
         assert not texts(drawn(wall, tmp_path), "LOADS")
 
 

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 
 from mechanisms.block import Block
@@ -98,7 +97,7 @@ def test_nothing_is_cut_off_or_on_another_word(narrow):
             draw_record(motion, measure(motion)),
         ]
     for figure in figures:
-        FigureCanvasAgg(figure).draw()
+        figure.draw_without_rendering()
         shown = [text for text in figure.findobj(Text) if text.get_text() and text.get_visible()]
         boxes = {text: text.get_window_extent() for text in shown}
         labels = [text for axes in figure.axes for axis in (axes.xaxis, axes.yaxis) for text in axis.get_ticklabels()]

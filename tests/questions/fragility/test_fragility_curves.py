@@ -151,8 +151,8 @@ class TestAgainstAnIndependentOptimum:
         np.testing.assert_allclose(curve.fit.covariance, expected, rtol=max(5 * width, 1e-5))
 
     def test_several_capacities_of_a_record_refitted_without_each(self):
-        lower, upper = brackets(np.random.default_rng(4), 800, np.geomspace(0.1, 2.0, 12))
-        record = np.arange(800) // 4
+        lower, upper = brackets(np.random.default_rng(4), 400, np.geomspace(0.1, 2.0, 12))
+        record = np.arange(400) // 4
         curve = fit_capacities(lower, upper, record)
 
         def best(which):
@@ -163,11 +163,11 @@ class TestAgainstAnIndependentOptimum:
                 high, low = (c[0] + c[1] * end for end in ends)
                 return -np.log(ndtr(high) - ndtr(low)).sum()
 
-            return minimize(cost, curve.fit.coefficients, method="BFGS").x
+            return minimize(cost, curve.fit.coefficients, method="Nelder-Mead", options={"xatol": 1e-9}).x
 
-        moved = np.array([best(record != k) for k in range(200)]) - best(record >= 0)
-        np.testing.assert_allclose(curve.fit.covariance, 199 / 200 * moved.T @ moved, rtol=0.03)
-        assert curve.fit.quantile == pytest.approx(student.ppf(0.975, 199))
+        moved = np.array([best(record != k) for k in range(100)]) - best(record >= 0)
+        np.testing.assert_allclose(curve.fit.covariance, 99 / 100 * moved.T @ moved, rtol=0.03)
+        assert curve.fit.quantile == pytest.approx(student.ppf(0.975, 99))
 
     def test_surface(self):
         random = np.random.default_rng(6)

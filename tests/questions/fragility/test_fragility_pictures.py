@@ -1,6 +1,5 @@
 """Pictures of fragility show the data, the curves, and what could not be fitted."""
 
-import io
 from dataclasses import replace
 from itertools import combinations
 
@@ -62,7 +61,7 @@ def words(figure):
 
 
 def rendered(figure):
-    figure.savefig(io.BytesIO(), format="png", dpi=30)
+    figure.draw_without_rendering()
     return figure
 
 
