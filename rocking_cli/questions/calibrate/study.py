@@ -95,11 +95,7 @@ def read_trace(path: Path) -> Trace:
     InputError
         With every problem of the file, by line and column.
     """
-    return parse_trace(sheet_of(path))
-
-
-def parse_trace(sheet: Spreadsheet) -> Trace:
-    """Return the trace in a table of text. Raises as `read_trace`."""
+    sheet = sheet_of(path)
     (time, seconds), (angle, unit) = (
         _column(sheet, names, kind) for names, kind in ((TIME_NAMES, "s"), (ANGLE_NAMES, "rad"))
     )

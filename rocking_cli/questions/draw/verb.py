@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING
 
 from rocking_cli.ask.answer import Answer, drawn
@@ -17,7 +16,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rocking_cli.core import Angle, Length
-    from rocking_cli.io.tables import Columns
     from rocking_cli.studies.picture import Picture
 
 
@@ -60,7 +58,9 @@ def draw(asked: DrawAsked, watch: Watcher) -> Answer[Picture]:
     if asked.dxf is not None:
         _write(asked.dxf, drawing, at, watch)
     figure = drawn("plotting.structure.draw_structure", drawing, heading(ready.mechanism), at)
-    return Answer("drawing", drawing, _view(drawing), partial(_columns, drawing), figure)
+    return Answer(
+        "drawing", drawing, _view(drawing), lambda: {"length": [each.text for each in drawing.sketch.lengths]}, figure
+    )
 
 
 def _write(file: Path, drawing: Picture, at: float | None, watch: Watcher) -> None:
@@ -73,10 +73,6 @@ def _write(file: Path, drawing: Picture, at: float | None, watch: Watcher) -> No
         watch.warn(f"{file} does not tell {untold}: add it to the structure that you import")
     write_whole(file, lambda stream: stream.write(content))
     watch.note(f"wrote {file}" + (f": import it with {options}" if options else ""))
-
-
-def _columns(found: Picture) -> Columns:
-    return {"length": [each.text for each in found.sketch.lengths]}
 
 
 def _view(picture: Picture) -> View:

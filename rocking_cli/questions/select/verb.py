@@ -112,7 +112,7 @@ def _without(target: object, motions: Motions, watch: Watcher) -> Motions:
 
 
 def _target(asked: SelectAsked, watch: Watcher) -> TargetSpectrum:
-    from rocking_cli.questions.select.target_spectrum import TargetSpectrum, read_target, target_of_site
+    from rocking_cli.questions.select.target_spectrum import MAX_ORDINATE, TargetSpectrum, read_target, target_of_site
 
     given: Any = asked.target
     if asked.of_site:
@@ -123,7 +123,7 @@ def _target(asked: SelectAsked, watch: Watcher) -> TargetSpectrum:
         spectrum = read_target(Path(given))
         if spectrum.unit is None:
             watch.note(f"{given} does not name a unit: its ordinates are assumed to be in g")
-        if (highest := spectrum.highest_if_odd) is not None:
+        if (highest := float(spectrum.sa.max())) > MAX_ORDINATE:
             heading = "name its unit in a heading, such as period [s],Sa [m/s2]"
             watch.warn(f"{spectrum.name} reaches {highest:.4g} g: {heading}")
         return spectrum

@@ -9,6 +9,7 @@ import yaml
 from click.testing import CliRunner
 
 import rocking_cli as rk
+from rocking_cli.ask.inputs import structure_of
 from rocking_cli.cli.main import main
 from rocking_cli.core import Direction
 from rocking_cli.errors import InputError
@@ -331,10 +332,12 @@ class TestCommand:
             assert one.angles == pytest.approx(other.angles) and one.times == pytest.approx(other.times)
 
     def test_a_file_is_never_overwritten_by_its_copy(self, folder):
-        asked = ("calibrate", folder / "block.yaml", "--free", folder / "trace.csv", "-o", folder / "block.yaml")
-        before = (folder / "block.yaml").read_text(encoding="utf-8")
-        run(*asked, code=2)
-        assert (folder / "block.yaml").read_text(encoding="utf-8") == before
+        block = folder / "block.yaml"
+        before = block.read_text(encoding="utf-8")
+        for given in (block, structure_of(block)):
+            with pytest.raises(InputError, match="would overwrite an input file"):
+                rk.calibrate(given, free=folder / "trace.csv", out=block)
+        assert block.read_text(encoding="utf-8") == before
         with pytest.raises(InputError, match="needs the file"):
             rk.calibrate(BLOCK, free=folder / "trace.csv", out=folder / "new.yaml")
 

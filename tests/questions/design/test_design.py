@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import rocking_cli as rk
+from rocking_cli.ask.inputs import site_of
 from rocking_cli.errors import InputError
 from rocking_cli.questions.design.metrics import METRICS, Excitation, Metric
 from rocking_cli.questions.design.picture import draw_design
@@ -15,6 +16,7 @@ from rocking_cli.questions.design.study import Aim, Span, design
 from rocking_cli.questions.design.view import answer
 from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Neighbourhood, neighbours
+from rocking_cli.verification.check import verify
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
 from tests.following import conditions
@@ -287,5 +289,6 @@ class TestWhatHasNoEffect:
         assert "zeta_nonlinear is the same at every value tried: ties.bar.area has no effect on it." in said
         held = {key: value for key, value in TIE.items() if key != "prestress"} | {"area": 5e-4, "steel": "S235"}
         counted = rk.Block(**FACADE, ties=[held])
-        assert rk.verify(counted, SITE).directions[rk.Direction.POSITIVE].methods["nonlinear"].zeta > 1
-        assert rk.verify(counted, SITE).conclusion.left_out == []
+        found = verify(Structure(counted), site_of(SITE))
+        assert found.directions[rk.Direction.POSITIVE].methods["nonlinear"].zeta > 1
+        assert found.conclusion.left_out == []

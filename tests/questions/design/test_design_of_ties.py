@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 import rocking_cli as rk
+from rocking_cli.ask.inputs import site_of
 from rocking_cli.errors import InputError
+from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Neighbourhood, neighbours
+from rocking_cli.verification.check import verify
 from tests.core.test_ties_of_steel import MASS, PLATE, SITE, G, facade
 from tests.following import conditions
 
@@ -15,6 +18,10 @@ FURTHER = {"SLD": {"ag": 0.08, "F0": 2.5, "TC": 0.4, "S": 1.2}}
 CONSTANT = {"stiffness": 0, "prestress": 1e4}
 PULSE = "sine:0.35g:0.6s"
 AROUND = {"neighbours": 20, "slenderness_deviation": 0.0, "points": 2}
+
+
+def verified(site, **tie):
+    return verify(Structure(facade(stiffness=0, **tie)), site_of(site))
 
 
 def lambda_of(force):
@@ -92,7 +99,7 @@ def test_zeta_of_each_limit_state_is_that_of_verify(state):
     found = rk.design(
         facade(**CONSTANT), "ties.bar.prestress=1kN:200kN", f"zeta_{state} >= {level}", site=site, points=3
     )
-    just = rk.verify(facade(stiffness=0, prestress=float(found.value)), site).directions[rk.Direction.POSITIVE]
+    just = verified(site, prestress=float(found.value)).directions[rk.Direction.POSITIVE]
     key = "SLD" if state == "SLD" else just.governing[state]
     assert just.methods[key].zeta == pytest.approx(level, rel=1e-6) and found.steel is not None
     missing = rk.design(facade(**CONSTANT), "width=0.6:0.7", f"zeta_{state} > 0", site=SITE, points=2)
@@ -102,7 +109,7 @@ def test_zeta_of_each_limit_state_is_that_of_verify(state):
 
 def of_wide(force):
     """How far the facade has moved at d_SLV with a tie that still holds then; d of one body is that of its centroid."""
-    at = rk.verify(facade(stiffness=0, prestress=float(force), elongation=0.5), SITE)
+    at = verified(SITE, prestress=float(force), elongation=0.5)
     moved = at.directions[rk.Direction.POSITIVE].states["SLV"].d
     return f"ties or forces still hold a block 0.6 m thick at SLV, when it has moved by {moved:.3g} m."
 

@@ -335,7 +335,6 @@ def test_a_target_is_read(tmp_path, text, unit, sa):
     assert target.periods.tolist() == [0.1, 0.2]
     np.testing.assert_allclose(target.sa, sa, rtol=1e-12)
     assert target.at(np.array([0.15]))[0] == pytest.approx(0.45)  # straight in T and Sa
-    assert target.highest_if_odd is None
 
 
 @pytest.mark.parametrize(

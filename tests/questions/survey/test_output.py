@@ -14,12 +14,15 @@ from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
 import rocking_cli as rk
+from rocking_cli.ask.inputs import site_of
 from rocking_cli.errors import InputError
 from rocking_cli.plotting import style
 from rocking_cli.questions.survey import pages as survey_sheets
 from rocking_cli.questions.survey.pages import LIST_FILE, MAX_STEM_LENGTH, file_names
 from rocking_cli.questions.survey.picture import METRES_PER_DEGREE, draw_map, draw_survey, scale_length
 from rocking_cli.questions.survey.structure_table import coordinates
+from rocking_cli.structure import Structure
+from rocking_cli.verification.check import verify
 from rocking_cli.views.conclusion import limit_in_words
 from tests.cli.test_cli import run, some
 from tests.core.test_ties_of_steel import facade
@@ -39,6 +42,10 @@ def here(tmp_path, monkeypatch):
     Path("site.yaml").write_text("".join(f"{key}: {value}\n" for key, value in SITE.items()), encoding="utf-8")
     Path("t.csv").write_text(ITALIAN, encoding="utf-8")
     Path("c.csv").write_text(COMMAS, encoding="utf-8")
+
+
+def verified(mechanism):
+    return verify(Structure(mechanism), site_of(SITE))
 
 
 def cells(file, separator=","):
@@ -148,7 +155,7 @@ class TestNumbersOfTheCode:
         """For 0.6 m x 8 m at this site, a_g = 0.193382 by the nonlinear method, against a demand of 0.2."""
         tall = rk.Block(name="tall", width=0.6, height=8.0)
         (row,) = rk.survey([tall], site=SITE).rows
-        side = rk.verify(tall, SITE).directions[rk.Direction.POSITIVE]
+        side = verified(tall).directions[rk.Direction.POSITIVE]
         assert row.verified.method == "nonlinear"
         assert row.numbers["zeta_E"] == pytest.approx(0.193382 / 0.2, rel=1e-5)
         assert row.ratio == row.numbers["zeta_E"] != pytest.approx(side.states["SLV"].ratio, rel=1e-3)
@@ -161,7 +168,7 @@ class TestNumbersOfTheCode:
         leaning = rk.Block(width=0.6, height=2.0, mass=900.0, loads=[{"name": "x", "mass": 300.0, "at": [-0.2, 2.0]}])
         (row,) = rk.survey([leaning], site=SITE).rows
         assert row.verified.direction == "negative"
-        other, weaker = (rk.verify(leaning, SITE).directions[each] for each in rk.Direction)
+        other, weaker = (verified(leaning).directions[each] for each in rk.Direction)
         assert row.numbers["zeta_E"] == weaker.methods[row.verified.method].zeta
         assert row.numbers["zeta_E"] < other.methods[row.verified.method].zeta
 
@@ -192,7 +199,7 @@ class TestNumbersOfTheCode:
         rows = {row["name"]: row for row in answer.to_dict()["rows"]}
         assert rows["loose"]["caution"] is None and rows["loose"]["concluded"] == "not_satisfied"
         for each in tied:
-            end = rk.verify(each, SITE).conclusion
+            end = verified(each).conclusion
             assert end.limits and rows[each.name]["concluded"] == end.concluded
             caution = rows[each.name]["caution"]
             assert all(limit_in_words(limit) in caution for limit in end.limits)
