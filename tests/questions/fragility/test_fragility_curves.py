@@ -209,7 +209,6 @@ class TestCoverageOfFewRecords:
 
     TABLE = coverage_table()
 
-    @pytest.mark.rest
     @pytest.mark.parametrize("case", CASES, ids=lambda case: case.words)
     def test_is_what_the_table_says(self, case):
         for records, said in zip(RECORDS, self.TABLE[case.words], strict=True):
@@ -218,7 +217,6 @@ class TestCoverageOfFewRecords:
                 least, most = max(rate - 0.7, 0) / 100, min(rate + 0.7, 100) / 100  # of 2000 trials, in whole percents
                 assert binom.ppf(1e-4, fitted, least) <= count <= binom.ppf(1 - 1e-4, fitted, most)
 
-    @pytest.mark.rest
     def test_is_what_the_warning_says(self):
         for records, (low, high) in MEASURED_COVERAGE.items():
             rates = [rate for said in self.TABLE.values() for rate in said[RECORDS.index(records)]]

@@ -347,6 +347,7 @@ def test_cut_shuffled_turned_and_repeated_drawings_give_one_file(data):
 
 @pytest.mark.rest
 @given(st.data())
+@settings(max_examples=12)
 def test_many_cut_shuffled_turned_and_repeated_drawings_give_one_file(data):
     give_one_file(data)
 
