@@ -303,17 +303,17 @@ def design(
     _check_has_metric(structure, field, span, aim.metric)
 
     @cache  # edges are searched from values of the scan
-    def at(value: float) -> tuple[float, Neighbours | None, str | None]:
+    def tried(value: float) -> tuple[float, Neighbours | None, str | None]:
         return _at(structure, field, value, aim, excitation)
 
     def metric(value: float) -> float:
-        return at(value)[0]
+        return tried(value)[0]
 
     values, whole = np.linspace(*span, points), structure.is_whole(field)
     values = np.unique(values.round()) if whole else values
     numbers, reasons, behind = np.full(len(values), nan), dict[int, str](), list[Neighbours | None]()
     for k, value in enumerate(values.tolist()):
-        numbers[k], neighbours, reason = at(value)
+        numbers[k], neighbours, reason = tried(value)
         behind.append(neighbours)
         if reason is not None:
             reasons[k] = reason
