@@ -494,9 +494,8 @@ class _ModelSpace:
             except DrawingError:
                 raise
             except OverflowError:
-                raise self._refusal(
-                    "too_large", f"{_called(entity, layer)} has too many corners", "simplify it"
-                ) from None
+                what = f"{_called(entity, layer)} has too many corners"
+                raise self._refusal("too_large", what, "simplify it") from None
             except self._unfit as error:
                 what = f"{_called(entity, layer)} is damaged: its numbers do not describe it"
                 raise self._refusal("not_dxf", what, "audit the file in a CAD program and save it again") from error

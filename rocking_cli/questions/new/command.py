@@ -63,10 +63,8 @@ class PluginKind:
         source = package / "data" / self.folder
         if not source.is_dir():  # a checkout has the files in examples/
             source = package.parent / "examples" / self.folder
-        return {
-            self.named(file, name): self.named((source / file).read_text(encoding="utf-8"), name).encode()
-            for file in self.files
-        }
+        texts = {file: (source / file).read_text(encoding="utf-8") for file in self.files}
+        return {self.named(file, name): self.named(text, name).encode() for file, text in texts.items()}
 
 
 MECHANISM = PluginKind(
@@ -151,10 +149,8 @@ def check_name(name: str, kind: PluginKind, printed: Collection[str]) -> None:
     from rocking_cli.verification.code import Codes
 
     if not NAME_PATTERN.fullmatch(name) or len(name) > MAX_NAME_LENGTH:
-        guess = (
-            re.sub(r"[^a-z0-9]+", "_", name.lower()).lstrip("_0123456789")[:MAX_NAME_LENGTH].rstrip("_") or kind.example
-        )
-        hint = f"use at most {MAX_NAME_LENGTH} of a-z, 0-9 and _, a letter first, such as {guess}"
+        guess = re.sub(r"[^a-z0-9]+", "_", name.lower()).lstrip("_0123456789")[:MAX_NAME_LENGTH].rstrip("_")
+        hint = f"use at most {MAX_NAME_LENGTH} of a-z, 0-9 and _, a letter first, such as {guess or kind.example}"
         raise InputError(Problem(f"{cut(repr(name))} cannot be the name of a {kind.word}", hint=hint))
     for word, installed in (("mechanism", Registry()), ("code", Codes())):
         if name in installed:

@@ -171,9 +171,8 @@ class TestWritten:
             Aim.parse(text)
 
     def test_requirements_with_units(self):
-        assert (
-            isclose(Aim.parse("phi_cr<=10 deg").level, np.radians(10)) and Aim.parse("overturned < 5 %").level == 0.05
-        )
+        assert isclose(Aim.parse("phi_cr<=10 deg").level, np.radians(10))
+        assert Aim.parse("overturned < 5 %").level == 0.05
         assert str(Aim.parse(" lambda>=0.2 ")) == "lambda >= 0.2"
 
     @pytest.mark.parametrize("text", ["width", "width=1:2:3", "=1:2"])
@@ -230,10 +229,8 @@ class TestCommand:
         lines = Path("o.csv").read_text(encoding="utf-8").splitlines()
         assert lines[0] == "width [m],lambda,holds" and len(lines) == 8
         said = run(*arguments).stdout
-        smallest = (
-            "The smallest width for which lambda >= 0.2 holds is 0.56 m; from there it holds to the end of the range"
-        )
-        assert f"{smallest} tried, 0.8 m." in " ".join(said.split())
+        smallest = "The smallest width for which lambda >= 0.2 holds is 0.56 m; from there it holds to the end of the"
+        assert f"{smallest} range tried, 0.8 m." in " ".join(said.split())
 
     @pytest.mark.parametrize(
         ("arguments", "said"),

@@ -187,9 +187,8 @@ class TestWhatIsMeasured:
 
     def values(self, structure, direction=None):
         sketch = structure.sketch()
-        return {
-            each.symbol: each.value for each in [*sketch.lengths, *sketch.angles] if each.direction in (None, direction)
-        }
+        measured = [*sketch.lengths, *sketch.angles]
+        return {each.symbol: each.value for each in measured if each.direction in (None, direction)}
 
     @pytest.mark.parametrize(
         ("structure", "expected"),
@@ -233,10 +232,7 @@ class TestWhatIsMeasured:
             assert values[f"r_{link}"] == pytest.approx(abs(centroid - one))
             assert values[f"ψ_{link}"] == pytest.approx(abs(np.angle((centroid - one) / (other - one))))
 
-    @pytest.mark.parametrize(
-        ("value", "text"),
-        [(1.44309, "1.44"), (157.5, "157.5"), (2500, "2500"), (1e-5, "1e-05")],
-    )
+    @pytest.mark.parametrize(("value", "text"), [(1.44309, "1.44"), (157.5, "157.5"), (2500, "2500"), (1e-5, "1e-05")])
     def test_three_digits_are_enough_to_check_by(self, value, text):
         assert three_digits(value) == text
 
@@ -321,9 +317,8 @@ class TestFigure:
             moved = [each for each in axes.patches if to_hex(each.get_edgecolor()) == style.INK]
             corners = moved[0].get_xy()[:4] @ [1, 1j]
             foot = complex(direction * 0.35)
-            expected = foot + np.exp(-1j * direction * phi) * (
-                np.array([-0.35, 0.35, 0.35 + 2.8j, -0.35 + 2.8j]) - foot
-            )
+            at_rest = np.array([-0.35, 0.35, 0.35 + 2.8j, -0.35 + 2.8j])
+            expected = foot + np.exp(-1j * direction * phi) * (at_rest - foot)
             np.testing.assert_allclose(corners, expected, atol=1e-12)
 
     def test_lengths_side_by_side_share_a_row_and_others_do_not(self):
@@ -435,9 +430,8 @@ class TestFigure:
         for place, cost in zip(places, labels._cost(places, size), strict=True):
             local = (3 * z - place.middle) * np.exp(-1j * np.radians(place.turned))
             hit = (np.abs(local.real) < 0.32) & (np.abs(local.imag) < 0.12)
-            corners = place.middle + np.array([0.3 + 0.1j, 0.3 - 0.1j, -0.3 + 0.1j, -0.3 - 0.1j]) * np.exp(
-                1j * np.radians(place.turned)
-            )
+            around = np.array([0.3 + 0.1j, 0.3 - 0.1j, -0.3 + 0.1j, -0.3 - 0.1j])
+            corners = place.middle + around * np.exp(1j * np.radians(place.turned))
             over = sum(max(0.0, -0.5 - low, high - 3.5) for low, high in (
                 (corners.real.min(), corners.real.max()), (corners.imag.min(), corners.imag.max())
             ))  # fmt: skip

@@ -63,11 +63,10 @@ def test_a_wall_with_a_window_keeps_its_mechanics(tmp_path):
 
 def test_hinges_and_supports_of_each_direction(tmp_path):
     drawing = drawn(rk.Wall(thickness=0.4, height=4.0), tmp_path)
-    hinges = {
-        side: [each.at for each in drawing.spots if each.layer == f"HINGES_{side}"] for side in ("POSITIVE", "NEGATIVE")
-    }
-    np.testing.assert_allclose(hinges["POSITIVE"], [0.2, -0.2 + 2j])
-    np.testing.assert_allclose(hinges["NEGATIVE"], [-0.2, 0.2 + 2j])
+    layers = "HINGES_POSITIVE", "HINGES_NEGATIVE"
+    positive, negative = ([each.at for each in drawing.spots if each.layer == layer] for layer in layers)
+    np.testing.assert_allclose(positive, [0.2, -0.2 + 2j])
+    np.testing.assert_allclose(negative, [-0.2, 0.2 + 2j])
     (right,), (left,) = on(drawing, "SUPPORTS_POSITIVE"), on(drawing, "SUPPORTS_NEGATIVE")
     assert right[0] == pytest.approx(0.2 + 4j) and left[0] == pytest.approx(-0.2 + 4j)
     assert right[1].imag == pytest.approx(4.0)  # along a floor

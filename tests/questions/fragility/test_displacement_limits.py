@@ -197,9 +197,8 @@ def test_a_top_that_cannot_move_so_far_is_named(tmp_path):
 def test_a_top_that_is_held_is_warned_of(tmp_path):
     wall, frame = (str(EXAMPLES / f"{name}.yaml") for name in ("spanning_wall", "frame"))
     for limits, warned in ((["10 mm", "uplift"], True), (["uplift", 0.2], False)):
-        found = command(
-            "fragility", write(tmp_path, structures=[wall, frame], samples=1, limit_states=limits), "--check"
-        )
+        path = write(tmp_path, structures=[wall, frame], samples=1, limit_states=limits)
+        found = command("fragility", path, "--check")
         said = " ".join(found.stderr.split())
         assert found.exit_code == 0 and ("limits such as 10 mm are of the top" in said) == warned
         assert "bridge: its top" not in said

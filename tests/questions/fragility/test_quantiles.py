@@ -17,11 +17,8 @@ from tests.conftest import EXAMPLES
 from tests.questions.fragility.test_study_runs import carry_out
 from tests.stores import command, every_run
 
-BLOCK = {
-    "file": str(EXAMPLES / "block.yaml"),
-    "name": "uncertain",
-    "vary": {"width": {"normal": {"mean": 0.7, "deviation": 0.05}}},
-}
+WIDTH = {"normal": {"mean": 0.7, "deviation": 0.05}}
+BLOCK = {"file": str(EXAMPLES / "block.yaml"), "name": "uncertain", "vary": {"width": WIDTH}}
 PULSES = [{"pulse": f"{shape}:0.6g:{period}s"} for shape in ("sine", "ricker", "mavroeidis") for period in (0.7, 1.2)]
 MEASURES = ["PGA", "PGV", "PGA/(g lambda)"]
 

@@ -289,9 +289,8 @@ def test_runs_are_grouped_by_level_where_it_decides_their_intensity(whole):
     }
     fallen = (rows.outcome[30:] != 0).reshape(4, 3, 5, 2)
     of = found["uncertain"]
-    assert (
-        of.over("PGA/(g lambda)").of(of.exceeding["overturning"]).tolist() == fallen.sum(axis=(0, 3)).ravel().tolist()
-    )
+    together = of.over("PGA/(g lambda)").of(of.exceeding["overturning"])
+    assert together.tolist() == fallen.sum(axis=(0, 3)).ravel().tolist()
     assert of.over("PGA").of(of.exceeding["overturning"]).tolist() == fallen.sum(axis=3).ravel().tolist()
     sample, record, level = of.over("PGA").place
     x = of.over("PGA").intensities("PGA")

@@ -128,9 +128,8 @@ def runs(*, outcome, peaks, uplifts, slides, **more):
     """Runs with these columns; what else there is of a run is not read."""
     nothing = dict.fromkeys(COLUMNS, np.full(outcome.size, np.nan)) | {"slip": np.zeros(outcome.size)}
     times = {"uplift_time": np.where(uplifts, 1.0, np.nan), "slide_time": np.where(slides, 1.0, np.nan)}
-    return RunRows(
-        **nothing | times | more | {"outcome": outcome, "peak_positive": peaks[:, 0], "peak_negative": peaks[:, 1]}
-    )
+    ends = {"outcome": outcome, "peak_positive": peaks[:, 0], "peak_negative": peaks[:, 1]}
+    return RunRows(**nothing | times | more | ends)
 
 
 def test_what_is_known_of_a_run_is_known_of_the_side_on_which_it_was_seen():
@@ -256,9 +255,8 @@ def test_quantiles_count_unknown_as_overturned_and_say_so(whole, monkeypatch):
         own = whole.level == k
         outcome = whole.rows.outcome[own]
         assert (group.unknown, group.overturned) == ((outcome == UNKNOWN).sum(), (np.abs(outcome) == 1).sum())
-        np.testing.assert_array_equal(
-            group.every, np.quantile(peaks[own], (0.16, 0.5, 0.84), method="inverted_cdf"), err_msg=f"{k}"
-        )
+        expected = np.quantile(peaks[own], (0.16, 0.5, 0.84), method="inverted_cdf")
+        np.testing.assert_array_equal(group.every, expected, err_msg=f"{k}")
         known = np.sort(outcome[np.argsort(peaks[own], kind="stable")] == UNKNOWN)
         assert said["unknown"] == known.mean()
         finite, stands = np.isfinite(group.every), np.isfinite(peaks[own]).sum()

@@ -87,10 +87,8 @@ def test_the_drawing_is_what_its_script_makes(church, tmp_path, monkeypatch):
 
 def test_the_page_knows_all_roles_and_refusals():
     page = (PROJECT / "docs" / "import.md").read_text(encoding="utf-8")
-    roles = {
-        role: words.split(", ") for role, words in re.findall(r"^\| `(\w+)` \| ([\w, ]+) \| [^|]+ \|$", page, re.M)
-    }
-    roles = {role: words for role, words in roles.items() if role in {*Role}}
+    rows = re.findall(r"^\| `(\w+)` \| ([\w, ]+) \| [^|]+ \|$", page, re.M)
+    roles = {role: words.split(", ") for role, words in rows if role in {*Role}}
     assert {*roles} == {*Role}
     assert {word: role_of(word) for words in roles.values() for word in words} == {
         word: role for role, words in roles.items() for word in words

@@ -160,10 +160,8 @@ def test_what_it_did_not_write_is_not_replaced(files, prepare, message):
 
 
 def test_the_folder_of_the_records_is_not_written_into(files):
-    assert (
-        "--out is the folder of an input file"
-        in run("select", "r*.AT2", *ASKED, "--count", 2, "-o", ".", code=2).stderr
-    )
+    said = run("select", "r*.AT2", *ASKED, "--count", 2, "-o", ".", code=2).stderr
+    assert "--out is the folder of an input file" in said
     assert not (files / "set.yaml").exists()
 
 

@@ -71,21 +71,16 @@ class TestTables:
         ]  # fmt: skip
         run("survey", "c.csv", "--out", "o.csv", "--separator", "tab", "--decimal", ",")
         assert [(row["width"], row["#note"]) for row in cells("o.csv", "\t")] == [("0,3", ""), ("0,5", "1,50")]
-        assert (
-            "0,15\t0,15\tpositive"
-            in run("survey", "c.csv", "--out", "-", "--separator", "tab", "--decimal", ",").stdout
-        )
+        printed = run("survey", "c.csv", "--out", "-", "--separator", "tab", "--decimal", ",").stdout
+        assert "0,15\t0,15\tpositive" in printed
 
     def test_a_table_in_windows_1252_is_read_with_a_note_and_written_with_a_mark(self):
-        Path("w.csv").write_bytes(
-            "mechanism;name;width;height\nblock;Nicol\u00f2 \u00abA\u00bb;0,5;2\n".encode("cp1252")
-        )
+        text = "mechanism;name;width;height\nblock;Nicol\u00f2 \u00abA\u00bb;0,5;2\n"
+        Path("w.csv").write_bytes(text.encode("cp1252"))
         shown = run("survey", "w.csv", "--out", "o.csv", "--separator", ";", "--decimal", ",")
         assert "w.csv is not in UTF-8: read as Windows-1252" in shown.stderr and "Nicol\u00f2" in shown.stdout
-        assert (
-            Path("o.csv").read_bytes()[:3] == b"\xef\xbb\xbf"
-            and cells("o.csv", ";")[0]["name"] == "Nicol\u00f2 \u00abA\u00bb"
-        )
+        assert Path("o.csv").read_bytes()[:3] == b"\xef\xbb\xbf"
+        assert cells("o.csv", ";")[0]["name"] == "Nicol\u00f2 \u00abA\u00bb"
         run("survey", "w.csv", "--out", "p.csv")
         assert Path("p.csv").read_bytes()[:4] == b"rank"
         assert "1252" not in run("survey", "t.csv").stderr
@@ -239,6 +234,7 @@ class TestMaps:
         ]  # fmt: skip
         assert marks.get_array().tolist() == [3, 2, 1]
         assert labels(axes)[1:] == ["1", "2", "3"]
+        assert not any("not on the map" in line.get_label() for line in axes.lines)
         grey = [0.3 * r + 0.59 * g + 0.11 * b for r, g, b, _ in marks.cmap(np.linspace(0, 1, 9))]
         assert grey == sorted(grey) and grey[0] < 0.2 < 0.8 < grey[-1], "the order is visible in grey"
 
@@ -275,13 +271,11 @@ class TestMaps:
         assert "not on the map: 3 without coordinates" in [line.get_label() for line in drawn(columns).axes[0].lines]
         assert len(said) == 2 and "lat must be a number of degrees from -90 to 90, got '142'" in said[0]
         assert "got 'north'" in said[1] and Path("m.svg").stat().st_size > 1000
-        assert not any("not on the map" in line.get_label() for line in drawn(places([1, 2], [3, 4])).axes[0].lines)
 
     def test_one_place_and_ranks_in_the_same_place(self):
         axes = drawn(places([13.1, 13.1, 13.1], [42.0, 42.0, 42.5])).axes[0]
         assert labels(axes)[1:] == ["1, 2", "3"]
         assert np.ptp(drawn(places([13.1], [42.0])).axes[0].get_ylim()) * 111_195 == pytest.approx(116.0, rel=1e-3)
-        assert len(labels(drawn(places(np.linspace(1, 2, 30), [3.0] * 30)).axes[0])) == 11  # ten ranks and the scale
 
     def test_ranks_of_a_crowd_are_apart_and_nothing_is_cut_on_a_phone(self):
         random = np.random.default_rng(3)
@@ -339,31 +333,19 @@ class TestSheets:
 
     @pytest.mark.rest
     def test_each_row_has_the_sheet_of_verify(self):
-        Path("s.csv").write_text(
-            "mechanism,name,width,height\nblock,../thin,0.3,2\nblock,bad,-1,2\nblock,thick,0.5,2\n"
-        )
-        result = self.sheet("--language", "it", "--author", "Ing. Bianchi", code=5)
+        text = "mechanism,name,width,height\nblock,../thin,0.3,2\nblock,bad,-1,2\nblock,thick,0.5,2\n"
+        Path("s.csv").write_text(text)
+        told = "--language", "it", "--author", "Ing. Bianchi"
+        result = self.sheet(*told, code=5)
         assert "scritte 2 relazioni di calcolo e sheets.txt in" in result.stderr
         assert sorted(each.name for each in Path("sh").iterdir()) == [LIST_FILE, "thick.html", "thin.html"]
         Path("b.yaml").write_text("mechanism: block\nname: thick\nwidth: 0.5\nheight: 2\n")
-        run(
-            "verify",
-            "b.yaml",
-            "--site",
-            "site.yaml",
-            "--sheet",
-            "v.html",
-            "--language",
-            "it",
-            "--author",
-            "Ing. Bianchi",
-        )
+        run("verify", "b.yaml", "--site", "site.yaml", "--sheet", "v.html", *told)
         one, other = (Path(each).read_text("utf-8").split('id="inputs"')[0] for each in ("sh/thick.html", "v.html"))
         assert one == other and "Ing. Bianchi" in one
         inputs = Path("sh/thick.html").read_text("utf-8").split('id="inputs"')[1]
-        assert (
-            "s.csv, line 4" in inputs and "rocking survey s.csv --site site.yaml" in inputs and "width: 0.5" in inputs
-        )
+        assert "s.csv, line 4" in inputs and "rocking survey s.csv --site site.yaml" in inputs
+        assert "width: 0.5" in inputs
 
     @pytest.mark.rest
     def test_sheets_of_an_earlier_survey_are_replaced_and_nothing_else(self):
@@ -376,9 +358,8 @@ class TestSheets:
         assert {each.name for each in Path("sh").iterdir()} == {"a.html", "c.html", LIST_FILE}
         assert Path("sh/a.html").read_bytes() != first
         listed = dict(line.split("  ")[::-1] for line in Path("sh", LIST_FILE).read_text().splitlines()[1:])
-        assert listed == {
-            name: hashlib.sha256(Path("sh", name).read_bytes()).hexdigest() for name in ("a.html", "c.html")
-        }
+        written = {name: Path("sh", name).read_bytes() for name in ("a.html", "c.html")}
+        assert listed == {name: hashlib.sha256(content).hexdigest() for name, content in written.items()}
 
     def test_a_folder_with_files_of_others_is_refused_before_any_work(self):
         self.table("a")
@@ -405,10 +386,8 @@ class TestSheets:
 
     def test_what_has_no_sheet_is_refused(self):
         self.table("a")
-        assert (
-            "--sheets requires a site to verify at: give --site"
-            in run("survey", "s.csv", "--sheets", "sh", code=2).stderr
-        )
+        said = run("survey", "s.csv", "--sheets", "sh", code=2).stderr
+        assert "--sheets requires a site to verify at: give --site" in said
         with pytest.raises(InputError, match="`language` must be en or it, got the text fr"):
             rk.survey("s.csv", site=SITE, sheets="sh", language="fr")
         with pytest.raises(InputError, match="`sheet_format` must be html, docx or pdf"):
