@@ -37,7 +37,7 @@ SAME_SHARE = 1e-9  # share of its size within which points of a line coincide, a
 MEETING_SHARE = 1e-6  # share of its size within which the edges of a hatch meet
 FLATTENING_SHARE = 1e-6  # distance of a curve from its straight sides over its size
 MIN_SIDES_PER_SPAN, MAX_CURVE_CORNERS = 8, 50_000
-SPLINE_FIT, MESH, CONTROL_POINT = 4, 16 | 64, 16  # flags of a POLYLINE, and of its vertices
+SPLINE_FIT, POLYFACE, CONTROL_POINT = 4, 16 | 64, 16  # flags of a POLYLINE, and of its vertices
 TEXT_BOX = 8  # flag of a loop of a HATCH
 
 
@@ -126,7 +126,7 @@ def shapes_of(entity: Any) -> list[DxfShape] | None:
     Raises `OverflowError` if its numbers are too many, and many kinds of errors if they do not describe what it is.
     """
     make = MAKERS.get(entity.dxftype())
-    if make is None or (make is _polyline and entity.dxf.flags & MESH):
+    if make is None or (make is _polyline and entity.dxf.flags & POLYFACE):
         return None
     return list(make(entity))
 

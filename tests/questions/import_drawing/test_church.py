@@ -10,6 +10,7 @@ from pytest import approx
 
 import rocking_cli as rk
 from rocking_cli import Registry
+from rocking_cli.ask.read import is_mesh
 from rocking_cli.core import Direction
 from rocking_cli.questions.import_drawing.legend import Role, role_of
 from tests.conftest import EXAMPLES, PROJECT
@@ -67,6 +68,10 @@ def test_it_is_what_formulas_give(church):
     for side in Direction:
         assert church.structure.uplift(side) == approx(expected.uplift(side), rel=1e-6)
         assert church.structure.critical_rotation(side) == approx(expected.critical_rotation(side), rel=1e-6)
+
+
+def test_a_drawing_is_no_mesh():
+    assert not is_mesh(CHURCH) and not is_mesh(CHURCH.with_name("wall.svg"))
 
 
 def test_what_is_not_the_structure_is_left_out_and_said(church):
