@@ -218,7 +218,7 @@ def race(sound: Sound, folder: Path, *more: str) -> list[int]:
     return codes
 
 
-def kills(folder: Path, times: int) -> int:
+def kills(folder: Path, times: int, levels: int = 4000) -> int:
     """Kill two writers of one study again and again; the number of times it took until all runs were there.
 
     Raises
@@ -227,7 +227,7 @@ def kills(folder: Path, times: int) -> int:
         If a run is lost or wrong.
     """
     folder.mkdir()
-    study = write(folder, levels=4000)
+    study = write(folder, levels=levels)
     rng, place = random.Random(times), study.with_suffix(".runs")
     words = [sys.executable, "-c", "from rocking_cli.cli.main import main; main()", "fragility", study, "--jobs", "1"]
     for _ in range(times):

@@ -8,7 +8,7 @@ import pytest
 from rocking_cli.ask.ground_motions import files_of
 from rocking_cli.errors import InputError, KeptWarning
 from rocking_cli.io import files
-from rocking_cli.questions.select import set_folder
+from rocking_cli.questions.select import verb as select
 from rocking_cli.questions.survey.pages import LIST_HEADER, SheetFolder
 from rocking_cli.studies.engines import free as memory
 
@@ -43,7 +43,7 @@ def sheets(file):
 
 def earlier_set(file):
     """Read which records an earlier set has, and its records."""
-    for read in (lambda: set_folder.check_folder(file.parent, []), lambda: files_of(str(file.parent))):
+    for read in (lambda: select.check_folder(file.parent, []), lambda: files_of(str(file.parent))):
         try:
             read()
         except InputError as error:
@@ -61,7 +61,7 @@ KEPT = {
     "sheets.txt": (sheets, f"{LIST_HEADER}\n{LIST}"),
     "set.yaml": (
         earlier_set,
-        f"{set_folder.LIST_HEADER}\n#   a.csv\n#   ../mine.csv\nrecords:\n- {{file: a.csv, factor: 2.0}}\n",
+        f"{select.LIST_HEADER}\n#   a.csv\n#   ../mine.csv\nrecords:\n- {{file: a.csv, factor: 2.0}}\n",
     ),
     f".files.0123456789abcdef{files.LISTING}": (killed_run, LIST),
 }

@@ -49,9 +49,8 @@ def read(data: bytes, file: str, plane: str = "xz") -> LineDrawing:
                 fault = f"reaches {here}, and not {there},"
             if fault:
                 what = f"the block {name} {fault} along the axis across {plane}"
-                raise DrawingError(
-                    "not_plane", what, file, hint=f"{named('plane')} is the plane of the assembly: xz or yz"
-                )
+                hint = f"{named('plane')} is the plane of the assembly: xz or yz"
+                raise DrawingError("not_plane", what, file, hint=hint)
             layer, shape = "ground" if is_support else "blocks", guid if rings[1:] else ""
             chains += [DrawnLine(z, np.zeros(len(z)), True, layer, "block", guid, shape) for z in rings]
             stone = (model.get("materials") or {}).get(of.get("material"))

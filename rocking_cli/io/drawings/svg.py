@@ -210,9 +210,8 @@ class _SvgReader:
 
     def _counted(self, node: SvgElement, depth: int = 0) -> None:
         self.count += 1
-        contract.check_count(
-            self.count, contract.MAX_ELEMENTS, "elements, with those that are used again", self.file, node.line
-        )
+        what = "elements, with those that are used again"
+        contract.check_count(self.count, contract.MAX_ELEMENTS, what, self.file, node.line)
         if depth > MAX_DEPTH:
             message = f"elements are nested more than {MAX_DEPTH} deep"
             raise DrawingError("too_large", message, self.file, line=node.line)
@@ -425,10 +424,8 @@ def _box(node: SvgElement) -> list[float]:
 
 def _viewport(node: SvgElement, place: SvgPlace, sized: SvgElement) -> SvgPlace | None:
     """Return the place within a nested `svg` or a symbol, whose size another element may give; None if it has none."""
-    size = [
-        _length(sized if sized.get(name) else node, name, whole, "100%")
-        for name, whole in (("width", place.width), ("height", place.height))
-    ]
+    wholes = {"width": place.width, "height": place.height}
+    size = [_length(sized if sized.get(name) else node, name, whole, "100%") for name, whole in wholes.items()]
     corner = place.pair(node, "x", "y") if node.tag == "svg" else 0j
     to = place.to.after(lines.Affine(shift=corner))
     if min(size) <= 0:

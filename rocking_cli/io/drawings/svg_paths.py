@@ -47,11 +47,9 @@ class Affine(NamedTuple):
 
     def after(self, first: Affine) -> Affine:
         """Return the map that applies `first` and then this one."""
-        return Affine(
-            self.turn * first.turn + self.mirror * first.mirror.conjugate(),
-            self.turn * first.mirror + self.mirror * first.turn.conjugate(),
-            self(first.shift),
-        )
+        turn = self.turn * first.turn + self.mirror * first.mirror.conjugate()
+        mirror = self.turn * first.mirror + self.mirror * first.turn.conjugate()
+        return Affine(turn, mirror, self(first.shift))
 
     @property
     def is_flat(self) -> bool:

@@ -191,8 +191,9 @@ def _peaks(side: RockingSide, energy: Reals) -> Reals:
     """Return the rotations at which the potential energy reaches values, by Newton's method from below."""
     phi = np.minimum(energy / side.lift(np.zeros(1))[0], side.end)
     for _ in range(60):
-        slope = (phi * (1 + 1e-6) * side.lift(phi * (1 + 1e-6)) - phi * side.lift(phi)) / (1e-6 * phi)
-        step = (energy - phi * side.lift(phi)) / np.maximum(slope, 1e-6 * side.lift(phi))
+        lift = side.lift(phi)
+        slope = (phi * (1 + 1e-6) * side.lift(phi * (1 + 1e-6)) - phi * lift) / (1e-6 * phi)
+        step = (energy - phi * lift) / np.maximum(slope, 1e-6 * lift)
         phi = np.clip(phi + step, 0.1 * phi, side.end)
         if np.all(np.abs(step) < 1e-13 * phi):
             break

@@ -95,14 +95,9 @@ def read_trace(path: Path) -> Trace:
     InputError
         With every problem of the file, by line and column.
     """
-    return parse_trace(sheet_of(path))
-
-
-def parse_trace(sheet: Spreadsheet) -> Trace:
-    """Return the trace in a table of text. Raises as `read_trace`."""
-    (time, seconds), (angle, unit) = (
-        _column(sheet, names, kind) for names, kind in ((TIME_NAMES, "s"), (ANGLE_NAMES, "rad"))
-    )
+    sheet = sheet_of(path)
+    time, seconds = _column(sheet, TIME_NAMES, "s")
+    angle, unit = _column(sheet, ANGLE_NAMES, "rad")
     problems: list[Problem] = []
     times: list[float] = []
     angles: list[float] = []
@@ -465,9 +460,8 @@ def _problem(
     if len(sides) > 1:
         edges = [*(each[0] for each in crossings), np.inf]
         peaks = [np.max(np.abs(angles[(times >= a) & (times < b)]), initial=0.0) for a, b in pairwise(edges)]
-        grows = (
-            np.flatnonzero(np.array(peaks[1:]) > np.array([release, *peaks[:-2]]) + MIN_NEW_TEST_GROWTH * release) + 1
-        )
+        before = np.array([release, *peaks[:-2]])  # on the same side
+        grows = np.flatnonzero(np.array(peaks[1:]) > before + MIN_NEW_TEST_GROWTH * release) + 1
         crossings = crossings[: grows[0] + 1] if grows.size else crossings
         until = crossings[-1][0] if grows.size else 2 * crossings[-1][0] - since
     inside = (times >= since) & (times <= until)
@@ -566,9 +560,8 @@ def _each(problem: _Problem, x: Reals, trace: Trace, structure: Structure, free_
         problem, x, covariance = _freed(problem, x, [P, ALPHA])
         errors, block = np.linalg.cholesky(covariance).T, structure.equivalence.positive
         values = np.exp(problem.geometry[P:]) * (block.p, block.phi_cr)
-        p, alpha = (
-            Estimated(float(v), float(v * d)) for v, d in zip(values, np.sqrt(np.diag(covariance)), strict=True)
-        )
+        pairs = zip(values, np.sqrt(np.diag(covariance)), strict=True)
+        p, alpha = (Estimated(float(v), float(v * d)) for v, d in pairs)
     parameters, count, solve, noise, pattern = _own(problem, x, trace)
     if len(problem.sides) > 1 and problem.distance(x) > MAX_RESIDUAL_TO_NOISE * noise:
         apart, other, covariance = _freed(problem, x, [SIDES])

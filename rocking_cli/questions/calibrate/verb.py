@@ -37,16 +37,19 @@ def calibrate(asked: CalibrateAsked, watch: Watcher) -> Answer[TraceFit]:
     MechanismError
         If the structure has no critical rotation.
     """
+    from rocking_cli.io.files import keep_apart
     from rocking_cli.questions.calibrate.study import Trace, fit_trace, read_trace
     from rocking_cli.questions.calibrate.view import trace_columns, trace_view
 
     structure = structure_of(asked.structure, watch)
     trace = asked.free if isinstance(asked.free, Trace) else read_trace(Path(asked.free))
-    fit = fit_trace(structure, trace, free_geometry=asked.free_geometry)
-    structure.under(restitution=fit.eta.value)  # raises an error if the structure cannot have this restitution
     if asked.out is not None:
         if structure.file is None:
             raise InputError(Problem("needs the file of the structure, of which it is a copy", field=named("out")))
+        keep_apart([(named("out"), asked.out)], [structure.file, trace.name])
+    fit = fit_trace(structure, trace, free_geometry=asked.free_geometry)
+    structure.under(restitution=fit.eta.value)  # raises an error if the structure cannot have this restitution
+    if asked.out is not None and structure.file is not None:
         _write(structure, Path(structure.file), asked.out, fit)
         watch.note(f"wrote {asked.out}")
     figure = drawn("questions.calibrate.view.draw_trace", fit, structure.name)
@@ -56,11 +59,10 @@ def calibrate(asked: CalibrateAsked, watch: Watcher) -> Answer[TraceFit]:
 def _write(structure: Structure, source: Path, out: Path, found: TraceFit) -> None:
     """Write a copy of the file of a structure with the fitted restitution and its scatter."""
     from rocking_cli.core.structure_file import parse_structure
-    from rocking_cli.io.files import keep_apart, write_whole
+    from rocking_cli.io.files import write_whole
     from rocking_cli.io.yaml_file import read_text, with_fields
     from rocking_cli.structure import Structure
 
-    keep_apart([(named("out"), out)], [str(source), found.trace.name])
     mechanism = structure.mechanism
     deviation = mechanism.uncertainty.slenderness if mechanism.uncertainty is not None else None
     uncertainty = {"slenderness": deviation, "restitution": round(found.scatter, 4)}

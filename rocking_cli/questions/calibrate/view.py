@@ -84,9 +84,8 @@ def _trace_parts(found: TraceFit, structure: Structure) -> Iterator[Table | str]
             f"Fitted geometry: p = {found.p.value:.4g} rad/s +- {found.p.deviation:.2g} (the file: {block.p:.4g}), "
             f"alpha = {found.alpha.value:.4g} rad +- {found.alpha.deviation:.2g} (the file: {block.phi_cr:.4g})."
         )
-    yield table_of(
-        "", IMPACTS, [ImpactRow(k, *pair) for k, pair in enumerate(zip(found.impacts, found.etas, strict=True), 1)]
-    )
+    pairs = zip(found.impacts, found.etas, strict=True)
+    yield table_of("", IMPACTS, [ImpactRow(k, *pair) for k, pair in enumerate(pairs, 1)])
     yield (f"At rest, the trace reads {_pair(found.offset)} deg at time zero and drifts by {_pair(found.drift)} deg/s.")
     yield _residuals(found)
 

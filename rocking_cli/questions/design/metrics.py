@@ -103,13 +103,13 @@ class Metric:
 
     def at(self, structure: Structure, excitation: Excitation) -> tuple[float, Neighbours | None]:
         """Return the metric of a structure, and the neighbours of the motion that governs if it needs motions."""
-        of = self.of_neighbours
+        measure = self.of_neighbours
         if self.lacks is not None and (why := self.lacks(structure)) is not None:
             raise InputError(f"{self.name} {why}")
         if self.of_structure is not None:
             return self.of_structure(structure, excitation), None
-        assert of is not None
-        numbers = [(of(neighbours, structure), neighbours) for neighbours in excitation.each(structure)]
+        assert measure is not None
+        numbers = [(measure(neighbours, structure), neighbours) for neighbours in excitation.each(structure)]
         return max(numbers, key=lambda each: (each[0], each[1].at_most, each[1].overturned))
 
 

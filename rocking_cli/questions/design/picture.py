@@ -32,9 +32,8 @@ def draw_design(found: Design) -> Figure:
     field, metric = field_in_words(found.field), found.aim.metric
     finite = np.isfinite(found.metric)
     of_field, unit = _unit(found.unit, float(np.abs(found.values).max()))
-    of_metric, metric_unit = _unit(
-        metric.unit, max(float(np.abs(found.metric[finite]).max(initial=0)), found.aim.level)
-    )
+    largest = max(float(np.abs(found.metric[finite]).max(initial=0)), found.aim.level)
+    of_metric, metric_unit = _unit(metric.unit, largest)
     aim = _aim(found.aim, of_metric, metric_unit)
     figure, axes = style.one_panel(3.8, f"{found.structure}: {field} for {aim}")
     x, shown = of_field * found.values, np.where(finite, of_metric * found.metric, np.nan)

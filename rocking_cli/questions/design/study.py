@@ -6,6 +6,7 @@ import operator
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from math import inf, isfinite, isnan, nan
 from typing import NamedTuple
 
@@ -301,14 +302,18 @@ def design(
             aim = replace(aim, level=required(structure, site))
     _check_has_metric(structure, field, span, aim.metric)
 
+    @cache  # edges are searched from values of the scan
+    def tried(value: float) -> tuple[float, Neighbours | None, str | None]:
+        return _at(structure, field, value, aim, excitation)
+
     def metric(value: float) -> float:
-        return _at(structure, field, value, aim, excitation)[0]
+        return tried(value)[0]
 
     values, whole = np.linspace(*span, points), structure.is_whole(field)
     values = np.unique(values.round()) if whole else values
     numbers, reasons, behind = np.full(len(values), nan), dict[int, str](), list[Neighbours | None]()
     for k, value in enumerate(values.tolist()):
-        numbers[k], neighbours, reason = _at(structure, field, value, aim, excitation)
+        numbers[k], neighbours, reason = tried(value)
         behind.append(neighbours)
         if reason is not None:
             reasons[k] = reason

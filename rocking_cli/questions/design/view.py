@@ -93,18 +93,14 @@ def answer(found: Design) -> str:
     if found.everywhere:
         return f"{aim} holds at every value of {found.field} tried, from {low} to {high}."
     if found.conclusion.concluded is Concluded.UNKNOWN:
-        return (
-            f"Whether {aim} holds at any value of {found.field} tried, from {low} to {high}, is unknown: if unknown "
-            f"outcomes count as overturning, {_nearest(found)}"
-        )
+        question = f"Whether {aim} holds at any value of {found.field} tried, from {low} to {high}, is unknown"
+        return f"{question}: if unknown outcomes count as overturning, {_nearest(found)}"
     if not found.holds:
         return f"{aim} holds at no value of {found.field} tried, from {low} to {high}: {_nearest(found)}"
     if found.value is not None and len(found.holds) == 1 and (found.monotone or not aim.metric.shaken):
         which, end = ("smallest", high) if found.is_least else ("largest", low)
-        return (
-            f"The {which} {found.field} for which {aim} holds is {_with_unit(found, found.value)}; from there it holds "
-            f"to the end of the range tried, {end}."
-        )
+        answer = f"The {which} {found.field} for which {aim} holds is {_with_unit(found, found.value)}"
+        return f"{answer}; from there it holds to the end of the range tried, {end}."
     ranges = [f"from {_with_unit(found, a)} to {_with_unit(found, b)}" for a, b in found.holds]
     listed = " and ".join([", ".join(ranges[:-1]), ranges[-1]] if len(ranges) > 1 else ranges)
     sentence = f"Judging by the {len(found.values)} values tried, {aim} holds for {found.field} {listed}"
@@ -171,9 +167,8 @@ def doubts(found: Design, excitation: Excitation) -> list[str]:
     count, there = len(found.values), found.metric[~np.isnan(found.metric)]
     same = there.size > 1 and np.allclose(there, there[0], rtol=TREND_TOLERANCE, atol=0.0)
     if same and not found.aim.metric.shaken:
-        sentences.append(
-            f"{found.aim.metric.name} is the same at every value tried: {found.field} has no effect on it."
-        )
+        what = f"{found.aim.metric.name} is the same at every value tried"
+        sentences.append(f"{what}: {found.field} has no effect on it.")
     if not found.monotone and np.isfinite(found.metric).any():
         closer = "the edges given are values tried" if found.aim.metric.shaken else "the edges given lie between them"
         sentences.append(

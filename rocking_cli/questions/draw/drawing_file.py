@@ -131,9 +131,8 @@ def _untold(drawing: Picture, odd: Sequence[str], still: Collection[str]) -> str
         "the tie ": [tie.name for tie in drawing.ties if tie.name and _path(tie) is None],
         "the further data of ": [each.name for each in given if each.model_fields_set - DRAWN_FIELDS],
     }
-    return "; ".join(
-        what + in_short([f"`{name}`" for name in dict.fromkeys(names)]) for what, names in groups.items() if names
-    )
+    lists = {what: [f"`{name}`" for name in dict.fromkeys(names)] for what, names in groups.items() if names}
+    return "; ".join(what + in_short(names) for what, names in lists.items())
 
 
 class _Drawn:
@@ -219,9 +218,8 @@ def _load(drawn: _Drawn, drawing: Picture, load: Carried) -> None:
     else:
         drawn.spot("LOADS", start := load.point)
     size = f"{abs(load.force):.9g} N" if load.force else f"{load.mass:.9g} kg"
-    drawn.text(
-        "LOADS", ", ".join([f"{load.name} {size}".strip(), *words]), start, TEXT_BELOW if load.force else TEXT_ABOVE
-    )
+    text = ", ".join([f"{load.name} {size}".strip(), *words])
+    drawn.text("LOADS", text, start, TEXT_BELOW if load.force else TEXT_ABOVE)
 
 
 def _tie(drawn: _Drawn, drawing: Picture, tie: Strand) -> None:

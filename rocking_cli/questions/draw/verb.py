@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING
 
 from rocking_cli.ask.answer import Answer, drawn
@@ -17,7 +16,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rocking_cli.core import Angle, Length
-    from rocking_cli.io.tables import Columns
     from rocking_cli.studies.picture import Picture
 
 
@@ -60,7 +58,8 @@ def draw(asked: DrawAsked, watch: Watcher) -> Answer[Picture]:
     if asked.dxf is not None:
         _write(asked.dxf, drawing, at, watch)
     figure = drawn("plotting.structure.draw_structure", drawing, heading(ready.mechanism), at)
-    return Answer("drawing", drawing, _view(drawing), partial(_columns, drawing), figure)
+    lengths = {"length": [each.text for each in drawing.sketch.lengths]}
+    return Answer("drawing", drawing, _view(drawing), lambda: lengths, figure)
 
 
 def _write(file: Path, drawing: Picture, at: float | None, watch: Watcher) -> None:
@@ -75,19 +74,13 @@ def _write(file: Path, drawing: Picture, at: float | None, watch: Watcher) -> No
     watch.note(f"wrote {file}" + (f": import it with {options}" if options else ""))
 
 
-def _columns(found: Picture) -> Columns:
-    return {"length": [each.text for each in found.sketch.lengths]}
-
-
 def _view(picture: Picture) -> View:
     """Show the dimensions of a structure, and its drawing as plain data."""
     measured: list[Length | Angle] = [*picture.sketch.lengths, *picture.sketch.angles]
-    sentences = [
-        f"{each.text}{f' ({each.direction.label})' if each.direction is not None else ''}" for each in measured
-    ]
+    sides = (f" ({each.direction.label})" if each.direction is not None else "" for each in measured)
+    sentences = [f"{each.text}{side}" for each, side in zip(measured, sides, strict=True)]
     sentences += [f"load {each.name}, {each.text}" for each in picture.loads if each.name]
     sentences += [f"tie {each.name}" for each in picture.ties if each.name]
     sentences += [f"rocks in the {side} direction only" for side in [picture.mechanism.one_sided] if side]
-    return View(
-        picture.as_dict, [heading(picture.mechanism), *(f"  {each}" for each in [*sentences, *picture.sketch.notes])]
-    )
+    sentences += picture.sketch.notes
+    return View(picture.as_dict, [heading(picture.mechanism), *(f"  {each}" for each in sentences)])

@@ -360,9 +360,8 @@ def differences(before: Any, now: Any, where: str = "") -> list[str]:
         pairs = [(f"{where}.{key}".lstrip("."), before.get(key), now.get(key)) for key in {**before, **now}]
     elif isinstance(before, list) and isinstance(now, list):
         if len(before) != len(now):
-            gone, new = (
-                [_one(each) for each in one if each not in other] for one, other in ((before, now), (now, before))
-            )
+            gone = [_one(each) for each in before if each not in now]
+            new = [_one(each) for each in now if each not in before]
             parts = [f"{word} {in_short(those, most=3)}" for word, those in (("without", gone), ("with", new)) if those]
             return [f"{where} is now {' and '.join(parts) or 'another number of the same'}"]
         pairs = [(f"{where}[{k}]", *pair) for k, pair in enumerate(zip(before, now, strict=True), 1)]

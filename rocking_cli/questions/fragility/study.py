@@ -409,9 +409,8 @@ class _Files:
             self.wrong((*place, "vertical"), what)
             return []
         if others and max(len(files), len(others)) > 1:
-            self.wrong(
-                (*place, "with"), "a second component belongs to one record: give each record an entry of its own"
-            )
+            what = "a second component belongs to one record: give each record an entry of its own"
+            self.wrong((*place, "with"), what)
             return []
         if others:  # a pattern is replaced by the only file that it matches
             entry = entry.model_copy(update={"other": self.shown(others[0])})

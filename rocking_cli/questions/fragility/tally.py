@@ -224,9 +224,8 @@ class Cells:
         sample, record, _, _ = np.nonzero(known)
         sample = np.zeros_like(sample) if self.together else sample
         last, first = last[known], first[known].astype(np.int64)
-        at_last, at_first = (
-            self._intensities(measure, sample, record, np.clip(level, 0, levels - 1)) for level in (last, first)
-        )
+        at_last = self._intensities(measure, sample, record, np.clip(last, 0, levels - 1))
+        at_first = self._intensities(measure, sample, record, np.clip(first, 0, levels - 1))
         lower, upper = np.where(last >= 0, at_last, 0.0), np.where(first < levels, at_first, np.inf)
         sound = lower < upper  # otherwise the peak decreases with the level, or is unknown
         return lower[sound], upper[sound], record[sound]

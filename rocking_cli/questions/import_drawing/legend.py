@@ -158,9 +158,8 @@ def metres_per_unit(
         more = f" or {named('scale')}" if drawing.paper is not None and scale is None else ""
         raise DrawingError("units", f"{why}: give {named('units')}{more} (it is {size:.4g} units large: {sizes})", file)
     if not isfinite(size * per) or not 1e-3 <= size * per <= 1e4:
-        what = (
-            f"what is drawn would be {size * per:.3g} m large: give other {named('units')} or another {named('scale')}"
-        )
+        large = f"what is drawn would be {size * per:.3g} m large"
+        what = f"{large}: give other {named('units')} or another {named('scale')}"
         raise DrawingError("units", what, file)
     return per, words
 

@@ -162,9 +162,8 @@ def _with_open(
     more, left = _followed(edges_of(open_), sources, close, mended)
     if len(left) and made:
         tree = shapely.STRtree([_curve(loop.ring, close) for loop in made])
-        on_ring = [
-            np.isin(np.arange(len(left)), _near(tree, z, close)[0]) for z in (left["a"], _middles(left), left["b"])
-        ]
+        points = left["a"], _middles(left), left["b"]
+        on_ring = [np.isin(np.arange(len(left)), _near(tree, z, close)[0]) for z in points]
         lies_on = np.logical_and.reduce(on_ring)
         mended.add("drawn twice", _middles(left[lies_on]))  # drawn on a closed line
         left = left[~lies_on]

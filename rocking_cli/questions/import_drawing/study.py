@@ -266,10 +266,9 @@ def _check_closed(bodies: Sequence[DrawnBody], frame: DrawingFrame) -> None:
     import shapely
 
     for k in np.flatnonzero(~shapely.is_valid(polygons_of([body.ring for body in bodies], frame.close))).tolist():
-        what = (
-            f"{bodies[k].name} at <here> crosses itself once its gaps are closed: give a smaller {named('merge_gap')}"
-        )
-        raise frame.refusal("crosses", what, [bodies[k].ring.moments.centroid])
+        fault = f"{bodies[k].name} at <here> crosses itself once its gaps are closed"
+        at = [bodies[k].ring.moments.centroid]
+        raise frame.refusal("crosses", f"{fault}: give a smaller {named('merge_gap')}", at)
 
 
 def check_overlaps(bodies: Sequence[DrawnBody], ground: Sequence[ArcRing], frame: DrawingFrame) -> None:
@@ -303,9 +302,8 @@ def depth_of(common: Any, close: float) -> float:
 
     if 2 * np.sqrt(common.area / np.pi) <= close:
         return 0.0
-    circles = [
-        shapely.maximum_inscribed_circle(part, CIRCLE_SHARE * close) for part in shapely.get_parts(common) if part.area
-    ]
+    parts = (part for part in shapely.get_parts(common) if part.area)
+    circles = [shapely.maximum_inscribed_circle(part, CIRCLE_SHARE * close) for part in parts]
     depth = 2 * max(shapely.length(circles))
     return float(depth) if depth > close * (1 + CIRCLE_SHARE) else 0.0
 

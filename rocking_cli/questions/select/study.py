@@ -199,9 +199,8 @@ def candidates(
 
 def periods_of(band: tuple[float, float], target: TargetSpectrum, damping: float = DAMPING) -> Reals:
     """Return periods [s] at equal ratios over a band, with those of the target inside it unless they are too many."""
-    count = max(
-        MIN_BAND_PERIODS, ceil(log(band[1] / band[0]) / min(max(damping, PERIOD_SPACING[0]), PERIOD_SPACING[1])) + 1
-    )
+    spacing = min(max(damping, PERIOD_SPACING[0]), PERIOD_SPACING[1])
+    count = max(MIN_BAND_PERIODS, ceil(log(band[1] / band[0]) / spacing) + 1)
     periods = np.geomspace(*band, count)
     periods[[0, -1]] = band
     target_periods = target.periods[(target.periods > band[0]) & (target.periods < band[1])]
@@ -318,9 +317,8 @@ def _check_enough(given: int, usable: int, groups: int, wanted: SetRequirements)
         return
     one = f", and one per {wanted.one_per} leaves {groups}" if groups < usable else ""
     out = f", of which {usable} can be scaled to the target within {wanted.factors[0]:g} to {wanted.factors[1]:g}"
-    sentence = (
-        f"a set of {wanted.count} was requested, but {given} {'record is' if given == 1 else 'records are'} available"
-    )
+    there = f"{given} {'record is' if given == 1 else 'records are'} available"
+    sentence = f"a set of {wanted.count} was requested, but {there}"
     message = f"{sentence}{out if usable < given else ''}{one}"
     hints = [f"give more records, or a smaller {named('count')}"]
     hints += [f"wider limits with {named('factors')}"] if usable < given and usable < wanted.count else []

@@ -69,12 +69,6 @@ class TargetSpectrum:
             return np.array([self.formula(T) for T in periods.tolist()])
         return np.interp(periods, self.periods, self.sa)
 
-    @property
-    def highest_if_odd(self) -> float | None:
-        """The largest ordinate, if it is more than any code asks for [standard gravity]."""
-        highest = float(self.sa.max())
-        return highest if highest > MAX_ORDINATE else None
-
     def check(self, band: tuple[float, float]) -> None:
         """Raise `InputError` if the spectrum does not cover a band of periods [s], or is zero inside it."""
         first, last = float(self.periods[0]), float(self.periods[-1])

@@ -241,9 +241,8 @@ def _spans(periods: NDArray[np.float64], where: NDArray[np.bool_]) -> str:
 def _left_out(results: ShownSet) -> str:
     """Return a sentence on the records that could not be chosen; empty if there are none."""
     selection = results.found
-    reasons = [
-        f"{selection.candidates.motions[k].name}: {_why(selection, each)}" for k, each in selection.left_out.items()
-    ]
+    motions, left_out = selection.candidates.motions, selection.left_out
+    reasons = [f"{motions[k].name}: {_why(selection, factor)}" for k, factor in left_out.items()]
     if not reasons:
         return ""
     more = f"; and {len(reasons) - MAX_LISTED_RECORDS} more" if len(reasons) > MAX_LISTED_RECORDS else ""

@@ -176,9 +176,8 @@ class SheetFolder:
         """
         sheets.check_program(self.suffix)
         every: list[Surveyed | FailedEntry] = sorted([*found.rows, *found.bad], key=lambda each: each.row)
-        names = {
-            each.row: name for each, name in zip(every, file_names([e.name for e in every], self.suffix), strict=True)
-        }
+        files_of = file_names([each.name for each in every], self.suffix)
+        names = {each.row: name for each, name in zip(every, files_of, strict=True)}
         stale, new = self._listed(), dict[str, str]()
 
         def files() -> Iterator[tuple[str, bytes]]:
@@ -200,9 +199,8 @@ class SheetFolder:
             yield LIST_FILE, "".join(f"{line}\n" for line in lines).encode()
 
         write_files(self.path, files())
-        watch.note(
-            f"wrote {len(new):,} calculation sheet{'s' * (len(new) != 1)} and {LIST_FILE} to {self.path.resolve()}"
-        )
+        what = f"{len(new):,} calculation sheet{'s' * (len(new) != 1)}"
+        watch.note(f"wrote {what} and {LIST_FILE} to {self.path.resolve()}")
 
     def _sheet(self, found: Survey, entry: SurveyEntry) -> bytes:
         assert self.asked.site is not None

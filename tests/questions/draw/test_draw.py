@@ -32,12 +32,12 @@ from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 
 loaded = cache(load_structure)
+shown_of = cache(lambda path: picture(loaded(path)))
 FRAME = loaded(EXAMPLES / "frame.yaml")
 ARCH = loaded(EXAMPLES / "arch.yaml")
 FILES = sorted(EXAMPLES.glob("*.yaml"))
 OF_STONE = {"density": 2400.0, "depth": 1.0}
-SHAPES = {
-    **{path.stem: partial(loaded, path) for path in FILES},
+EXTREMES = {
     "slender block": partial(Block, width=0.1, height=10.0),
     "flat block": partial(Block, width=10.0, height=0.3),
     "flat cone": partial(Cone, base_radius=5.0, height=2.0),
@@ -53,6 +53,10 @@ SHAPES = {
     "thin arch": partial(Arch, radius=10.0, thickness=1.1, inclusion_angle_deg=180.0),
     "thick arch": partial(Arch, radius=3.0, thickness=1.2, inclusion_angle_deg=180.0),
 }
+SHAPES = {path.stem: partial(loaded, path) for path in FILES} | EXTREMES
+
+
+shape_of = cache(lambda name: picture(SHAPES[name]()))
 
 
 class Bare(Mechanism):
@@ -88,7 +92,7 @@ class TestPicture:
     @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
     def test_the_table_of_a_page_has_every_position_between_its_nodes(self, path):
         """Straight between nodes, as a page does it, against the mechanism itself."""
-        shown = picture(loaded(path))
+        shown = shown_of(path)
         data = json.loads(json.dumps(shown.as_dict(), allow_nan=False))
         table = np.array(data["rotation"])
         ways = [0.9 * side for side in shown.directions]
@@ -100,16 +104,16 @@ class TestPicture:
             x, y, turned = (np.interp(turns, table, part[key]) for key in ("x", "y", "psi"))
             assert np.abs(x + 1j * y - z).max() < 1e-3 * size
             assert np.abs(turned - angle).max() < 2e-3
-
-    @pytest.mark.parametrize("path", FILES[::3], ids=lambda path: path.stem)
-    def test_a_pin_is_carried_by_its_part(self, path):
-        shown = picture(loaded(path))
-        data = shown.as_dict()
         rest = data["rotation"].index(0.0)
         for pin, placed in zip(data["pins"], shown.placed(0.0)[1], strict=True):
             part = data["parts"][pin["part"]]
             at = part["x"][rest] + pin["point"][0], part["y"][rest] + pin["point"][1]
             assert complex(*at) == pytest.approx(placed, abs=1e-5)
+        letters = {way: [pin.letter for pin in shown.pins if pin.direction is way] for way in Direction}
+        if len(shown.directions) == 1:
+            assert {pin.direction for pin in shown.pins} == set(shown.directions)
+        else:
+            assert letters[Direction.NEGATIVE] == [f"{each}'" if each else "" for each in letters[Direction.POSITIVE]]
 
     def test_copies_move_like_the_first_about_feet_of_their_own(self):
         shown = picture(SymmetricFrame(column_width=1.0, column_height=6.0, columns=3, mass_ratio=1.0))
@@ -183,9 +187,8 @@ class TestWhatIsMeasured:
 
     def values(self, structure, direction=None):
         sketch = structure.sketch()
-        return {
-            each.symbol: each.value for each in [*sketch.lengths, *sketch.angles] if each.direction in (None, direction)
-        }
+        measured = [*sketch.lengths, *sketch.angles]
+        return {each.symbol: each.value for each in measured if each.direction in (None, direction)}
 
     @pytest.mark.parametrize(
         ("structure", "expected"),
@@ -229,10 +232,7 @@ class TestWhatIsMeasured:
             assert values[f"r_{link}"] == pytest.approx(abs(centroid - one))
             assert values[f"ψ_{link}"] == pytest.approx(abs(np.angle((centroid - one) / (other - one))))
 
-    @pytest.mark.parametrize(
-        ("value", "text"),
-        [(1.44309, "1.44"), (157.5, "157.5"), (2500, "2500"), (1e-5, "1e-05")],
-    )
+    @pytest.mark.parametrize(("value", "text"), [(1.44309, "1.44"), (157.5, "157.5"), (2500, "2500"), (1e-5, "1e-05")])
     def test_three_digits_are_enough_to_check_by(self, value, text):
         assert three_digits(value) == text
 
@@ -242,18 +242,11 @@ class TestWhatIsMeasured:
                 lettered = {hinge.letter: hinge.point for hinge in structure.sketch().hinges[direction]}
                 letters = ["A", "B", "C", "D"] if direction > 0 else ["A'", "B'", "C'", "D'"]
                 assert lettered == dict(zip(letters, structure.hinges(direction), strict=True))
-        for path in FILES:
-            shown = picture(loaded(path))
-            if len(shown.directions) == 1:
-                assert {pin.direction for pin in shown.pins} == set(shown.directions)
-                continue
-            of = {d: [pin.letter for pin in shown.pins if pin.direction is d] for d in Direction}
-            assert of[Direction.NEGATIVE] == [f"{each}'" if each else "" for each in of[Direction.POSITIVE]]
 
 
 def test_only_hinges_of_one_link_are_joined_by_a_line():
     def chains(file):
-        shown = picture(loaded(EXAMPLES / file))
+        shown = shown_of(EXAMPLES / file)
         return shown.chains([pin for pin in shown.pins if pin.direction is Direction.POSITIVE])
 
     assert chains("frame.yaml") == chains("arch.yaml") == [[0, 1, 2, 3]]
@@ -299,7 +292,7 @@ class TestFigure:
     @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
     def test_every_example_has_a_panel_for_rest_and_each_direction_to_scale(self, path):
         structure = loaded(path)
-        figure = draw_structure(picture(structure), "a title with $ in it", 0.5)
+        figure = draw_structure(shown_of(path), "a title with $ in it", 0.5)
         assert len(figure.axes) == 1 + len(structure.directions)
         size = figure.get_size_inches()
         for axes in figure.axes:
@@ -324,9 +317,8 @@ class TestFigure:
             moved = [each for each in axes.patches if to_hex(each.get_edgecolor()) == style.INK]
             corners = moved[0].get_xy()[:4] @ [1, 1j]
             foot = complex(direction * 0.35)
-            expected = foot + np.exp(-1j * direction * phi) * (
-                np.array([-0.35, 0.35, 0.35 + 2.8j, -0.35 + 2.8j]) - foot
-            )
+            at_rest = np.array([-0.35, 0.35, 0.35 + 2.8j, -0.35 + 2.8j])
+            expected = foot + np.exp(-1j * direction * phi) * (at_rest - foot)
             np.testing.assert_allclose(corners, expected, atol=1e-12)
 
     def test_lengths_side_by_side_share_a_row_and_others_do_not(self):
@@ -336,13 +328,15 @@ class TestFigure:
         assert rows["left"] == [[first, second], [across]]
         assert [each.symbol for each in inside] == ["d"]
 
-    @pytest.mark.every(9)
-    @pytest.mark.parametrize("screen", [nullcontext, style.on_phone])
-    @pytest.mark.parametrize("structure", SHAPES, ids=str)
+    @pytest.mark.every(7)
+    @pytest.mark.parametrize(
+        ("structure", "screen"),
+        [*((name, style.on_phone) for name in SHAPES), *((name, nullcontext) for name in ("arch", "frame", *EXTREMES))],
+    )
     def test_words_neither_meet_nor_leave_the_picture(self, structure, screen):
         title = "a structure with a title that is longer than the screen of a phone"
         with screen():
-            figure = draw_structure(picture(SHAPES[structure]()), title)
+            figure = draw_structure(shape_of(structure), title)
         assert title in [text.get_text().replace("\n", " ") for text in figure.texts]
         if figure.get_figwidth() < style.PAGE_WIDTH:
             rest, *others = sorted((axes.get_position() for axes in figure.axes), key=lambda place: -place.y0)
@@ -401,8 +395,8 @@ class TestFigure:
     @pytest.mark.parametrize("direction", list(Direction))
     def test_a_link_of_an_arch_has_one_colour(self, direction):
         """The segments between two hinges: AB, BC and CD each in its own, and what stays at rest in another."""
-        arch = Arch(radius=10.0, thickness=1.1, inclusion_angle_deg=180.0)
-        shown = picture(arch)
+        shown = shape_of("thin arch")
+        arch = shown.mechanism
         cuts = np.array(arch._cuts)
         middles = (cuts[1:] + cuts[:-1]) / 2
         along = middles if direction > 0 else pi - middles
@@ -418,7 +412,7 @@ class TestFigure:
         assert {to_hex(patch.get_facecolor()) for patch in axes.patches} == {*style.BODIES, style.RESTING_COLOUR}
 
     def test_the_line_of_thrust_is_drawn_in_both_directions(self):
-        figure = draw_structure(picture(ARCH), "arch")
+        figure = draw_structure(shown_of(EXAMPLES / "arch.yaml"), "arch")
         (rest,) = (axes for axes in figure.axes if axes.get_title() == "at rest")
         for line, look in zip(ARCH.sketch().lines, (style.THRUST, style.OTHER_THRUST), strict=True):
             (drawn,) = (each for each in rest.lines if each.get_color() == look["color"])
@@ -436,9 +430,8 @@ class TestFigure:
         for place, cost in zip(places, labels._cost(places, size), strict=True):
             local = (3 * z - place.middle) * np.exp(-1j * np.radians(place.turned))
             hit = (np.abs(local.real) < 0.32) & (np.abs(local.imag) < 0.12)
-            corners = place.middle + np.array([0.3 + 0.1j, 0.3 - 0.1j, -0.3 + 0.1j, -0.3 - 0.1j]) * np.exp(
-                1j * np.radians(place.turned)
-            )
+            around = np.array([0.3 + 0.1j, 0.3 - 0.1j, -0.3 + 0.1j, -0.3 - 0.1j])
+            corners = place.middle + around * np.exp(1j * np.radians(place.turned))
             over = sum(max(0.0, -0.5 - low, high - 3.5) for low, high in (
                 (corners.real.min(), corners.real.max()), (corners.imag.min(), corners.imag.max())
             ))  # fmt: skip

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 
 from mechanisms.block import Block
@@ -98,7 +97,7 @@ def test_nothing_is_cut_off_or_on_another_word(narrow):
             draw_record(motion, measure(motion)),
         ]
     for figure in figures:
-        FigureCanvasAgg(figure).draw()
+        figure.draw_without_rendering()
         shown = [text for text in figure.findobj(Text) if text.get_text() and text.get_visible()]
         boxes = {text: text.get_window_extent() for text in shown}
         labels = [text for axes in figure.axes for axis in (axes.xaxis, axes.yaxis) for text in axis.get_ticklabels()]
@@ -210,9 +209,8 @@ class TestThinning:
             assert (drawn.min(), drawn.max()) == (part.min(), part.max())
 
     def test_a_record_far_longer_than_the_response_shown_is_not_thinned_away(self):
-        long = GroundMotion(
-            "long", 0.01, np.concatenate([PULSE.scaled(5).acceleration, np.zeros(300_000)]), unit="m/s2"
-        )
+        shaking = np.concatenate([PULSE.scaled(5).acceleration, np.zeros(300_000)])
+        long = GroundMotion("long", 0.01, shaking, unit="m/s2")
         figure = draw_history(respond(BLOCK, long, models=("nonlinear",)), long, "falls at once")
         above, below = figure.axes
         end = below.get_xlim()[1]
@@ -241,10 +239,8 @@ def test_the_friction_needed_is_a_panel_below():
         Contacts(block).check(run["nonlinear"], each)
         for run, each in zip(both, (motion, motion.scaled(-1)), strict=True)
     ]
-    plain, rubbed = (
-        draw_history(both[0], motion, "a block"),
-        draw_history(both[0], motion, "a block", contacts=contacts),
-    )
+    plain = draw_history(both[0], motion, "a block")
+    rubbed = draw_history(both[0], motion, "a block", contacts=contacts)
     assert len(rubbed.axes) == len(plain.axes) + 1
     below = rubbed.axes[-1]
     curves = below.get_lines()

@@ -13,10 +13,7 @@ CASES = {
         {"normal": {"mean": 2.0, "deviation": 0.5, "low": 1.8, "high": 2.6}},
         stats.truncnorm(-0.4, 1.2, 2.0, 0.5),
     ),
-    "in the upper tail": (
-        {"normal": {"mean": 0.0, "deviation": 1.0, "low": 9.0}},
-        stats.truncnorm(9.0, np.inf),
-    ),
+    "in the upper tail": ({"normal": {"mean": 0.0, "deviation": 1.0, "low": 9.0}}, stats.truncnorm(9.0, np.inf)),
     "where no number holds what lies between": (
         {"normal": {"mean": 0.0, "deviation": 1.0, "low": -39.0, "high": -38.0}},
         stats.truncnorm(-39.0, -38.0),

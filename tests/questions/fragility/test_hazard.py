@@ -63,9 +63,8 @@ class TestRate:
         assert found.above == pytest.approx(norm.sf(log(2 / 0.7) / dispersion) * 1e-5, rel=1e-9)
 
     def test_of_a_logistic_curve_is_a_plain_sum_and_open_below(self):
-        curve = FragilityCurve(
-            "logistic", "", 0.95, 100, 50, fit=Fit("logit", np.array([-4.0, 6.0]), COVARIANCE, -1.0, 0.95)
-        )
+        fit = Fit("logit", np.array([-4.0, 6.0]), COVARIANCE, -1.0, 0.95)
+        curve = FragilityCurve("logistic", "", 0.95, 100, 50, fit=fit)
         hazard = power_law(2.0, 0.1, 5.0)
         found = annual_rate(curve, hazard)
         inside = quad(lambda x: 1 / (1 + exp(4 - 6 * x)) * 2e-3 * x**-3, 0.1, 5.0, epsabs=0, epsrel=1e-10)[0]
@@ -144,8 +143,7 @@ class TestFileOfOpenQuake:
         np.testing.assert_allclose(1 - np.exp(-50 * found.annual_rate), [0.95, 0.2, 0.01])
 
     @pytest.mark.parametrize(
-        ("imt", "measure", "factor"),
-        [("SA(1.0)", "Sa(1 s)", 1), ("PGV", "PGV", 100), ("CAV", "CAV", 1 / 9.80665)],
+        ("imt", "measure", "factor"), [("SA(1.0)", "Sa(1 s)", 1), ("PGV", "PGV", 100), ("CAV", "CAV", 1 / 9.80665)]
     )
     def test_intensities_are_in_the_unit_of_the_measure(self, tmp_path, imt, measure, factor):
         found = read_hazard(self.written(tmp_path, imt), measure)

@@ -1,6 +1,5 @@
 """Quantiles of the peak rotation: against what the runs of the store say one by one."""
 
-import io
 import json
 from dataclasses import replace
 
@@ -14,16 +13,12 @@ from rocking_cli.questions.fragility import quantiles
 from rocking_cli.questions.fragility.picture import draw_quantiles
 from rocking_cli.questions.fragility.quantiles import Group, Quantiles, all_quantiles
 from rocking_cli.questions.fragility.store import Store
-from rocking_cli.questions.fragility.study import load_study
 from tests.conftest import EXAMPLES
 from tests.questions.fragility.test_study_runs import carry_out
 from tests.stores import command, every_run
 
-BLOCK = {
-    "file": str(EXAMPLES / "block.yaml"),
-    "name": "uncertain",
-    "vary": {"width": {"normal": {"mean": 0.7, "deviation": 0.05}}},
-}
+WIDTH = {"normal": {"mean": 0.7, "deviation": 0.05}}
+BLOCK = {"file": str(EXAMPLES / "block.yaml"), "name": "uncertain", "vary": {"width": WIDTH}}
 PULSES = [{"pulse": f"{shape}:0.6g:{period}s"} for shape in ("sine", "ricker", "mavroeidis") for period in (0.7, 1.2)]
 MEASURES = ["PGA", "PGV", "PGA/(g lambda)"]
 
@@ -38,9 +33,9 @@ def however_few():
 
 def study(folder, method, measures=MEASURES):
     given = {
-        "structures": [str(EXAMPLES / "frame.yaml"), BLOCK], "records": PULSES, "polarity": "both", "samples": 3,
+        "structures": [str(EXAMPLES / "frame.yaml"), BLOCK], "records": PULSES, "polarity": "both", "samples": 2,
         "measures": measures, "limit_states": ["uplift", "overturning"], "method": method,
-        "levels": {"measure": "scale" if method == "cloud" else "PGA", "least": 0.15, "most": 1.5, "count": 7},
+        "levels": {"measure": "scale" if method == "cloud" else "PGA", "least": 0.15, "most": 1.5, "count": 5},
     }  # fmt: skip
     path = folder / "study.yaml"
     path.write_text(yaml.safe_dump(given), encoding="utf-8")
@@ -53,9 +48,8 @@ def whole(request, tmp_path_factory):
     path = study(folder, request.param)
     prepared = carry_out(path, folder / "study.runs", jobs=1)
     store = Store.reading(folder / "study.runs")
-    return prepared.plan, load_study(path).definition, folder / "study.runs", list(
-        all_quantiles(store, prepared.plan, load_study(path).definition)
-    )  # fmt: skip
+    definition = prepared.study.definition
+    return prepared.plan, definition, folder / "study.runs", list(all_quantiles(store, prepared.plan, definition))
 
 
 def ranked(place, plan, structure, measure):
@@ -137,11 +131,10 @@ def test_json_has_them_always_and_the_terminal_where_they_are_asked_for(whole):
     assert ("in tenths" in shown) == any(not each.stripes for each in found)
 
 
-def test_runs_that_are_not_there_count_for_nothing(tmp_path, monkeypatch):
-    path = study(tmp_path, "stripes")
-    prepared = carry_out(path, tmp_path / "study.runs", jobs=1)
-    store = Store.reading(tmp_path / "study.runs")
-    gone = prepared.plan.size // 4  # all of the first structure, and none of the other
+def test_runs_that_are_not_there_count_for_nothing(whole, monkeypatch):
+    plan, definition, place, _ = whole
+    store = Store.reading(place)
+    gone = plan.size // 3  # all of the first structure, and none of the other
     rows = store.rows
 
     def some(first, stop):
@@ -149,9 +142,9 @@ def test_runs_that_are_not_there_count_for_nothing(tmp_path, monkeypatch):
             yield replace(each, outcome=np.where(each.run % 2 == 1, 2, each.outcome))
 
     monkeypatch.setattr(store, "rows", some)
-    found, *_ = every = list(all_quantiles(store, prepared.plan, load_study(path).definition))
+    found, *_ = every = list(all_quantiles(store, plan, definition))
     assert {each.structure for each in every} == {"uncertain"}
-    assert sum(each.runs for each in found.groups) == (prepared.plan.size - gone) / 2
+    assert sum(each.runs for each in found.groups) == (plan.size - gone) / 2
 
 
 def groups(*rows):
@@ -169,7 +162,7 @@ SOME = groups(
 
 def test_the_picture_shows_the_quantiles_and_the_shares():
     figure = draw_quantiles(Quantiles("a $block$", "PGA", True, SOME), "PGA [g]")
-    figure.savefig(io.BytesIO(), format="png", dpi=40)
+    figure.draw_without_rendering()
     above, below = figure.axes
     lines = {line.get_label(): line.get_ydata() for line in above.get_lines()}
     np.testing.assert_array_equal(lines["median"][:3], [0.0, 0.1, 0.5])

@@ -177,15 +177,12 @@ class TestTheCurves:
 
 
 def test_frames_have_each_fit_and_each_quantile_once():
-    answer = study(PULSES, limit_states=["uplift", 0.3, "overturning"], rank_measures=True)
+    answer = study(PULSES[:6], limit_states=["uplift", 0.3, "overturning"], rank_measures=True)
     fits, quantiles = answer.frames["fits"], answer.frames["quantiles"]
     assert fits["limit_state"].tolist() == ["uplift", "0.3", "overturning"]
     for row, curve in zip(fits.itertuples(), answer.result, strict=True):
-        assert (row.kind, row.exceedances, row.median) == (
-            curve.curve.kind,
-            curve.curve.exceedances,
-            curve.median.value,
-        )
+        assert (row.kind, row.exceedances) == (curve.curve.kind, curve.curve.exceedances)
+        assert row.median == curve.median.value
     rank = {each.measure: each for each in answer.rankings[0].measures}
     assert fits["efficiency"].tolist() == [rank["PGA"].efficiency] * 3
     groups = answer.quantiles[0].groups

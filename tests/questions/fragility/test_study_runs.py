@@ -8,7 +8,6 @@ from threading import Barrier
 import numpy as np
 import pytest
 
-from rocking_cli import respond
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.processing.reading import Reading
@@ -22,6 +21,7 @@ from rocking_cli.studies.fragility.quantities import USUAL_MEASURES
 from tests.cli.test_cli import run as command
 from tests.cli.test_cli import run_json
 from tests.conftest import EXAMPLES
+from tests.following import respond
 from tests.stores import contents, every_run
 
 STUDY = f"""\
@@ -76,8 +76,8 @@ def whole(tmp_path_factory):
 
 
 def test_each_run_is_what_respond_gives(whole):
-    path, prepared, place = whole
-    study, plan = load_study(path), prepared.plan
+    _, prepared, place = whole
+    study, plan = prepared.study, prepared.plan
     rows = every_run(place)
     assert len(rows) == plan.total == 5 * 3 * 5 * 2
     assert set(rows.outcome.tolist()) == {-1, 0, 1}
@@ -87,7 +87,7 @@ def test_each_run_is_what_respond_gives(whole):
         trial, known = plan.trials[sample], plan.records[record]
         factor = plan.levels[level] * trial.lambda_ * trial.gravity / (known.pga * STANDARD_GRAVITY)
         motion = motions[record].scaled(plan.polarities[polarity] * factor)
-        history = respond(study.samples[sample].mechanism, motion, model=("nonlinear",))["nonlinear"]
+        history = respond(study.samples[sample].mechanism, motion)["nonlinear"]
         assert rows.outcome[k] == history.fell_to
         assert rows.scale[k] == pytest.approx(factor, rel=1e-14)
         if not history.overturned:
@@ -231,24 +231,24 @@ class TestBadParts:
     @pytest.fixture
     def with_bad_record(self, tmp_path):
         (tmp_path / "bad.csv").write_text("t,accel_g\n0,0\n0.01,x\n", encoding="utf-8")
-        return write(tmp_path, STUDY.replace("method:", "  - bad.csv\nmethod:"))
+        return write(tmp_path, STUDY.replace("method:", "  - bad.csv\nmethod:"), count=2)
 
-    def test_a_bad_record_is_reported_and_the_others_run(self, with_bad_record, whole, tmp_path):
+    def test_a_bad_record_is_reported_and_the_others_run(self, with_bad_record, tmp_path):
         result = command("fragility", with_bad_record, "--json", code=5)
         assert "bad.csv" in result.stderr and ":3" in result.stderr
         found = json.loads(result.stdout)
-        assert found["finished"] == found["runs"] == whole[1].plan.total
+        assert found["finished"] == found["runs"] == 5 * 3 * 2 * 2
         assert len(found["left_out"]) == 1 and "bad.csv" in found["left_out"][0]
         # And again when nothing is left to run.
         command("fragility", with_bad_record, code=5)
         command("results", tmp_path / "study.runs", code=5)
 
-    def test_a_record_put_right_is_run(self, with_bad_record, whole, tmp_path):
+    def test_a_record_put_right_is_run(self, with_bad_record, tmp_path):
         command("fragility", with_bad_record, code=5)
         (tmp_path / "bad.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
         result = command("fragility", with_bad_record, "--json", code=0)
         assert "bad.csv: could not be used" in result.stderr
-        assert json.loads(result.stdout)["finished"] == 4 * whole[1].plan.total // 3
+        assert json.loads(result.stdout)["finished"] == 5 * 4 * 2 * 2
 
     def test_nothing_that_can_be_used(self, tmp_path):
         (tmp_path / "zero.csv").write_text("t,accel_g\n0,0\n0.01,0\n0.02,0\n", encoding="utf-8")
@@ -259,7 +259,7 @@ class TestBadParts:
     def test_a_structure_too_stocky_for_its_kinematics(self, tmp_path):
         (tmp_path / "stocky.yaml").write_text("mechanism: block\nwidth: 3\nheight: 1\n", encoding="utf-8")
         text = STUDY.replace("structures:", "structures:\n  - stocky.yaml")
-        result = command("fragility", write(tmp_path, text), "--json", code=5)
+        result = command("fragility", write(tmp_path, text, count=2), "--json", code=5)
         assert "its kinematics give a restitution of -0.35" in result.stderr
         assert {each["structure"] for each in json.loads(result.stdout)["curves"]} == {"valley bridge", "uncertain"}
 
@@ -289,9 +289,8 @@ def test_runs_are_grouped_by_level_where_it_decides_their_intensity(whole):
     }
     fallen = (rows.outcome[30:] != 0).reshape(4, 3, 5, 2)
     of = found["uncertain"]
-    assert (
-        of.over("PGA/(g lambda)").of(of.exceeding["overturning"]).tolist() == fallen.sum(axis=(0, 3)).ravel().tolist()
-    )
+    together = of.over("PGA/(g lambda)").of(of.exceeding["overturning"])
+    assert together.tolist() == fallen.sum(axis=(0, 3)).ravel().tolist()
     assert of.over("PGA").of(of.exceeding["overturning"]).tolist() == fallen.sum(axis=3).ravel().tolist()
     sample, record, level = of.over("PGA").place
     x = of.over("PGA").intensities("PGA")
@@ -325,8 +324,8 @@ def test_a_file_that_changes_before_it_is_read_again_stops_the_study(tmp_path, m
 
 def test_incremental_analysis_takes_the_first_exceedance(tmp_path):
     path = write(tmp_path, STUDY.replace("method: stripes", "method: ida").replace("most: 4", "most: 2.2"), count=6)
-    carry_out(path, tmp_path / "study.runs")
-    kept, definition = Store.reading(tmp_path / "study.runs"), load_study(path).definition
+    prepared = carry_out(path, tmp_path / "study.runs")
+    kept, definition = Store.reading(tmp_path / "study.runs"), prepared.study.definition
     plan, (rows,) = kept.plan, kept.rows(36, kept.plan.total)
     found = tally.count(kept, plan, "uncertain", definition)
     assert tally.peaks(kept, plan, "uncertain").shape == (24, 6)
@@ -366,7 +365,7 @@ def test_samples_that_differ_in_their_restitution_only(tmp_path):
     motion, peaks = study.sources[1].read(), []
     for k in np.flatnonzero((record == 1) & (sample > 0)):
         mechanism = study.samples[sample[k]].mechanism
-        history = respond(mechanism, motion.scaled(rows.scale[k]), model=("nonlinear",))["nonlinear"]
+        history = respond(mechanism, motion.scaled(rows.scale[k]))["nonlinear"]
         assert rows.eta[k] == mechanism.restitution
         peaks.append((rows.peak_ratio[k], history.peak_ratio))
     found, expected = np.transpose(peaks)

@@ -55,13 +55,13 @@ def write(folder, text=STUDY, count=3, **structures):
     return path
 
 
-def slides_as_responded(path, prepared):
-    """When each run slides by the check that `respond` makes, of a structure and a motion made anew."""
+def slides_as_responded(path, prepared, runs):
+    """When runs slide by the check that `respond` makes, of a structure and a motion made anew."""
     study, plan = load_study(path), prepared.plan
     motions, found = [source.read() for source in study.sources], []
     sample, record, eta, level, polarity = plan.places(np.arange(plan.size))
     factors = plan.factors(sample, record, level)
-    for k in range(plan.size):
+    for k in runs:
         mechanism = study.samples[sample[k]].mechanism
         if not np.isnan(given := plan.etas[eta[k]]):
             mechanism = mechanism.model_copy(update={"restitution": given})
@@ -81,8 +81,10 @@ def whole(tmp_path_factory):
 
 def test_each_run_slides_when_respond_says_so(whole):
     path, prepared, place = whole
-    found, expected = every_run(place).slide_time, slides_as_responded(path, prepared)
-    assert found == pytest.approx(expected, rel=1e-9, nan_ok=True)
+    found, runs = every_run(place).slide_time, range(0, prepared.plan.size, 5)  # of each sample, level and polarity
+    expected = slides_as_responded(path, prepared, runs)
+    assert found[runs] == pytest.approx(expected, rel=1e-9, nan_ok=True)
+    assert 0 < np.isfinite(expected).sum() < len(runs)
     sample = prepared.plan.places(np.arange(prepared.plan.size))[0]
     shares = [np.isfinite(found[sample == k]).mean() for k in range(len(prepared.plan.trials))]
     assert all(0 < each < 1 for each in shares) and len(set(shares)) > 1

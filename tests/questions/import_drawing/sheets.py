@@ -10,9 +10,8 @@ from rocking_cli.questions.import_drawing.study import structure_from
 
 def outline(points, layer="BLOCKS", bulges=None, **more):
     z = np.array([complex(*each) for each in points])
-    return DrawnLine(
-        z, np.zeros(len(z)) if bulges is None else np.array(bulges, float), True, layer, "LWPOLYLINE", **more
-    )
+    bulges = np.zeros(len(z)) if bulges is None else np.array(bulges, float)
+    return DrawnLine(z, bulges, True, layer, "LWPOLYLINE", **more)
 
 
 def box(x, y, width, height, layer="BLOCKS", **more):

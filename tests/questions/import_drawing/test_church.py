@@ -10,6 +10,7 @@ from pytest import approx
 
 import rocking_cli as rk
 from rocking_cli import Registry
+from rocking_cli.ask.read import is_mesh
 from rocking_cli.core import Direction
 from rocking_cli.questions.import_drawing.legend import Role, role_of
 from tests.conftest import EXAMPLES, PROJECT
@@ -69,6 +70,10 @@ def test_it_is_what_formulas_give(church):
         assert church.structure.critical_rotation(side) == approx(expected.critical_rotation(side), rel=1e-6)
 
 
+def test_a_drawing_is_no_mesh():
+    assert not is_mesh(CHURCH) and not is_mesh(CHURCH.with_name("wall.svg"))
+
+
 def test_what_is_not_the_structure_is_left_out_and_said(church):
     words = " / ".join(note.words for note in church.notes)
     assert "drawn: 1 support, 2 loads, 1 tie" in words
@@ -87,10 +92,8 @@ def test_the_drawing_is_what_its_script_makes(church, tmp_path, monkeypatch):
 
 def test_the_page_knows_all_roles_and_refusals():
     page = (PROJECT / "docs" / "import.md").read_text(encoding="utf-8")
-    roles = {
-        role: words.split(", ") for role, words in re.findall(r"^\| `(\w+)` \| ([\w, ]+) \| [^|]+ \|$", page, re.M)
-    }
-    roles = {role: words for role, words in roles.items() if role in {*Role}}
+    rows = re.findall(r"^\| `(\w+)` \| ([\w, ]+) \| [^|]+ \|$", page, re.M)
+    roles = {role: words.split(", ") for role, words in rows if role in {*Role}}
     assert {*roles} == {*Role}
     assert {word: role_of(word) for words in roles.values() for word in words} == {
         word: role for role, words in roles.items() for word in words

@@ -1,7 +1,7 @@
 """Structures from drawings: check values that follow by hand, refusals with their places, and mended faults."""
 
 from functools import cache
-from math import cos, pi, radians, sin, sqrt, tan
+from math import atan, cos, pi, radians, sin, sqrt, tan
 
 import numpy as np
 import pytest
@@ -99,15 +99,15 @@ class TestCheckValues:
 
     def test_a_running_bond(self):
         bricks = []
-        for row in range(13):
+        for row in range(7):
             starts = [(0.0, 0.25), (0.26, 0.25), (0.52, 0.25), (0.78, 0.23)]
             if row % 2:
                 starts = [(0.0, 0.12), (0.13, 0.25), (0.39, 0.25), (0.65, 0.36)]
             bricks += [box(x, 0.06 * row, width, 0.05) for x, width in starts]
         found = imported(*bricks, merge_gap=0.012)
-        assert sum(body.moments.area for body in found.bodies) == approx(1.01 * 0.77, rel=1e-9)
-        assert lambdas(found) == approx([1.01 / 0.77] * 2, rel=1e-6)
-        assert criticals(found) == approx([0.91942136] * 2, rel=1e-6)
+        assert sum(body.moments.area for body in found.bodies) == approx(1.01 * 0.41, rel=1e-9)
+        assert lambdas(found) == approx([1.01 / 0.41] * 2, rel=1e-6)
+        assert criticals(found) == approx([atan(1.01 / 0.41)] * 2, rel=1e-6)
 
     def test_oppenheims_voussoirs_as_arcs(self):
         found = oppenheims_arch()
@@ -172,9 +172,8 @@ class TestLayers:
         with pytest.raises(DrawingError, match="MATTE has no known role") as caught:
             imported(box(0, 0, 1, 1, "PIETRA"), box(0, 1, 1, 1, "MATTE"))
         assert caught.value.refused == "layers"
-        assert (
-            len(imported(box(0, 0, 1, 1, "PIETRA"), box(0, 1, 1, 1, "MATTE"), layers={"bodies": ["MATTE"]}).bodies) == 2
-        )
+        found = imported(box(0, 0, 1, 1, "PIETRA"), box(0, 1, 1, 1, "MATTE"), layers={"bodies": ["MATTE"]})
+        assert len(found.bodies) == 2
         found = imported(box(0, 0, 1, 1, "PIETRA"), box(0, 1, 1, 1, "MATTE"), layers={"nothing": ["MATTE"]})
         assert len(found.bodies) == 1 and "left out: 1 LWPOLYLINE on MATTE" in words(found)
 
@@ -246,12 +245,8 @@ class TestAttached:
 
     def test_points_on_hinge_layers_make_a_linkage(self):
         wall = [box(-0.15, 0, 0.3, 1.5), box(-0.15, 1.5, 0.3, 1.5), line((0.15, 3), (1, 3), "SOLAIO")]
-        hinges = [
-            spot(0.15, 0, "HINGES+"),
-            spot(-0.15, 1.5, "HINGES+"),
-            spot(-0.15, 0, "HINGES-"),
-            spot(0.15, 1.5, "HINGES-"),
-        ]
+        sides = (1, "HINGES+"), (-1, "HINGES-")
+        hinges = [spot(sign * x, y, layer) for sign, layer in sides for x, y in ((0.15, 0), (-0.15, 1.5))]
         found = imported(*wall, spots=hinges, density={"": 1800.0}, depth=1.0)
         assert found.kind == "linkage"
         assert found.fields["positive"]["joints"]["C"] == {"slide": "b2", "at": [0.3, 3.0], "along": [0.0, 1.0]}
@@ -340,13 +335,14 @@ def cut(corners, bulges, data, shake):
 
 
 @given(st.data())
-@settings(max_examples=2)
+@settings(max_examples=1)
 def test_cut_shuffled_turned_and_repeated_drawings_give_one_file(data):
     give_one_file(data)
 
 
 @pytest.mark.rest
 @given(st.data())
+@settings(max_examples=12)
 def test_many_cut_shuffled_turned_and_repeated_drawings_give_one_file(data):
     give_one_file(data)
 

@@ -29,9 +29,8 @@ HOLLOW = several(STATUE, inwards(box((0.1, 0.1, 0.4), (0.4, 0.4, 0.7))))
 
 
 def taken(mesh, azimuths=(), **options):
-    return imported(
-        MeshSurface("OBJ", *mesh), "a.obj", MeshOptions(**{"units": "m", "density": 2000.0, **options}), azimuths
-    )
+    options = MeshOptions(**{"units": "m", "density": 2000.0, **options})
+    return imported(MeshSurface("OBJ", *mesh), "a.obj", options, azimuths)
 
 
 def lambdas(mesh, **options):
@@ -50,9 +49,8 @@ def refusal(mesh, **options):
 
 def test_a_box_in_four_directions():
     found = taken(STATUE, (0, 30, 60, 90))
-    assert [row.lambda_ for row in found.azimuths] == pytest.approx(
-        [0.25, 0.28867513, 0.38490018, 0.33333333], abs=5e-9
-    )
+    expected = [0.25, 0.28867513, 0.38490018, 0.33333333]
+    assert [row.lambda_ for row in found.azimuths] == pytest.approx(expected, abs=5e-9)
     assert [row.edge.phi_cr for row in found.azimuths] == pytest.approx(2 * [0.24497866] + 2 * [0.32175055], abs=5e-9)
     assert [row.edge.p for row in found.azimuths] == pytest.approx(2 * [2.4384739] + 2 * [2.4113540], abs=5e-8)
     assert [row.drive for row in found.azimuths] == pytest.approx([1, cos(radians(30)), cos(radians(30)), 1])

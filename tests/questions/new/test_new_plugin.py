@@ -15,8 +15,7 @@ import yaml
 
 from rocking_cli.io import files
 from rocking_cli.io.starters import STARTERS
-from rocking_cli.questions.new.command import SITE, STUDY
-from rocking_cli.questions.new.new_plugin import CODE, MAX_NAME_LENGTH, MECHANISM
+from rocking_cli.questions.new.command import CODE, MAX_NAME_LENGTH, MECHANISM, SITE, STUDY
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 

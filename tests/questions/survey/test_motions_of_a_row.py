@@ -36,9 +36,8 @@ def of_one(joints="known", ratio=(0.1, 0.2, 0.5, 0.3, 0.4, 0.1), **flags):
 )  # fmt: skip
 def test_the_worse_polarity_of_each_motion_counts(flags, overturned, unknown, peak, worst, concluded):
     found = of_one(**flags)
-    assert (found.overturned, found.unknown, found.peak_ratio) == pytest.approx(
-        (overturned, unknown, peak), nan_ok=True
-    )
+    numbers = found.overturned, found.unknown, found.peak_ratio
+    assert numbers == pytest.approx((overturned, unknown, peak), nan_ok=True)
     assert (found.worst, found.concluded) == (worst, concluded)
     assert found.at_most == pytest.approx(overturned + unknown)
 

@@ -14,12 +14,15 @@ from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
 import rocking_cli as rk
+from rocking_cli.ask.inputs import site_of
 from rocking_cli.errors import InputError
 from rocking_cli.plotting import style
 from rocking_cli.questions.survey import pages as survey_sheets
 from rocking_cli.questions.survey.pages import LIST_FILE, MAX_STEM_LENGTH, file_names
 from rocking_cli.questions.survey.picture import METRES_PER_DEGREE, draw_map, draw_survey, scale_length
 from rocking_cli.questions.survey.structure_table import coordinates
+from rocking_cli.structure import Structure
+from rocking_cli.verification.check import verify
 from rocking_cli.views.conclusion import limit_in_words
 from tests.cli.test_cli import run, some
 from tests.core.test_ties_of_steel import facade
@@ -39,6 +42,10 @@ def here(tmp_path, monkeypatch):
     Path("site.yaml").write_text("".join(f"{key}: {value}\n" for key, value in SITE.items()), encoding="utf-8")
     Path("t.csv").write_text(ITALIAN, encoding="utf-8")
     Path("c.csv").write_text(COMMAS, encoding="utf-8")
+
+
+def verified(mechanism):
+    return verify(Structure(mechanism), site_of(SITE))
 
 
 def cells(file, separator=","):
@@ -64,21 +71,16 @@ class TestTables:
         ]  # fmt: skip
         run("survey", "c.csv", "--out", "o.csv", "--separator", "tab", "--decimal", ",")
         assert [(row["width"], row["#note"]) for row in cells("o.csv", "\t")] == [("0,3", ""), ("0,5", "1,50")]
-        assert (
-            "0,15\t0,15\tpositive"
-            in run("survey", "c.csv", "--out", "-", "--separator", "tab", "--decimal", ",").stdout
-        )
+        printed = run("survey", "c.csv", "--out", "-", "--separator", "tab", "--decimal", ",").stdout
+        assert "0,15\t0,15\tpositive" in printed
 
     def test_a_table_in_windows_1252_is_read_with_a_note_and_written_with_a_mark(self):
-        Path("w.csv").write_bytes(
-            "mechanism;name;width;height\nblock;Nicol\u00f2 \u00abA\u00bb;0,5;2\n".encode("cp1252")
-        )
+        text = "mechanism;name;width;height\nblock;Nicol\u00f2 \u00abA\u00bb;0,5;2\n"
+        Path("w.csv").write_bytes(text.encode("cp1252"))
         shown = run("survey", "w.csv", "--out", "o.csv", "--separator", ";", "--decimal", ",")
         assert "w.csv is not in UTF-8: read as Windows-1252" in shown.stderr and "Nicol\u00f2" in shown.stdout
-        assert (
-            Path("o.csv").read_bytes()[:3] == b"\xef\xbb\xbf"
-            and cells("o.csv", ";")[0]["name"] == "Nicol\u00f2 \u00abA\u00bb"
-        )
+        assert Path("o.csv").read_bytes()[:3] == b"\xef\xbb\xbf"
+        assert cells("o.csv", ";")[0]["name"] == "Nicol\u00f2 \u00abA\u00bb"
         run("survey", "w.csv", "--out", "p.csv")
         assert Path("p.csv").read_bytes()[:4] == b"rank"
         assert "1252" not in run("survey", "t.csv").stderr
@@ -148,7 +150,7 @@ class TestNumbersOfTheCode:
         """For 0.6 m x 8 m at this site, a_g = 0.193382 by the nonlinear method, against a demand of 0.2."""
         tall = rk.Block(name="tall", width=0.6, height=8.0)
         (row,) = rk.survey([tall], site=SITE).rows
-        side = rk.verify(tall, SITE).directions[rk.Direction.POSITIVE]
+        side = verified(tall).directions[rk.Direction.POSITIVE]
         assert row.verified.method == "nonlinear"
         assert row.numbers["zeta_E"] == pytest.approx(0.193382 / 0.2, rel=1e-5)
         assert row.ratio == row.numbers["zeta_E"] != pytest.approx(side.states["SLV"].ratio, rel=1e-3)
@@ -161,7 +163,7 @@ class TestNumbersOfTheCode:
         leaning = rk.Block(width=0.6, height=2.0, mass=900.0, loads=[{"name": "x", "mass": 300.0, "at": [-0.2, 2.0]}])
         (row,) = rk.survey([leaning], site=SITE).rows
         assert row.verified.direction == "negative"
-        other, weaker = (rk.verify(leaning, SITE).directions[each] for each in rk.Direction)
+        other, weaker = (verified(leaning).directions[each] for each in rk.Direction)
         assert row.numbers["zeta_E"] == weaker.methods[row.verified.method].zeta
         assert row.numbers["zeta_E"] < other.methods[row.verified.method].zeta
 
@@ -192,7 +194,7 @@ class TestNumbersOfTheCode:
         rows = {row["name"]: row for row in answer.to_dict()["rows"]}
         assert rows["loose"]["caution"] is None and rows["loose"]["concluded"] == "not_satisfied"
         for each in tied:
-            end = rk.verify(each, SITE).conclusion
+            end = verified(each).conclusion
             assert end.limits and rows[each.name]["concluded"] == end.concluded
             caution = rows[each.name]["caution"]
             assert all(limit_in_words(limit) in caution for limit in end.limits)
@@ -232,6 +234,7 @@ class TestMaps:
         ]  # fmt: skip
         assert marks.get_array().tolist() == [3, 2, 1]
         assert labels(axes)[1:] == ["1", "2", "3"]
+        assert not any("not on the map" in line.get_label() for line in axes.lines)
         grey = [0.3 * r + 0.59 * g + 0.11 * b for r, g, b, _ in marks.cmap(np.linspace(0, 1, 9))]
         assert grey == sorted(grey) and grey[0] < 0.2 < 0.8 < grey[-1], "the order is visible in grey"
 
@@ -268,13 +271,11 @@ class TestMaps:
         assert "not on the map: 3 without coordinates" in [line.get_label() for line in drawn(columns).axes[0].lines]
         assert len(said) == 2 and "lat must be a number of degrees from -90 to 90, got '142'" in said[0]
         assert "got 'north'" in said[1] and Path("m.svg").stat().st_size > 1000
-        assert not any("not on the map" in line.get_label() for line in drawn(places([1, 2], [3, 4])).axes[0].lines)
 
     def test_one_place_and_ranks_in_the_same_place(self):
         axes = drawn(places([13.1, 13.1, 13.1], [42.0, 42.0, 42.5])).axes[0]
         assert labels(axes)[1:] == ["1, 2", "3"]
         assert np.ptp(drawn(places([13.1], [42.0])).axes[0].get_ylim()) * 111_195 == pytest.approx(116.0, rel=1e-3)
-        assert len(labels(drawn(places(np.linspace(1, 2, 30), [3.0] * 30)).axes[0])) == 11  # ten ranks and the scale
 
     def test_ranks_of_a_crowd_are_apart_and_nothing_is_cut_on_a_phone(self):
         random = np.random.default_rng(3)
@@ -332,31 +333,19 @@ class TestSheets:
 
     @pytest.mark.rest
     def test_each_row_has_the_sheet_of_verify(self):
-        Path("s.csv").write_text(
-            "mechanism,name,width,height\nblock,../thin,0.3,2\nblock,bad,-1,2\nblock,thick,0.5,2\n"
-        )
-        result = self.sheet("--language", "it", "--author", "Ing. Bianchi", code=5)
+        text = "mechanism,name,width,height\nblock,../thin,0.3,2\nblock,bad,-1,2\nblock,thick,0.5,2\n"
+        Path("s.csv").write_text(text)
+        told = "--language", "it", "--author", "Ing. Bianchi"
+        result = self.sheet(*told, code=5)
         assert "scritte 2 relazioni di calcolo e sheets.txt in" in result.stderr
         assert sorted(each.name for each in Path("sh").iterdir()) == [LIST_FILE, "thick.html", "thin.html"]
         Path("b.yaml").write_text("mechanism: block\nname: thick\nwidth: 0.5\nheight: 2\n")
-        run(
-            "verify",
-            "b.yaml",
-            "--site",
-            "site.yaml",
-            "--sheet",
-            "v.html",
-            "--language",
-            "it",
-            "--author",
-            "Ing. Bianchi",
-        )
+        run("verify", "b.yaml", "--site", "site.yaml", "--sheet", "v.html", *told)
         one, other = (Path(each).read_text("utf-8").split('id="inputs"')[0] for each in ("sh/thick.html", "v.html"))
         assert one == other and "Ing. Bianchi" in one
         inputs = Path("sh/thick.html").read_text("utf-8").split('id="inputs"')[1]
-        assert (
-            "s.csv, line 4" in inputs and "rocking survey s.csv --site site.yaml" in inputs and "width: 0.5" in inputs
-        )
+        assert "s.csv, line 4" in inputs and "rocking survey s.csv --site site.yaml" in inputs
+        assert "width: 0.5" in inputs
 
     @pytest.mark.rest
     def test_sheets_of_an_earlier_survey_are_replaced_and_nothing_else(self):
@@ -369,19 +358,20 @@ class TestSheets:
         assert {each.name for each in Path("sh").iterdir()} == {"a.html", "c.html", LIST_FILE}
         assert Path("sh/a.html").read_bytes() != first
         listed = dict(line.split("  ")[::-1] for line in Path("sh", LIST_FILE).read_text().splitlines()[1:])
-        assert listed == {
-            name: hashlib.sha256(Path("sh", name).read_bytes()).hexdigest() for name in ("a.html", "c.html")
-        }
+        written = {name: Path("sh", name).read_bytes() for name in ("a.html", "c.html")}
+        assert listed == {name: hashlib.sha256(content).hexdigest() for name, content in written.items()}
 
-    @pytest.mark.parametrize("name", ["mine.txt", "a.html"])
-    def test_a_folder_with_files_of_others_is_refused_before_any_work(self, name):
+    def test_a_folder_with_files_of_others_is_refused_before_any_work(self):
         self.table("a")
         self.sheet()
-        Path("sh", name).write_text("edited by hand", encoding="utf-8")
-        before = {each.name: each.read_bytes() for each in Path("sh").iterdir()}
-        said = self.sheet("--out", "o.csv", code=2).stderr
-        assert "this file is in the folder of the sheets, and rocking did not write it, or not as it is now" in said
-        assert {each.name: each.read_bytes() for each in Path("sh").iterdir()} == before and not Path("o.csv").exists()
+        for name in ("mine.txt", "a.html"):
+            Path("sh", name).write_text("edited by hand", encoding="utf-8")
+            before = {each.name: each.read_bytes() for each in Path("sh").iterdir()}
+            said = self.sheet("--out", "o.csv", code=2).stderr
+            assert f"{name}: " in said and "rocking did not write it, or not as it is now" in said
+            assert {each.name: each.read_bytes() for each in Path("sh").iterdir()} == before
+            assert not Path("o.csv").exists()
+            Path("sh", "mine.txt").unlink(missing_ok=True)
 
     def test_without_what_makes_sheets_the_survey_is_printed_and_it_is_said_once(self, monkeypatch):
         self.table("a", "b")
@@ -396,10 +386,8 @@ class TestSheets:
 
     def test_what_has_no_sheet_is_refused(self):
         self.table("a")
-        assert (
-            "--sheets requires a site to verify at: give --site"
-            in run("survey", "s.csv", "--sheets", "sh", code=2).stderr
-        )
+        said = run("survey", "s.csv", "--sheets", "sh", code=2).stderr
+        assert "--sheets requires a site to verify at: give --site" in said
         with pytest.raises(InputError, match="`language` must be en or it, got the text fr"):
             rk.survey("s.csv", site=SITE, sheets="sh", language="fr")
         with pytest.raises(InputError, match="`sheet_format` must be html, docx or pdf"):
