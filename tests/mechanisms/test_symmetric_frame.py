@@ -101,22 +101,20 @@ def test_columns_have_the_histories_of_a_linkage(monkeypatch):
     for name, size in (("WIDTH", 1.0), ("HEIGHT", 3.0), ("SPACING", 2.0)):
         monkeypatch.setitem(globals(), name, size)
     unknown = []
-    for columns, depth, pulses in (
-        (2, 1.0, ("sine:0.4g:1s", "sine:0.5g:0.8s", "ricker:0.5g:0.7s", "sine:1.5g:1s")),
-        (2, 3.0, ("sine:0.4g:1s", "sine:0.3g:2s", "sine:1g:0.5s")),
-        (3, 1.0, ("sine:0.4g:1s", "sine:0.5g:0.8s")),
+    for depth, pulses in (
+        (1.0, ("sine:0.4g:1s", "sine:0.5g:0.8s", "sine:1.5g:1s")),
+        (3.0, ("sine:0.4g:1s", "sine:0.3g:2s")),
     ):
-        one, other = (make(columns, depth, friction=0.6) for make in (frame, linkage))
+        one, other = (make(2, depth, friction=0.6) for make in (frame, linkage))
         models = [build_models(each, ("nonlinear",))[0] for each in (one, other)]
         for pulse in pulses:
             motion = rk.parse_pulse(pulse).sampled()
             ours, theirs = (follow(model, motion) for model in models)
             unknown.append(ours.unknown)
             assert (ours.unknown, ours.overturned) == (theirs.unknown, theirs.overturned)
-            near = 1e-9 if columns == 2 else 1e-6
             for key in ("peak_ratio", "opening", "known_to", "lower_bound"):
-                assert getattr(ours, key) == pytest.approx(getattr(theirs, key), rel=near, nan_ok=True), (pulse, key)
-    assert unknown[:7] == [False, True, False, False, True, False, True]
+                assert getattr(ours, key) == pytest.approx(getattr(theirs, key), rel=1e-9, nan_ok=True), (pulse, key)
+    assert unknown == [False, True, False, True, False]
 
 
 def test_three_columns_have_the_modes_of_a_linkage():
