@@ -23,13 +23,11 @@ from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.core.mechanism import why_none
 from rocking_cli.core.structure_fields import DirectionalRestitution
-from rocking_cli.core.structure_file import load_structure
 from rocking_cli.errors import InputError
 from rocking_cli.structure import Structure
 from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.restitution import restitution_used
 from tests.cli.test_cli import run, run_json
-from tests.conftest import EXAMPLES
 from tests.reference_mechanics import cross, link_rates, polygon_moments, sector_moments
 
 BOTH = list(Direction)
@@ -381,4 +379,6 @@ def test_a_body_lower_than_twice_its_width_is_said_to_bounce(ratio, stocky, give
 
 
 def test_several_bodies_of_a_low_restitution_are_not_called_stocky():
-    assert not any("stocky" in each for each in cautions_of(load_structure(EXAMPLES / "arch.yaml")))
+    arch = Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, voussoirs=7)
+    assert arch.eta(Direction.POSITIVE) < 0.7
+    assert not any("stocky" in each for each in cautions_of(arch))
