@@ -6,6 +6,8 @@ Corners are complex numbers x + iy [m], in order around the polygon, the last jo
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import cache
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -293,29 +295,23 @@ def _any_in_triangle(points: Points, a: complex, b: complex, c: complex) -> bool
 
 def _merged(pieces: list[list[int]], z: Points) -> list[Points]:
     """Join pieces along common sides for as long as they stay convex."""
-    joined = True
-    while joined:
-        joined = False
-        for i, one in enumerate(pieces):
-            for j in range(i + 1, len(pieces)):
-                union = _union(one, pieces[j])
-                if union is not None and all(
-                    _turn(z[union[k - 2]], z[union[k - 1]], z[union[k]]) >= 0 for k in range(len(union))
-                ):
-                    pieces[i] = union
-                    pieces.pop(j)
-                    joined = True
-                    break
-            if joined:
-                break
-    return [z[piece] for piece in pieces]
 
+    @cache  # pairs that do not fit are tried again after each join
+    def union(one: tuple[int, ...], other: tuple[int, ...]) -> tuple[int, ...]:
+        """Return two pieces as one, empty if they share no side or would not be convex."""
+        for k, start in enumerate(one):
+            end = one[(k + 1) % len(one)]
+            if start in other and other[other.index(start) - 1] == end:
+                m = other.index(start)
+                further = (other[(m + n) % len(other)] for n in range(1, len(other) - 1))
+                whole = (*one[: k + 1], *further, *one[k + 1 :])
+                convex = all(_turn(z[whole[n - 2]], z[whole[n - 1]], z[whole[n]]) >= 0 for n in range(len(whole)))
+                return whole if convex else ()
+        return ()
 
-def _union(one: list[int], other: list[int]) -> list[int] | None:
-    """Return two pieces as one, if they share a side."""
-    for k, start in enumerate(one):
-        end = one[(k + 1) % len(one)]
-        if start in other and other[other.index(start) - 1] == end:
-            m = other.index(start)
-            return [*one[: k + 1], *(other[(m + n) % len(other)] for n in range(1, len(other) - 1)), *one[k + 1 :]]
-    return None
+    left = [tuple(piece) for piece in pieces]
+    while fitting := next((pair for pair in combinations(left, 2) if union(*pair)), None):
+        one, other = fitting
+        left[left.index(one)] = union(one, other)
+        left.remove(other)
+    return [z[list(piece)] for piece in left]
