@@ -51,9 +51,17 @@ class TestGlue:
     def test_nothing_is_said_where_it_changes_nothing(self):
         assert rk.load_structure(EXAMPLES / "masonry" / "portal.yaml").own_caution() == ""
 
-    @pytest.mark.parametrize("command", ["equiv", "collapse"])
-    def test_commands_that_show_lambda_say_so(self, command, file):
-        said = " ".join(run(command, file).stdout.split())
+    @pytest.mark.every(4)
+    @pytest.mark.parametrize("command", [
+        ("equiv",), ("collapse",), ("respond", "--pulse", "sine:0.5g:1s", "--neighbours", "0"),
+        ("margin", "--pulse", "sine:0.5g:1s", "--neighbours", "5"),
+        ("overturning", "--period", "1:2", "--ag", "0.5g:1g", "--points", "3"),
+        ("spectrum", "--pulse", "sine:0.5g:1s", "--sizes", "1:2", "--count", "2"),
+        ("design", "--vary", "density=2000kg/m3:2400kg/m3", "--until", "lambda > 0.2", "--points", "2"),
+    ], ids=lambda command: command[0])  # fmt: skip
+    def test_every_command_that_shows_lambda_says_so(self, command, file):
+        name, *options = command
+        said = " ".join(run(name, file, *options).stdout.split())
         assert "0.347 g instead of 0.4117 g in the negative direction" in said
 
     def test_a_survey_says_so_of_each(self, file):
