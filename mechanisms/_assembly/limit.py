@@ -180,14 +180,7 @@ def collapse(
             [problem.frame.index[name] for name in moving(problem.frame.names, field, ZERO_LOAD)],
         )
     )
-    several = tuple(
-        Shared(
-            _kinematic(problem, field) / problem.strength if _worked_on(problem, field) else np.nan,
-            _sized(problem, field),
-            moving(problem.frame.names, field, ZERO_LOAD),
-        )
-        for field in (fields if len(fields) > 1 else ())
-    )
+    several = tuple(_shared(problem, field) for field in fields) if len(fields) > 1 else ()
     velocity = _sized(problem, fields[0])
     rates = _rates(problem, velocity)
     state = problem.weight * (rays.mix.T @ forces)
@@ -254,3 +247,8 @@ def _rates(problem: AssemblyProblem, velocity: Reals) -> Reals:
     field = (velocity * np.array([1.0, 1.0, problem.frame.size])).ravel()
     rates: Reals = problem.bearings.rates @ field
     return np.asarray(np.where(np.abs(rates) > ZERO_RATE * np.abs(field).max(), rates, 0.0))
+
+
+def _shared(problem: AssemblyProblem, field: Reals) -> Shared:
+    multiplier = _kinematic(problem, field) / problem.strength if _worked_on(problem, field) else np.nan
+    return Shared(multiplier, _sized(problem, field), moving(problem.frame.names, field, ZERO_LOAD))
