@@ -281,7 +281,7 @@ def sweep():
         for n in (None, 3, 4, 7, 16, 60):
             for ratio in np.exp(rng.uniform(np.log(0.01), np.log(0.6), 1 if n is None else 2)):
                 yield beta, float(ratio), n
-    for beta in (90.0, 180.0):
+    for beta in (150.0, 180.0):  # whose least thickness is looked for above
         for n in (None, 5, 20):
             for over in (1e-5, 1e-3, 1e-2):
                 yield beta, least_by_statics(np.radians(beta), n or MANY) * (1 + over), n
