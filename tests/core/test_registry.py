@@ -31,14 +31,6 @@ def shown(*arguments):
     return CliRunner().invoke(main, [str(each) for each in arguments])
 
 
-def in_a_process(site, *arguments):
-    """A command in a process of its own, with a folder of packages beside this environment."""
-    path = os.pathsep.join([str(site), *filter(None, [os.environ.get("PYTHONPATH")])])
-    command = [sys.executable, "-c", "from rocking_cli.cli.main import main; main()", *map(str, arguments)]
-    environment = {**os.environ, "PYTHONPATH": path, "PYTHONWARNINGS": "default"}
-    return subprocess.run(command, env=environment, capture_output=True, text=True, encoding="utf-8", check=False)
-
-
 @pytest.fixture(scope="module")
 def site_of_example(tmp_path_factory):
     """The example plugin, really built and installed, in a folder of its own."""
@@ -55,8 +47,8 @@ def installed_plugin(site_of_example, monkeypatch):
 
 
 @pytest.mark.usefixtures("installed_plugin")
-def test_an_installed_plugin_works_in_every_command(site_of_example, tmp_path):
-    (tmp_path / "bust.yaml").write_text(in_a_process(site_of_example, "new", "capped_block").stdout, encoding="utf-8")
+def test_an_installed_plugin_works_in_every_command(tmp_path):
+    (tmp_path / "bust.yaml").write_text(run("new", "capped_block").stdout, encoding="utf-8")
     # Width 0.8, height 2.0, cap 0.5: centroid at (1 x 1.0 + 0.5 x 2.0)/1.5 = 4/3, so lambda = 0.4/(4/3).
     assert run_json("equiv", "bust.yaml")["directions"]["positive"]["lambda"] == pytest.approx(0.3, rel=1e-12)
     responses = run_json("respond", "bust.yaml", "--release", "0.5", "--neighbours", 0)["responses"]
@@ -275,7 +267,11 @@ class TestPluginsThatGoWrong:
         new = shown("new", "odd")
         assert new.stdout.startswith("# an odd block") and "printed on import" in new.stderr
         (tmp_path / "odd.yaml").write_text(new.stdout, encoding="utf-8")
-        done = in_a_process(odd_site, "equiv", "odd.yaml", "--json")
+        path = os.pathsep.join([str(odd_site), *filter(None, [os.environ.get("PYTHONPATH")])])
+        command = [sys.executable, "-c", "from rocking_cli.cli.main import main; main()", "equiv", "odd.yaml", "--json"]
+        done = subprocess.run(
+            command, env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True, check=True
+        )
         assert json.loads(done.stdout)["mechanism"] == "odd"
         assert "printed on import" in done.stderr and "printed at work" in done.stderr
 
