@@ -185,7 +185,8 @@ class _Meetings:
                 return None
             if apart[k] < -touching:
                 free = apart[:k].max() > touching  # they were apart before
-                if not free and self._apart_at(one, other, high / 2) < JOINED * apart[k]:
+                half = np.array([high / 2])
+                if not free and self._apart(one, other, half, self._motions(half))[0][0] < JOINED * apart[k]:
                     return None  # they overlap from rest on, as at a hinge that is not at a corner
                 return self._first(one, other, low, high, 0.0 if free else -touching)
             if (phi := self._between(one, other, low, high)) is not None:
@@ -208,10 +209,6 @@ class _Meetings:
     def _first(self, one: _Shape, other: _Shape, low: float, high: float, level: float) -> float:
         """Return the rotation at which the distance of two parts falls below a level, between two rotations."""
         return first_beyond(lambda phi: level - self._apart(one, other, phi, self._motions(phi))[0], low, high)
-
-    def _apart_at(self, one: _Shape, other: _Shape, phi: float) -> float:
-        at = np.array([phi])
-        return float(self._apart(one, other, at, self._motions(at))[0][0])
 
     def _motions(self, phi: Reals) -> list[RigidMotion]:
         """Return the motion of each link over other rotations."""

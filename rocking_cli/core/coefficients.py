@@ -97,7 +97,7 @@ def coefficients(
     """
     if len(bodies) != len(motions):
         raise MechanismError(f"the plugin gives {len(motions)} motions for {len(bodies)} bodies")
-    total = Coefficients(phi, *(np.zeros_like(phi) for _ in range(7)))
+    total = Coefficients(phi, *np.zeros((10, *phi.shape)))
     for body, motion in zip(bodies, motions, strict=True):
         z, dz, ddz = motion.carry(body.centroid)
         m, inertia = body.mass, body.inertia

@@ -292,32 +292,25 @@ def _any_in_triangle(points: Points, a: complex, b: complex, c: complex) -> bool
     return bool((np.array(sides) >= 0).all(axis=0).any())
 
 
-def _merged(triangles: list[list[int]], z: Points) -> list[Points]:
-    """Join triangles, and what they become, along common sides for as long as they stay convex."""
+def _merged(pieces: list[list[int]], z: Points) -> list[Points]:
+    """Join pieces along common sides for as long as they stay convex."""
 
-    @cache  # each pair is met again after every join
-    def joined(one: tuple[int, ...], other: tuple[int, ...]) -> tuple[int, ...] | None:
-        union = _union(one, other)
-        if union is None or any(_turn(z[union[k - 2]], z[union[k - 1]], z[union[k]]) < 0 for k in range(len(union))):
-            return None
-        return union
+    @cache  # pairs that do not fit are tried again after each join
+    def union(one: tuple[int, ...], other: tuple[int, ...]) -> tuple[int, ...]:
+        """Return two pieces as one, empty if they share no side or would not be convex."""
+        for k, start in enumerate(one):
+            end = one[(k + 1) % len(one)]
+            if start in other and other[other.index(start) - 1] == end:
+                m = other.index(start)
+                further = (other[(m + n) % len(other)] for n in range(1, len(other) - 1))
+                whole = (*one[: k + 1], *further, *one[k + 1 :])
+                convex = all(_turn(z[whole[n - 2]], z[whole[n - 1]], z[whole[n]]) >= 0 for n in range(len(whole)))
+                return whole if convex else ()
+        return ()
 
-    pieces = [tuple(corners) for corners in triangles]
-    while True:
-        for i, j in combinations(range(len(pieces)), 2):
-            if (union := joined(pieces[i], pieces[j])) is not None:
-                pieces[i] = union
-                pieces.pop(j)
-                break
-        else:
-            return [z[list(piece)] for piece in pieces]
-
-
-def _union(one: tuple[int, ...], other: tuple[int, ...]) -> tuple[int, ...] | None:
-    """Return two pieces as one, if they share a side."""
-    for k, start in enumerate(one):
-        end = one[(k + 1) % len(one)]
-        if start in other and other[other.index(start) - 1] == end:
-            m = other.index(start)
-            return *one[: k + 1], *(other[(m + n) % len(other)] for n in range(1, len(other) - 1)), *one[k + 1 :]
-    return None
+    left = [tuple(piece) for piece in pieces]
+    while fitting := next((pair for pair in combinations(left, 2) if union(*pair)), None):
+        one, other = fitting
+        left[left.index(one)] = union(one, other)
+        left.remove(other)
+    return [z[list(piece)] for piece in left]

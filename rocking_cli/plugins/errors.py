@@ -44,9 +44,10 @@ def plugin_error(what: str, module: str, error: BaseException) -> PluginError:
     return PluginError(f"{what}: {type(error).__name__}{f': {message}' if message else ''}{_place(module, error)}")
 
 
-def guard(
-    cls: type, methods: Iterable[str], what: Callable[[type, str], str], *, but: type[Exception] = RockingError
-) -> None:
+Beginning = Callable[[Any, str], str]  # of a message, from a class and the name of a method
+
+
+def guard(cls: type, methods: Iterable[str], what: Beginning, *, but: type[Exception] = RockingError) -> None:
     """Wrap methods that a class itself defines, so that their errors are reported as errors of its plugin, see `blame`.
 
     Parameters
@@ -66,7 +67,7 @@ def guard(
             setattr(cls, name, _guarded(method, cls.__module__, what, but))
 
 
-def failed(kind: str, attribute: str) -> Callable[[Any, str], str]:
+def failed(kind: str, attribute: str) -> Beginning:
     """Return a function for `guard` that begins messages on failed plugins of a kind, named by an attribute."""
     return lambda own, method: f"the {kind} {getattr(own, attribute, own.__name__)} failed in {method}"
 
@@ -77,18 +78,14 @@ def own_traceback(error: BaseException | None) -> str | None:
         if isinstance(error, PluginError) and error.__cause__ is not None:
             summary = traceback.TracebackException.from_exception(error.__cause__)
             # Frames that only call or import the plugin are of no use to its author.
-            plugin_frames = [
-                frame for frame in summary.stack if frame.filename != __file__ and "importlib" not in frame.filename
-            ]
-            summary.stack = traceback.StackSummary.from_list(plugin_frames or list(summary.stack))
+            kept = [each for each in summary.stack if each.filename != __file__ and "importlib" not in each.filename]
+            summary.stack = traceback.StackSummary.from_list(kept or list(summary.stack))
             return "".join(summary.format()).rstrip("\n")
         error = error.__cause__
     return None
 
 
-def _guarded(
-    method: Callable[..., Any], module: str, what: Callable[[type, str], str], but: type[Exception]
-) -> Callable[..., Any]:
+def _guarded(method: Callable[..., Any], module: str, what: Beginning, but: type[Exception]) -> Callable[..., Any]:
     if isgeneratorfunction(method):
 
         @wraps(method)
@@ -100,8 +97,12 @@ def _guarded(
 
     @wraps(method)
     def guarded(self: Any, *args: Any, **named: Any) -> Any:
-        with blame(what(type(self), method.__name__), module, but=but):
+        try:  # as `blame`, which takes longer than most of the methods
             return method(self, *args, **named)
+        except (RockingError, MemoryError, but):
+            raise
+        except (Exception, SystemExit) as error:
+            raise plugin_error(what(type(self), method.__name__), module, error) from error
 
     return guarded
 

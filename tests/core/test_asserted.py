@@ -223,7 +223,7 @@ def test_what_starts_first_at_rest_is_the_mechanism_of_the_same_free_blocks(fric
     for direction in Direction:
         failure = first_failure(resting(wall), direction)
         push = min(wall.uplift(direction) * G, failure.push if failure else np.inf)
-        assert push / G == pytest.approx(blocks.collapse(direction).lambda_, rel=1e-8)
+        assert push / G == pytest.approx(blocks._collapse(direction).multiplier, rel=1e-8)
 
 
 def test_a_joint_that_hinges_at_the_same_corner_in_both_directions_touches_at_rest_on_its_whole_face():
@@ -244,7 +244,7 @@ def test_a_joint_that_hinges_at_the_same_corner_in_both_directions_touches_at_re
     for direction in Direction:
         failure = first_failure(resting(wall), direction)
         push = min(wall.uplift(direction) * G, failure.push if failure else np.inf)
-        assert push / G == pytest.approx(blocks.collapse(direction).lambda_, rel=1e-8)
+        assert push / G == pytest.approx(blocks._collapse(direction).multiplier, rel=1e-8)
 
 
 def test_a_body_on_two_legs_bears_on_both_and_one_in_a_notch_on_its_side_too():
@@ -260,7 +260,7 @@ def test_a_body_on_two_legs_bears_on_both_and_one_in_a_notch_on_its_side_too():
     ground = {"g": {"polygon": [[-3, -1], [3, -1], [3, 0], [-3, 0]]}}
     blocks = rk.Assembly(blocks=shapes, ground=ground, density=2000.0, depth=1.0, friction=0.7)
     failure = first_failure(resting(made), Direction.NEGATIVE)
-    assert failure.push / G == pytest.approx(blocks.collapse(Direction.NEGATIVE).lambda_, rel=1e-8)
+    assert failure.push / G == pytest.approx(blocks._collapse(Direction.NEGATIVE).multiplier, rel=1e-8)
     stepped = {"base": {"polygon": [[-1, 0], [1, 0], [1, 1.5], [0.5, 1.5], [0.5, 1], [-1, 1]]},
                "top": {"polygon": [[-0.5, 1], [0.5, 1], [0.5, 2.2], [-0.5, 2.2]]}}  # fmt: skip
     rest = {"fixed": ["base", "ground"], "bonded": True}

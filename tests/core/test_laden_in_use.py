@@ -244,6 +244,7 @@ def test_one_restitution_for_all_is_the_rebound_of_what_rocks_to_one_side():
         shape_of(Structure(sided, restitution=1.0), "nonlinear")
 
 
+ARCH = {"radius": 6.0, "thickness": 0.8, "inclusion_angle_deg": 150.0, "voussoirs": 9}
 LADEN = {"width": 0.6, "height": 8.0, "one_sided": "positive", "density": 1800.0, "depth": 1.0}
 SITE = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
 
@@ -257,7 +258,7 @@ class TestWithoutARebound:
         [
             ("block", {**LADEN, "loads": [{"name": "roof", "mass": 5.0, "at": [0.0, 1.0]}]}),
             ("block", {**LADEN, "crushing": {"strength": 1e6}}),
-            ("arch", {"radius": 6.0, "thickness": 0.8, "inclusion_angle_deg": 150.0, "one_sided": "positive"}),
+            ("arch", {**ARCH, "one_sided": "positive"}),
         ],
     )
     def test_static_answers_are_those_with_one_and_histories_ask_for_it(self, mechanism, fields):
@@ -272,9 +273,9 @@ class TestWithoutARebound:
         build_models(given, ("nonlinear",))
 
     def test_the_commands_say_so_with_the_file(self, tmp_path):
-        arch = "mechanism: arch\nradius: 6\nthickness: 0.8\ninclusion_angle_deg: 150\none_sided: positive\n"
-        (tmp_path / "a.yaml").write_text(arch, encoding="utf-8")
-        (tmp_path / "s.yaml").write_text("".join(f"{k}: {v}\n" for k, v in SITE.items()), encoding="utf-8")
+        arch = {"mechanism": "arch", **ARCH, "one_sided": "positive"}
+        for name, fields in (("a.yaml", arch), ("s.yaml", SITE)):
+            (tmp_path / name).write_text("".join(f"{k}: {v}\n" for k, v in fields.items()), encoding="utf-8")
         asked = ("verify", tmp_path / "a.yaml", "--site", tmp_path / "s.yaml")
         assert run_json(*asked)["directions"]["positive"]["alpha0"] > 0
         wrong = run(*asked, "--pulse", "sine:0.1g:0.5s", code=2).stderr

@@ -10,64 +10,55 @@ from importlib.metadata import EntryPoint
 from math import atan
 
 import pytest
+from click.testing import CliRunner
 
+import rocking_cli as rk
 from mechanisms.block import Block
-from rocking_cli.core import Mechanism
+from rocking_cli.cli.main import main
+from rocking_cli.core import Direction, Mechanism, equivalent_block
 from rocking_cli.core.registry import Registry, conformance
+from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.errors import InputError, MechanismError, PluginWarning
 from rocking_cli.plugins.registry import load
+from rocking_cli.processing.intensity import all_measures
 from rocking_cli.testing import CHECKS
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES, rows_of
 
-BUILT_IN = [name for name in Registry() if Registry().package_of(name).startswith("rocking-cli ")]
+
+def shown(*arguments):
+    """What a command prints and its exit code, whatever that is."""
+    return CliRunner().invoke(main, [str(each) for each in arguments])
 
 
 @pytest.fixture(scope="module")
-def installed_plugin(tmp_path_factory):
-    """The example plugin, really built and installed beside this environment."""
+def site_of_example(tmp_path_factory):
+    """The example plugin, really built and installed, in a folder of its own."""
     site = tmp_path_factory.mktemp("site")
-    command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-build-isolation"]
-    subprocess.run([*command, "--target", str(site), str(EXAMPLES / "plugin")], check=True, capture_output=True)
-    path = [str(site), *filter(None, [os.environ.get("PYTHONPATH")])]
-    return {**os.environ, "PYTHONPATH": os.pathsep.join(path)}
+    command = [sys.executable, "-m", "uv", "pip", "install", "--quiet", "--offline", "--no-cache", "--no-deps"]
+    where = ["--no-build-isolation", "--python", sys.executable, "--target", str(site)]
+    subprocess.run([*command, *where, str(EXAMPLES / "plugin")], check=True, capture_output=True)
+    return site
 
 
-def rocking(environment, *arguments):
-    command = [sys.executable, "-c", "from rocking_cli.cli.main import main; main()", *arguments]
-    return subprocess.run(command, env=environment, capture_output=True, text=True, encoding="utf-8", check=False)
+@pytest.fixture
+def installed_plugin(site_of_example, monkeypatch):
+    monkeypatch.syspath_prepend(site_of_example)
 
 
-def rocking_each(environment, *commands):
-    """What commands print as JSON, one after the other in one process."""
-    code = (
-        "import json, sys; from rocking_cli.cli.main import main\n"
-        "for words in json.loads(sys.argv[1]): main(words, standalone_mode=False)"
-    )
-    command = [sys.executable, "-c", code, json.dumps(commands)]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, encoding="utf-8", check=True)
-    return [json.loads(line) for line in done.stdout.splitlines()]
-
-
-@pytest.mark.rest
-def test_an_installed_plugin_is_listed_with_its_package(installed_plugin):
-    listed = json.loads(rocking(installed_plugin, "mechanisms", "--json").stdout)["mechanisms"]
-    found = {row["name"]: row["package"] for row in listed}
-    assert found["capped_block"] == "rocking-capped-block 0.1.0"
-    assert found["block"].startswith("rocking-cli ")
-
-
-def test_an_installed_plugin_works_in_every_command(installed_plugin, tmp_path):
-    file = tmp_path / "bust.yaml"
-    file.write_text(rocking(installed_plugin, "new", "capped_block").stdout, encoding="utf-8")
-    equiv = json.loads(rocking(installed_plugin, "equiv", str(file), "--json").stdout)
+@pytest.mark.usefixtures("installed_plugin")
+def test_an_installed_plugin_works_in_every_command(tmp_path):
+    (tmp_path / "bust.yaml").write_text(run("new", "capped_block").stdout, encoding="utf-8")
     # Width 0.8, height 2.0, cap 0.5: centroid at (1 x 1.0 + 0.5 x 2.0)/1.5 = 4/3, so lambda = 0.4/(4/3).
-    assert equiv["directions"]["positive"]["lambda"] == pytest.approx(0.3, rel=1e-12)
-    respond = json.loads(rocking(installed_plugin, "respond", str(file), "--release", "0.5", "--json").stdout)
-    assert respond["responses"]["nonlinear"]["peak_ratio"] == pytest.approx(0.5)
+    assert run_json("equiv", "bust.yaml")["directions"]["positive"]["lambda"] == pytest.approx(0.3, rel=1e-12)
+    responses = run_json("respond", "bust.yaml", "--release", "0.5", "--neighbours", 0)["responses"]
+    assert responses["nonlinear"]["peak_ratio"] == pytest.approx(0.5)
+    packages = {row["name"]: row["package"] for row in run_json("mechanisms")["mechanisms"]}
+    assert packages["capped_block"] == "rocking-capped-block 0.1.0" and packages["block"].startswith("rocking-cli ")
 
 
-def test_an_installed_plugin_carries_loads_ties_and_side_walls(installed_plugin, tmp_path):
+@pytest.mark.usefixtures("installed_plugin")
+def test_an_installed_plugin_carries_loads_ties_and_side_walls():
     """Its author wrote no line for them: a mass in place of its cap does what the cap does."""
     text = "mechanism: capped_block\nwidth: 0.8\nheight: 2\nmass: 1000\n"
     more = {
@@ -77,21 +68,16 @@ def test_an_installed_plugin_carries_loads_ties_and_side_walls(installed_plugin,
         "  - {name: t, from: {ground: [0, 0]}, to: {body: block, at: [0, 0]}, stiffness: 5e3}\n",
         "side": "cap_mass: 0.5\none_sided: negative\nrebound: 0.4\n",
     }
-    commands = []
-    for name, lines in more.items():
-        file = tmp_path / f"{name}.yaml"
-        file.write_text(text + lines, encoding="utf-8")
-        commands.append(["equiv", str(file), "--json"])
-        commands.append(["respond", str(file), "--release", "-2deg", "--neighbours", "0", "--json"])
-    answers = rocking_each(installed_plugin, *commands)
-    found = {name: each["directions"]["negative"] for name, each in zip(more, answers[::2], strict=True)}
+    structures = {name: parse_structure(text + lines, name, name) for name, lines in more.items()}
+    blocks = {name: equivalent_block(each)[Direction.NEGATIVE] for name, each in structures.items()}
+    for key in ("lambda_", "phi_cr", "p", "eta"):
+        assert getattr(blocks["load"], key) == pytest.approx(getattr(blocks["cap"], key), rel=1e-9)
     velocity = {
-        name: each["responses"]["nonlinear"]["impact_velocity"] for name, each in zip(more, answers[1::2], strict=True)
+        name: rk.respond(each, release=-0.0349, model="nonlinear", neighbours=0)["nonlinear"].impacts[0, 2]
+        for name, each in structures.items()
     }
-    for key in ("lambda", "phi_cr", "p", "eta"):
-        assert found["load"][key] == pytest.approx(found["cap"][key], rel=1e-9)
     assert velocity["cap"] == pytest.approx(velocity["load"], rel=1e-9) == velocity["side"]
-    assert found["tie"]["phi_cr"] > atan(0.4) and found["side"]["eta"] == 0.4
+    assert blocks["tie"].phi_cr > atan(0.4) and blocks["side"].eta == 0.4
 
 
 ODD = """
@@ -216,38 +202,45 @@ NoPower = odd_measures:NoPower
 
 
 @pytest.fixture(scope="module")
-def odd_plugin(tmp_path_factory):
-    """A package whose plugins go wrong in every way, beside this environment."""
+def odd_site(tmp_path_factory):
+    """A package whose plugins go wrong in every way, in a folder of its own."""
     site = tmp_path_factory.mktemp("odd")
     for name, text in MODULES.items():
         (site / name).parent.mkdir(exist_ok=True)
         (site / name).write_text(text, encoding="utf-8")
-    path = [str(site), *filter(None, [os.environ.get("PYTHONPATH")])]
-    return {**os.environ, "PYTHONPATH": os.pathsep.join(path), "PYTHONWARNINGS": "default"}
+    return site
 
 
+@pytest.fixture
+def odd_plugin(odd_site, monkeypatch):
+    """The package beside this environment, not yet imported and not yet spoken of."""
+    monkeypatch.syspath_prepend(odd_site)
+    monkeypatch.setattr("rocking_cli.plugins.registry._LEFT_OUT", set())
+    for name in [name for name in sys.modules if name.startswith("odd")]:
+        monkeypatch.delitem(sys.modules, name)
+
+
+@pytest.mark.usefixtures("odd_plugin")
 class TestMeasuresOfOthers:
-    @pytest.mark.rest
-    def test_one_is_listed_printed_and_taken_by_a_study(self, odd_plugin, tmp_path):
-        listed = json.loads(rocking(odd_plugin, "measures", "--json").stdout)["measures"]
+    def test_one_is_listed_printed_and_taken_by_a_study(self, tmp_path):
+        listed = json.loads(shown("measures", "--json").stdout)["measures"]
         found = {each["name"]: each for each in listed}
         assert found["PGA squared"]["package"] == "odd 1.0" and found["PGA squared"]["power"] == 2
         assert found["Leaves"]["title"] is None and found["Sa"]["package"].startswith("rocking-cli ")
-        run = rocking(odd_plugin, "record", str(EXAMPLES / "accel.csv"), "--measures", "pga SQUARED( 3 )", "--json")
-        assert json.loads(run.stdout)["measures"] == {"PGA squared(3.0)": pytest.approx(3 * 0.55**2)}
+        done = shown("record", EXAMPLES / "accel.csv", "--measures", "pga SQUARED( 3 )", "--json")
+        assert json.loads(done.stdout)["measures"] == {"PGA squared(3.0)": pytest.approx(3 * 0.55**2)}
         study = tmp_path / "study.yaml"
         study.write_text(
             f"structures: ['{EXAMPLES / 'block.yaml'}']\nrecords: ['{EXAMPLES / 'accel.csv'}']\nmethod: stripes\n"
             "levels: {measure: PGA squared, values: [0.3025, 1.21]}\n",
             encoding="utf-8",
         )
-        run = rocking(odd_plugin, "fragility", str(study), "--json")
-        assert run.returncode == 0 and json.loads(run.stdout)["curves"][0]["measure"] == "PGA squared"
-        rocking(odd_plugin, "results", str(tmp_path / "study.runs"), "--out", str(tmp_path / "runs.csv"))
+        done = shown("fragility", str(study), "--json")
+        assert done.exit_code == 0 and json.loads(done.stdout)["curves"][0]["measure"] == "PGA squared"
+        shown("results", tmp_path / "study.runs", "--out", tmp_path / "runs.csv")
         rows = rows_of(tmp_path / "runs.csv")
         assert [float(row["scale"]) for row in rows] == pytest.approx([1.0, 2.0])
 
-    @pytest.mark.every(3)
     @pytest.mark.parametrize(
         ("name", "said"),
         [
@@ -256,66 +249,69 @@ class TestMeasuresOfOthers:
             ("nopower", r"plugin NoPower of odd 1\.0 .* is not a measure: it must derive"),
         ],
     )
-    def test_what_goes_wrong_is_its_own(self, odd_plugin, name, said):
-        run = rocking(odd_plugin, "record", str(EXAMPLES / "accel.csv"), "--measures", name)
-        assert run.returncode == 3 and re.search(said, run.stderr) and "Traceback" not in run.stderr
-        broken = json.loads(rocking(odd_plugin, "info", "--json").stdout)["plugins"]["measures"]
+    def test_what_goes_wrong_is_its_own(self, name, said):
+        done = shown("record", EXAMPLES / "accel.csv", "--measures", name)
+        assert done.exit_code == 3 and re.search(said, done.stderr) and "Traceback" not in done.stderr
+        broken = json.loads(shown("info", "--json").stdout)["plugins"]["measures"]
         assert {each["name"] for each in broken if each["broken"]} == {"Leaves", "NoPower"}
 
-    def test_one_that_cannot_be_loaded_leaves_all_others(self, odd_plugin):
-        code = "from rocking_cli.processing.intensity import all_measures; print(*map(str, all_measures()), sep=',')"
-        run = subprocess.run([sys.executable, "-c", code], env=odd_plugin, capture_output=True, text=True, check=True)
-        assert {"PGA", "PGA squared", "Divides"} <= set(run.stdout.strip().split(",")) and "Leaves" not in run.stdout
-        assert "it is left out" in run.stderr
+    def test_one_that_cannot_be_loaded_leaves_all_others(self):
+        with pytest.warns(PluginWarning, match="it is left out"):
+            names = set(map(str, all_measures()))
+        assert {"PGA", "PGA squared", "Divides"} <= names and "Leaves" not in names
 
 
+@pytest.mark.usefixtures("odd_plugin")
 class TestPluginsThatGoWrong:
-    def test_what_they_print_does_not_spoil_the_results(self, odd_plugin, tmp_path):
-        file = tmp_path / "odd.yaml"
-        new = rocking(odd_plugin, "new", "odd")
+    def test_what_they_print_does_not_spoil_the_results(self, odd_site, tmp_path):
+        new = shown("new", "odd")
         assert new.stdout.startswith("# an odd block") and "printed on import" in new.stderr
-        file.write_text(new.stdout, encoding="utf-8")
-        run = rocking(odd_plugin, "equiv", str(file), "--json")
-        assert json.loads(run.stdout)["mechanism"] == "odd"
-        assert "printed on import" in run.stderr and "printed at work" in run.stderr
+        (tmp_path / "odd.yaml").write_text(new.stdout, encoding="utf-8")
+        path = os.pathsep.join([str(odd_site), *filter(None, [os.environ.get("PYTHONPATH")])])
+        command = [sys.executable, "-c", "from rocking_cli.cli.main import main; main()", "equiv", "odd.yaml", "--json"]
+        done = subprocess.run(
+            command, env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True, check=True
+        )
+        assert json.loads(done.stdout)["mechanism"] == "odd"
+        assert "printed on import" in done.stderr and "printed at work" in done.stderr
 
-    def test_broken_readers_leave_every_other_format_readable(self, odd_plugin):
-        files = [str(EXAMPLES / name) for name in ("accel.csv", "accel_transverse.csv")]
-        run = rocking(odd_plugin, "record", *files, "--json")
-        assert run.returncode == 0
-        assert [json.loads(line)["npts"] for line in run.stdout.splitlines()] == [1201, 1201]
+    def test_broken_readers_leave_every_other_format_readable(self):
+        files = [EXAMPLES / name for name in ("accel.csv", "accel_transverse.csv")]
+        done = shown("record", *files, "--json")
+        assert done.exit_code == 0
+        assert [json.loads(line)["npts"] for line in done.stdout.splitlines()] == [1201, 1201]
         for name, why in {
             "breaking_format": r"cannot be loaded: ZeroDivisionError: .* \(.*odd_breaks\.py:1\)",
             "leaving_format": r"cannot be loaded: SystemExit: 0 \(.*odd_leaves\.py:2\)",
             "sniffing_format": r"failed to say whether .*: ZeroDivisionError: .* \(.*odd_sniffer\.py:\d+\)",
         }.items():
-            told = re.findall(rf"warning: plugin {name} of odd 1\.0 \(.*\) {why}; it is left out", run.stderr)
-            assert len(told) == 1, run.stderr
-        assert "Traceback" not in run.stderr and not re.search("odd_format.*left out", run.stderr)
+            told = re.findall(rf"warning: plugin {name} of odd 1\.0 \(.*\) {why}; it is left out", done.stderr)
+            assert len(told) == 1, done.stderr
+        assert "Traceback" not in done.stderr and not re.search("odd_format.*left out", done.stderr)
         assert (
-            "warning: plugin odd_format of odd 1.0 (odd_reader) prints: printed on import of a reader\n" in run.stderr
+            "warning: plugin odd_format of odd 1.0 (odd_reader) prints: printed on import of a reader\n" in done.stderr
         )
 
-    def test_a_file_that_nobody_claims_mentions_them_again(self, odd_plugin, tmp_path):
+    def test_a_file_that_nobody_claims_mentions_them_again(self, tmp_path):
         (tmp_path / "none.txt").write_text("nothing of the kind\n", encoding="utf-8")
-        run = rocking(odd_plugin, "record", str(tmp_path / "none.txt"))
-        assert run.returncode == 2
-        tried = run.stderr.split("one of these formats:")[1]
+        done = shown("record", tmp_path / "none.txt")
+        assert done.exit_code == 2
+        tried = done.stderr.split("one of these formats:")[1]
         assert " an odd format, ASA, COSMOS, CSMIP V2," in tried.splitlines()[0] and "cannot be used," not in tried
         for name in ("breaking_format", "leaving_format", "sniffing_format"):
             assert f"{name} (cannot be used: plugin {name} of odd 1.0" in tried
 
-    def test_a_reader_that_fails_on_its_file_costs_only_that_file(self, odd_plugin, tmp_path):
+    def test_a_reader_that_fails_on_its_file_costs_only_that_file(self, tmp_path, monkeypatch):
         (tmp_path / "odd.txt").write_text("ODD\n", encoding="utf-8")
-        run = rocking(odd_plugin, "record", str(tmp_path / "odd.txt"), str(EXAMPLES / "accel.csv"), "--json")
-        assert run.returncode == 5 and json.loads(run.stdout)["npts"] == 1201
+        done = shown("record", tmp_path / "odd.txt", EXAMPLES / "accel.csv", "--json")
+        assert done.exit_code == 5 and json.loads(done.stdout)["npts"] == 1201
         assert re.search(
-            r"odd\.txt: plugin odd_format of odd 1\.0 .* KeyError: 'lost' \(.*odd_reader\.py:\d+\)", run.stderr
+            r"odd\.txt: plugin odd_format of odd 1\.0 .* KeyError: 'lost' \(.*odd_reader\.py:\d+\)", done.stderr
         )
-        alone = rocking({**odd_plugin, "ROCKING_DEBUG": "1"}, "respond", "--record", str(tmp_path / "odd.txt"))
-        assert alone.returncode == 3 and "Traceback" in alone.stderr and 'return {}["lost"]' in alone.stderr
+        monkeypatch.setenv("ROCKING_DEBUG", "1")
+        alone = shown("respond", "--record", tmp_path / "odd.txt")
+        assert alone.exit_code == 3 and "Traceback" in alone.stderr and 'return {}["lost"]' in alone.stderr
 
-    @pytest.mark.every(3)
     @pytest.mark.parametrize(
         ("name", "said"),
         [
@@ -324,39 +320,39 @@ class TestPluginsThatGoWrong:
             ("negative", r"the mechanism negative failed in bodies: ValueError: the mass of body 'cap' is -0\.5 kg"),
         ],
     )
-    def test_an_error_of_a_mechanism_is_its_own(self, odd_plugin, name, said, tmp_path):
+    def test_an_error_of_a_mechanism_is_its_own(self, name, said, tmp_path, monkeypatch):
         file = tmp_path / "odd.yaml"
         file.write_text(f"mechanism: {name}\nwidth: 1.0\n", encoding="utf-8")
-        run = rocking(odd_plugin, "equiv", str(file), "--json")
-        assert (run.returncode, run.stdout) == (3, "")
-        assert re.search(said, run.stderr)
-        assert "check the sizes" not in run.stderr and "Traceback" not in run.stderr
-        debug = rocking({**odd_plugin, "ROCKING_DEBUG": "1"}, "equiv", str(file)).stderr
+        done = shown("equiv", file, "--json")
+        assert (done.exit_code, done.stdout) == (3, "")
+        assert re.search(said, done.stderr)
+        assert "check the sizes" not in done.stderr and "Traceback" not in done.stderr
+        monkeypatch.setenv("ROCKING_DEBUG", "1")
+        debug = shown("equiv", file).stderr
         assert "Traceback" in debug and "odd.py" in debug and "plugin_errors.py" not in debug
 
-    def test_a_pulse_that_leaves_does_not_end_the_program(self, odd_plugin):
-        run = rocking(odd_plugin, "respond", "--pulse", "leaving_pulse:0.4g:1s")
-        assert run.returncode == 3
-        assert re.search(r"plugin leaving_pulse of odd 1\.0 .* cannot be loaded: SystemExit", run.stderr)
+    def test_a_pulse_that_leaves_does_not_end_the_program(self):
+        done = shown("respond", "--pulse", "leaving_pulse:0.4g:1s")
+        assert done.exit_code == 3
+        assert re.search(r"plugin leaving_pulse of odd 1\.0 .* cannot be loaded: SystemExit", done.stderr)
 
-    def test_info_names_what_is_broken_and_shows_the_rest(self, odd_plugin):
-        run = rocking(odd_plugin, "info", "--json")
-        assert run.returncode == 0 and "Traceback" not in run.stderr
-        plugins = json.loads(run.stdout)["plugins"]
+    def test_info_names_what_is_broken_and_shows_the_rest(self):
+        done = shown("info", "--json")
+        assert done.exit_code == 0 and "Traceback" not in done.stderr
+        plugins = json.loads(done.stdout)["plugins"]
         broken = {each["name"]: each["broken"] for kind in plugins.values() for each in kind}
         assert "cannot be loaded: SystemExit" in broken["leaving_pulse"] and broken["breaking_format"] is not None
         assert broken["arch"] is None and broken["odd"] is None and broken["peer_at2"] is None
         assert "odd 1.0" in {each["package"] for each in plugins["mechanisms"]}
-        assert "broken: leaving_pulse" in rocking(odd_plugin, "info").stdout
+        assert "broken: leaving_pulse" in shown("info").stdout
 
-    def test_new_says_what_to_fill_in_where_there_is_no_example(self, odd_plugin):
-        run = rocking(odd_plugin, "new", "no_example")
-        assert "# Fill in load: the mechanism gives no example.\n" in run.stdout
-        assert re.search(r"\nload: +# fill in: a load that no file can be without \[m\]", run.stdout)
-        assert "this file does not work as it is" in run.stderr
-        assert "Fill in" not in rocking(odd_plugin, "new", "odd").stdout
+    def test_new_says_what_to_fill_in_where_there_is_no_example(self):
+        done = shown("new", "no_example")
+        assert "# Fill in load: the mechanism gives no example.\n" in done.stdout
+        assert re.search(r"\nload: +# fill in: a load that no file can be without \[m\]", done.stdout)
+        assert "this file does not work as it is" in done.stderr
+        assert "Fill in" not in shown("new", "odd").stdout
 
-    @pytest.mark.every(5)
     @pytest.mark.parametrize(
         ("name", "failing", "said"),
         [
@@ -371,20 +367,19 @@ class TestPluginsThatGoWrong:
             ("breaker", {"loads"}, "ZeroDivisionError"),
         ],
     )
-    def test_check_says_what_passes_and_what_fails(self, odd_plugin, name, failing, said):
-        run = rocking(odd_plugin, "mechanisms", "--check", name, "--json")
-        found = json.loads(run.stdout)
+    def test_check_says_what_passes_and_what_fails(self, name, failing, said):
+        done = shown("mechanisms", "--check", name, "--json")
+        found = json.loads(done.stdout)
         assert {each["check"] for each in found["checks"] if not each["passed"]} == failing
-        assert (run.returncode, found["passed"]) == ((3, False) if failing else (0, True))
+        assert (done.exit_code, found["passed"]) == ((3, False) if failing else (0, True))
         assert (found["mechanism"], found["package"], found["file"]) == (name, "odd 1.0", None)
         assert said in " ".join(each["why"] or "" for each in found["checks"])
 
-    @pytest.mark.rest
-    def test_check_shows_the_traceback_of_what_cannot_be_loaded_or_fails(self, odd_plugin):
-        run = rocking(odd_plugin, "mechanisms", "--check", "breaker")
-        assert run.returncode == 3
-        assert re.search(r"FAILS .*\nTraceback(.*\n)+ .*odd_breaks\.py.*(.*\n)+ZeroDivisionError", run.stdout)
-        told = rocking(odd_plugin, "mechanisms", "--check", "divides").stdout
+    def test_check_shows_the_traceback_of_what_cannot_be_loaded_or_fails(self):
+        done = shown("mechanisms", "--check", "breaker")
+        assert done.exit_code == 3
+        assert re.search(r"FAILS .*\nTraceback(.*\n)+ .*odd_breaks\.py.*(.*\n)+ZeroDivisionError", done.stdout)
+        told = shown("mechanisms", "--check", "divides").stdout
         assert told.count("Traceback") == 1 and "1 / 0" in told and "Same error as above." in told
         checks = [line for line in told.splitlines() if line.startswith(("passes ", "FAILS "))]
         assert len(checks) == len(CHECKS) + 2
@@ -420,12 +415,6 @@ def test_check_takes_a_file(tmp_path):
     assert "did you mean wall?" in run("mechanisms", "--check", "wal", code=2).stderr
     assert "needs the NAME" in run("mechanisms", "--check", code=2).stderr
     assert "FILE requires --check" in run("mechanisms", "wall", file, code=2).stderr
-
-
-@pytest.mark.every(6)
-@pytest.mark.parametrize("name", BUILT_IN)
-def test_check_passes_every_built_in_mechanism(name):
-    assert run_json("mechanisms", "--check", name)["passed"]
 
 
 def test_printing_from_other_threads_is_kept_out_of_the_results():

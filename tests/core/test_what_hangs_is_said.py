@@ -142,5 +142,5 @@ def test_a_report_says_at_its_head_that_joints_do_not_hold(tmp_path, monkeypatch
         monkeypatch.setattr(Block, "contacts", lambda self, direction: None)
     file = tmp_path / "block.yaml"
     file.write_text("mechanism: block\nwidth: 0.6\nheight: 3\nmass: 1000\nfriction: 0.21\n")
-    asked = ("--pulse", "sine:0.4g:0.6s", "--neighbours", 20, "--out", tmp_path / "report.html")
+    asked = ("--pulse", "sine:0.4g:0.6s", "--neighbours", 1, "--out", tmp_path / "report.html")
     assert words in " ".join(run("report", file, *asked).stdout.split())

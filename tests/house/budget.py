@@ -3,7 +3,6 @@
 It prints them, and brings the numbers of `budget.toml` to them where they are better.
 """
 
-import ast
 import re
 import tomllib
 from collections import Counter
@@ -18,34 +17,34 @@ BESIDE = ("mechanisms", "benchmarks", "docs", "examples", "scripts", "validation
 PACKAGE = ("rocking_cli", "mechanisms")  # whose files and functions are counted
 FILES, SHORT, MEDIAN = "files", "functions of at most 3 lines", "median lines of a function"
 MAX_SHORT_LINES = 3
-DEFINITIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
+TOKENS = re.compile(
+    r'"""(?:\\.|[^\\])*?"""|' r"\'\'\'(?:\\.|[^\\])*?\'\'\'|" r'"(?:\\.|[^"\\\n])*"|' r"\'(?:\\.|[^\'\\\n])*\'|#[^\n]*",
+    re.DOTALL,
+)
+"""Texts and comments."""
+INSIDE = " " * 99 + "s"
+DOCUMENTATION = re.compile(rf"(?:\A|(?<=:\n)) *[rR]?s\n(?:{INSIDE}\n)*")
 MOST_SHARE, LEAST_LINES = 0.03, 5  # below its number a folder stays, and is not asked for a lower one
 
 
-def statements(node):
-    """Yield a node and all statements in it, without their expressions."""
-    yield node
-    for child in ast.iter_child_nodes(node):
-        if isinstance(child, ast.stmt | ast.excepthandler | ast.match_case):
-            yield from statements(child)
+def masked(token):
+    """Leave nothing of a comment, and of each line of a text a letter, far to the right in all but the first."""
+    return "" if token[0][0] == "#" else "s" + ("\n" + INSIDE) * token[0].count("\n")
 
 
 def code(text):
-    """Return the lines of a text without blank lines, comments and docstrings, and those of each function."""
-    lines = [line.strip() for line in text.splitlines()]
-    passed = {n for n, line in enumerate(lines, 1) if not line or line.startswith("#")}
-    found, documentation, nodes = set(range(1, len(lines) + 1)) - passed, set(), [*statements(ast.parse(text))]
-    for node in nodes:
-        if isinstance(node, (ast.Module, ast.ClassDef, *DEFINITIONS)):
-            if ast.get_docstring(node, clean=False) is not None:
-                documentation.update(range(node.body[0].lineno, node.body[0].end_lineno + 1))
-        elif not hasattr(node, "body") and passed.intersection(range(node.lineno, node.end_lineno + 1)):
-            for part in ast.walk(node):  # a # in a text of several lines begins no comment
-                if isinstance(part, ast.Constant | ast.JoinedStr) and part.end_lineno > part.lineno:
-                    found.update(range(part.lineno, part.end_lineno + 1))
-    found -= documentation
-    functions = [node for node in nodes if isinstance(node, DEFINITIONS)]
-    return len(found), [sum(n in found for n in range(each.lineno, each.end_lineno + 1)) for each in functions]
+    """Return the lines of a text without blank lines, comments and docstrings, and those of each function.
+
+    A function ends where a line is no further to the right, unless it closes a bracket; a syntax tree takes five times
+    as long to say the same.
+    """
+    plain = re.sub(r" +\n", "\n", TOKENS.sub(masked, f"{text}\n"))
+    lines = DOCUMENTATION.sub("", "".join(re.findall(r"(?m)^ *[^ \n].*\n", plain)))
+    functions = []
+    for start in re.finditer(r"(?m)^( *)(?:async )?def ", lines):
+        end = re.compile(rf"\n {{0,{len(start[1])}}}[^ )\]}}]").search(lines, start.end())
+        functions.append(lines.count("\n", start.start(), end.start() + 1 if end else len(lines)))
+    return lines.count("\n"), functions
 
 
 def counts_for(file):

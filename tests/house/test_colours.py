@@ -95,7 +95,7 @@ def test_colours_and_sizes_are_in_one_file():
             assert not re.findall(r"fontsize=\d|labelsize=\d", text), path
 
 
-@pytest.mark.every(6)
+@pytest.mark.every(9)
 @pytest.mark.parametrize("name", FIGURES)
 def test_every_colour_of_a_picture_has_one_for_dark_pages(name):
     drawn = svg(FIGURES[name](), name)

@@ -140,11 +140,11 @@ def test_a_page_can_be_read_as_a_file(page):
         assert not re.search(r"\\[^a-zA-Z]|\*|<[^ ]", formula), f"${formula}$: Markdown takes this for its own"
 
 
-@pytest.mark.parametrize("name", commands())
-def test_every_command_is_explained(name, made):
-    headings = re.findall(r"^## .*", text_of("commands.md"), re.M)
-    assert any(re.search(rf"`rocking {name}\b", heading) for heading in headings), name
-    assert f"\n## rocking {name}\n" in made.make_reference.command_line()
+def test_every_command_is_explained(made):
+    headings = " ".join(re.findall(r"^## .*", text_of("commands.md"), re.M))
+    assert [name for name in commands() if not re.search(rf"`rocking {name}\b", headings)] == []
+    reference = made.make_reference.command_line()
+    assert [name for name in commands() if f"\n## rocking {name}\n" not in reference] == []
 
 
 @pytest.mark.parametrize("name", MECHANISMS)

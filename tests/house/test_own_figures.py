@@ -2,7 +2,7 @@
 
 import re
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -34,10 +34,15 @@ WITHOUT = {"respond_each", "shares", "selfcheck", "results"}
 FAST = {"margins"}
 
 
+@cache
+def asked(name):
+    verb, given = ASKED[name]
+    return getattr(rk, verb)(**given)
+
+
 @pytest.fixture
 def answer(request):
-    verb, given = ASKED[request.param]
-    return getattr(rk, verb)(**given)
+    return asked(request.param)
 
 
 def pytest_generate_tests(metafunc):
@@ -139,7 +144,7 @@ def test_in_a_part_of_a_figure_of_the_user(answer):
 @pytest.mark.parametrize("layout", [None, "tight", "constrained"])
 def test_in_a_figure_of_the_user(layout):
     """Without a layout, it is laid out once, so that no label and no legend is cut off; that it has none stays."""
-    answer = rk.margin(**ASKED["margins"][1])
+    answer = asked("margins")
     figure = Figure((6, 5), dpi=90, layout=layout)
     engine = type(figure.get_layout_engine())
     assert answer.plot(figure=figure) is figure
@@ -190,7 +195,7 @@ FLAT = Figure().subplots()
 )
 def test_what_cannot_be_is_refused_before_anything_is_drawn(given, said):
     with pytest.raises(rk.InputError, match=said):
-        rk.spectrum(BLOCK, PULSE, count=3).plot(**given)
+        asked("one spectrum").plot(**given)
     assert not FLAT.lines and not POLAR.lines and style.given() is None
 
 
@@ -228,7 +233,7 @@ def test_a_plot_that_makes_its_own_figure_is_not_lost():
 
 
 def test_threads_draw_each_in_its_own():
-    answer = rk.spectrum(BLOCK, PULSE, count=3)
+    answer = asked("one spectrum")
     every = [Figure().subplots() for _ in range(6)]
     with ThreadPoolExecutor(3) as pool:
         alone = list(pool.map(lambda axes: answer.plot(ax=axes) if axes else answer.plot(), [*every, None]))[-1]

@@ -238,7 +238,7 @@ def test_coefficients_are_equation_32_with_the_arch_in_it(beta, ratio, n, direct
 def least_by_statics(beta, n):
     """Least t/r with a thrust line of the weight alone inside the ring, by bisection; for n joints."""
     low, high = 1e-3, 0.12
-    while high - low > 1e-8:
+    while high - low > 1e-7:
         middle = (low + high) / 2
         low, high = (middle, high) if Voussoirs(beta, middle, n).thrust()[0] == "infeasible" else (low, middle)
     return high
@@ -278,10 +278,10 @@ def test_an_arch_that_no_push_can_open_is_an_error(beta, ratio, n):
 def sweep():
     rng = np.random.default_rng(4000)
     for beta in (20.0, 40.0, 60.0, 80.0, 90.0, 105.0, 120.0, 135.0, 150.0, 165.0, 180.0):
-        for n in (None, 3, 4, 7, 16, 37, 60):
-            for ratio in np.exp(rng.uniform(np.log(0.01), np.log(0.6), 2)):
+        for n in (None, 3, 4, 7, 16, 60):
+            for ratio in np.exp(rng.uniform(np.log(0.01), np.log(0.6), 1 if n is None else 2)):
                 yield beta, float(ratio), n
-    for beta in (90.0, 130.0, 180.0):
+    for beta in (150.0, 180.0):  # whose least thickness is looked for above
         for n in (None, 5, 20):
             for over in (1e-5, 1e-3, 1e-2):
                 yield beta, least_by_statics(np.radians(beta), n or MANY) * (1 + over), n
@@ -314,7 +314,6 @@ def is_four_hinges(hinges, n):
     return len({joint for joint, _ in hinges}) == 4 and [face for _, face in hinges] == list("IEIE")
 
 
-@pytest.mark.every(3)
 def test_wherever_four_hinges_form_lambda_is_the_static_multiplier(swept):
     checked = 0
     for ring, static, hinges, got, message in swept:

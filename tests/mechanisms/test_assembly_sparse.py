@@ -2,7 +2,7 @@
 
 from contextlib import suppress
 from dataclasses import replace
-from itertools import combinations, pairwise
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -60,9 +60,9 @@ def jumble(seed):
 
 
 @pytest.mark.rest
-def test_both_theorems_agree_on_two_hundred_assemblies():
+def test_both_theorems_agree_on_a_hundred_assemblies():
     answered = most = 0
-    for seed in range(200):
+    for seed in range(100):
         blocks, joints, direction = jumble(seed)
         try:
             found = collapse(blocks, joints, (), direction)
@@ -75,7 +75,7 @@ def test_both_theorems_agree_on_two_hundred_assemblies():
         assert found.opening.min() >= -1e-9, seed
         if seed % 10 == 0:
             assert found.multiplier == approx(greatest(blocks, joints, direction), rel=1e-6), seed
-    assert answered > 120
+    assert answered > 60
     assert most > 30
 
 
@@ -114,18 +114,19 @@ def test_pairs_of_boxes_that_meet_are_those_of_all_pairs():
     for n, reach in ((1, 1.0), (40, 3.0), (700, 0.3), (600, 0.0)):
         low = rng.uniform(0, 10, n) + 1j * rng.uniform(0, 2, n) if reach else np.zeros(n, complex)
         high = low + rng.uniform(0, 1, n) * reach + 1j * rng.uniform(0, 1, n) * reach
-        found = sorted(tuple(sorted(pair)) for i, j in nearby(low, high) for pair in zip(i, j, strict=True))
-        expected = [
-            (i, j) for i, j in combinations(range(n), 2)
-            if max(low[i].real, low[j].real) <= min(high[i].real, high[j].real)
-            and max(low[i].imag, low[j].imag) <= min(high[i].imag, high[j].imag)
-        ]  # fmt: skip
-        assert found == expected
+        found = sorted(
+            tuple(sorted(pair)) for i, j in nearby(low, high) for pair in zip(i.tolist(), j.tolist(), strict=True)
+        )
+        i, j = np.triu_indices(n, 1)
+        meet = (np.maximum(low.real[i], low.real[j]) <= np.minimum(high.real[i], high.real[j])) & (
+            np.maximum(low.imag[i], low.imag[j]) <= np.minimum(high.imag[i], high.imag[j])
+        )
+        assert found == list(zip(i[meet].tolist(), j[meet].tolist(), strict=True))
 
 
 def test_the_friction_needed_is_a_bracket():
     """Just less does not carry the multiplier, and the coefficient itself does."""
-    for seed in range(12):
+    for seed in range(6):
         blocks, joints, direction = jumble(seed)
         try:
             found = collapse(blocks, joints, (), direction)

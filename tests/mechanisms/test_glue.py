@@ -51,7 +51,7 @@ class TestGlue:
     def test_nothing_is_said_where_it_changes_nothing(self):
         assert rk.load_structure(EXAMPLES / "masonry" / "portal.yaml").own_caution() == ""
 
-    @pytest.mark.every(7)
+    @pytest.mark.every(4)
     @pytest.mark.parametrize("command", [
         ("equiv",), ("collapse",), ("respond", "--pulse", "sine:0.5g:1s", "--neighbours", "0"),
         ("margin", "--pulse", "sine:0.5g:1s", "--neighbours", "5"),

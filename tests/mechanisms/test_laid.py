@@ -21,6 +21,21 @@ def wall(openings=(), **changed):
     return rk.Assembly(density=1800.0, depth=0.3, bricks=WALL | {"openings": list(openings)} | changed)
 
 
+@pytest.fixture(scope="module")
+def ring():
+    return arch()
+
+
+@pytest.fixture(scope="module")
+def plain():
+    return wall()
+
+
+@pytest.fixture(scope="module")
+def opened():
+    return wall([[1.0, 0.0, 2.0, 1.5]])
+
+
 def corners(structure, name):
     return np.array(structure.blocks[name].corners)
 
@@ -35,26 +50,25 @@ def box(structure, name):
     return pytest.approx([z.real.min(), z.imag.min(), z.real.max(), z.imag.max()])
 
 
-def test_voussoirs_are_between_two_circles():
+def test_voussoirs_are_between_two_circles(ring):
     """By hand: radius (3^2 + 2^2)/(2 2) = 3.25 m, about a centre 1.25 m below the springings."""
-    radii = [np.abs(corners(arch(), f"v{k}") + 1.25j) for k in range(1, 10)]
+    radii = [np.abs(corners(ring, f"v{k}") + 1.25j) for k in range(1, 10)]
     assert all(np.sort(r)[:5] == pytest.approx(3.25) and np.sort(r)[5:] == pytest.approx(3.75) for r in radii)
-    assert box(arch(), "v5").expected[3] == pytest.approx(2.5)  # the crown
+    assert box(ring, "v5").expected[3] == pytest.approx(2.5)  # the crown
 
 
-def test_voussoirs_are_equal_and_joined():
-    areas = [area(arch(), f"v{k}") for k in range(1, 10)]
+def test_voussoirs_are_equal_and_joined(ring):
+    areas = [area(ring, f"v{k}") for k in range(1, 10)]
     assert areas == pytest.approx(areas[:1] * 9)
-    ring = np.arcsin(3.0 / 3.25) * (3.75**2 - 3.25**2)  # between the joints
-    assert sum(areas) == pytest.approx(ring, rel=1e-3)
-    joints = [len(set(np.round(corners(arch(), f"v{k}"), 9)) & set(np.round(corners(arch(), f"v{k + 1}"), 9)))
-              for k in range(1, 9)]  # fmt: skip
-    assert joints == [2] * 8
+    between_joints = np.arcsin(3.0 / 3.25) * (3.75**2 - 3.25**2)
+    assert sum(areas) == pytest.approx(between_joints, rel=1e-3)
+    points = [set(np.round(corners(ring, f"v{k}"), 9)) for k in range(1, 10)]
+    assert [len(one & other) for one, other in pairwise(points)] == [2] * 8
 
 
-def test_an_arch_stands_on_springings_or_on_what_is_given():
-    assert list(arch().ground) == ["left", "right"]
-    assert arch().uplift(Direction.POSITIVE) == pytest.approx(arch(at=[3.0, 1.0]).uplift(Direction.POSITIVE))
+def test_an_arch_stands_on_springings_or_on_what_is_given(ring):
+    assert list(ring.ground) == ["left", "right"]
+    assert ring.uplift(Direction.POSITIVE) == pytest.approx(arch(at=[3.0, 1.0]).uplift(Direction.POSITIVE))
     floor = {"floor": {"polygon": [[-5, -1], [5, -1], [5, 0], [-5, 0]]}}
     half = {"span": 4.0, "rise": 2.0, "thickness": 0.6, "count": 9, "at": [0.0, 1.0]}
     sides = {name: {"polygon": [[x, 0], [x + 1, 0], [x + 1, 1], [x, 1]]} for name, x in (("a", -3), ("b", 2))}
@@ -71,39 +85,38 @@ def test_the_arch_of_many_voussoirs_is_the_arch():
     assert laid.uplift(Direction.POSITIVE) == pytest.approx(same.uplift(Direction.POSITIVE), rel=1e-3)
 
 
-def test_bricks_fill_the_wall_in_running_bond():
-    structure = wall()
-    assert sum(area(structure, name) for name in structure.blocks) == pytest.approx(12.0)
-    assert [sum(name.startswith(f"{k}.") for name in structure.blocks) for k in (1, 2, 12)] == [8, 9, 9]
-    assert box(structure, "1.1") == [0, 0, 0.5, 0.25] and box(structure, "2.1") == [0, 0.25, 0.25, 0.5]
+def test_bricks_fill_the_wall_in_running_bond(plain):
+    assert sum(area(plain, name) for name in plain.blocks) == pytest.approx(12.0)
+    assert [sum(name.startswith(f"{k}.") for name in plain.blocks) for k in (1, 2, 12)] == [8, 9, 9]
+    assert box(plain, "1.1") == [0, 0, 0.5, 0.25] and box(plain, "2.1") == [0, 0.25, 0.25, 0.5]
     for low, high in pairwise(range(1, 13)):
-        joints = [{round(float(box(structure, name).expected[0]), 9) for name in structure.blocks
+        joints = [{round(float(box(plain, name).expected[0]), 9) for name in plain.blocks
                    if name.startswith(f"{course}.")} for course in (low, high)]  # fmt: skip
         assert joints[0] & joints[1] == {0.0}
 
 
-def test_an_opening_is_cut_at_bricks_and_has_a_lintel():
+def test_an_opening_is_cut_at_bricks_and_has_a_lintel(opened):
     """By hand: 1.1 to 2.1 m goes to 1.0 to 2.0 m, and 1.6 m up to the nearer of 1.5 and 1.75 m."""
     structure = wall([[1.1, 0.0, 2.1, 1.6]])
     assert structure.remarks == ["bricks: opening 1 is cut at the edges of bricks, [1, 0, 2, 1.5] m"]
     assert box(structure, "lintel 1") == [0.75, 1.5, 2.25, 1.75]
     assert sum(area(structure, name) for name in structure.blocks) == pytest.approx(12.0 - 1.5)
-    assert wall([[1.0, 0.0, 2.0, 1.5]]).remarks == []
-    assert "lintel 1" not in wall([[1.0, 2.0, 2.0, 3.0]]).blocks  # it reaches the top
+    assert opened.remarks == []
+    to_the_top = wall([[1.0, 0.5, 2.0, 1.0]], wall=[4.0, 1.0])
+    assert "lintel 1" not in to_the_top.blocks
 
 
-def test_courses_fill_the_height_equally():
-    structure = wall(height=0.24)
-    assert structure.remarks == ["bricks: 12 courses of 0.25 m fill the height of 3 m"] and len(wall().remarks) == 0
-    odd = wall(wall=[4.1, 3.0])
-    assert sum(area(odd, name) for name in odd.blocks) == pytest.approx(12.3)
+def test_courses_fill_the_height_equally(plain):
+    structure = wall(height=0.24, wall=[4.0, 1.0])
+    assert structure.remarks == ["bricks: 4 courses of 0.25 m fill the height of 1 m"] and len(plain.remarks) == 0
+    odd = wall(wall=[4.1, 1.0])
+    assert sum(area(odd, name) for name in odd.blocks) == pytest.approx(4.1)
     assert min(area(odd, name) for name in odd.blocks) == pytest.approx(0.25 * 0.25)  # no slivers
 
 
-def test_a_wall_of_another_size_is_laid_once():
-    structure = wall([[1.0, 0.0, 2.0, 1.5]])
-    larger = structure.enlarged(2.0)
-    assert larger.bricks is None and list(larger.blocks) == list(structure.blocks)
+def test_a_wall_of_another_size_is_laid_once(opened):
+    larger = opened.enlarged(2.0)
+    assert larger.bricks is None and list(larger.blocks) == list(opened.blocks)
     assert box(larger, "lintel 1") == [1.5, 3.0, 4.5, 3.5]
 
 

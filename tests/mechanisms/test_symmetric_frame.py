@@ -10,7 +10,7 @@ from rocking_cli.core.released import released, tabulated_impulses
 from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.modes import modes
 from rocking_cli.structure import build_models
-from tests.cli.test_cli import run, run_json
+from tests.cli.test_cli import run_json
 
 WIDTH, HEIGHT, SPACING, DEPTH = 0.8, 5.0, 3.0, 0.9
 COMMON = {"density": 2500.0, "depth": 0.8}
@@ -101,22 +101,20 @@ def test_columns_have_the_histories_of_a_linkage(monkeypatch):
     for name, size in (("WIDTH", 1.0), ("HEIGHT", 3.0), ("SPACING", 2.0)):
         monkeypatch.setitem(globals(), name, size)
     unknown = []
-    for columns, depth, pulses in (
-        (2, 1.0, ("sine:0.4g:1s", "sine:0.5g:0.8s", "ricker:0.5g:0.7s", "sine:1.5g:1s")),
-        (2, 3.0, ("sine:0.4g:1s", "sine:0.3g:2s", "sine:1g:0.5s")),
-        (3, 1.0, ("sine:0.4g:1s", "sine:0.5g:0.8s")),
+    for depth, pulses in (
+        (1.0, ("sine:0.4g:1s", "sine:0.5g:0.8s", "sine:1.5g:1s")),
+        (3.0, ("sine:0.4g:1s", "sine:0.3g:2s")),
     ):
-        one, other = (make(columns, depth, friction=0.6) for make in (frame, linkage))
+        one, other = (make(2, depth, friction=0.6) for make in (frame, linkage))
         models = [build_models(each, ("nonlinear",))[0] for each in (one, other)]
         for pulse in pulses:
             motion = rk.parse_pulse(pulse).sampled()
             ours, theirs = (follow(model, motion) for model in models)
             unknown.append(ours.unknown)
             assert (ours.unknown, ours.overturned) == (theirs.unknown, theirs.overturned)
-            near = 1e-9 if columns == 2 else 1e-6
             for key in ("peak_ratio", "opening", "known_to", "lower_bound"):
-                assert getattr(ours, key) == pytest.approx(getattr(theirs, key), rel=near, nan_ok=True), (pulse, key)
-    assert unknown[:7] == [False, True, False, False, True, False, True]
+                assert getattr(ours, key) == pytest.approx(getattr(theirs, key), rel=1e-9, nan_ok=True), (pulse, key)
+    assert unknown == [False, True, False, True, False]
 
 
 def test_three_columns_have_the_modes_of_a_linkage():
@@ -162,8 +160,9 @@ def test_without_its_spacing_a_frame_is_not_checked_and_says_what_is_missing(tmp
         ({**TO_SCALE, "columns": 21}, "spacing has no effect, as it has more than 20 columns"),
     ],
 )
-def test_sizes_that_do_not_fit(tmp_path, fields, said):
-    assert said in " ".join(run("equiv", written(tmp_path, **fields), code=2).stderr.split())
+def test_sizes_that_do_not_fit(fields, said):
+    with pytest.raises(rk.InputError, match=said):
+        rk.SymmetricFrame(**BARE, **fields)
 
 
 def test_with_its_spacing_it_is_drawn_to_scale():
