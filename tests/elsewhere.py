@@ -52,7 +52,7 @@ LIBRARIES = OF_PYTHON | {
 # They take long, and rest on random numbers or on processes rather than on rounding: once is enough.
 ONCE = "TestCoverage or killed or interrupted or cluster or while_it_runs or hold_at_their_rate"
 WHOLE, FIRST = "not (docs or types or kernels)", "not (rest or docs or types or kernels or again)"
-NEEDED = ["hypothesis", "pytest", "statsmodels"]  # besides the package
+NEEDED = ["hatchling", "hypothesis", "pytest", "statsmodels", "uv"]  # besides the package
 Ran = tuple[str, int, str]
 """What was run, an exit code, and what there is to say."""
 
