@@ -149,6 +149,7 @@ RULES = "states", "IV", "IV_without_SLD", "local", "upgrading", "improvement", *
 )  # fmt: skip
 
 
+@cache
 def verified(structure, site, control=None):
     """The verification of a structure at a site, and the site."""
     mechanism = parse_structure(structure, "s.yaml", "test", Registry()) if isinstance(structure, str) else structure
