@@ -198,8 +198,7 @@ def test_how_far_anchorages_hold_that_give_way_first_is_a_condition(shear, lengt
         assert f"hold {force / 1e3:.4g} kN while they are pulled by {e - stretch:.3g} m at d_SLV" in answer.sentences[0]
 
 
-@pytest.mark.parametrize("language", ["en", "it"])
-@pytest.mark.parametrize("given", [None, 0.03])
+@pytest.mark.parametrize(("language", "given"), [("en", None), ("it", 0.03)])
 def test_the_sheet_works_out_what_limits_a_tie_and_has_no_raw_marks(language, given, tmp_path, monkeypatch):
     """By hand: its elongation, the thickness of its plates, and what holds the top of a wall between floors."""
     monkeypatch.setattr(sheet_page, "inline_svg", lambda figure, _: "")

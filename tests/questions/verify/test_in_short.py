@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import re
+from itertools import cycle
 from math import asin, atan2, cos, hypot, isclose, pi, sin, sqrt
 
 import pytest
 import yaml
 
 import rocking_cli as rk
+from rocking_cli.cli import terminal
 from rocking_cli.codes.italian.remarks import differences
 from rocking_cli.codes.italian.sheet.steps import TERMINAL
-from rocking_cli.cli import terminal
 from rocking_cli.codes.italian.view import IN_SHORT, STATE_OUTCOMES
 from rocking_cli.studies.conclusion import Concluded
 from rocking_cli.views.cautions import cautions_of
@@ -96,9 +97,8 @@ def _answer(structure, site=SITES[0], **how):
     return rk.verify(structure, site, in_full=False, **how)
 
 
-@pytest.mark.every(12)
-@pytest.mark.parametrize("structure", STRUCTURES, ids=lambda each: each.stem)
-@pytest.mark.parametrize("site", SITES, ids=lambda each: each.stem)
+@pytest.mark.every(8)
+@pytest.mark.parametrize(("structure", "site"), [*zip(STRUCTURES, cycle(SITES))], ids=lambda each: each.stem)
 def test_every_caution_and_remark_is_in_it(structure, site):
     """As a whole or in short; what is left out as empty is known by name."""
     answer = _answer(structure, site)

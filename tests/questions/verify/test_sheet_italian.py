@@ -148,7 +148,7 @@ def check(text):
     assert not re.search(r"\bdondol|tirant|\bd[ia] SL[DVCO]", text)
 
 
-@pytest.mark.every(4)
+@pytest.mark.every(7)
 @pytest.mark.parametrize("name", CASES)
 def test_every_case_is_italian(name, text_of):
     check(text_of(*CASES[name]))

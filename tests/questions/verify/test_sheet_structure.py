@@ -260,8 +260,14 @@ class TestMasses:
         assert line.formula is formulas.MASS_OF_MECHANISM and line.value == pytest.approx(0.9 * 43200)
 
     def test_equal_bodies_share_a_line(self):
-        lines = Composition(structure("masonry/wall_with_openings.yaml")).masses
-        assert len(lines) == 6 and str(lines[0].names["k"]).startswith("1–11, 13–15")
+        drum = "{{polygon: [[0, {0}], [1, {0}], [1, {1}], [0, {1}]]}}"
+        drums = ", ".join(
+            f"{name}: {drum.format(*at)}" for name, at in zip("abcd", [(0, 1), (1, 2), (2, 2.5), (2.5, 3.5)])
+        )
+        floor = "ground: {floor: {polygon: [[-2, -1], [3, -1], [3, 0], [-2, 0]]}}"
+        text = f"mechanism: assembly\nname: s\ndensity: 2000\ndepth: 1\nblocks: {{{drums}}}\n{floor}\n"
+        lines = Composition(parse_structure(text, "s.yaml", "test", Registry())).masses
+        assert [str(line.names["k"]) for line in lines] == ["1–2, 4", "3"]
         assert ranges([1, 2, 4, 6, 7, 8]) == "1–2, 4, 6–8"
 
 
