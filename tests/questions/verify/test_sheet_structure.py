@@ -260,9 +260,10 @@ class TestMasses:
         assert line.formula is formulas.MASS_OF_MECHANISM and line.value == pytest.approx(0.9 * 43200)
 
     def test_equal_bodies_share_a_line(self):
-        drum = "{{polygon: [[0, {0}], [1, {0}], [1, {1}], [0, {1}]]}}"
+        heights = {"a": (0, 1), "b": (1, 2), "c": (2, 2.5), "d": (2.5, 3.5)}
         drums = ", ".join(
-            f"{name}: {drum.format(*at)}" for name, at in zip("abcd", [(0, 1), (1, 2), (2, 2.5), (2.5, 3.5)])
+            f"{name}: {{polygon: [[0, {low}], [1, {low}], [1, {high}], [0, {high}]]}}"
+            for name, (low, high) in heights.items()
         )
         floor = "ground: {floor: {polygon: [[-2, -1], [3, -1], [3, 0], [-2, 0]]}}"
         text = f"mechanism: assembly\nname: s\ndensity: 2000\ndepth: 1\nblocks: {{{drums}}}\n{floor}\n"
