@@ -105,8 +105,8 @@ class ExactCurve:
             known[INTERLOCK] = mechanism.interlock.overlap
         for each in mechanism.hung.elements:
             if most := known.get(each.name):
-                slides = partial(self.slid, each.spot) if isinstance(each, ConstantForce) else None
-                phi = self._reached(slides or partial(self._longer, each), most, mechanism.limit(self.chain.direction))
+                way = partial(self.slid, each.spot) if isinstance(each, ConstantForce) else partial(self._longer, each)
+                phi = self._reached(way, most, mechanism.limit(self.chain.direction))
                 breaks += [] if phi is None else [Break(phi, each.name, most)]
         return sorted(breaks)
 

@@ -234,14 +234,12 @@ def _pattern(english: str) -> re.Pattern[str]:
     """Return the pattern of an English text with slots; a slot that stands twice is filled alike."""
     known, pattern = set[str](), ""
     for before, name, _, _ in Formatter().parse(english):
-        pattern += re.escape(before) + (f"(?P={name})" if name in known else _slot(name))
-        known |= {name} if name else set()
+        pattern += re.escape(before)
+        if name:
+            sign = "[^;,]" if name.startswith("name") else "."  # a name is not parted by semicolons and commas
+            pattern += f"(?P={name})" if name in known else f"(?P<{name}>{sign}*?)"
+            known.add(name)
     return re.compile(pattern)
-
-
-def _slot(name: str | None) -> str:
-    """Return the pattern of a slot of a text: a name is not parted by semicolons and commas."""
-    return f"(?P<{name}>{'[^;,]' if name.startswith('name') else '.'}*?)" if name else ""
 
 
 def translated(say: Language, shown: view.View) -> view.View:

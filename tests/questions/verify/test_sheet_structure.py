@@ -26,7 +26,7 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_fields import StructureFields
 from rocking_cli.core.structure_file import load_structure, parse_structure
 from rocking_cli.verification.results import Formula
-from rocking_cli.views.sheet import template
+from rocking_cli.views.sheet.document import sections
 from rocking_cli.views.view import Table
 from tests.conftest import EXAMPLES
 from tests.questions.verify.test_sheet import CASES, arithmetic, number
@@ -352,7 +352,7 @@ def test_every_formula_of_this_part_is_used():
 def parts_of_template(name, language, page, **context):
     say = build.SHEET.language(language)
     context |= {"body": lambda each: say.body(structure(name).mechanism, each), "of": "", "ending": ""}
-    return template.parts(say, build.SHEET.package, page, context)
+    return sections(say, build.SHEET.package, page, context)
 
 
 @pytest.mark.parametrize(
