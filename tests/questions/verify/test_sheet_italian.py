@@ -67,7 +67,8 @@ def english_words(packages):
     for package in packages:
         english, italian = (texts_of(package, key) for key in ("en", "it"))
         texts += english.values()
-        texts += [re.sub(rf"^({'|'.join(FAMILIES)}|body_\w+) ", "", key) for key in italian if not key.isidentifier()]
+        texts += [re.sub(rf"^({'|'.join(FAMILIES)}|body_\w+) ", "", key) for key in italian
+                  if not key.isidentifier() or ("_" not in key and key not in english)]  # fmt: skip
         folder = files(package) / "texts" / "en"
         pages = (each.read_text(encoding="utf-8") for each in (folder.iterdir() if folder.is_dir() else ()))
         texts += [re.sub(r"\{[{%].*?[%}]\}|<[^>]*>", "", page) for page in pages]
