@@ -14,16 +14,7 @@ from rocking_cli.codes.italian.capacity import BREAK, SEAT, DisplacedChain, Exac
 from rocking_cli.codes.italian.demand import REFERENCE_DAMPING, DemandSpectrum, FloorSpectrum, GroundSpectrum
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified, LimitState
-from rocking_cli.codes.italian.rules import (
-    DAMAGE,
-    LINEAR,
-    NONLINEAR,
-    OF_STATE,
-    RULES,
-    STATE_OF_METHOD,
-    STATES,
-    Rule,
-)
+from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, NONLINEAR, OF_STATE, RULES, STATE_OF_METHOD, STATES, Rule
 from rocking_cli.codes.italian.sheet import chain as chains
 from rocking_cli.codes.italian.sheet import site
 from rocking_cli.codes.italian.sheet.chain import ChainSteps, Rows
