@@ -216,23 +216,22 @@ class ExactCurve:
                 "choose another control point"
             )
 
-    def acceleration_at(self, phi: float, standing: Mechanism | None = None) -> float:
-        """Return a* at a rotation [m/s2], of what is `standing` there; at the rotation of a break the value before."""
-        return float(self._accelerations(np.array([phi]), standing or self.standing(phi))[0])
-
-    def _accelerations(self, phi: Reals, standing: Mechanism) -> Reals:
+    def accelerations(self, phi: Reals, standing: Mechanism | None = None) -> Reals:
+        """Return a* at rotations, shape (n,) [m/s2], of what is `standing` there; at a break the value before it."""
+        if standing is None:
+            values, gone = np.empty_like(phi), np.searchsorted([each.phi for each in self.breaks], phi)
+            stretches = np.where(phi == self.end, -1, gone)
+            for stretch in np.unique(stretches):
+                inside = stretches == stretch
+                values[inside] = self.accelerations(phi[inside], self.standing(phi[inside][0]))
+            return values
         here = standing.coefficients(phi, self.chain.direction)
         alpha = here.restoring(standing.gravity) / (here.B + self.chain.added(phi))
         return np.asarray(alpha * standing.gravity / (self.chain.e_star * self.confidence))
 
-    def _accelerations_between(self, phi: Reals) -> Reals:
-        """Return a* at rotations, shape (n,) [m/s2]; at the rotation of a break the value before it."""
-        values, gone = np.empty_like(phi), np.searchsorted([each.phi for each in self.breaks], phi)
-        stretches = np.where(phi == self.end, -1, gone)
-        for stretch in np.unique(stretches):
-            inside = stretches == stretch
-            values[inside] = self._accelerations(phi[inside], self.standing(phi[inside][0]))
-        return values
+    def acceleration_at(self, phi: float, standing: Mechanism | None = None) -> float:
+        """Return a* at a rotation [m/s2], see `accelerations`."""
+        return float(self.accelerations(np.array([phi]), standing)[0])
 
     def displacement_at(self, phi: float) -> float:
         """Return d at a rotation [m]."""
@@ -272,7 +271,7 @@ class ExactCurve:
         """The largest a* of the curve [m/s2]."""
         # A curve that rises up to a break has its maximum there.
         places = [*np.linspace(0.0, self.end, STEPS_PER_CURVE // 4 + 1), *(each.phi for each in self._reached_breaks)]
-        return max(self.a0, float(self._accelerations_between(np.array(places)).max()))
+        return max(self.a0, float(self.accelerations(np.array(places)).max()))
 
     @cached_property
     def last_break(self) -> Break | None:
@@ -301,7 +300,7 @@ class ExactCurve:
     def points(self, count: int = 65) -> tuple[Reals, Reals]:
         """Return points of the curve: displacements [m] and accelerations [m/s2], shape (n,) each."""
         phi = np.linspace(0.0, self.end, count)
-        return self.chain.displacement(phi, self.control), self._accelerations_between(phi)
+        return self.chain.displacement(phi, self.control), self.accelerations(phi)
 
 
 @short_repr
