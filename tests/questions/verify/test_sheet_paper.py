@@ -5,6 +5,7 @@ from math import pi, sqrt
 
 import numpy as np
 import pytest
+from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from rocking_cli.codes.italian.chain import Chain
@@ -16,7 +17,7 @@ from rocking_cli.core import Direction
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.documents import sheet_docx, sheet_page
-from rocking_cli.documents.figures import inline_svg, svg
+from rocking_cli.documents.figures import inline_svg, svg, svg_element
 from rocking_cli.plotting.structure import draw_structure
 from rocking_cli.questions.selfcheck.study import CHECKS
 from rocking_cli.studies.picture import picture
@@ -132,7 +133,11 @@ def test_the_first_page_has_what_decides_and_a_place_to_sign(page):
     assert re.search(r"@page \{\s*size: A4; margin:", text)
 
 
-def test_figures_have_the_numbers_of_the_structure(tmp_path):
+def test_figures_have_the_numbers_of_the_structure(tmp_path, monkeypatch):
+    def wide(draw, prefix):
+        return Markup(f'<div class="wide">{svg_element(draw(), prefix)}</div>')
+
+    monkeypatch.setattr(sheet_page, "inline_svg", wide)
     text = page_in("en", tmp_path)
     pictures = [" ".join(map(plain, re.findall(r"<text.*?</text>", each, re.DOTALL)))
                 for each in re.findall(r'<div class="wide">(<svg.*?</svg>)', text, re.DOTALL)]  # fmt: skip

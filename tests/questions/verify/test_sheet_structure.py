@@ -337,7 +337,8 @@ class TestCentres:
 
 
 def test_every_formula_of_this_part_is_used():
-    used = [line.formula for name in NAMES for line in lines_of(name)]
+    # Walls of many stones need no further one, and take most of the time.
+    used = [line.formula for name in NAMES if not name.startswith("masonry/") for line in lines_of(name)]
     known = {name: each for name, each in vars(formulas).items() if isinstance(each, Formula)}
     keys = {(each.symbol, each.text, each.meaning) for each in used}
     missing = {name for name in OF_STRUCTURE if (known[name].symbol, known[name].text, known[name].meaning) not in keys}
