@@ -243,7 +243,7 @@ class TestReproduction:
     def test_elsewhere_it_is_the_same_and_folders_stay_out_unless_given(self, frame_report, tmp_path, monkeypatch):
         monkeypatch.chdir(EXAMPLES)
         out = tmp_path / "r.html"
-        run("report", *FEW, "frame.yaml", "--record", "accel.csv", "-o", out)
+        run("report", "--neighbours", 20, "frame.yaml", "--record", "accel.csv", "-o", out)
         page = out.read_text(encoding="utf-8").replace(str(out), "")
         assert str(EXAMPLES) not in page and str(PROJECT) not in page
         first = frame_report[0].read_text(encoding="utf-8").replace(str(frame_report[0]), "")
