@@ -135,11 +135,7 @@ def questioned(structure: Structure, site: SiteFile) -> list[OddNumber]:
     return odd
 
 
-def verify(
-    structure: Structure,
-    site: SiteFile,
-    control: Control | None = None,
-) -> Verification:
+def verify(structure: Structure, site: SiteFile, control: Control | None = None) -> Verification:
     """Verify a structure by the code of a site, by its static methods.
 
     Parameters

@@ -258,16 +258,22 @@ def in_plain(text: str) -> str:
         below, what = match[1] == "_", match[2]
         return what if what == "*" or (below and what.isdigit()) else f"{match[1]}{what}"
 
-    signs = MARK.sub(mark, text)
-    return "".join(PLAIN_CHARACTERS[sign] if sign in PLAIN_CHARACTERS else _spelled(sign) for sign in signs)
+    return MARK.sub(mark, text).translate(PLAIN)
 
 
-def _spelled(sign: str) -> str:
-    """Return the name of a Greek letter; any other sign unchanged."""
-    if sign.isascii() or not (named := name(sign, "")).startswith("GREEK"):
+class _Plain(dict[int, str]):
+    """Replacements of signs by their code points: a Greek letter by its name, any other sign by itself."""
+
+    def __missing__(self, code: int) -> str:
+        sign = chr(code)
+        script, _, letter = name(sign, "").rpartition(" ")
+        if script.startswith("GREEK"):
+            sign = letter.capitalize() if "CAPITAL" in script else letter.lower()
+        self[code] = sign
         return sign
-    letter = named.rpartition(" ")[2]
-    return letter.capitalize() if "CAPITAL" in named else letter.lower()
+
+
+PLAIN = _Plain(str.maketrans(PLAIN_CHARACTERS))
 
 
 class Later(Sequence[Working]):

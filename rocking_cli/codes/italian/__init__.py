@@ -28,8 +28,7 @@ def _zeta(key: str) -> Number:
 def _zeta_at(state: str) -> Number:
     """Return zeta_E at a limit state, by the method that governs there; at SLD the onset of rocking."""
     return Number(
-        f"capacity over demand at {state}, by the method that governs there",
-        of=lambda found: found.zeta_at(state),
+        f"capacity over demand at {state}, by the method that governs there", of=lambda found: found.zeta_at(state)
     )
 
 

@@ -26,6 +26,7 @@ from rocking_cli.verification.results import Control
 
 STEPS_PER_CURVE = 256  # a curve is checked to be a function at these points only
 MAX_HALVINGS = 200
+PARTS = 16  # into which an interval is divided, where many points cost little more than one
 SHARE, BREAK, SEAT = "share", "break", "seat"
 """What may end the displacement capacity: the share of d0*, a break of the curve, or a lost seat."""
 
@@ -37,6 +38,17 @@ def root(rises: Callable[[float], float], low: float, high: float) -> float:
         if middle in (low, high):
             break
         low, high = (middle, high) if rises(middle) < 0 else (low, middle)
+    return high
+
+
+def reached(way: Callable[[Reals], Reals], length: float, low: float, high: float) -> float:
+    """Return where a way, shorter at `low` and not at `high`, has a length, to rounding; it takes an array."""
+    for _ in range(MAX_HALVINGS):
+        if not low < (low + high) / 2 < high:
+            break
+        points = np.linspace(low, high, PARTS + 1)
+        k = 1 + int(np.append(way(points[1:-1]) >= length, True).argmax())
+        low, high = float(points[k - 1]), float(points[k])
     return high
 
 
@@ -93,8 +105,8 @@ class ExactCurve:
             known[INTERLOCK] = mechanism.interlock.overlap
         for each in mechanism.hung.elements:
             if most := known.get(each.name):
-                slides = partial(self.slid, each.spot) if isinstance(each, ConstantForce) else None
-                phi = self._reached(slides or partial(self._longer, each), most, mechanism.limit(self.chain.direction))
+                way = partial(self.slid, each.spot) if isinstance(each, ConstantForce) else partial(self._longer, each)
+                phi = self._reached(way, most, mechanism.limit(self.chain.direction))
                 breaks += [] if phi is None else [Break(phi, each.name, most)]
         return sorted(breaks)
 
@@ -110,7 +122,7 @@ class ExactCurve:
         """Return the first rotation below an end at which a way has a length; None if there is none."""
         phi = np.linspace(0.0, end, STEPS_PER_CURVE + 1)[:-1]
         k = int((way(phi) >= length).argmax())
-        return root(lambda x: float(way(np.array([x]))[0]) - length, phi[k - 1], phi[k]) if k else None
+        return reached(way, length, phi[k - 1], phi[k]) if k else None
 
     @cached_property
     def _held(self) -> dict[Collection[str], Mechanism]:
@@ -204,12 +216,22 @@ class ExactCurve:
                 "choose another control point"
             )
 
+    def accelerations(self, phi: Reals, standing: Mechanism | None = None) -> Reals:
+        """Return a* at rotations, shape (n,) [m/s2], of what is `standing` there; at a break the value before it."""
+        if standing is None:
+            values, gone = np.empty_like(phi), np.searchsorted([each.phi for each in self.breaks], phi)
+            stretches = np.where(phi == self.end, -1, gone)
+            for stretch in np.unique(stretches):
+                inside = stretches == stretch
+                values[inside] = self.accelerations(phi[inside], self.standing(phi[inside][0]))
+            return values
+        here = standing.coefficients(phi, self.chain.direction)
+        alpha = here.restoring(standing.gravity) / (here.B + self.chain.added(phi))
+        return np.asarray(alpha * standing.gravity / (self.chain.e_star * self.confidence))
+
     def acceleration_at(self, phi: float, standing: Mechanism | None = None) -> float:
-        """Return a* at a rotation [m/s2], of what is `standing` there; at the rotation of a break the value before."""
-        mechanism = self.standing(phi) if standing is None else standing
-        here = mechanism.coefficients(np.array([phi]), self.chain.direction)
-        alpha = float(here.restoring(mechanism.gravity)[0] / (here.B[0] + self.chain.added(phi)))
-        return alpha * mechanism.gravity / (self.chain.e_star * self.confidence)
+        """Return a* at a rotation [m/s2], see `accelerations`."""
+        return float(self.accelerations(np.array([phi]), standing)[0])
 
     def displacement_at(self, phi: float) -> float:
         """Return d at a rotation [m]."""
@@ -218,7 +240,7 @@ class ExactCurve:
     def rotation(self, d: float) -> float:
         """Return the rotation at a displacement on the curve [rad]."""
         if d not in self._rotations:
-            self._rotations[d] = root(lambda phi: self.displacement_at(phi) - d, 0.0, self.end)
+            self._rotations[d] = reached(lambda phi: self.chain.displacement(phi, self.control), d, 0.0, self.end)
         return self._rotations[d]
 
     @cached_property
@@ -249,7 +271,7 @@ class ExactCurve:
         """The largest a* of the curve [m/s2]."""
         # A curve that rises up to a break has its maximum there.
         places = [*np.linspace(0.0, self.end, STEPS_PER_CURVE // 4 + 1), *(each.phi for each in self._reached_breaks)]
-        return max(self.a0, *(self.acceleration_at(float(phi)) for phi in places))
+        return max(self.a0, float(self.accelerations(np.array(places)).max()))
 
     @cached_property
     def last_break(self) -> Break | None:
@@ -278,7 +300,7 @@ class ExactCurve:
     def points(self, count: int = 65) -> tuple[Reals, Reals]:
         """Return points of the curve: displacements [m] and accelerations [m/s2], shape (n,) each."""
         phi = np.linspace(0.0, self.end, count)
-        return self.chain.displacement(phi, self.control), np.array([self.acceleration_at(float(x)) for x in phi])
+        return self.chain.displacement(phi, self.control), self.accelerations(phi)
 
 
 @short_repr

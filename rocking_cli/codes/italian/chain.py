@@ -130,14 +130,13 @@ class Chain:
         """Return the share of a mass that moves sideways by the letter of the code alone."""
         return max(each.weight - each.horizontal, 0.0) if self.whole else 0.0
 
-    def added(self, phi: float) -> float:
-        """Return the part of the sum of (P + Q) x' over g that the letter of the code adds at a rotation [kg m]."""
+    def added(self, phi: Reals) -> Reals:
+        """Return the part of the sum of (P + Q) x' over g that the letter of the code adds at rotations [kg m]."""
         if not self.whole:
-            return 0.0
+            return np.zeros_like(phi)
         more = [(each.mass * share, each.spot) for each in self.mechanism.hung.masses if (share := self._more(each))]
-        follow = self.mechanism.followed(np.array([phi]), self.direction)
-        way = sum(mass * float(follow(spot).dz[0].real) for mass, spot in more)
-        return self.direction * way
+        follow = self.mechanism.followed(phi, self.direction)
+        return self.direction * sum((mass * follow(spot).dz.real for mass, spot in more), np.zeros_like(phi))
 
     @cached_property
     def blocks(self) -> Sequence[ChainBlock]:

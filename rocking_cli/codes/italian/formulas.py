@@ -323,11 +323,5 @@ CAPACITY_FOUND = Formula("{symbol}", "{demand}(a_[g]) = {capacity}", "", "g", st
 LINEAR = Formula("a_[g,q]", "q · a_[g,0]", "{q} · {a}", "g", clauses.LINEAR, meaning="a_g_method")
 ZETA = Formula("ζ_[E{more}]", "{symbol}/{asked}", "{a}/{b}", "", clauses.ZETA, meaning="zeta")
 LASTS = Formula(
-    "T_[R{more}]",
-    "{demand}(T_[R]) = {capacity}",
-    "",
-    "years",
-    meaning="TR_capacity",
-    standing="plain",
-    digits=9,
+    "T_[R{more}]", "{demand}(T_[R]) = {capacity}", "", "years", meaning="TR_capacity", standing="plain", digits=9
 )

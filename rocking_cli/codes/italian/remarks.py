@@ -185,7 +185,7 @@ def of_direction(
     """Return remarks on one direction, with the required limit states at which displacement governs."""
     asked = {state: at for state, at in states.items() if state in ground.site.asked}
     remarks = [*_of_line(curve, states), *_of_ties(curve, states, moved), *_of_break(curve, states)]
-    remarks += [*_of_seat(curve, states), *_of_stretch(curve, asked, moved), *_of_letter(curve.chain, curve)]
+    remarks += [*_of_seat(curve, states), *_of_stretch(curve, asked, moved), *_of_letter(curve.chain)]
     remarks += _of_joint(curve, states, moved)
     T0 = ground.site.own_period
     if T0 is not None:
@@ -325,13 +325,11 @@ def _of_seat(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark
     return [Remark.of("seat", name=seat.load, length=seat.length, d=seat.d, limited=_capacities(limited))]
 
 
-def _of_letter(chain: Chain, curve: ExactCurve) -> list[Remark]:
-    remarks: list[Remark] = []
+def _of_letter(chain: Chain) -> list[Remark]:
     alpha0, lambda_ = chain.alpha0, chain.mechanism.uplift(chain.direction)
-    if abs(alpha0 / lambda_ - 1) > ROUNDING_RATIO:
-        limits = None if lambda_ < alpha0 else ()
-        remarks.append(Remark("own_formula", {"alpha0": alpha0, "lambda_": lambda_}, limits))
-    return remarks
+    if abs(alpha0 / lambda_ - 1) <= ROUNDING_RATIO:
+        return []
+    return [Remark("own_formula", {"alpha0": alpha0, "lambda_": lambda_}, None if lambda_ < alpha0 else ())]
 
 
 def of_letter(verification: ItalianVerification, ours: ItalianVerification) -> Remark:

@@ -9,12 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.capacity import pulls, strengths
 from rocking_cli.codes.italian.remarks import differences
-from rocking_cli.codes.italian.results import (
-    Dynamic,
-    ItalianVerification,
-    ItalianVerified,
-    LimitState,
-)
+from rocking_cli.codes.italian.results import Dynamic, ItalianVerification, ItalianVerified, LimitState
 from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, OF_STATE, STATE_OF_METHOD
 from rocking_cli.codes.italian.sheet.steps import PACKAGE, TERMINAL, ties
 from rocking_cli.codes.italian.sheet.summary import METHOD_NAMES, comparison, histories, methods, verdicts

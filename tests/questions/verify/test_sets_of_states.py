@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from functools import cache
 from math import cos, sin
 
 import numpy as np
@@ -41,18 +42,33 @@ def write_record(path, ag, period=PERIOD):
     path.write_text("time [s],acceleration [g]\n" + "".join(f"{x:.4f},{y:.8f}\n" for x, y in zip(t, a, strict=True)))
 
 
-@pytest.fixture
-def folder(tmp_path):
+def filled(place):
     """Records, and a list of them for each limit state as `rocking select` writes it, with factors of their own."""
-    (tmp_path / "records").mkdir()
+    (place / "records").mkdir()
     for k, ag in enumerate(AMPLITUDES):
-        write_record(tmp_path / "records" / f"r{k}.csv", ag)
+        write_record(place / "records" / f"r{k}.csv", ag)
     for state, factor in FACTORS.items():
-        made_set(tmp_path / state, factor)
-    (tmp_path / "site.yaml").write_text(yaml.safe_dump(SITE), encoding="utf-8")
+        made_set(place / state, factor)
+    (place / "site.yaml").write_text(yaml.safe_dump(SITE), encoding="utf-8")
     text = f"mechanism: block\nwidth: {2 * B}\nheight: {2 * H}\none_sided: positive\nrebound: 0.0\nname: facade\n"
-    (tmp_path / "b.yaml").write_text(text, encoding="utf-8")
-    return tmp_path
+    (place / "b.yaml").write_text(text, encoding="utf-8")
+    return place
+
+
+@pytest.fixture
+def own_folder(tmp_path):
+    """The folder of a test that changes what is in it."""
+    return filled(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A folder with further sets, in which nothing is changed."""
+    place = filled(tmp_path_factory.mktemp("sets"))
+    made_set(place / "strong", 1.2)
+    made_set(place / "few", 1.0, count=3)
+    made_set(place / "weak", 0.1)
+    return place
 
 
 def made_set(place, factor, count=7):
@@ -68,6 +84,7 @@ def of_pulse(ag, confidence):
     return H * sin(phi) + B * (1 - cos(phi))
 
 
+@cache
 def verified(folder, **sets):
     return rk.verify(FACADE, SITE, sets={state: folder / place for state, place in sets.items()})
 
@@ -99,15 +116,15 @@ class TestNumbers:
         found = run_json("verify", "../b.yaml", "--site", "../site.yaml", *sets)
         assert found["directions"]["positive"]["dynamic"] == both
 
-    def test_a_set_that_select_wrote(self, folder):
+    def test_a_set_that_select_wrote(self, own_folder):
         run(
-            "select", folder / "records" / "*.csv", "--target", folder / "site.yaml", "--state", "SLC",
-            "--band", "0.5:2", "--count", "7", "--out", folder / "chosen",
+            "select", own_folder / "records" / "*.csv", "--target", own_folder / "site.yaml", "--state", "SLC",
+            "--band", "0.5:2", "--count", "7", "--out", own_folder / "chosen",
         )  # fmt: skip
-        at = side_of(verified(folder, SLC="chosen")).dynamic["SLC"]
-        written = yaml.safe_load((folder / "chosen" / "set.yaml").read_text(encoding="utf-8"))["records"]
+        at = side_of(verified(own_folder, SLC="chosen")).dynamic["SLC"]
+        written = yaml.safe_load((own_folder / "chosen" / "set.yaml").read_text(encoding="utf-8"))["records"]
         assert [each.scale_factor for each in at.records] == [each["factor"] for each in written]
-        scaled = rk.verify(FACADE, SITE, motions=str(folder / "chosen" / "*.csv"), state="SLC")
+        scaled = rk.verify(FACADE, SITE, motions=str(own_folder / "chosen" / "*.csv"), state="SLC")
         again = side_of(scaled).dynamic["SLC"]
         assert again.peaks(confident=True) == pytest.approx(at.peaks(confident=True), rel=1e-6)
 
@@ -125,7 +142,6 @@ class TestConclusions:
     @pytest.mark.parametrize("fails", ["SLV", "SLC"])
     def test_a_state_whose_set_fails_alone_decides(self, folder, fails):
         """Its mean exceeds its capacity, but no record d0*; the other state passes with the same records, weaker."""
-        made_set(folder / "strong", 1.2)
         found = verified(folder, **{state: "strong" if state == fails else "SLV" for state in FACTORS})
         at, end = side_of(found).dynamic, found.conclusion
         assert {state: each.holds(confident=True) for state, each in at.items()} == {
@@ -149,7 +165,6 @@ class TestConclusions:
         assert not one.dynamic[state].holds(confident=True)
 
     def test_a_set_of_too_few_records_does_not_count_and_is_named_with_its_state(self, folder):
-        made_set(folder / "few", 1.0, count=3)
         found = verified(folder, SLV="SLV", SLC="few")
         end = found.conclusion
         assert end.concluded is Concluded.NOT_DECIDED and end.limit_states == ["SLV", "SLC"]
@@ -160,10 +175,10 @@ class TestConclusions:
         (table,) = (each for each in short.view.parts if isinstance(each, Table) and "time histories" in each.title)
         assert [(row[0], row[-1]) for row in table.rows] == [("SLV", "passes"), ("SLC", "too few")]
 
-    def test_a_record_that_cannot_be_read_is_named(self, folder):
-        (folder / "records" / "r6.csv").write_text("no numbers\n", encoding="utf-8")
-        asked = ("verify", folder / "b.yaml", "--site", folder / "site.yaml")
-        sets = ("--set", f"SLV={folder / 'SLV'}", "--set", f"SLC={folder / 'records' / 'r[0-3].csv'}")
+    def test_a_record_that_cannot_be_read_is_named(self, own_folder):
+        (own_folder / "records" / "r6.csv").write_text("no numbers\n", encoding="utf-8")
+        asked = ("verify", own_folder / "b.yaml", "--site", own_folder / "site.yaml")
+        sets = ("--set", f"SLV={own_folder / 'SLV'}", "--set", f"SLC={own_folder / 'records' / 'r[0-3].csv'}")
         at = json.loads(run(*asked, *sets, "--json", code=5).stdout)["directions"]["positive"]["dynamic"]
         assert (at["SLV"]["refused"], at["SLC"]["refused"]) == (["r6.csv"], [])
         assert at["SLV"]["concluded"] is at["SLC"]["concluded"] is None and len(at["SLV"]["records"]) == 6
@@ -186,10 +201,10 @@ class TestWrongInput:
             ("--set SLV=gone", "no such file"),
         ],
     )
-    def test_the_command_says_what_is_wrong(self, folder, monkeypatch, options, said):
-        monkeypatch.chdir(folder)
-        (folder / "empty").mkdir()
-        (folder / "empty" / "set.yaml").write_text("records: []\n", encoding="utf-8")
+    def test_the_command_says_what_is_wrong(self, own_folder, monkeypatch, options, said):
+        monkeypatch.chdir(own_folder)
+        (own_folder / "empty").mkdir()
+        (own_folder / "empty" / "set.yaml").write_text("records: []\n", encoding="utf-8")
         error = run("verify", "b.yaml", "--site", "site.yaml", *options.split(), code=2).stderr
         assert said in " ".join(error.split())
 
@@ -240,11 +255,11 @@ class TestSheet:
             assert curve.get_xdata()[-1] == pytest.approx(own.time[-1] * FC**0.5)
 
     @pytest.mark.parametrize("polarity", ["both", "1"])
-    def test_of_two_polarities_the_worse_is_drawn(self, folder, polarity):
+    def test_of_two_polarities_the_worse_is_drawn(self, own_folder, polarity):
         """Records to the right alone press it against its wall, until their half sine ends."""
         for k, ag in enumerate(AMPLITUDES):
-            write_record(folder / "records" / f"r{k}.csv", -ag)
-        found = rk.verify(FACADE, SITE, sets={"SLV": folder / "SLV"}, polarity=polarity)
+            write_record(own_folder / "records" / f"r{k}.csv", -ag)
+        found = rk.verify(FACADE, SITE, sets={"SLV": own_folder / "SLV"}, polarity=polarity)
         at = side_of(found).dynamic["SLV"]
         if polarity == "1":
             assert at.largest(confident=True) == 0.0
@@ -276,23 +291,20 @@ class TestSheet:
         ("it", ["Metodo dinamico allo SLV", "Metodo dinamico allo SLC", "Accelerogrammi del metodo dinamico",
                 "fattore di scala"]),
     ])  # fmt: skip
-    def test_it_has_both_states_and_all_files(self, folder, language, heads):
+    def test_it_has_both_states_and_all_files(self, own_folder, language, heads):
         """Also records of the same name in two folders."""
-        (folder / "SLC" / "set.yaml").unlink()
+        (own_folder / "SLC" / "set.yaml").unlink()
         for k, ag in enumerate(AMPLITUDES):
-            write_record(folder / "SLC" / f"r{k}.csv", 1.1 * ag)
-        sets = {"SLV": folder / "SLV", "SLC": str(folder / "SLC" / "*.csv")}
-        rk.verify(FACADE, SITE, sets=sets, sheet=folder / "s.html", language=language)
-        page = (folder / "s.html").read_text(encoding="utf-8")
+            write_record(own_folder / "SLC" / f"r{k}.csv", 1.1 * ag)
+        sets = {"SLV": own_folder / "SLV", "SLC": str(own_folder / "SLC" / "*.csv")}
+        rk.verify(FACADE, SITE, sets=sets, sheet=own_folder / "s.html", language=language)
+        page = (own_folder / "s.html").read_text(encoding="utf-8")
         assert all(each in page for each in heads)
         for k in range(7):
             assert f"records/r{k}.csv" in page.replace("\\", "/") and f"SLC/r{k}.csv" in page.replace("\\", "/")
 
     @pytest.mark.parametrize("place", ["strong", "SLV", "few", "weak"])
     def test_page_one_has_what_is_concluded_of_each_set(self, folder, place):
-        made_set(folder / "strong", 1.2)
-        made_set(folder / "few", 1.0, count=3)
-        made_set(folder / "weak", 0.1)
         found = verified(folder, SLV="SLV", SLC=place)
         page, remarks, *_ = parts_of(found.result, site_of(SITE).site)
         (table,) = (each for each in page.items if isinstance(each, Table))
@@ -320,7 +332,6 @@ class TestSheet:
         ]  # fmt: skip
 
     def test_a_structure_that_stays_at_rest_has_no_history_to_draw(self, folder):
-        made_set(folder / "weak", 0.1)
         found = verified(folder, SLV="weak")
         assert not drawn_in(found)["positive-dynamic-SLV"]
         assert side_of(found).dynamic["SLV"].requirement.ratio == np.inf

@@ -32,9 +32,8 @@ from rocking_cli.verification.check import EFFECTS as OF_EVERY_CODE
 from rocking_cli.verification.check import site_in
 from rocking_cli.verification.results import control_at
 from rocking_cli.views.conclusion import NEXT_STEPS
-from rocking_cli.views.sheet import template
 from rocking_cli.views.sheet.build import SIGNATURE_FIELDS, SheetOfCode, SheetSources, of_files
-from rocking_cli.views.sheet.document import Sentence, Steps
+from rocking_cli.views.sheet.document import Sentence, Steps, sections
 from rocking_cli.views.sheet.language import SIGNIFICANT_DIGITS, texts_of
 from rocking_cli.views.verification import view
 from rocking_cli.views.view import Table
@@ -149,6 +148,7 @@ RULES = "states", "IV", "IV_without_SLD", "local", "upgrading", "improvement", *
 )  # fmt: skip
 
 
+@cache
 def verified(structure, site, control=None):
     """The verification of a structure at a site, and the site."""
     mechanism = parse_structure(structure, "s.yaml", "test", Registry()) if isinstance(structure, str) else structure
@@ -162,7 +162,7 @@ def parts_of(found, given, language="en", by=build.SHEET):
     sources = SheetSources(File("s.yaml", b"s: 1"), File("site.yaml", b"t: 1"), {}, versions(found.mechanism))
     every = {"digits": SIGNIFICANT_DIGITS, **of_files(found.mechanism, TitleBlock("rocking", ""), sources)}
     context = {**every, **by.context(say, found, given)}
-    return template.parts(say, by.package, "sheet", context)
+    return sections(say, by.package, "sheet", context)
 
 
 def items_of(found, given, language="en", by=FULL):

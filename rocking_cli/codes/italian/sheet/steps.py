@@ -14,16 +14,7 @@ from rocking_cli.codes.italian.capacity import BREAK, SEAT, DisplacedChain, Exac
 from rocking_cli.codes.italian.demand import REFERENCE_DAMPING, DemandSpectrum, FloorSpectrum, GroundSpectrum
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified, LimitState
-from rocking_cli.codes.italian.rules import (
-    DAMAGE,
-    LINEAR,
-    NONLINEAR,
-    OF_STATE,
-    RULES,
-    STATE_OF_METHOD,
-    STATES,
-    Rule,
-)
+from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, NONLINEAR, OF_STATE, RULES, STATE_OF_METHOD, STATES, Rule
 from rocking_cli.codes.italian.sheet import chain as chains
 from rocking_cli.codes.italian.sheet import site
 from rocking_cli.codes.italian.sheet.chain import ChainSteps, Rows
@@ -32,8 +23,7 @@ from rocking_cli.core.hung.attached import Spot
 from rocking_cli.core.hung.element import INTERLOCK_NAME
 from rocking_cli.core.hung.ties import MAX_STRAIN
 from rocking_cli.verification.results import Evaluated, Formula, Remark, Working
-from rocking_cli.views.sheet import template
-from rocking_cli.views.sheet.document import workings
+from rocking_cli.views.sheet.document import sections, tables, workings
 from rocking_cli.views.sheet.language import Language, as_subscript, texts_of
 from rocking_cli.views.view import Table
 
@@ -455,18 +445,18 @@ def tie_rows(curve: ExactCurve, states: Mapping[str, LimitState]) -> Rows:
 
 def ties(say: Language, curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Table]:
     """Return a table of ties, and of forces against the motion, at limit states; empty if there are none."""
-    return template.tables(say, PACKAGE, "ties", {"states": list(states), "pulls": tie_rows(curve, states)})
+    return tables(say, PACKAGE, "ties", {"states": list(states), "pulls": tie_rows(curve, states)})
 
 
 def workings_of_direction(ground: SiteGround, found: ItalianVerified) -> list[Working]:
     """Return the calculation steps of the verification in one direction, as text in plain characters."""
     context = {"side": DirectionSteps(ground, found), "named": partial(chains.named, ENGLISH)}
-    return list(workings(template.parts(ENGLISH, PACKAGE, "direction", context)))
+    return list(workings(sections(ENGLISH, PACKAGE, "direction", context)))
 
 
 def workings_of_site(ground: SiteGround) -> list[Working]:
     """Return the values of the site file and the steps to the ground at each limit state, in plain characters."""
-    parts = template.parts(ENGLISH, PACKAGE, "site", {"ground": ground, "site": site, "counts": STATES})
+    parts = sections(ENGLISH, PACKAGE, "site", {"ground": ground, "site": site, "counts": STATES})
     rows = [ENGLISH.written(each).in_plain("Site") for each in site.given(ground)]
     for state, part in zip(site.states(ground), parts, strict=True):
         rows += [replace(each, state=state) for each in workings([part])]

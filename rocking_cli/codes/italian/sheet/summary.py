@@ -18,9 +18,8 @@ from rocking_cli.codes.italian.sheet.steps import PACKAGE, DirectionSteps, title
 from rocking_cli.studies.conclusion import Concluded
 from rocking_cli.verification.results import Remark
 from rocking_cli.views.conclusion import of_verification
-from rocking_cli.views.sheet.document import Sentence
+from rocking_cli.views.sheet.document import Sentence, tables
 from rocking_cli.views.sheet.language import Language
-from rocking_cli.views.sheet.template import tables
 from rocking_cli.views.view import Table
 
 METHOD_NAMES = {
