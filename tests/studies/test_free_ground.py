@@ -254,7 +254,7 @@ ARCHITRAVES = assembly(
 @pytest.mark.parametrize("engine", ["blocks", "auto"])
 def test_a_bridge_on_seats_has_an_outcome_and_no_rotation(engine):
     motion = sine(0.8, 0.8)
-    answer = rk.respond(BRIDGE, motion, engine=engine)
+    answer = rk.respond(BRIDGE, motion, engine=engine, tail=1.0)
     exact = slip(motion, 0.3, 3.0)
     data = answer.to_dict()
     told = data["responses"]["blocks"]
