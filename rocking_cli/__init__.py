@@ -14,6 +14,7 @@ Examples
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
 from typing import Any
 
@@ -52,6 +53,7 @@ _MOVED = {
     "exact_pulse": "rk.pulse, or rocking_cli.dynamics.exact.exact_pulse",
     "exact_response": "rk.pulse, or rocking_cli.dynamics.exact.exact_response",
     "respond_many": "rk.respond_each, or rocking_cli.dynamics.batch.respond_many",
+    "score": "validation.score.score, in a checkout of the sources",
 }
 """Names that are gone from here, each with what to use."""
 
@@ -85,7 +87,9 @@ def __getattr__(name: str) -> Any:
     ):  # other names may be modules that are being imported
         return __getattr__("mechanisms")[classes[name]]
     if name in _MOVED:
-        raise AttributeError(f"{__name__} has no {name}: use {_MOVED[name]}")
+        # `from rocking_cli import name` asks from this module first, and drops the words of an AttributeError.
+        imported = sys._getframe(1).f_globals.get("__name__") == "importlib._bootstrap"
+        raise (ImportError if imported else AttributeError)(f"{__name__} has no {name}: use {_MOVED[name]}")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 

@@ -2339,7 +2339,8 @@ def respond(  # type: ignore[overload-overlap]
     plot : str | Path | None, optional
         Plot the time histories (.png, .svg or .pdf).
     animate : str | Path | None, optional
-        Animate both engines side by side: .gif, .mp4 (requires ffmpeg), or .html, a self-contained page with a slider.
+        Animate one degree of freedom, with free blocks beside it if they simulate the motion: .gif, .mp4 (requires
+        ffmpeg), or .html, a self-contained page with a slider.
     units : str | None, optional
         Unit of the record, if the file does not state it.
     dt : float | str | None, optional

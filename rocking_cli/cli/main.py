@@ -28,7 +28,10 @@ from rocking_cli.plugins.rooms import commands, short_help
 from rocking_cli.text import cut, keeps_formulas, one_line, printable
 
 NO_MEMORY = "Could not allocate memory", "can't start new thread"  # of MuJoCo, and of Python
-GONE = {"crosscheck": "`rocking respond --engine blocks` compares both engines"}
+GONE = {
+    "crosscheck": "`rocking respond --engine blocks` compares both engines",
+    "score": "in a checkout of the sources, `python -m validation.score TESTS.csv` scores predictions",
+}
 """Commands that are gone, and what does their work."""
 MAX_EPOCH_DIGITS = 11  # number of digits of SOURCE_DATE_EPOCH, up to the year 5138
 

@@ -40,8 +40,10 @@ class BlockPeaks(NamedTuple):
     off : str
         The block, or the part of the ground, off whose edge it falls; empty if it falls otherwise.
     turned, moved, left : (float, str)
-        Largest rotation [rad] and displacement [m] of the centroid of any block, and the largest displacement in the
-        end [m], each with the block; the last is NaN after a fall.
+        Largest rotation [rad] and displacement [m] of the centroid of any block, and the largest displacement at rest
+        [m], each with the block; the last is NaN if they do not come to rest.
+    least_turn, least : float
+        Rotation [rad] and displacement [m] below which theirs are not resolved, as contacts are soft.
     """
 
     fell: str
@@ -49,6 +51,8 @@ class BlockPeaks(NamedTuple):
     turned: tuple[float, str]
     moved: tuple[float, str]
     left: tuple[float, str]
+    least_turn: float = 0.0
+    least: float = 0.0
 
 
 @short_repr

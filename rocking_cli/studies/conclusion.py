@@ -23,6 +23,7 @@ class Concluded(StrEnum):
     SLIDES = "slides"
     COMES_TO_REST = "comes_to_rest"
     ROCKS = "rocks"
+    STILL_MOVES = "still_moves"
     SATISFIED = "satisfied"
     SATISFIED_IF = "satisfied_only_if"
     NOT_CHECKED = "not_checked"
@@ -133,9 +134,10 @@ class NeighbourShare(NamedTuple):
 
 
 class ByBlocks(NamedTuple):
-    """What free blocks do beside one degree of freedom: the outcome, peak over phi_cr, slip [m], time of the fall [s].
+    """What free blocks do beside one degree of freedom: the outcome, peak over phi_cr, slip [m], and a time [s].
 
-    Numbers that do not exist are None.
+    The time is that of the fall, or that at which the simulation of blocks that still move ends. Numbers that do not
+    exist are None.
     """
 
     concluded: Concluded

@@ -34,7 +34,7 @@ ByPolarity = Mapping[int, Histories]
 
 # Word that requests the best-fitting pulse.
 BEST_PULSE = "best"
-MOST_UNASKED_STEPS = 650_000  # steps of free blocks, times their number, that are simulated without a request
+MOST_UNASKED_STEPS = 650_000  # steps of free blocks, times their number, that each polarity takes without a request
 
 
 def concluded(runs: ByPolarity, neighbours: Mapping[int, Neighbours], motion: str = "") -> Conclusion:
@@ -96,6 +96,8 @@ def _ending(run: History) -> Concluded:
         return Concluded.UNKNOWN
     if run.fell:
         return Concluded.FALLS_OFF if run.off_edge else Concluded.OVERTURNS
+    if run.by_blocks and run.still_rocking:  # one degree of freedom is certain not to overturn then
+        return Concluded.STILL_MOVES
     if isnan(run.peak_ratio):
         return Concluded.COMES_TO_REST
     return Concluded.ROCKS if run.lifted else Concluded.SLIDES if run.slip else Concluded.NO_UPLIFT
@@ -103,7 +105,8 @@ def _ending(run: History) -> Concluded:
 
 def _by_blocks(run: History) -> ByBlocks:
     ratio = None if isnan(run.peak_ratio) else run.peak_ratio
-    return ByBlocks(_ending(run), ratio, run.slip or None, run.overturning_time if run.fell else None)
+    time = run.overturning_time if run.fell else run.end_time if run.still_rocking else None
+    return ByBlocks(_ending(run), ratio, run.slip or None, time)
 
 
 @short_repr
@@ -222,7 +225,7 @@ def histories(
     from rocking_cli.studies.engines.free import Blocks, TooLong
 
     unasked = engine == "exact"
-    most, tail = MOST_UNASKED_STEPS / len(conditions.signs) if unasked else inf, conditions.tail
+    most, tail = MOST_UNASKED_STEPS if unasked else inf, conditions.tail
     if nonlinear is not None:  # they are followed until they are at rest, and as long as what is known of the other
         last = float(nonlinear.time[np.isfinite(nonlinear.phi)][-1])
         tail = max(0.0, last - (motion.duration if motion is not None else 0.0))

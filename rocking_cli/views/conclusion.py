@@ -146,6 +146,7 @@ CLAUSES = {
     Concluded.OVERTURNS: names.OVERTURNS,
     Concluded.FALLS_OFF: f"{names.FALLS_OFF} what it stands on",
     Concluded.UNKNOWN: "has an unknown outcome",
+    Concluded.STILL_MOVES: "still moves",
     Concluded.ROCKS: names.ROCKS,
     Concluded.SLIDES: "slides and does not overturn",
     Concluded.COMES_TO_REST: names.COMES_TO_REST,

@@ -116,6 +116,7 @@ class JointsOfEngine(NamedTuple):
     widest: float
     joint: str
     reach: float
+    least: float
 
 
 OF_ENGINE: tuple[Column[JointsOfEngine], ...] = (
@@ -123,7 +124,7 @@ OF_ENGINE: tuple[Column[JointsOfEngine], ...] = (
     Column("friction_joint", lambda side: side.friction_joint or None, head="at joint", text=True),
     Column("largest_opening", of("widest"), "m"),
     Column("opening_joint", lambda side: side.joint or None),
-    only_shown("largest opening or slip", lambda side: _length(side.widest, side.reach), unit="mm"),
+    only_shown("largest opening or slip", lambda side: _length(side.widest, side.reach, side.least), unit="mm"),
     only_shown("of joint", lambda side: side.joint or None, text=True),
 )
 JOINTS: tuple[Column[BlockJoint], ...] = (
@@ -142,8 +143,8 @@ def _joints_of(both: BothEngines, demand: ContactDemand) -> dict[EngineName, Joi
     widest = (max(both.joints[0].opening, both.joints[0].slip), both.joints[0].name) if both.joints else (nan, "")
     between = "" if isnan(friction) else " and ".join(name or "the ground" for name in pair)
     return {
-        "exact": JointsOfEngine(demand.friction_needed, demand.joint, *opened, reach),
-        "blocks": JointsOfEngine(friction, between, *widest, reach),
+        "exact": JointsOfEngine(demand.friction_needed, demand.joint, *opened, reach, 0.0),
+        "blocks": JointsOfEngine(friction, between, *widest, reach, both.moved.least),
     }
 
 
@@ -153,8 +154,10 @@ def joints_across(both: BothEngines, demand: ContactDemand) -> list[Column[Histo
     return of_part(OF_ENGINE, lambda run: sides["blocks" if run.by_blocks else "exact"])
 
 
-def _length(value: float, reach: float) -> str:
-    """Return an opening in mm; one beyond D_cr is no longer that of a joint, so that its size is not given."""
+def _length(value: float, reach: float, least: float) -> str:
+    """Return an opening in mm, without its size if it is not resolved, or beyond D_cr, where it is no joint's."""
+    if 0 < value <= least:
+        return f"< {number(1000 * least, 2)}"
     return f"more than {1000 * reach:.3g}" if value > reach else number(1000 * value, 3)
 
 
@@ -162,8 +165,8 @@ def joints_shown(both: BothEngines, opening: float) -> Iterator[Table | str]:
     """Yield the joints that open or slide most as free blocks; `opening` is the largest one without effect."""
     reach = both.exact.check.reach if both.exact.check is not None else nan
     millimetres: list[Column[BlockJoint]] = [
-        only_shown("opening\n[mm]", lambda joint: _length(joint.opening, reach)),
-        only_shown("slip\n[mm]", lambda joint: _length(joint.slip, reach)),
+        only_shown("opening\n[mm]", lambda joint: _length(joint.opening, reach, both.moved.least)),
+        only_shown("slip\n[mm]", lambda joint: _length(joint.slip, reach, both.moved.least)),
         only_shown(f"more than {1000 * opening * reach:.3g} mm\nat [s]", of("passed"), rounded(4)),
     ]
     if both.joints:
@@ -209,24 +212,23 @@ def _finding(both: BothEngines) -> str:
     from rocking_cli.studies.engines.free import MOVED
 
     exact, blocks = both.exact, both.of_blocks
+    agree = f"Up to {blocks.end_time:.4g} s, the" if blocks.still_rocking else "The"
     peaks = _by_both(f"{exact.peak_ratio:.4g} of its {exact.reference}", f"{blocks.peak_ratio:.4g}")
     match both.finding:
         case "exact_unknown":
             return unknown_after(exact, blocks)
         case "outcomes_differ":
-            return (
-                f"The engines disagree: by the exact engine the structure {_ends(exact)}; by free blocks it "
-                f"{_ends(blocks)}."
-            )
+            sides = f"by the exact engine the structure {_ends(exact)}; by free blocks it {_ends(blocks)}."
+            return f"The engines {'do not agree yet' if blocks.still_rocking else 'disagree'}: {sides}"
         case "peaks_differ":
             differ = f"their peaks differ by more than {percent(SAME_PEAKS)}"
-            return f"The engines agree that the structure does not overturn, but {differ}: {peaks}."
+            return f"{agree} engines agree that the structure does not overturn, but {differ}: {peaks}."
     if exact.fell:
         times = _by_both(f"{exact.overturning_time:.4g} s", f"{blocks.overturning_time:.4g} s")
         return f"The engines agree: the structure {names.OVERTURNS}, at {times}."
     does = f"{names.ROCKS}, with a peak of {peaks}" if blocks.peak_ratio else ends(exact)
     small = f", less than the {percent(MOVED)} from which free blocks count as uplifted"
-    return f"The engines agree: the structure {does}{small if exact.lifted and not blocks.lifted else ''}."
+    return f"{agree} engines agree: the structure {does}{small if exact.lifted and not blocks.lifted else ''}."
 
 
 def _by_both(exact: str, blocks: str) -> str:
@@ -234,4 +236,6 @@ def _by_both(exact: str, blocks: str) -> str:
 
 
 def _ends(run: History) -> str:
+    if run.by_blocks and run.still_rocking:
+        return f"still moves at {run.end_time:.4g} s, where the simulation ends"
     return f"{ends(run)} at {run.overturning_time:.4g} s" if run.fell else ends(run)

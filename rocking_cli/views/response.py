@@ -242,16 +242,24 @@ def _columns(*, unknown: bool = False, slides: bool = False, over: str = "phi_cr
     ]
 
 
+def _resolved(factor: float, value: float, least: float) -> str:
+    return f"< {number(factor * least, 2)}" if value <= least else number(factor * value, 4)
+
+
 BLOCKS: tuple[Column[BlockPeaks], ...] = (
     Column("falls", lambda blocks: blocks.fell or None),
     Column("falls_off", lambda blocks: blocks.off or None),
-    Column("rotation", lambda blocks: blocks.turned[0], "deg", "peak rotation of a block", rounded(4, degrees(1))),
+    Column("rotation", lambda blocks: blocks.turned[0]),
     Column("rotation_of", lambda blocks: blocks.turned[1]),
-    Column("displacement", lambda blocks: blocks.moved[0], "mm", "displacement of a block", rounded(4, 1e3)),
+    Column("displacement", lambda blocks: blocks.moved[0]),
     Column("displacement_of", lambda blocks: blocks.moved[1]),
-    Column("residual", lambda blocks: blocks.left[0], "mm", "its displacement at rest", rounded(4, 1e3)),
+    Column("residual", lambda blocks: blocks.left[0]),
     Column("residual_of", lambda blocks: blocks.left[1] or None),
-)
+    only_shown("peak rotation of a block", lambda each: _resolved(degrees(1), each.turned[0], each.least_turn),
+               unit="deg"),
+    only_shown("displacement of a block", lambda each: _resolved(1e3, each.moved[0], each.least), unit="mm"),
+    only_shown("its displacement at rest", lambda each: _resolved(1e3, each.left[0], each.least), unit="mm"),
+)  # fmt: skip
 POINTS: tuple[Column[PointPeak], ...] = (
     Column("at", lambda point: [point.at.real, point.at.imag]),
     Column("horizontal", of("horizontal")),

@@ -173,12 +173,24 @@ def _until(history: History, blocks: History | None = None) -> str:
     over = "its kinematic limit" if any(history.ends_at_limit) else "its critical rotation"
     if not history.peak_ratio:
         return f"{sentence} Until then it does not uplift."
+    less = _less_by_blocks(history, blocks) if blocks is not None else ""
     if isfinite(history.warned) and history.lower_bound < history.peak_ratio:
         return (
             f"{sentence} Until then the model, which keeps the joints closed, has a peak of {history.peak_ratio:.4g} "
             f"of {over}. A lower bound of the peak is {history.lower_bound:.4g}, that before any joint opens or slides."
+            f"{less}"
         )
-    return f"{sentence} A lower bound of the peak is {history.lower_bound:.4g} of {over}, that until then."
+    return f"{sentence} A lower bound of the peak is {history.lower_bound:.4g} of {over}, that until then.{less}"
+
+
+def _less_by_blocks(history: History, blocks: History) -> str:
+    """Return by how much the peak of free blocks is below the lower bound, as a sentence; empty if it is not."""
+    from rocking_cli.studies.engines.free import MOVED
+
+    if not blocks.peak_ratio < history.lower_bound or (not blocks.lifted and history.lower_bound <= MOVED):
+        return ""
+    less = percent(1 - blocks.peak_ratio / history.lower_bound)
+    return f" The peak of free blocks is {less} less than this bound: the engines differ by this while all joints hold."
 
 
 def _small(value: float, unit: str) -> str:
@@ -240,7 +252,7 @@ def ends(run: History) -> str:
     if run.fell:
         return f"{names.OVERTURNS} {SENSE[Direction(run.fell_to)]}"
     if run.slid is not None and run.slip:
-        return f"does not overturn, but slides {_slip(run.slid)}"
+        return f"does not overturn, but slides {_slip(run.slid, run.blocks.least if run.blocks is not None else 0.0)}"
     if not run.peak_ratio:
         return names.NO_UPLIFT
     if run.peak_ratio > 1:
@@ -253,26 +265,37 @@ def ends(run: History) -> str:
     return f"{names.ROCKS} to {run.peak_ratio:.4g} of its critical rotation phi_cr"
 
 
-def _slip(slid: Slid) -> str:
-    """Return how far and where a body slides, in words, which follow the outcome."""
+def _slip(slid: Slid, least: float) -> str:
+    """Return how far and where a body slides, in words, which follow the outcome; `least` is what is resolved [m]."""
     most, end = (
         f"{_small(abs(slip), 'm')} to the {'right' if slip > 0 else 'left'}" for slip in (slid.largest, slid.residual)
     )
-    return f"by up to {most}; at the end it is {end} of its place, after a path of {_small(slid.path, 'm')}"
+    at = f"{end} of" if abs(slid.residual) > least else "back in"
+    return f"by up to {most}; at the end it is {at} its place, after a path of {_small(slid.path, 'm')}"
 
 
 def blocks_do(run: History) -> str:
     """Return the outcome of a history of free blocks in words, which follow "the structure"."""
     assert run.blocks is not None
-    falls, off, (turned, _), (moved, mover), (left, stays) = run.blocks
+    falls, off, (turned, _), (moved, mover), (left, stays), least_turn, least = run.blocks
     if run.fell:
         where = f", where {falls} {names.FALLS_OFF} {off}" if off else f": {falls} falls first"
         return f"collapses at {run.overturning_time:.4g} s{where}"
-    at_rest = "does not come to rest" if run.still_rocking else names.COMES_TO_REST
-    does = ends(run) if run.rotates else at_rest
-    where = f" {mover} moves by up to {_small(moved, 'm')}, and {stays} stays {_small(left, 'm')} from its place"
-    still = f" It still moves at {run.end_time:.4g} s, where the simulation ends." if run.still_rocking else ""
-    return f"{does}.{where}; no block turns by more than {turned:.3g} rad{still and '.'}{still.rstrip('.')}"
+    does = ends(run) if run.rotates else names.COMES_TO_REST
+    if run.still_rocking:
+        until = f". Until then it {ends(run)}" if run.rotates else ""
+        does = f"still moves at {run.end_time:.4g} s, where the simulation ends{until}"
+    if moved <= least and turned <= least_turn:
+        return f"{does}. No block moves by more than its soft contacts let it"
+    where = (
+        f"{mover} moves by up to {_small(moved, 'm')}" if moved > least else f"No block moves by {_small(least, 'm')}"
+    )
+    if left > least:
+        where += f", and {stays} stays {_small(left, 'm')} from its place"
+    elif not run.still_rocking:
+        where += ", and all blocks return to their places"
+    most = f"more than {turned:.3g}" if turned > least_turn else f"{least_turn:.2g}"
+    return f"{does}. {where}; no block turns by {most} rad"
 
 
 def blocks_in_words(

@@ -141,6 +141,8 @@ def test_without_the_extra_one_sentence_says_what_to_install(monkeypatch):
     ("package", "says"),
     [
         ("raise OSError('libmujoco.so: cannot open')", "does not load .libmujoco.so: cannot open"),
+        ("raise RuntimeError('no display')", "does not load .no display"),
+        ("__version__ = 'nightly'", "does not load"),
         ("", "does not load"),  # what is left of a package that another one replaced
         ("__version__ = '3.12.1'", "MuJoCo 3.12.1 misses contacts"),
     ],
@@ -154,6 +156,16 @@ def test_an_installation_that_is_broken_is_named_with_what_mends_it(monkeypatch,
         match=rf"{says}[\s\S]*pip uninstall -y mujoco mujoco-core, then pip install 'rocking-cli\[blocks]'",
     ):
         scene.engine_version()
+
+
+@pytest.mark.parametrize("call", ["MjData", "mj_step", "mj_step1", "mj_contactForce", "MjSpec"])
+def test_whatever_a_damaged_one_raises_in_a_simulation_says_what_to_do(monkeypatch, call):
+    def fails(*given, **named):
+        raise RuntimeError("damaged\nhere")
+
+    monkeypatch.setattr(f"mujoco.{call}", fails)
+    with pytest.raises(rk.SolverError, match=r"failed: RuntimeError: damaged.*pip uninstall -y mujoco.*`engine` exact"):
+        free(BLOCK, HALF_SINE)
 
 
 @pytest.mark.parametrize(
@@ -173,6 +185,49 @@ def test_an_installation_that_is_broken_is_named_with_what_mends_it(monkeypatch,
 def test_what_free_blocks_cannot_have_is_refused_by_name(mechanism, says):
     with pytest.raises(rk.InputError, match=says):
         free(structure_of(mechanism), HALF_SINE)
+
+
+def test_each_return_to_rest_is_an_impact():
+    """Through rest to the other side, onto a side wall, and onto a foot that holds it just above rest."""
+    phi = np.array([0.0, 0.2, -0.2, -0.1, 0.0, 0.0, -0.3, -1e-4, -0.2, 0.1, 1e-4, 1e-4])
+    rate = np.arange(12.0)
+    found = memory.impacts_of(np.arange(12.0), phi, rate, np.abs(phi) > 1e-3)
+    assert found.tolist() == [[1.5, 1, 1], [4, -1, 3], [7, -1, 6], [pytest.approx(8 + 2 / 3), -1, 8], [10, 1, 9]]
+
+
+def test_a_wall_that_leans_on_supports_has_impacts():
+    wall = rk.Block(width=0.6, height=2.0, one_sided="positive", rebound=0.3)
+    answer = rk.respond(wall, HALF_SINE.scaled(-0.6), engine="blocks")
+    assert len(answer["nonlinear"].felt) > 0 < answer["blocks"].impact_count
+    first = answer["nonlinear"].first_impact
+    assert answer["blocks"].first_impact == pytest.approx(first, abs=0.02)
+
+
+class TestRest:
+    """Oppenheim's arch under a strong motion: its joints creep and chatter for good, by less than can be resolved."""
+
+    def test_what_contacts_give_way_by_is_rest_and_a_block_that_turns_is_not(self):
+        model = blocks.BlockModel(free_blocks(structure_of(EXAMPLES / "assembly.yaml").mechanism))
+        time = np.linspace(0.0, model.free.unit_of_time, 100)
+        moved = np.zeros((100, 7, 3))
+        moved[..., 1] = -2.5e-5 * time[:, None]  # as simulated: creep, and tilts
+        moved[..., 2] = 1.5e-5 * np.sin(40 * time)[:, None]
+        assert model._rests(moved)
+        moved[:, 3, 2] += 1e-3 * np.cosh(time / 0.7)  # one that turns back, slowly
+        assert not model._rests(moved)
+
+    @pytest.mark.parametrize(("width", "height"), [(0.4, 4.0), (0.1, 0.3), (3.0, 2.0)])
+    def test_a_block_does_not_rest_as_it_uplifts(self, width, height):
+        model = blocks.BlockModel(free_blocks(rk.Block(width=width, height=height)))
+        moved = np.zeros((2, 1, 3))
+        moved[1] = model.free.tilted(rk.Block(width=width, height=height), memory.MOVED * np.arctan2(width, height))
+        assert not model._rests(moved)
+
+    @pytest.mark.rest
+    def test_the_arch_comes_to_rest(self):
+        answer = rk.respond(EXAMPLES / "assembly.yaml", ACCEL, scale=1.5)
+        run = answer["blocks"]  # unasked, as it takes few steps
+        assert run.at_rest and run.end_time < 20 and answer.conclusion.blocks.concluded == "rocks"
 
 
 def test_answers_say_their_engine():

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import rocking_cli as rk
+from rocking_cli import names
 from rocking_cli.ask.inputs import structure_of
 from rocking_cli.dynamics.batch import Runs
 from rocking_cli.errors import StructureError
@@ -219,8 +220,25 @@ def test_ground_at_two_levels_is_as_wide_as_the_step_between_them_allows():
 def test_the_bound_on_the_time_after_a_motion_is_named(monkeypatch):
     monkeypatch.setattr(blocks, "LONGEST_TAIL", 0.5)
     answer = rk.respond(rk.Block(width=0.7, height=2.8), sine(0.4, 0.8), engine="blocks", tail=0.1)
-    assert answer["blocks"].still_rocking
-    assert f"It still moves at {0.8 + 0.5:.4g} s, where the simulation ends." in answer.to_dict()["verdict"]
+    run, told = answer["blocks"], answer.to_dict()
+    assert run.still_rocking and run.words == "still rocking"
+    ends = f"still moves at {0.8 + 0.5:.4g} s, where the simulation ends"
+    assert f"As free blocks, it {ends}. Until then it rocks to" in told["verdict"] and "stays" not in told["verdict"]
+    assert f"do not agree yet: by the exact engine the structure {names.OVERTURNS}" in told["engines"]["verdict"]
+    assert ends in told["engines"]["verdict"] and "rocks" not in told["engines"]["verdict"]
+    end = answer.conclusion.blocks
+    assert (end.concluded, end.time) == ("still_moves", run.end_time) and run.peak_ratio == end.peak_ratio
+    assert f"as free blocks it still moves at {run.end_time:.4g} s" in answer.view.parts[0].title
+    assert told["responses"]["blocks"]["blocks"]["residual"] is None
+    assert "at rest" not in " ".join(sentence for sentence in answer.sentences)
+
+
+def test_a_bridge_that_still_slides_has_not_come_to_rest(monkeypatch):
+    monkeypatch.setattr(blocks, "LONGEST_TAIL", 0.0)
+    answer = rk.respond(BRIDGE, sine(0.8, 0.8), engine="blocks", tail=0.0)
+    assert answer.conclusion.concluded == "still_moves" and answer["blocks"].words == "still rocking"
+    said = answer.to_dict()["verdict"]
+    assert said.startswith("As free blocks, the structure still moves at 0.8 s, where the simulation ends. deck moves")
 
 
 BRIDGE = assembly(
@@ -236,7 +254,7 @@ ARCHITRAVES = assembly(
 @pytest.mark.parametrize("engine", ["blocks", "auto"])
 def test_a_bridge_on_seats_has_an_outcome_and_no_rotation(engine):
     motion = sine(0.8, 0.8)
-    answer = rk.respond(BRIDGE, motion, engine=engine)
+    answer = rk.respond(BRIDGE, motion, engine=engine, tail=1.0)
     exact = slip(motion, 0.3, 3.0)
     data = answer.to_dict()
     told = data["responses"]["blocks"]

@@ -114,7 +114,7 @@ def _near(given: Mapping[str, Any], *, as_json: bool) -> int:
 
 WITH_BLOCKS = ("blocks", "auto")
 NOT_BY_ENGINES = ("model", "with_pulse")
-"""Fields that have no effect with free blocks that were requested."""
+"""Fields that cannot be combined with free blocks that were requested."""
 NOT_OF_BLOCKS = (
     *NOT_BY_ENGINES, "rtol", "opening", "impacts", "contact", "each_block", "restitution", "restitution_deviation",
     "neighbours", "out", "plot", "animate",
@@ -175,14 +175,14 @@ class RespondAsked(
     out: Path | None = table_file("Write the time histories (.csv or .parquet).", ".csv", ".parquet")
     plot: Path | None = plot_file("Plot the time histories")
     animate: Path | None = option(
-        "Animate both engines side by side: .gif, .mp4 (requires ffmpeg), or .html, a self-contained page with a "
-        "slider.",
+        "Animate one degree of freedom, with free blocks beside it if they simulate the motion: .gif, .mp4 (requires "
+        "ffmpeg), or .html, a self-contained page with a slider.",
         output(".html", ".gif", ".mp4"),
     )
     idle = (
         Idle(
             "with {azimuth} all: give one angle", lambda asked: asked.all_around,
-            ("polarity", "with_pulse", *Shown.model_fields, "tail", "neighbours", "engine"),
+            ("polarity", "with_pulse", *Shown.model_fields, "tail", "neighbours", "engine", "animate"),
         ),
         Idle(
             "without a ground motion: give {motions}", lambda asked: not asked.ground_motions,
@@ -197,15 +197,18 @@ class RespondAsked(
             "with several motions: give the one to which it belongs", lambda asked: asked.ground_motions.count > 1,
             ("vertical", "animate"),
         ),
-        Idle("with free blocks", lambda asked: asked.engine in WITH_BLOCKS, NOT_BY_ENGINES),
+        Idle(
+            "with free blocks that are requested: leave out {engine}, so that they go on by themselves",
+            lambda asked: asked.engine in WITH_BLOCKS, NOT_BY_ENGINES,
+        ),
         Idle("for free blocks", lambda asked: asked.engine == "blocks", ("restitution_deviation",)),
         Idle(
-            "without free blocks: give {engine} blocks or auto", lambda asked: asked.engine not in WITH_BLOCKS,
+            "without free blocks: leave out {engine}, or use `rocking animate`", lambda asked: asked.engine == "exact",
             ("animate",),
         ),
         Idle(
             "on linear blocks, which have no joints", lambda asked: "nonlinear" not in asked.models(("nonlinear",)),
-            ("opening", "contact", "each_block"),
+            ("opening", "contact", "each_block", "animate"),
         ),
         Idle("without neighbours", lambda asked: not asked.neighbours, DEVIATIONS),
     )  # fmt: skip

@@ -365,7 +365,8 @@ def _points(axes: Axes, run: History, scale: _Scale, until: float, watched: Watc
 
     def mark(time: float, value: float, words: str, shape: str) -> Line2D:
         look = {"marker": shape, "markersize": 4.5, "linestyle": "none", "color": style.INK, "zorder": 6}
-        return axes.plot([time], [value], label=words, **look)[0]  # type: ignore[arg-type]
+        whose = f"{style.LABELS[run.model]}: " * run.by_blocks
+        return axes.plot([time], [value], label=whose + words, **look)[0]  # type: ignore[arg-type]
 
     if run.uplift_time <= until:
         yield mark(run.uplift_time, 0.0, f"uplift at {run.uplift_time:.4g} s", "^")
@@ -373,8 +374,13 @@ def _points(axes: Axes, run: History, scale: _Scale, until: float, watched: Watc
         return
     if run.fell:
         if _leaves(run):
-            side = Direction(run.fell_to)
-            yield mark(run.overturning_time, scale.limit(run, side), _fate(run, scale), "x")
+            end = scale.limit(run, Direction(run.fell_to))
+            time, words = run.overturning_time, _fate(run, scale)
+            if run.by_blocks:  # a collapse is no rotation: its mark is at the end of the curve
+                k = _shown(run, until) - 1
+                words += ", outside the panel" if run.time[k] < time else ""
+                time, end = float(run.time[k]), float(scale.of(run)[k])
+            yield mark(time, end, words, "x")
         return
     words = _fate(run, scale)
     if watched is not None:

@@ -159,6 +159,8 @@ class _Answering:
             from rocking_cli.questions.animate.verb import FRAMES_PER_SECOND, write_film
             from rocking_cli.questions.respond.film import scene_of
 
+            if why := _no_blocks_in_words(response):
+                watch.note(f"animate: one degree of freedom alone, as {why}")
             scene = scene_of(structure, response)
             write_film(files.animate, scene, title, given.motion.name, None, FRAMES_PER_SECOND, watch)
         return answer
@@ -179,6 +181,17 @@ class _Answering:
         parted = [response.engines[sign].parted if sign in response.engines else nan for sign in response.runs]
         reversed_ = others[0] if others else None
         return draw_history(first, response.first, title, reversed_, pulse, structure, checked, parted)
+
+
+def _no_blocks_in_words(response: Response) -> str:
+    """Return why an animation has no free blocks, as a clause; empty if it has them."""
+    sign = next(iter(response.runs))
+    if sign in response.engines:
+        return ""
+    if not response["nonlinear"].unknown:
+        return f"it tells the outcome: {named('engine')} blocks simulates free blocks always"
+    why = response.no_blocks.get(sign) or "free blocks do not go on"
+    return f"{why}: {named('engine')} auto simulates them, or says why not"
 
 
 def _of_several(run: _Answering, chosen: list[Scaled]) -> Answers[ResponseAnswer]:

@@ -6,7 +6,7 @@ of the contact. This time, and the step, follow from the blocks; docs/free_block
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import ceil, inf, nan, sqrt
@@ -21,7 +21,7 @@ from rocking_cli.errors import SolverError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.engines.free_blocks import FALL, NEAR_SHARE, TURN, FreeBlocks
-from rocking_cli.studies.engines.scene import scene
+from rocking_cli.studies.engines.scene import IMPEDANCE, SLIP_STIFFNESS, mujoco_errors, scene
 from rocking_cli.studies.picture import box_around
 
 if TYPE_CHECKING:
@@ -33,10 +33,9 @@ HEAVY = 10.0  # weight straight above a block over its own, from which the conta
 SUNK = 1e-3  # largest depth to which a body may sink into another, over its size; as far it may move at rest
 SETTLING = 1.0  # over sqrt(size/g)
 LIGHT = 0.1  # normal force over the weight of the lighter block, below which friction is not looked at
-REST_ENERGY = 1e-9  # kinetic energy at rest, over m g times the size; for sqrt(size/g), as blocks also turn back
 LONGEST_TAIL = 60.0  # s after the motion for which blocks that still move are followed
 ROUNDING = 1e-6  # samples
-READ_AS = 5  # number of the rule by which an outcome is read from a motion: outcomes by others are not those kept
+READ_AS = 6  # number of the rule by which an outcome is read from a motion: outcomes by others are not those kept
 
 
 @short_repr
@@ -67,6 +66,8 @@ class BlockMotion:
     friction : mapping of tuple of str to float
         Largest shear over normal force of each pair of blocks that touch, at the samples; "" is the ground. Empty if it
         was not looked at.
+    least_turn, least : float
+        Rotation [rad] and displacement [m] below which those of blocks are not resolved.
     """
 
     time: Reals
@@ -79,6 +80,8 @@ class BlockMotion:
     at_rest: bool = False
     ended_early: bool = False
     friction: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    least_turn: float = 0.0
+    least: float = 0.0
 
 
 def time_constant(free: FreeBlocks) -> float:
@@ -129,7 +132,8 @@ class BlockModel:
         self.time_constant = time_constant(free) / finer
         self.scene = scene(free, self.time_constant)
         self._masses = np.array([body.mass for body in free.bodies]) / self.scene.mass
-        self._inertias = np.array([body.inertia for body in free.bodies]) / (self.scene.mass * self.scene.size**2)
+        corners = [np.concatenate([*free.shapes[body.name]]) - body.centroid for body in free.bodies]
+        self._radii = np.array([np.abs(each).max() for each in corners])
 
     @property
     def step(self) -> float:
@@ -139,9 +143,10 @@ class BlockModel:
     @cached_property
     def digest(self) -> str:
         """A digest of all on which motions of these blocks depend, besides the ground motion."""
-        rules = READ_AS, STEPS, FALL, TURN, SUNK, SETTLING, REST_ENERGY, LONGEST_TAIL
+        rules = READ_AS, STEPS, FALL, TURN, SUNK, SETTLING, LONGEST_TAIL
         return self.scene.digest() + repr((rules, self.free.height, self.time_constant))
 
+    @mujoco_errors()
     def simulate(
         self,
         motion: GroundMotion | None,
@@ -173,7 +178,7 @@ class BlockModel:
         Raises
         ------
         SolverError
-            If the blocks do not stand by themselves.
+            If the blocks do not stand by themselves, or MuJoCo fails.
         """
         import mujoco
 
@@ -206,7 +211,7 @@ class BlockModel:
         if start is not None:
             moved[0] = start
         frictions: dict[tuple[str, str], float] = {}
-        k = moving = 0  # samples; the last with motion
+        k, before = 0, ceil(self.scene.unit_of_time / sample)  # samples, and those in which what rests does not move
         while True:
             for step in range(k * steps, (k + 1) * steps):
                 if step < len(pushes):
@@ -231,9 +236,7 @@ class BlockModel:
             if fallen is not None:
                 break
             time = k * sample
-            if self._kinetic(data) >= REST_ENERGY:
-                moving = k
-            at_rest = time >= ended and (k - moving) * sample >= self.scene.unit_of_time
+            at_rest = time >= ended and k >= before and self._rests(moved[-1 - before :])
             if (at_rest and time >= ended + tail) or time >= last:
                 break
         return BlockMotion(
@@ -242,6 +245,7 @@ class BlockModel:
             ended_early=not failed and fallen is None and not at_rest and k * sample >= most,
             block=self.names[fallen] if fallen is not None else "",
             off=self.free.edge_passed(self.names[fallen], moved[-1]) if fallen is not None else "",
+            least_turn=self.yielding / self._radii.min(), least=self.yielding,
         )  # fmt: skip
 
     def _normal(self, moved: Reals) -> Reals:
@@ -304,9 +308,28 @@ class BlockModel:
             return f"{one} and {other} sink into each other by more than 1 per mille of their size"
         return ""
 
-    def _kinetic(self, data: mujoco.MjData) -> float:
-        rates = data.qvel[: 3 * len(self.names)].reshape(-1, 3)
-        return float(self._masses @ (rates[:, :2] ** 2).sum(axis=1) + self._inertias @ rates[:, 2] ** 2) / 2
+    @cached_property
+    def yielding(self) -> float:
+        """Distance by which contacts give way to weight while nothing moves, in sqrt(size/g): they sink and creep [m].
+
+        What moves by less is noise of contacts. A slender block turns by some 3e-4 of its critical rotation, then, less
+        than what counts as uplift.
+        """
+        friction = max(self.free.friction, *self.free.frictions.values(), 0.0)
+        creep = friction * (1 / IMPEDANCE[0] - 1) / SLIP_STIFFNESS / 2  # a force over what resists it, and 2/T
+        return self.free.gravity * self.time_constant * (self.time_constant + creep * self.scene.unit_of_time)
+
+    def _rests(self, moved: Sequence[Reals]) -> bool:
+        """Return whether no corner of a block moves farther than contacts give way by themselves.
+
+        A bare rate would not tell: a block that turns back is slow, contacts chatter as it comes to rest, and the
+        energy of a small block is none beside that of a building.
+        """
+        for each in (moved[:: len(moved) // 8 + 1], moved):  # a few samples tell of most motions, and are fast
+            across, up, turned = np.ptp(np.array(each), axis=0).T
+            if (np.hypot(across, up) + self._radii * turned).max() > self.yielding:
+                return False
+        return True
 
     def _note_friction(self, data: mujoco.MjData, most: dict[tuple[str, str], float]) -> None:
         """Raise the largest shear over normal force of the pairs that touch."""

@@ -135,20 +135,30 @@ def blocks_of(moved: BlockMotion, free: FreeBlocks) -> BlockPeaks:
     turned_most, moved_most, left = (
         (float(each.max()), names[int(each.argmax())]) for each in (turned.max(axis=0), away.max(axis=0), away[-1])
     )
-    return BlockPeaks(moved.block, moved.off, turned_most, moved_most, (nan, "") if moved.block else left)
+    at_rest = left if moved.at_rest else (nan, "")
+    return BlockPeaks(moved.block, moved.off, turned_most, moved_most, at_rest, moved.least_turn, moved.least)
 
 
 def impacts_of(time: Reals, phi: Reals, rate: Reals, moving: Bools) -> Reals:
-    """Return time, sign of the direction that ends, and rate before of each return through rest after uplift."""
-    rows, side = [], 0
+    """Return time, sign of the direction that ends, and rate before of each return to rest after uplift.
+
+    What does not go on to the other side, as at a side wall, has returned when it counts as uplifted no longer.
+    """
+    rows, side, back = [], 0, 0  # `back`: the first sample at which it counts as uplifted no longer
     for k in range(len(phi)):
         sign = np.sign(phi[k])
-        if side and sign not in (0, side):
+        if side and sign != side:
             ends = time[k - 1] + (time[k] - time[k - 1]) * phi[k - 1] / (phi[k - 1] - phi[k])
             rows.append((ends, side, abs(rate[k - 1])))
-            side = 0
+            side = back = 0
         if moving[k]:
-            side = sign
+            if back:
+                rows.append((time[back], side, abs(rate[back - 1])))
+            side, back = sign, 0
+        elif side and not back:
+            back = k
+    if back:
+        rows.append((time[back], side, abs(rate[back - 1])))
     return np.array(rows).reshape(-1, 3)
 
 

@@ -6,7 +6,8 @@ and for a tower. The plane of the structure is x-z, and depths are along y: bloc
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from hashlib import sha256
 from importlib.util import find_spec
@@ -19,8 +20,9 @@ import numpy as np
 from rocking_cli.arrays import Points, Reals
 from rocking_cli.core import PointMass
 from rocking_cli.core.hung.element import Spring
-from rocking_cli.errors import InputError, Problem
+from rocking_cli.errors import InputError, Problem, RockingError, SolverError
 from rocking_cli.studies.engines.free_blocks import FreeBlocks, HalfPlane, HeldPoint
+from rocking_cli.text import one_line
 
 if TYPE_CHECKING:
     import mujoco
@@ -44,13 +46,28 @@ def engine_version() -> str:
         import mujoco
 
         version = str(mujoco.__version__)
-    except (ImportError, OSError, AttributeError) as error:
-        why = f"MuJoCo, which simulates free blocks, is installed but does not load ({error})"
+        numbers = tuple(map(int, version.split(".")[:2]))
+    except Exception as error:  # a damaged library raises errors of any kind
+        why = f"MuJoCo, which simulates free blocks, is installed but does not load ({one_line(str(error))})"
         raise InputError(Problem(why, field="engine", hint=REINSTALL)) from None
-    if tuple(map(int, version.split(".")[:2])) < FIRST_VERSION:
+    if numbers < FIRST_VERSION:
         why = f"MuJoCo {version} misses contacts of tilted bodies, by which peaks are off by up to 13 %"
         raise InputError(Problem(why, field="engine", hint=REINSTALL))
     return version
+
+
+@contextmanager
+def mujoco_errors() -> Iterator[None]:
+    """Make a `SolverError`, which says what to do, of whatever MuJoCo raises."""
+    try:
+        yield
+    except (RockingError, MemoryError):
+        raise
+    except Exception as error:  # a damaged library raises errors of any kind
+        what = f"MuJoCo, which simulates free blocks, failed: {type(error).__name__}: {one_line(str(error))}"
+        raise SolverError(
+            f"{what}: reinstall it ({REINSTALL}), or leave free blocks out with `engine` exact"
+        ) from error
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +97,7 @@ class BlockScene:
     owners: tuple[str, ...]
     sizes: Reals
 
+    @mujoco_errors()
     def digest(self) -> str:
         """Return a digest of the model and of the version of MuJoCo."""
         import mujoco
@@ -89,6 +107,7 @@ class BlockScene:
         return sha256(buffer.tobytes() + engine_version().encode()).hexdigest()
 
 
+@mujoco_errors()
 def scene(free: FreeBlocks, time_constant: float) -> BlockScene:
     """Return free blocks as a model of MuJoCo.
 
@@ -103,6 +122,8 @@ def scene(free: FreeBlocks, time_constant: float) -> BlockScene:
     ------
     InputError
         If MuJoCo is not installed.
+    SolverError
+        If MuJoCo fails.
     """
     engine_version()
     return _Builder(free, time_constant).built()

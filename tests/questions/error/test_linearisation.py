@@ -324,7 +324,9 @@ def test_the_preferred_kappa_is_the_boldest_line_and_what_is_not_drawn_is_said()
     widths = {line.get_label(): line.get_linewidth() for line in right.get_lines()}
     assert widths[r"$\kappa_2$, preferred"] > widths[r"$\kappa_1$"]
     assert {each.get_text() for each in right.get_legend().get_texts()} == {r"$\kappa_2$, preferred", r"$\kappa_1$"}
-    assert curve.overturning_ratio1[0] < 0.5 and "beyond 50 %" in right.get_xlabel()
+    assert curve.overturning_ratio1[0] < 0.5 and "beyond 50 %" in " ".join(right.get_xlabel().split())
+    right.figure.canvas.draw()
+    assert right.xaxis.label.get_window_extent().x1 < right.figure.bbox.x1  # none of it is cut
     close = linearisation(arch, Direction.POSITIVE, [0.2, 0.5], rho[1:])
     assert "50 %" not in draw_linearisation([close], [asked], "arch").axes[1].get_xlabel()
 

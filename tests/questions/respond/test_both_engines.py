@@ -82,6 +82,10 @@ def runs_of(both):
     return {"nonlinear": both.exact, "blocks": both.of_blocks}
 
 
+def lines_of(runs, motion):
+    return {line.get_label(): line for line in draw_history(runs, motion, "").axes[1].get_lines()}
+
+
 def test_free_blocks_go_on_by_themselves_where_a_history_ends(unasked):
     """What is known until when stays that of one degree of freedom; both are in the first sentence and the heading."""
     told, (exact, blocks) = unasked.to_dict(), runs_of(unasked.engines[1]).values()
@@ -128,7 +132,7 @@ def test_beyond_the_bound_it_is_told_who_goes_on(unasked, monkeypatch):
     steps = lasts / engine.BlockModel(free).step
     monkeypatch.setattr(study, "MOST_UNASKED_STEPS", 1.01 * steps)
     assert "blocks" in rk.respond(SMOOTH, STRONG)
-    assert "blocks" not in rk.respond(SMOOTH, STRONG, polarity="both")  # which share the bound
+    assert set(rk.respond(SMOOTH, STRONG, polarity="both").engines) == {1, -1}  # each has the bound
     monkeypatch.setattr(study, "MOST_UNASKED_STEPS", 0.99 * steps)
     left = rk.respond(SMOOTH, STRONG)
     told = left.to_dict()
@@ -141,7 +145,7 @@ def test_beyond_the_bound_it_is_told_who_goes_on(unasked, monkeypatch):
 
 def test_beside_free_blocks_the_equivalent_blocks_end_where_one_degree_of_freedom_does(unasked):
     runs = unasked.runs[1]
-    lines = {line.get_label(): line for line in draw_history(runs, unasked.first, "").axes[1].get_lines()}
+    lines = lines_of(runs, unasked.first)
     (linear,) = (line for label, line in lines.items() if "kappa_2" in label)
     assert linear.get_label().endswith("$") and linear.get_xdata()[-1] <= runs["nonlinear"].known_to
     assert lines["free blocks"].get_xdata()[-1] > runs["nonlinear"].known_to
@@ -167,10 +171,10 @@ def test_a_rebound_that_is_not_known_is_not_assumed(tmp_path):
 
 def test_the_rotation_is_that_of_the_body_that_leads():
     """The slab that leans on the pier turns as fast at rest, and less beyond."""
-    slab = structure_of(EXAMPLES / "linkages" / "leaning_slab.yaml").mechanism
-    assert [lead.block for lead in free_blocks(slab).leads] == ["pier"]
-    run = rk.respond(slab, release=0.9, engine="blocks")["blocks"]
-    assert run.ratio[0] == pytest.approx(0.9, abs=1e-9)
+    structure = structure_of(EXAMPLES / "linkages" / "leaning_slab.yaml")
+    free, phi = free_blocks(structure.mechanism), 0.9 * structure.model("nonlinear").phi_cr[0]
+    assert [lead.block for lead in free.leads] == ["pier"]
+    assert free.rotation(free.tilted(structure.mechanism, phi)[None]) == pytest.approx([phi], abs=1e-9)
 
 
 @pytest.mark.parametrize("side", [1, -1])
@@ -251,6 +255,30 @@ class TestParting:
         other = changed(found, **how)
         said = f"{verdict(runs_of(other), {})} {agreement(other)}"
         assert other.finding == finding and words in said
+
+    def test_a_peak_below_what_is_known_is_said_to_be(self, found):
+        """Both bounds: that before the first warning, and that until all ends."""
+        other = changed(found, unknown=True)
+        peak = other.of_blocks.peak_ratio
+        for warned, bound, less in ((nan, peak / 0.98, "2 %"), (0.3, peak / 0.9, "10 %")):
+            exact = replace(other.exact, warned=warned, lower_bound=bound, peak_ratio=2 * peak)
+            said = verdict(runs_of(replace(other, exact=exact)), {})
+            assert f"The peak of free blocks is {less} less than this bound: the engines differ by this" in said
+        assert "less than this bound" not in verdict(runs_of(other), {})
+
+    def test_nothing_that_contacts_give_way_by_is_a_number(self, found):
+        def said(**peaks):
+            run = replace(found.of_blocks, blocks=found.of_blocks.blocks._replace(**peaks))
+            return verdict(runs_of(replace(found, of_blocks=run)), {})
+
+        least, least_turn = found.moved.least, found.moved.least_turn
+        assert 1e-5 < least < 1e-3 and 1e-5 < least_turn < 1e-3
+        nothing = {"moved": (0.9 * least, "a"), "left": (2e-6, "a"), "turned": (0.9 * least_turn, "a")}
+        assert said(**nothing).endswith("No block moves by more than its soft contacts let it.")
+        assert "and all blocks return to their places; no block turns by more" in said(left=(2e-6, "short"))
+        assert "and short stays 30 mm from its place" in said(left=(0.03, "short"))
+        assert f"no block turns by {least_turn:.2g} rad." in said(turned=nothing["turned"])
+        assert f"No block moves by {1000 * least:.3g} mm, and all blocks" in said(moved=(1e-6, "a"), left=(2e-6, "a"))
 
     def test_what_is_unknown_is_not_compared(self, found):
         other = changed(found, until=0.51, by=3.0, unknown=True)
@@ -360,6 +388,27 @@ class TestFilm:
         assert "place" not in exact and blocks["place"][-1] == pytest.approx(data["end"], abs=data["step"])
         assert data["enlargement"] == 1
 
+    def test_blocks_that_go_on_by_themselves_are_in_the_film(self, tmp_path, unasked, monkeypatch):
+        monkeypatch.setattr(study, "histories", lambda *given: (unasked.runs[1], unasked.engines[1], ""))
+        rk.respond(SMOOTH, STRONG, animate=tmp_path / "both.html")
+        assert '"free blocks"' in (tmp_path / "both.html").read_text("utf-8")
+
+    @pytest.mark.parametrize(
+        ("runs", "why", "said"),
+        [
+            ("known", "", "alone, as it tells the outcome: --engine blocks simulates free blocks always"),
+            ("unknown", "free blocks take more", "alone, as free blocks take more: --engine auto simulates them"),
+            ("unknown", "", "alone, as free blocks do not go on: --engine auto simulates them, or says why not"),
+        ],
+    )
+    def test_a_film_without_them_says_why(self, tmp_path, found, monkeypatch, runs, why, said):
+        exact = changed(found, unknown=runs == "unknown").exact
+        monkeypatch.setattr(study, "histories", lambda *given: ({"nonlinear": exact}, None, why))
+        file = tmp_path / "alone.html"
+        command = ("respond", "--pulse", "sine:0.3g:0.8s", "--neighbours", 0, "--animate", file)
+        assert said in " ".join(run(*command).stderr.split())
+        assert '"free blocks"' not in file.read_text("utf-8")
+
     def test_what_is_known_has_a_film_of_its_own(self, answer, found):
         alone = replace(answer.result, engines={})
         assert [each.name for each in scene_of(structure_of(SHORT), alone).films] == ["exact engine"]
@@ -375,11 +424,26 @@ class TestFilm:
         assert all((part != 255).any(axis=2).mean() > 0.02 for part in (moving[:, :half], moving[:, half:]))
 
 
+def test_marks_of_free_blocks_are_named_as_theirs_and_are_on_their_curve(unasked, answer, found):
+    runs = unasked.runs[1]
+    named = lines_of(runs, unasked.first)
+    fall = runs["blocks"].overturning_time
+    collapse = named[f"free blocks: collapse at {fall:.4g} s, outside the panel"]
+    assert f"free blocks: uplift at {runs['blocks'].uplift_time:.4g} s" in named
+    assert np.array_equal(collapse.get_xydata()[0], named["free blocks"].get_xydata()[-1])
+    early = replace(runs["blocks"], ratio=0.1 * runs["blocks"].ratio)  # in the panel as it collapses
+    named = lines_of(runs | {"blocks": early}, unasked.first)
+    assert named[f"free blocks: collapse at {fall:.4g} s"].get_xydata()[0] == pytest.approx([fall, early.ratio[-1]])
+    assert sum(name.startswith("free blocks: peak 0.") for name in lines_of(runs_of(found), BRIEF)) == 1
+
+
 def test_the_plot_shows_until_when_each_goes_and_when_they_part(found):
     other = changed(found, unknown=True)
     axes = draw_history(runs_of(other), BRIEF, "title", parted=[0.3]).axes[1]
     named = {each.get_label(): each for each in axes.lines}
-    (exact,), (blocks,) = ([line for name, line in named.items() if name.startswith(of)] for of in ("nonl", "free"))
+    (exact,), (blocks,) = (
+        [line for name, line in named.items() if name.startswith(of) and ":" not in name] for of in ("nonl", "free")
+    )
     assert max(exact.get_xdata()) <= 0.5 < max(blocks.get_xdata())
     assert [*named["both engines part at 0.3 s"].get_xdata()] == [0.3, 0.3]
 
@@ -398,7 +462,9 @@ def test_the_command_prints_what_the_verb_returns(answer, tmp_path, simulated):
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ({"motions": BRIEF, "animate": "a.html"}, "`animate` has no effect without free blocks: give `engine`"),
+        ({"motions": BRIEF, "engine": "exact", "animate": "a.html"}, "without free blocks: leave out `engine`"),
+        ({"motions": BRIEF, "model": "linear1", "animate": "a.html"}, "`animate` has no effect on linear blocks"),
+        ({"motions": ACCEL, "with_pulse": "best", "engine": "auto"}, "leave out `engine`, so that they go on"),
         ({"motions": [BRIEF, BRIEF.scaled(2)], "engine": "auto", "animate": "a.html"}, "has no effect with several"),
         ({"motions": BRIEF, "polarity": "both", "engine": "auto", "animate": "a.html"}, "effect with `polarity` both"),
         ({"release": 0.3, "animate": "a.html", "engine": "blocks"}, "`animate` has no effect without a ground motion"),
@@ -412,8 +478,12 @@ def test_what_cannot_be_compared_is_refused(given, words):
         rk.respond(**{"structure": SHORT} | given)
 
 
-def test_the_command_that_is_gone_names_what_does_its_work():
-    assert "`rocking respond --engine blocks`" in run("crosscheck", "a.yaml", code=2).stderr
+@pytest.mark.parametrize(("name", "instead"), [("crosscheck", "respond"), ("score", "validation.score")])
+def test_what_is_gone_names_what_does_its_work(name, instead):
+    assert instead in run(name, "a.yaml", code=2).stderr
+    with pytest.raises(ImportError, match=instead):
+        exec(f"from rocking_cli import {name}")
+    assert not hasattr(rk, name)
 
 
 @pytest.mark.rest
