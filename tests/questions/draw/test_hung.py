@@ -33,6 +33,7 @@ THRUST = {"name": "thrust", "force": [3000.0, -4000.0], "at": [0.3, 4]}
 TENDON = {"name": "tendon", "path": [{"ground": [0, 0]}, {"at": [0, 0]}], "stiffness": 2e8, "prestress": 2e4}
 FACADE = {"width": 0.6, "height": 8.0, **OF_STONE}
 TIED = {"name": "tied", "width": 1.0, "height": 5.0, **OF_STONE, "ties": [TENDON]}
+TIED_FILE = yaml.safe_dump({"mechanism": "block", **TIED})
 ONE_SIDED = {"one_sided": "positive", "rebound": 0.48}
 LEANING = {"name": "facade", **FACADE, **ONE_SIDED, "loads": [FLOOR, THRUST], "ties": [BAR]}
 
