@@ -31,7 +31,7 @@ FRAME = {"spacing": 8.0, "left_height": 6.0, "right_height": 7.5, "column_width"
 MECHANISMS = {
     "block": lambda k=1.0: Block(width=0.7 * k, height=2.8 * k),
     "frame": lambda k=1.0: AsymmetricFrame(density=2400.0, **{name: k * length for name, length in FRAME.items()}),
-    "arch": lambda k=1.0: Arch(radius=10.0 * k, thickness=1.5 * k, inclusion_angle_deg=157.5, voussoirs=9),
+    "arch": lambda k=1.0: Arch(radius=10.0 * k, thickness=1.5 * k, inclusion_angle_deg=157.5),
 }
 FREE = {"free frame": lambda k=1.0: UncheckedFrame(**MECHANISMS["frame"](k).model_dump())}
 COLUMNS = OUTCOME_FIELDS

@@ -95,7 +95,7 @@ def steps(language, verified, site):
 
 def outputs(name):
     """What the terminal prints, the workings, and the sheet in either language, each computed anew."""
-    verified, site = verified_of(*case(name))
+    verified, site = verified_of.__wrapped__(*case(name))
     tables = [each for each in view(verified, every_step=True).parts if isinstance(each, Table)]
     lines = [*verified.workings, *(line for each in shown(verified).values() for line in each.workings)]
     return tables, lines, steps("en", verified, site), steps("it", verified, site)
