@@ -288,14 +288,16 @@ def blocks_do(run: History) -> str:
     if moved <= least and turned <= least_turn:
         return f"{does}. No block moves by more than its soft contacts let it"
     where = (
-        f"{mover} moves by up to {_small(moved, 'm')}" if moved > least else f"No block moves by {_small(least, 'm')}"
+        f"{mover} moves by up to {_small(moved, 'm')}"
+        if moved > least
+        else f"No block moves by more than {_small(least, 'm')}"
     )
     if left > least:
         where += f", and {stays} stays {_small(left, 'm')} from its place"
     elif not run.still_rocking:
         where += ", and all blocks return to their places"
-    most = f"more than {turned:.3g}" if turned > least_turn else f"{least_turn:.2g}"
-    return f"{does}. {where}; no block turns by {most} rad"
+    most = f"{turned:.3g}" if turned > least_turn else f"{least_turn:.2g}"
+    return f"{does}. {where}; no block turns by more than {most} rad"
 
 
 def blocks_in_words(

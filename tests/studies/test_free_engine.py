@@ -212,16 +212,36 @@ class TestRest:
         moved = np.zeros((100, 7, 3))
         moved[..., 1] = -2.5e-5 * time[:, None]  # as simulated: creep, and tilts
         moved[..., 2] = 1.5e-5 * np.sin(40 * time)[:, None]
-        assert model._rests(moved)
+        assert model._rests(moved, np.full(7, model.yielding))
         moved[:, 3, 2] += 1e-3 * np.cosh(time / 0.7)  # one that turns back, slowly
-        assert not model._rests(moved)
+        assert not model._rests(moved, np.full(7, model.yielding))
 
     @pytest.mark.parametrize(("width", "height"), [(0.4, 4.0), (0.1, 0.3), (3.0, 2.0)])
     def test_a_block_does_not_rest_as_it_uplifts(self, width, height):
         model = blocks.BlockModel(free_blocks(rk.Block(width=width, height=height)))
         moved = np.zeros((2, 1, 3))
         moved[1] = model.free.tilted(rk.Block(width=width, height=height), memory.MOVED * np.arctan2(width, height))
-        assert not model._rests(moved)
+        assert not model._rests(moved, np.array([model.yielding]))
+
+    def test_a_pile_on_a_slope_rests_though_its_joints_creep(self):
+        slope, (width, height, count) = np.exp(1j * np.arctan(0.5)), (2.5, 0.5, 5)
+
+        def laid(left, right, low, high):
+            corners = slope * np.array([left + 1j * low, right + 1j * low, right + 1j * high, left + 1j * high])
+            return {"polygon": [[z.real, z.imag] for z in corners.tolist()]}
+
+        slabs = {f"b{k}": laid(0, width, k * height, (k + 1) * height) for k in range(count)}
+        pile = rk.Assembly(blocks=slabs, ground={"g": laid(-6, 6, -1, 0)}, density=2000, depth=1, friction=0.6)
+        found = blocks.BlockModel(free_blocks(pile)).simulate(None)
+        assert found.at_rest and found.time[-1] < 1 and np.abs(found.moved).max() < found.least
+
+    @pytest.mark.parametrize("share", [0.9999, 0.9999999])
+    def test_what_is_released_beside_its_critical_rotation_does_not_rest_there(self, share):
+        vase = rk.Block(width=0.015, height=0.05)
+        model = blocks.BlockModel(free_blocks(vase))
+        start = model.free.tilted(vase, share * np.arctan2(0.015, 0.05))
+        found = model.simulate(None, start=start, tail=0.0)
+        assert found.at_rest and np.abs(found.moved[-1]).max() < 1e-3 < np.abs(found.moved[0]).max()
 
     @pytest.mark.rest
     def test_the_arch_comes_to_rest(self):

@@ -208,7 +208,10 @@ class RespondAsked(
         ),
         Idle(
             "on linear blocks, which have no joints", lambda asked: "nonlinear" not in asked.models(("nonlinear",)),
-            ("opening", "contact", "each_block", "animate"),
+            ("opening", "contact", "each_block"),
+        ),
+        Idle(
+            "without the nonlinear model", lambda asked: "nonlinear" not in asked.models(("nonlinear",)), ("animate",)
         ),
         Idle("without neighbours", lambda asked: not asked.neighbours, DEVIATIONS),
     )  # fmt: skip

@@ -189,7 +189,7 @@ def _no_blocks_in_words(response: Response) -> str:
     if sign in response.engines:
         return ""
     if not response["nonlinear"].unknown:
-        return f"it tells the outcome: {named('engine')} blocks simulates free blocks always"
+        return f"it tells the outcome, and free blocks were not requested ({named('engine')} blocks)"
     why = response.no_blocks.get(sign) or "free blocks do not go on"
     return f"{why}: {named('engine')} auto simulates them, or says why not"
 

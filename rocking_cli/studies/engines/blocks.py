@@ -35,6 +35,7 @@ SETTLING = 1.0  # over sqrt(size/g)
 LIGHT = 0.1  # normal force over the weight of the lighter block, below which friction is not looked at
 LONGEST_TAIL = 60.0  # s after the motion for which blocks that still move are followed
 ROUNDING = 1e-6  # samples
+BALANCED = 4.0  # distance from a start over that by which contacts give way, within which what is released has not left
 READ_AS = 6  # number of the rule by which an outcome is read from a motion: outcomes by others are not those kept
 
 
@@ -143,7 +144,7 @@ class BlockModel:
     @cached_property
     def digest(self) -> str:
         """A digest of all on which motions of these blocks depend, besides the ground motion."""
-        rules = READ_AS, STEPS, FALL, TURN, SUNK, SETTLING, LONGEST_TAIL
+        rules = READ_AS, STEPS, FALL, TURN, SUNK, SETTLING, BALANCED, LONGEST_TAIL
         return self.scene.digest() + repr((rules, self.free.height, self.time_constant))
 
     @mujoco_errors()
@@ -212,6 +213,8 @@ class BlockModel:
             moved[0] = start
         frictions: dict[tuple[str, str], float] = {}
         k, before = 0, ceil(self.scene.unit_of_time / sample)  # samples, and those in which what rests does not move
+        least = self.yielding * self._levels(data)
+        balanced = start is not None and bool((self._extents([moved[0], 0 * moved[0]]) > BALANCED * least).any())
         while True:
             for step in range(k * steps, (k + 1) * steps):
                 if step < len(pushes):
@@ -236,7 +239,9 @@ class BlockModel:
             if fallen is not None:
                 break
             time = k * sample
-            at_rest = time >= ended and k >= before and self._rests(moved[-1 - before :])
+            at_rest = time >= ended and k >= before and self._rests(moved[-1 - before :], least)
+            if at_rest and balanced:  # beside the critical rotation it leaves its start slowly
+                at_rest = bool((self._extents([moved[0], now]) > BALANCED * least).any())
             if (at_rest and time >= ended + tail) or time >= last:
                 break
         return BlockMotion(
@@ -245,7 +250,7 @@ class BlockModel:
             ended_early=not failed and fallen is None and not at_rest and k * sample >= most,
             block=self.names[fallen] if fallen is not None else "",
             off=self.free.edge_passed(self.names[fallen], moved[-1]) if fallen is not None else "",
-            least_turn=self.yielding / self._radii.min(), least=self.yielding,
+            least_turn=float((least / self._radii).max()), least=float(least.max()),
         )  # fmt: skip
 
     def _normal(self, moved: Reals) -> Reals:
@@ -310,7 +315,7 @@ class BlockModel:
 
     @cached_property
     def yielding(self) -> float:
-        """Distance by which contacts give way to weight while nothing moves, in sqrt(size/g): they sink and creep [m].
+        """Distance by which a joint gives way to weight while nothing moves, in sqrt(size/g): it sinks and creeps [m].
 
         What moves by less is noise of contacts. A slender block turns by some 3e-4 of its critical rotation, then, less
         than what counts as uplift.
@@ -319,17 +324,31 @@ class BlockModel:
         creep = friction * (1 / IMPEDANCE[0] - 1) / SLIP_STIFFNESS / 2  # a force over what resists it, and 2/T
         return self.free.gravity * self.time_constant * (self.time_constant + creep * self.scene.unit_of_time)
 
-    def _rests(self, moved: Sequence[Reals]) -> bool:
+    def _levels(self, data: mujoco.MjData) -> Reals:
+        """Return how many joints there are at least between each block and the ground: creep adds up over them."""
+        joints = [(self.scene.owners[one], self.scene.owners[other]) for one, other in data.contact.geom.tolist()]
+        levels, level = {"": 0}, 0
+        while above := {
+            one for pair in joints for one, other in (pair, pair[::-1]) if other in levels and one not in levels
+        }:
+            level += 1
+            levels |= dict.fromkeys(above, level)
+        return np.array([levels.get(name, level + 1) for name in self.names], dtype=np.float64)
+
+    def _extents(self, moved: Sequence[Reals]) -> Reals:
+        """Return how far the corners of each block move at most [m], shape (blocks,)."""
+        across, up, turned = np.ptp(np.array(moved), axis=0).T
+        extents: Reals = np.hypot(across, up) + self._radii * turned
+        return extents
+
+    def _rests(self, moved: Sequence[Reals], least: Reals) -> bool:
         """Return whether no corner of a block moves farther than contacts give way by themselves.
 
         A bare rate would not tell: a block that turns back is slow, contacts chatter as it comes to rest, and the
         energy of a small block is none beside that of a building.
         """
-        for each in (moved[:: len(moved) // 8 + 1], moved):  # a few samples tell of most motions, and are fast
-            across, up, turned = np.ptp(np.array(each), axis=0).T
-            if (np.hypot(across, up) + self._radii * turned).max() > self.yielding:
-                return False
-        return True
+        few = moved[:: len(moved) // 8 + 1]  # they tell of most motions, and are fast
+        return all(bool((self._extents(each) <= least).all()) for each in (few, moved))
 
     def _note_friction(self, data: mujoco.MjData, most: dict[tuple[str, str], float]) -> None:
         """Raise the largest shear over normal force of the pairs that touch."""

@@ -396,7 +396,7 @@ class TestFilm:
     @pytest.mark.parametrize(
         ("runs", "why", "said"),
         [
-            ("known", "", "alone, as it tells the outcome: --engine blocks simulates free blocks always"),
+            ("known", "", "alone, as it tells the outcome, and free blocks were not requested (--engine blocks)"),
             ("unknown", "free blocks take more", "alone, as free blocks take more: --engine auto simulates them"),
             ("unknown", "", "alone, as free blocks do not go on: --engine auto simulates them, or says why not"),
         ],
