@@ -244,6 +244,11 @@ class TestSpectrum:
         assert found.overturned.tolist() == [1, 2] and found.doubtful.tolist() == [1, 0]
         assert np.isinf(found.fractile(0.5)).all() and found.fractile_overturns(0.5).tolist() == [False, True]
         assert found.share[0] == pytest.approx(1 / 3) and found.share_at_most[0] == pytest.approx(2 / 3)
+        found = replace(found, scales=np.arange(1.0, 4.0), peak_ratio=np.c_[peaks, [0.1, 0.1, 0.3]],
+                        lower_bound=np.c_[bounds, 3 * [np.nan]])  # fmt: skip
+        shown = spectrum_views.ShownSpectra([found], 3 * [Scaled(RECORD, 1.0)], (0.5,), "1")
+        median = next(each for each in spectrum_views._columns(shown, found) if each.head == "median")
+        assert [median.cell(k) for k in range(3)] == ["unknown", "overturns", "0.1"]
 
     def test_data_words_and_picture(self, shape):
         motions = [RECORD, RECORD.scaled(0.5), parse_pulse("sine:1g:0.5s").sampled()]

@@ -253,6 +253,7 @@ class TestPython:
         found = rk.respond(BLOCK, "r/north.csv", **pair)
         asked = ("respond", BLOCK, "--record", "r/north.csv", "--with", "r/west.csv", "--azimuth", "all")
         assert lines(*asked, "--model", "nonlinear") == [found.to_dict()]
+        assert f"one every {found.to_dict()['azimuths'][1]:g} degrees" in found.view.parts[1]
         for given in ({"polarity": "both"}, {"neighbours": 5}, {"tail": 3.0}, {"impacts": True}):
             with pytest.raises(InputError, match=f"`{next(iter(given))}` has no effect with `azimuth` all"):
                 rk.respond(BLOCK, "r/north.csv", **pair, **given)
