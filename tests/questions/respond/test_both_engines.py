@@ -277,8 +277,10 @@ class TestParting:
         assert said(**nothing).endswith("No block moves by more than its soft contacts let it.")
         assert "and all blocks return to their places; no block turns by more" in said(left=(2e-6, "short"))
         assert "and short stays 30 mm from its place" in said(left=(0.03, "short"))
-        assert f"no block turns by {least_turn:.2g} rad." in said(turned=nothing["turned"])
-        assert f"No block moves by {1000 * least:.3g} mm, and all blocks" in said(moved=(1e-6, "a"), left=(2e-6, "a"))
+        assert f"no block turns by more than {least_turn:.2g} rad." in said(turned=nothing["turned"])
+        assert f"No block moves by more than {1000 * least:.3g} mm, and all blocks" in said(
+            moved=(1e-6, "a"), left=(2e-6, "a")
+        )
 
     def test_what_is_unknown_is_not_compared(self, found):
         other = changed(found, until=0.51, by=3.0, unknown=True)
@@ -463,7 +465,7 @@ def test_the_command_prints_what_the_verb_returns(answer, tmp_path, simulated):
     ("given", "words"),
     [
         ({"motions": BRIEF, "engine": "exact", "animate": "a.html"}, "without free blocks: leave out `engine`"),
-        ({"motions": BRIEF, "model": "linear1", "animate": "a.html"}, "`animate` has no effect on linear blocks"),
+        ({"motions": BRIEF, "model": "linear1", "animate": "a.html"}, "`animate` has no effect without the nonlinear"),
         ({"motions": ACCEL, "with_pulse": "best", "engine": "auto"}, "leave out `engine`, so that they go on"),
         ({"motions": [BRIEF, BRIEF.scaled(2)], "engine": "auto", "animate": "a.html"}, "has no effect with several"),
         ({"motions": BRIEF, "polarity": "both", "engine": "auto", "animate": "a.html"}, "effect with `polarity` both"),
