@@ -16,16 +16,19 @@ from rocking_cli import __version__
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))  # mathml.py, phone.py, folded.py
 
-from make_reference import docstrings, typed
+import make_json
+from make_reference import command_line, made, typed
+from parts import HERE
 
 project = "rocking-cli"
 author = "The rocking-cli authors"
 project_copyright = author
 version = release = __version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml", "phone", "folded"]
-# All but the first are parts of other pages.
-exclude_patterns = ["_generated", "corrections.md", "validation_*.md", "trust/*.md"]
+extensions = [
+    "myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_reredirects", "mathml", "phone", "folded"
+]  # fmt: skip
+exclude_patterns = ["_generated"]
 myst_enable_extensions = ["dollarmath"]
 myst_fence_as_directive = ["math"]  # ```math is what code forges draw
 myst_heading_anchors = 3
@@ -60,45 +63,73 @@ napoleon_use_rtype = False
 napoleon_use_ivar = True
 default_role = "code"  # `name` in a docstring
 
+# Pages of earlier versions, which messages and other sites name, and where their text is now.
+MOVED = {
+    "structures": ["mechanisms", "starters"],
+    "mechanisms/linkage": ["linkages"],
+    "examples": [
+        "walls/column_with_tendon", "walls/facade", "walls/floor_wall", "walls/gable", "walls/statue",
+        "masonry/buttressed_arch", "masonry/cracked_facade", "masonry/portal", "masonry/wall_of_three",
+        "masonry/wall_with_openings",
+    ],
+    "motions": ["records", "selection"],
+    "histories": ["commands"],
+    "verification": ["sheet"],
+    "fragility": ["fragility_programs", "measures"],
+    "import": ["import_svg"],
+    "tutorial": ["gallery", "before_and_after"],
+    "architecture": ["extending", "names", "kernels"],
+    "how_far_to_trust_it": ["scoring"],
+    "reference/commands": ["cli"],
+}  # fmt: skip
+redirects = {old: "../" * old.count("/") + f"{page}.html" for page, those in MOVED.items() for old in those}
+
 # What is a folder or a file of the repository, and has a page here.
 ELSEWHERE = {
     "](../examples/)": "](examples.md)",
-    "](../examples/plugin)": "](examples.md#a-plugin)",
+    "](../examples/plugin)": "](plugins.md)",
     "](../README.md#set-up)": "](index.md#set-up)",
+    "](../CONTRIBUTING.md)": "](contributing.md)",
     "one file that needs no network": "{download}`one file that needs no network <_generated/run/report.html>`",
 }
-NAMES = re.compile(r"^<!-- names: (?P<names>.+?) -->\n.*?^<!-- end -->\n", re.M | re.S)
-NAME = re.compile(r"\[`(\w+)`\]\(api/\w+\.md#([\w.]+)\)")
 WHOLE = {
     "changelog": "```{include} ../CHANGELOG.md\n```\n",
     "contributing": "```{include} ../CONTRIBUTING.md\n:relative-docs: docs/\n```\n",
-    "scoring": "```{include} ../validation/README.md\n:relative-docs: ../docs/\n```\n",
 }
+DOCS = Path(__file__).resolve().parent
+ENTRY = re.compile(r"^- \[(.+?)\]\((\S+)\.md\)", re.M)
+INNER = re.compile(r"\[([^]]+)\]\((\S+?)\.md\)")
+REFERENCE = {"commands": ("# Options of the commands\n", command_line), "json": ("", make_json.page)}
+"""Pages that are made whole: their beginnings, and their contents."""
+
+
+def _write_reference(app: Sphinx) -> None:
+    (DOCS / "reference").mkdir(exist_ok=True)
+    for name, (beginning, content) in REFERENCE.items():
+        (DOCS / "reference" / f"{name}.md").write_text(f"{beginning}\n{content()}", encoding="utf-8")
 
 
 def _on_the_site(app: Sphinx, page: str, source: list[str]) -> None:
     text = WHOLE.get(page, source[0])
+    text = HERE.sub(lambda part: made(part["kind"], " ".join(part["what"].split())), text)
     for link, here in ELSEWHERE.items():
         text = text.replace(link, here)
-    text = NAMES.sub(lambda part: docstrings(part["names"]), text)
-    if page == "api":
-        pages = re.findall(r"^## \[.+?\]\((.+?)\.md\)", text, re.M)
-        text = NAME.sub(r"{py:obj}`\1 <\2>`", text) + _menu("Names", pages)
-    source[0] = text + _menus(text) if page == "index" else text
+    source[0] = text + _menus(page, text)
 
 
-def _menus(text: str) -> str:
-    """Return the menus of the site, from the lists of contents of the first page."""
-    _, *lists = re.split(r"^##+ (?=Contents|Worked|Mechanisms|Background|Reference)", text, flags=re.M)
-    menus = []
-    for each in lists:
-        links = re.findall(r"^- \[(.+?)\]\((\S+)\.md\)", each, re.M)
-        menus.append(_menu(each.split("\n")[0], [f"{name} <{link}>" for name, link in links]))
-    return "\n" + "\n".join(menus)
+def _menus(page: str, text: str) -> str:
+    """Return the menus of a page, from the contents on the first page: all for that, of others those below its entry."""
+    if page == "index":
+        _, *lists = text.partition("\n## Contents\n")[2].split("\n### ")
+        return "".join(_menu(each.partition("\n")[0], ENTRY.findall(each)) for each in lists)
+    contents = (DOCS / "index.md").read_text(encoding="utf-8")
+    below = re.search(rf"^- \[.+?\]\({page}\.md\).*\n(?P<below>(?:  .*\n)+)", contents, re.M)
+    return _menu("", INNER.findall(below["below"])) if below else ""
 
 
-def _menu(caption: str, entries: list[str]) -> str:
-    return "\n".join(["", "```{toctree}", ":hidden:", f":caption: {caption}", "", *entries, "```", ""])
+def _menu(caption: str, entries: list[tuple[str, str]]) -> str:
+    lines = [f"{name} </{page}>" for name, page in entries]
+    return "\n".join(["", "```{toctree}", ":hidden:", f":caption: {caption}" * bool(caption), "", *lines, "```", ""])
 
 
 def _signature(app: Sphinx, what: str, name: str, each: Any, *_: Any) -> tuple[str, str] | None:
@@ -117,6 +148,7 @@ def _to_its_text(app: Sphinx, env: BuildEnvironment, node: Element, text: Elemen
 
 def setup(app: Sphinx) -> None:
     """Called by Sphinx."""
+    app.connect("builder-inited", _write_reference)
     app.connect("source-read", _on_the_site)
     app.connect("autodoc-process-signature", _signature)
     app.connect("missing-reference", _to_its_text)

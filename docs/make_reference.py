@@ -1,4 +1,4 @@
-"""Parts of the documentation that come from the code: command line, fields of mechanisms, Python names."""
+"""What the site has from the code alone: command line, JSON, fields of mechanisms and studies, Python names."""
 
 from __future__ import annotations
 
@@ -11,21 +11,25 @@ from types import ModuleType
 from typing import Any, is_typeddict
 
 import click
-from parts import asked
+import make_chooser
+from parts import HERE
 from pydantic import BaseModel
 
 import rocking_cli
-from rocking_cli import core
+from rocking_cli import Registry, core, verification
 from rocking_cli.ask.asked import told_of
 from rocking_cli.cli.help import RECORDS_HEADING, heading_of
 from rocking_cli.cli.main import main
+from rocking_cli.processing.intensity import IntensityMeasures, power_of
 from rocking_cli.questions.fragility.asked import OfStudy
 from rocking_cli.questions.fragility.definition import Definition
 from rocking_cli.verification import Code
 from rocking_cli.views.mechanisms import fields
 
 API = Path(__file__).resolve().parent / "api"
-EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
+PROJECT = Path(__file__).resolve().parent.parent
+EXAMPLES = PROJECT / "examples"
+LANGUAGES = {".yaml": "yaml", ".py": "python", ".toml": "toml"}
 
 
 def command_line() -> str:
@@ -124,19 +128,23 @@ def study_fields() -> str:
 
 def names_of(page: str) -> list[str]:
     """Return the names that a page of the Python reference documents, those of other modules with their modules."""
-    parts = asked((API / f"{page}.md").read_text(encoding="utf-8"))
-    return [name for kind, what in parts if kind == "names" for name in what.split()]
+    return [name for part in HERE.finditer(page_of(page)) if part["kind"] == "names" for name in part["what"].split()]
+
+
+def page_of(page: str) -> str:
+    """Return the text of a page of the Python reference."""
+    return (API / f"{page}.md").read_text(encoding="utf-8")
 
 
 def index(pages: str) -> str:
     """Return tables of all names of pages of the Python reference, each of which leads to its text."""
     lines = []
     for page in pages.split():
-        title = (API / f"{page}.md").read_text(encoding="utf-8").partition("\n")[0].removeprefix("# ")
+        title = page_of(page).partition("\n")[0].removeprefix("# ")
         lines += ["", f"## [{title}](api/{page}.md)", "", "| name | what it is |", "|---|---|"]
         for name in names_of(page):
             first = plain(summary(resolve_name(f"rocking_cli.{name}"))).replace("|", "\\|")
-            lines.append(f"| [`{name.rpartition('.')[2]}`](api/{page}.md#rocking_cli.{name}) | {first} |")
+            lines.append(f"| {{py:obj}}`{name.rpartition('.')[2]} <rocking_cli.{name}>` | {first} |")
     return "\n".join(lines)
 
 
@@ -205,6 +213,46 @@ def equivalent_blocks(names: str) -> str:
                 rows[-1] = f"| {structure.name} | both{row}"
             else:
                 rows.append(f"| {structure.name} | {direction.label}{row}")
+    return "\n".join(rows)
+
+
+def made(kind: str, what: str) -> str:
+    """Return what a marker on a page stands for."""
+    each = {
+        "mechanism": lambda: mechanism(Registry()[what]),
+        "blocks": lambda: equivalent_blocks(what),
+        "core": lambda: helpers(what),
+        "verification": lambda: helpers(what, verification),
+        "names": lambda: docstrings(what),
+        "index": lambda: index(what),
+        "chooser": lambda: make_chooser.listed(what),
+        "study": study_fields,
+        "measures": measures,
+        "formulas": standing_of_formulas,
+        "readme": lambda: of_the_readme(what),
+        "file": lambda: file_of(what),
+    }
+    return each[kind]()
+
+
+def of_the_readme(name: str) -> str:
+    """Return the text of the README between `<!-- NAME -->`, or its beginning, and `<!-- /NAME -->`."""
+    before, _, _ = (PROJECT / "README.md").read_text(encoding="utf-8").partition(f"<!-- /{name} -->")
+    return before.rpartition(f"<!-- {name} -->")[2].replace("](docs/", "](")
+
+
+def file_of(name: str) -> str:
+    """Return a file of the project as a block of code."""
+    return f"```{LANGUAGES[Path(name).suffix]}\n{(PROJECT / name).read_text(encoding='utf-8').strip()}\n```"
+
+
+def measures() -> str:
+    """Return a table of the intensity measures: how each is written, its definition, unit, and how it scales."""
+    rows = ["| measure | definition | unit | scales with |", "|---|---|---|---|"]
+    for each in IntensityMeasures().values():
+        scales = {0.0: "nothing", 1.0: "the factor", 2.0: "its square", None: "each run"}[power_of(each)]
+        told = summary(each) + (f" {each.source}." if each.source else "")
+        rows.append(f"| `{each.form()}` | {plain(told)} | {each.unit} | {scales} |")
     return "\n".join(rows)
 
 

@@ -1,9 +1,9 @@
-"""The generated parts of the pages: the text between `<!-- KIND: WHAT -->` and `<!-- end -->`.
+"""The parts of the pages that are made: `<!-- KIND: COMMAND -->` to `<!-- end -->`, and `<!-- here: KIND WHAT -->`.
 
-Pages are read as files, on a code forge or in an editor, and the site is built from the same files, so generated text
-is part of them. A part is rewritten only if its content changes. The outputs of commands hold numbers, which differ in
-their last digits from processor to processor: two outputs are the same if their words are equal and their numbers are
-close.
+Commands with their outputs are part of a page, as it is read as a file too. They are rewritten only if the output
+changes: it holds numbers, which differ in their last digits from processor to processor, so two outputs are the same if
+their words are equal and their numbers are close. What `here` stands for, such as a table of fields, is on the site
+alone.
 """
 
 from __future__ import annotations
@@ -12,19 +12,20 @@ import re
 from collections.abc import Callable
 from math import isclose
 
-PART = re.compile(r"^<!-- (?P<kind>\w+): (?P<what>.+?) -->\n(?P<made>.*?)^<!-- end -->$", re.M | re.S)
+PART = re.compile(r"^<!-- (?P<kind>run|draw): (?P<what>.+?) -->\n(?P<made>.*?)^<!-- end -->$", re.M | re.S)
+HERE = re.compile(r"^<!-- here: (?P<kind>\w+)(?P<what>.*?) -->$", re.M | re.S)
 NUMBER = re.compile(r"(?<![\w.#-])[-+]?(?:\d{1,3}(?:,\d{3})+|\d+)(?:\.\d+)?(?:e[-+]?\d+)?")
 CLOSE = 0.02  # of a number: far more than rounding, far less than what another option changes
 RAN = "run"  # the kind of part that holds the output of a command
 
 
-def asked(text: str) -> list[tuple[str, str]]:
-    """Return kind and subject of each part of a page."""
-    return [(part["kind"], part["what"]) for part in PART.finditer(text)]
+def commands(text: str) -> list[str]:
+    """Return the commands of a page."""
+    return [part["what"] for part in PART.finditer(text)]
 
 
 def renewed(text: str, make: Callable[[str, str], str]) -> str:
-    """Return a page with its changed parts rewritten; `make` gives the text of a kind and a subject."""
+    """Return a page with its changed commands and outputs rewritten; `make` gives the text of a kind and a command."""
 
     def anew(part: re.Match[str]) -> str:
         made = "\n" + make(part["kind"], part["what"]).strip("\n") + "\n\n"

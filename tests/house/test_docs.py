@@ -30,7 +30,7 @@ pytestmark = pytest.mark.drawn
 
 DOCS = PROJECT / "docs"
 OWN = [PROJECT / "README.md", PROJECT / "CONTRIBUTING.md"]
-FOLDERS = ("", "api/", "mechanisms/", "walls/", "masonry/")
+FOLDERS = ("", "api/", "mechanisms/")
 PAGES = sorted([*OWN, *(page for folder in FOLDERS for page in DOCS.glob(f"{folder}*.md"))])
 MECHANISMS = [name for name in Registry() if Registry().package_of(name).startswith("rocking-cli ")]
 
@@ -44,8 +44,15 @@ def made():
     """How the pages are made: make_pages, and the modules it uses."""
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(DOCS)
-        names = "make_chooser", "make_pages", "make_reference", "make_runs", "make_sheets", "parts"
+        names = "make_chooser", "make_json", "make_pages", "make_reference", "make_runs", "make_sheets", "parts"
         yield SimpleNamespace(**{name: import_module(name) for name in names})
+
+
+def on_the_site(made, name):
+    """The text of a page, with what its markers stand for."""
+    return made.parts.HERE.sub(
+        lambda part: made.make_reference.made(part["kind"], " ".join(part["what"].split())), text_of(name)
+    )
 
 
 @pytest.fixture(scope="module")
@@ -141,28 +148,34 @@ def test_a_page_can_be_read_as_a_file(page):
 
 
 def test_every_command_is_explained(made):
-    headings = " ".join(re.findall(r"^## .*", text_of("commands.md"), re.M))
-    assert [name for name in commands() if not re.search(rf"`rocking {name}\b", headings)] == []
+    shown = " ".join(page.read_text(encoding="utf-8") for page in PAGES)
+    assert [name for name in commands() if not re.search(rf"\brocking {name}\b", shown)] == []
     reference = made.make_reference.command_line()
     assert [name for name in commands() if f"\n## rocking {name}\n" not in reference] == []
 
 
+def test_json_has_the_keys_of_every_command_and_meanings_where_they_are_declared(made):
+    page = made.make_json.page()
+    held = {line.split()[0] for line in made.make_json.HELD.read_text(encoding="utf-8").splitlines() if line[0] != " "}
+    assert held == set(re.findall(r"^## rocking (\w+)$", page, re.M)) == set(commands())
+    assert re.search(r"^    - `lambda`: Uplift acceleration\..*\[g]$", page, re.M)
+    assert re.search(r"^- `conclusion`\n(?:  .*\n)*  - `known_until`: Time until which .* \\\[s]; None", page, re.M)
+
+
 @pytest.mark.parametrize("name", MECHANISMS)
-def test_every_mechanism_has_its_page(name):
-    page = text_of(f"mechanisms/{name}.md")
-    assert f"<!-- mechanism: {name} -->" in page
-    assert f"(../pictures/draw_{name}.svg)" in page
-    assert "## Equations" in page
+def test_every_mechanism_has_its_page(name, made):
+    assert f"(../pictures/draw_{name}.svg)" in text_of(f"mechanisms/{name}.md")
     assert f"(mechanisms/{name}.md)" in text_of("index.md")
-    assert f"(static/mechanisms/{name}.svg) `{name}`](mechanisms/{name}.md): " in text_of("mechanisms.md")
+    chooser = on_the_site(made, "structures.md")
+    assert f"(static/mechanisms/{name}.svg) `{name}`](mechanisms/{name}.md): " in chooser
     own = [row["field"] for row in fields(Registry()[name]) if not row["common"]]
-    assert own
-    assert all(f"| `{field}` |" in page for field in own)
+    page = on_the_site(made, f"mechanisms/{name}.md")
+    assert own and all(f"| `{field}` |" in page for field in own)
 
 
 def test_every_page_is_in_the_contents():
-    parts = {"index.md", "corrections.md", "validation_head.md", "validation_faults.md"}
-    assert all(f"({page.name})" in text_of("index.md") for page in DOCS.glob("*.md") if page.name not in parts)
+    pages = [page.relative_to(DOCS).as_posix() for page in PAGES if page not in OWN]
+    assert [page for page in pages if page != "index.md" and f"({page})" not in text_of("index.md")] == []
 
 
 @pytest.fixture(scope="module")
@@ -171,7 +184,7 @@ def documented(made):
     pages = [page.stem for page in (DOCS / "api").glob("*.md")]
     listed = [name for page in pages for name in made.make_reference.names_of(page)]
     assert len(set(listed)) == len(listed)
-    assert sorted(pages) == sorted(re.search(r"^<!-- index: (.+) -->$", text_of("api.md"), re.M)[1].split())
+    assert sorted(pages) == sorted(re.search(r"^<!-- here: index (.+) -->$", text_of("api.md"), re.M)[1].split())
     return {name: resolve_name(f"rocking_cli.{name}") for name in listed}
 
 
@@ -296,10 +309,10 @@ def test_the_measure_of_the_guide_is_what_it_says():
     assert measure.usually() == ("RMS(0:10)",)
 
 
-def test_every_measure_is_explained():
-    page = text_of("measures.md")
+def test_every_measure_is_explained(made):
+    page = on_the_site(made, "fragility.md")
     for name in IntensityMeasures():
-        assert re.search(rf"^\|.*`{re.escape(name)}[`(]", page, re.M), name
+        assert re.search(rf"^\| `{re.escape(name)}[`(].* \| .+ \|", page, re.M), name
 
 
 def test_the_guide_gives_the_signatures_of_what_a_sketch_shows():
@@ -312,9 +325,9 @@ def test_the_guide_gives_the_signatures_of_what_a_sketch_shows():
 HELPERS = {name: each for name, each in vars(core).items() if name[0] != "_" and not isinstance(each, ModuleType)}
 
 
-def helpers_of_the_guide():
+def helpers_of_the_guide(made):
     """The section on helpers, and what it says of each by its name: how it is called, and the sentence on it."""
-    section = text_of("plugins.md").partition("## Every helper\n")[2].partition("\n## ")[0]
+    section = on_the_site(made, "plugins.md").partition("## Every helper\n")[2].partition("\n## ")[0]
     listed = re.findall(r"^- `(\w+)(.*?)`: (.+)$", section, re.M)
     assert len({name for name, *_ in listed}) == len(listed)
     return section, {name: (called, said) for name, called, said in listed}
@@ -327,9 +340,9 @@ def as_written(found):
     return re.sub(r"^\(self(, )?", "(", text)
 
 
-def test_every_helper_of_the_core_is_in_the_guide_to_plugins():
-    """One that is missing: put its name into a `<!-- core: ... -->` of docs/plugins.md and run `make docs`."""
-    section, listed = helpers_of_the_guide()
+def test_every_helper_of_the_core_is_in_the_guide_to_plugins(made):
+    """One that is missing: put its name into a `<!-- here: core ... -->` of docs/plugins.md."""
+    section, listed = helpers_of_the_guide(made)
     kinds = {name for name in HELPERS if re.search(rf"`{name}` is\s", section)}
     assert kinds == {"Reals", "Outline", "Vertex"}  # what arguments are: they are not called
     assert set(HELPERS) - kinds - set(listed) == set()
@@ -339,8 +352,8 @@ def test_every_helper_of_the_core_is_in_the_guide_to_plugins():
     assert {name for name in answers if name[0] != "_"} - methods == set()
 
 
-def test_the_guide_to_plugins_gives_the_signature_of_every_helper():
-    _, listed = helpers_of_the_guide()
+def test_the_guide_to_plugins_gives_the_signature_of_every_helper(made):
+    _, listed = helpers_of_the_guide(made)
     bare = {name for name, (called, _) in listed.items() if not called}
     assert bare == {
         "Attached", "Mechanism", "NoEquivalentBlock", "NoMotion", "bends", "smooth", "has_mass", "directions",
@@ -370,7 +383,7 @@ def test_what_is_explained_of_an_output_is_printed(name):
 def test_links_lead_somewhere_in_the_repository_too(page):
     text = re.sub(r"^    .*", "", page.read_text(encoding="utf-8"), flags=re.M)  # without code
     for link in re.findall(r"\]\(([^)#\s]+)", text):
-        if not link.startswith("https:"):
+        if not link.startswith(("https:", "reference/", "../reference/")):  # of the site alone, where Sphinx follows them
             assert (page.parent / link).exists(), link
 
 
