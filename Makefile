@@ -17,7 +17,7 @@ LATER := rest or docs or types or kernels
 
 .PHONY: setup constraints demo selfcheck test test-all test-rest test-newest test-oldest test-kernels test-versions test-elsewhere damage soak crash bounds fuzz fields \
 	properties budget lint type contracts check bench kernels same-kernels validation free-blocks scoreboard trust trust-check pages pictures \
-	docs docs-check release clean
+	docs docs-check words release clean
 
 setup: $(STAMP)  ## Create the environment and install the package with its development tools
 
@@ -166,8 +166,11 @@ pages: $(DOCS_STAMP)  ## Every made page, list and picture: the types of the pac
 docs: pages  ## The documentation as a site, out/site/index.html; every warning is an error
 	$(BIN)/python -m sphinx -W --keep-going -E -q -b html -d out/doctrees docs out/site
 
-docs-check: docs  ## The same, and an error if `make pages` had to renew anything
+docs-check: docs words  ## Both, and an error if `make pages` had to renew anything
 	git diff --exit-code --stat -- docs README.md rocking_cli/__init__.pyi
+
+words:  ## The words of the pages by topic, and an error if a topic has more than its number
+	$(PYTHON) docs/count_words.py
 
 $(RELEASE_STAMP): $(PACKAGE_STAMP)
 	$(BIN)/python $(INSTALL) --editable ".[release]"
