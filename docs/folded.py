@@ -1,4 +1,4 @@
-"""A part of the site: long reference pages whose sections fold, and outputs whose sentences fit the screen."""
+"""A part of the site: long pages whose sections fold on a phone, and outputs whose sentences fit the screen."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from docutils import nodes
 from sphinx import addnodes
 from sphinx.application import Sphinx
 
-LONGEST = 50_000  # characters of a page that is shown whole
+LONGEST = 12_000  # characters of a page that a phone shows whole
 SHELL = re.compile(r"(rocking|pip|pipx|uv|make|python|cd) ")  # starts of command lines, which may be broken
 MORE = "Arguments, results, members"  # of a public name
 ALIGNED = re.compile(r"\S {2,}\S|─|^ +\S")  # what is in lines whose columns are aligned
@@ -22,13 +22,13 @@ BLOCK = re.compile(
 
 
 def _fold(app: Sphinx, page: nodes.document, name: str) -> None:
-    """Fold the sections of a long page, and all but the first paragraph on each public name."""
+    """Let sections of a long page fold, and fold all but the first paragraph on each public name."""
     (top,) = (each for each in page.children if isinstance(each, nodes.section))
     if len(page.astext()) > LONGEST and not name.startswith("api/"):
         for section in top.children:
             if isinstance(section, nodes.section):
                 title, *rest = section.children
-                section.children = [_html("<details><summary>"), title, _html("</summary>"), *rest, _html("</details>")]
+                section.children = [_html('<details class="part" open><summary>'), title, _html("</summary>"), *rest, _html("</details>")]
     for content in page.findall(addnodes.desc_content):
         first, rest = content.children[:1], content.children[1:]
         if rest and not isinstance(content.parent.parent, addnodes.desc_content):

@@ -39,7 +39,7 @@ KEPT_CONTENT = KEPT / "content.json"
 Entry = list[str | float]
 Content = list[Entry]
 
-WIDTH = 100  # columns of the terminal
+WIDTH = 80  # columns of the terminal
 CLOSE = 1e-2  # of a number, mean or deviation: pictures differ by less from machine to machine
 PHONE = "-phone.svg"  # ending of the drawing of a plot for a phone
 LARGEST = 100_000  # bytes of a picture of pixels

@@ -1,4 +1,8 @@
-/* Opens the folded part to which a link leads, and all parts for print. */
+/* Folds the parts of a long page on a phone; opens the one to which a link leads, and all for print. */
+function fold_parts() {
+  if (matchMedia("(max-width: 46em)").matches)
+    document.querySelectorAll("details.part").forEach((each) => (each.open = false));
+}
 function open_target() {
   const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
   if (!target) return;
@@ -7,6 +11,6 @@ function open_target() {
     if (each.tagName === "DETAILS") each.open = true;
   target.scrollIntoView({ behavior: "instant" });
 }
-addEventListener("DOMContentLoaded", open_target);
+addEventListener("DOMContentLoaded", () => (fold_parts(), open_target()));
 addEventListener("hashchange", open_target);
 addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((each) => (each.open = true)));

@@ -541,7 +541,9 @@ def _break_lines(axes: Axes, before: set[Any], height_share: float) -> None:
 def tidy(axes: Axes, x: str = "", y: str = "") -> None:
     """Apply the common style to axes."""
     if x:
-        axes.set_xlabel(folded(x, page_width() - MAX_SIDE_MARGIN, LABEL), fontsize=LABEL)
+        place = axes.get_subplotspec()
+        side_by_side = 1 if place is None else place.get_gridspec().ncols
+        axes.set_xlabel(folded(x, page_width() / side_by_side - MAX_SIDE_MARGIN, LABEL), fontsize=LABEL)
     if y:
         axes.set_ylabel(y, fontsize=LABEL)
     axes.grid(True, color=GRID, linewidth=THIN)

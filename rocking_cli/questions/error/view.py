@@ -254,9 +254,7 @@ def draw_linearisation(curves: Sequence[Linearisation], asked: Sequence[Linearis
                 axes.set_title(f"{curve.direction.label} direction", fontsize=style.LABEL, loc="left")
             axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
             style.in_percent(axes.yaxis)
-            style.tidy(axes, y=y)
-            room = style.page_width() / 2 - style.MAX_SIDE_MARGIN  # there are two panels in a row
-            axes.set_xlabel(style.folded(x, room, style.LABEL), fontsize=style.LABEL)
+            style.tidy(axes, x, y)
     style.heading_of_all(figure, title)
     for _, right in panels:  # the preferred one may differ
         right.legend(loc="best", **style.LEGEND)

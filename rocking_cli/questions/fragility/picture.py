@@ -585,13 +585,13 @@ def draw_ranking(ranking: Ranking) -> Figure:
     figure, drawn = style.panels(1.0 + 0.26 * len(measures), 1, 1 + bool(ranking.against), sharey=True)
     panels = drawn.ravel()
     filled = " (filled: residuals show no trend)" if ranking.against else ""
-    style.heading(panels[0], f"{ranking.structure}: which measure predicts best{filled}")
+    style.heading_of_all(figure, f"{ranking.structure}: which measure predicts best{filled}")
     places = np.arange(len(measures))
     for place, each in zip(places, measures, strict=True):
         face = style.INK if each.sufficient else style.PAPER
         panels[0].plot(each.efficiency, place, "o", color=style.INK, markerfacecolor=face, markersize=6)
     panels[0].set_xlim(left=0.0)
-    panels[0].set_xlabel(r"efficiency: dispersion of $\ln(\phi/\phi_{cr})$", fontsize=style.LABEL)
+    style.tidy(panels[0], r"efficiency: dispersion of $\ln(\phi/\phi_{cr})$")
     if ranking.against:
         for k, name in enumerate(ranking.against):
             values = np.array([each.trends[name] for each in measures])
@@ -599,11 +599,10 @@ def draw_ranking(ranking: Ranking) -> Figure:
             panels[1].plot(np.maximum(values, MIN_DRAWN_P_VALUE), places, **look, label=name)
         panels[1].axvline(MIN_P_VALUE, color=style.INK, linewidth=style.MEDIUM, linestyle="--")
         panels[1].set_xlim(MIN_DRAWN_P_VALUE / 1.3, 1.3)
-        panels[1].set_xlabel(f"p-value of no trend; trend if below {MIN_P_VALUE:g}", fontsize=style.LABEL)
+        style.tidy(panels[1], f"p-value of no trend; trend if below {MIN_P_VALUE:g}")
         style.logarithmic(panels[1].xaxis, (1.0,))
         style.legend_below(figure, grows=True)
     for axes in panels:
         axes.set_yticks(places, [each.measure for each in measures], parse_math=False)
         axes.set_ylim(len(measures) - 0.4, -0.6)
-        style.tidy(axes)
     return figure

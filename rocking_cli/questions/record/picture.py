@@ -109,9 +109,7 @@ def draw_before_and_after(before: GroundMotion, after: GroundMotion, shift: floa
         _set_height(axes, old, new)
         style.time_axis(axes, 0.0, max(before.duration, shift + after.duration))
         style.tidy(axes, y=label)
-    label = f"time [s]; {', '.join(after.processing)}"
-    panels[2].set_xlabel(style.folded(label, style.page_width() - style.MAX_SIDE_MARGIN, style.LABEL))
-    panels[2].xaxis.label.set_size(style.LABEL)
+    style.tidy(panels[2], f"time [s]; {', '.join(after.processing)}")
     for motion, look in ((before, BEFORE_STYLE), (after, AFTER_STYLE)):
         spectrum = response_spectrum(motion, SPECTRUM_PERIODS[2 * motion.dt < SPECTRUM_PERIODS])
         panels[3].plot(spectrum.periods, spectrum.sa, **look)

@@ -192,8 +192,7 @@ def _draw_time(
         left_out.append(f"{end:g} to {latest:.4g} s, {why}")
     label = f"time [s]; not shown: {'; '.join(left_out)}" if left_out else "time [s]"
     label = label.replace(", at rest; ", " and ") if label.endswith(", at rest") else label
-    room = style.page_width() - style.MAX_SIDE_MARGIN
-    axes.set_xlabel(style.folded(label, room, style.LABEL), fontsize=style.LABEL)
+    style.tidy(axes, label)
     return start, end
 
 

@@ -277,7 +277,7 @@ def draw_capacity(
         if demand is None:
             axes.legend(**style.LEGEND)
     label = "displacement d of the single-degree-of-freedom system [m]"
-    panel_axes[-1].set_xlabel(say(label if demand is None else "displacement d, S_De [m]"), fontsize=style.LABEL)
+    style.tidy(panel_axes[-1], say(label if demand is None else "displacement d, S_De [m]"))
     if demand is not None:
         style.legend_below(figure, panel_axes[0].get_legend_handles_labels()[0], 3)
     return in_language(say, figure)
