@@ -43,7 +43,7 @@ class TestScript:
         found = release.commands(README)
         assert len(found) == README.count("\n    rocking ") > 2
         assert all(words[0] == "rocking" and "#" not in words for words in found)
-        assert ["rocking", "new", "asymmetric_frame", ">", "frame.yaml"] in found
+        assert ["rocking", "new", "block", ">", "block.yaml"] in found
         assert release.written(["rocking", "draw", "--plot", "a.png", "-o", "b", ">", "c"]) == ["a.png", "b", "c"]
 
     def test_the_python_that_the_readme_shows_is_run(self, release):
