@@ -444,7 +444,10 @@ PICTURES = {"scatter.png", "response.png", "spectrum.png", "fragility.png"}
 
 
 @pytest.mark.docs
-@pytest.mark.parametrize(("page", "pictures"), [("python.md", PICTURES), ("import.md", {"import.png"})])
+@pytest.mark.parametrize(
+    ("page", "pictures"),
+    [("tutorial.md", {"response.png"}), ("python.md", PICTURES), ("import.md", {"import.png"})],
+)
 def test_the_pages_on_python_do_what_they_show(page, pictures, maker, tmp_path):
     assert maker("make_python").run(tmp_path, page) == 0
     assert {path.name for path in tmp_path.glob("*.png")} == pictures
