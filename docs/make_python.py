@@ -1,4 +1,4 @@
-"""Runs what docs/python.md and docs/import.md show, line by line, in a folder of its own with the examples in it.
+"""Runs what some pages of docs show of Python, line by line, in a folder of its own with the examples in it.
 
 python docs/make_python.py            # part of make docs
 """
@@ -16,7 +16,7 @@ from tempfile import TemporaryDirectory
 from rocking_cli import DoubtWarning
 
 DOCS = Path(__file__).resolve().parent
-PAGES = ("python.md", "import.md")
+PAGES = ("tutorial.md", "python.md", "import.md")
 
 
 def run(folder: Path, page: str) -> int:

@@ -441,10 +441,11 @@ def test_a_mechanism_stands_for_the_file_of_an_entry(tmp_path):
 
 
 PICTURES = {"scatter.png", "response.png", "spectrum.png", "fragility.png"}
+PAGES = [("tutorial.md", {"response.png"}), ("python.md", PICTURES), ("import.md", {"import.png"})]
 
 
 @pytest.mark.docs
-@pytest.mark.parametrize(("page", "pictures"), [("python.md", PICTURES), ("import.md", {"import.png"})])
+@pytest.mark.parametrize(("page", "pictures"), PAGES)
 def test_the_pages_on_python_do_what_they_show(page, pictures, maker, tmp_path):
     assert maker("make_python").run(tmp_path, page) == 0
     assert {path.name for path in tmp_path.glob("*.png")} == pictures

@@ -400,3 +400,12 @@ def test_what_is_refused_is_said_in_the_words_of_the_code(name):
         parts = re.split(r"\b[A-Z]\b(?:, [A-Z]\b)*|\.\.\.|[;:] |touches", f" {message} ")
         for words in (each.strip(" ,") for each in parts):
             assert words in code, (message, words)
+
+
+def test_messages_that_are_explained_are_those_of_the_code():
+    """Each message of the index of docs/faq.md, between the names and values that it stands with."""
+    messages = re.findall(r"^\| `(.+?)` \|", text_of("faq.md").partition("## Messages\n")[2], re.M)
+    files = [*PROJECT.glob("rocking_cli/**/*.py"), *PROJECT.glob("mechanisms/**/*.py")]
+    code = re.sub('" f?"', "", " ".join(" ".join(file.read_text(encoding="utf-8").split()) for file in files))
+    assert len(messages) > 20
+    assert [each for each in messages if not all(part.strip() in code for part in each.split("..."))] == []
