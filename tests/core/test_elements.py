@@ -259,7 +259,7 @@ def test_the_fields_of_a_law_are_fields_of_its_tie(law, tmp_path, monkeypatch):
 
 
 def test_the_law_of_the_guide_is_this_one():
-    section = (PROJECT / "docs" / "plugins.md").read_text(encoding="utf-8").partition("## A law of a tie\n")[2]
+    section = (PROJECT / "docs" / "plugins.md").read_text(encoding="utf-8").partition("## Add a law of a tie\n")[2]
     lines = section.partition("\n- `Stretched`")[0].splitlines()
     code = "\n".join(line[4:] for line in lines if line.startswith("    ") or not line)
     own = ast.parse((PROJECT / "tests" / "stiffening.py").read_text(encoding="utf-8")).body[1:]

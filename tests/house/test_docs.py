@@ -237,7 +237,7 @@ def of_the_guide(title, head=""):
 
 def test_the_hollow_body_of_the_guide_holds_the_contract():
     """The chimney less its shaft is made of its walls and its cap, each a box."""
-    chimney = of_the_guide("Hollow bodies")["Chimney"](width=3.0, height=20.0, shaft=2.0, cap=1.0)
+    chimney = of_the_guide("Subtract a hole")["Chimney"](width=3.0, height=20.0, shaft=2.0, cap=1.0)
     assert [each for each in contract(chimney) if not each.passed] == []
     parts = [(19.0, 0.5, 3.0, side) for side in (-1.25, 1.25)] + [(19.0, 2.0, 0.5, 0.0)] * 2
     boxes = [box("wall", high * across * deep, across, high, x + 0.5j * high) for high, across, deep, x in parts]
@@ -251,7 +251,7 @@ def test_the_hollow_body_of_the_guide_holds_the_contract():
 
 def test_the_braced_parapet_of_the_guide_holds_the_contract():
     """The brace keeps its length and its top on the back of the parapet, which turns: by hand."""
-    made = of_the_guide("Bodies that move one another")["BracedParapet"]
+    made = of_the_guide("Move bodies by joints")["BracedParapet"]
     given = {"thickness": 0.3, "height": 1.5, "reach": 0.8, "rest": 1.1}
     parapet = made(brace_mass=0.1, **given)
     assert [each for each in contract(parapet) if not each.passed] == []
@@ -272,7 +272,7 @@ def test_the_braced_parapet_of_the_guide_holds_the_contract():
 
 def test_the_statue_of_the_guide_holds_the_contract_and_is_checked():
     """As rocking starts, the ends of its plinth bear what a bracket under u_g'' = lambda g does; then they open."""
-    statue = of_the_guide("Contacts")["Statue"](width=0.7, height=1.4, plinth=0.4, tall=1.0, share=0.3)
+    statue = of_the_guide("Name its joints")["Statue"](width=0.7, height=1.4, plinth=0.4, tall=1.0, share=0.3)
     assert [each for each in contract(statue) if not each.passed] == []
     g = statue.gravity
     for s in core.Direction:
@@ -302,7 +302,7 @@ def test_the_ladder_of_the_linkages_is_refused_as_its_page_says(tmp_path):
 
 def test_the_measure_of_the_guide_is_what_it_says():
     head = "from dataclasses import dataclass, field\nfrom rocking_cli.processing.intensity import MotionMeasure\n"
-    measure = of_the_guide("A measure of intensity", head)["Bracketed"].read(["2", "8 s"])
+    measure = of_the_guide("Add a measure of intensity", head)["Bracketed"].read(["2", "8 s"])
     motion = rocking_cli.read_record(PROJECT / "examples" / "accel.csv")
     expected = sum((a / 9.80665) ** 2 for a in motion.acceleration[200:801]) / 601
     assert (str(measure), measure.value(motion)) == ("RMS(2.0:8.0)", pytest.approx(expected**0.5))

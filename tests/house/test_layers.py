@@ -95,7 +95,7 @@ SHARED = {
 
 
 def test_no_class_name_is_defined_in_two_files(package):
-    """One name for one thing, see `docs/names.md`."""
+    """One name for one thing, see `docs/architecture.md`."""
     homes: dict[str, set[str]] = {}
     for place, text in package.items():
         for name in re.findall(r"(?m)^ *class (\w+)", text):

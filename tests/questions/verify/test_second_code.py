@@ -607,7 +607,7 @@ class TestGuide:
                 ("A complete code:", "4. *Methods.*"),
                 ("Its text is a Jinja template, `texts/en/sheet.md`:", "Further texts are in"),
                 ("Further texts are in `texts/en.toml`:", "The values come"),
-                ("The values come from the code:", "Blocks of a template"),
+                ("The values come from the code:", "Blank lines separate"),
             )
         )  # fmt: skip
         package = tmp_path / "rocking_guide"
