@@ -381,7 +381,7 @@ def test_links_lead_somewhere_in_the_repository_too(page):
 @pytest.mark.parametrize("name", ["linkage", "assembly"])
 def test_what_is_refused_is_said_in_the_words_of_the_code(name):
     """Each message of the table, between the names that it stands with."""
-    section = text_of(f"mechanisms/{name}.md").partition("## What is refused, and what to do\n")[2].partition("\n## ")[0]
+    section = text_of(f"mechanisms/{name}.md").partition("## What is refused, and what to do\n")[2]
     messages = [row.split("|")[1].strip() for row in section.split("\n") if row.startswith("| ")][1:]
     files = [*PROJECT.glob("mechanisms/**/*.py"), *PROJECT.glob("rocking_cli/core/*.py")]
     code = " ".join(" ".join(file.read_text(encoding="utf-8").split()) for file in files)
