@@ -1,4 +1,7 @@
-"""Writes the chooser of mechanisms: a thumbnail of each, static/mechanisms/NAME.svg, and the list that shows them."""
+"""Writes the chooser of mechanisms: a thumbnail of each, static/mechanisms/NAME.svg, and the list that shows them.
+
+The templates of common structures have thumbnails in the same folder; a table of docs/structures.md shows them.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +12,11 @@ from matplotlib.figure import Figure
 from parts import same
 
 from rocking_cli import Registry
+from rocking_cli.core.structure_file import parse_structure
+from rocking_cli.io.starters import STARTERS, starter
 from rocking_cli.questions.mechanisms.command import drawing
 from rocking_cli.questions.mechanisms.picture import THUMBNAIL, draw_thumbnail
+from rocking_cli.studies.picture import picture
 
 PLACE = Path(__file__).resolve().parent / "static" / "mechanisms"
 
@@ -25,18 +31,19 @@ def listed(names: str) -> str:
 
 
 def thumbnail(name: str) -> str:
-    """Return the file of the thumbnail of a mechanism."""
+    """Return the file of the thumbnail of a mechanism or of a template."""
+    shown = picture(parse_structure(starter(name), name, name)) if name in STARTERS else drawing(name, Registry())
     figure = Figure(figsize=(THUMBNAIL.real, THUMBNAIL.imag), frameon=False)  # the page shows through
-    draw_thumbnail(figure.add_axes((0, 0, 1, 1)), drawing(name, Registry()))
+    draw_thumbnail(figure.add_axes((0, 0, 1, 1)), shown)
     return themed(figure, name)
 
 
 def stale() -> dict[str, str]:
-    """Return the thumbnails that are missing or differ from what is drawn, by the names of mechanisms."""
+    """Return the thumbnails that are missing or differ from what is drawn, by their names."""
     every = Registry()
     own = [name for name in every if every.package_of(name).startswith("rocking-cli ")]
     there = {file.stem: file.read_text(encoding="utf-8") for file in PLACE.glob("*.svg")}
-    return {name: text for name in own if not same(text := thumbnail(name), there.get(name, ""))}
+    return {name: text for name in [*own, *STARTERS] if not same(text := thumbnail(name), there.get(name, ""))}
 
 
 def keep() -> None:

@@ -112,7 +112,7 @@ def table_of_fields(cls: Any) -> str:
             words = (plain(row[key]) for key in ("description", "symbol", "unit", "bounds"))
             rows.append(f"| `{row['field']}` | {' | '.join(words)} | {default} |")
     common = ", ".join(f"`{row['field']}`" for row in fields(cls) if row["common"])
-    return "\n".join(rows) + f"\n\nand {common}, see [what is common to all](../mechanisms.md)."
+    return "\n".join(rows) + f"\n\nand {common}, see [what is common to all](../structures.md)."
 
 
 def study_fields() -> str:

@@ -91,7 +91,7 @@ def test_numbers_beyond_all_bounds_end_in_a_message():
 def test_every_unit_has_one_kind_and_no_table_is_behind():
     first = [next(iter(units)) for units in KINDS.values()]
     assert [kind_of(unit) for unit in first] == list(KINDS)
-    page = (PROJECT / "docs" / "mechanisms.md").read_text(encoding="utf-8")
+    page = (PROJECT / "docs" / "structures.md").read_text(encoding="utf-8")
     table = dict(re.findall(r"^\| ([a-z ]+) \| (`.*`) \|$", page, re.M))
     for kind, units in KINDS.items():
         assert table[kind] == ", ".join(f"`{unit}`" for unit in units)

@@ -34,8 +34,8 @@ def test_a_linkage_of_the_gallery_is_equivalent_to_a_block_and_holds_the_contrac
         assert all(np.isfinite([block.p, block.phi_cr, block.lambda_, block.eta]))
         assert 0 < block.phi_cr < found.limit(direction)
     assert [each for each in contract(found) if not each.passed] == []
-    page = (EXAMPLES.parent / "docs" / "linkages.md").read_text(encoding="utf-8")
-    assert f"<!-- file: examples/linkages/{name}.yaml -->" in page
+    page = (EXAMPLES.parent / "docs" / "mechanisms" / "linkage.md").read_text(encoding="utf-8")
+    assert f"<!-- here: file examples/linkages/{name}.yaml -->" in page
 
 
 @pytest.mark.every(2)
@@ -43,7 +43,8 @@ def test_a_linkage_of_the_gallery_is_equivalent_to_a_block_and_holds_the_contrac
 def test_a_worked_example_rocks(name):
     shaking = rk.GroundMotion("sine", 0.01, 8 * np.sin(2 * np.pi * np.arange(101) / 100), unit="m/s2")
     assert follow(build_model(structure(f"masonry/{name}"), "nonlinear"), shaking).lifted
-    assert (EXAMPLES.parent / "docs" / "masonry" / f"{name}.md").exists()
+    page = (EXAMPLES.parent / "docs" / "examples.md").read_text(encoding="utf-8")
+    assert f"<!-- here: file examples/masonry/{name}.yaml -->" in page
 
 
 def test_the_voussoirs_of_the_example_are_surveyed_ones():
