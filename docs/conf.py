@@ -123,8 +123,9 @@ def _menus(page: str, text: str) -> str:
         _, *lists = text.partition("\n## Contents\n")[2].split("\n### ")
         return "".join(_menu(each.partition("\n")[0], ENTRY.findall(each)) for each in lists)
     contents = (DOCS / "index.md").read_text(encoding="utf-8")
-    below = re.search(rf"^- \[.+?\]\({page}\.md\).*\n(?P<below>(?:  .*\n)+)", contents, re.M)
-    return _menu("", INNER.findall(below["below"])) if below else ""
+    entry = re.search(rf"^- \[.+?\]\({page}\.md\)(?P<below>.*\n(?:  .*\n)*)", contents, re.M)
+    below = INNER.findall(entry["below"]) if entry else []
+    return _menu("", below) if below else ""
 
 
 def _menu(caption: str, entries: list[tuple[str, str]]) -> str:

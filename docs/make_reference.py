@@ -236,7 +236,7 @@ def made(kind: str, what: str) -> str:
 
 
 def of_the_readme(name: str) -> str:
-    """Return the text of the README between `<!-- NAME -->`, or its beginning, and `<!-- /NAME -->`."""
+    """Return the text of the README between `<!-- NAME -->` and `<!-- /NAME -->`."""
     before, _, _ = (PROJECT / "README.md").read_text(encoding="utf-8").partition(f"<!-- /{name} -->")
     return before.rpartition(f"<!-- {name} -->")[2].replace("](docs/", "](")
 
