@@ -24,8 +24,7 @@ project_copyright = author
 version = release = __version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml", "phone", "folded"]
-# All but the first are parts of other pages.
-exclude_patterns = ["_generated", "corrections.md", "validation_*.md", "trust/*.md"]
+exclude_patterns = ["_generated"]
 myst_enable_extensions = ["dollarmath"]
 myst_fence_as_directive = ["math"]  # ```math is what code forges draw
 myst_heading_anchors = 3
@@ -72,7 +71,6 @@ NAME = re.compile(r"\[`(\w+)`\]\(api/\w+\.md#([\w.]+)\)")
 WHOLE = {
     "changelog": "```{include} ../CHANGELOG.md\n```\n",
     "contributing": "```{include} ../CONTRIBUTING.md\n:relative-docs: docs/\n```\n",
-    "scoring": "```{include} ../validation/README.md\n:relative-docs: ../docs/\n```\n",
 }
 
 

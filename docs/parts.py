@@ -12,7 +12,7 @@ import re
 from collections.abc import Callable
 from math import isclose
 
-PART = re.compile(r"^<!-- (?P<kind>\w+): (?P<what>.+?) -->\n(?P<made>.*?)^<!-- end -->$", re.M | re.S)
+PART = re.compile(r"^<!-- (?!made:)(?P<kind>\w+): (?P<what>.+?) -->\n(?P<made>.*?)^<!-- end -->$", re.M | re.S)
 NUMBER = re.compile(r"(?<![\w.#-])[-+]?(?:\d{1,3}(?:,\d{3})+|\d+)(?:\.\d+)?(?:e[-+]?\d+)?")
 CLOSE = 0.02  # of a number: far more than rounding, far less than what another option changes
 RAN = "run"  # the kind of part that holds the output of a command
