@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from functools import cache
 from itertools import pairwise
 from math import atan, ceil, sin
-from time import process_time
 from typing import NamedTuple
 
 import numpy as np
@@ -27,7 +26,6 @@ from validation.pages import DOCS, renewed, table
 PAGE, EXAMPLES = DOCS / "free_blocks.md", DOCS.parent / "examples"
 G = 9.80665
 AFTER = 1.5  # s after a motion for which its peak is looked for
-SHORT = 0.2  # s of a motion whose cost is measured
 RECOVERED = 10  # time constants in which contacts give back what they stored in an impact
 
 # Motions whose peak is no chance: that of every neighbour (1 % of amplitude, .01 of restitution) is within 15 %.
@@ -52,7 +50,6 @@ FALLING = (
 )  # fmt: skip
 FREE = ("block.yaml", "wall.yaml", "masonry/portal.yaml", "arch.yaml", "masonry/buttressed_arch.yaml")
 SLIDES = ((0.3, 0.4), (0.39, 0.4), (0.5, 0.4), (0.7, 0.4), (0.7, 0.6))  # acceleration over g, friction
-COSTS = ("block.yaml", "masonry/portal.yaml", "masonry/buttressed_arch.yaml", "masonry/wall_with_openings.yaml")
 
 
 class Free(NamedTuple):
@@ -202,24 +199,11 @@ def heavy(ratio: float, finer: float = 1.0) -> tuple[float, float, float]:
     return exact, halves(free.motion.time, free.phi)[1][1], free.model.time_constant
 
 
-def cost(name: str) -> tuple[int, float, float]:
-    """Return the number of blocks, the step [s], and the seconds that a second of strong motion takes."""
-    model = BlockModel(free_blocks(structure(name).mechanism))
-    record = motion_of("accel.csv x 1")
-    strong = GroundMotion("strong", record.dt, record.acceleration[round(3.0 / record.dt) :], unit="m/s2")
-    taken = []
-    for most in (SHORT, 2 * SHORT):  # both settle first
-        start = process_time()
-        model.simulate(strong, most=most)
-        taken.append(process_time() - start)
-    return len(model.names), model.step, (taken[1] - taken[0]) / SHORT
-
-
-def worst(cases: Mapping[str, float], percent: bool = True) -> tuple[str, str]:
-    """Return the number of cases, and the largest of their numbers with its case."""
+def worst(cases: Mapping[str, float], percent: bool = True) -> str:
+    """Return the largest of some numbers with its case."""
     name = max(cases, key=lambda each: cases[each])
     value = f"{100 * cases[name]:.2f} %" if percent else f"{cases[name]:.1g}"
-    return str(len(cases)), f"{value} ({name})"
+    return f"{value} ({name})"
 
 
 def evidence() -> str:
@@ -234,35 +218,26 @@ def evidence() -> str:
     }  # fmt: skip
     laden = {f"{ratio:g}": heavy(ratio)[:2] for ratio in (1.0, 10.0, 100.0, 1000.0)}
     rows = {
-        "peak under a motion, from the exact one":
+        "peak, from the exact one":
             worst({name: abs(free / exact - 1) for name, (exact, (free, _)) in peaks.items()}),
-        "the same peak with half of time constant and step":
+        "peak, with half of time constant and step":
             worst({name: abs(two / one - 1) for name, (_, (one, two)) in peaks.items()}),
-        "restitution of a block over three impacts, from kinematics (absolute)":
+        "restitution of a block, from kinematics":
             worst({name: abs(each.eta - each.kinematic) for name, each in bounces.items()}, False),
-        "times of its half-cycles, from the exact ones with this restitution":
+        "its times":
             worst({name: each.times for name, each in bounces.items()}),
-        "their peaks": worst({name: each.peaks for name, each in bounces.items()}),
+        "its peaks": worst({name: each.peaks for name, each in bounces.items()}),
         "time from a release to the first impact":
             worst({name: abs(two / one - 1) for name, (one, two) in falls.items()}),
-        "distance of a block that slides, from the closed form":
+        "distance of a block that slides":
             worst({name: abs(free / exact - 1) for name, (free, exact) in slides.items() if exact}),
-        "creep of one that holds, in 0.99 s [m]":
+        "creep of one that holds [m]":
             worst({name: free for name, (free, exact) in slides.items() if not exact}, False),
-        "growth of energy after a release, of that energy": worst(growths, False),
-        "second maximum of a portal under a mass, over that of a pier":
+        "growth of energy after a release": worst(growths, False),
+        "second maximum of a portal under a mass":
             worst({name: abs(free / exact - 1) for name, (exact, free) in laden.items()}),
     }  # fmt: skip
-    return table(("what is compared", "cases", "largest difference"), ((name, *row) for name, row in rows.items()))
-
-
-def costs() -> str:
-    """Return the table of times."""
-    rows = [
-        (name, f"{count}", f"{1e3 * step:.2f} ms", f"{seconds:.1f} s")
-        for name in COSTS for count, step, seconds in [cost(name)]
-    ]  # fmt: skip
-    return table(("structure", "blocks", "time step", "for a second of strong motion"), rows)
+    return table(("what is compared", "largest difference"), rows.items())
 
 
 def main() -> int:
@@ -270,7 +245,7 @@ def main() -> int:
     if len(sys.argv) != 1:
         print(__doc__)
         return 2
-    text = renewed(PAGE.read_text(encoding="utf-8"), {"evidence": evidence(), "costs": costs()})
+    text = renewed(PAGE.read_text(encoding="utf-8"), {"evidence": evidence()})
     PAGE.write_text(text, encoding="utf-8", newline="\n")
     return 0
 
