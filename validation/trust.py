@@ -190,7 +190,7 @@ def without_tests() -> dict[str, str]:
 
 def of_tests(found: Scored) -> dict[str, str]:
     """Return the parts of the page that are made of the tests."""
-    agree = f"They differ by less than five points in {near(found.bins)}, and in {near(KEPT_APART)} of the other half."
+    agree = f"Both differ by less than five points in {near(found.bins)}, and in {near(KEPT_APART)} of the other half."
     said = prose(apart(found), agree, f"{whether_high(found)}: {together(found)}.")
     return {
         "boulders": alike(found),
