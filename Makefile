@@ -121,17 +121,17 @@ soak: setup  ## What takes too long for the tests, an hour: damaged stores, race
 crash: setup  ## A quarter of an hour: every command that writes, ended and made to fail at each call on its folder; NAMES: which of them
 	$(BIN)/python -m tests.crash $(NAMES)
 
-validation: setup  ## Write docs/validation.md anew
-	$(BIN)/python docs/make_validation.py
+validation: setup  ## Renew the tables of docs/validation.md
+	$(BIN)/python -m docs.make_validation
 
-free-blocks: setup  ## Write the evidence of docs/free_blocks.md anew, ten minutes
-	$(BIN)/python docs/make_free_blocks.py
+free-blocks: setup  ## Renew the evidence of docs/free_blocks.md, ten minutes
+	$(BIN)/python -m docs.make_free_blocks
 
 EXPERIMENTS := $(or $(ROCKING_EXPERIMENTS),../shared/experiments)
 scoreboard: setup  ## Write the lines of this version into docs/scoreboard.md; ROCKING_EXPERIMENTS is the folder of the tests
 	$(BIN)/python -m validation.scoreboard "$(EXPERIMENTS)"
 
-trust: setup  ## Write docs/how_far_to_trust_it.md and its parts anew, an hour
+trust: setup  ## Renew docs/how_far_to_trust_it.md and its data, an hour
 	$(BIN)/python -m validation.traces
 	$(BIN)/python -m validation.middle "$(EXPERIMENTS)"
 	$(BIN)/python -m validation.trust "$(EXPERIMENTS)"
@@ -160,7 +160,7 @@ $(DOCS_STAMP): $(STAMP)
 pages: $(DOCS_STAMP)  ## Every made page, list and picture: the types of the package, outputs and options in the pages, examples in Python
 	$(BIN)/python docs/make_stub.py
 	$(BIN)/python docs/make_pages.py
-	$(BIN)/python docs/make_validation.py
+	$(BIN)/python -m docs.make_validation
 	$(BIN)/python docs/make_python.py
 
 docs: pages  ## The documentation as a site, out/site/index.html; every warning is an error

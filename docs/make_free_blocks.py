@@ -1,17 +1,15 @@
-"""Write the end of docs/free_blocks.md: what the contacts of free blocks do, beside what they should. Some minutes.
+"""Renew the evidence in docs/free_blocks.md: what contacts of free blocks do, beside what they should. Ten minutes.
 
-python docs/make_free_blocks.py
+python -m docs.make_free_blocks     # make free-blocks
 """
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping
 from functools import cache
 from itertools import pairwise
 from math import atan, ceil, sin
-from pathlib import Path
-from time import process_time
 from typing import NamedTuple
 
 import numpy as np
@@ -23,13 +21,11 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import follow
 from rocking_cli.studies.engines.blocks import BlockModel, BlockMotion
 from rocking_cli.studies.engines.free_blocks import FreeBlocks, free_blocks
+from validation.pages import DOCS, renewed, table
 
-DOCS = Path(__file__).resolve().parent
 PAGE, EXAMPLES = DOCS / "free_blocks.md", DOCS.parent / "examples"
-MARK = "<!-- evidence -->\n"  # from here on the page is written by this script
 G = 9.80665
 AFTER = 1.5  # s after a motion for which its peak is looked for
-SHORT = 0.2  # s of a motion whose cost is measured
 RECOVERED = 10  # time constants in which contacts give back what they stored in an impact
 
 # Motions whose peak is no chance: that of every neighbour (1 % of amplitude, .01 of restitution) is within 15 %.
@@ -42,6 +38,9 @@ HALVED = [
     }.items()
     for motion in motions
 ]
+BOUNCES = [
+    (slenderness, height, tilt) for slenderness in (3, 5, 10) for height in (0.1, 1.0, 10.0) for tilt in (0.3, 0.6)
+]
 # Structures with hinges, guides, loads, floors and ties that turn back from .3 of the critical rotation by themselves.
 FALLING = (
     "block.yaml", "rigid_body.yaml", "cone.yaml", "wall.yaml", "frame.yaml", "symmetric_frame.yaml",
@@ -50,7 +49,7 @@ FALLING = (
     "linkages/two_storeys.yaml",
 )  # fmt: skip
 FREE = ("block.yaml", "wall.yaml", "masonry/portal.yaml", "arch.yaml", "masonry/buttressed_arch.yaml")
-COSTS = ("block.yaml", "masonry/portal.yaml", "masonry/buttressed_arch.yaml", "masonry/wall_with_openings.yaml")
+SLIDES = ((0.3, 0.4), (0.39, 0.4), (0.5, 0.4), (0.7, 0.4), (0.7, 0.6))  # acceleration over g, friction
 
 
 class Free(NamedTuple):
@@ -200,123 +199,54 @@ def heavy(ratio: float, finer: float = 1.0) -> tuple[float, float, float]:
     return exact, halves(free.motion.time, free.phi)[1][1], free.model.time_constant
 
 
-def cost(name: str) -> tuple[int, float, float]:
-    """Return the number of blocks, the step [s], and the seconds that a second of strong motion takes."""
-    model = BlockModel(free_blocks(structure(name).mechanism))
-    record = motion_of("accel.csv x 1")
-    strong = GroundMotion("strong", record.dt, record.acceleration[round(3.0 / record.dt) :], unit="m/s2")
-    taken = []
-    for most in (SHORT, 2 * SHORT):  # both settle first
-        start = process_time()
-        model.simulate(strong, most=most)
-        taken.append(process_time() - start)
-    return len(model.names), model.step, (taken[1] - taken[0]) / SHORT
-
-
-def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Return a table."""
-    return "\n".join(f"| {' | '.join(row)} |" for row in (heads, ["---"] * len(heads), *rows))
+def worst(cases: Mapping[str, float], percent: bool = True) -> str:
+    """Return the largest of some numbers with its case."""
+    name = max(cases, key=lambda each: cases[each])
+    value = f"{100 * cases[name]:.2f} %" if percent else f"{cases[name]:.1g}"
+    return f"{value} ({name})"
 
 
 def evidence() -> str:
-    """Return the end of the page."""
-    halving = [
-        (name, motion, f"{exact:.5f}", f"{one:.5f}", f"{two:.5f}", f"{100 * abs(two / one - 1):.2f} %")
-        for name, motion in HALVED
-        for exact, (one, two) in [halved(name, motion)]
-    ]
-    bounces = [
-        (f"{slenderness}", f"{height:g} m", f"{tilt:g}", f"{found.kinematic:.4f}", f"{found.eta:.4f}",
-         f"{100 * found.times:.2f} %", f"{100 * found.peaks:.2f} %")
-        for slenderness in (3, 5, 10) for height in (0.1, 1.0, 10.0) for tilt in (0.3, 0.6)
-        for found in [bounce(slenderness, height, tilt)]
-    ]  # fmt: skip
-    falls = [
-        (name, f"{exact:.4f} s", f"{free:.4f} s", f"{100 * abs(free / exact - 1):.2f} %")
-        for name in FALLING for exact, free in [fall(name)]
-    ]  # fmt: skip
-    growths = [
-        (name, f"{share:g}", f"{max(released(of.mechanism, share * of.model('nonlinear').phi_cr[0]).growth(), 0):.0e}")
+    """Return the table of checks."""
+    peaks = {f"{name}, {motion}": halved(name, motion) for name, motion in HALVED}
+    bounces = {f"{tall} to 1, {height:g} m, {tilt:g}": bounce(tall, height, tilt) for tall, height, tilt in BOUNCES}
+    falls = {name: fall(name) for name in FALLING}
+    slides = {f"{push:g} g, {friction:g}": slide(push, friction) for push, friction in SLIDES}
+    growths = {
+        f"{name}, {share:g}": max(released(of.mechanism, share * of.model("nonlinear").phi_cr[0]).growth(), 0.0)
         for name in FREE for share in (0.2, 0.4) for of in [structure(name)]
-    ]  # fmt: skip
-    slides = [
-        (f"{push:g} g", f"{friction:g}", f"{exact:.5f} m", f"{free:.5f} m" if exact else f"{1e6 * free:.1f} um")
-        for push, friction in ((0.3, 0.4), (0.39, 0.4), (0.5, 0.4), (0.7, 0.4), (0.7, 0.6))
-        for free, exact in [slide(push, friction)]
-    ]
-    ladens = [
-        (f"{ratio:g}", f"{1e3 * by_rule[2]:.2g} ms", f"{100 * abs(by_rule[1] / by_rule[0] - 1):.2f} %",
-         f"{100 * abs(without[1] / without[0] - 1):.2f} %")
-        for ratio in (1.0, 10.0, 100.0, 1000.0)
-        for by_rule in [heavy(ratio)]
-        for without in [heavy(ratio, by_rule[2] / heavy(1.0)[2])]
-    ]  # fmt: skip
-    costs = [
-        (name, f"{count}", f"{1e3 * step:.2f} ms", f"{seconds:.1f} s")
-        for name in COSTS for count, step, seconds in [cost(name)]
-    ]  # fmt: skip
-    return f"""### Stiffer contacts and shorter steps
-
-Peaks by the rule, and with half the time constant and half the step [rad]. The motions are no chance: neighbours with
-1 % of amplitude and .01 of restitution have peaks within 15 %.
-
-{table(("structure", "motion", "exact", "by the rule", "halved", "change"), halving)}
-
-### Restitution
-
-The file's restitution plays no part: contacts are without rebound, and the impulse of a foot that strikes is what stops
-it. A rectangular block so keeps the share of its rate that kinematics say, 1 - 1.5 sin^2 alpha. The block is let go
-from a share of alpha; its restitution is that of the energy left after the first three impacts. With this restitution,
-the exact history has its first three half-cycles end, and peak, within the last two columns.
-
-{
-        table(
-            ("slenderness", "height", "release", "kinematic", "of contact", "times differ", "peaks differ"),
-            bounces,
-        )
-    }
-
-### Forces
-
-Time from a release, at .3 of the critical rotation, to the first impact: it has the effect of hinges, guides, floors,
-loads and ties, and none of restitution.
-
-{table(("structure", "exact", "free blocks", "difference"), falls)}
-
-A stout block under a steady acceleration slides or holds. Distance after .99 s, in closed form and of free blocks; what
-holds creeps.
-
-{table(("acceleration", "friction", "closed form", "free blocks"), slides)}
-
-### Energy
-
-Largest growth of kinetic and potential energy in free motion after a release, over the energy of the release. What
-contacts store in an impact they return within {RECOVERED} time constants: it is no growth.
-
-{table(("structure", "release over phi_cr", "growth"), growths)}
-
-### Weight on small blocks
-
-A portal whose lintel carries a mass, over that of a pier: error of the second maximum after a release, by the rule and
-with the time constant of the bare portal.
-
-{table(("mass over that of a pier", "time constant", "error", "without the rule of weight"), ladens)}
-
-### Time
-
-On one processor, for scale:
-
-{table(("structure", "blocks", "longest step", "time for a second of strong motion"), costs)}
-"""
+    }  # fmt: skip
+    laden = {f"{ratio:g}": heavy(ratio)[:2] for ratio in (1.0, 10.0, 100.0, 1000.0)}
+    rows = {
+        "peak, from the exact one":
+            worst({name: abs(free / exact - 1) for name, (exact, (free, _)) in peaks.items()}),
+        "peak, with half of time constant and step":
+            worst({name: abs(two / one - 1) for name, (_, (one, two)) in peaks.items()}),
+        "restitution of a block, from kinematics":
+            worst({name: abs(each.eta - each.kinematic) for name, each in bounces.items()}, False),
+        "its times":
+            worst({name: each.times for name, each in bounces.items()}),
+        "its peaks": worst({name: each.peaks for name, each in bounces.items()}),
+        "time from a release to the first impact":
+            worst({name: abs(two / one - 1) for name, (one, two) in falls.items()}),
+        "distance of a block that slides":
+            worst({name: abs(free / exact - 1) for name, (free, exact) in slides.items() if exact}),
+        "creep of one that holds [m]":
+            worst({name: free for name, (free, exact) in slides.items() if not exact}, False),
+        "growth of energy after a release": worst(growths, False),
+        "second maximum of a portal under a mass":
+            worst({name: abs(free / exact - 1) for name, (exact, free) in laden.items()}),
+    }  # fmt: skip
+    return table(("what is compared", "largest difference"), rows.items())
 
 
 def main() -> int:
-    """Write the page."""
+    """Renew the page."""
     if len(sys.argv) != 1:
         print(__doc__)
         return 2
-    text, mark, _ = PAGE.read_text(encoding="utf-8").partition(MARK)
-    PAGE.write_text(f"{text}{mark}\n{evidence()}", encoding="utf-8", newline="\n")
+    text = renewed(PAGE.read_text(encoding="utf-8"), {"evidence": evidence()})
+    PAGE.write_text(text, encoding="utf-8", newline="\n")
     return 0
 
 

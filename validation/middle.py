@@ -1,4 +1,4 @@
-"""Study why shares of 0.6 to 0.8 are stated where about half of the tests overturn: docs/trust/middle.md.
+"""Study why shares of 0.6 to 0.8 are stated where about half of the tests overturn: middle.json, in this folder.
 
     python -m validation.middle EXPERIMENTS [RUNS.npz]
 
@@ -7,11 +7,19 @@ keeps the time histories, which take a quarter of an hour on two processors; wit
 
 What becomes of a symmetric body depends on the ratio of amplitude to slenderness and on the restitution only. So each
 test is simulated for many values of both, and every way to draw neighbours is a set of weights on these histories.
+
+middle.json has the standard deviations of the rule, and by it, in tests with a share of 0.6 to 0.8, number, mean stated
+and observed share (with its interval) of all, of each specimen and of halves of the motions; the observed share in
+several draws of neighbours; of all tests of each specimen the mean stated less the observed share in percentage points;
+and by how many thousandths other ways to draw neighbours, or to describe the foot, change the mean log loss: each with
+the value that is chosen on all tests, judged on halves of the motions (the mean of 100 divisions), on one specimen for
+the other, and on all motions but one for this one.
 """
 
 from __future__ import annotations
 
 import csv
+import json
 import sys
 from collections.abc import Callable, Sequence
 from functools import cache, partial
@@ -21,7 +29,7 @@ from multiprocessing import Pool
 from pathlib import Path
 from statistics import NormalDist
 from tempfile import TemporaryDirectory
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,12 +43,12 @@ from rocking_cli.studies import neighbours
 from rocking_cli.studies.neighbours import Neighbourhood, simulate_neighbours
 from rocking_cli.views.neighbours import deviations
 from validation import granite
+from validation.pages import prose
 from validation.rules import ClusterDraws, ScoreEstimate, surprise
 
 Reals = NDArray[np.float64]
 
-PROJECT = Path(__file__).resolve().parents[1]
-PART = PROJECT / "docs" / "trust" / "middle.md"
+FILE = Path(__file__).with_suffix(".json")
 NAMES = tuple(granite.SPECIMENS)
 
 POINTS = 2000  # histories of each test
@@ -226,157 +234,124 @@ class Study:
         return found
 
 
-def signed(each: ScoreEstimate) -> str:
+def thousandths(each: ScoreEstimate) -> list[float]:
     """Return a change of the log loss in thousandths, with its interval."""
-    return f"{1000 * each.value:+.1f} [{1000 * each.low:+.1f} {1000 * each.high:+.1f}]"
+    return [round(1000 * value, 1) for value in each[:3]]
 
 
-def points_of(each: ScoreEstimate) -> str:
-    """Return a difference of shares in percentage points, with its interval."""
-    return f"{100 * each.value:.1f} [{100 * each.low:.1f} {100 * each.high:.1f}]"
-
-
-def middle(study: Study, shares: Reals, inside: NDArray[np.bool_] | None = None) -> str:
+def middle(study: Study, shares: Reals, inside: NDArray[np.bool_] | None = None) -> dict[str, Any]:
     """Return the number of tests in the middle of the scale, what is stated of them, and what was observed."""
     kept = (shares >= LOW) & (shares < HIGH) & (True if inside is None else inside)
     seen = study.draws.mean(study.seen.ravel(), kept.ravel())
-    return f"{kept.sum()} | {shares[kept].mean():.3f} | {seen.value:.3f} [{seen.low:.3f} {seen.high:.3f}]"
+    observed = [round(value, 3) for value in (seen.value, seen.low, seen.high)]
+    return {"tests": int(kept.sum()), "stated": round(float(shares[kept].mean()), 3), "observed": observed}
 
 
-def gap(study: Study, shares: Reals) -> str:
-    """Return by how many percentage points the shares in the middle of the scale are above the observed one."""
-    kept = (shares >= LOW) & (shares < HIGH)
-    return f"{100 * (shares[kept].mean() - study.seen[kept].mean()):.1f}"
-
-
-def where(study: Study) -> list[str]:
-    """Return the rows of the table of where the tests in the middle are."""
+def where(study: Study) -> dict[str, Any]:
+    """Return where the tests in the middle are."""
     rule, both = study.rule, np.ones(study.seen.shape, dtype=bool)
     kept = (rule >= LOW) & (rule < HIGH)
-    rows = [("all", both)]
-    rows += [(f"specimen {k + 1}", both & (np.arange(2) == k)) for k in range(2)]
+    parts = {"all": both} | {f"specimen {k + 1}": both & (np.arange(2) == k) for k in range(2)}
     for words, value in (("PGA", study.pga), ("PGV", study.pgv)):
         low = value <= np.median(value[kept])
-        rows += [(f"lower half by {words}", low), (f"upper half by {words}", ~low)]
-    return [f"| {words} | {middle(study, rule, inside)} |" for words, inside in rows]
+        parts |= {f"lower half by {words}": low, f"upper half by {words}": ~low}
+    return {words: middle(study, rule, inside) for words, inside in parts.items()}
 
 
-def compared(study: Study) -> tuple[list[str], list[str]]:
-    """Return the rows of the table of candidates, and those that are better however the tests are split."""
+def compared(study: Study) -> list[dict[str, Any]]:
+    """Return the candidates, and of each that is better however the tests are split, what few tests gain of it [%]."""
     own, splits = study.loss(study.rule), study.splits()
-    rows, better = [], []
+    rows = []
     for words, values, shares in study.candidates():
         losses = study.loss(shares)
         best = int(losses.mean(axis=(1, 2)).argmin())
-        cells = [words, values[best]]
-        found = []
-        for parts in splits.values():
-            change = np.mean([study.left_out(losses, each) for each in parts], axis=0) - own
-            found.append(study.draws.mean(change.ravel()))
-        cells += [signed(each) for each in found]
-        rows.append(f"| {' | '.join(cells)} | {middle(study, shares[best])} |")
-        if all(each.high < 0 for each in found):
-            change = losses[best] - own
-            few = 100 * np.sort(change.ravel())[:FEW].sum() / change.sum()
-            better.append(
-                f"{words} ({values[best]}).\nIts shares of {LOW} to {HIGH} are {gap(study, shares[best])} points too "
-                f"high. The {FEW} tests that gain most\nmake {few:.0f} % of its gain over all tests"
-            )
-    return rows, better
+        found = {
+            name: study.draws.mean((np.mean([study.left_out(losses, each) for each in parts], axis=0) - own).ravel())
+            for name, parts in splits.items()
+        }
+        change = losses[best] - own
+        few = 100 * np.sort(change.ravel())[:FEW].sum() / change.sum()
+        better = {"of its gain by few tests": round(few)} if all(each.high < 0 for each in found.values()) else {}
+        judged = {name: thousandths(each) for name, each in found.items()}
+        rows.append({"what": words, "value": values[best], **judged, **middle(study, shares[best]), **better})
+    return rows
 
 
-def drawn(study: Study) -> str:
-    """Return what the numbers drawn for the neighbours change in the middle of the scale."""
-    observed = []
-    for shares in np.moveaxis(study.seeds, -1, 0):
-        observed.append(float(study.seen[(shares >= LOW) & (shares < HIGH)].mean()))
-    return (
-        f"from {min(observed):.3f}\n  to {max(observed):.3f} in {len(observed)} draws of {RULE.count} neighbours, mean "
-        f"{np.mean(observed):.3f}; the draw of the tool gives {observed[0]:.3f}"
-    )
-
-
-def sample() -> str:
-    """Return a part of the text by which a change of the rule is noticed."""
-    return f"The rule has {deviations(RULE)}."
-
-
-def page(study: Study) -> str:
-    """Return the part of the page."""
-    rows, better = compared(study)
+def found(study: Study) -> dict[str, Any]:
+    """Return what the file holds."""
     own, kept = study.loss(study.rule), (study.rule >= LOW) & (study.rule < HIGH)
     motions = np.bincount(study.cluster, kept.sum(axis=1)).astype(int)
     bias = [study.draws.mean(np.where(np.arange(2) == k, study.rule - study.seen, np.nan).ravel()) for k in range(2)]
     stout = study.loss(study.feet[..., FURTHER.index(2.0)]) - own
-    first, second = (study.draws.mean(np.where(np.arange(2) == k, stout, np.nan).ravel()) for k in range(2))
-    verdict = (
-        f"Better than the rule in all three ways, with the whole interval below 0: {'; '.join(better)}."
-        if better
-        else "None is better than the rule in all three ways with the whole interval below 0."
+    foot = [study.draws.mean(np.where(np.arange(2) == k, stout, np.nan).ravel()) for k in range(2)]
+    draws = [float(study.seen[(each >= LOW) & (each < HIGH)].mean()) for each in np.moveaxis(study.seeds, -1, 0)]
+    return {
+        "rule": deviations(RULE),
+        "tests": where(study),
+        "motions": {"number": int((motions > 0).sum()), "most tests of one": int(motions.max())},
+        "draws": {"number": len(draws), "observed": [round(x, 3) for x in (min(draws), max(draws), np.mean(draws))],
+                  "of the tool": round(draws[0], 3)},
+        "stated less observed": [[round(100 * value, 1) for value in each[:3]] for each in bias],
+        "log loss": round(float(own.mean()), 4),
+        "candidates": compared(study),
+        "other edge at twice the angle": [thousandths(each) for each in foot],
+        "edges of the foot of specimen 2": [round(each, 1) for each in study.edges],
+    }  # fmt: skip
+
+
+def stale() -> list[str]:
+    """Return whether the rule has changed since the study was made."""
+    rule, now = json.loads(FILE.read_text(encoding="utf-8"))["rule"], deviations(RULE)
+    return [] if rule == now else [f"the rule has {now}"]
+
+
+def summary() -> str:
+    """Return the part of the page."""
+    said = json.loads(FILE.read_text(encoding="utf-8"))
+    tests, draws, bias = said["tests"], said["draws"], said["stated less observed"]
+
+    def interval(values: Sequence[float], form: str) -> str:
+        value, low, high = (format(each, form) for each in values)
+        return f"{value} [{low} {high}]"
+
+    least, most, mean = draws["observed"]
+    better = [
+        f"{each['what']}, {each['value']}. {FEW} tests make {each['of its gain by few tests']} % of its gain, and its "
+        f"shares of 0.6 to 0.8 are {100 * (each['stated'] - each['observed'][0]):.1f} points too high"
+        for each in said["candidates"] if "of its gain by few tests" in each
+    ]  # fmt: skip
+    every, ways = tests["all"], len(said["candidates"])
+    return prose(
+        f"The rule has {said['rule']}. Without the chance of a draw, {every['tests']} tests have such a share: stated",
+        f"{every['stated']:.3f}, observed {interval(every['observed'], '.3f')}. In {draws['number']} draws of",
+        f"{RULE.count} neighbours, the observed share is {least:.3f} to {most:.3f}, mean {mean:.3f}. Of all tests, the",
+        f"mean stated share is above the observed one by {interval(bias[0], '.1f')} percentage points for specimen 1,",
+        f"and by {interval(bias[1], '.1f')} for specimen 2. Of {ways} other ways to draw neighbours or to describe the",
+        f"foot, {len(better)} has a smaller log loss, with the whole interval below 0, on whichever part of the tests",
+        f"its value is not chosen{': ' * bool(better)}{'; '.join(better)}.",
     )
-    return f"""### Shares of {LOW} to {HIGH}
-
-`validation/middle.py` studies on the tests above whether, and why, these shares are too high.
-{sample()}
-In the model, what becomes of these boulders depends only on the ratio of amplitude to slenderness and on the
-restitution, so amplitude and slenderness are one source of scatter. Each test is simulated for {POINTS} pairs of both.
-Weights on these time histories give the shares of a rule without the chance of a draw. By the rule:
-
-| tests with a share of {LOW} to {HIGH} | tests | mean stated | observed |
-|---|---|---|---|
-{chr(10).join(where(study))}
-
-- **Part of the gap is the chance of a draw.** The observed share of these tests is {drawn(study)}.
-- **The two boulders differ.** Of all tests, the mean stated share is above the observed one by {points_of(bias[0])}
-  percentage points for specimen 1, and by {points_of(bias[1])} for specimen 2, which may stand firmer than its first
-  edge says. Such an error of a description is common to all tests of a body. So even where stated shares are right on
-  average over many structures, all those of one structure may be too high, or too low.
-- **No motion decides.** These tests are of {(motions > 0).sum()} motions, at most {motions.max()} of one.
-
-Other ways to draw neighbours, or to describe the foot, are compared by their mean log loss, {own.mean():.4f} by the
-rule. The changes are in thousandths; negative ones are better. The value is chosen on one part of the tests and
-judged on the other: on halves of the motions (the mean of {HALVINGS} divisions), on one specimen for the other, and on
-all motions but one for this one. The column 'value' has what is chosen on all tests, and the last columns are the tests
-to which it gives shares of {LOW} to {HIGH}.
-
-| what is changed | value | halves | specimens | one motion left out | tests | mean stated | observed |
-|---|---|---|---|---|---|---|---|
-{chr(10).join(rows)}
-
-{verdict}
-Shares of {LOW} to {HIGH} by the rule are {gap(study, study.rule)} points too high. The rule has not been changed: the
-intervals do not account for the {len(rows)} candidates that were compared, two boulders are two samples of an error in
-slenderness, and the half that is kept apart has judged none of the candidates.
-
-The other edge shows how the two boulders differ. With the other edge of the foot at twice the angle of the first one,
-the log loss changes by {signed(second)} thousandths on specimen 2, and by {signed(first)} on specimen 1.
-The scan of specimen 2 rests on a facet with edges at {", ".join(f"{each:.1f}" for each in study.edges)} degrees, in
-directions of their own; the angle that the data state along the axis of the table was not found again from the scan.
-So its foot is not symmetric, though the model is; the scan of specimen 1 is not at hand. Such an edge is to be
-measured, not drawn. The
-sign of the motions is not documented, so these shares are the mean of both.
-"""
 
 
 def main() -> int:
-    """Simulate what is not there yet, and write the part of the page."""
+    """Simulate what is not there yet, and write the file."""
     if len(sys.argv) not in (2, 3):
         print(__doc__)
         return 2
     source, kept = Path(sys.argv[1]), Path(sys.argv[2]) if len(sys.argv) > 2 else None
     if kept is not None and kept.is_file():
-        with np.load(kept) as runs:
-            found = [runs[name] for name in ("fell", "seeds", "feet")]
+        with np.load(kept) as stored:
+            runs = [stored[name] for name in ("fell", "seeds", "feet")]
     else:
         with TemporaryDirectory() as made, Pool() as pool:
             granite.write(source, Path(made))
             with (source / "granite_boulders.csv").open(encoding="utf-8") as stream:
                 tests = [row["test"] for row in csv.DictReader(stream)]
             parts = pool.map(partial(simulate, Path(made)), tests, chunksize=3)
-        found = [np.array(part) for part in zip(*parts, strict=True)]
+        runs = [np.array(part) for part in zip(*parts, strict=True)]
         if kept is not None:
-            np.savez_compressed(kept, **dict(zip(("fell", "seeds", "feet"), found, strict=True)))
-    PART.write_text(page(Study(source, *found)), encoding="utf-8", newline="\n")
+            np.savez_compressed(kept, **dict(zip(("fell", "seeds", "feet"), runs, strict=True)))
+    text = json.dumps(found(Study(source, *runs)), indent=1)
+    FILE.write_text(f"{text}\n", encoding="utf-8", newline="\n")
     return 0
 
 

@@ -1,4 +1,4 @@
-"""Write docs/scoreboard.md: the scores of this version on every set of tests that is at hand, and on forty assemblies.
+"""Renew docs/scoreboard.md: the scores of this version on every set of tests that is at hand, and on forty assemblies.
 
     python -m validation.scoreboard EXPERIMENTS     # or make scoreboard ROCKING_EXPERIMENTS=EXPERIMENTS
 
@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import csv
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable
 from functools import cache
 from importlib.util import find_spec
 from itertools import groupby, product
@@ -29,12 +29,13 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import free as memory
 from rocking_cli.studies.neighbours import Neighbourhood
 from validation import granite
+from validation.pages import DOCS, renewed, table
 from validation.rules import Scored, Stated, score_tests, scored
 from validation.score import score
 from validation.table import ObservedTest
 
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "scoreboard.md"
-HEADS = ("set", "version", "tests", "clusters", "Brier score", "drift", "log loss", "right", "area", "mean gap")
+PAGE = DOCS / "scoreboard.md"
+HEADS = ("set", "version", "tests", "Brier score", "drift", "log loss", "right", "mean gap")
 BLOCK_HEADS = (
     "set", "version", "outcome known", "same outcome", "peak agrees", "within 5 %", "drift", "outcome unknown",
     "of these stand", "collapse", "fail",
@@ -47,7 +48,7 @@ SAME = 5e-4  # difference of Brier scores that rounding to three digits hides
 
 
 class Row(NamedTuple):
-    """A line of the table, as it is written."""
+    """A line of a table, by its cells."""
 
     cells: tuple[str, ...]
 
@@ -59,10 +60,7 @@ class Row(NamedTuple):
     @property
     def brier(self) -> float:
         """Brier score."""
-        return float(self.cells[4].split()[0])
-
-    def __str__(self) -> str:
-        return f"| {' | '.join(self.cells)} |"
+        return float(self.cells[3].split()[0])
 
 
 def boulders(source: Path) -> Scored:
@@ -138,31 +136,11 @@ def fitted(tests: list[ObservedTest]) -> tuple[str, bool]:
     return f"{best[0]:.4g} {best[1]:.4g}", inside
 
 
-SETS: dict[str, tuple[Callable[[Path], Scored], str, str]] = {
-    BOULDERS: (
-        boulders,
-        "granite_boulders.csv",
-        "600 tests of two granite boulders under 300 motions on a one-axis table (Chen and others, "
-        "virtual_shake_robot); the other 190 motions of the programme are not at hand. The scatter of kinematic "
-        "restitution was chosen on these tests.",
-    ),
-    SHAKEBOT: (
-        shakebot,
-        "shakebot_pulses.csv",
-        "414 tests of a printed rock under one full cosine of acceleration. The motions are those commanded: the peaks "
-        "of the table differed by a factor of about two. Posture, sign and size of the rock are not documented, so a "
-        "block (slenderness and half diagonal) is fitted to every other test of each posture, which also takes up a "
-        "constant factor, and the remaining tests are scored. Such a fit measures no rock, and the scores are those "
-        "of the motions as much as of the tool. A posture whose block lies on the edge of the grid is left out, as "
-        "`validation/region.py` refuses it.",
-    ),
-    RATES: (
-        rates,
-        "shakebot_pulses.csv",
-        "the same tests, each with the share of the fitted tests of its posture that overturned. Where the line above "
-        "is no better than this one, the fitted blocks say no more than the base rate of each posture.",
-    ),
-}  # fmt: skip
+SETS: dict[str, tuple[Callable[[Path], Scored], str]] = {
+    BOULDERS: (boulders, "granite_boulders.csv"),
+    SHAKEBOT: (shakebot, "shakebot_pulses.csv"),
+    RATES: (rates, "shakebot_pulses.csv"),
+}
 
 
 def row(name: str, found: Scored, before: list[Row]) -> Row:
@@ -171,10 +149,8 @@ def row(name: str, found: Scored, before: list[Row]) -> Row:
     earlier = [each for each in before if each.key[0] == name and each.key[1] != __version__]
     value = round(tool.brier.value, 3)
     drift = f"{value - earlier[-1].brier:+.3f} since {earlier[-1].key[1]}" if earlier else "first"
-    cells = [name, __version__, str(tool.tests), str(found.clusters)]
-    cells += [f"{tool.brier.value:.3f} [{tool.brier.low:.3f} {tool.brier.high:.3f}]", drift]
-    cells += [f"{each.value:.3f} [{each.low:.3f} {each.high:.3f}]" for each in (tool.log_loss, tool.right, tool.auc)]
-    return Row((*cells, f"{found.mean_gap:.3f}"))
+    scores = [f"{each.value:.3f} [{each.low:.3f} {each.high:.3f}]" for each in (tool.brier, tool.log_loss, tool.right)]
+    return Row((name, __version__, str(tool.tests), scores[0], drift, *scores[1:], f"{found.mean_gap:.3f}"))
 
 
 def assemblies(before: list[Row]) -> Row:
@@ -192,8 +168,8 @@ def assemblies(before: list[Row]) -> Row:
 
 def kept(text: str) -> list[Row]:
     """Return the lines of a page."""
-    lines = [line for line in text.splitlines() if line.startswith("| ") and not line.startswith(f"| {HEADS[0]} |")]
-    return [Row(tuple(cell.strip() for cell in line.strip("| ").split(" | "))) for line in lines]
+    lines = (line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("| "))
+    return [Row(tuple(map(str.strip, cells))) for cells in lines if cells[0] != HEADS[0]]
 
 
 def merged(before: list[Row], made: list[Row]) -> list[Row]:
@@ -203,43 +179,11 @@ def merged(before: list[Row], made: list[Row]) -> list[Row]:
     return sorted([*old, *new.values()], key=lambda each: [*SETS, ASSEMBLIES].index(each.key[0]))
 
 
-def table(heads: Sequence[str], rows: Iterable[Row]) -> str:
-    """Return a table."""
-    return "\n".join([str(Row(tuple(heads))), "|---" * len(heads) + "|", *map(str, rows)])
-
-
-def page(rows: list[Row]) -> str:
-    """Return the text of the page."""
-    sets = "\n".join(f"- **{name}**: {words}" for name, (_, _, words) in SETS.items())
-    return f"""# Scoreboard
-
-The scores of each version on the sets of shake-table tests that were at hand: `make scoreboard` writes one line for
-each set and version. [How far to trust it](how_far_to_trust_it.md) says what the scores are, and compares them with
-simpler rules. Drift is the change of the Brier score since the last version; smaller is better.
-
-{table(HEADS, (each for each in rows if each.key[0] != ASSEMBLIES))}
-
-The sets, and what is missing in them:
-
-{sets}
-
-The data are not part of this project. A set that is not at hand keeps the lines of the versions that had it.
-
-## Free blocks
-
-Forty assemblies by one degree of freedom and as [free blocks](free_blocks.md): eight portals, portals with a block on
-their lintel, stacks, arches, and arches on buttresses, by a fixed generator. Friction is .55 to .85; the motions are
-`examples/accel.csv` and pulses, from just above uplift to collapse.
-
-{table(BLOCK_HEADS, (each for each in rows if each.key[0] == ASSEMBLIES))}
-
-- **Outcome known**: by one degree of freedom.
-- **Same outcome**: of those known of which neighbours agree on the outcome: 5 % of them or less, or 95 % or more,
-  overturn. There are 100 neighbours, with standard deviations of 1 % of the amplitude and .01 of restitution.
-- **Peak agrees**: of those known that stand by both engines: the peak as free blocks is within 5 %, or among the peaks
-  of the neighbours. Drift is the change of this number since the last version.
-- **Outcome unknown**: by one degree of freedom, and what free blocks say of these.
-"""
+def page(text: str, rows: list[Row]) -> str:
+    """Return a page with these lines."""
+    own = [each.cells for each in rows if each.key[0] != ASSEMBLIES]
+    blocks = [each.cells for each in rows if each.key[0] == ASSEMBLIES]
+    return renewed(text, {"sets": table(HEADS, own), "assemblies": table(BLOCK_HEADS, blocks)})
 
 
 def main() -> int:
@@ -248,9 +192,10 @@ def main() -> int:
         print(__doc__)
         return 2
     source = Path(sys.argv[1])
-    before = kept(PAGE.read_text(encoding="utf-8")) if PAGE.is_file() else []
+    text = PAGE.read_text(encoding="utf-8")
+    before = kept(text)
     made = []
-    for name, (scores, file, _) in SETS.items():
+    for name, (scores, file) in SETS.items():
         if not (source / file).is_file():
             print(f"{name}: not at hand, its lines stay", file=sys.stderr)
             continue
@@ -260,7 +205,7 @@ def main() -> int:
                 print(f"{name}: Brier score {made[-1].brier}, was {old.brier} of the same version", file=sys.stderr)
     if find_spec("mujoco") is not None:
         made.append(assemblies(before))
-    PAGE.write_text(page(merged(before, made)), encoding="utf-8", newline="\n")
+    PAGE.write_text(page(text, merged(before, made)), encoding="utf-8", newline="\n")
     return 0
 
 
