@@ -24,7 +24,7 @@ BLOCK = re.compile(
 def _fold(app: Sphinx, page: nodes.document, name: str) -> None:
     """Let sections of a long page fold, and fold all but the first paragraph on each public name."""
     (top,) = (each for each in page.children if isinstance(each, nodes.section))
-    if len(page.astext()) > LONGEST and not name.startswith("api/"):
+    if len(page.astext()) > LONGEST:
         for section in top.children:
             if isinstance(section, nodes.section):
                 title, *rest = section.children

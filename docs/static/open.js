@@ -1,7 +1,7 @@
 /* Folds the parts of a long page on a phone; opens the one to which a link leads, and all for print. */
 function fold_parts() {
   if (matchMedia("(max-width: 46em)").matches)
-    document.querySelectorAll("details.part").forEach((each) => (each.open = false));
+    document.querySelectorAll("details.part").forEach((each, k) => (each.open = k === 0));
 }
 function open_target() {
   const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));

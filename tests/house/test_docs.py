@@ -3,7 +3,6 @@
 `make docs` holds the rest: every warning of Sphinx, such as a link that leads nowhere, is an error there.
 """
 
-import dataclasses
 import re
 from enum import Enum
 from importlib import import_module
@@ -16,7 +15,7 @@ import pytest
 
 import rocking_cli
 from rocking_cli import Registry, core
-from rocking_cli.core import Angle, Length, Line, box
+from rocking_cli.core import box
 from rocking_cli.core.mechanism_kinematics import Jointed, Kinematics
 from rocking_cli.core.released import released
 from rocking_cli.io.starters import STARTERS, starter, template_of
@@ -24,6 +23,7 @@ from rocking_cli.plugins.rooms import commands
 from rocking_cli.plugins.rooms import names as verbs
 from rocking_cli.processing.intensity import IntensityMeasures
 from rocking_cli.testing import contract
+from rocking_cli.views.mechanisms import fields
 from tests.conftest import PROJECT
 
 pytestmark = pytest.mark.drawn
@@ -322,13 +322,6 @@ def test_every_measure_is_explained(made):
     page = on_the_site(made, "fragility.md")
     for name in IntensityMeasures():
         assert re.search(rf"^\| `{re.escape(name)}[`(].* \| .+ \|", page, re.M), name
-
-
-def test_the_guide_gives_the_signatures_of_what_a_sketch_shows():
-    for kind in (Length, Angle, Line):
-        usual = {each.name: f"={each.default}" for each in dataclasses.fields(kind) if each.default in (None, False)}
-        fields = [f"{each.name}{usual.get(each.name, '')}" for each in dataclasses.fields(kind)]
-        assert f"`{kind.__name__}({', '.join(fields)})`" in " ".join(text_of("plugins.md").split())
 
 
 HELPERS = {name: each for name, each in vars(core).items() if name[0] != "_" and not isinstance(each, ModuleType)}
