@@ -72,6 +72,33 @@ def test_the_made_parts_of_the_pages_are_not_stale(made, runs):
     assert stale == [], "run make docs"
 
 
+COMMAND = re.compile(r"^(?:    (rocking .+?)(?:  +#.*)?|<!-- (?:run|draw): (.+) -->)$", re.M)
+WRITES = re.compile(r"^python | (>|-o|--out|--store|--plugin|--structures) ")
+SAMPLES = [(k / 200, round(20_000 * np.sin(k / 30))) for k in range(2000)]
+READERS_OWN = {
+    "uneven.txt": "time [s],acceleration [g]\n" + "\n".join(f"{t},{count / 2e5}" for t, count in SAMPLES),
+    "raw.txt": "\n".join(f"{t} 0 0 0 0 {count}" for t, count in SAMPLES),
+    "laser.txt": "\n".join(f"{t} {count / 2e3}" for t, count in SAMPLES),
+}
+"""Files that a reader has, and pages name, by what stands for them here."""
+ELSEWHERE = "capped_block", "model.json"  # a package, and a model of another program, in tests of their own
+
+
+@pytest.mark.docs
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_every_command_that_a_page_shows_runs(page, made, tmp_path):
+    """In the order of the page, those before it in the same folder; outputs and pictures are held elsewhere."""
+    found = [(plain or marked, bool(plain)) for plain, marked in COMMAND.findall(page.read_text(encoding="utf-8"))]
+    found = [each for each in found if not any(name in each[0] for name in ELSEWHERE)]
+    elsewhere = {command for command, alone in found if not alone}
+    wanted = [command for command, alone in found if (alone and command not in elsewhere) or WRITES.search(command)]
+    if not {*wanted} - elsewhere:
+        return
+    for name, text in READERS_OWN.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    made.make_runs.run(dict.fromkeys(wanted), tmp_path)
+
+
 @pytest.mark.docs
 def test_the_pictures_are_not_stale(made, runs):
     drawn = made.make_pages.drawn(runs)
