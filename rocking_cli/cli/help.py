@@ -84,6 +84,7 @@ class Command(click.Command):
                     formatter.write_dl(records)
 
 
+ALL_HELP = "Show all: explanations, notes on the method, and the rows and columns that are left out otherwise."
 JSON_HELP = "Print the result as one JSON object, and nothing else."
 as_json = click.option("--json", "as_json", cls=HeadedOption, heading=OUTPUT_HEADING, is_flag=True, help=JSON_HELP)
 CODES, MECHANISMS, PULSES = "rocking.codes", "rocking.mechanisms", "rocking.pulses"
