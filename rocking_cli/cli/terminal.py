@@ -358,6 +358,7 @@ def table(shown: Table, *, in_full: bool = True) -> bool:
         lines = grid(columns, cells, numbers, room, rule)
         least = max(kept, key=lambda k: (ranks[k], k))
         if lines is not None or in_full or not ranks[least]:
+            lines = lines or (grid(columns, cells, numbers, room, rule, narrow=True) if left else None)
             break
         kept.remove(least)
         left.append(least)
