@@ -86,7 +86,10 @@ class Command(click.Command):
 
 ALL_HELP = "Show all: explanations, notes on the method, and the rows and columns that are left out otherwise."
 JSON_HELP = "Print the result as one JSON object, and nothing else."
-as_json = click.option("--json", "as_json", cls=HeadedOption, heading=OUTPUT_HEADING, is_flag=True, help=JSON_HELP)
+as_json, in_full = (
+    click.option(*names, cls=HeadedOption, heading=OUTPUT_HEADING, is_flag=True, help=text)
+    for *names, text in (("--json", "as_json", JSON_HELP), ("--all", "in_full", ALL_HELP))
+)
 CODES, MECHANISMS, PULSES = "rocking.codes", "rocking.mechanisms", "rocking.pulses"
 """Entry-point groups, as in the modules of the plugins, which take long to import."""
 Completer = Callable[[click.Context, click.Parameter, str], list[CompletionItem]]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -76,12 +76,12 @@ def _shortened(name: str) -> str:
 RECORDS: tuple[Column[_Chosen], ...] = (
     Column("file", of("file")),
     Column("name", of("motion.name"), head="record", text=True),
-    Column("event", of("motion.origin.event"), head="earthquake", form=_shortened, text=True),
-    Column("station", of("motion.origin.station"), head="station", form=_shortened, text=True),
+    Column("event", of("motion.origin.event"), head="earthquake", form=_shortened, text=True, rank=2),
+    Column("station", of("motion.origin.station"), head="station", form=_shortened, text=True, rank=3),
     Column("magnitude", of("motion.origin.magnitude")),
     Column("distance", of("motion.origin.distance"), "km"),
     Column("factor", of("factor"), head="factor"),
-    Column("pga_g", lambda row: row.factor * row.motion.of_ground.pga_g, "g", "PGA as\nscaled [g]", rounded(3)),
+    Column("pga_g", lambda row: row.factor * row.motion.of_ground.pga_g, "g", "PGA as\nscaled [g]", rounded(3), rank=1),
 )
 ENDS: tuple[Column[_Extreme], ...] = (
     only_shown("", of("what"), text=True),
@@ -93,10 +93,11 @@ ENDS: tuple[Column[_Extreme], ...] = (
 
 def view(results: ShownSet) -> View:
     """Show the records and their factors, the range of the mean over the target, and remarks."""
+    mean = table_of("Mean over the target", ENDS, _ends(results))
     parts: list[Table | str] = [
-        table_of(title(results), RECORDS, _chosen(results)),
-        table_of("Mean over the target", ENDS, _ends(results)),
         verdict(results),
+        table_of(title(results), RECORDS, _chosen(results)),
+        replace(mean, asides=range(len(mean.rows))),
         search(results),
     ]
     parts += [sentence for sentence in (_left_out(results), _silent(results)) if sentence]
